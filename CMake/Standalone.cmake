@@ -1,0 +1,156 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# The project role: find VTK (or ParaView, which brings its own VTK), build the module, wrap it for
+# Python or make the ParaView plugin, test, install.
+
+# ---- options -----------------------------------------------------------------------------------
+option(BUILD_SHARED_LIBS "Build a shared library" ON)
+option(ES_PARAVIEW "Build the ParaView plugin, against ParaView's VTK" OFF)
+option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface" ON)
+option(ES_WARNINGS "Compile with -Wall -Wextra" OFF)
+option(ES_WERROR "Warnings are errors (with ES_WARNINGS)" OFF)
+set(ES_SANITIZE "" CACHE STRING "Sanitizers to compile with, as in -fsanitize=<list>")
+set_property(CACHE ES_SANITIZE PROPERTY STRINGS "" "address,undefined" "thread")
+
+get_property(es_multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
+if (NOT CMAKE_BUILD_TYPE AND NOT es_multi_config)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo or MinSizeRel" FORCE)
+endif ()
+
+# vtk_module_build() needs the install folders, and the output folders, before it runs.
+include(GNUInstallDirs)
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
+set(es_cmake_destination "${CMAKE_INSTALL_LIBDIR}/cmake/vtkElevationSurface")
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+if (ES_SANITIZE)
+  add_compile_options("-fsanitize=${ES_SANITIZE}" -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options("-fsanitize=${ES_SANITIZE}")
+endif ()
+
+# ---- tests or not ------------------------------------------------------------------------------
+# Without a word from the user, tests are built where their tools are: a plain build must work on a
+# machine that has VTK alone.
+if (NOT DEFINED BUILD_TESTING)
+  find_package(GTest QUIET)
+  if (GTest_FOUND)
+    set(es_testing_default ON)
+  else ()
+    set(es_testing_default OFF)
+    message(STATUS "The tests are not built: GoogleTest was not found "
+      "(Debian, Ubuntu: packages libgtest-dev and xvfb; then -DBUILD_TESTING=ON)")
+  endif ()
+  option(BUILD_TESTING "Build the tests" "${es_testing_default}")
+endif ()
+include(CTest)
+
+# ---- VTK ---------------------------------------------------------------------------------------
+set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel)
+set(es_vtk_test_components FiltersCore FiltersModeling FiltersSources IOXML InteractionStyle
+  RenderingOpenGL2 TestingCore TestingRendering)
+
+if (ES_PARAVIEW)
+  include("${CMAKE_CURRENT_LIST_DIR}/ParaView.cmake")
+  es_find_paraview()
+  set(ES_WRAP_PYTHON OFF) # the plugin wraps its modules itself
+else ()
+  find_package(VTK 9.1 QUIET COMPONENTS ${es_vtk_components})
+  if (NOT VTK_FOUND)
+    message(FATAL_ERROR "VTK 9.1 or newer was not found. Install it (Debian, Ubuntu: package "
+      "libvtk9-dev), or point to it with -DVTK_DIR=<folder of vtk-config.cmake>.\n"
+      "${VTK_NOT_FOUND_MESSAGE}")
+  endif ()
+  if (ES_WRAP_PYTHON)
+    include("${CMAKE_CURRENT_LIST_DIR}/SelectPython.cmake")
+    es_select_python("${VTK_VERSION}" "${VTK_PREFIX_PATH}")
+    list(APPEND es_vtk_components Python WrappingPythonCore)
+  endif ()
+endif ()
+if (BUILD_TESTING)
+  list(APPEND es_vtk_components ${es_vtk_test_components})
+endif ()
+find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components})
+message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}")
+
+# ---- the module --------------------------------------------------------------------------------
+set(es_tests OFF)
+if (BUILD_TESTING)
+  set(es_tests ON)
+endif ()
+vtk_module_scan(
+  MODULE_FILES     "${CMAKE_CURRENT_SOURCE_DIR}/vtk.module"
+  REQUEST_MODULES  VTK::ElevationSurface
+  PROVIDES_MODULES es_modules
+  ENABLE_TESTS     "${es_tests}")
+
+# vtk_module_build() adds the folder of vtk.module, which is the root, with the binary folder
+# CMAKE_BINARY_DIR, which is taken. Within this function's scope it is another one.
+function (es_build_module)
+  set(CMAKE_BINARY_DIR "${CMAKE_BINARY_DIR}/module")
+  vtk_module_build(
+    MODULES             ${es_modules}
+    PACKAGE             vtkElevationSurface
+    INSTALL_EXPORT      vtkElevationSurface
+    INSTALL_HEADERS     ON
+    HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/vtkElevationSurface"
+    CMAKE_DESTINATION   "${es_cmake_destination}"
+    VERSION             "${PROJECT_VERSION}"
+    SOVERSION           "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+    TEST_DIRECTORY_NAME "NONE")
+endfunction ()
+es_build_module()
+
+# ---- the CMake package -------------------------------------------------------------------------
+include(CMakePackageConfigHelpers)
+configure_package_config_file(
+  "${CMAKE_CURRENT_LIST_DIR}/vtkElevationSurfaceConfig.cmake.in"
+  "${CMAKE_BINARY_DIR}/${es_cmake_destination}/vtkElevationSurfaceConfig.cmake"
+  INSTALL_DESTINATION "${es_cmake_destination}")
+write_basic_package_version_file(
+  "${CMAKE_BINARY_DIR}/${es_cmake_destination}/vtkElevationSurfaceConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(
+  FILES
+    "${CMAKE_BINARY_DIR}/${es_cmake_destination}/vtkElevationSurfaceConfig.cmake"
+    "${CMAKE_BINARY_DIR}/${es_cmake_destination}/vtkElevationSurfaceConfigVersion.cmake"
+  DESTINATION "${es_cmake_destination}")
+install(FILES "${CMAKE_CURRENT_SOURCE_DIR}/LICENSE"
+  DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/licenses/vtkElevationSurface")
+
+# ---- Python ------------------------------------------------------------------------------------
+if (ES_WRAP_PYTHON)
+  vtk_module_python_default_destination(es_python_destination)
+  vtk_module_wrap_python(
+    MODULES             ${es_modules}
+    TARGET              vtkElevationSurface::Python
+    PYTHON_PACKAGE      "vtkelevationsurface"
+    MODULE_DESTINATION  "${es_python_destination}"
+    CMAKE_DESTINATION   "${es_cmake_destination}"
+    LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    INSTALL_HEADERS     OFF
+    BUILD_STATIC        OFF)
+  set(es_python_package "${es_python_destination}/vtkelevationsurface")
+  configure_file("${CMAKE_CURRENT_LIST_DIR}/__init__.py.in"
+    "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" @ONLY)
+  install(FILES "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py"
+    DESTINATION "${es_python_package}")
+endif ()
+
+# ---- the ParaView plugin -----------------------------------------------------------------------
+if (ES_PARAVIEW)
+  es_build_plugin()
+endif ()
+
+# ---- tests -------------------------------------------------------------------------------------
+if (BUILD_TESTING)
+  include("${CMAKE_CURRENT_LIST_DIR}/Testing.cmake")
+  add_subdirectory(Testing)
+  ExternalData_Add_Target(ESData)
+endif ()

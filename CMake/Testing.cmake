@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# What vtk_module_build() of VTK sets up for the Testing folder of a module, for our own build.
+
+include("${VTK_DIR}/vtkModuleTesting.cmake") # installed with VTK, but not included by its config
+
+set(_vtk_build_test VTK::ElevationSurface)
+set(_vtk_build_test_labels)
+set(_vtk_build_TEST_DATA_TARGET ESData)
+set(_vtk_build_TEST_INPUT_DATA_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/Data")
+set(_vtk_build_TEST_OUTPUT_DATA_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/Data")
+set(_vtk_build_TEST_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/Testing/Temporary")
+
+# All data are plain files of the repository; ExternalData asks for a store all the same.
+set(ExternalData_OBJECT_STORES "${CMAKE_BINARY_DIR}/ExternalData/Objects")
+set(ExternalData_SOURCE_ROOT "${CMAKE_CURRENT_SOURCE_DIR}")
+set(ExternalData_BINARY_ROOT "${CMAKE_BINARY_DIR}/ExternalData")
+
+find_package(GTest QUIET)
+if (NOT GTest_FOUND)
+  message(FATAL_ERROR "BUILD_TESTING is on, but GoogleTest was not found. Install it (Debian, Ubuntu: "
+    "package libgtest-dev), or leave the tests out with -DBUILD_TESTING=OFF.")
+endif ()
+
+# Tests that draw run on a virtual display where there is one: no window pops up, and every machine
+# draws with the same renderer.
+if (UNIX AND NOT APPLE)
+  find_program(ES_XVFB_RUN xvfb-run DOC "Runs a test on a virtual display (empty: on $DISPLAY)")
+  if (NOT ES_XVFB_RUN AND NOT DEFINED ENV{DISPLAY})
+    message(FATAL_ERROR "BUILD_TESTING is on, but there is no display and xvfb-run was not found. "
+      "Install it (Debian, Ubuntu: packages xvfb and xauth), or leave the tests out with "
+      "-DBUILD_TESTING=OFF.")
+  endif ()
+endif ()
+
+# es_display_prefix(<variable>): the words to put before the command of a test that draws. Each call
+# gives another display number, for tests started at the same moment would take the same one.
+# (Without -noreset the server ends with its first client, which now and then is too early.)
+function (es_display_prefix variable)
+  set(prefix)
+  if (ES_XVFB_RUN)
+    get_property(number GLOBAL PROPERTY es_display_number)
+    if (NOT number)
+      set(number 100)
+    endif ()
+    set(prefix "${ES_XVFB_RUN}" -a -n "${number}" -s "-screen 0 1280x1024x24 -noreset")
+    math(EXPR number "${number} + 10")
+    set_property(GLOBAL PROPERTY es_display_number "${number}")
+  endif ()
+  set("${variable}" ${prefix} PARENT_SCOPE)
+endfunction ()

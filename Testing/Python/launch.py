@@ -1,0 +1,29 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs a test script as vtkpython would.
+
+    launch.py <folder of the package> [--enable-bt] <script> [arguments]
+
+VTK's test functions pass --enable-bt to vtkpython, which plain python3 would refuse.
+"""
+import faulthandler
+import os
+import runpy
+import sys
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    package_folder, *arguments = sys.argv[1:]
+    if arguments[0] == "--enable-bt":
+        faulthandler.enable()
+        arguments = arguments[1:]
+    script = arguments[0]
+    # As if the script had been started directly: its own folder first, then the package.
+    sys.path[:1] = [os.path.dirname(os.path.abspath(script)), package_folder]
+    sys.argv = arguments
+    runpy.run_path(script, run_name="__main__")
+
+
+main()
