@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The Delaunay triangulation of points in the x,y plane, grown triangle by triangle over a grid.
+ *
+ * In: points. Out: triangles (ids of the points), and every point that is not a vertex with the
+ * reason. The passes, in the order of the functions in Delaunay.cxx:
+ *   1. Bin the finite points into a grid and set duplicates aside (BinGrid.h).
+ *   2. Find the convex hull; its edges open the first fans.
+ *   3. Grow: the vertices, from the lowest up, complete the fan of triangles of which they are
+ *      the lowest vertex. The apex over an edge is found by voxel traversal search [Nguyen]: the
+ *      grid is visited from the edge outwards where an equilateral triangle would have its apex,
+ *      and then the rest of the best triangle's circle, so that the circle is proved empty.
+ * A triangle told to its two upper vertices opens or closes their fans, so that the edge pool of
+ * the published method has two entries a vertex and every triangle is looked for once.
+ *
+ * Guarantees: exact (empty circles by exact predicates, all of the convex hull, every finite point
+ * that is not a duplicate is a vertex) and unique: a polygon of co-circular points is cut into the
+ * fan of its lowest vertex (by y, then x), so the set of triangles depends on the positions alone.
+ * Triangles come in the order of their lowest vertices, each starting with its lowest vertex.
+ *
+ * Cost: expected linear in the number of points for evenly spread points; sorting rows of the grid
+ * adds n log(points in a row).
+ *
+ * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
+ * [Fang & Piegl 1993] Delaunay triangulation using a uniform grid, IEEE CG&A 13(3).
+ */
+#ifndef elevation_Delaunay_h
+#define elevation_Delaunay_h
+
+#include "Types.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/** Which of several points with the same x,y is the vertex; among equals the first. */
+enum class DuplicatePolicy
+{
+  KeepFirst,
+  KeepLast,
+  KeepLowest,
+  KeepHighest
+};
+
+/** Why a point is not a vertex. The values are what users read in the output. */
+enum class UnusedReason : unsigned char
+{
+  Duplicate = 1,
+  NotFinite = 2
+};
+
+struct DelaunayOptions
+{
+  /** Triangles with an edge longer than this (in x,y) are left out; 0: no limit. */
+  double MaximumEdgeLength = 0.0;
+  DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
+  Progress Monitor;
+};
+
+struct Triangulation
+{
+  Buffer<Index> Triangles; ///< three point ids a triangle, counter-clockwise
+  Index NumberOfHullPoints = 0; ///< points on the border of the convex hull, collinear ones counted
+  std::vector<Index> UnusedPoints; ///< ids, increasing
+  std::vector<UnusedReason> UnusedReasons; ///< one an unused point
+  Index NumberOfDuplicates = 0;
+  Index NumberOfNotFinite = 0;
+};
+
+/**
+ * Triangulates.
+ * @param[in] points  a point whose x, y or z is not finite is left aside and reported
+ * @return no triangle when fewer than three distinct points remain or all are on one line
+ * @throws Error when there are more points than an Index can hold; std::bad_alloc; Aborted
+ */
+Triangulation Triangulate(const PointView& points, const DelaunayOptions& options);
+
+} // namespace elevation
+
+#endif

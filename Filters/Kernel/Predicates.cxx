@@ -1,0 +1,413 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Predicates.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <vector>
+
+// The error bounds and the expansions presume that every operation rounds to double.
+static_assert(FLT_EVAL_METHOD == 0, "double arithmetic must not be carried out in a wider type");
+
+namespace elevation
+{
+namespace
+{
+
+//------------------------------------------------------------------------------------------------
+// Expansions: a sum of doubles of increasing magnitude that do not overlap, so that the last one
+// has the sign of the sum [Shewchuk 1997, sections 2.2 to 2.7]. Zero components are left out.
+//------------------------------------------------------------------------------------------------
+
+/** sum + error == a + b exactly. */
+inline void TwoSum(double a, double b, double& sum, double& error)
+{
+  sum = a + b;
+  const double bRounded = sum - a;
+  const double aRounded = sum - bRounded;
+  error = (a - aRounded) + (b - bRounded);
+}
+
+/** high + low == a, both of at most 26 bits. */
+inline void Split(double a, double& high, double& low)
+{
+  const double c = 134217729.0 * a; // 2^27 + 1
+  high = c - (c - a);
+  low = a - high;
+}
+
+/** product + error == a * b exactly, as long as nothing over- or underflows. */
+inline void TwoProduct(double a, double b, double& product, double& error)
+{
+  product = a * b;
+  double aHigh, aLow, bHigh, bLow;
+  Split(a, aHigh, aLow);
+  Split(b, bHigh, bLow);
+  error = aLow * bLow - (((product - aHigh * bHigh) - aLow * bHigh) - aHigh * bLow);
+}
+
+template <int Capacity>
+struct Expansion
+{
+  double Part[Capacity];
+  int Size = 0;
+
+  void Append(double part)
+  {
+    if (part != 0.0)
+    {
+      this->Part[this->Size++] = part;
+    }
+  }
+  Sign GetSign() const
+  {
+    if (this->Size == 0)
+    {
+      return Zero;
+    }
+    return this->Part[this->Size - 1] > 0.0 ? Positive : Negative;
+  }
+};
+
+Expansion<2> Difference(double a, double b)
+{
+  double sum, error;
+  TwoSum(a, -b, sum, error);
+  Expansion<2> result;
+  result.Append(error);
+  result.Append(sum);
+  return result;
+}
+
+/** Adds two expansions by merging them by magnitude and summing from the small end. */
+template <int M, int N>
+Expansion<M + N> operator+(const Expansion<M>& e, const Expansion<N>& f)
+{
+  Expansion<M + N> result;
+  int i = 0, j = 0;
+  const auto smallest = [&]() {
+    if (j == f.Size || (i < e.Size && std::fabs(e.Part[i]) < std::fabs(f.Part[j])))
+    {
+      return e.Part[i++];
+    }
+    return f.Part[j++];
+  };
+  if (e.Size + f.Size == 0)
+  {
+    return result;
+  }
+  double sum = smallest();
+  while (i < e.Size || j < f.Size)
+  {
+    double error;
+    TwoSum(sum, smallest(), sum, error);
+    result.Append(error);
+  }
+  result.Append(sum);
+  return result;
+}
+
+template <int N>
+Expansion<N> operator-(Expansion<N> e)
+{
+  for (int i = 0; i < e.Size; ++i)
+  {
+    e.Part[i] = -e.Part[i];
+  }
+  return e;
+}
+
+template <int M, int N>
+Expansion<M + N> operator-(const Expansion<M>& e, const Expansion<N>& f)
+{
+  return e + (-f);
+}
+
+template <int N>
+Expansion<2 * N> Scale(const Expansion<N>& e, double factor)
+{
+  Expansion<2 * N> result;
+  if (e.Size == 0 || factor == 0.0)
+  {
+    return result;
+  }
+  double sum, error;
+  TwoProduct(e.Part[0], factor, sum, error);
+  result.Append(error);
+  for (int i = 1; i < e.Size; ++i)
+  {
+    double product, productError, partial;
+    TwoProduct(e.Part[i], factor, product, productError);
+    TwoSum(sum, productError, partial, error);
+    result.Append(error);
+    TwoSum(product, partial, sum, error);
+    result.Append(error);
+  }
+  result.Append(sum);
+  return result;
+}
+
+/** Sums the products of e with the parts [begin, end) of f, halving the range for balanced sums. */
+template <int M, int N>
+struct Product
+{
+  static Expansion<2 * M * N> Of(const Expansion<M>& e, const double* part, int count)
+  {
+    constexpr int half = (N + 1) / 2;
+    if (count <= half)
+    {
+      const auto few = Product<M, half>::Of(e, part, count);
+      Expansion<2 * M * N> result;
+      result.Size = few.Size;
+      std::copy(few.Part, few.Part + few.Size, result.Part);
+      return result;
+    }
+    const auto sum = Product<M, half>::Of(e, part, half) +
+      Product<M, N - half>::Of(e, part + half, count - half);
+    Expansion<2 * M * N> result;
+    result.Size = sum.Size;
+    std::copy(sum.Part, sum.Part + sum.Size, result.Part);
+    return result;
+  }
+};
+
+template <int M>
+struct Product<M, 1>
+{
+  static Expansion<2 * M> Of(const Expansion<M>& e, const double* part, int count)
+  {
+    return count == 0 ? Expansion<2 * M>() : Scale(e, part[0]);
+  }
+};
+
+template <int M, int N>
+Expansion<2 * M * N> operator*(const Expansion<M>& e, const Expansion<N>& f)
+{
+  return Product<M, N>::Of(e, f.Part, f.Size);
+}
+
+//------------------------------------------------------------------------------------------------
+// Integers of any length, for coordinates whose products leave the range of double. All coordinates
+// of one question are written as multiples of one power of two.
+//------------------------------------------------------------------------------------------------
+
+class BigInteger
+{
+public:
+  BigInteger() = default;
+
+  /** value / 2^exponent, which must be whole. */
+  BigInteger(double value, int exponent)
+    : IsNegative(value < 0.0)
+  {
+    if (value == 0.0)
+    {
+      return;
+    }
+    int valueExponent;
+    const double fraction = std::frexp(std::fabs(value), &valueExponent);
+    std::uint64_t bits = static_cast<std::uint64_t>(std::ldexp(fraction, 53));
+    int shift = valueExponent - 53 - exponent;
+    if (shift < 0)
+    {
+      bits >>= -shift; // the bits that go are zero
+      shift = 0;
+    }
+    this->Limbs.assign(shift / 32, 0);
+    const int rest = shift % 32;
+    this->Limbs.push_back(static_cast<std::uint32_t>(bits << rest));
+    this->Limbs.push_back(static_cast<std::uint32_t>((bits >> 1) >> (31 - rest)));
+    this->Limbs.push_back(rest ? static_cast<std::uint32_t>(bits >> (64 - rest)) : 0);
+    this->Trim();
+  }
+
+  Sign GetSign() const
+  {
+    return this->Limbs.empty() ? Zero : (this->IsNegative ? Negative : Positive);
+  }
+
+  BigInteger operator-() const
+  {
+    BigInteger result = *this;
+    result.IsNegative = !this->IsNegative;
+    return result;
+  }
+
+  BigInteger operator+(const BigInteger& other) const
+  {
+    BigInteger result;
+    if (this->IsNegative == other.IsNegative)
+    {
+      result.IsNegative = this->IsNegative;
+      std::uint64_t carry = 0;
+      const std::size_t size = std::max(this->Limbs.size(), other.Limbs.size());
+      for (std::size_t i = 0; i < size || carry; ++i)
+      {
+        carry += std::uint64_t(this->Limb(i)) + other.Limb(i);
+        result.Limbs.push_back(static_cast<std::uint32_t>(carry));
+        carry >>= 32;
+      }
+    }
+    else
+    {
+      const bool isLarger = this->HasLargerMagnitudeThan(other);
+      const BigInteger& large = isLarger ? *this : other;
+      const BigInteger& small = isLarger ? other : *this;
+      result.IsNegative = large.IsNegative;
+      std::int64_t borrow = 0;
+      for (std::size_t i = 0; i < large.Limbs.size(); ++i)
+      {
+        std::int64_t digit = std::int64_t(large.Limbs[i]) - small.Limb(i) - borrow;
+        borrow = digit < 0 ? 1 : 0;
+        result.Limbs.push_back(static_cast<std::uint32_t>(digit + (borrow << 32)));
+      }
+    }
+    result.Trim();
+    return result;
+  }
+
+  BigInteger operator-(const BigInteger& other) const { return *this + (-other); }
+
+  BigInteger operator*(const BigInteger& other) const
+  {
+    BigInteger result;
+    result.IsNegative = this->IsNegative != other.IsNegative;
+    result.Limbs.assign(this->Limbs.size() + other.Limbs.size(), 0);
+    for (std::size_t i = 0; i < this->Limbs.size(); ++i)
+    {
+      std::uint64_t carry = 0;
+      for (std::size_t j = 0; j < other.Limbs.size(); ++j)
+      {
+        carry += std::uint64_t(this->Limbs[i]) * other.Limbs[j] + result.Limbs[i + j];
+        result.Limbs[i + j] = static_cast<std::uint32_t>(carry);
+        carry >>= 32;
+      }
+      result.Limbs[i + other.Limbs.size()] = static_cast<std::uint32_t>(carry);
+    }
+    result.Trim();
+    return result;
+  }
+
+private:
+  std::uint32_t Limb(std::size_t i) const { return i < this->Limbs.size() ? this->Limbs[i] : 0; }
+
+  void Trim()
+  {
+    while (!this->Limbs.empty() && this->Limbs.back() == 0)
+    {
+      this->Limbs.pop_back();
+    }
+    this->IsNegative = this->IsNegative && !this->Limbs.empty();
+  }
+
+  bool HasLargerMagnitudeThan(const BigInteger& other) const
+  {
+    if (this->Limbs.size() != other.Limbs.size())
+    {
+      return this->Limbs.size() > other.Limbs.size();
+    }
+    return std::lexicographical_compare(
+      other.Limbs.rbegin(), other.Limbs.rend(), this->Limbs.rbegin(), this->Limbs.rend());
+  }
+
+  bool IsNegative = false;
+  std::vector<std::uint32_t> Limbs; // least significant first, no leading zeros
+};
+
+/** The largest power of two of which every coordinate is a multiple, or a smaller one. */
+int CommonExponent(std::initializer_list<Point2> points)
+{
+  int least = 1100;
+  for (const Point2& p : points)
+  {
+    for (double value : { p.X, p.Y })
+    {
+      if (value != 0.0)
+      {
+        int exponent;
+        std::frexp(value, &exponent);
+        least = std::min(least, std::max(exponent - 53, -1074));
+      }
+    }
+  }
+  return least;
+}
+
+/** Whether every coordinate is zero or of a magnitude in [least, greatest]. */
+bool AreWithin(std::initializer_list<Point2> points, double least, double greatest)
+{
+  for (const Point2& p : points)
+  {
+    for (double value : { std::fabs(p.X), std::fabs(p.Y) })
+    {
+      if (value != 0.0 && !(value >= least && value <= greatest))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/** The determinants themselves, for any exact number type. */
+template <typename Number>
+Sign OrientationOf(const Number& acx, const Number& acy, const Number& bcx, const Number& bcy)
+{
+  return (acx * bcy - acy * bcx).GetSign();
+}
+
+template <typename Number>
+Sign InCircleOf(const Number& adx, const Number& ady, const Number& bdx, const Number& bdy,
+  const Number& cdx, const Number& cdy)
+{
+  const auto a = (adx * adx + ady * ady) * (bdx * cdy - cdx * bdy);
+  const auto b = (bdx * bdx + bdy * bdy) * (cdx * ady - adx * cdy);
+  const auto c = (cdx * cdx + cdy * cdy) * (adx * bdy - bdx * ady);
+  return (a + b + c).GetSign();
+}
+} // namespace
+
+namespace detail
+{
+
+Sign IntegerOrientation(const Point2& a, const Point2& b, const Point2& c)
+{
+  const int e = CommonExponent({ a, b, c });
+  const BigInteger cx(c.X, e), cy(c.Y, e);
+  return OrientationOf(BigInteger(a.X, e) - cx, BigInteger(a.Y, e) - cy, BigInteger(b.X, e) - cx,
+    BigInteger(b.Y, e) - cy);
+}
+
+Sign IntegerInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
+{
+  const int e = CommonExponent({ a, b, c, d });
+  const BigInteger dx(d.X, e), dy(d.Y, e);
+  return InCircleOf(BigInteger(a.X, e) - dx, BigInteger(a.Y, e) - dy, BigInteger(b.X, e) - dx,
+    BigInteger(b.Y, e) - dy, BigInteger(c.X, e) - dx, BigInteger(c.Y, e) - dy);
+}
+
+Sign ExactOrientation(const Point2& a, const Point2& b, const Point2& c)
+{
+  // Within these magnitudes all coordinates are multiples of 2^-532, so products of two of them are
+  // multiples of 2^-1064 and at most 2^1002: no expansion loses a bit.
+  if (!AreWithin({ a, b, c }, std::ldexp(1.0, -480), std::ldexp(1.0, 490)))
+  {
+    return IntegerOrientation(a, b, c);
+  }
+  return OrientationOf(Difference(a.X, c.X), Difference(a.Y, c.Y), Difference(b.X, c.X),
+    Difference(b.Y, c.Y));
+}
+
+Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
+{
+  // As above for products of four: multiples of 2^-1068, at most 2^970.
+  if (!AreWithin({ a, b, c, d }, std::ldexp(1.0, -215), std::ldexp(1.0, 240)))
+  {
+    return IntegerInCircle(a, b, c, d);
+  }
+  return InCircleOf(Difference(a.X, d.X), Difference(a.Y, d.Y), Difference(b.X, d.X),
+    Difference(b.Y, d.Y), Difference(c.X, d.X), Difference(c.Y, d.Y));
+}
+
+} // namespace detail
+} // namespace elevation

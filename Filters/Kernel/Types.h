@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The few types every part of the kernel shares.
+ *
+ * The kernel computes in the x,y plane. Elevations stay with the caller until a rule needs them
+ * (which of two points with the same x,y is kept; the height of an inserted point).
+ */
+#ifndef elevation_Types_h
+#define elevation_Types_h
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace elevation
+{
+
+/** Ids of vertices, triangles and half-edges; half the memory traffic of 64 bits. */
+using Index = std::int32_t;
+
+/** A mesh has fewer than 2 triangles a point and 3 half-edges a triangle, all of them an Index. */
+constexpr Index MaximumNumberOfPoints = std::numeric_limits<Index>::max() / 6;
+
+/** No vertex, no triangle, no neighbour. */
+constexpr Index None = -1;
+
+struct Point2
+{
+  double X;
+  double Y;
+};
+
+inline bool operator==(const Point2& p, const Point2& q)
+{
+  return p.X == q.X && p.Y == q.Y;
+}
+
+inline bool operator!=(const Point2& p, const Point2& q)
+{
+  return !(p == q);
+}
+
+/**
+ * The order of points every rule of the kernel uses: by y, then by x. "Lowest" always means first
+ * in this order.
+ */
+inline bool IsLower(const Point2& p, const Point2& q)
+{
+  return p.Y < q.Y || (p.Y == q.Y && p.X < q.X);
+}
+
+/**
+ * Points as a caller holds them: x, y, z interleaved, float or double, not owned.
+ * Exactly one of the two pointers is set (none when Count is 0).
+ */
+struct PointView
+{
+  const float* Float = nullptr;
+  const double* Double = nullptr;
+  Index Count = 0;
+
+  Point2 At(Index i) const
+  {
+    const std::size_t k = 3 * static_cast<std::size_t>(i);
+    return this->Double ? Point2{ this->Double[k], this->Double[k + 1] }
+                        : Point2{ this->Float[k], this->Float[k + 1] };
+  }
+  double Elevation(Index i) const
+  {
+    const std::size_t k = 3 * static_cast<std::size_t>(i) + 2;
+    return this->Double ? this->Double[k] : static_cast<double>(this->Float[k]);
+  }
+};
+
+/** What the input does not allow; the message names the offending point, edge or cell. */
+class Error : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/** Thrown out of a long computation when the caller's Progress asked to stop. */
+class Aborted : public std::exception
+{
+public:
+  const char* what() const noexcept override { return "aborted"; }
+};
+
+/**
+ * Told the fraction done, in [0, 1]; returns false to stop. Called often enough (every few
+ * milliseconds of work) for an abort to take effect within half a second. May be empty.
+ */
+using Progress = std::function<bool(double)>;
+
+/** Reports to an optional progress callback, and throws Aborted when it asks to stop. */
+inline void Report(const Progress& progress, double fraction)
+{
+  if (progress && !progress(fraction))
+  {
+    throw Aborted();
+  }
+}
+
+/** The sub-interval [begin, end] of a progress, for a step of a longer computation. */
+inline Progress Part(const Progress& progress, double begin, double end)
+{
+  if (!progress)
+  {
+    return progress;
+  }
+  return [&progress, begin, end](
+           double fraction) { return progress(begin + fraction * (end - begin)); };
+}
+
+/**
+ * A growable array of plain values that are not initialised, in memory from malloc, so that it can
+ * be handed over to a VTK array without a copy, and grows without one where the system can move pages.
+ */
+template <typename T>
+class Buffer
+{
+  static_assert(std::is_trivially_copyable<T>::value, "Buffer holds plain values");
+
+public:
+  Buffer() = default;
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  Buffer(Buffer&& other) noexcept { this->Swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept
+  {
+    this->Swap(other);
+    return *this;
+  }
+  ~Buffer() { std::free(this->Begin); }
+
+  std::size_t size() const { return this->Length; }
+  bool empty() const { return this->Length == 0; }
+  T* data() { return this->Begin; }
+  const T* data() const { return this->Begin; }
+  T* begin() { return this->Begin; }
+  T* end() { return this->Begin + this->Length; }
+  const T* begin() const { return this->Begin; }
+  const T* end() const { return this->Begin + this->Length; }
+  T& operator[](std::size_t i) { return this->Begin[i]; }
+  const T& operator[](std::size_t i) const { return this->Begin[i]; }
+
+  /** Room for @a capacity values; the values already there stay. @throws std::bad_alloc */
+  void Reserve(std::size_t capacity)
+  {
+    if (capacity > this->Capacity)
+    {
+      this->Reallocate(capacity);
+    }
+  }
+  /** New values are not initialised. @throws std::bad_alloc */
+  void Resize(std::size_t length)
+  {
+    this->Reserve(length);
+    this->Length = length;
+  }
+  void Append(const T& value)
+  {
+    if (this->Length == this->Capacity)
+    {
+      this->Reallocate(this->Capacity + this->Capacity / 2 + 64);
+    }
+    this->Begin[this->Length++] = value;
+  }
+  /** Gives back what Reserve took and nobody filled. */
+  void Shrink()
+  {
+    if (this->Length < this->Capacity && this->Length > 0)
+    {
+      this->Reallocate(this->Length);
+    }
+  }
+  /** The memory becomes the caller's, who frees it with std::free. */
+  T* Release()
+  {
+    T* memory = this->Begin;
+    this->Begin = nullptr;
+    this->Length = this->Capacity = 0;
+    return memory;
+  }
+
+private:
+  void Swap(Buffer& other) noexcept
+  {
+    std::swap(this->Begin, other.Begin);
+    std::swap(this->Length, other.Length);
+    std::swap(this->Capacity, other.Capacity);
+  }
+  void Reallocate(std::size_t capacity)
+  {
+    if (capacity > std::numeric_limits<std::size_t>::max() / sizeof(T))
+    {
+      throw std::bad_alloc();
+    }
+    void* memory = std::realloc(this->Begin, capacity * sizeof(T));
+    if (!memory)
+    {
+      throw std::bad_alloc();
+    }
+    this->Begin = static_cast<T*>(memory);
+    this->Capacity = capacity;
+  }
+
+  T* Begin = nullptr;
+  std::size_t Length = 0;
+  std::size_t Capacity = 0;
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * How a filter calls the kernel: progress and abort go in, exceptions come out as one VTK error and
+ * empty output. Private to the module.
+ */
+#ifndef KernelCall_h
+#define KernelCall_h
+
+#include "Kernel/Types.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+#include "vtkInformationVector.h"
+#include "vtkSetGet.h"
+
+#include <new>
+
+namespace elevation
+{
+
+/** Progress of the kernel as progress and abort flag of a filter. */
+inline Progress ProgressOf(vtkAlgorithm* filter)
+{
+  return [filter](double fraction) {
+    filter->UpdateProgress(fraction);
+    return filter->GetAbortExecute() == 0;
+  };
+}
+
+/**
+ * Runs the body of a RequestData. When it throws, every output is emptied; anything but an abort is
+ * reported as one error of the filter.
+ * @return what RequestData returns: 1, or 0 after an error.
+ */
+template <typename Body>
+int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
+{
+  std::string message;
+  try
+  {
+    body();
+    return 1;
+  }
+  catch (const Aborted&)
+  {
+  }
+  catch (const Error& error)
+  {
+    message = error.what();
+  }
+  catch (const std::bad_alloc&)
+  {
+    message = "There is not enough memory for this input.";
+  }
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkDataObject::GetData(outputs, port)->Initialize();
+  }
+  if (message.empty())
+  {
+    return 1;
+  }
+  vtkErrorWithObjectMacro(filter, << message);
+  return 0;
+}
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshConversion.h"
+
+#include "Kernel/Predicates.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTypeInt32Array.h"
+
+#include <cmath>
+
+namespace elevation
+{
+
+PointsOfDataSet ViewPoints(vtkPointSet* input)
+{
+  PointsOfDataSet points;
+  const vtkIdType count = input->GetNumberOfPoints();
+  if (count == 0)
+  {
+    return points;
+  }
+  if (count > MaximumNumberOfPoints)
+  {
+    throw Error("The input has " + std::to_string(count) + " points; at most " +
+      std::to_string(MaximumNumberOfPoints) + " can be handled at once. Cut it into parts.");
+  }
+  points.Owner = input->GetPoints()->GetData();
+  points.View.Count = static_cast<Index>(count);
+  if (auto* floats = vtkFloatArray::FastDownCast(points.Owner))
+  {
+    points.View.Float = floats->GetPointer(0);
+    return points;
+  }
+  auto* doubles = vtkDoubleArray::FastDownCast(points.Owner);
+  vtkNew<vtkDoubleArray> converted;
+  if (!doubles)
+  {
+    converted->DeepCopy(points.Owner);
+    points.Owner = converted;
+    doubles = converted;
+  }
+  points.View.Double = doubles->GetPointer(0);
+  return points;
+}
+
+vtkIdType FirstPolygon(vtkPolyData* input)
+{
+  return input->GetNumberOfVerts() + input->GetNumberOfLines();
+}
+
+void ToMesh(vtkPolyData* input, Mesh& mesh)
+{
+  if (input->GetNumberOfStrips() > 0)
+  {
+    throw Error("The input has triangle strips; pass it through vtkTriangleFilter first.");
+  }
+  const PointsOfDataSet points = ViewPoints(input);
+  mesh.Points.resize(points.View.Count);
+  for (Index i = 0; i < points.View.Count; ++i)
+  {
+    mesh.Points[i] = points.View.At(i);
+  }
+
+  vtkCellArray* polygons = input->GetPolys();
+  const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
+  if (count > std::numeric_limits<Index>::max() / 3)
+  {
+    throw Error("The input has " + std::to_string(count) + " triangles; at most " +
+      std::to_string(std::numeric_limits<Index>::max() / 3) + " can be handled at once.");
+  }
+  const vtkIdType first = FirstPolygon(input);
+  mesh.Triangles.clear();
+  mesh.Triangles.reserve(3 * static_cast<std::size_t>(count));
+  mesh.Twins.clear();
+  if (count == 0)
+  {
+    return;
+  }
+  auto cells = vtk::TakeSmartPointer(polygons->NewIterator());
+  vtkIdType cell = first;
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell(), ++cell)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    cells->GetCurrentCell(size, ids);
+    if (size != 3)
+    {
+      throw Error("Cell " + std::to_string(cell) + " has " + std::to_string(size) +
+        " points, but only triangles can be handled; pass the input through vtkTriangleFilter first.");
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      if (ids[i] < 0 || ids[i] >= points.View.Count)
+      {
+        throw Error("Cell " + std::to_string(cell) + " names point " + std::to_string(ids[i]) +
+          ", but the points are 0 to " + std::to_string(points.View.Count - 1) + ".");
+      }
+      const Point2& p = mesh.Points[ids[i]];
+      if (!std::isfinite(p.X) || !std::isfinite(p.Y) ||
+        !std::isfinite(points.View.Elevation(static_cast<Index>(ids[i]))))
+      {
+        throw Error("Point " + std::to_string(ids[i]) + " of cell " + std::to_string(cell) +
+          " has a coordinate that is not finite.");
+      }
+    }
+    const Index a = static_cast<Index>(ids[0]);
+    Index b = static_cast<Index>(ids[1]);
+    Index c = static_cast<Index>(ids[2]);
+    const Sign side = Orientation(mesh.Points[a], mesh.Points[b], mesh.Points[c]);
+    if (side == Zero)
+    {
+      throw Error("Cell " + std::to_string(cell) + " (points " + std::to_string(a) + ", " +
+        std::to_string(b) + ", " + std::to_string(c) +
+        ") is flat in x,y: an elevation surface has no vertical or empty triangles.");
+    }
+    if (side == Negative)
+    {
+      std::swap(b, c);
+    }
+    mesh.Triangles.insert(mesh.Triangles.end(), { a, b, c });
+  }
+}
+
+vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles)
+{
+  triangles.Shrink();
+  const vtkIdType size = static_cast<vtkIdType>(triangles.size());
+  vtkNew<vtkTypeInt32Array> connectivity;
+  connectivity->SetArray(
+    triangles.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+  vtkNew<vtkTypeInt32Array> offsets;
+  offsets->SetNumberOfValues(size / 3 + 1);
+  vtkTypeInt32* offset = offsets->GetPointer(0);
+  for (vtkIdType i = 0; i <= size / 3; ++i)
+  {
+    offset[i] = static_cast<vtkTypeInt32>(3 * i);
+  }
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->SetData(offsets, connectivity);
+  return cells;
+}
+
+} // namespace elevation

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The only place that knows both the kernel's mesh and vtkPolyData. Private to the module.
+ */
+#ifndef MeshConversion_h
+#define MeshConversion_h
+
+#include "Kernel/Mesh.h"
+#include "Kernel/Types.h"
+
+#include "vtkSmartPointer.h"
+
+class vtkCellArray;
+class vtkDataArray;
+class vtkPointSet;
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** Points of a data set as the kernel reads them; Owner keeps the memory alive. */
+struct PointsOfDataSet
+{
+  PointView View;
+  vtkSmartPointer<vtkDataArray> Owner;
+};
+
+/**
+ * Views float and double points in place; any other type is converted to double.
+ * @throws Error when there are more points than the kernel's Index holds.
+ */
+PointsOfDataSet ViewPoints(vtkPointSet* input);
+
+/**
+ * The polygons of a triangulated polydata as a mesh: Points are all points' x,y; triangle i is the
+ * i-th polygon, turned counter-clockwise where it is not. Vertices and lines are left alone (their
+ * cells precede the polygons in the cell numbering: see FirstPolygon).
+ * Twins are not filled.
+ * @throws Error that names the cell: not a triangle, a point used twice, a point that is not finite, flat in
+ *         x,y; or when there are triangle strips.
+ */
+void ToMesh(vtkPolyData* input, Mesh& mesh);
+
+/** The cell id of the first polygon of a polydata. */
+vtkIdType FirstPolygon(vtkPolyData* input);
+
+/** Triangles as a cell array; the connectivity is handed over without a copy. */
+vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkGridDelaunay2D
+ * @brief   exact Delaunay triangulation of points in the x,y plane, grown over a grid
+ *
+ * Input: a vtkPointSet (float or double); only its points are used, its cells are ignored. x,y is
+ * the plane of projection, z the elevation.
+ *
+ * Output: a vtkPolyData with the same points in the same order (shared with the input, never
+ * written), all point data and field data, and the triangles in Polys, counter-clockwise seen from
+ * +z.
+ *
+ * What can be relied on, with MaximumEdgeLength 0:
+ * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact
+ *   arithmetic; the triangles cover the whole convex hull; every point that is finite and not a
+ *   duplicate is a vertex.
+ * - Unique: where four or more points lie on one empty circle, their polygon is cut into the fan of
+ *   its lowest point (least y, then least x). The set of triangles depends on the positions of the
+ *   points alone, not on their order.
+ * - Complete: points that are not vertices are counted, and listed in the field data.
+ *   Coordinates may be of any size a double holds.
+ *
+ * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
+ * triangle. An error, such as more points than can be handled (357,913,941), leaves empty output.
+ *
+ * Field data of the output:
+ * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
+ * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
+ *   the same x,y is the vertex), 2 = not finite (x, y or z);
+ * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value).
+ *
+ * Cost: expected time proportional to the number of points for points of even density, with a
+ * sorting step; memory about 60 bytes a point during the run.
+ *
+ * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an Elevation
+ * Surface of 3D Point Clouds": the third point of an edge is looked for by a voxel traversal search.
+ *
+ * @sa vtkTrimOutwardTriangles vtkFillElevationHoles vtkDelaunay2D
+ */
+#ifndef vtkGridDelaunay2D_h
+#define vtkGridDelaunay2D_h
+
+#include "vtkElevationSurfaceModule.h" // for export macro
+#include "vtkPolyDataAlgorithm.h"
+
+class VTKELEVATIONSURFACE_EXPORT vtkGridDelaunay2D : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkGridDelaunay2D* New();
+  vtkTypeMacro(vtkGridDelaunay2D, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Triangles with an edge longer than this in x,y (input units) are not made: gaps in the data stay
+   * holes, pockets of the outline stay open. The triangles that remain are those of the full
+   * triangulation. 0 (default): no limit; negative values are taken as 0.
+   */
+  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumEdgeLength, double);
+  ///@}
+
+  /** Which of several points with the same x,y becomes the vertex. */
+  enum DuplicatePolicyType
+  {
+    KEEP_FIRST = 0,   ///< the one with the least id
+    KEEP_LAST = 1,    ///< the one with the greatest id
+    KEEP_LOWEST = 2,  ///< the one with the least z; among equals the first
+    KEEP_HIGHEST = 3, ///< the one with the greatest z; among equals the first
+  };
+
+  ///@{
+  /** Which of several points with the same x,y becomes the vertex; default KEEP_FIRST. */
+  vtkSetClampMacro(DuplicatePolicy, int, KEEP_FIRST, KEEP_HIGHEST);
+  vtkGetMacro(DuplicatePolicy, int);
+  void SetDuplicatePolicyToKeepFirst() { this->SetDuplicatePolicy(KEEP_FIRST); }
+  void SetDuplicatePolicyToKeepLast() { this->SetDuplicatePolicy(KEEP_LAST); }
+  void SetDuplicatePolicyToKeepLowest() { this->SetDuplicatePolicy(KEEP_LOWEST); }
+  void SetDuplicatePolicyToKeepHighest() { this->SetDuplicatePolicy(KEEP_HIGHEST); }
+  const char* GetDuplicatePolicyAsString() const;
+  ///@}
+
+  /** After Update(): points left aside because another point has the same x,y. */
+  vtkGetMacro(NumberOfDuplicatePoints, vtkIdType);
+
+  /** After Update(): points left aside because a coordinate is infinite or not a number. */
+  vtkGetMacro(NumberOfNonFinitePoints, vtkIdType);
+
+protected:
+  vtkGridDelaunay2D();
+  ~vtkGridDelaunay2D() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  double MaximumEdgeLength = 0.0;
+  int DuplicatePolicy = KEEP_FIRST;
+
+  vtkIdType NumberOfDuplicatePoints = 0;
+  vtkIdType NumberOfNonFinitePoints = 0;
+
+private:
+  vtkGridDelaunay2D(const vtkGridDelaunay2D&) = delete;
+  void operator=(const vtkGridDelaunay2D&) = delete;
+};
+
+#endif
