@@ -1,9 +1,35 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Finds ParaView; its VTK_DIR is then the one that find_package(VTK) takes.
+# Finds ParaView; its VTK_DIR is then the one that find_package(VTK) takes. Where ParaView_DIR does not
+# say where it is, the folder of "Utilities/setup test" comes before the system: Debian's ParaView beside
+# Debian's VTK lacks files that its CMake package wants.
 macro (es_find_paraview)
-  find_package(ParaView 5.11 REQUIRED COMPONENTS RemotingCore RemotingServerManager)
+  set(es_paraview_hints)
+  if (DEFINED ENV{ELEVATION_SURFACE_PARAVIEW})
+    list(APPEND es_paraview_hints "$ENV{ELEVATION_SURFACE_PARAVIEW}/usr")
+  elseif (DEFINED ENV{XDG_CACHE_HOME})
+    list(APPEND es_paraview_hints "$ENV{XDG_CACHE_HOME}/elevation-surface/paraview/usr")
+  elseif (DEFINED ENV{HOME})
+    list(APPEND es_paraview_hints "$ENV{HOME}/.cache/elevation-surface/paraview/usr")
+  endif ()
+  if (NOT Python3_EXECUTABLE)
+    # ParaView's libraries ask for the development files of the Python they were built with. That is
+    # the system's; one that comes first in PATH would be taken otherwise.
+    find_program(Python3_EXECUTABLE python3 PATHS /usr/bin /usr/local/bin NO_DEFAULT_PATH
+      DOC "Python interpreter of the version that ParaView was built with")
+    if (NOT Python3_EXECUTABLE)
+      unset(Python3_EXECUTABLE CACHE)
+    endif ()
+  endif ()
+  find_package(ParaView 5.11 QUIET
+    COMPONENTS RemotingCore RemotingServerManager
+    HINTS ${es_paraview_hints})
+  if (NOT ParaView_FOUND)
+    message(FATAL_ERROR "ParaView 5.11 or newer was not found. Set it up with \"Utilities/setup test\" "
+      "(Debian, Ubuntu), or point to it with -DParaView_DIR=<folder of paraview-config.cmake>.\n"
+      "${ParaView_NOT_FOUND_MESSAGE}")
+  endif ()
   message(STATUS "ParaView ${ParaView_VERSION} in ${ParaView_DIR}")
 endmacro ()
 

@@ -59,7 +59,7 @@ set(es_vtk_test_components FiltersCore FiltersModeling FiltersSources IOXML Inte
 if (ES_PARAVIEW)
   include("${CMAKE_CURRENT_LIST_DIR}/ParaView.cmake")
   es_find_paraview()
-  set(ES_WRAP_PYTHON OFF) # the plugin wraps its modules itself
+  set(ES_WRAP_PYTHON OFF) # in ParaView, Python reaches the filters through their proxies
 else ()
   find_package(VTK 9.1 QUIET COMPONENTS ${es_vtk_components})
   if (NOT VTK_FOUND)

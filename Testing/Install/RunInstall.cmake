@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# The steps of a user who installs this project and builds another one with it. See CMakeLists.txt for
+# the variables.
+
+function (step what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE failed)
+  if (failed)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${what} failed (${failed}): ${command}")
+  endif ()
+endfunction ()
+
+set(prefix "${WORK_FOLDER}/prefix")
+set(build "${WORK_FOLDER}/build")
+file(REMOVE_RECURSE "${WORK_FOLDER}")
+
+if (NOT CONFIG)
+  set(CONFIG Release)
+endif ()
+set(flags)
+if (SANITIZE)
+  set(flags "-DCMAKE_CXX_FLAGS=-fsanitize=${SANITIZE}")
+endif ()
+set(platform)
+if (PLATFORM)
+  set(platform -A "${PLATFORM}")
+endif ()
+
+step("Installing"
+  "${CMAKE_COMMAND}" --install "${BUILD_FOLDER}" --prefix "${prefix}" --config "${CONFIG}")
+
+# The kernel is private.
+file(GLOB_RECURSE headers RELATIVE "${prefix}" "${prefix}/*.h")
+foreach (header IN LISTS headers)
+  if (NOT header MATCHES "/vtk(GridDelaunay2D|TrimOutwardTriangles|FillElevationHoles|ElevationSurfaceModule)\\.h$")
+    message(FATAL_ERROR "A private header is installed: ${header}")
+  endif ()
+endforeach ()
+list(LENGTH headers count)
+if (NOT count EQUAL 4)
+  message(FATAL_ERROR "Four headers were expected, there are ${count}: ${headers}")
+endif ()
+
+step("Configuring the consumer"
+  "${CMAKE_COMMAND}" -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" ${platform} ${flags}
+  "-DCMAKE_PREFIX_PATH=${prefix}"
+  "-DVTK_DIR=${VTK_DIR}"
+  "-DCMAKE_C_COMPILER=${C_COMPILER}"
+  "-DCMAKE_CXX_COMPILER=${COMPILER}"
+  "-DCMAKE_BUILD_TYPE=${CONFIG}"
+  "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin")
+step("Building the consumer"
+  "${CMAKE_COMMAND}" --build "${build}" --config "${CONFIG}")
+
+find_program(consumer NAMES Consumer
+  PATHS "${build}/bin" "${build}/bin/${CONFIG}" NO_DEFAULT_PATH REQUIRED)
+step("Running the consumer" "${consumer}")
+
+# What was installed for Python must find its library there, not in the build.
+if (PYTHON)
+  file(RENAME "${prefix}" "${prefix}-moved")
+  step("Importing the Python package"
+    "${CMAKE_COMMAND}" -E env "PYTHONPATH=${prefix}-moved/${PYTHON_FOLDER}"
+    "${PYTHON}" -c "import vtkelevationsurface as v; v.vtkGridDelaunay2D(); print(v.__file__)")
+endif ()
+file(REMOVE_RECURSE "${WORK_FOLDER}")

@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# Copies the module into Remote/ElevationSurface of the small VTK tree beside this file, builds it there
+# and runs a program that links it. See CMakeLists.txt for the variables.
+
+function (step what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE failed)
+  if (failed)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${what} failed (${failed}): ${command}")
+  endif ()
+endfunction ()
+
+set(tree "${WORK_FOLDER}/VTK")
+set(build "${WORK_FOLDER}/build")
+file(REMOVE_RECURSE "${WORK_FOLDER}")
+file(COPY "${CMAKE_CURRENT_LIST_DIR}/VTK" DESTINATION "${WORK_FOLDER}")
+file(COPY
+  "${SOURCE}/CMakeLists.txt"
+  "${SOURCE}/vtk.module"
+  "${SOURCE}/CMake"
+  "${SOURCE}/Filters"
+  "${SOURCE}/Testing"
+  DESTINATION "${tree}/Remote/ElevationSurface")
+
+if (NOT CONFIG)
+  set(CONFIG Release)
+endif ()
+set(platform)
+if (PLATFORM)
+  set(platform -A "${PLATFORM}")
+endif ()
+
+# VTK 9.1 compiles itself as C++11: the module must ask for more where it needs more.
+step("Configuring"
+  "${CMAKE_COMMAND}" -S "${tree}" -B "${build}" -G "${GENERATOR}" ${platform}
+  "-DVTK_DIR=${VTK_DIR}"
+  "-DCMAKE_C_COMPILER=${C_COMPILER}"
+  "-DCMAKE_CXX_COMPILER=${COMPILER}"
+  "-DCMAKE_CXX_STANDARD=11"
+  "-DCMAKE_BUILD_TYPE=${CONFIG}"
+  "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin")
+step("Building"
+  "${CMAKE_COMMAND}" --build "${build}" --config "${CONFIG}" --target LinkCheck)
+
+find_program(program NAMES LinkCheck
+  PATHS "${build}/bin" "${build}/bin/${CONFIG}" NO_DEFAULT_PATH REQUIRED)
+step("Running" "${program}")
+file(REMOVE_RECURSE "${WORK_FOLDER}")
