@@ -38,14 +38,17 @@ endif ()
 # ---- tests or not ------------------------------------------------------------------------------
 # Without a word from the user, tests are built where their tools are: a plain build must work on a
 # machine that has VTK alone.
+if (UNIX AND NOT APPLE)
+  find_program(ES_XVFB_RUN xvfb-run DOC "Runs a test on a virtual display (empty: on your own)")
+endif ()
 if (NOT DEFINED BUILD_TESTING)
   find_package(GTest QUIET)
-  if (GTest_FOUND)
+  if (GTest_FOUND AND (ES_XVFB_RUN OR DEFINED ENV{DISPLAY} OR APPLE OR NOT UNIX))
     set(es_testing_default ON)
   else ()
     set(es_testing_default OFF)
-    message(STATUS "The tests are not built: GoogleTest was not found "
-      "(Debian, Ubuntu: packages libgtest-dev and xvfb; then -DBUILD_TESTING=ON)")
+    message(STATUS "The tests are not built: they need GoogleTest and a display or xvfb-run "
+      "(Debian, Ubuntu: packages libgtest-dev, xvfb, xauth; then -DBUILD_TESTING=ON)")
   endif ()
   option(BUILD_TESTING "Build the tests" "${es_testing_default}")
 endif ()

@@ -25,13 +25,10 @@ endif ()
 
 # Tests that draw run on a virtual display where there is one: no window pops up, and every machine
 # draws with the same renderer.
-if (UNIX AND NOT APPLE)
-  find_program(ES_XVFB_RUN xvfb-run DOC "Runs a test on a virtual display (empty: on $DISPLAY)")
-  if (NOT ES_XVFB_RUN AND NOT DEFINED ENV{DISPLAY})
-    message(FATAL_ERROR "BUILD_TESTING is on, but there is no display and xvfb-run was not found. "
-      "Install it (Debian, Ubuntu: packages xvfb and xauth), or leave the tests out with "
-      "-DBUILD_TESTING=OFF.")
-  endif ()
+if (UNIX AND NOT APPLE AND NOT ES_XVFB_RUN AND NOT DEFINED ENV{DISPLAY})
+  message(FATAL_ERROR "BUILD_TESTING is on, but there is no display and xvfb-run was not found. "
+    "Install it (Debian, Ubuntu: packages xvfb and xauth), or leave the tests out with "
+    "-DBUILD_TESTING=OFF.")
 endif ()
 
 # es_display_prefix(<variable>): the words to put before the command of a test that draws. Each call
