@@ -25,7 +25,7 @@ endif ()
 
 # Tests that draw run on a virtual display where there is one: no window pops up, and every machine
 # draws with the same renderer.
-if (UNIX AND NOT APPLE AND NOT ES_XVFB_RUN AND NOT DEFINED ENV{DISPLAY})
+if (UNIX AND NOT APPLE AND NOT ES_XVFB_RUN AND "$ENV{DISPLAY}" STREQUAL "")
   message(FATAL_ERROR "BUILD_TESTING is on, but there is no display and xvfb-run was not found. "
     "Install it (Debian, Ubuntu: packages xvfb and xauth), or leave the tests out with "
     "-DBUILD_TESTING=OFF.")

@@ -20,8 +20,11 @@ def main():
         faulthandler.enable()
         arguments = arguments[1:]
     script = arguments[0]
-    # As if the script had been started directly: its own folder first, then the package.
+    # As if the script had been started directly: its own folder first, then the package. Programs that
+    # the script starts find the package too.
     sys.path[:1] = [os.path.dirname(os.path.abspath(script)), package_folder]
+    paths = [package_folder, os.environ.get("PYTHONPATH")]
+    os.environ["PYTHONPATH"] = os.pathsep.join(path for path in paths if path)
     sys.argv = arguments
     runpy.run_path(script, run_name="__main__")
 
