@@ -72,7 +72,8 @@ namespace
 {
 /**
  * Quarter of the turn, counter-clockwise from the direction b->r, in which the direction b->u lies:
- * 0 less than half a turn, 1 half, 2 more, 3 a full turn (the same direction).
+ * 0 less than half a turn, 1 half, 2 more. The same direction is -1, no turn: a border back to back
+ * with another one, with an empty wedge of no width between them.
  */
 int TurnClass(const Point2& b, const Point2& r, const Point2& u)
 {
@@ -82,7 +83,7 @@ int TurnClass(const Point2& b, const Point2& r, const Point2& u)
     return side == Positive ? 0 : 2;
   }
   const bool same = r.X != b.X ? (u.X > b.X) == (r.X > b.X) : (u.Y > b.Y) == (r.Y > b.Y);
-  return same ? 3 : 1;
+  return same ? -1 : 1;
 }
 
 /** Whether b->u comes before b->v when turning counter-clockwise from b->r. Exact. */
