@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Closed rings around a surface: joined from lines, checked, located in, or extracted from a mesh.
+ *
+ * Several rings bound a region by the even-odd rule: a place is inside when an odd number of rings
+ * goes around it. So rings may nest (lake, island in the lake), in any direction and order, and may
+ * touch; what two rings share cancels out.
+ */
+#ifndef elevation_Boundary_h
+#define elevation_Boundary_h
+
+#include "Constraints.h"
+#include "Mesh.h"
+#include "Predicates.h"
+
+#include <string>
+#include <vector>
+
+namespace elevation
+{
+
+enum class Location
+{
+  Outside,
+  Inside,
+  On
+};
+
+/**
+ * Where point p lies with respect to rings of points, by the even-odd rule. Exact. Linear in the
+ * number of edges; for many points use RingLocator.
+ */
+Location Locate(const std::vector<Point2>& points, const Rings& rings, const Point2& p);
+
+/**
+ * Answers many questions of location. The edges are binned by y, so that a question looks only at
+ * those about its height. n log n set-up; keeps a reference to the points.
+ */
+class RingLocator
+{
+public:
+  RingLocator(const std::vector<Point2>& points, const Rings& rings);
+
+  /** As the function above. */
+  Location Locate(const Point2& p) const;
+
+  /**
+   * Whether the triangle is inside, which no edge of the rings may cut. Exact, also when all its
+   * corners are on the rings: decided for the place in the triangle next to its lowest corner.
+   */
+  bool IsInside(const Point2& a, const Point2& b, const Point2& c) const;
+
+private:
+  struct Edge
+  {
+    Index Low;
+    Index High;
+  };
+  template <typename Visitor>
+  void VisitEdgesAt(double y, Visitor&& visit) const;
+
+  const std::vector<Point2>& Points;
+  std::vector<Edge> Edges;
+  std::vector<Index> BinOffsets;
+  std::vector<Index> BinEdges;
+  double Bottom = 0.0;
+  double BinsPerUnit = 0.0;
+};
+
+/** Two segments that have a point in common that is not an end point of both. */
+struct Crossing
+{
+  Index First = None; ///< positions in the list of segments; None: there is no crossing
+  Index Second = None;
+};
+
+/**
+ * The first pair of segments, from below, that cross, overlap, or touch other than with an end of each:
+ * ends are the same where their coordinates are. Two equal segments overlap. Exact, by a sweep:
+ * n log n. Segments of no length are left out.
+ */
+Crossing FindCrossing(const std::vector<Point2>& points, const std::vector<Segment>& segments);
+
+/**
+ * Checks that a mesh (with Twins) covers no place of the x,y plane twice: its borders neither
+ * cross nor touch but in common vertices, vertices at the border differ in x,y, and no part lies over
+ * another. Sweep over the border: n log n in its edges.
+ * @throws Error that names the two border edges (by the ids of their points) and their triangles
+ */
+void RequireNoOverlap(const Mesh& mesh);
+
+/** Lines and polygons as they come in, each a list of points. */
+struct BoundaryLines
+{
+  std::vector<Point2> Points;
+  Rings Lines;                  ///< ids of Points; a line is closed only if it returns to its first
+  std::vector<char> IsPolygon;  ///< one a line; a polygon closes by itself
+  std::vector<Index> Cells;     ///< one a line; the number that messages use
+};
+
+/**
+ * Joins lines to rings of mesh vertices. A line is a ring when it returns to its first point
+ * (the same id or the same x,y); other lines are chained with each other where their ends meet.
+ * Points are matched to the corners of the mesh's triangles by equal x,y.
+ * @throws Error naming the line and the point: a point not finite or not a mesh vertex; an end where no
+ *         other line goes on; a ring of fewer than three points; no line at all
+ */
+struct JoinedBoundary
+{
+  Rings Vertices;            ///< mesh vertices
+  std::vector<Index> Points; ///< beside each of Vertices: its point among the lines' points
+};
+JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines);
+
+struct ExtractOptions
+{
+  /** How many local spacings an empty stretch may measure and still be surface; 0: from the data. */
+  double GapTolerance = 0.0;
+  Progress Monitor;
+};
+
+struct ExtractedBoundary
+{
+  Rings Vertices; ///< mesh vertices; counter-clockwise around surface, clockwise around a lake
+  double GapTolerance = 0.0; ///< the one used
+};
+
+/**
+ * The outline of the surface that the vertices of a mesh (with Twins) sample, with lakes and islands.
+ * Every edge of the outline is an edge of the mesh. The rule is in Boundary.cxx.
+ * Linear. @return no ring when no triangle counts as surface
+ */
+ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options);
+
+} // namespace elevation
+
+#endif
