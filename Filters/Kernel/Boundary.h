@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Closed rings around a surface: joined from lines, checked, located in, or extracted from a mesh.
+ * Closed rings around a surface: joined from lines, located in, or extracted from a mesh.
  *
  * Several rings bound a region by the even-odd rule: a place is inside when an odd number of rings
  * goes around it. So rings may nest (lake, island in the lake), in any direction and order, and may
@@ -11,11 +11,9 @@
 #ifndef elevation_Boundary_h
 #define elevation_Boundary_h
 
-#include "Constraints.h"
 #include "Mesh.h"
 #include "Predicates.h"
 
-#include <string>
 #include <vector>
 
 namespace elevation
@@ -68,28 +66,6 @@ private:
   double Bottom = 0.0;
   double BinsPerUnit = 0.0;
 };
-
-/** Two segments that have a point in common that is not an end point of both. */
-struct Crossing
-{
-  Index First = None; ///< positions in the list of segments; None: there is no crossing
-  Index Second = None;
-};
-
-/**
- * The first pair of segments, from below, that cross, overlap, or touch other than with an end of each:
- * ends are the same where their coordinates are. Two equal segments overlap. Exact, by a sweep:
- * n log n. Segments of no length are left out.
- */
-Crossing FindCrossing(const std::vector<Point2>& points, const std::vector<Segment>& segments);
-
-/**
- * Checks that a mesh (with Twins) covers no place of the x,y plane twice: its borders neither
- * cross nor touch but in common vertices, vertices at the border differ in x,y, and no part lies over
- * another. Sweep over the border: n log n in its edges.
- * @throws Error that names the two border edges (by the ids of their points) and their triangles
- */
-void RequireNoOverlap(const Mesh& mesh);
 
 /** Lines and polygons as they come in, each a list of points. */
 struct BoundaryLines

@@ -93,8 +93,8 @@ public:
     }
   }
 
-  /** Tells that the border half-edge that was @a before now has the id @a after. */
-  void ReplaceBorder(const Mesh& mesh, Index before, Index after);
+  /** Tells that the border that leaves the vertex and had the id @a before now has @a after. */
+  void ReplaceBorder(Index vertex, Index before, Index after);
 
 private:
   template <typename Visitor>
