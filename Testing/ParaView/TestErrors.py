@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""In ParaView too, what cannot be used gives one error that names it, and empty output."""
+from paraview import simple
+
+from plugin_testing import check, check_equal, fetch, finish, start
+
+
+def errors_of(source):
+    """Updates a filter and returns the errors that it reported."""
+    errors = []
+
+    def note(_caller, _event, text):
+        errors.append(text)
+
+    note.CallDataType = "string0"
+    algorithm = source.SMProxy.GetClientSideObject()
+    algorithm.AddObserver("ErrorEvent", note)
+    source.UpdatePipeline()
+    return errors
+
+
+start()
+
+# The cells of a plane are quadrilaterals.
+quadrilaterals = simple.Plane(XResolution=3, YResolution=3)
+for filter_type, outputs in ((simple.TrimOutwardTriangles, 3), (simple.FillElevationHoles, 2)):
+    name = filter_type.__name__
+    source = filter_type(Input=quadrilaterals)
+    errors = errors_of(source)
+    check_equal(len(errors), 1, name + ": number of errors for cells that are no triangles")
+    check(errors and "cell 0" in errors[0].lower(),
+          "%s: the error does not name the cell: %s" % (name, errors))
+    for port in range(outputs):
+        check_equal(fetch(source, port).GetNumberOfPoints(), 0, "%s: points of output %d" % (name, port))
+
+# An open line is no boundary.
+surface = simple.GridDelaunay2D(Input=quadrilaterals)
+open_line = simple.Line(Point1=[-0.3, -0.3, 0], Point2=[0.3, 0.3, 0])
+trimmed = simple.TrimOutwardTriangles(Input=surface, Boundary=open_line)
+errors = errors_of(trimmed)
+check_equal(len(errors), 1, "number of errors for a boundary that is not closed")
+check(errors and "closed" in errors[0].lower(), "the error does not say why: %s" % errors)
+check_equal(fetch(trimmed).GetNumberOfPoints(), 0, "points after an error")
+
+# Taking the cause away is enough to go on.
+trimmed.Boundary = None
+check_equal(errors_of(trimmed), [], "errors without the open line")
+check_equal(fetch(trimmed).GetNumberOfPoints(), 16, "points without the open line")
+
+finish()

@@ -1,0 +1,88 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each proxy has every parameter of its class, with the same default, and hands it on."""
+import os
+import re
+
+from paraview import simple
+from paraview.modules.vtkRemotingClientServerStream import vtkClientServerInterpreterInitializer
+
+from plugin_testing import check, check_equal, finish, start
+
+# For each property: a value other than the default.
+OTHER_VALUES = {
+    "GridDelaunay2D": {"MaximumEdgeLength": 2.5, "DuplicatePolicy": "Keep Highest"},
+    "TrimOutwardTriangles": {"GapTolerance": 3.5, "RecoverBoundary": 0},
+    "FillElevationHoles": {
+        "MaximumHoleSize": 12.5,
+        "MaximumHoleEdges": 40,
+        "Spacing": 0.25,
+        "InterpolatePointData": 0,
+    },
+}
+OUTPUT_NAMES = {
+    "GridDelaunay2D": 1,
+    "TrimOutwardTriangles": ["Surface", "Outward Triangles", "Boundary"],
+    "FillElevationHoles": ["Surface", "Hole Outlines"],
+}
+
+
+def printed(algorithm, name):
+    """What PrintSelf says of a parameter. The plugin brings no Python wrappers to ask the getter."""
+    match = re.search(r"^\s*%s: *(.*)$" % name, str(algorithm), re.MULTILINE)
+    return match.group(1) if match else None
+
+
+def members(header):
+    """Names of the parameters of a class, and of what it tells after Update(), from its header."""
+    parameters = set(re.findall(r"vtkSet\w*Macro\((\w+)", header))
+    parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
+    parameters -= {"BoundaryConnection", "BoundaryData"}  # the second input
+    results = set(re.findall(r"vtkGet\w*Macro\((\w+)", header)) - parameters
+    return parameters, results
+
+
+data_folder, _ = start()
+plane = simple.Plane(XResolution=4, YResolution=4)
+interpreter = vtkClientServerInterpreterInitializer.GetGlobalInterpreter()
+
+for name, values in OTHER_VALUES.items():
+    with open(os.path.join(os.path.dirname(data_folder), "Filters", "vtk%s.h" % name)) as header:
+        parameters, results = members(header.read())
+    check_equal(set(values), parameters, name + ": tested properties and parameters of the class")
+
+    proxy = getattr(simple, name)(Input=plane)
+    available = set(proxy.ListProperties())
+    check(parameters <= available, "%s: no property for %s" % (name, parameters - available))
+    check(results <= available, "%s: no property for %s" % (name, results - available))
+
+    for each in sorted(parameters | results):
+        documentation = proxy.SMProxy.GetProperty(each).GetDocumentation()
+        text = (documentation.GetDescription() or "").strip() if documentation else ""
+        check(len(text) > 20, "%s: %s is not documented" % (name, each))
+    check(len((proxy.SMProxy.GetDocumentation().GetDescription() or "").strip()) > 100,
+          name + " is not documented")
+
+    # ParaView's defaults have been pushed to the object when the proxy was made.
+    fresh = interpreter.NewInstance("vtk" + name)
+    used = proxy.SMProxy.GetClientSideObject()
+    for each in sorted(parameters):
+        check(printed(fresh, each) is not None, "%s prints no %s" % (name, each))
+        check_equal(printed(used, each), printed(fresh, each), "%s: default of %s" % (name, each))
+    for each, value in values.items():
+        setattr(proxy, each, value)
+        proxy.SMProxy.UpdateVTKObjects()
+        check(printed(used, each) != printed(fresh, each),
+              "%s: %s does not reach the filter" % (name, each))
+
+    names = OUTPUT_NAMES[name]
+    count = proxy.SMProxy.GetNumberOfOutputPorts()
+    if isinstance(names, int):
+        check_equal(count, names, name + ": outputs")
+    else:
+        check_equal([proxy.SMProxy.GetOutputPortName(i) for i in range(count)], names,
+                    name + ": outputs")
+    menu = proxy.SMProxy.GetHints().FindNestedElementByName("ShowInMenu")
+    check_equal(menu.GetAttribute("category"), "Elevation Surface", name + ": menu")
+
+finish()

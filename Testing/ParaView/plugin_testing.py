@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the pvpython tests share: the command line, the plugin, plain arrays, and checks.
+
+A failed check is printed and counted; finish() ends the script with a non-zero code if there was one.
+"""
+import argparse
+import math
+import os
+import sys
+
+from paraview import servermanager, simple
+from paraview.modules.vtkRemotingServerManager import vtkSMProxy  # noqa: F401  (wraps SMProxy)
+from vtkmodules.util.numpy_support import vtk_to_numpy
+import numpy
+
+FAILURES = []
+
+
+def start():
+    """Reads the command line and loads the plugin.
+
+    Returns the folder of the data and the folder for what the test writes.
+    """
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--plugin", required=True, help="the built plugin")
+    parser.add_argument("-D", dest="data", required=True, help="the folder Data of the repository")
+    parser.add_argument("-T", dest="temporary", required=True, help="folder for what the test writes")
+    options = parser.parse_args()
+    simple._DisableFirstRenderCameraReset()
+    simple.LoadPlugin(options.plugin, remote=False)
+    os.makedirs(options.temporary, exist_ok=True)
+    return os.path.abspath(options.data), options.temporary
+
+
+def check(condition, claim):
+    """Notes a claim that does not hold."""
+    if not condition:
+        FAILURES.append(claim)
+        print("FAILED:", claim)
+
+
+def check_equal(value, expected, claim):
+    check(value == expected, "%s: %r instead of %r" % (claim, value, expected))
+
+
+def check_close(value, expected, claim, relative=1e-9):
+    check(
+        math.isclose(value, expected, rel_tol=relative),
+        "%s: %.17g instead of %.17g" % (claim, value, expected),
+    )
+
+
+def finish():
+    """Ends the script: 0 if every check held."""
+    print("%d checks failed" % len(FAILURES))
+    sys.exit(1 if FAILURES else 0)
+
+
+def fetch(source, port=0):
+    """The vtkPolyData of an output, updated."""
+    source.UpdatePipeline()
+    return servermanager.Fetch(servermanager.OutputPort(source, port))
+
+
+def information(source, name):
+    """The value of a property that tells a result, after the last update."""
+    source.SMProxy.UpdatePropertyInformation()
+    return source.GetPropertyValue(name)
+
+
+def points(surface):
+    """Coordinates, n x 3."""
+    return vtk_to_numpy(surface.GetPoints().GetData()).reshape(-1, 3)
+
+
+def triangles(surface):
+    """Point ids, n x 3. Every polygon has to be a triangle."""
+    ids = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    count = surface.GetNumberOfPolys()
+    assert len(ids) == 3 * count, "not all polygons are triangles"
+    return ids.reshape(count, 3)
+
+
+def lines(surface):
+    """One array of point ids for each line."""
+    ids = vtk_to_numpy(surface.GetLines().GetConnectivityArray())
+    offsets = vtk_to_numpy(surface.GetLines().GetOffsetsArray())
+    return [ids[begin:end] for begin, end in zip(offsets[:-1], offsets[1:])]
+
+
+def array(attributes, name):
+    """A data array of the point, cell or field data by name, as numpy array."""
+    found = attributes.GetArray(name)
+    assert found is not None, "no array " + name
+    return vtk_to_numpy(found)
+
+
+def signed_areas(surface):
+    """Area of each triangle in x,y, positive when counter-clockwise."""
+    x, y = points(surface)[:, :2].astype(float).T
+    a, b, c = triangles(surface).T
+    return 0.5 * ((x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a]))
+
+
+def ring_area(coordinates):
+    """Area in x,y of a closed line (the last point is the first), positive when counter-clockwise."""
+    x, y = (coordinates[:, :2] - coordinates[0, :2]).astype(float).T
+    return 0.5 * float(numpy.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
+
+
+def edge_uses(surface):
+    """Number of triangles at each edge, as the counts of the undirected edges."""
+    corners = triangles(surface)
+    edges = numpy.vstack([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+    return numpy.unique(numpy.sort(edges, axis=1), axis=0, return_counts=True)[1]
+
+
+def screenshot(path, view):
+    """Saves a picture and returns its pixels, height x width x 3."""
+    simple.SaveScreenshot(path, view)
+    reader = simple.PNGSeriesReader(FileNames=[path])
+    image = fetch(reader)
+    width, height = image.GetDimensions()[:2]
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[..., :3]
+    simple.Delete(reader)
+    return pixels
