@@ -1,0 +1,725 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reconstructs an elevation surface from a file of points: read, triangulate on the grid, trim
+outward triangles, fill holes, measure, write, draw.
+
+Needs the module on PYTHONPATH, and a display for the picture. Utilities/reconstruct cares for both.
+The chain itself is in reconstruct(); everything around it is files, options and the report.
+"""
+
+import argparse
+import json
+import math
+import os
+import signal
+import sys
+import time
+
+# What is missing is told by main(), in words; --help works without.
+MISSING = None
+try:
+    import numpy
+    import surface_files as files
+    from vtkelevationsurface import (
+        vtkFillElevationHoles,
+        vtkGridDelaunay2D,
+        vtkTrimOutwardTriangles,
+    )
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkDoubleArray
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
+except ImportError as error:
+    MISSING = error.name
+
+EXAMPLES = """\
+examples:
+  reconstruct survey.csv
+      writes survey_surface.vtp and survey_surface.png into the current folder, prints a report
+  reconstruct horizon.txt --columns 3,4,5 --maximum-edge-length 250
+      columns by number; gaps wider than 250 stay holes, which are then filled
+  reconstruct lidar.vtp --boundary outline.vtp --maximum-hole-size 20 -o ground.ply
+      keeps what lies inside the outline; holes larger than 20 are left open and listed
+  reconstruct relief.tif --no-data 0 --no-picture --report relief.json
+      pixels of elevation 0 are left out; the report also goes to a file
+  reconstruct points.xyz --picture --view 225,35
+      draws the surface as seen from the south-west, 35 degrees above the horizon
+
+read:    .vtp .vtu .vts .vtr .vti .vtk .ply .stl .obj .csv .xyz .txt .tif .dem
+written: .vtp .ply .stl .obj, told by the suffix of --output
+Lengths are in the units of x and y. A result of 0 is success; 1 means that a file or its points
+cannot be used, 2 that an option is wrong; then nothing is written."""
+
+
+class Failure(Exception):
+    """Something the user must know in one line; nothing is written."""
+
+
+DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
+
+
+def number_at_least_zero(text):
+    value = float(text)
+    if not (value >= 0 and math.isfinite(value)):
+        raise argparse.ArgumentTypeError(f"{text} is not a number of 0 or more")
+    return value
+
+
+number_at_least_zero.__name__ = "number"
+
+
+def count_at_least_zero(text):
+    value = int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text} is not a count of 0 or more")
+    return value
+
+
+count_at_least_zero.__name__ = "count"
+
+
+def three_columns(text):
+    names = [name.strip() for name in text.split(",")]
+    if len(names) != 3 or not all(names):
+        raise argparse.ArgumentTypeError(f"'{text}' does not name three columns, as x,y,z or 1,2,3")
+    return names
+
+
+def view_angles(text):
+    if text == "top":
+        return (180.0, 90.0)
+    try:
+        bearing, height = (float(word) for word in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is neither 'top' nor BEARING,HEIGHT in degrees, as 225,35"
+        ) from None
+    if not 0 < height <= 90 or not math.isfinite(bearing):
+        raise argparse.ArgumentTypeError(f"the height of '{text}' must be above 0 and at most 90")
+    return (bearing % 360.0, height)
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(
+        prog=os.environ.get("ELEVATION_SURFACE_PROGRAM", "reconstruct.py"),
+        description="Reconstructs an elevation surface z = f(x, y) from points: grid Delaunay "
+        "triangulation, removal of outward triangles, hole filling.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("file", metavar="FILE", help="points, raster or mesh to read")
+
+    group = parser.add_argument_group("reading")
+    group.add_argument(
+        "--columns",
+        type=three_columns,
+        metavar="X,Y,Z",
+        help="columns of a text file, by name or by number from 1 (default: those named x, y, z "
+        "or alike, else the first three)",
+    )
+    group.add_argument(
+        "--no-data",
+        type=float,
+        metavar="VALUE",
+        help="elevation that marks missing data; such rows and pixels are left out and counted "
+        "(default: what a .tif says itself)",
+    )
+
+    group = parser.add_argument_group("triangulation (vtkGridDelaunay2D)")
+    group.add_argument(
+        "--maximum-edge-length",
+        type=number_at_least_zero,
+        default=0.0,
+        metavar="LENGTH",
+        help="longest edge of a triangle in x,y; 0: no limit (default)",
+    )
+    group.add_argument(
+        "--duplicates",
+        choices=DUPLICATES,
+        default=DUPLICATES[0],
+        help="which of several points with the same x,y is used (default: keep-first)",
+    )
+
+    group = parser.add_argument_group("trimming (vtkTrimOutwardTriangles)")
+    group.add_argument(
+        "--boundary",
+        metavar="FILE",
+        help="closed lines or polygons that bound the surface: .vtp .vtk .ply .stl .obj, or text "
+        "with x and y, rings apart by a blank line (default: found from the points)",
+    )
+    group.add_argument(
+        "--gap-tolerance",
+        type=number_at_least_zero,
+        default=0.0,
+        metavar="SPACINGS",
+        help="how many point spacings an empty stretch may measure and still count as surface; "
+        "0: chosen from the points (default)",
+    )
+    group.add_argument(
+        "--no-recover-boundary",
+        action="store_true",
+        help="a boundary edge that is missing in the mesh is an error, not recovered",
+    )
+    group.add_argument("--no-trim", action="store_true", help="keep all triangles")
+
+    group = parser.add_argument_group("hole filling (vtkFillElevationHoles)")
+    group.add_argument(
+        "--maximum-hole-size",
+        type=number_at_least_zero,
+        default=0.0,
+        metavar="LENGTH",
+        help="larger holes stay open (diagonal of the hole's x,y box); 0: no limit (default)",
+    )
+    group.add_argument(
+        "--maximum-hole-edges",
+        type=count_at_least_zero,
+        default=0,
+        metavar="COUNT",
+        help="holes with more boundary edges stay open; 0: no limit (default)",
+    )
+    group.add_argument(
+        "--spacing",
+        type=number_at_least_zero,
+        default=0.0,
+        metavar="LENGTH",
+        help="distance of inserted points; 0: the mean edge of each hole's boundary (default)",
+    )
+    group.add_argument(
+        "--no-interpolate-point-data",
+        action="store_true",
+        help="point arrays of inserted points stay NaN or 0",
+    )
+    group.add_argument("--no-fill", action="store_true", help="leave all holes open")
+
+    group = parser.add_argument_group("results")
+    group.add_argument(
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="surface to write (default: FILE's name with _surface.vtp, in the current folder)",
+    )
+    group.add_argument(
+        "--picture",
+        nargs="?",
+        const="",
+        metavar="FILE",
+        help="picture to write, .png (default: beside the surface); without a display this is an "
+        "error, while the default picture is left out with a note",
+    )
+    group.add_argument("--no-picture", action="store_true", help="draw nothing")
+    group.add_argument(
+        "--view",
+        type=view_angles,
+        metavar="top|BEARING,HEIGHT",
+        help="where the picture is seen from: compass bearing of the eye and its height in degrees "
+        "(default: chosen from the shape)",
+    )
+    group.add_argument(
+        "--exaggeration",
+        type=number_at_least_zero,
+        default=0.0,
+        metavar="FACTOR",
+        help="vertical exaggeration of the picture; 0: chosen from the relief (default)",
+    )
+    group.add_argument("--report", metavar="FILE", help="also write the report as JSON")
+    group.add_argument("--quiet", action="store_true", help="print errors only")
+    options = parser.parse_args(arguments)
+
+    if options.no_trim and (
+        options.boundary or options.gap_tolerance or options.no_recover_boundary
+    ):
+        parser.error("--no-trim leaves nothing for the trimming options to do")
+    if options.no_fill and (
+        options.maximum_hole_size
+        or options.maximum_hole_edges
+        or options.spacing
+        or options.no_interpolate_point_data
+    ):
+        parser.error("--no-fill leaves nothing for the filling options to do")
+    if options.no_picture and (options.picture is not None or options.view or options.exaggeration):
+        parser.error("--no-picture leaves nothing for the picture options to do")
+    stem = os.path.splitext(os.path.basename(options.file))[0]
+    if options.output is None:
+        options.output = f"{stem}_surface.vtp"
+    options.picture_wanted = options.picture is not None
+    if options.no_picture:
+        options.picture = None
+    elif not options.picture:
+        options.picture = os.path.splitext(options.output)[0] + ".png"
+    return options
+
+
+class Progress:
+    """One line on a terminal that fills from left to right; silent anywhere else."""
+
+    def __init__(self, on):
+        self.on = on
+        self.shown = None
+        self.text = ""
+
+    def start(self, text):
+        self.text = text
+        self(0.0)
+
+    def __call__(self, fraction):
+        state = (self.text, int(100 * fraction))
+        if self.on and state != self.shown:
+            self.shown = state
+            bar = "#" * int(30 * fraction)
+            sys.stderr.write(f"\r{self.text:<16}[{bar:<30}] {state[1]:3d} %")
+            sys.stderr.flush()
+
+    def clear(self):
+        if self.on and self.shown:
+            sys.stderr.write("\r" + " " * 60 + "\r")
+            sys.stderr.flush()
+            self.shown = None
+
+
+class Run:
+    """One reconstruction: what the user asked for, and what is known of it so far."""
+
+    def __init__(self, options):
+        self.options = options
+        self.progress = Progress(sys.stderr.isatty() and not options.quiet)
+        self.times = {}
+        self.notes = []
+
+    def timed(self, name, text, work):
+        self.progress.start(text)
+        began = time.perf_counter()
+        result = work()
+        self.times[name] = time.perf_counter() - began
+        return result
+
+    def update(self, name, text, algorithm):
+        """Runs a filter with progress. What VTK reports as an error becomes a Failure."""
+
+        def show(caller, _event):
+            self.progress(caller.GetProgress())
+
+        tag = algorithm.AddObserver("ProgressEvent", show)
+        with files.Messages() as messages:
+            self.timed(name, text, algorithm.Update)
+        algorithm.RemoveObserver(tag)
+        if messages.errors:
+            raise Failure(f"{self.options.file}: {text}: {messages.errors[0]}")
+        for warning in messages.warnings:
+            self.notes.append(f"{text}: {warning}")
+        return algorithm
+
+
+def reconstruct(run, cloud, boundary):
+    """The chain. Returns the three filters, None for those that are switched off."""
+    options = run.options
+    delaunay = vtkGridDelaunay2D()
+    delaunay.SetInputData(cloud.points)
+    delaunay.SetMaximumEdgeLength(options.maximum_edge_length)
+    delaunay.SetDuplicatePolicy(DUPLICATES.index(options.duplicates))
+    run.update("triangulate", "triangulating", delaunay)
+    if delaunay.GetOutput().GetNumberOfPolys() == 0:
+        raise Failure(f"{options.file}: {why_no_triangle(cloud.points, options)}")
+
+    trim, fill, last = None, None, delaunay
+    if not options.no_trim:
+        trim = vtkTrimOutwardTriangles()
+        trim.SetInputData(0, last.GetOutput())
+        if boundary is not None:
+            trim.SetBoundaryData(boundary)
+        trim.SetGapTolerance(options.gap_tolerance)
+        trim.SetRecoverBoundary(not options.no_recover_boundary)
+        run.update("trim", "trimming", trim)
+        if trim.GetOutput().GetNumberOfPolys() == 0:
+            raise Failure(
+                f"{options.boundary or options.file}: no triangle lies inside the boundary; "
+                "are boundary and points in the same coordinates?"
+            )
+        last = trim
+    if not options.no_fill:
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(last.GetOutput())
+        fill.SetMaximumHoleSize(options.maximum_hole_size)
+        fill.SetMaximumHoleEdges(options.maximum_hole_edges)
+        fill.SetSpacing(options.spacing)
+        fill.SetInterpolatePointData(not options.no_interpolate_point_data)
+        run.update("fill", "filling holes", fill)
+    return delaunay, trim, fill
+
+
+def why_no_triangle(points, options):
+    """The reason in words when the triangulation is empty."""
+    xyz = vtk_to_numpy(points.GetPoints().GetData())
+    count = len(xyz)
+    finite = xyz[numpy.isfinite(xyz).all(axis=1)]
+    distinct = numpy.unique(finite[:, :2], axis=0)
+    total = "the only point" if count == 1 else f"all {count:,} points"
+    if len(finite) == 0:
+        return f"no surface: {total} {'is' if count == 1 else 'are'} not finite (NaN or infinite)"
+    if count == 1:
+        return "no surface: there is only one point; three not on a line are needed"
+    if len(distinct) == 1:
+        x, y = distinct[0]
+        where = f"({x:.10g}, {y:.10g})"
+        return f"no surface: all {len(finite):,} finite points have the same x,y {where}"
+    if len(distinct) == 2:
+        return "no surface: only two points differ in x,y; three not on a line are needed"
+    away = distinct - distinct[0]
+    far = away[numpy.argmax((away**2).sum(axis=1))]
+    offset = numpy.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() / (far @ far)
+    if offset < 1e-12 or not options.maximum_edge_length:
+        a, b = distinct[0], distinct[-1]
+        return (
+            f"no surface: all {len(finite):,} finite points lie on one line in x,y, from "
+            f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
+        )
+    return (
+        f"no surface: no triangle has edges of at most {options.maximum_edge_length:g}; "
+        "use a larger --maximum-edge-length"
+    )
+
+
+# ---- report -----------------------------------------------------------------------------------
+
+REASONS = {1: "same x,y as another point", 2: "not finite"}
+OUTSIDE = "outside the boundary"
+STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed"}
+
+
+def make_report(run, cloud, delaunay, trim, fill):
+    """Everything the user may want to know, as plain numbers and words."""
+    options = run.options
+    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
+    fields = delaunay.GetOutput().GetFieldData()
+    ids = vtk_to_numpy(fields.GetArray("UnusedPointIds"))
+    reasons = [REASONS[int(r)] for r in vtk_to_numpy(fields.GetArray("UnusedPointReasons"))]
+    surface = (fill or trim or delaunay).GetOutput()
+
+    taken = numpy.zeros(surface.GetNumberOfPoints(), dtype=bool)
+    taken[vtk_to_numpy(surface.GetPolys().GetConnectivityArray())] = True
+    taken = taken[: len(coordinates)]
+    known = numpy.zeros(len(coordinates), dtype=bool)
+    known[ids] = True
+    outside = numpy.flatnonzero(~taken & ~known)
+    reason = OUTSIDE if trim else "in no triangle"
+    unused = sorted(list(zip(ids.tolist(), reasons)) + [(int(i), reason) for i in outside])
+    listed = []
+    for point, why in unused:
+        entry = {"point": point, "reason": why}
+        if cloud.lines is not None:
+            entry["line"] = int(cloud.lines[point])
+        listed.append(entry)
+    counts = {}
+    for _, why in unused:
+        counts[why] = counts.get(why, 0) + 1
+
+    report = {
+        "file": options.file,
+        "notes": cloud.notes + run.notes,
+        "left_out": cloud.left_out,
+        "points": len(coordinates),
+        "points_unused": len(unused),
+        "unused_reasons": counts,
+        "unused": listed,
+        "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
+    }
+    if trim:
+        report["trim"] = {
+            "outward_triangles": trim.GetNumberOfOutwardTriangles(),
+            "recovered_edges": trim.GetNumberOfRecoveredEdges(),
+            "boundary": options.boundary or "found from the points",
+            "boundary_rings": trim.GetOutput(2).GetNumberOfLines(),
+        }
+        if not options.boundary:
+            report["trim"]["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
+        report["triangles"]["trimmed"] = trim.GetOutput().GetNumberOfPolys()
+    if fill:
+        cells = fill.GetOutput(1).GetCellData()
+        names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints")
+        columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
+        holes = [
+            {
+                "hole": hole,
+                "status": STATUS[status],
+                "edges": edges,
+                "perimeter": perimeter,
+                "area": area,
+                "inserted_points": inserted,
+            }
+            for hole, status, edges, perimeter, area, inserted in zip(*columns)
+        ]
+        by_status = {}
+        for hole in holes:
+            by_status[hole["status"]] = by_status.get(hole["status"], 0) + 1
+        report["holes"] = {
+            "found": fill.GetNumberOfHoles(),
+            "filled": fill.GetNumberOfFilledHoles(),
+            "by_status": by_status,
+            "inserted_points": sum(hole["inserted_points"] for hole in holes),
+            "list": holes,
+        }
+        report["triangles"]["filled"] = surface.GetNumberOfPolys()
+
+    measured = numpy.isfinite(coordinates).all(axis=1)
+    measured[outside] = False
+    report["distance"] = run.timed(
+        "measure", "measuring", lambda: distance_to(surface, coordinates[measured])
+    )
+    return report
+
+
+def distance_to(surface, coordinates):
+    """Distance of points from a surface: max, mean and root mean square, as Metro tells them.
+
+    vtkImplicitPolyDataDistance finds the closest triangle of each point exactly, in one call for
+    all points: about 1.3 s for 150,000 points and 300,000 triangles.
+    """
+    # Only what the search needs, near the origin, where doubles are finest.
+    middle = coordinates.mean(axis=0)
+    corners = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8") - middle
+    corners = numpy.nan_to_num(corners, nan=0.0, posinf=0.0, neginf=0.0)
+    bare = vtkPolyData()
+    bare.SetPoints(files.make_points(corners).GetPoints())
+    bare.SetPolys(surface.GetPolys())
+    search = vtkImplicitPolyDataDistance()
+    search.SetInput(bare)
+    result = vtkDoubleArray()
+    search.EvaluateFunction(files.make_points(coordinates - middle).GetPoints().GetData(), result)
+    distance = numpy.abs(vtk_to_numpy(result))
+    return {
+        "points": len(distance),
+        "maximum": float(distance.max()),
+        "mean": float(distance.mean()),
+        "rms": float(math.sqrt((distance**2).mean())),
+    }
+
+
+def print_report(report, options):
+    """The report for people. Long lists are cut here, never in the JSON."""
+
+    def line(name, text):
+        print(f"  {name:<10} {text}")
+
+    print(report["file"])
+    for note in report["notes"]:
+        line("note", note)
+    text = f"{report['points']:,} read"
+    for name, count in report["left_out"].items():
+        text += f"; {count:,} {name} left out"
+    line("points", text)
+    if report["points_unused"] == 0:
+        line("unused", "none")
+    for reason, count in report["unused_reasons"].items():
+        some = [u for u in report["unused"] if u["reason"] == reason][:5]
+        if "line" in some[0]:
+            where = "line " + ", ".join(str(u["line"]) for u in some)
+        else:
+            where = "point " + ", ".join(str(u["point"]) for u in some)
+        line("unused", f"{count:,} {reason}: {where}{', ...' if count > len(some) else ''}")
+    line("triangles", f"{report['triangles']['delaunay']:,} in the triangulation")
+    if "trim" in report:
+        trim = report["trim"]
+        rings = trim["boundary_rings"]
+        line(
+            "trimmed",
+            f"{trim['outward_triangles']:,} outward triangles; boundary {trim['boundary']}, "
+            f"{rings:,} ring{'s' * (rings != 1)}",
+        )
+        if "effective_gap_tolerance" in trim:
+            line("", f"gap tolerance {trim['effective_gap_tolerance']:.4g} spacings")
+        if trim["recovered_edges"]:
+            line("", f"{trim['recovered_edges']:,} boundary edges recovered")
+    if "holes" in report:
+        holes = report["holes"]
+        line(
+            "holes",
+            f"{holes['found']:,} found, {holes['filled']:,} filled with "
+            f"{holes['inserted_points']:,} points",
+        )
+        for status, count in holes["by_status"].items():
+            if status != "filled":
+                some = [str(h["hole"]) for h in holes["list"] if h["status"] == status][:8]
+                more = ", ..." if count > len(some) else ""
+                line("", f"{count:,} not filled, {status}: hole {', '.join(some)}{more}")
+    line("surface", f"{list(report['triangles'].values())[-1]:,} triangles")
+    d = report["distance"]
+    line(
+        "distance",
+        f"of {d['points']:,} points from the surface: max {d['maximum']:.3g}, "
+        f"mean {d['mean']:.3g}, RMS {d['rms']:.3g}",
+    )
+    line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in report["times"].items()))
+    for path in report["written"]:
+        line("written", path)
+
+
+# ---- results ----------------------------------------------------------------------------------
+
+
+class Results:
+    """Files that appear together at the end, or not at all.
+
+    Each is written beside its final place and renamed when all are whole.
+    """
+
+    def __init__(self):
+        self.pending = []
+
+    def add(self, path, write):
+        folder, name = os.path.split(path)
+        stem, suffix = os.path.splitext(name)
+        partial = os.path.join(folder, f".{stem}.{os.getpid()}.partial{suffix}")
+        self.pending.append((partial, path))
+        try:
+            return write(partial)
+        except (OSError, files.FileError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            reason = reason.replace(partial, path)
+            raise Failure(f"{path}: cannot be written: {reason}") from None
+
+    def publish(self):
+        for partial, path in self.pending:
+            try:
+                os.replace(partial, path)
+            except OSError as error:
+                raise Failure(f"{path}: cannot be written: {error.strerror}") from None
+        self.pending = []
+
+    def discard(self):
+        for partial, _ in self.pending:
+            try:
+                os.remove(partial)
+            except OSError:
+                pass
+        self.pending = []
+
+
+def picture_subtitle(report):
+    parts = [
+        f"{report['points']:,} points",
+        f"{list(report['triangles'].values())[-1]:,} triangles",
+    ]
+    if "holes" in report and report["holes"]["found"]:
+        holes = report["holes"]
+        if holes["filled"] < holes["found"]:
+            parts.append(f"{holes['filled']:,} of {holes['found']:,} holes filled")
+        else:
+            parts.append(f"{holes['found']:,} hole{'s' * (holes['found'] > 1)} filled")
+    return "   \u00b7   ".join(parts)
+
+
+def write_report(path, report):
+    with open(path, "w", encoding="utf-8") as stream:
+        json.dump(report, stream, indent=1)
+        stream.write("\n")
+
+
+def work(options, results):
+    """Everything between the options and the exit code."""
+    files.check_suffix(options.output, files.WRITE_SUFFIXES, "written")
+    if options.picture is not None:
+        files.check_suffix(options.picture, (".png",), "written as a picture")
+    wanted = [p for p in (options.output, options.picture, options.report) if p]
+    inputs = [p for p in (options.file, options.boundary) if p]
+    for i, path in enumerate(wanted):
+        files.check_writable(path)
+        for other in inputs + wanted[:i]:
+            if os.path.abspath(path) == os.path.abspath(other):
+                raise Failure(f"{path}: would overwrite {other}")
+
+    run = Run(options)
+    try:
+        picture = None
+        if options.picture is not None:
+            import surface_picture as picture
+
+            reason = picture.why_no_picture()
+            if reason:
+                advice = "use Utilities/reconstruct or xvfb-run"
+                if options.picture_wanted:
+                    raise Failure(f"{options.picture}: cannot be drawn: {reason}; {advice}")
+                run.notes.append(f"no picture: {reason}; {advice}")
+                picture = None
+        cloud = run.timed(
+            "read",
+            "reading",
+            lambda: files.read_points(options.file, options.columns, options.no_data),
+        )
+        boundary = files.read_boundary(options.boundary) if options.boundary else None
+        delaunay, trim, fill = reconstruct(run, cloud, boundary)
+        report = make_report(run, cloud, delaunay, trim, fill)
+        surface = (fill or trim or delaunay).GetOutput()
+
+        suffix = files.suffix_of(options.output)
+        report["notes"] += run.timed(
+            "write",
+            "writing",
+            lambda: results.add(
+                options.output, lambda path: files.write_surface(surface, path, suffix)
+            ),
+        )
+        if picture:
+            report["picture"] = run.timed(
+                "draw",
+                "drawing",
+                lambda: results.add(
+                    options.picture,
+                    lambda path: picture.draw(
+                        surface,
+                        path,
+                        os.path.basename(options.file),
+                        picture_subtitle(report),
+                        fill.GetOutput(1) if fill else None,
+                        options.view,
+                        options.exaggeration,
+                    ),
+                ),
+            )
+        report["times"] = run.times
+        report["written"] = [
+            p for p in (options.output, picture and options.picture, options.report) if p
+        ]
+        if options.report:
+            results.add(options.report, lambda path: write_report(path, report))
+        results.publish()
+    finally:
+        run.progress.clear()
+    if not options.quiet:
+        print_report(report, options)
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    name = "reconstruct"
+    if MISSING:
+        print(
+            f"{name}: error: Python finds no {MISSING}; Utilities/reconstruct sets everything up, "
+            "or put the module's folder on PYTHONPATH",
+            file=sys.stderr,
+        )
+        return 1
+
+    def stop(_number, _frame):
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, stop)
+    results = Results()
+    try:
+        work(options, results)
+        return 0
+    except (files.FileError, Failure) as error:
+        print(f"{name}: error: {error}", file=sys.stderr)
+        return 1
+    except MemoryError:
+        print(f"{name}: error: {options.file}: there is not enough memory", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(f"{name}: stopped; nothing is written", file=sys.stderr)
+        return 130
+    finally:
+        results.discard()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,496 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws an elevation surface as a block diagram for reconstruct.py.
+
+Parallel projection, so that one scale bar holds everywhere. The light comes from the upper left,
+as on maps, or relief would be seen inside out. Coordinates are shifted to the surface's middle
+before rendering: graphics cards work with 24 bits, which is too few for map coordinates.
+"""
+
+import ctypes
+import math
+import os
+import sys
+
+import numpy
+import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the window)
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkPolyDataNormals
+from vtkmodules.vtkIOImage import vtkPNGWriter
+from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+from vtkmodules.vtkRenderingCore import (
+    vtkActor,
+    vtkActor2D,
+    vtkColorTransferFunction,
+    vtkCoordinate,
+    vtkLight,
+    vtkMapper,
+    vtkPolyDataMapper,
+    vtkPolyDataMapper2D,
+    vtkRenderer,
+    vtkRenderWindow,
+    vtkTextActor,
+    vtkWindowToImageFilter,
+)
+
+# Both maps rise evenly in lightness, so that they keep their order in grey and for colour-blind
+# eyes. Colours are mixed in CIE Lab between the stops.
+LAND = ("#1f4e5f", "#2f7a72", "#6fa06a", "#c3b56b", "#e6cf9c", "#faf3e3")
+SEA = ("#13203c", "#1b456e", "#2a729b", "#559fb4", "#8cc4c4", "#cfe9dc")
+
+INK = (0.13, 0.14, 0.16)
+FILLED = (0.72, 0.07, 0.30)
+OPEN = (0.95, 0.45, 0.05)
+WALL = (0.66, 0.63, 0.59)
+
+WIDTH = 1800
+TOP, BOTTOM, LEFT, RIGHT = 150, 120, 70, 230
+NICE = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+
+
+def why_no_picture():
+    """Why no window can be opened here, or None. VTK itself would end the program."""
+    if not sys.platform.startswith("linux"):
+        return None
+    if not os.environ.get("DISPLAY"):
+        return "there is no display (DISPLAY is not set)"
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+    except OSError:
+        return None
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
+    display = x11.XOpenDisplay(None)
+    if not display:
+        return f"the display {os.environ['DISPLAY']} does not answer"
+    x11.XCloseDisplay(display)
+    return None
+
+
+def nice_number(value, steps=NICE):
+    """The nearest round number, by ratio."""
+    power = 10.0 ** math.floor(math.log10(value))
+    choices = [s * p for p in (power, 10 * power) for s in steps]
+    return min(choices, key=lambda c: abs(math.log(c / value)))
+
+
+def choose_exaggeration(points, triangles):
+    """The factor for z with which relief takes about a sixth of the surface's size.
+
+    Less where the surface is rough: all but the steepest tenth of it stays below about 45 degrees.
+    """
+    used = points[numpy.unique(triangles)]
+    low, high = numpy.percentile(used[:, 2], (1, 99))
+    extent = numpy.ptp(used[:, :2], axis=0)
+    size = max(math.sqrt(extent[0] * extent[1]), 0.4 * float(extent.max()))
+    if high <= low or size == 0.0:
+        return 1.0
+    factor = 0.17 * size / (high - low)
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    normal = numpy.cross(b - a, c - a)
+    area = numpy.abs(normal[:, 2])
+    order = numpy.argsort(slope := numpy.hypot(normal[:, 0], normal[:, 1]) / (area + 1e-300))
+    covered = numpy.cumsum(area[order])
+    steep = slope[order[numpy.searchsorted(covered, 0.9 * covered[-1])]]
+    factor = min(factor, 1.1 / max(steep, 1e-300))
+    return 1.0 if 0.8 <= factor <= 1.25 else nice_number(factor)
+
+
+def choose_bearing(xy):
+    """Compass bearing in degrees from the surface to the eye.
+
+    The longer side runs across the picture, and the eye stands to the south if it can: then the
+    north is at the back, as on a map.
+    """
+    values, vectors = numpy.linalg.eigh(numpy.cov((xy - xy.mean(axis=0)).T))
+    ratio = math.sqrt(max(values[1], 1e-300) / max(values[0], 1e-300))
+    if ratio < 1.7:
+        return 200.0
+    short = vectors[:, 0]
+    if short[1] > 0:
+        short = -short
+    return (math.degrees(math.atan2(short[0], short[1])) + 360.0 + 12.0) % 360.0
+
+
+def colour(text):
+    return tuple(int(text[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
+
+
+def colour_map(low, high):
+    stops = SEA if high <= 0 and low < 0 else LAND
+    result = vtkColorTransferFunction()
+    result.SetColorSpaceToLab()
+    if high <= low:
+        high = low + 1.0
+    for i, stop in enumerate(stops):
+        result.AddRGBPoint(low + (high - low) * i / (len(stops) - 1), *colour(stop))
+    return result
+
+
+def poly_data(points, polys=None, lines=None):
+    data = vtkPolyData()
+    holder = vtkPoints()
+    holder.SetData(numpy_to_vtk(numpy.ascontiguousarray(points, dtype="f4"), deep=True))
+    data.SetPoints(holder)
+    if polys is not None:
+        data.SetPolys(polys)
+    if lines is not None:
+        data.SetLines(lines)
+    return data
+
+
+def line_cells(data):
+    """Index arrays of the lines of vtkPolyData."""
+    cells = data.GetLines()
+    offsets = vtk_to_numpy(cells.GetOffsetsArray())
+    connectivity = vtk_to_numpy(cells.GetConnectivityArray())
+    return [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
+
+
+def cells_of(rows):
+    """An (n, k) index array -> vtkCellArray."""
+    rows = numpy.ascontiguousarray(rows, dtype="i8")
+    cells = vtkCellArray()
+    offsets = numpy.arange(0, rows.size + 1, rows.shape[1], dtype="i8")
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(offsets, deep=True),
+        numpy_to_vtkIdTypeArray(rows.ravel(), deep=True),
+    )
+    return cells
+
+
+def segments(paths):
+    """Paths as index arrays -> (n, 2) index pairs."""
+    pairs = [numpy.column_stack((p[:-1], p[1:])) for p in paths if len(p) > 1]
+    return numpy.concatenate(pairs) if pairs else numpy.empty((0, 2), dtype="i8")
+
+
+class Frame:
+    """Real coordinates -> picture coordinates: shifted to the middle, z exaggerated."""
+
+    def __init__(self, middle, floor, exaggeration):
+        self.shift = numpy.array((middle[0], middle[1], floor))
+        self.scale = numpy.array((1.0, 1.0, exaggeration))
+
+    def __call__(self, points):
+        return (points - self.shift) * self.scale
+
+    def of(self, data):
+        return self(vtk_to_numpy(data.GetPoints().GetData()).astype("f8"))
+
+
+def actor_of(data, rgb=None, width=0.0):
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(data)
+    if rgb:
+        mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    if rgb:
+        actor.GetProperty().SetColor(*rgb)
+    if width:
+        actor.GetProperty().SetLineWidth(width)
+        actor.GetProperty().LightingOff()
+        actor.GetProperty().SetRenderLinesAsTubes(False)
+    return actor
+
+
+def lines_actor(points, pairs, rgb, width):
+    data = poly_data(points, lines=cells_of(pairs))
+    actor = actor_of(data, rgb, width)
+    # Lines lie in the surface; drawn at equal depth they would flicker in and out of it.
+    mapper = actor.GetMapper()
+    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -8000.0)
+    return actor
+
+
+def walls_actor(points, pairs, floor):
+    """Vertical walls from the surface's rim down to the floor."""
+    top = points[pairs.ravel()]
+    bottom = top.copy()
+    bottom[:, 2] = floor
+    n = len(top)
+    first = numpy.arange(0, n, 2)
+    quads = numpy.column_stack((first, first + 1, n + first + 1, n + first))
+    actor = actor_of(poly_data(numpy.concatenate((top, bottom)), polys=cells_of(quads)), WALL)
+    actor.GetProperty().SetInterpolationToFlat()
+    actor.GetProperty().SetAmbient(0.60)
+    actor.GetProperty().SetDiffuse(0.55)
+    return actor
+
+
+def add_text(renderer, text, x, y, size, align="left", bold=False, rgb=INK):
+    actor = vtkTextActor()
+    actor.SetInput(text)
+    look = actor.GetTextProperty()
+    look.SetFontFamilyToArial()
+    look.SetFontSize(size)
+    look.SetColor(*rgb)
+    look.SetBold(bold)
+    {
+        "left": look.SetJustificationToLeft,
+        "right": look.SetJustificationToRight,
+        "centre": look.SetJustificationToCentered,
+    }[align]()
+    actor.SetPosition(x, y)
+    renderer.AddActor2D(actor)
+    return actor
+
+
+def add_strokes(renderer, paths, rgb=INK, width=3.0):
+    """Polylines in pixels over the picture."""
+    points, rows = [], []
+    for path in paths:
+        for a, b in zip(path[:-1], path[1:]):
+            rows.append((len(points), len(points) + 1))
+            points += [(*a, 0.0), (*b, 0.0)]
+    place = vtkCoordinate()
+    place.SetCoordinateSystemToDisplay()
+    mapper = vtkPolyDataMapper2D()
+    mapper.SetInputData(poly_data(numpy.array(points), lines=cells_of(numpy.array(rows))))
+    mapper.SetTransformCoordinate(place)
+    actor = vtkActor2D()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*rgb)
+    actor.GetProperty().SetLineWidth(width)
+    renderer.AddActor2D(actor)
+
+
+def round_text(value):
+    """A number with no more digits than it needs, thousands set apart."""
+    if value != 0 and (abs(value) < 1e-3 or abs(value) >= 1e7):
+        return f"{value:.3g}"
+    text = f"{value:,.4f}" if abs(value) < 10 else f"{value:,.1f}"
+    return text.rstrip("0").rstrip(".")
+
+
+def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=None):
+    """Renders the surface into a PNG file.
+
+    surface   vtkPolyData with triangles
+    holes     None, or the second output of vtkFillElevationHoles
+    view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
+    exaggeration  None, or the factor for z
+    Returns {"bearing", "height", "exaggeration"} as used. Takes about a second for 300,000
+    triangles where a software renderer draws.
+    """
+    real = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    used = numpy.unique(corners)
+    xy, z = real[used, :2], real[used, 2]
+    low, high = float(z.min()), float(z.max())
+    middle = 0.5 * (xy.min(axis=0) + xy.max(axis=0))
+    exaggeration = exaggeration or choose_exaggeration(real, corners.reshape(-1, 3))
+    bearing, height = view or (choose_bearing(xy - middle), 42.0)
+    frame = Frame(middle, low, exaggeration)
+    points = frame(numpy.nan_to_num(real, nan=0.0, posinf=0.0, neginf=0.0))
+    unused = numpy.ones(len(points), dtype=bool)
+    unused[used] = False
+    points[unused] = points[used[0]]
+
+    renderer = vtkRenderer()
+    renderer.SetBackground(1.0, 1.0, 1.0)
+    renderer.SetBackground2(0.88, 0.90, 0.92)
+    colours = colour_map(low, high)
+
+    data = poly_data(points, polys=surface.GetPolys())
+    normals = vtkPolyDataNormals()
+    normals.SetInputData(data)
+    normals.SplittingOff()
+    normals.ConsistencyOff()
+    normals.Update()
+    shaded = normals.GetOutput()
+    elevation = numpy_to_vtk(numpy.ascontiguousarray(real[:, 2]), deep=True)
+    elevation.SetName("Elevation")
+    shaded.GetPointData().SetScalars(elevation)
+    actor = actor_of(shaded)
+    actor.GetMapper().SetLookupTable(colours)
+    actor.GetMapper().InterpolateScalarsBeforeMappingOn()
+    actor.GetMapper().SetScalarRange(low, high)
+    look = actor.GetProperty()
+    look.SetInterpolationToPhong()
+    look.SetAmbient(0.22)
+    look.SetDiffuse(1.0)
+    look.SetSpecular(0.0)
+    renderer.AddActor(actor)
+    vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
+
+    # The block: walls under every rim. Rims of holes that stay open get walls too, as pits.
+    rims = vtkFeatureEdges()
+    rims.SetInputData(data)
+    rims.BoundaryEdgesOn()
+    rims.FeatureEdgesOff()
+    rims.NonManifoldEdgesOff()
+    rims.ManifoldEdgesOff()
+    rims.ColoringOff()
+    rims.Update()
+    rim = rims.GetOutput()
+    floor = -0.05 * math.sqrt(max(float(numpy.prod(numpy.ptp(xy, axis=0))), 1e-300))
+    legend = []
+    if rim.GetNumberOfCells():
+        rim_points = vtk_to_numpy(rim.GetPoints().GetData()).astype("f8")
+        rim_pairs = segments(line_cells(rim))
+        if height < 89.0:
+            renderer.AddActor(walls_actor(rim_points, rim_pairs, floor))
+        renderer.AddActor(lines_actor(rim_points, rim_pairs, INK, 2.5))
+        legend.append(("boundary", INK))
+    if holes is not None and holes.GetNumberOfLines():
+        status = vtk_to_numpy(holes.GetCellData().GetArray("Status"))
+        paths = line_cells(holes)
+        hole_points = frame.of(holes)
+        for name, rgb, chosen in (
+            ("filled hole", FILLED, status == 0),
+            ("hole left open", OPEN, status != 0),
+        ):
+            pairs = segments([p for p, c in zip(paths, chosen) if c])
+            if len(pairs):
+                renderer.AddActor(lines_actor(hole_points, pairs, rgb, 2.0))
+                legend.append((name, rgb))
+
+    window = place_camera(renderer, points[used], floor, bearing, height)
+    scale = renderer.GetActiveCamera().GetParallelScale()
+    width, tall = window.GetSize()
+    add_lights(renderer, bearing)
+    add_frame(renderer, width, tall, title, subtitle, exaggeration, legend)
+    add_scalar_bar(renderer, colours, width, tall)
+    add_map_signs(renderer, width, tall / (2.0 * scale), bearing, height)
+
+    window.Render()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    grab.SetInputBufferTypeToRGB()
+    grab.Update()
+    writer = vtkPNGWriter()
+    writer.SetFileName(path)
+    writer.SetInputData(grab.GetOutput())
+    writer.Write()
+    window.Finalize()
+    with open(path, "rb") as stream:
+        if not stream.read().endswith(b"IEND\xaeB`\x82"):
+            raise OSError("the file is cut off; is the disk full?")
+    return {"bearing": bearing, "height": height, "exaggeration": exaggeration}
+
+
+def place_camera(renderer, points, floor, bearing, height):
+    """Frames the block between the margins and opens a window as tall as it needs."""
+    b, h = math.radians(bearing), math.radians(height)
+    eye = numpy.array((math.sin(b) * math.cos(h), math.cos(b) * math.cos(h), math.sin(h)))
+    up = numpy.array((-math.sin(b) * math.sin(h), -math.cos(b) * math.sin(h), math.cos(h)))
+    right = numpy.cross(up, eye)
+    low = points.copy()
+    low[:, 2] = floor if height < 89.0 else low[:, 2]
+    across = points @ right
+    along = numpy.concatenate((points @ up, low @ up))
+    span = max(float(numpy.ptp(across)), 1e-300), max(float(numpy.ptp(along)), 1e-300)
+    room = WIDTH - LEFT - RIGHT
+    tall = int(min(max(room * span[1] / span[0], 520.0), 1100.0)) + TOP + BOTTOM
+    pixel = max(span[0] / room, span[1] / (tall - TOP - BOTTOM))
+    # The middle of the block goes to the middle between the margins.
+    focal = (0.5 * (across.min() + across.max()) + 0.5 * (RIGHT - LEFT) * pixel) * right + (
+        0.5 * (along.min() + along.max()) + 0.5 * (TOP - BOTTOM) * pixel
+    ) * up
+    camera = renderer.GetActiveCamera()
+    camera.ParallelProjectionOn()
+    camera.SetFocalPoint(*focal)
+    camera.SetPosition(*(focal + 4.0 * max(span) * eye))
+    camera.SetViewUp(*up)
+    camera.SetParallelScale(0.5 * tall * pixel)
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(8)
+    window.SetSize(WIDTH, tall)
+    window.AddRenderer(renderer)
+    renderer.ResetCameraClippingRange()
+    return window
+
+
+def add_lights(renderer, bearing):
+    """A main light from the upper left of the picture, and two weak ones against black shadows."""
+    renderer.RemoveAllLights()
+    renderer.AutomaticLightCreationOff()
+    for turn, height, strength in ((115.0, 40.0, 0.76), (10.0, 50.0, 0.16), (-70.0, 60.0, 0.14)):
+        b, h = math.radians(bearing + turn), math.radians(height)
+        light = vtkLight()
+        light.SetLightTypeToSceneLight()
+        light.SetPositional(False)
+        light.SetFocalPoint(0.0, 0.0, 0.0)
+        light.SetPosition(math.sin(b) * math.cos(h), math.cos(b) * math.cos(h), math.sin(h))
+        light.SetIntensity(strength)
+        renderer.AddLight(light)
+
+
+def add_frame(renderer, width, tall, title, subtitle, exaggeration, legend):
+    add_text(renderer, title, LEFT, tall - 78, 40, bold=True)
+    add_text(renderer, subtitle, LEFT, tall - 120, 24, rgb=(0.35, 0.37, 0.40))
+    x = LEFT
+    for name, rgb in legend:
+        add_strokes(renderer, [[(x, 50), (x + 44, 50)]], rgb, 4.0)
+        label = add_text(renderer, name, x + 56, 42, 22)
+        box = [0.0] * 4
+        label.GetBoundingBox(renderer, box)
+        x += 56 + box[1] - box[0] + 44
+    if exaggeration == 1.0:
+        words = "vertical scale as horizontal"
+    elif exaggeration > 1.0:
+        words = f"vertical exaggeration {round_text(exaggeration)}\u00d7"
+    else:
+        words = f"z drawn {round_text(exaggeration)}\u00d7"
+    add_text(renderer, words, x, 42, 22)
+
+
+def add_scalar_bar(renderer, colours, width, tall):
+    bar = vtkScalarBarActor()
+    bar.SetLookupTable(colours)
+    bar.SetTitle("elevation")
+    low, high = colours.GetRange()
+    step = nice_number((high - low) / 5.0, (1.0, 2.0, 5.0))
+    ticks = numpy.arange(math.ceil(low / step), math.floor(high / step) + 1) * step
+    bar.SetCustomLabels(numpy_to_vtk(ticks, deep=True))
+    bar.UseCustomLabelsOn()
+    bar.SetTextPad(8)
+    bar.SetLabelFormat(f"%.{max(0, -math.floor(math.log10(step)))}f")
+    bar.UnconstrainedFontSizeOn()
+    for look, size in ((bar.GetTitleTextProperty(), 24), (bar.GetLabelTextProperty(), 22)):
+        look.SetFontFamilyToArial()
+        look.SetFontSize(size)
+        look.SetColor(*INK)
+        look.BoldOff()
+        look.ItalicOff()
+        look.ShadowOff()
+    bar.SetVerticalTitleSeparation(14)
+    place = bar.GetPositionCoordinate()
+    place.SetCoordinateSystemToDisplay()
+    length = min(460, tall - TOP - BOTTOM)
+    middle = BOTTOM + 0.5 * (tall - TOP - BOTTOM)
+    place.SetValue(width - RIGHT + 45, middle - 0.5 * length)
+    size = bar.GetPosition2Coordinate()
+    size.SetCoordinateSystemToDisplay()
+    size.SetValue(150, length)
+    bar.SetBarRatio(0.22)
+    renderer.AddActor2D(bar)
+
+
+def add_map_signs(renderer, width, pixels, bearing, height):
+    """A scale bar that holds across the picture, and an arrow to the north (+y)."""
+    length = nice_number(0.13 * WIDTH / pixels, (1.0, 2.0, 5.0))
+    right = width - RIGHT - 60
+    left = right - length * pixels
+    add_strokes(
+        renderer,
+        [[(left, 62), (left, 50), (right, 50), (right, 62)]],
+    )
+    add_text(renderer, round_text(length), 0.5 * (left + right), 66, 22, "centre")
+    # +y as the camera sees it: turned by the bearing, foreshortened by the height of the eye.
+    b, h = math.radians(bearing), math.radians(height)
+    north = numpy.array((math.sin(b), -math.cos(b) * math.sin(h)))
+    east = numpy.array((-math.cos(b), -math.sin(b) * math.sin(h)))
+    middle = numpy.array((width - RIGHT + 110.0, 62.0))
+    tip, tail = middle + 34 * north, middle - 34 * north
+    barbs = [tip - 15 * north + 9 * east, tip, tip - 15 * north - 9 * east]
+    add_strokes(renderer, [[tail, tip], barbs])
+    label = tip + 18 * north / max(float(numpy.linalg.norm(north)), 1e-6)
+    add_text(renderer, "N", label[0], label[1] - 9, 22, "centre", bold=True)

@@ -1,0 +1,446 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Examples/Python/reconstruct.py as its users run it: files in, files and a report out."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.normpath(os.path.join(HERE, os.pardir, os.pardir))
+PROGRAM = os.path.join(ROOT, "Examples", "Python", "reconstruct.py")
+DATA = os.path.join(ROOT, "Data")
+sys.path.insert(0, os.path.dirname(PROGRAM))
+
+import surface_files as files
+
+SIZE = 12
+# A sheet of SIZE x SIZE points, one apart; z is a plane, so that nothing depends on the triangles.
+SHEET = [(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)]
+# The same with 3 x 3 points taken out of the middle: 16 cells, a hole of 4 x 4.
+HOLED = [p for p in SHEET if not (4 <= p[0] <= 6 and 4 <= p[1] <= 6)]
+
+
+def text_of(rows):
+    return "".join(f"{x:.12g} {y:.12g} {z:.12g}\n" for x, y, z in rows)
+
+
+class Program(unittest.TestCase):
+    """Runs the program in a folder of the test's own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def file(self, name, content):
+        with open(self.path(name), "w", encoding="utf-8") as stream:
+            stream.write(content)
+        return name
+
+    def call(self, *arguments, **options):
+        return subprocess.run(
+            [sys.executable, PROGRAM, *arguments],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=False,
+            **options,
+        )
+
+    def report(self, *arguments):
+        """The report of a run that must succeed."""
+        done = self.call(*arguments, "--no-picture", "--report", "report.json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with open(self.path("report.json"), encoding="utf-8") as stream:
+            report = json.load(stream)
+        self.output = done.stdout
+        return report
+
+    def assert_refused(self, words, *arguments, code=1, **options):
+        """One clear line on stderr, the exit code, and no file that was not there before."""
+        before = sorted(os.listdir(self.folder))
+        done = self.call(*arguments, "--no-picture", **options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        lines = done.stderr.splitlines()
+        self.assertEqual(len(lines), 1, done.stderr)
+        self.assertTrue(lines[0].startswith("reconstruct: error: "), lines[0])
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, lines[0])
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+
+class Report(Program):
+    def test_a_full_sheet_is_counted_and_nothing_is_lost(self):
+        report = self.report(self.file("sheet.xyz", text_of(SHEET)))
+        self.assertEqual(report["points"], SIZE * SIZE)
+        self.assertEqual(report["unused"], [])
+        self.assertEqual(report["triangles"]["delaunay"], 2 * (SIZE - 1) ** 2)
+        self.assertEqual(report["triangles"]["filled"], 2 * (SIZE - 1) ** 2)
+        self.assertEqual(report["trim"]["outward_triangles"], 0)
+        self.assertGreater(report["trim"]["effective_gap_tolerance"], 0)
+        self.assertEqual(report["holes"]["found"], 0)
+        self.assertEqual(report["distance"]["points"], SIZE * SIZE)
+        self.assertLess(report["distance"]["maximum"], 1e-12)
+        for step in ("read", "triangulate", "trim", "fill", "measure", "write"):
+            self.assertIn(step, report["times"])
+
+    def test_a_hole_is_filled_and_listed(self):
+        name = self.file("holed.xyz", text_of(HOLED))
+        report = self.report(name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
+        self.assertEqual(report["triangles"]["delaunay"], 2 * (SIZE - 1) ** 2 - 32)
+        self.assertEqual((report["holes"]["found"], report["holes"]["filled"]), (1, 1))
+        hole = report["holes"]["list"][0]
+        self.assertEqual((hole["status"], hole["edges"]), ("filled", 16))
+        self.assertAlmostEqual(hole["area"], 16.0)
+        self.assertGreater(hole["inserted_points"], 0)
+        self.assertGreater(report["triangles"]["filled"], report["triangles"]["trimmed"])
+
+    def test_a_hole_over_a_limit_stays_open_and_the_reason_is_given(self):
+        name = self.file("holed.xyz", text_of(HOLED))
+        common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
+        for option, value, reason in (
+            ("--maximum-hole-size", "2", "too large"),
+            ("--maximum-hole-edges", "15", "too many edges"),
+        ):
+            with self.subTest(option=option):
+                report = self.report(*common, option, value)
+                self.assertEqual(report["holes"]["by_status"], {reason: 1})
+                self.assertEqual(report["holes"]["inserted_points"], 0)
+                self.assertIn(f"1 not filled, {reason}: hole 0", self.output)
+
+    def test_spacing_decides_how_many_points_are_inserted(self):
+        name = self.file("holed.xyz", text_of(HOLED))
+        common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6", "--spacing")
+        coarse, fine = (self.report(*common, s)["holes"]["inserted_points"] for s in ("2", "0.5"))
+        self.assertGreater(fine, 2 * coarse)
+
+    def test_steps_can_be_left_out(self):
+        name = self.file("holed.xyz", text_of(HOLED))
+        report = self.report(name, "--maximum-edge-length", "1.5", "--no-trim", "--no-fill")
+        self.assertNotIn("trim", report)
+        self.assertNotIn("holes", report)
+        self.assertEqual(list(report["triangles"]), ["delaunay"])
+
+    def test_unused_points_are_listed_with_line_and_reason(self):
+        rows = text_of(SHEET) + "3 3 99\n4 4 nan\n5 inf 1\n3 3 98\n"
+        report = self.report(self.file("bad.xyz", "x y z\n" + rows))
+        first = SIZE * SIZE
+        same, not_finite = "same x,y as another point", "not finite"
+        self.assertEqual(
+            report["unused"],
+            [
+                {"point": first, "reason": same, "line": first + 2},
+                {"point": first + 1, "reason": not_finite, "line": first + 3},
+                {"point": first + 2, "reason": not_finite, "line": first + 4},
+                {"point": first + 3, "reason": same, "line": first + 5},
+            ],
+        )
+        self.assertEqual(report["unused_reasons"], {same: 2, not_finite: 2})
+        self.assertIn(f"2 not finite: line {first + 3}, {first + 4}", self.output)
+        # The distance is that of 99 - 0.75 and 98 - 0.75 above a plane; all other points lie in it.
+        steep = math.sqrt(1 + 0.5**2 + 0.25**2)
+        expected = [(99 - 0.75) / steep, (98 - 0.75) / steep]
+        self.assertEqual(report["distance"]["points"], first + 2)
+        # Near the rim the closest place may be an edge of the sheet, which is farther away.
+        self.assertGreater(report["distance"]["maximum"], expected[0] - 1e-9)
+        self.assertGreater(
+            report["distance"]["rms"], math.sqrt(sum(d * d for d in expected) / (first + 2)) - 1e-9
+        )
+
+    def test_the_duplicate_policy_chooses_the_elevation(self):
+        name = self.file("twice.xyz", text_of(SHEET) + "3 3 99\n3 3 -99\n")
+        for policy, z in (
+            ("keep-first", 0.75),
+            ("keep-last", -99.0),
+            ("keep-lowest", -99.0),
+            ("keep-highest", 99.0),
+        ):
+            with self.subTest(policy=policy):
+                self.report(name, "--duplicates", policy, "-o", "s.vtp", "--no-fill")
+                surface = files.run_vtk_reader(self.path("s.vtp"))
+                used = {
+                    surface.GetPoint(surface.GetCell(c).GetPointId(i))
+                    for c in range(surface.GetNumberOfCells())
+                    for i in range(3)
+                }
+                self.assertEqual([p[2] for p in used if p[:2] == (3.0, 3.0)], [z])
+
+    def test_a_boundary_file_cuts_the_surface(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("ring.txt", "x y\n2 2\n8 2\n8 8\n2 8\n2 2\n")
+        report = self.report(name, "--boundary", ring)
+        self.assertEqual(report["trim"]["boundary"], ring)
+        self.assertEqual(report["triangles"]["trimmed"], 2 * 6 * 6)
+        self.assertEqual(report["trim"]["outward_triangles"], 2 * (11 * 11 - 6 * 6))
+        self.assertEqual(report["unused_reasons"], {"outside the boundary": 12 * 12 - 7 * 7})
+        self.assertNotIn("effective_gap_tolerance", report["trim"])
+
+    def test_rows_without_data_are_left_out_and_counted(self):
+        name = self.file("sheet.xyz", text_of(SHEET) + "5.5 5.5 -999\n")
+        report = self.report(name, "--no-data", "-999")
+        self.assertEqual(report["points"], SIZE * SIZE)
+        self.assertEqual(report["left_out"], {"rows without data": 1})
+
+    def test_point_arrays_reach_the_surface(self):
+        from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+        import numpy
+
+        data = files.make_points(HOLED)
+        array = numpy_to_vtk(numpy.arange(float(len(HOLED))), deep=True)
+        array.SetName("Amplitude")
+        data.GetPointData().AddArray(array)
+        files.write_surface(data, self.path("holed.vtp"), ".vtp")
+        common = (
+            "holed.vtp",
+            "-o",
+            "s.vtp",
+            "--maximum-edge-length",
+            "1.5",
+            "--gap-tolerance",
+            "6",
+        )
+        for option, known in ((), True), (("--no-interpolate-point-data",), False):
+            with self.subTest(option=option):
+                self.report(*common, *option)
+                surface = files.run_vtk_reader(self.path("s.vtp"))
+                values = vtk_to_numpy(surface.GetPointData().GetArray("Amplitude"))
+                self.assertEqual(values[: len(HOLED)].tolist(), list(range(len(HOLED))))
+                self.assertGreater(len(values), len(HOLED))
+                self.assertEqual(bool(numpy.isfinite(values).all()), known)
+
+    def test_real_data_is_reconstructed(self):
+        for name, points in (("olinda_land.xyz", 10266), ("b9_ground.vtp", 13299)):
+            with self.subTest(name=name):
+                report = self.report(os.path.join(DATA, name))
+                self.assertEqual(report["points"], points)
+                self.assertEqual(report["points_unused"], len(report["unused"]))
+                outside = report["unused_reasons"].get("outside the boundary", 0)
+                self.assertEqual(report["distance"]["points"] + outside, points)
+                self.assertLess(report["distance"]["maximum"], 1e-6)
+
+
+class Results(Program):
+    def test_the_default_names_are_in_the_current_folder(self):
+        os.mkdir(self.path("there"))
+        self.file("there/sheet.one.csv", text_of(SHEET).replace(" ", ","))
+        done = self.call(os.path.join("there", "sheet.one.csv"), "--no-picture")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["sheet.one_surface.vtp", "there"])
+
+    def test_every_format_holds_the_same_triangles(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        for suffix in files.WRITE_SUFFIXES:
+            with self.subTest(suffix=suffix):
+                done = self.call(name, "--no-picture", "-o", "s" + suffix)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                surface = files.run_vtk_reader(self.path("s" + suffix))
+                self.assertEqual(surface.GetNumberOfPolys(), 2 * (SIZE - 1) ** 2)
+                self.assertEqual(surface.GetBounds()[:4], (0.0, SIZE - 1.0, 0.0, SIZE - 1.0))
+
+    def test_quiet_prints_nothing(self):
+        done = self.call(self.file("sheet.xyz", text_of(SHEET)), "--no-picture", "--quiet")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+
+    def test_a_bar_is_drawn_on_a_terminal_only(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        self.assertEqual(self.call(name, "--no-picture").stderr, "")
+        try:
+            import pty
+        except ImportError:
+            self.skipTest("there are no pseudo-terminals here")
+        master, terminal = pty.openpty()
+        with subprocess.Popen(
+            [sys.executable, PROGRAM, name, "--no-picture"],
+            cwd=self.folder,
+            stdout=subprocess.DEVNULL,
+            stderr=terminal,
+        ) as process:
+            os.close(terminal)
+            shown = b""
+            try:
+                while chunk := os.read(master, 4096):
+                    shown += chunk
+            except OSError:
+                pass  # how Linux tells that the other side has closed
+            self.assertEqual(process.wait(timeout=300), 0)
+        os.close(master)
+        self.assertIn(b"triangulating", shown)
+        self.assertIn(b" %", shown)
+
+    def test_help_shows_examples(self):
+        done = self.call("--help")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("examples:", done.stdout)
+        self.assertIn("survey_surface.vtp", done.stdout)
+
+
+class Pictures(Program):
+    def picture(self, *arguments):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOImage import vtkPNGReader
+
+        name = self.file("holed.xyz", text_of(HOLED))
+        done = self.call(name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6", *arguments)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        reader = vtkPNGReader()
+        reader.SetFileName(self.path("holed_surface.png"))
+        reader.Update()
+        image = reader.GetOutput()
+        columns, rows, _ = image.GetDimensions()
+        return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, -1)
+
+    @unittest.skipIf(
+        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
+    )
+    def test_the_picture_shows_the_surface_in_colours_on_white(self):
+        pixels = self.picture().astype(int)
+        self.assertEqual(pixels[0, 0].tolist(), [255, 255, 255])
+        coloured = (pixels.max(axis=2) - pixels.min(axis=2)) > 25
+        self.assertGreater(coloured.mean(), 0.2)
+        # The outline of the filled hole is the one thing that is redder than anything in the map.
+        red = (pixels[:, :, 0] > 150) & (pixels[:, :, 1] < 60) & (pixels[:, :, 2] < 120)
+        self.assertGreater(red.sum(), 200)
+
+    @unittest.skipIf(
+        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
+    )
+    def test_the_view_can_be_chosen(self):
+        views = [self.picture("--view", v) for v in ("top", "200,30", "20,30")]
+        self.assertTrue(any(v.shape != views[0].shape or (v != views[0]).any() for v in views[1:]))
+
+    @unittest.skipUnless(
+        sys.platform.startswith("linux"), "only X has displays that may be missing"
+    )
+    def test_without_a_display_the_surface_is_written_and_the_lack_is_told(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        for display in (None, ":12345"):
+            environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+            if display:
+                environment["DISPLAY"] = display
+            with self.subTest(display=display):
+                done = self.call(name, env=environment)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertIn("no picture: ", done.stdout)
+                self.assertEqual(
+                    sorted(os.listdir(self.folder)), ["sheet.xyz", "sheet_surface.vtp"]
+                )
+                done = self.call(name, "--picture", env=environment)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn("sheet_surface.png: cannot be drawn", done.stderr)
+
+
+class BadInput(Program):
+    def test_files_that_cannot_be_read_are_named(self):
+        self.assert_refused("no.csv: no such file", "no.csv")
+        os.mkdir(self.path("folder.csv"))
+        self.assert_refused("folder.csv: is not a file", "folder.csv")
+        self.assert_refused("a.las: .las cannot be read", self.file("a.las", "1 2 3\n"))
+        self.assert_refused("empty.xyz: is empty", self.file("empty.xyz", ""))
+        self.assert_refused("words.txt: holds text, but no numbers", self.file("words.txt", "no\n"))
+        self.assert_refused("two.txt: no line holds 3 numbers", self.file("two.txt", "1 2\n3 4\n"))
+        self.assert_refused("broken.vtp: cannot be read", self.file("broken.vtp", "<VTKFile"))
+        self.assert_refused("line 2: 'b' in column 2", self.file("b.csv", "1,2,3\n4,b,6\n"))
+
+    def test_points_that_make_no_surface_are_told_apart(self):
+        for name, rows, words in (
+            ("one", "1 2 3\n", "there is only one point"),
+            ("two", "1 2 3\n4 5 6\n1 2 9\n", "only two points differ in x,y"),
+            ("equal", "1 2 3\n" * 5, "all 5 finite points have the same x,y (1, 2)"),
+            ("line", "0 0 1\n1 2 1\n2 4 5\n5 10 1\n", "all 4 finite points lie on one line in x,y"),
+            ("nan", "1 2 nan\nnan 2 3\n", "all 2 points are not finite"),
+        ):
+            with self.subTest(name=name):
+                self.assert_refused(
+                    [name + ".xyz: no surface: ", words], self.file(name + ".xyz", rows)
+                )
+
+    def test_an_edge_limit_that_leaves_nothing_is_told(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        self.assert_refused(
+            "use a larger --maximum-edge-length", name, "--maximum-edge-length", "0.5"
+        )
+
+    def test_a_boundary_that_is_not_closed_is_named(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("open.txt", "2 2\n8 2\n8 8\n2 8\n")
+        self.assert_refused(["open.txt: ", "not closed"], name, "--boundary", ring)
+        from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+        data = files.make_points([(2, 2, 0), (8, 2, 0), (8, 8, 0), (2, 8, 0)])
+        lines = vtkCellArray()
+        lines.InsertNextCell(4, [0, 1, 2, 3])
+        data.SetLines(lines)
+        files.write_surface(data, self.path("open.vtp"), ".vtp")
+        self.assert_refused("open.vtp", name, "--boundary", "open.vtp")
+        self.assert_refused("no.vtp: no such file", name, "--boundary", "no.vtp")
+
+    def test_a_boundary_elsewhere_leaves_nothing_and_that_is_told(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("far.txt", "102 2\n108 2\n108 8\n102 2\n")
+        self.assert_refused("far.txt", name, "--boundary", ring)
+
+    def test_results_that_cannot_be_written_are_named(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        os.mkdir(self.path("folder.vtp"))
+        self.assert_refused("no/s.vtp: cannot be written", name, "-o", "no/s.vtp")
+        self.assert_refused("folder.vtp: is a folder", name, "-o", "folder.vtp")
+        self.assert_refused("s.doc: .doc cannot be written", name, "-o", "s.doc")
+        self.assert_refused("no/r.json: cannot be written", name, "--report", "no/r.json")
+        self.file("p.vtp", "")
+        self.assert_refused("p.vtp: would overwrite p.vtp", "p.vtp", "-o", "p.vtp")
+
+    def test_a_full_disk_leaves_nothing_behind(self):
+        try:
+            import resource
+        except ImportError:
+            self.skipTest("there are no resource limits here")
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+
+        name = self.file("sheet.xyz", text_of(SHEET))
+        for suffix in files.WRITE_SUFFIXES:
+            with self.subTest(suffix=suffix):
+                self.assert_refused("s" + suffix, name, "-o", "s" + suffix, preexec_fn=limit)
+
+    def test_wrong_options_are_errors_of_usage(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        for arguments in (
+            (),
+            (name, "--spacing", "-1"),
+            (name, "--spacing", "wide"),
+            (name, "--duplicates", "keep-some"),
+            (name, "--columns", "x,y"),
+            (name, "--view", "up"),
+            (name, "--no-trim", "--boundary", name),
+            (name, "--no-fill", "--spacing", "3"),
+            (name, "--no-picture", "--view", "top"),
+        ):
+            with self.subTest(arguments=arguments):
+                done = self.call(*arguments)
+                self.assertEqual(done.returncode, 2)
+                self.assertIn("error: ", done.stderr.splitlines()[-1])
+                self.assertEqual(os.listdir(self.folder), [name])
+
+    def test_without_the_module_one_line_tells_what_to_do(self):
+        environment = dict(os.environ, PYTHONPATH="")
+        done = self.call(self.file("sheet.xyz", text_of(SHEET)), env=environment)
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+        self.assertIn("vtkelevationsurface", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,506 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The readers and writers of Examples/Python/surface_files.py, without the filters."""
+
+import math
+import os
+import struct
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, os.pardir, os.pardir, "Examples", "Python"))
+
+import numpy
+import surface_files as files
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkUnstructuredGrid
+
+ROWS = [(1.0, 2.0, 3.5), (4.25, 5.0, 6.0), (-7.0, 8.0, 9.0)]
+
+
+def coordinates(cloud):
+    return vtk_to_numpy(cloud.points.GetPoints().GetData())
+
+
+class InFolder(unittest.TestCase):
+    """Gives each test a folder of its own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def file(self, name, content):
+        path = self.path(name)
+        with open(path, "wb") as stream:
+            stream.write(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def read(self, content, name="a.txt", **options):
+        return files.read_points(self.file(name, content), **options)
+
+    def assert_rows(self, cloud, rows):
+        numpy.testing.assert_array_equal(coordinates(cloud), numpy.array(rows, dtype="f8"))
+
+    def assert_refused(self, words, content, name="a.txt", **options):
+        """The error is one line that begins with the file's name and holds the words."""
+        with self.assertRaises(files.FileError) as caught:
+            self.read(content, name, **options)
+        text = str(caught.exception)
+        self.assertTrue(text.startswith(self.path(name)), text)
+        self.assertNotIn("\n", text)
+        for word in [words] if isinstance(words, str) else words:
+            self.assertIn(word, text)
+
+
+class Text(InFolder):
+    def test_every_separator_gives_the_same_points(self):
+        for separator in (",", ";", "\t", " ", "   ", ", ", " ; "):
+            with self.subTest(separator=separator):
+                text = "".join(separator.join(f"{v:g}" for v in row) + "\n" for row in ROWS)
+                self.assert_rows(self.read(text), ROWS)
+
+    def test_a_decimal_comma_is_found_out(self):
+        for separator in (";", "\t", " "):
+            with self.subTest(separator=separator):
+                text = "".join(
+                    separator.join(f"{v:.2f}".replace(".", ",") for v in row) + "\n" for row in ROWS
+                )
+                cloud = self.read(text)
+                self.assert_rows(cloud, ROWS)
+                self.assertIn("decimal comma", cloud.notes[0])
+
+    def test_all_digits_of_large_coordinates_survive(self):
+        cloud = self.read("612014.6747884353 6073983.681666553 633.5012316703796\n1 2 3\n")
+        self.assertEqual(
+            coordinates(cloud)[0].tolist(),
+            [612014.6747884353, 6073983.681666553, 633.5012316703796],
+        )
+
+    def test_columns_are_found_by_their_names_in_any_order(self):
+        for header in ("z,id,y,x", "Elevation,id,Northing,EASTING", "height (m),id,lat,lon"):
+            with self.subTest(header=header):
+                text = header + "\n" + "".join(f"{z},9,{y},{x}\n" for x, y, z in ROWS)
+                self.assert_rows(self.read(text), ROWS)
+
+    def test_columns_without_known_names_are_the_first_three_and_that_is_said(self):
+        cloud = self.read("a,b,c,d\n1,2,3,4\n5,6,7,9\n")
+        self.assert_rows(cloud, [(1, 2, 3), (5, 6, 7)])
+        self.assertTrue(any("first 3 of 4 columns" in note for note in cloud.notes))
+
+    def test_columns_can_be_given_by_number_and_by_name(self):
+        text = "# inline crossline u v t\n10 20 1 2 3\n10 21 5 6 7\n"
+        for columns in (["3", "4", "5"], ["u", "v", "t"], ["U", "4", "T"]):
+            with self.subTest(columns=columns):
+                self.assert_rows(self.read(text, columns=columns), [(1, 2, 3), (5, 6, 7)])
+
+    def test_a_wrong_column_is_named(self):
+        text = "a,b,c\n1,2,3\n"
+        self.assert_refused("no column 4 for z; lines have 3", text, columns=["1", "2", "4"])
+        self.assert_refused("no column named q; names: a, b, c", text, columns=["a", "b", "q"])
+        self.assert_refused("the file has no header line", "1 2 3\n", columns=["a", "b", "c"])
+
+    def test_header_comment_and_blank_lines_are_skipped_and_counted(self):
+        text = "Survey of 1987\n# made by hand\nx y z\n\n1 2 3.5\n% half way\n4.25 5 6\n\n-7 8 9\n"
+        cloud = self.read(text)
+        self.assert_rows(cloud, ROWS)
+        self.assertIn("2 header lines, 2 comment lines", cloud.notes[0])
+        self.assertEqual(list(cloud.lines), [5, 7, 9])
+
+    def test_a_word_where_a_number_is_needed_names_file_line_and_column(self):
+        self.assert_refused(
+            ", line 3: 'two' in column 2 (y) is not a number", "1,2,3\n4,5,6\n7,two,9\n"
+        )
+
+    def test_a_first_row_with_one_bad_word_is_no_header(self):
+        self.assert_refused(", line 1: 'l' in column 1 (x)", "l,2,3\n4,5,6\n7,8,9\n")
+
+    def test_words_in_other_columns_do_no_harm(self):
+        self.assert_rows(self.read('1,2,3.5,"rock, hard"\n4.25,5,6,sand\n-7,8,9,\n'), ROWS)
+
+    def test_a_short_row_names_file_line_and_column(self):
+        self.assert_refused(", line 2: 2 columns found, but z is column 3", "1 2 3\n4 5\n6 7 8\n")
+
+        self.assert_refused(
+            ", line 1: 2 columns found where other lines have 3", "1 2\n3 4 5\n6 7 8\n"
+        )
+
+    def test_text_without_numbers_is_refused(self):
+        self.assert_refused("no numbers", "Lorem ipsum\ndolor sit amet\n")
+
+    def test_too_few_columns_are_refused(self):
+        self.assert_refused("no line holds 3 numbers; the most is 2", "1 2\n3 4\n")
+
+    def test_empty_and_comment_only_files_are_refused(self):
+        self.assert_refused("is empty", "")
+        self.assert_refused("only blank or comment lines", "# x y z\n\n")
+
+    def test_a_binary_file_is_no_text(self):
+        self.assert_refused("not a text file", b"\x00\x01\x02" * 50)
+
+    def test_rows_without_a_value_stay_as_points_that_are_not_finite(self):
+        for missing in ("nan", "NaN", "NA", "null", ""):
+            with self.subTest(missing=missing):
+                cloud = self.read(f"x,y,z\n1,2,3\n4,5,{missing}\n7,8,9\n")
+                self.assertEqual(cloud.points.GetNumberOfPoints(), 3)
+                self.assertTrue(math.isnan(coordinates(cloud)[1][2]))
+                self.assertEqual(cloud.lines[1], 3)
+
+    def test_rows_with_the_no_data_value_are_left_out_and_counted(self):
+        cloud = self.read("1 2 3\n4 5 -999\n6 7 8\n", no_data=-999.0)
+        self.assert_rows(cloud, [(1, 2, 3), (6, 7, 8)])
+        self.assertEqual(cloud.left_out, {"rows without data": 1})
+        self.assertEqual(list(cloud.lines), [1, 3])
+
+    def test_other_encodings_are_read(self):
+        text = "x y z\n1 2 3.5\n4.25 5 6\n-7 8 9\n"
+        self.assert_rows(self.read(text.encode("utf-16")), ROWS)
+        self.assert_rows(self.read("# H\u00f6he\n".encode("latin-1") + text.encode()), ROWS)
+        self.assert_rows(self.read(b"\xef\xbb\xbf" + text.encode()), ROWS)
+        self.assert_rows(self.read(text.replace("\n", "\r\n")), ROWS)
+
+
+class Paths(InFolder):
+    def test_what_cannot_be_opened_is_named(self):
+        for name, words in (("no.csv", "no such file"), ("", "cannot be read; use one of")):
+            with self.assertRaises(files.FileError) as caught:
+                files.read_points(self.path(name))
+            self.assertIn(words, str(caught.exception))
+        os.mkdir(self.path("folder.csv"))
+        with self.assertRaisesRegex(files.FileError, "is not a file"):
+            files.read_points(self.path("folder.csv"))
+
+    @unittest.skipIf(
+        not hasattr(os, "getuid") or os.getuid() == 0, "everything is readable to root"
+    )
+    def test_a_file_without_permission_is_named(self):
+        path = self.file("secret.csv", "1 2 3\n")
+        os.chmod(path, 0)
+        with self.assertRaisesRegex(files.FileError, "cannot be read: Permission denied"):
+            files.read_points(path)
+
+    def test_an_unknown_suffix_is_refused_with_those_that_are_known(self):
+        self.assert_refused([".las cannot be read", ".vtp", ".csv"], "1 2 3\n", "a.las")
+        self.assert_refused("no suffix cannot be read", "1 2 3\n", "a")
+
+
+class VtkFormats(InFolder):
+    def write(self, writer, data, name):
+        writer.SetFileName(self.path(name))
+        writer.SetInputData(data)
+        self.assertTrue(writer.Write())
+        return self.path(name)
+
+    def test_points_of_each_format_are_read(self):
+        from vtkmodules.vtkIOGeometry import vtkOBJWriter
+        from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
+        from vtkmodules.vtkIOPLY import vtkPLYWriter
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+
+        data = files.make_points(ROWS)
+        grid = vtkUnstructuredGrid()
+        grid.SetPoints(data.GetPoints())
+        mesh = files.make_points(ROWS)
+        cells = vtkCellArray()
+        cells.InsertNextCell(3, [0, 1, 2])
+        mesh.SetPolys(cells)
+        for writer, source, name in (
+            (vtkXMLPolyDataWriter(), data, "a.vtp"),
+            (vtkXMLUnstructuredGridWriter(), grid, "a.vtu"),
+            (vtkPolyDataWriter(), data, "a.vtk"),
+            (vtkPLYWriter(), mesh, "a.ply"),
+            (vtkOBJWriter(), mesh, "a.obj"),
+        ):
+            with self.subTest(name=name):
+                cloud = files.read_points(self.write(writer, source, name))
+                self.assert_rows(cloud, ROWS)
+                cells_ignored = any("not the file's cells" in note for note in cloud.notes)
+                self.assertEqual(cells_ignored, source is mesh)
+
+    def test_no_data_leaves_points_out_and_keeps_the_arrays_of_the_others(self):
+        from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+        data = files.make_points(ROWS)
+        array = numpy_to_vtk(numpy.array([10.0, 20.0, 30.0]), deep=True)
+        array.SetName("Amplitude")
+        data.GetPointData().AddArray(array)
+        path = self.write(vtkXMLPolyDataWriter(), data, "a.vtp")
+        cloud = files.read_points(path, no_data=6.0)
+        self.assert_rows(cloud, [ROWS[0], ROWS[2]])
+        kept = vtk_to_numpy(cloud.points.GetPointData().GetArray("Amplitude"))
+        self.assertEqual(kept.tolist(), [10.0, 30.0])
+        self.assertEqual(cloud.left_out, {"no data": 1})
+
+    def test_an_image_becomes_points_with_its_values_as_elevation(self):
+        from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+        image = vtkImageData()
+        image.SetDimensions(3, 2, 1)
+        image.SetOrigin(100.0, 200.0, 0.0)
+        image.SetSpacing(10.0, 5.0, 1.0)
+        values = numpy_to_vtk(numpy.array([1.0, 2.0, math.nan, 4.0, 5.0, 6.0]), deep=True)
+        values.SetName("Depth")
+        image.GetPointData().SetScalars(values)
+        cloud = files.read_points(self.write(vtkXMLImageDataWriter(), image, "a.vti"))
+        self.assert_rows(
+            cloud, [(100, 200, 1), (110, 200, 2), (100, 205, 4), (110, 205, 5), (120, 205, 6)]
+        )
+        self.assertEqual(cloud.left_out, {"pixels without data": 1})
+        self.assertIn("elevation: point array Depth", cloud.notes)
+
+    def test_a_damaged_file_gives_one_line_and_nothing_is_printed(self):
+        for suffix in (".vtp", ".vtu", ".vtk", ".ply", ".stl", ".vti"):
+            with self.subTest(suffix=suffix):
+                self.assert_refused("", '<VTKFile type="PolyData"><bro', "a" + suffix)
+
+    def test_coordinates_too_large_for_the_format_are_told(self):
+        from vtkmodules.vtkIOPLY import vtkPLYWriter
+
+        rows = [(612014.5 + i % 10, 6073983.5 + i // 10, 0.0) for i in range(100)]
+        path = self.write(vtkPLYWriter(), files.make_points(rows), "a.ply")
+        self.assertTrue(any("single precision" in note for note in files.read_points(path).notes))
+
+
+def write_tiff(path, z, tags, bits=32):
+    """A little-endian TIFF with one strip of floats. tags: {tag: (type letter, values)}."""
+    rows, columns = z.shape
+    pixels = z.astype("<f4" if bits == 32 else "<f8").tobytes()
+    entries = {
+        256: ("I", (columns,)),
+        257: ("I", (rows,)),
+        258: ("H", (bits,)),
+        259: ("H", (1,)),
+        262: ("H", (1,)),
+        273: ("I", (8,)),
+        277: ("H", (1,)),
+        278: ("I", (rows,)),
+        279: ("I", (len(pixels),)),
+        339: ("H", (3,)),
+    }
+    entries.update(tags)
+    place = 8 + len(pixels)
+    extra_at = place + 2 + 12 * len(entries) + 4
+    extra, table = b"", b""
+    for tag in sorted(entries):
+        letter, values = entries[tag]
+        if letter == "s":
+            count, data = len(values), values
+        else:
+            count, data = len(values), struct.pack(f"<{len(values)}{letter}", *values)
+        if len(data) > 4:
+            field = struct.pack("<I", extra_at + len(extra))
+            extra += data + b"\0" * (len(data) % 2)
+        else:
+            field = data.ljust(4, b"\0")
+        table += struct.pack("<HHI", tag, {"s": 2, "H": 3, "I": 4, "d": 12}[letter], count) + field
+    with open(path, "wb") as stream:
+        stream.write(b"II*\0" + struct.pack("<I", place) + pixels)
+        stream.write(struct.pack("<H", len(entries)) + table + b"\0" * 4 + extra)
+
+
+class Tiff(InFolder):
+    Z = numpy.array([[1.0, 2.0, -9999.0], [4.0, 5.0, 6.0]])
+    PLACE = {
+        33550: ("d", (30.0, 20.0, 0.0)),
+        33922: ("d", (0.0, 0.0, 0.0, 500000.0, 5000000.0, 0.0)),
+    }
+    NO_DATA = {42113: ("s", b"-9999\0")}
+
+    def tiff(self, tags, **options):
+        write_tiff(self.path("a.tif"), self.Z, tags, **options)
+        return self.path("a.tif")
+
+    def test_pixels_become_points_at_their_centres_without_those_of_no_data(self):
+        cloud = files.read_points(self.tiff({**self.PLACE, **self.NO_DATA}))
+        self.assert_rows(
+            cloud,
+            [
+                (500015, 4999990, 1),
+                (500045, 4999990, 2),
+                (500015, 4999970, 4),
+                (500045, 4999970, 5),
+                (500075, 4999970, 6),
+            ],
+        )
+        self.assertEqual(cloud.left_out, {"pixels without data": 1})
+        self.assertIn("no-data value -9999 from the file", cloud.notes)
+
+    def test_pixels_that_are_points_are_not_moved_by_half_a_step(self):
+        keys = {34735: ("H", (1, 1, 0, 1, 1025, 0, 1, 2))}
+        cloud = files.read_points(self.tiff({**self.PLACE, **keys}))
+        self.assertEqual(coordinates(cloud)[0].tolist(), [500000.0, 5000000.0, 1.0])
+
+    def test_a_rotated_raster_is_placed_by_its_matrix(self):
+        matrix = (0.0, 2.0, 0, 100.0, 3.0, 0.0, 0, 200.0, 0, 0, 0, 0, 0, 0, 0, 1)
+        cloud = files.read_points(self.tiff({34264: ("d", matrix)}))
+        self.assertEqual(coordinates(cloud)[0].tolist(), [101.0, 201.5, 1.0])
+        self.assertEqual(coordinates(cloud)[1].tolist(), [101.0, 204.5, 2.0])
+
+    def test_without_georeferencing_columns_and_rows_are_used_and_that_is_said(self):
+        cloud = files.read_points(self.tiff({}))
+        self.assertEqual(coordinates(cloud)[0].tolist(), [0.0, 1.0, 1.0])
+        self.assertEqual(cloud.points.GetNumberOfPoints(), 6)
+        self.assertTrue(any("no georeferencing" in note for note in cloud.notes))
+        self.assertTrue(any("no no-data value" in note for note in cloud.notes))
+
+    def test_a_world_file_beside_it_is_used(self):
+        self.file("a.tfw", "30\n0\n0\n-20\n500015\n4999990\n")
+        cloud = files.read_points(self.tiff({}))
+        self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
+
+    def test_the_no_data_value_can_be_given(self):
+        cloud = files.read_points(self.tiff(self.NO_DATA), no_data=5.0)
+        self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [-9999, 1, 2, 4, 6])
+
+    def test_what_vtk_reads_wrong_goes_through_gdal_or_is_refused(self):
+        path = self.tiff(self.PLACE, bits=64)
+        with mock.patch.dict(sys.modules, {"osgeo": None}):
+            with self.assertRaisesRegex(files.FileError, "64 bits.*install python3-gdal"):
+                files.read_points(path)
+        try:
+            import osgeo  # noqa: F401
+        except ImportError:
+            self.skipTest("python3-gdal is not installed")
+        cloud = files.read_points(path)
+        self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
+
+    def test_what_is_no_tiff_is_refused(self):
+        self.assert_refused("is not a TIFF file", "plain words", "a.tif")
+        self.assert_refused("cut off", b"II*\0\xff\0\0\0", "a.tif")
+
+
+def write_dem(path, profiles, dx=30.0, dy=30.0):
+    """A USGS ASCII DEM. profiles: [(x, y of the first elevation, elevations)]."""
+
+    def double(value):
+        return f"{value:24.15E}".replace("E", "D")
+
+    head = "A TEST".ljust(144) + f"{1:6d}{1:6d}{1:6d}{10:6d}" + double(0.0) * 15
+    head += f"{2:6d}{2:6d}{4:6d}" + double(0.0) * 8 + double(0.0) * 2 + double(0.0) + f"{0:6d}"
+    head += "".join(f"{v:12.6E}".replace("E", "D") for v in (dx, dy, 1.0))
+    head += f"{1:6d}{len(profiles):6d}"
+    text = head.ljust(1024)
+    for i, (x, y, z) in enumerate(profiles, 1):
+        record = f"{1:6d}{i:6d}{len(z):6d}{1:6d}" + double(x) + double(y) + double(0.0) * 3
+        record += "".join(f"{v:6d}" for v in z)
+        text += record.ljust(1024)
+    with open(path, "w", encoding="ascii") as stream:
+        stream.write(text)
+
+
+class Dem(InFolder):
+    def test_every_profile_begins_at_its_own_place(self):
+        write_dem(self.path("a.dem"), [(1000, 500, [7, 8]), (1030, 470, [5, 6, 9])])
+        cloud = files.read_points(self.path("a.dem"))
+        self.assert_rows(
+            cloud, [(1000, 500, 7), (1000, 530, 8), (1030, 470, 5), (1030, 500, 6), (1030, 530, 9)]
+        )
+        self.assertIn("x,y in metres, elevation in metres, as in the file", cloud.notes)
+
+    def test_voids_are_left_out_and_counted_even_where_numbers_touch(self):
+        write_dem(self.path("a.dem"), [(0, 0, [12, -32767, -32767, 40])])
+        cloud = files.read_points(self.path("a.dem"))
+        self.assert_rows(cloud, [(0, 0, 12), (0, 90, 40)])
+        self.assertEqual(cloud.left_out, {"pixels without data": 2})
+
+    def test_a_damaged_file_names_the_profile(self):
+        self.assert_refused("is not a USGS ASCII DEM", "no dem at all", "a.dem")
+        write_dem(self.path("b.dem"), [(0, 0, [1, 2, 3]), (30, 0, [4, 5, 6])])
+        with open(self.path("b.dem"), "rb") as stream:
+            whole = stream.read()
+        self.assert_refused("profile 2 of 2: is missing", whole[:2048], "c.dem")
+        self.assert_refused("profile 2 of 2: 1 of 3", whole[: 2048 + 150], "d.dem")
+
+
+class Boundary(InFolder):
+    RING = "0 0\n10 0\n10 10\n0 10\n0 0\n"
+
+    def test_closed_text_rings_become_closed_lines(self):
+        data = files.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n2 2\n"))
+        self.assertEqual(data.GetNumberOfLines(), 2)
+        self.assertEqual(data.GetNumberOfPoints(), 7)
+        line = data.GetCell(1).GetPointIds()
+        self.assertEqual(line.GetId(0), line.GetId(line.GetNumberOfIds() - 1))
+
+    def test_an_open_ring_names_its_lines(self):
+        with self.assertRaisesRegex(
+            files.FileError, "b.txt: .* from line 1 to line 4 is not closed"
+        ):
+            files.read_boundary(self.file("b.txt", "0 0\n10 0\n10 10\n0 10\n"))
+
+    def test_a_boundary_point_that_is_not_finite_names_its_line(self):
+        with self.assertRaisesRegex(files.FileError, "line 2: a boundary point is not finite"):
+            files.read_boundary(self.file("b.txt", "0 0\nnan 0\n10 10\n0 0\n"))
+
+    def test_a_file_without_lines_is_refused(self):
+        data = files.make_points(ROWS)
+        files.write_surface(data, self.path("b.vtp"), ".vtp")
+        with self.assertRaisesRegex(files.FileError, "no line and no polygon"):
+            files.read_boundary(self.path("b.vtp"))
+
+
+class Writing(InFolder):
+    MAP = [
+        (612014.25, 6073983.5, 633.5),
+        (612015.25, 6073983.5, 634.0),
+        (612014.75, 6073984.625, 635.0),
+    ]
+
+    def triangle(self):
+        data = files.make_points(self.MAP)
+        cells = vtkCellArray()
+        cells.InsertNextCell(3, [0, 1, 2])
+        data.SetPolys(cells)
+        return data
+
+    def test_map_coordinates_keep_their_shape_in_every_format(self):
+        for suffix in files.WRITE_SUFFIXES:
+            with self.subTest(suffix=suffix):
+                path = self.path("s" + suffix)
+                notes = files.write_surface(self.triangle(), path, suffix)
+                if suffix == ".ply":
+                    self.assertIn("x,y are written less 612014 6073983", notes[0])
+                    expected = numpy.array(self.MAP) - (612014, 6073983, 0)
+                    numpy.testing.assert_array_equal(coordinates(files.read_points(path)), expected)
+                elif suffix == ".vtp":
+                    self.assert_rows(files.read_points(path), self.MAP)
+                else:
+                    # Their readers are single precision; the files hold all digits.
+                    with open(path, encoding="ascii") as stream:
+                        text = stream.read()
+                    self.assertIn("612014.25", text)
+                    self.assertIn("6073984.625", text)
+
+    def test_a_folder_that_is_not_there_is_refused_before_any_work(self):
+        with self.assertRaisesRegex(files.FileError, "there is no folder"):
+            files.check_writable(self.path("no/s.vtp"))
+        with self.assertRaisesRegex(files.FileError, "is a folder"):
+            files.check_writable(self.folder)
+
+
+class VtkMessages(unittest.TestCase):
+    def test_the_words_are_kept_and_the_rest_is_not(self):
+        text = "ERROR: In ./IO/f.cxx, line 12\nvtkThing (0x1f08): It broke\nat line 3\n\n"
+        self.assertEqual(files.plain_message(text), "It broke at line 3")
+
+    def test_reports_are_collected_and_the_window_is_given_back(self):
+        from vtkmodules.vtkCommonCore import vtkOutputWindow
+
+        before = vtkOutputWindow.GetInstance().GetDisplayMode()
+        with files.Messages() as messages:
+            vtkOutputWindow.GetInstance().DisplayErrorText("vtkThing (0x1): wrong")
+            vtkOutputWindow.GetInstance().DisplayWarningText("vtkThing (0x1): odd")
+        self.assertEqual((messages.errors, messages.warnings), (["wrong"], ["odd"]))
+        self.assertEqual(vtkOutputWindow.GetInstance().GetDisplayMode(), before)
+
+
+if __name__ == "__main__":
+    vtkObject.GlobalWarningDisplayOn()
+    unittest.main(argv=sys.argv[:1])
