@@ -32,14 +32,17 @@ if (UNIX AND NOT APPLE AND NOT ES_XVFB_RUN AND "$ENV{DISPLAY}" STREQUAL "")
 endif ()
 
 # es_display_prefix(<variable>): the words to put before the command of a test that draws. Each call
-# gives another display number, for tests started at the same moment would take the same one.
-# (Without -noreset the server ends with its first client, which now and then is too early.)
+# gives another display number, and each build folder begins with another: tests started at the same
+# moment would take the same display. (Without -noreset the server ends with its first client, which
+# now and then is too early.)
 function (es_display_prefix variable)
   set(prefix)
   if (ES_XVFB_RUN)
     get_property(number GLOBAL PROPERTY es_display_number)
     if (NOT number)
-      set(number 100)
+      string(MD5 hash "${CMAKE_BINARY_DIR}")
+      string(SUBSTRING "${hash}" 0 6 hash)
+      math(EXPR number "100 + 0x${hash} % 997")
     endif ()
     set(prefix "${ES_XVFB_RUN}" -a -n "${number}" -s "-screen 0 1280x1024x24 -noreset")
     math(EXPR number "${number} + 10")
