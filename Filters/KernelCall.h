@@ -12,7 +12,10 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
 #include "vtkSetGet.h"
 
 #include <new>
@@ -46,13 +49,13 @@ int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
   catch (const Aborted&)
   {
   }
-  catch (const Error& error)
-  {
-    message = error.what();
-  }
   catch (const std::bad_alloc&)
   {
     message = "There is not enough memory for this input.";
+  }
+  catch (const std::exception& error)
+  {
+    message = error.what();
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
@@ -64,6 +67,15 @@ int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
   }
   vtkErrorWithObjectMacro(filter, << message);
   return 0;
+}
+
+/** A count as an array of one value, for the output's field data. */
+inline void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)
+{
+  vtkNew<vtkIdTypeArray> array;
+  array->SetName(name);
+  array->InsertNextValue(count);
+  fieldData->AddArray(array);
 }
 
 } // namespace elevation

@@ -93,7 +93,8 @@ void ToMesh(vtkPolyData* input, Mesh& mesh)
     if (size != 3)
     {
       throw Error("Cell " + std::to_string(cell) + " has " + std::to_string(size) +
-        " points, but only triangles can be handled; pass the input through vtkTriangleFilter first.");
+        " points, but only triangles can be handled; pass the input through vtkTriangleFilter "
+        "first.");
     }
     for (int i = 0; i < 3; ++i)
     {
@@ -133,8 +134,7 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles)
   triangles.Shrink();
   const vtkIdType size = static_cast<vtkIdType>(triangles.size());
   vtkNew<vtkTypeInt32Array> connectivity;
-  connectivity->SetArray(
-    triangles.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+  connectivity->SetArray(triangles.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
   vtkNew<vtkTypeInt32Array> offsets;
   offsets->SetNumberOfValues(size / 3 + 1);
   vtkTypeInt32* offset = offsets->GetPointer(0);

@@ -38,8 +38,8 @@ PointsOfDataSet ViewPoints(vtkPointSet* input);
  * i-th polygon, turned counter-clockwise where it is not. Vertices and lines are left alone (their
  * cells precede the polygons in the cell numbering: see FirstPolygon).
  * Twins are not filled.
- * @throws Error that names the cell: not a triangle, a point used twice, a point that is not finite, flat in
- *         x,y; or when there are triangle strips.
+ * @throws Error that names the cell: not a triangle, a point used twice, a point that is not
+ * finite, flat in x,y; or when there are triangle strips.
  */
 void ToMesh(vtkPolyData* input, Mesh& mesh);
 

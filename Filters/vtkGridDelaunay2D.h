@@ -33,8 +33,9 @@
  * Cost: expected time proportional to the number of points for points of even density, with a
  * sorting step; memory about 60 bytes a point during the run.
  *
- * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an Elevation
- * Surface of 3D Point Clouds": the third point of an edge is looked for by a voxel traversal search.
+ * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an
+ * Elevation Surface of 3D Point Clouds": the third point of an edge is looked for by a voxel
+ * traversal search.
  *
  * @sa vtkTrimOutwardTriangles vtkFillElevationHoles vtkDelaunay2D
  */
@@ -53,8 +54,8 @@ public:
 
   ///@{
   /**
-   * Triangles with an edge longer than this in x,y (input units) are not made: gaps in the data stay
-   * holes, pockets of the outline stay open. The triangles that remain are those of the full
+   * Triangles with an edge longer than this in x,y (input units) are not made: gaps in the data
+   * stay holes, pockets of the outline stay open. The triangles that remain are those of the full
    * triangulation. 0 (default): no limit; negative values are taken as 0.
    */
   vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);

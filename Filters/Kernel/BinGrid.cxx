@@ -10,7 +10,8 @@ namespace elevation
 {
 namespace
 {
-// Mean points a bin: fewer make the searches visit many empty bins, more make them look at points in vain.
+// Mean points a bin: fewer make the searches visit many empty bins, more make them look at points
+// in vain.
 constexpr double PointsPerBin = 1.3;
 // A bin with more points gets a level of its own; evenly spread points never fill one so.
 constexpr Index FullBin = 24;
@@ -27,8 +28,8 @@ void ChooseBins(BinGrid::Level& level, double width, double height, Index count)
   level.PerX = width > 0.0 ? std::min(level.Columns / width, DBL_MAX) : 0.0;
   level.PerY = height > 0.0 ? std::min(level.Rows / height, DBL_MAX) : 0.0;
   const double area = width * height;
-  level.Spacing = area > 0.0 && std::isfinite(area) ? std::sqrt(area / count)
-                                                    : std::max(width, height) / count;
+  level.Spacing =
+    area > 0.0 && std::isfinite(area) ? std::sqrt(area / count) : std::max(width, height) / count;
 }
 } // namespace
 
@@ -61,8 +62,7 @@ const BinGrid::Level& BinGrid::LeafLevel(const Point2& p) const
   return *level;
 }
 
-void BinGrid::AddLevel(
-  Index begin, Index end, double lowX, double highX, double lowY, double highY)
+void BinGrid::AddLevel(Index begin, Index end, double lowX, double highX, double lowY, double highY)
 {
   Level level;
   level.OriginX = lowX;
@@ -120,7 +120,8 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
   {
     int exponent;
     std::frexp(greatest, &exponent);
-    // Two steps, because the factor itself may leave the range; only when no small coordinate loses bits.
+    // Two steps, because the factor itself may leave the range; only when no small coordinate loses
+    // bits.
     const double scale = exponent < -1000 ? std::ldexp(1.0, 1000) : std::ldexp(1.0, -exponent);
     if (least * scale > DBL_MIN / DBL_EPSILON)
     {
@@ -227,7 +228,8 @@ void BinGrid::Subdivide()
         }
         Index sum = begin;
         starts[0] = begin;
-        for (std::size_t bin = 1; bin <= static_cast<std::size_t>(level.Columns) * level.Rows; ++bin)
+        for (std::size_t bin = 1; bin <= static_cast<std::size_t>(level.Columns) * level.Rows;
+             ++bin)
         {
           const Index inBin = starts[bin];
           starts[bin] = sum;

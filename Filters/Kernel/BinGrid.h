@@ -11,11 +11,11 @@
  * and so on, so that uneven density does not collapse into a few full bins; its points' slots stay
  * within the bin's. The passes: count, prefix sum, fill, subdivide, set duplicates aside.
  *
- * The bin of a coordinate is a monotone function of it, also in floating point: all points with x in
- * [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
+ * The bin of a coordinate is a monotone function of it, also in floating point: all points with x
+ * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
  *
- * Cost: linear (times the number of levels where density is uneven); 16 + 4 bytes a point, and about
- * 3 for the bins.
+ * Cost: linear (times the number of levels where density is uneven); 16 + 4 bytes a point, and
+ * about 3 for the bins.
  */
 #ifndef elevation_BinGrid_h
 #define elevation_BinGrid_h
@@ -38,10 +38,10 @@ public:
     double OriginX = 0.0, OriginY = 0.0; ///< lower left corner of the points' bounding box
     double PerX = 0.0, PerY = 0.0;       ///< bins a unit of length
     Index Columns = 1, Rows = 1;
-    double Spacing = 0.0;      ///< about the distance of neighbouring points, were they evenly spread
-    std::size_t FirstBin = 0;  ///< where its bins begin in Starts; there are Columns * Rows + 1
-    std::size_t FirstRow = 0;  ///< where its rows begin in RowLow, RowHigh and ChildrenOfRow
-    bool HasChildren = false;  ///< whether some bins have a level of their own
+    double Spacing = 0.0; ///< about the distance of neighbouring points, were they evenly spread
+    std::size_t FirstBin = 0; ///< where its bins begin in Starts; there are Columns * Rows + 1
+    std::size_t FirstRow = 0; ///< where its rows begin in RowLow, RowHigh and ChildrenOfRow
+    bool HasChildren = false; ///< whether some bins have a level of their own
 
     Index Column(double x) const { return Cell((x - this->OriginX) * this->PerX, this->Columns); }
     Index Row(double y) const { return Cell((y - this->OriginY) * this->PerY, this->Rows); }
@@ -88,7 +88,7 @@ public:
   double Scale = 1.0;        ///< what the input's coordinates were multiplied by
   std::vector<Level> Levels; ///< the whole cloud's first
   Buffer<Index> Starts;      ///< first slot of each bin, bins row by row, level after level
-  std::vector<double> RowLow, RowHigh;     ///< range of y of the points in each row of each level
+  std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row of each level
   std::vector<std::vector<Child>> ChildrenOfRow; ///< by increasing column; only rows that have some
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y

@@ -110,7 +110,8 @@ public:
     this->Best = None;
 
     // A disc through both ends is told by the position s of its centre, in edge lengths along the
-    // edge's left normal. On the left of the edge a disc of larger s contains every disc of smaller s.
+    // edge's left normal. On the left of the edge a disc of larger s contains every disc of smaller
+    // s.
     double height = this->FirstHeight;
     const double length = std::sqrt(this->LengthSquared);
     double seen = PositionOfHeight(height / length);
@@ -135,10 +136,7 @@ public:
   }
 
 private:
-  static double PositionOfHeight(double height)
-  {
-    return 0.5 * (height - 0.25 / height);
-  }
+  static double PositionOfHeight(double height) { return 0.5 * (height - 0.25 / height); }
 
   /** An upper bound of s for the circle through the edge and the best point. */
   double UpperPositionOfBest() const
@@ -152,9 +150,9 @@ private:
     {
       return Infinity;
     }
-    // What underflow may have taken from dot is below 1e-322, hence from s below 1e-170.
+    // What underflow may have taken from dot is below 1e-322, hence from s below 1e-160.
     const double position = 0.5 * dot / cross;
-    return position + 8.0 * UnitRoundoff * std::fabs(position) + 1e-170;
+    return position + 8.0 * UnitRoundoff * std::fabs(position) + 1e-160;
   }
 
   /** Compares the best point with all points that the disc of position s may contain. */
@@ -178,8 +176,12 @@ private:
       this->RadiusSquared = Infinity;
       this->Top = Infinity;
     }
-    // On the left of an edge that rises, x is less than that of the edge at the same y.
-    this->Slope = this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity;
+    // On the left of an edge that rises, x is less than that of the edge at the same y. Not made
+    // use of where the quotient might leave the range of double.
+    const double run = std::fabs(this->EdgeX);
+    const bool isTame =
+      this->EdgeY > 1e-140 && this->EdgeY < 1e140 && (run == 0.0 || (run > 1e-140 && run < 1e140));
+    this->Slope = isTame ? this->EdgeX / this->EdgeY : Infinity;
     this->LookInto(this->Grid.Levels.front());
   }
 
@@ -268,7 +270,7 @@ private:
       const double cross = left - right;
       const double crossMagnitude = std::fabs(left) + std::fabs(right);
       const double crossError = 8.0 * UnitRoundoff * crossMagnitude + 1e-290;
-      if (cross <= crossError)
+      if (!(cross > crossError)) // also when it is not a number
       {
         if (cross < -crossError || slot == this->Origin || slot == this->Target ||
           Orientation(this->A, this->B, this->Grid.PointAt(slot)) != Positive)
@@ -438,10 +440,8 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& option
     grid.NotFinite.end(), result.UnusedPoints.begin());
   for (Index id : result.UnusedPoints)
   {
-    const bool isDuplicate =
-      std::binary_search(grid.Duplicates.begin(), grid.Duplicates.end(), id);
-    result.UnusedReasons.push_back(
-      isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
+    const bool isDuplicate = std::binary_search(grid.Duplicates.begin(), grid.Duplicates.end(), id);
+    result.UnusedReasons.push_back(isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
   }
   if (grid.NumberOfPoints() < 3)
   {

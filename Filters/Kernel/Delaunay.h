@@ -62,9 +62,9 @@ struct DelaunayOptions
 
 struct Triangulation
 {
-  Buffer<Index> Triangles; ///< three point ids a triangle, counter-clockwise
+  Buffer<Index> Triangles;      ///< three point ids a triangle, counter-clockwise
   Index NumberOfHullPoints = 0; ///< points on the border of the convex hull, collinear ones counted
-  std::vector<Index> UnusedPoints; ///< ids, increasing
+  std::vector<Index> UnusedPoints;         ///< ids, increasing
   std::vector<UnusedReason> UnusedReasons; ///< one an unused point
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;

@@ -14,7 +14,8 @@ void Mesh::ConnectTwins()
   const Index count = this->NumberOfHalfEdges();
   this->Twins.assign(count, Border);
 
-  // Half-edges by the lower id of their two vertices: both half-edges of an edge meet in one bucket.
+  // Half-edges by the lower id of their two vertices: both half-edges of an edge meet in one
+  // bucket.
   std::vector<Index> bucket(this->Points.size() + 1, 0);
   const auto low = [this](Index h) { return std::min(this->Origin(h), this->Destination(h)); };
   const auto high = [this](Index h) { return std::max(this->Origin(h), this->Destination(h)); };
@@ -39,9 +40,8 @@ void Mesh::ConnectTwins()
   {
     const auto begin = halfEdges.begin() + bucket[v];
     const auto end = halfEdges.begin() + bucket[v + 1];
-    std::sort(begin, end, [&](Index g, Index h) {
-      return high(g) != high(h) ? high(g) < high(h) : g < h;
-    });
+    std::sort(
+      begin, end, [&](Index g, Index h) { return high(g) != high(h) ? high(g) < high(h) : g < h; });
     for (auto first = begin; first != end;)
     {
       auto last = first + 1;
@@ -52,11 +52,12 @@ void Mesh::ConnectTwins()
       const bool isPair = last - first == 2;
       if (last - first > 2 || (isPair && this->Origin(first[0]) == this->Origin(first[1])))
       {
-        throw Error("Triangle " + std::to_string(Triangle(last[-1])) + " shares the edge of points " +
-          std::to_string(v) + " and " + std::to_string(high(*first)) + " with triangle " +
-          std::to_string(Triangle(first[0])) +
-          (last - first > 2 ? " and another one: an edge of a surface has at most two triangles."
-                            : " on the same side: the triangles overlap or are oriented differently."));
+        throw Error("Triangle " + std::to_string(Triangle(last[-1])) +
+          " shares the edge of points " + std::to_string(v) + " and " +
+          std::to_string(high(*first)) + " with triangle " + std::to_string(Triangle(first[0])) +
+          (last - first > 2
+              ? " and another one: an edge of a surface has at most two triangles."
+              : " on the same side: the triangles overlap or are oriented differently."));
       }
       if (isPair)
       {

@@ -74,13 +74,13 @@ struct Rings
 };
 
 /**
- * The border of a mesh (with Twins) as closed walks of half-edges, in the half-edges' own direction,
- * so that the mesh lies on the left: counter-clockwise around the outside of a component, clockwise
- * around a hole. At a vertex where several borders meet, a walk stays with the empty wedge it runs
- * along, so each walk bounds one empty region of the plane. Every border half-edge is in exactly one
- * walk; a walk starts at its lowest half-edge id, and walks are in the order of their first.
- * The result's Vertices are half-edge ids; their origins are the vertices of the walk.
- * Linear, but for sorting the borders at shared vertices.
+ * The border of a mesh (with Twins) as closed walks of half-edges, in the half-edges' own
+ * direction, so that the mesh lies on the left: counter-clockwise around the outside of a
+ * component, clockwise around a hole. At a vertex where several borders meet, a walk stays with the
+ * empty wedge it runs along, so each walk bounds one empty region of the plane. Every border
+ * half-edge is in exactly one walk; a walk starts at its lowest half-edge id, and walks are in the
+ * order of their first. The result's Vertices are half-edge ids; their origins are the vertices of
+ * the walk. Linear, but for sorting the borders at shared vertices.
  */
 Rings TraceBorder(const Mesh& mesh);
 

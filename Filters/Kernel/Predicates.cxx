@@ -162,8 +162,8 @@ struct Product
       std::copy(few.Part, few.Part + few.Size, result.Part);
       return result;
     }
-    const auto sum = Product<M, half>::Of(e, part, half) +
-      Product<M, N - half>::Of(e, part + half, count - half);
+    const auto sum =
+      Product<M, half>::Of(e, part, half) + Product<M, N - half>::Of(e, part + half, count - half);
     Expansion<2 * M * N> result;
     result.Size = sum.Size;
     std::copy(sum.Part, sum.Part + sum.Size, result.Part);
@@ -394,8 +394,8 @@ Sign ExactOrientation(const Point2& a, const Point2& b, const Point2& c)
   {
     return IntegerOrientation(a, b, c);
   }
-  return OrientationOf(Difference(a.X, c.X), Difference(a.Y, c.Y), Difference(b.X, c.X),
-    Difference(b.Y, c.Y));
+  return OrientationOf(
+    Difference(a.X, c.X), Difference(a.Y, c.Y), Difference(b.X, c.X), Difference(b.Y, c.Y));
 }
 
 Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d)

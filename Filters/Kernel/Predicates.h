@@ -94,8 +94,8 @@ inline Sign InCircle(const Point2& a, const Point2& b, const Point2& c, const Po
   // Shewchuk's bound is (10 + 96 u) u. The two conditions keep what underflow may lose (at most
   // 2^-1073 in a lift or a minor) far below the bound.
   constexpr double bound = 11.0 * 1.1102230246251565e-16;
-  const double least = alift < blift ? (alift < clift ? alift : clift)
-                                     : (blift < clift ? blift : clift);
+  const double least =
+    alift < blift ? (alift < clift ? alift : clift) : (blift < clift ? blift : clift);
   if (least > 1e-290 && magnitude > 1e-290 * (alift + blift + clift) && magnitude > 1e-290)
   {
     if (determinant > bound * magnitude)

@@ -117,13 +117,14 @@ inline Progress Part(const Progress& progress, double begin, double end)
   {
     return progress;
   }
-  return [&progress, begin, end](
-           double fraction) { return progress(begin + fraction * (end - begin)); };
+  return
+    [&progress, begin, end](double fraction) { return progress(begin + fraction * (end - begin)); };
 }
 
 /**
  * A growable array of plain values that are not initialised, in memory from malloc, so that it can
- * be handed over to a VTK array without a copy, and grows without one where the system can move pages.
+ * be handed over to a VTK array without a copy, and grows without one where the system can move
+ * pages.
  */
 template <typename T>
 class Buffer
@@ -178,7 +179,7 @@ public:
   /** Gives back what Reserve took and nobody filled. */
   void Shrink()
   {
-    if (this->Length < this->Capacity && this->Length > 0)
+    if (this->Length<this->Capacity&& this->Length> 0)
     {
       this->Reallocate(this->Length);
     }

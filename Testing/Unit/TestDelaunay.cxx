@@ -1,0 +1,392 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Delaunay.h"
+#include "Kernel/Predicates.h"
+#include "PointSets.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+
+using namespace elevation;
+using namespace testing_points;
+
+namespace
+{
+Triangulation Triangulate(const Cloud& cloud)
+{
+  return elevation::Triangulate(cloud.View(), DelaunayOptions());
+}
+
+/** The triangulation by its definition: every triple whose circle is empty, ties cut by the rule.
+ */
+std::vector<Corners> BruteForce(const Cloud& cloud)
+{
+  std::vector<Point2> points;
+  for (Index i = 0; i < cloud.Count(); ++i)
+  {
+    points.push_back(cloud.View().At(i));
+  }
+  std::sort(points.begin(), points.end(), IsLower);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  std::vector<Corners> set;
+  const std::size_t n = points.size();
+  for (std::size_t a = 0; a < n; ++a)
+  {
+    for (std::size_t i = a + 1; i < n; ++i)
+    {
+      for (std::size_t j = a + 1; j < n; ++j)
+      {
+        const Point2 &p = points[a], &q = points[i], &r = points[j];
+        if (Orientation(p, q, r) != Positive)
+        {
+          continue;
+        }
+        // Kept when no point is inside, none on the circle is lower than p, and none on the circle
+        // lies beyond the edge qr: p is then the lowest of a polygon in which q and r are
+        // neighbours.
+        bool isKept = true;
+        for (std::size_t k = 0; k < n && isKept; ++k)
+        {
+          const Sign side = k == a || k == i || k == j ? Negative : InCircle(p, q, r, points[k]);
+          isKept =
+            side == Negative || (side == Zero && k > a && Orientation(q, r, points[k]) == Positive);
+        }
+        if (isKept)
+        {
+          set.push_back({ p.X, p.Y, q.X, q.Y, r.X, r.Y });
+        }
+      }
+    }
+  }
+  std::sort(set.begin(), set.end());
+  return set;
+}
+
+void ExpectValid(const Cloud& cloud, const std::string& name)
+{
+  SCOPED_TRACE(name);
+  const Triangulation triangulation = Triangulate(cloud);
+  EXPECT_EQ(FindingsOf(cloud, triangulation), "");
+  std::mt19937_64 random(5);
+  const Cloud shuffled = cloud.Shuffled(random);
+  EXPECT_TRUE(TriangleSet(cloud, triangulation) == TriangleSet(shuffled, Triangulate(shuffled)))
+    << "the order of the input changes the triangles";
+}
+} // namespace
+
+TEST(Delaunay, IsTheDefinitionOnSmallLattices)
+{
+  // Dense, collinear, co-circular, duplicated: thousands of clouds of a few lattice nodes.
+  std::mt19937_64 random(17);
+  for (int i = 0; i < 20000; ++i)
+  {
+    Cloud cloud;
+    const int size = 2 + static_cast<int>(random() % 5);
+    const int count = 3 + static_cast<int>(random() % 12);
+    for (int k = 0; k < count; ++k)
+    {
+      const double x = static_cast<double>(random() % size);
+      cloud.Add(x, static_cast<double>(random() % size));
+    }
+    ASSERT_EQ(TriangleSet(cloud, Triangulate(cloud)), BruteForce(cloud)) << "cloud " << i;
+  }
+}
+
+TEST(Delaunay, IsTheDefinitionOnRandomPoints)
+{
+  std::mt19937_64 random(18);
+  for (int i = 0; i < 300; ++i)
+  {
+    const Cloud cloud = RandomCloud(random, 3 + static_cast<Index>(random() % 20));
+    ASSERT_EQ(TriangleSet(cloud, Triangulate(cloud)), BruteForce(cloud)) << "cloud " << i;
+  }
+}
+
+TEST(Delaunay, KeepsEveryRuleOnRandomPoints)
+{
+  std::mt19937_64 random(19);
+  for (const Index count : { 3, 10, 100, 1000, 30000 })
+  {
+    ExpectValid(RandomCloud(random, count), std::to_string(count) + " points");
+  }
+}
+
+TEST(Delaunay, KeepsEveryRuleOnLattices)
+{
+  std::mt19937_64 random(20);
+  for (const double probability : { 0.02, 0.1, 0.5, 0.9, 1.0 })
+  {
+    ExpectValid(LatticeCloud(random, 100, probability), std::to_string(probability) + " filled");
+  }
+}
+
+TEST(Delaunay, KeepsEveryRuleOnARotatedLatticeInMapCoordinates)
+{
+  std::mt19937_64 random(21);
+  Cloud cloud = LatticeCloud(random, 80, 0.9);
+  for (Index i = 0; i < cloud.Count(); ++i)
+  {
+    double* p = cloud.Coordinates.data() + 3 * i;
+    const double u = 25.0 * p[0], v = 12.5 * p[1];
+    p[0] = 612000.0 + std::cos(0.5) * u - std::sin(0.5) * v;
+    p[1] = 6073000.0 + std::sin(0.5) * u + std::cos(0.5) * v;
+  }
+  ExpectValid(cloud, "full precision");
+  for (double& value : cloud.Coordinates)
+  {
+    value = std::round(10.0 * value) / 10.0;
+  }
+  ExpectValid(cloud, "rounded to a decimetre");
+}
+
+TEST(Delaunay, KeepsEveryRuleOnUnevenDensity)
+{
+  std::mt19937_64 random(22);
+  Cloud clustered, tracks, graded;
+  for (int i = 0; i < 5000; ++i)
+  {
+    const double angle = 6.283185307179586 * Uniform(random);
+    const double radius = std::pow(Uniform(random), 12.0);
+    clustered.Add(radius * std::cos(angle), radius * std::sin(angle));
+    const double along = 10000.0 * Uniform(random);
+    tracks.Add(along, 100.0 * static_cast<double>(random() % 20) + 0.3 * Uniform(random));
+    const double x = std::exp2(-30.0 * Uniform(random));
+    graded.Add(x, std::exp2(-30.0 * Uniform(random)));
+  }
+  ExpectValid(clustered, "clustered");
+  ExpectValid(tracks, "ship tracks");
+  ExpectValid(graded, "graded");
+  clustered.Add(1e12, 3.0);
+  ExpectValid(clustered, "one far outlier");
+}
+
+TEST(Delaunay, KeepsEveryRuleOnAdversarialPoints)
+{
+  std::mt19937_64 random(23);
+  Cloud circle, twoLines, nearLine, spiral, comb, roundoffs;
+  for (int i = 0; i < 600; ++i)
+  {
+    const double angle = 6.283185307179586 * Uniform(random);
+    circle.Add(std::cos(angle), std::sin(angle));
+    twoLines.Add(static_cast<double>(i), i % 2);
+    nearLine.Add(i, std::ldexp(static_cast<double>(random() % 3), -40) + i);
+    spiral.Add(0.01 * i * std::cos(0.3 * i), 0.01 * i * std::sin(0.3 * i));
+    comb.Add(i / 20, (i % 20) * (i / 20 % 2 ? 1.0 : 0.01));
+    roundoffs.Add(1.0 + std::ldexp(static_cast<double>(random() % 16), -52),
+      1.0 + std::ldexp(static_cast<double>(random() % 16), -52));
+  }
+  ExpectValid(circle, "circle");
+  ExpectValid(twoLines, "two lines");
+  ExpectValid(nearLine, "near a line");
+  ExpectValid(spiral, "spiral");
+  ExpectValid(comb, "comb");
+  ExpectValid(roundoffs, "a few roundoffs apart");
+}
+
+TEST(Delaunay, KeepsEveryRuleOverTheRangeOfDouble)
+{
+  std::mt19937_64 random(24);
+  for (const int range : { 100, 500, 1000 })
+  {
+    Cloud cloud;
+    for (int i = 0; i < 100; ++i)
+    {
+      const auto coordinate = [&]() {
+        const int exponent = static_cast<int>(random() % (2 * range)) - range;
+        return std::ldexp(Uniform(random) - 0.5, exponent);
+      };
+      const double x = coordinate();
+      cloud.Add(x, coordinate());
+    }
+    ExpectValid(cloud, "exponents to " + std::to_string(range));
+  }
+  for (const double size : { 1e-305, 1e-150, 1e150, 1.7e308 })
+  {
+    Cloud cloud = RandomCloud(random, 500);
+    for (double& value : cloud.Coordinates)
+    {
+      value = (value - 0.5) * 2.0 * size;
+    }
+    ExpectValid(cloud, "of size " + std::to_string(size));
+  }
+}
+
+TEST(Delaunay, CutsACocircularPolygonFromItsLowestPoint)
+{
+  // Twelve lattice points on the circle of radius 5; the lowest, by y and then x, is (0, -5).
+  Cloud cloud;
+  for (int x = -5; x <= 5; ++x)
+  {
+    for (int y = -5; y <= 5; ++y)
+    {
+      if (x * x + y * y == 25)
+      {
+        cloud.Add(x, y);
+      }
+    }
+  }
+  const Triangulation triangulation = Triangulate(cloud);
+  ASSERT_EQ(triangulation.Triangles.size(), 30u);
+  for (std::size_t t = 0; t < 30; t += 3)
+  {
+    EXPECT_TRUE((cloud.View().At(triangulation.Triangles[t]) == Point2{ 0, -5 }));
+  }
+}
+
+TEST(Delaunay, OrdersTrianglesByTheirLowestVertex)
+{
+  std::mt19937_64 random(25);
+  const Cloud cloud = LatticeCloud(random, 30, 0.7);
+  const Triangulation triangulation = Triangulate(cloud);
+  Point2 previous{ -1, -1 };
+  for (std::size_t t = 0; t < triangulation.Triangles.size(); t += 3)
+  {
+    const Point2 lowest = cloud.View().At(triangulation.Triangles[t]);
+    EXPECT_TRUE(IsLower(lowest, cloud.View().At(triangulation.Triangles[t + 1])));
+    EXPECT_TRUE(IsLower(lowest, cloud.View().At(triangulation.Triangles[t + 2])));
+    EXPECT_FALSE(IsLower(lowest, previous));
+    previous = lowest;
+  }
+}
+
+TEST(Delaunay, MakesNoTriangleWithoutThreePointsOffALine)
+{
+  Cloud cloud;
+  EXPECT_TRUE(Triangulate(cloud).Triangles.empty());
+  cloud.Add(1.0, 2.0);
+  EXPECT_TRUE(Triangulate(cloud).Triangles.empty());
+  cloud.Add(1.0, 2.0, 5.0);
+  cloud.Add(1.0, 2.0, 6.0);
+  EXPECT_TRUE(Triangulate(cloud).Triangles.empty());
+  EXPECT_EQ(Triangulate(cloud).NumberOfDuplicates, 2);
+  for (int i = 0; i < 50; ++i)
+  {
+    cloud.Add(1.0 + 0.5 * i, 2.0 + 0.25 * i);
+  }
+  EXPECT_TRUE(Triangulate(cloud).Triangles.empty());
+  EXPECT_EQ(Triangulate(cloud).NumberOfHullPoints, 0);
+  cloud.Add(1.0, std::nextafter(2.0, 3.0));
+  EXPECT_FALSE(Triangulate(cloud).Triangles.empty());
+}
+
+TEST(Delaunay, ReportsEveryPointThatIsNotAVertex)
+{
+  std::mt19937_64 random(26);
+  Cloud cloud = RandomCloud(random, 200);
+  const Index duplicate = cloud.Count();
+  cloud.Add(cloud.Coordinates[30], cloud.Coordinates[31], 9.0);
+  cloud.Add(NAN, 1.0);
+  cloud.Add(0.5, 0.5, INFINITY);
+  const Triangulation triangulation = Triangulate(cloud);
+  EXPECT_EQ(
+    triangulation.UnusedPoints, (std::vector<Index>{ duplicate, duplicate + 1, duplicate + 2 }));
+  EXPECT_EQ(triangulation.UnusedReasons,
+    (std::vector<UnusedReason>{
+      UnusedReason::Duplicate, UnusedReason::NotFinite, UnusedReason::NotFinite }));
+  EXPECT_EQ(triangulation.NumberOfDuplicates, 1);
+  EXPECT_EQ(triangulation.NumberOfNotFinite, 2);
+  EXPECT_EQ(FindingsOf(cloud, triangulation), "");
+}
+
+TEST(Delaunay, LeavesOutExactlyTheTrianglesWithALongEdge)
+{
+  std::mt19937_64 random(27);
+  const Cloud cloud = RandomCloud(random, 2000);
+  DelaunayOptions options;
+  options.MaximumEdgeLength = 0.04;
+  std::vector<Corners> expected;
+  for (const Corners& c : TriangleSet(cloud, Triangulate(cloud)))
+  {
+    const double longest = std::max({ std::hypot(c[2] - c[0], c[3] - c[1]),
+      std::hypot(c[4] - c[2], c[5] - c[3]), std::hypot(c[0] - c[4], c[1] - c[5]) });
+    if (longest <= 0.04)
+    {
+      expected.push_back(c);
+    }
+  }
+  EXPECT_LT(expected.size(), 3900u);
+  EXPECT_EQ(TriangleSet(cloud, elevation::Triangulate(cloud.View(), options)), expected);
+}
+
+TEST(Delaunay, ReadsFloatsAsTheyAre)
+{
+  std::mt19937_64 random(28);
+  Cloud cloud = RandomCloud(random, 1000);
+  std::vector<float> floats(cloud.Coordinates.begin(), cloud.Coordinates.end());
+  cloud.Coordinates.assign(floats.begin(), floats.end());
+  PointView view;
+  view.Float = floats.data();
+  view.Count = cloud.Count();
+  const Triangulation fromFloats = elevation::Triangulate(view, DelaunayOptions());
+  const Triangulation fromDoubles = Triangulate(cloud);
+  EXPECT_TRUE(std::equal(fromFloats.Triangles.begin(), fromFloats.Triangles.end(),
+    fromDoubles.Triangles.begin(), fromDoubles.Triangles.end()));
+}
+
+TEST(Delaunay, ProgressRisesAndAbortStops)
+{
+  std::mt19937_64 random(29);
+  const Cloud cloud = RandomCloud(random, 50000);
+  DelaunayOptions options;
+  double last = 0.0;
+  options.Monitor = [&last](double fraction) {
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1.0);
+    last = fraction;
+    return true;
+  };
+  elevation::Triangulate(cloud.View(), options);
+  EXPECT_EQ(last, 1.0);
+  options.Monitor = [](double fraction) { return fraction < 0.5; };
+  EXPECT_THROW(elevation::Triangulate(cloud.View(), options), Aborted);
+}
+
+TEST(Delaunay, RefusesMorePointsThanAnIndexHolds)
+{
+  PointView view;
+  view.Count = MaximumNumberOfPoints + 1;
+  try
+  {
+    elevation::Triangulate(view, DelaunayOptions());
+    FAIL() << "accepted";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(
+      std::string(error.what()).find(std::to_string(MaximumNumberOfPoints)), std::string::npos);
+  }
+}
+
+/** Real clouds for measuring: little-endian doubles x, y, z, in the folder
+ * ELEVATION_SURFACE_EXTRA_DATA. */
+class ExtraData : public testing::TestWithParam<const char*>
+{
+};
+
+TEST_P(ExtraData, KeepsEveryRule)
+{
+  const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
+  if (!folder)
+  {
+    GTEST_SKIP() << "ELEVATION_SURFACE_EXTRA_DATA is not set";
+  }
+  const std::string path = std::string(folder) + "/" + GetParam() + ".f64";
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file)
+  {
+    GTEST_SKIP() << path << " is not there";
+  }
+  Cloud cloud;
+  cloud.Coordinates.resize(static_cast<std::size_t>(file.tellg()) / sizeof(double));
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(cloud.Coordinates.data()),
+    static_cast<std::streamsize>(cloud.Coordinates.size() * sizeof(double)));
+  ExpectValid(cloud, path);
+}
+
+INSTANTIATE_TEST_SUITE_P(Delaunay, ExtraData,
+  testing::Values("autzen_trim_ground", "f3_fs6", "f3_truncation", "landlab_nocella",
+    "nankai_channels", "srtm_pyrenees_voids400", "st_helens_after_usgs"));
