@@ -294,7 +294,7 @@ def points_of_grid(path, grid, no_data):
         y = vtk_to_numpy(grid.GetYCoordinates()).astype("f8")
     z = vtk_to_numpy(scalars).reshape(rows, columns)
     x, y = numpy.meshgrid(x, y)
-    cloud = points_of_raster(path, x, y, z, no_data)
+    cloud = points_of_raster(path, x, y, z, [] if no_data is None else [no_data])
     cloud.notes.insert(0, f"elevation: point array {scalars.GetName() or '(unnamed)'}")
     return cloud
 
@@ -302,12 +302,15 @@ def points_of_grid(path, grid, no_data):
 # ---- rasters ----------------------------------------------------------------------------------
 
 
-def points_of_raster(path, x, y, z, no_data):
-    """Three (rows, columns) arrays -> the points of the pixels that hold an elevation."""
+def points_of_raster(path, x, y, z, missing):
+    """Three (rows, columns) arrays -> the points of the pixels that hold an elevation.
+
+    missing lists the elevations that mark pixels without data; NaN does too.
+    """
     z = numpy.asarray(z, dtype="f8")
     valid = numpy.isfinite(z)
-    if no_data is not None:
-        valid &= z != no_data
+    for value in missing:
+        valid &= z != value
     count = int(valid.size - numpy.count_nonzero(valid))
     if count == valid.size:
         raise FileError(f"{path}: all {valid.size:,} pixels are without data")
@@ -371,6 +374,10 @@ class TiffTags:
             return f"has {bits} bits for each pixel"
         if bits == 8 and self.one(339, 1) == 2:
             return "has signed 8-bit pixels"
+        if self.one(284, 1) != 1 and self.one(277, 1) > 1:
+            return "has its bands one after the other"
+        if self.one(262, 1) not in (1, 2):
+            return "has a colour table or another coding of its pixels"
         if self.one(274, 1) != 1:
             return f"has orientation {self.one(274, 1)}"
         return None
@@ -412,25 +419,32 @@ def world_file(path):
     return None
 
 
+def read_tiff_with_vtk(path):
+    """The pixels as (rows, columns, bands), or None and why VTK cannot read them."""
+    from vtkmodules.vtkIOImage import vtkTIFFReader
+
+    reader = vtkTIFFReader()
+    with Messages() as messages:
+        reader.SetFileName(path)
+        reader.Update()
+    image = reader.GetOutput()
+    scalars = image.GetPointData().GetScalars()
+    if messages.errors or scalars is None:
+        words = messages.errors[0] if messages.errors else "no pixels found"
+        return None, f"is refused by VTK's reader ({words})"
+    columns, rows, _ = image.GetDimensions()
+    return vtk_to_numpy(scalars).reshape(rows, columns, scalars.GetNumberOfComponents()), None
+
+
 def read_tiff(path, no_data):
     tags = TiffTags(path)
     notes = []
     reason = tags.why_not_vtk()
     if reason is None:
-        from vtkmodules.vtkIOImage import vtkTIFFReader
-
-        reader = vtkTIFFReader()
-        with Messages() as messages:
-            reader.SetFileName(path)
-            reader.Update()
-        image = reader.GetOutput()
-        scalars = image.GetPointData().GetScalars()
-        if messages.errors or scalars is None:
-            reason = messages.errors[0] if messages.errors else "VTK found no pixels in it"
-            raise FileError(f"{path}: cannot be read: {reason}")
-        columns, rows, _ = image.GetDimensions()
-        bands = scalars.GetNumberOfComponents()
-        z = vtk_to_numpy(scalars).reshape(rows, columns, bands)[:, :, 0]
+        pixels, reason = read_tiff_with_vtk(path)
+    if reason is None:
+        bands = pixels.shape[2]
+        z = pixels[:, :, 0]
         transform = tags.transform()
         stored = tags.no_data()
     else:
@@ -446,19 +460,17 @@ def read_tiff(path, no_data):
     if transform is None:
         transform = (0.0, 1.0, 0.0, rows - 1.0, 0.0, -1.0)
         notes.append("no georeferencing in the file: x and y are column and row, from bottom left")
-    if no_data is not None:
-        notes.append(f"no-data value {no_data:g} as given")
-    elif stored is not None:
-        no_data = stored
-        notes.append(f"no-data value {no_data:g} from the file")
-    else:
+    missing = [value for value in (stored, no_data) if value is not None]
+    if stored is not None:
+        notes.append(f"no-data value {stored:g} from the file")
+    elif no_data is None:
         notes.append("no no-data value in the file: all pixels are used (see --no-data)")
-    if no_data is not None and z.dtype == numpy.float32:
-        no_data = float(numpy.float32(no_data))
+    if z.dtype == numpy.float32:
+        missing = [float(numpy.float32(value)) for value in missing]
     x0, a, b, y0, d, e = transform
     column, row = numpy.meshgrid(numpy.arange(columns, dtype="f8"), numpy.arange(rows, dtype="f8"))
     x, y = x0 + a * column + b * row, y0 + d * column + e * row
-    cloud = points_of_raster(path, x, y, z, no_data)
+    cloud = points_of_raster(path, x, y, z, missing)
     cloud.notes += notes
     return cloud
 
@@ -468,8 +480,8 @@ def read_with_gdal(path, reason):
         from osgeo import gdal
     except ImportError:
         raise FileError(
-            f"{path}: {reason}, which VTK's reader cannot do; install python3-gdal, or save it "
-            "as a .tif in strips with 16 or 32 bits for each pixel"
+            f"{path}: {reason}; install python3-gdal to read it, or save it as a .tif in strips "
+            "with one band of 16 or 32 bits for each pixel"
         ) from None
     gdal.UseExceptions()
     try:
@@ -716,7 +728,10 @@ def read_table(path, columns=None, needed=3):
             if indices is None:
                 comments.append(layout.words(line.lstrip().lstrip("#%/!* ")))
             continue
-        words = layout.words(line)
+        if indices is not None and '"' not in line:
+            words = line.split(layout.separator)
+        else:
+            words = layout.words(line)
         if indices is None:
             if layout.numbers(line) < needed:
                 preamble.append((number, words))
@@ -735,20 +750,10 @@ def read_table(path, columns=None, needed=3):
             if note:
                 notes.append(note)
             check_preamble(path, layout, preamble, indices, width)
-        row = []
-        for axis, index in zip("xyz", indices):
-            if index >= len(words):
-                raise FileError(
-                    f"{path}, line {number}: {len(words)} column{'s' * (len(words) != 1)} found, "
-                    f"but {axis} is column {index + 1}"
-                )
-            value = layout.number(words[index])
-            if value is None:
-                raise FileError(
-                    f"{path}, line {number}: '{words[index][:40]}' in column {index + 1} ({axis}) "
-                    "is not a number"
-                )
-            row.append(value)
+        try:
+            row = [float(words[i]) for i in indices]
+        except (ValueError, IndexError):
+            row = careful_row(f"{path}, line {number}", layout, words, indices)
         if after_blank or not numbers:
             starts.append(len(numbers))
             after_blank = False
@@ -763,6 +768,25 @@ def read_table(path, columns=None, needed=3):
     notes.insert(0, "text: " + ", ".join(seen))
     rows = numpy.frombuffer(values, dtype="f8").reshape(-1, needed)
     return rows, numbers, starts, notes
+
+
+def careful_row(where, layout, words, indices):
+    """A row that is not plain numbers: decimal commas, missing values, or an error."""
+    row = []
+    for axis, index in zip("xyz", indices):
+        if index >= len(words):
+            raise FileError(
+                f"{where}: {len(words)} column{'s' * (len(words) != 1)} found, "
+                f"but {axis} is column {index + 1}"
+            )
+        word = words[index].strip()
+        value = layout.number(word)
+        if value is None:
+            raise FileError(
+                f"{where}: '{word[:40]}' in column {index + 1} ({axis}) is not a number"
+            )
+        row.append(value)
+    return row
 
 
 def check_preamble(path, layout, preamble, indices, width):

@@ -201,9 +201,10 @@ def actor_of(data, rgb=None, width=0.0):
 def lines_actor(points, pairs, rgb, width):
     data = poly_data(points, lines=cells_of(pairs))
     actor = actor_of(data, rgb, width)
-    # Lines lie in the surface; drawn at equal depth they would flicker in and out of it.
+    # Lines lie in the surface; drawn at equal depth they would flicker in and out of it. Much more
+    # than this, and they would show through from behind.
     mapper = actor.GetMapper()
-    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -8000.0)
+    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -60.0)
     return actor
 
 

@@ -355,15 +355,22 @@ class Tiff(InFolder):
         cloud = files.read_points(self.tiff({}))
         self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
 
-    def test_the_no_data_value_can_be_given(self):
+    def test_a_no_data_value_can_be_given_beside_that_of_the_file(self):
         cloud = files.read_points(self.tiff(self.NO_DATA), no_data=5.0)
+        self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [1, 2, 4, 6])
+        cloud = files.read_points(self.tiff({}), no_data=5.0)
         self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [-9999, 1, 2, 4, 6])
 
     def test_what_vtk_reads_wrong_goes_through_gdal_or_is_refused(self):
-        path = self.tiff(self.PLACE, bits=64)
-        with mock.patch.dict(sys.modules, {"osgeo": None}):
-            with self.assertRaisesRegex(files.FileError, "64 bits.*install python3-gdal"):
-                files.read_points(path)
+        for words, tags, bits in (
+            ("has a colour table", {262: ("H", (3,))}, 32),
+            ("is tiled", {322: ("I", (16,)), 323: ("I", (16,))}, 32),
+            ("has 64 bits", {}, 64),
+        ):
+            path = self.tiff({**self.PLACE, **tags}, bits=bits)
+            with self.subTest(words), mock.patch.dict(sys.modules, {"osgeo": None}):
+                with self.assertRaisesRegex(files.FileError, words + ".*install python3-gdal"):
+                    files.read_points(path)
         try:
             import osgeo  # noqa: F401
         except ImportError:
