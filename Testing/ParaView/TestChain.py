@@ -137,12 +137,12 @@ shown.EdgeColor = [0.25, 0.3, 0.25]
 shown.LineWidth = 0.5
 shown.Ambient, shown.Diffuse = 1, 0
 outline = simple.Show(simple.OutputPort(fill, 1), view)
-simple.ColorBy(outline, None)
+outline.ColorArrayName = [None, ""]
 outline.AmbientColor = outline.DiffuseColor = [0.6, 0, 0]
 outline.LineWidth = 2
 view.CameraParallelProjection = 1
-view.ResetActiveCameraToNegativeZ()
-view.ResetCamera(True, 0.95)
+simple.ResetCamera(view)  # from +z
+simple.GetActiveCamera().Zoom(1.2)
 pixels = screenshot(os.path.join(temporary_folder, "ParaViewChain.png"), view).astype(int)
 background = (pixels.min(axis=2) > 250).mean()
 orange = (pixels[..., 0] - pixels[..., 2] > 80).mean()

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the pvpython tests share: the command line, the plugin, plain arrays, and checks.
 
-A failed check is printed and counted; finish() ends the script with a non-zero code if there was one.
+A failed check is printed and counted; finish() makes the exit code non-zero if there was one.
 """
 import argparse
 import math
@@ -10,7 +10,6 @@ import os
 import sys
 
 from paraview import servermanager, simple
-from paraview.modules.vtkRemotingServerManager import vtkSMProxy  # noqa: F401  (wraps SMProxy)
 from vtkmodules.util.numpy_support import vtk_to_numpy
 import numpy
 
@@ -52,15 +51,18 @@ def check_close(value, expected, claim, relative=1e-9):
 
 
 def finish():
-    """Ends the script: 0 if every check held."""
+    """The last call of a script: sets the exit code to 1 if a check failed."""
     print("%d checks failed" % len(FAILURES))
-    sys.exit(1 if FAILURES else 0)
+    if FAILURES:
+        # sys.exit() would end pvpython 5.11 with views still open, which crashes.
+        sys.stdout.flush()
+        os._exit(1)
 
 
 def fetch(source, port=0):
     """The vtkPolyData of an output, updated."""
     source.UpdatePipeline()
-    return servermanager.Fetch(servermanager.OutputPort(source, port))
+    return servermanager.Fetch(source, idx=port)
 
 
 def information(source, name):
