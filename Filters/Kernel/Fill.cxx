@@ -1,0 +1,681 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Fill.h"
+
+#include "Constraints.h"
+#include "Delaunay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace elevation
+{
+
+namespace
+{
+/** Least distance of a new point from the boundary, in spacings. */
+constexpr double Clearance = 0.6;
+
+/** Height of an equilateral triangle: the distance of rows, in spacings. */
+constexpr double RowHeight = 0.86602540378443864676;
+
+/** Below this many steps of the coordinates, rounding would push points onto each other. */
+constexpr double LeastStepsPerSpacing = 4.0;
+
+/** Patches of fewer points report no progress of their own. */
+constexpr double PointsPerReport = 20000.0;
+
+/** A hole with its vertices numbered from 0: first those of the boundary, then new ones. */
+struct Patch
+{
+  std::vector<Index> BoundaryIds;   ///< vertex -> id in the surface, increasing
+  std::vector<Segment> Edges;       ///< of the boundary; the hole lies on their right
+  std::vector<double> Points;       ///< x, y, z of all vertices
+  std::vector<Index> Triangles;     ///< inside the hole
+  std::vector<Index> Order;         ///< new vertices, from the boundary inwards
+  std::vector<std::size_t> Offsets; ///< of each of Order in Stencil, and the end
+  std::vector<Index> Stencil;       ///< vertices that an elevation is the mean of
+  std::vector<Index> Nearest;       ///< boundary vertex, one for each of Order
+
+  Index NumberOfBoundaryVertices() const { return static_cast<Index>(this->BoundaryIds.size()); }
+  Index NumberOfVertices() const { return static_cast<Index>(this->Points.size() / 3); }
+  Index NumberOfNewVertices() const
+  {
+    return this->NumberOfVertices() - this->NumberOfBoundaryVertices();
+  }
+  Point2 At(Index vertex) const
+  {
+    return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
+  }
+};
+
+/** Distance between neighbouring numbers at the size of @a x, as the points are stored. */
+double StepAt(double x, bool singlePrecision)
+{
+  if (singlePrecision)
+  {
+    const float f = std::fabs(static_cast<float>(x));
+    return static_cast<double>(std::nextafter(f, std::numeric_limits<float>::infinity())) - f;
+  }
+  const double d = std::fabs(x);
+  return std::nextafter(d, std::numeric_limits<double>::infinity()) - d;
+}
+
+HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole, double spacing)
+{
+  HoleReport report;
+  report.NumberOfEdges = holes.NumberOfEdges(hole);
+  const Point2 origin = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
+  Point2 low = origin;
+  Point2 high = origin;
+  double twiceArea = 0.0;
+  for (Index i = holes.Offsets[hole]; i < holes.Offsets[hole + 1]; ++i)
+  {
+    const Index walk = holes.Loops[i];
+    for (const Index* h = holes.Walks.Begin(walk); h != holes.Walks.End(walk); ++h)
+    {
+      const Point2& a = mesh.PointOf(mesh.Origin(*h));
+      const Point2& b = mesh.PointOf(mesh.Destination(*h));
+      report.Perimeter += std::hypot(b.X - a.X, b.Y - a.Y);
+      twiceArea += (a.Y - origin.Y) * (b.X - origin.X) - (a.X - origin.X) * (b.Y - origin.Y);
+      low = { std::min(low.X, a.X), std::min(low.Y, a.Y) };
+      high = { std::max(high.X, a.X), std::max(high.Y, a.Y) };
+    }
+  }
+  report.Size = std::hypot(high.X - low.X, high.Y - low.Y);
+  report.Area = 0.5 * twiceArea;
+  report.Spacing = spacing > 0.0 ? spacing : report.Perimeter / report.NumberOfEdges;
+  return report;
+}
+
+/** How many points an even arrangement puts into the hole, boundary effects aside. */
+double EstimatedPoints(const HoleReport& report)
+{
+  return report.Area / report.Spacing / report.Spacing / RowHeight;
+}
+
+/** Whether rounding new points to the numbers there are could push them out of place. */
+bool IsBelowPrecision(const HoleReport& report, const Point2& where, const FillOptions& options)
+{
+  const double step = std::max(StepAt(std::fabs(where.X) + report.Size, options.SinglePrecision),
+    StepAt(std::fabs(where.Y) + report.Size, options.SinglePrecision));
+  return report.Spacing < LeastStepsPerSpacing * step;
+}
+
+std::string ToText(double value)
+{
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+/** The limits, and what cannot be filled. All that could make a hole run away is stopped here. */
+void Judge(
+  HoleReport& report, bool isTouched, const Point2& where, double room, const FillOptions& options)
+{
+  if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
+  {
+    report.Status = FillStatus::TooLarge;
+    return;
+  }
+  if (options.MaximumHoleEdges > 0 && report.NumberOfEdges > options.MaximumHoleEdges)
+  {
+    report.Status = FillStatus::TooManyEdges;
+    return;
+  }
+  const auto fail = [&report](const std::string& reason) {
+    report.Status = FillStatus::Failed;
+    report.Reason = reason;
+  };
+  if (isTouched)
+  {
+    fail("Borders touch in it without sharing a point: merge points with the same x,y, and split "
+         "edges that have a point inside.");
+    return;
+  }
+  const double points = EstimatedPoints(report);
+  if (points >= 1.0 && IsBelowPrecision(report, where, options))
+  {
+    fail("The spacing of " + ToText(report.Spacing) +
+      " is below what the coordinates can tell apart; a larger spacing helps.");
+    return;
+  }
+  // Rows of points count as points: a long thin hole has many rows, though few points.
+  const double rows = report.Perimeter / report.Spacing - report.NumberOfEdges;
+  if (!(points <= room && rows <= room))
+  {
+    fail("It would take about " + ToText(points) + " new points at a spacing of " +
+      ToText(report.Spacing) + ", but there is room for " + ToText(room) +
+      "; a larger spacing helps.");
+  }
+}
+
+/** Vertices and edges of the boundary. */
+void CollectBoundary(
+  const Mesh& mesh, const PointView& points, const Holes& holes, Index hole, Patch& patch)
+{
+  const Index edges = holes.NumberOfEdges(hole);
+  patch.BoundaryIds.reserve(edges);
+  patch.Edges.reserve(edges);
+  for (Index i = holes.Offsets[hole]; i < holes.Offsets[hole + 1]; ++i)
+  {
+    const Index walk = holes.Loops[i];
+    for (const Index* h = holes.Walks.Begin(walk); h != holes.Walks.End(walk); ++h)
+    {
+      patch.BoundaryIds.push_back(mesh.Origin(*h));
+      patch.Edges.push_back({ mesh.Origin(*h), mesh.Destination(*h) });
+    }
+  }
+  std::vector<Index>& ids = patch.BoundaryIds;
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  const auto vertexOf = [&ids](Index id) {
+    return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  };
+  for (Segment& edge : patch.Edges)
+  {
+    edge = { vertexOf(edge.A), vertexOf(edge.B) };
+  }
+  patch.Points.reserve(3 * ids.size());
+  for (Index id : ids)
+  {
+    patch.Points.push_back(mesh.PointOf(id).X);
+    patch.Points.push_back(mesh.PointOf(id).Y);
+    patch.Points.push_back(points.Elevation(id));
+  }
+}
+
+/** A stretch of a row that is too near to a boundary edge; the edge crosses the row within it or
+ * not. */
+struct Blocked
+{
+  Index Row;
+  double Begin;
+  double End;
+  bool Crosses;
+};
+
+/**
+ * New points in rows. Each boundary edge blocks, in every row it comes near to, the stretch that is
+ * nearer than the clearance. Between blocked stretches a row is wholly inside the hole or wholly
+ * outside, which the number of crossings on its left tells.
+ */
+void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& patch)
+{
+  if (IsBelowPrecision(report, patch.At(0), options))
+  {
+    return; // a hole of a few steps' size: its boundary alone is triangulated
+  }
+  Point2 low = patch.At(0);
+  Point2 high = low;
+  for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
+  {
+    const Point2 p = patch.At(v);
+    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+  }
+  // Coordinates from here on are relative to the centre, where there is a point.
+  const Point2 centre{ low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
+  const double d = report.Spacing;
+  const double rowHeight = RowHeight * d;
+  const double clearance = Clearance * d;
+  const Index lastRow = static_cast<Index>((high.Y - centre.Y) / rowHeight);
+  const Index firstRow = -lastRow;
+
+  std::vector<Blocked> blocked;
+  for (const Segment& edge : patch.Edges)
+  {
+    Point2 a = patch.At(edge.A);
+    Point2 b = patch.At(edge.B);
+    if (b.Y < a.Y)
+    {
+      std::swap(a, b);
+    }
+    a = { a.X - centre.X, a.Y - centre.Y };
+    b = { b.X - centre.X, b.Y - centre.Y };
+    const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+    const double ux = (b.X - a.X) / length;
+    const double uy = (b.Y - a.Y) / length; // >= 0
+    const double from = std::max<double>(firstRow, std::ceil((a.Y - clearance) / rowHeight));
+    const double to = std::min<double>(lastRow, std::floor((b.Y + clearance) / rowHeight));
+    for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
+    {
+      const double y = row * rowHeight;
+      Blocked stretch{ row, std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity(), (a.Y <= y) != (b.Y <= y) };
+      const auto include = [&stretch](double begin, double end) {
+        stretch.Begin = std::min(stretch.Begin, begin);
+        stretch.End = std::max(stretch.End, end);
+      };
+      // The discs around both ends ...
+      for (const Point2& p : { a, b })
+      {
+        const double square = clearance * clearance - (y - p.Y) * (y - p.Y);
+        if (square >= 0.0)
+        {
+          include(p.X - std::sqrt(square), p.X + std::sqrt(square));
+        }
+      }
+      // ... and the strip between them: its two sides, where the row cuts them.
+      for (double side : { -clearance, clearance })
+      {
+        const double ay = a.Y + side * ux;
+        const double by = b.Y + side * ux;
+        if (ay < by && ay <= y && y <= by)
+        {
+          const double x = a.X - side * uy + (y - ay) / (by - ay) * (b.X - a.X);
+          include(x, x);
+        }
+      }
+      if (stretch.Begin <= stretch.End)
+      {
+        blocked.push_back(stretch);
+      }
+    }
+  }
+  std::sort(blocked.begin(), blocked.end(), [](const Blocked& s, const Blocked& t) {
+    return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
+  });
+
+  bool isInside = false;
+  for (std::size_t i = 0; i < blocked.size(); ++i)
+  {
+    if (i == 0 || blocked[i].Row != blocked[i - 1].Row)
+    {
+      isInside = false;
+    }
+    isInside = isInside != blocked[i].Crosses;
+    if (i + 1 == blocked.size() || blocked[i + 1].Row != blocked[i].Row)
+    {
+      continue;
+    }
+    blocked[i + 1].End = std::max(blocked[i].End, blocked[i + 1].End);
+    if (!isInside)
+    {
+      continue;
+    }
+    const Index row = blocked[i].Row;
+    const double shift = row % 2 == 0 ? 0.0 : 0.5;
+    const double last = std::floor(blocked[i + 1].Begin / d - shift);
+    for (double k = std::ceil(blocked[i].End / d - shift); k <= last; ++k)
+    {
+      double x = centre.X + (k + shift) * d;
+      double y = centre.Y + row * rowHeight;
+      if (options.SinglePrecision)
+      {
+        x = static_cast<double>(static_cast<float>(x));
+        y = static_cast<double>(static_cast<float>(y));
+      }
+      patch.Points.push_back(x);
+      patch.Points.push_back(y);
+      patch.Points.push_back(0.0);
+    }
+  }
+}
+
+/** Triangles between boundary and new points, inside the hole. */
+void Connect(const Progress& progress, Patch& patch)
+{
+  PointView view;
+  view.Double = patch.Points.data();
+  view.Count = patch.NumberOfVertices();
+  DelaunayOptions options;
+  options.Monitor = progress;
+  const Triangulation triangulation = Triangulate(view, options);
+  if (!triangulation.UnusedPoints.empty())
+  {
+    throw Error("New points fall together; a larger spacing helps.");
+  }
+  Mesh mesh;
+  mesh.Points.resize(patch.NumberOfVertices());
+  for (Index v = 0; v < patch.NumberOfVertices(); ++v)
+  {
+    mesh.Points[v] = patch.At(v);
+  }
+  mesh.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
+  mesh.ConnectTwins();
+  std::vector<char> constrained;
+  RecoverSegments(mesh, patch.Edges, constrained);
+
+  // The triangulation covers the convex hull. Across an edge of the boundary, and nowhere else,
+  // one goes from the hole to outside it or back.
+  constexpr char unknown = 2;
+  std::vector<char> isInside(mesh.NumberOfTriangles(), unknown);
+  std::vector<Index> stack;
+  for (Index h = 0; h < mesh.NumberOfHalfEdges() && stack.empty(); ++h)
+  {
+    if (mesh.IsBorder(h))
+    {
+      isInside[Mesh::Triangle(h)] = constrained[h] ? 1 : 0;
+      stack.push_back(Mesh::Triangle(h));
+    }
+  }
+  Index count = 0;
+  while (!stack.empty())
+  {
+    const Index t = stack.back();
+    stack.pop_back();
+    count += isInside[t];
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      if (!mesh.IsBorder(h) && isInside[Mesh::Triangle(mesh.Twin(h))] == unknown)
+      {
+        isInside[Mesh::Triangle(mesh.Twin(h))] = constrained[h] ? 1 - isInside[t] : isInside[t];
+        stack.push_back(Mesh::Triangle(mesh.Twin(h)));
+      }
+    }
+  }
+  patch.Triangles.reserve(3 * static_cast<std::size_t>(count));
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    if (isInside[t] == 1)
+    {
+      patch.Triangles.insert(
+        patch.Triangles.end(), mesh.Triangles.begin() + 3 * t, mesh.Triangles.begin() + 3 * t + 3);
+    }
+  }
+}
+
+/** The layers of new vertices from the boundary inwards, and the mean of eq. 2 for each. */
+void Elevate(Patch& patch)
+{
+  const Index boundary = patch.NumberOfBoundaryVertices();
+  const Index count = patch.NumberOfNewVertices();
+  // A new vertex is inside, so the half-edges that leave it lead to all its neighbours.
+  std::vector<std::size_t> offsets(static_cast<std::size_t>(count) + 1, 0);
+  for (Index vertex : patch.Triangles)
+  {
+    if (vertex >= boundary)
+    {
+      ++offsets[vertex - boundary + 1];
+    }
+  }
+  for (Index i = 0; i < count; ++i)
+  {
+    offsets[i + 1] += offsets[i];
+  }
+  std::vector<Index> neighbours(offsets[count]);
+  {
+    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+    for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+    {
+      const Index vertex = patch.Triangles[h];
+      if (vertex >= boundary)
+      {
+        neighbours[next[vertex - boundary]++] =
+          patch.Triangles[static_cast<std::size_t>(Mesh::Next(static_cast<Index>(h)))];
+      }
+    }
+  }
+
+  constexpr Index unknown = std::numeric_limits<Index>::max();
+  std::vector<Index> layer(count, unknown);
+  patch.Order.reserve(count);
+  for (Index i = 0; i < count; ++i)
+  {
+    for (std::size_t k = offsets[i]; k < offsets[i + 1]; ++k)
+    {
+      if (neighbours[k] < boundary)
+      {
+        layer[i] = 1;
+        patch.Order.push_back(boundary + i);
+        break;
+      }
+    }
+  }
+  for (std::size_t k = 0; k < patch.Order.size(); ++k)
+  {
+    const Index i = patch.Order[k] - boundary;
+    for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
+    {
+      const Index other = neighbours[j] - boundary;
+      if (other >= 0 && layer[other] == unknown)
+      {
+        layer[other] = layer[i] + 1;
+        patch.Order.push_back(neighbours[j]);
+      }
+    }
+  }
+
+  patch.Offsets.reserve(static_cast<std::size_t>(count) + 1);
+  patch.Offsets.push_back(0);
+  for (Index vertex : patch.Order)
+  {
+    const Index i = vertex - boundary;
+    double sum = 0.0;
+    for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
+    {
+      const Index other = neighbours[j];
+      if (other < boundary || layer[other - boundary] < layer[i])
+      {
+        patch.Stencil.push_back(other);
+        sum += patch.Points[3 * std::size_t(other) + 2];
+      }
+    }
+    patch.Points[3 * std::size_t(vertex) + 2] =
+      sum / static_cast<double>(patch.Stencil.size() - patch.Offsets.back());
+    patch.Offsets.push_back(patch.Stencil.size());
+  }
+}
+
+/** The boundary vertices as a balanced k-d tree in place: the middle of a range is its root. */
+class NearestBoundary
+{
+public:
+  explicit NearestBoundary(const Patch& patch)
+    : Vertices(patch)
+    , Tree(patch.NumberOfBoundaryVertices())
+  {
+    for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
+    {
+      this->Tree[v] = { patch.At(v), v };
+    }
+    this->Build(0, this->Tree.size(), true);
+  }
+
+  /** The nearest vertex to @a p. @param guess  any vertex; a near one makes it fast */
+  Index Find(const Point2& p, Index guess)
+  {
+    this->P = p;
+    this->Best = guess;
+    this->BestSquare = Square(p, this->Vertices.At(guess));
+    this->Look(0, this->Tree.size(), true);
+    return this->Best;
+  }
+
+private:
+  struct Node
+  {
+    Point2 At;
+    Index Vertex;
+  };
+
+  static double Square(const Point2& p, const Point2& q)
+  {
+    return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
+  }
+
+  void Build(std::size_t begin, std::size_t end, bool byX)
+  {
+    if (end - begin < 2)
+    {
+      return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(this->Tree.begin() + begin, this->Tree.begin() + middle,
+      this->Tree.begin() + end,
+      [byX](const Node& a, const Node& b) { return byX ? a.At.X < b.At.X : a.At.Y < b.At.Y; });
+    this->Build(begin, middle, !byX);
+    this->Build(middle + 1, end, !byX);
+  }
+
+  void Look(std::size_t begin, std::size_t end, bool byX)
+  {
+    if (begin == end)
+    {
+      return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    const Node& node = this->Tree[middle];
+    const double square = Square(this->P, node.At);
+    if (square < this->BestSquare || (square == this->BestSquare && node.Vertex < this->Best))
+    {
+      this->BestSquare = square;
+      this->Best = node.Vertex;
+    }
+    const double beyond = byX ? this->P.X - node.At.X : this->P.Y - node.At.Y;
+    const bool isLow = beyond < 0.0;
+    this->Look(isLow ? begin : middle + 1, isLow ? middle : end, !byX);
+    if (beyond * beyond <= this->BestSquare)
+    {
+      this->Look(isLow ? middle + 1 : begin, isLow ? end : middle, !byX);
+    }
+  }
+
+  const Patch& Vertices;
+  std::vector<Node> Tree;
+  Point2 P{ 0.0, 0.0 };
+  Index Best = 0;
+  double BestSquare = 0.0;
+};
+
+void FindNearest(Patch& patch)
+{
+  if (patch.Order.empty())
+  {
+    return;
+  }
+  NearestBoundary boundary(patch);
+  std::vector<Index> nearest(patch.NumberOfNewVertices());
+  patch.Nearest.reserve(patch.Order.size());
+  for (std::size_t k = 0; k < patch.Order.size(); ++k)
+  {
+    // What is nearest to a point of the stencil is not far.
+    const Index known = patch.Stencil[patch.Offsets[k]];
+    const Index first = patch.NumberOfBoundaryVertices();
+    const Index found =
+      boundary.Find(patch.At(patch.Order[k]), known < first ? known : nearest[known - first]);
+    nearest[patch.Order[k] - first] = found;
+    patch.Nearest.push_back(found);
+  }
+}
+
+/** All or nothing: when memory runs out, the result is as before. */
+void Append(const Patch& patch, Index firstNewId, FillResult& result)
+{
+  const std::size_t points = patch.Order.size();
+  const std::size_t before = static_cast<std::size_t>(result.NumberOfPoints());
+  // Half as much again, so that many small holes do not copy everything each time.
+  const auto room = [](auto& values, std::size_t more) {
+    const std::size_t needed = values.size() + more;
+    if (needed > values.capacity())
+    {
+      values.reserve(needed + needed / 2);
+    }
+  };
+  room(result.Points, 3 * points);
+  room(result.Triangles, patch.Triangles.size());
+  room(result.Stencil, patch.Stencil.size());
+  room(result.StencilOffsets, points);
+  room(result.NearestBoundaryPoints, points);
+  std::vector<Index> ids(patch.NumberOfVertices());
+
+  std::copy(patch.BoundaryIds.begin(), patch.BoundaryIds.end(), ids.begin());
+  for (std::size_t k = 0; k < points; ++k)
+  {
+    ids[patch.Order[k]] = firstNewId + static_cast<Index>(before + k);
+  }
+  const std::size_t stencilBefore = result.Stencil.size();
+  for (std::size_t k = 0; k < points; ++k)
+  {
+    const auto point = patch.Points.begin() + 3 * std::ptrdiff_t(patch.Order[k]);
+    result.Points.insert(result.Points.end(), point, point + 3);
+    result.StencilOffsets.push_back(stencilBefore + patch.Offsets[k + 1]);
+    result.NearestBoundaryPoints.push_back(ids[patch.Nearest[k]]);
+  }
+  for (Index vertex : patch.Stencil)
+  {
+    result.Stencil.push_back(ids[vertex]);
+  }
+  for (Index vertex : patch.Triangles)
+  {
+    result.Triangles.push_back(ids[vertex]);
+  }
+}
+} // namespace
+
+FillResult FillHoles(
+  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options)
+{
+  FillResult result;
+  result.Reports.reserve(holes.Count());
+
+  // All holes are judged before the first is filled: what one may take does not depend on how the
+  // others turn out.
+  double room =
+    std::min(options.MaximumInsertedPoints, MaximumNumberOfPoints - mesh.NumberOfPoints());
+  double work = 0.0;
+  const auto workOf = [](const HoleReport& report) {
+    return report.Status == FillStatus::Filled ? EstimatedPoints(report) + report.NumberOfEdges
+                                               : 0.0;
+  };
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    HoleReport report = Measure(mesh, holes, hole, options.Spacing);
+    const Point2 where = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
+    Judge(report, holes.Touched[hole] != 0, where, room, options);
+    if (report.Status == FillStatus::Filled)
+    {
+      room = std::max(0.0, room - EstimatedPoints(report));
+      work += workOf(report);
+    }
+    result.Reports.push_back(report);
+  }
+
+  double done = 0.0;
+  double told = 0.0;
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    HoleReport& report = result.Reports[hole];
+    const double share = workOf(report);
+    if (report.Status == FillStatus::Filled)
+    {
+      try
+      {
+        Patch patch;
+        CollectBoundary(mesh, points, holes, hole, patch);
+        PlacePoints(options, report, patch);
+        Connect(share < PointsPerReport
+            ? Progress()
+            : Part(options.Monitor, done / work, (done + 0.7 * share) / work),
+          patch);
+        Elevate(patch);
+        FindNearest(patch);
+        Append(patch, mesh.NumberOfPoints(), result);
+        report.NumberOfInsertedPoints = patch.NumberOfNewVertices();
+      }
+      catch (const std::bad_alloc&)
+      {
+        report.Status = FillStatus::Failed;
+        report.Reason = "There is not enough memory for it; a larger spacing helps.";
+      }
+      catch (const Error& error)
+      {
+        report.Status = FillStatus::Failed;
+        report.Reason = error.what();
+      }
+    }
+    result.PointOffsets.push_back(static_cast<Index>(result.Points.size() / 3));
+    result.TriangleOffsets.push_back(static_cast<Index>(result.Triangles.size() / 3));
+    done += share;
+    if (done >= told)
+    {
+      Report(options.Monitor, work > 0.0 ? std::min(1.0, done / work) : 1.0);
+      told = done + PointsPerReport;
+    }
+  }
+  return result;
+}
+
+} // namespace elevation

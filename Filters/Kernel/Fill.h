@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Patches for the holes of an elevation surface.
+ *
+ * In: a surface, its elevations and its holes (Holes.h). Out: points and triangles to append, a
+ * report for every hole, and for every new point the points its elevation comes from, so that the
+ * caller can give it other attributes in the same way. For each hole on its own:
+ *   1. Measure, and compare with the limits.
+ *   2. Place points: an even arrangement, one spacing apart, kept clear of the boundary.
+ *   3. Triangulate boundary and new points, make the boundary's edges edges of the triangulation
+ *      (constrained Delaunay), and keep what lies inside.
+ *   4. Elevations: the mean of the known neighbours, layer by layer from the boundary inwards
+ *      [Nguyen, eq. 2].
+ *
+ * The spacing of a hole is by default the mean length of its boundary edges [Nguyen, eq. 1].
+ * New points form rows one spacing apart, of which every second is moved by half a step, so that
+ * their triangles are nearly equilateral; the arrangement has a point in the centre of the hole's
+ * bounding box. A point nearer to the boundary than Clearance spacings is left out.
+ *
+ * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
+ * boundary edges are those of the hole, none is split. Nothing else of the surface is touched.
+ *
+ * Cost: expected linear in the points of a hole (n log n in its boundary), holes are independent.
+ *
+ * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
+ */
+#ifndef elevation_Fill_h
+#define elevation_Fill_h
+
+#include "Holes.h"
+#include "Mesh.h"
+#include "Types.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace elevation
+{
+
+/** What became of a hole. The values are what users read in the output. */
+enum class FillStatus : unsigned char
+{
+  Filled = 0,
+  TooLarge = 1,
+  TooManyEdges = 2,
+  Failed = 3 ///< the report's Reason says why
+};
+
+struct FillOptions
+{
+  /** Holes are filled whose rim has a bounding box with at most this diagonal; 0: all. */
+  double MaximumHoleSize = 0.0;
+  /** Holes are filled that have at most this many edges, of rim and islands; 0: all. */
+  Index MaximumHoleEdges = 0;
+  /** Distance of new points; 0: the mean length of the hole's edges. */
+  double Spacing = 0.0;
+  /** New x,y are rounded to float (before they are triangulated, so that the result stays exact).
+   */
+  bool SinglePrecision = false;
+  /** A hole that would take more new points than are left of this number fails. */
+  Index MaximumInsertedPoints = MaximumNumberOfPoints;
+  Progress Monitor;
+};
+
+struct HoleReport
+{
+  FillStatus Status = FillStatus::Filled;
+  Index NumberOfEdges = 0; ///< of the rim and the islands
+  double Size = 0.0;       ///< diagonal of the rim's bounding box
+  double Perimeter = 0.0;  ///< length of all edges
+  double Area = 0.0;       ///< inside the rim, outside the islands
+  double Spacing = 0.0;    ///< the one used
+  Index NumberOfInsertedPoints = 0;
+  std::string Reason; ///< of Failed, a sentence without the hole's name
+};
+
+/**
+ * What to append. New points have the ids after those of the surface's points, in the order of
+ * their holes, within a hole from the boundary inwards: the points of a stencil come before it.
+ */
+struct FillResult
+{
+  std::vector<double> Points;   ///< x, y, z
+  std::vector<Index> Triangles; ///< three point ids a triangle, counter-clockwise
+  /** The new points of hole i are PointOffsets[i] to PointOffsets[i+1] - 1; likewise triangles. */
+  std::vector<Index> PointOffsets{ 0 };
+  std::vector<Index> TriangleOffsets{ 0 };
+  /** Point ids of which new point i is the mean: Stencil[StencilOffsets[i]], ... */
+  std::vector<Index> Stencil;
+  std::vector<std::size_t> StencilOffsets{ 0 }; ///< one more than there are new points
+  std::vector<Index>
+    NearestBoundaryPoints; ///< of each new point; among equally near ones the least id
+  std::vector<HoleReport> Reports;
+
+  Index NumberOfPoints() const { return this->PointOffsets.back(); }
+  Index NumberOfTriangles() const { return this->TriangleOffsets.back(); }
+};
+
+/**
+ * Fills all holes within the limits.
+ * @param[in] mesh    the surface, as FindHoles took it
+ * @param[in] points  the same points with their elevations
+ * @param[in] holes   what FindHoles gave
+ * @throws Aborted. Lack of memory for one hole makes this hole fail, and no other.
+ */
+FillResult FillHoles(
+  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,399 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkFillElevationHoles.h"
+
+#include "Kernel/Fill.h"
+#include "Kernel/Holes.h"
+#include "KernelCall.h"
+#include "MeshConversion.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkMath.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <vtksys/SystemInformation.hxx>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <vector>
+
+vtkStandardNewMacro(vtkFillElevationHoles);
+
+namespace
+{
+using elevation::FillResult;
+using elevation::FillStatus;
+using elevation::Holes;
+using elevation::Index;
+using elevation::Mesh;
+
+/** What a new point costs at the peak, in the kernel and in the output, with a margin for arrays.
+ */
+constexpr double BytesPerPoint = 500.0;
+
+/** How many new points fit into the memory that is free now. */
+Index PointsThatFit()
+{
+  vtksys::SystemInformation system;
+  const double host = static_cast<double>(system.GetHostMemoryTotal() - system.GetHostMemoryUsed());
+  const double process =
+    static_cast<double>(system.GetProcMemoryAvailable() - system.GetProcMemoryUsed());
+  const double points = 1024.0 * std::min(host, process) / BytesPerPoint;
+  // Where the system tells nothing, failing allocations are the limit.
+  return points > 0.0
+    ? static_cast<Index>(std::min<double>(points, elevation::MaximumNumberOfPoints))
+    : elevation::MaximumNumberOfPoints;
+}
+
+bool IsFloatingPoint(vtkAbstractArray* array)
+{
+  return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
+}
+
+bool IsGhostArray(vtkAbstractArray* array)
+{
+  return array->GetName() && !std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName());
+}
+
+/** The tuples of @a input, and behind them as many as are missing: NaN, 0 or nothing. */
+vtkSmartPointer<vtkAbstractArray> Extend(vtkAbstractArray* input, vtkIdType more)
+{
+  const vtkIdType count = input->GetNumberOfTuples();
+  auto output = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(input->GetDataType()));
+  output->SetName(input->GetName());
+  output->SetNumberOfComponents(input->GetNumberOfComponents());
+  output->CopyComponentNames(input);
+  output->CopyInformation(input->GetInformation(), /*deep=*/1);
+  if (vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(output.Get()))
+  {
+    numbers->SetLookupTable(vtkArrayDownCast<vtkDataArray>(input)->GetLookupTable());
+  }
+  output->SetNumberOfTuples(count + more);
+  if (output->GetNumberOfTuples() != count + more)
+  {
+    throw std::bad_alloc();
+  }
+  if (count > 0)
+  {
+    output->InsertTuples(0, count, 0, input);
+  }
+  if (vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(output.Get()))
+  {
+    const double value = IsFloatingPoint(output) ? vtkMath::Nan() : 0.0;
+    for (vtkIdType i = count; i < count + more; ++i)
+    {
+      for (int c = 0; c < output->GetNumberOfComponents(); ++c)
+      {
+        numbers->SetComponent(i, c, value);
+      }
+    }
+  }
+  return output;
+}
+
+/** The values of new points, as their z was found. */
+void Average(const FillResult& patches, bool unitLength, vtkDataArray* values)
+{
+  const vtkIdType first = values->GetNumberOfTuples() - patches.NumberOfPoints();
+  const int components = values->GetNumberOfComponents();
+  std::vector<double> mean(components);
+  for (Index i = 0; i < patches.NumberOfPoints(); ++i)
+  {
+    double squares = 0.0;
+    for (int c = 0; c < components; ++c)
+    {
+      double sum = 0.0;
+      int known = 0;
+      for (std::size_t k = patches.StencilOffsets[i]; k < patches.StencilOffsets[i + 1]; ++k)
+      {
+        const double value = values->GetComponent(patches.Stencil[k], c);
+        if (!std::isnan(value))
+        {
+          sum += value;
+          ++known;
+        }
+      }
+      mean[c] = known > 0 ? sum / known : vtkMath::Nan();
+      squares += mean[c] * mean[c];
+    }
+    const double scale = unitLength && squares > 0.0 ? 1.0 / std::sqrt(squares) : 1.0;
+    for (int c = 0; c < components; ++c)
+    {
+      values->SetComponent(first + i, c, scale * mean[c]);
+    }
+  }
+}
+
+/** All arrays of the input, extended by @a more tuples, which fill(input array, output array) sets.
+ */
+template <typename Fill>
+void PassExtended(
+  vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttributes* output, Fill&& fill)
+{
+  if (more == 0)
+  {
+    output->PassData(input);
+    return;
+  }
+  for (int i = 0; i < input->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* before = input->GetAbstractArray(i);
+    const vtkSmartPointer<vtkAbstractArray> after = Extend(before, more);
+    fill(before, after);
+    const int index = output->AddArray(after);
+    for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
+    {
+      // Values repeat from here on, so they are no global ids any more.
+      if (type != vtkDataSetAttributes::GLOBALIDS && input->GetAbstractAttribute(type) == before)
+      {
+        output->SetActiveAttribute(index, type);
+      }
+    }
+  }
+}
+
+void PassPointData(
+  vtkPointData* input, const FillResult& patches, bool interpolate, vtkPointData* output)
+{
+  PassExtended(input, patches.NumberOfPoints(), output,
+    [&](vtkAbstractArray* before, vtkAbstractArray* after) {
+      if (!interpolate || IsGhostArray(before))
+      {
+        return;
+      }
+      if (IsFloatingPoint(before))
+      {
+        Average(patches, before == input->GetNormals(), vtkArrayDownCast<vtkDataArray>(after));
+        return;
+      }
+      const vtkIdType first = before->GetNumberOfTuples();
+      for (Index i = 0; i < patches.NumberOfPoints(); ++i)
+      {
+        after->SetTuple(first + i, patches.NearestBoundaryPoints[i], before);
+      }
+    });
+}
+
+vtkSmartPointer<vtkPoints> AppendPoints(vtkPolyData* input, const FillResult& patches)
+{
+  const vtkIdType count = input->GetNumberOfPoints();
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(input->GetPoints()->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE);
+  points->SetNumberOfPoints(count + patches.NumberOfPoints());
+  points->InsertPoints(0, count, 0, input->GetPoints());
+  for (Index i = 0; i < patches.NumberOfPoints(); ++i)
+  {
+    points->SetPoint(count + i, patches.Points.data() + 3 * static_cast<std::size_t>(i));
+  }
+  return points;
+}
+
+/** Output 0. */
+void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,
+  vtkPolyData* output)
+{
+  output->SetPoints(
+    patches.NumberOfPoints() > 0 ? AppendPoints(input, patches).Get() : input->GetPoints());
+  PassPointData(input->GetPointData(), patches, interpolate, output->GetPointData());
+  vtkNew<vtkUnsignedCharArray> isNew;
+  isNew->SetName("FilledPoint");
+  isNew->SetNumberOfTuples(output->GetNumberOfPoints());
+  std::fill_n(isNew->GetPointer(0), input->GetNumberOfPoints(), 0);
+  std::fill_n(isNew->GetPointer(0) + input->GetNumberOfPoints(), patches.NumberOfPoints(), 1);
+  output->GetPointData()->AddArray(isNew);
+
+  output->SetVerts(input->GetVerts());
+  output->SetLines(input->GetLines());
+  elevation::Buffer<Index> triangles;
+  triangles.Resize(mesh.Triangles.size() + patches.Triangles.size());
+  std::copy(mesh.Triangles.begin(), mesh.Triangles.end(), triangles.begin());
+  std::copy(
+    patches.Triangles.begin(), patches.Triangles.end(), triangles.begin() + mesh.Triangles.size());
+  output->SetPolys(elevation::ToCellArray(std::move(triangles)));
+
+  PassExtended(input->GetCellData(), patches.NumberOfTriangles(), output->GetCellData(),
+    [](vtkAbstractArray*, vtkAbstractArray*) {});
+  vtkNew<vtkIdTypeArray> holeIds;
+  holeIds->SetName("HoleId");
+  holeIds->SetNumberOfTuples(input->GetNumberOfCells() + patches.NumberOfTriangles());
+  vtkIdType* holeId = holeIds->GetPointer(0);
+  holeId = std::fill_n(holeId, input->GetNumberOfCells(), -1);
+  for (std::size_t hole = 0; hole < patches.Reports.size(); ++hole)
+  {
+    holeId = std::fill_n(holeId, patches.TriangleOffsets[hole + 1] - patches.TriangleOffsets[hole],
+      static_cast<vtkIdType>(hole));
+  }
+  output->GetCellData()->AddArray(holeIds);
+  output->GetFieldData()->PassData(input->GetFieldData());
+}
+
+/** Output 1: rims with points of their own, and the report as cell data. */
+void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const FillResult& patches,
+  vtkPolyData* output)
+{
+  const auto add = [&](const char* name, auto* array, auto&& valueOf) {
+    array->SetName(name);
+    for (Index hole = 0; hole < holes.Count(); ++hole)
+    {
+      array->InsertNextValue(valueOf(patches.Reports[hole]));
+    }
+    output->GetCellData()->AddArray(array);
+  };
+  using Report = elevation::HoleReport;
+  vtkIdType id = 0;
+  add("HoleId", vtkNew<vtkIdTypeArray>().Get(), [&id](const Report&) { return id++; });
+  add("Status", vtkNew<vtkUnsignedCharArray>().Get(),
+    [](const Report& report) { return static_cast<unsigned char>(report.Status); });
+  add("NumberOfEdges", vtkNew<vtkIdTypeArray>().Get(),
+    [](const Report& report) { return report.NumberOfEdges; });
+  add("Perimeter", vtkNew<vtkDoubleArray>().Get(),
+    [](const Report& report) { return report.Perimeter; });
+  add("Area", vtkNew<vtkDoubleArray>().Get(), [](const Report& report) { return report.Area; });
+  add("NumberOfInsertedPoints", vtkNew<vtkIdTypeArray>().Get(),
+    [](const Report& report) { return report.NumberOfInsertedPoints; });
+  add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(), [](const Report&) { return 0; });
+
+  vtkNew<vtkPoints> points;
+  points->SetDataType(input->GetPoints() ? input->GetPoints()->GetDataType() : VTK_FLOAT);
+  vtkPointData* pointData = output->GetPointData();
+  pointData->CopyAllocate(input->GetPointData());
+  vtkNew<vtkCellArray> lines;
+  std::vector<vtkIdType> line;
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    // A rim runs clockwise: backwards, the hole is on the left.
+    const Index rim = holes.Rim(hole);
+    line.clear();
+    for (const Index* h = holes.Walks.End(rim); h != holes.Walks.Begin(rim); --h)
+    {
+      const Index vertex = mesh.Origin(h[-1]);
+      line.push_back(points->InsertNextPoint(input->GetPoint(vertex)));
+      pointData->CopyData(input->GetPointData(), vertex, line.back());
+    }
+    line.push_back(line.front());
+    lines->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
+  }
+  output->SetPoints(points);
+  output->SetLines(lines);
+}
+
+/** One warning about all that was not filled though the limits allow it; empty when there is none.
+ */
+std::string Complaint(const Holes& holes, const FillResult& patches)
+{
+  constexpr int listed = 5;
+  std::ostringstream text;
+  int failed = 0;
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    const elevation::HoleReport& report = patches.Reports[hole];
+    if (report.Status == FillStatus::Failed && ++failed <= listed)
+    {
+      text << "Hole " << hole << " (" << report.NumberOfEdges << " edges) was not filled. "
+           << report.Reason << "\n";
+    }
+  }
+  if (failed > listed)
+  {
+    text << "And " << failed - listed << " more holes were not filled; see Status in output 1.\n";
+  }
+  if (holes.NumberOfContacts > 0)
+  {
+    text << "At " << holes.NumberOfContacts
+         << " places a point lies inside a border edge or on another point, the first at point "
+         << holes.ContactVertices.front()
+         << "; there the surface is not connected, so that an enclosed region may not be a hole. "
+            "vtkCleanPolyData merges points.\n";
+  }
+  std::string complaint = text.str();
+  if (!complaint.empty())
+  {
+    complaint.pop_back();
+  }
+  return complaint;
+}
+} // namespace
+
+vtkFillElevationHoles::vtkFillElevationHoles()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+vtkFillElevationHoles::~vtkFillElevationHoles() = default;
+
+int vtkFillElevationHoles::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+  vtkPolyData* surface = vtkPolyData::GetData(outputVector, 0);
+  vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
+  this->NumberOfHoles = 0;
+  this->NumberOfFilledHoles = 0;
+
+  return elevation::CallKernel(this, outputVector, [&]() {
+    const elevation::Progress progress = elevation::ProgressOf(this);
+    const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
+    Mesh mesh;
+    elevation::ToMesh(input, mesh);
+    mesh.ConnectTwins();
+    elevation::Report(progress, 0.1);
+    const Holes holes = elevation::FindHoles(mesh,
+      static_cast<Index>(elevation::FirstPolygon(input)), elevation::Part(progress, 0.1, 0.2));
+
+    elevation::FillOptions options;
+    options.MaximumHoleSize = this->MaximumHoleSize;
+    options.MaximumHoleEdges =
+      static_cast<Index>(std::min<vtkIdType>(this->MaximumHoleEdges, VTK_INT_MAX));
+    options.Spacing = this->Spacing;
+    options.SinglePrecision = points.View.Float != nullptr;
+    options.MaximumInsertedPoints = PointsThatFit();
+    options.Monitor = elevation::Part(progress, 0.2, 0.9);
+    const FillResult patches = elevation::FillHoles(mesh, points.View, holes, options);
+
+    MakeSurface(input, mesh, patches, this->InterpolatePointData, surface);
+    MakeReport(input, mesh, holes, patches, report);
+    this->NumberOfHoles = holes.Count();
+    this->NumberOfFilledHoles = std::count_if(patches.Reports.begin(), patches.Reports.end(),
+      [](const elevation::HoleReport& hole) { return hole.Status == FillStatus::Filled; });
+    for (vtkPolyData* output : { surface, report })
+    {
+      elevation::AddCount(output->GetFieldData(), "NumberOfHoles", this->NumberOfHoles);
+      elevation::AddCount(output->GetFieldData(), "NumberOfFilledHoles", this->NumberOfFilledHoles);
+    }
+    if (mesh.NumberOfTriangles() == 0)
+    {
+      vtkWarningMacro(<< "The input has no triangles, so there is nothing to fill.");
+    }
+    const std::string complaint = Complaint(holes, patches);
+    if (!complaint.empty())
+    {
+      vtkWarningMacro(<< complaint);
+    }
+    elevation::Report(progress, 1.0);
+  });
+}
+
+void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
+  os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
+  os << indent << "Spacing: " << this->Spacing << "\n";
+  os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
+  os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";
+  os << indent << "NumberOfFilledHoles: " << this->NumberOfFilledHoles << "\n";
+}

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkFillElevationHoles
+ * @brief   fills the holes of an elevation surface with new points and triangles, and lists them
+ *
+ * Input: a vtkPolyData of triangles, an elevation surface from any source, of one or more
+ * components. x,y is the plane of projection, z the elevation.
+ *
+ * A hole is an empty region that the surface encloses. The outer boundary of a component is never a
+ * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
+ * Holes may be nested, pinched, and may share vertices.
+ *
+ * Output 0, the surface: the points and cells of the input first, with their ids, then the new
+ * points and triangles. The triangles are counter-clockwise seen from +z: a clockwise one of the
+ * input is turned over (its last two points change places); nothing else of the input changes.
+ * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
+ * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
+ * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
+ *   (floating-point numbers), 0 (integers), or nothing (strings). When points (triangles) were
+ * added, an array of global ids stays in the point (cell) data, but is no longer marked as global
+ * ids, because new ones repeat. Arrays of the input called FilledPoint or HoleId are replaced.
+ * - Points are float or double as in the input. The x,y of new points are rounded to the type
+ * before they are triangulated, so that the result stays exact.
+ *
+ * Output 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise.
+ * Cell data:
+ * - HoleId (vtkIdTypeArray): 0, 1, 2, ...
+ * - Status (vtkUnsignedCharArray): see HoleStatusType.
+ * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands.
+ * - Perimeter (vtkDoubleArray): the length of all these edges in x,y.
+ * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands.
+ * - NumberOfInsertedPoints (vtkIdTypeArray).
+ * - Interpolation (vtkUnsignedCharArray): how z was found; 0 is the mean of the neighbours.
+ *
+ * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
+ *
+ * The method, for each hole on its own:
+ * 1. The spacing of new points is the mean length of the hole's boundary edges, unless given.
+ * 2. New points are put into the hole in rows, one spacing apart, every second row moved by half a
+ *    spacing. Points nearer to the boundary than 0.6 spacings are left out; a small hole may get
+ * none.
+ * 3. They are joined with the boundary by a constrained Delaunay triangulation.
+ * 4. The z of a new point is the mean over its known neighbours, layer by layer from the boundary
+ *    inwards. z thus stays between the least and the greatest z of the hole's boundary.
+ *
+ * What can be relied on: a patch covers its hole exactly and overlaps nothing; every boundary edge
+ * gets its second triangle and no edge a third one; patches are constrained Delaunay.
+ *
+ * A hole is left open, with status FAILED and a warning that says why, when
+ * - it would take more new points than there is memory for (about 500 bytes a point), or than leave
+ *   the surface 357,913,941 points;
+ * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
+ * - borders touch in it without sharing a point: a point lies inside another border edge, or two
+ * points have the same x,y. Merge such points (vtkCleanPolyData), or split the edge. A border of
+ * that kind may also join a hole to the outside, so that it is no hole; a warning names such a
+ * point.
+ *
+ * An error that names the cell, and empty output, is the answer to an input that is no elevation
+ * surface: cells other than triangles, triangles that are flat in x,y, an edge with more than two
+ * triangles, cells that lie over each other in x,y. A surface without holes passes; an input
+ * without triangles passes with a warning.
+ *
+ * Cost: proportional to the size of the input and to the number of new points (a few microseconds
+ * each), with sorting of the border.
+ *
+ * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation
+ * Surface of 3D Point Clouds": spacing by its eq. 1, z by its eq. 2.
+ *
+ * @sa vtkGridDelaunay2D vtkTrimOutwardTriangles vtkFillHolesFilter
+ */
+#ifndef vtkFillElevationHoles_h
+#define vtkFillElevationHoles_h
+
+#include "vtkElevationSurfaceModule.h" // for export macro
+#include "vtkPolyDataAlgorithm.h"
+
+class VTKELEVATIONSURFACE_EXPORT vtkFillElevationHoles : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkFillElevationHoles* New();
+  vtkTypeMacro(vtkFillElevationHoles, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /** What became of a hole: the values of the array Status of output 1. */
+  enum HoleStatusType
+  {
+    FILLED = 0,
+    TOO_LARGE = 1,      ///< left open because of MaximumHoleSize
+    TOO_MANY_EDGES = 2, ///< left open because of MaximumHoleEdges
+    FAILED = 3,         ///< could not be filled; a warning says why
+  };
+
+  ///@{
+  /**
+   * The largest hole that is filled: the diagonal of the bounding box of its rim in x,y, in input
+   * units. 0 (default): no limit; negative values are taken as 0.
+   */
+  vtkSetClampMacro(MaximumHoleSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaximumHoleSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * The most boundary edges of a hole that is filled; edges of the rim and of islands count.
+   * 0 (default): no limit; negative values are taken as 0.
+   */
+  vtkSetClampMacro(MaximumHoleEdges, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(MaximumHoleEdges, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
+   * Distance of new points in x,y, in input units. 0 (default): for each hole the mean length of
+   * its boundary edges; negative values are taken as 0.
+   */
+  vtkSetClampMacro(Spacing, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Spacing, double);
+  ///@}
+
+  ///@{
+  /**
+   * Values of the point arrays at new points. On (default): floating-point arrays get the mean over
+   * the same points as z does (values that are NaN left out; normals are brought to unit length);
+   * integers, strings and other arrays get the value of the nearest point of the hole's boundary.
+   * Off: NaN, 0, or nothing. New points are never marked as ghosts.
+   */
+  vtkSetMacro(InterpolatePointData, bool);
+  vtkGetMacro(InterpolatePointData, bool);
+  vtkBooleanMacro(InterpolatePointData, bool);
+  ///@}
+
+  /** After Update(): holes found. */
+  vtkGetMacro(NumberOfHoles, vtkIdType);
+
+  /** After Update(): holes filled. */
+  vtkGetMacro(NumberOfFilledHoles, vtkIdType);
+
+protected:
+  vtkFillElevationHoles();
+  ~vtkFillElevationHoles() override;
+
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+  double MaximumHoleSize = 0.0;
+  vtkIdType MaximumHoleEdges = 0;
+  double Spacing = 0.0;
+  bool InterpolatePointData = true;
+
+  vtkIdType NumberOfHoles = 0;
+  vtkIdType NumberOfFilledHoles = 0;
+
+private:
+  vtkFillElevationHoles(const vtkFillElevationHoles&) = delete;
+  void operator=(const vtkFillElevationHoles&) = delete;
+};
+
+#endif
