@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The pipeline side of vtkGridDelaunay2D, by numbers: what passes, what is counted and listed, what
+// errors and aborts leave behind, and that the input is never written.
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkMinimalStandardRandomSequence.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+namespace
+{
+int failures = 0;
+
+void Check(bool isTrue, const char* claim)
+{
+  if (!isTrue)
+  {
+    std::cerr << "Not true: " << claim << "\n";
+    ++failures;
+  }
+}
+
+/** A 5 x 4 lattice, one node twice, one point not finite, with arrays of several kinds. */
+vtkSmartPointer<vtkPolyData> MakeInput(int precision)
+{
+  auto input = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(precision);
+  for (int i = 0; i < 20; ++i)
+  {
+    points->InsertNextPoint(i % 5, i / 5, 0.1 * i);
+  }
+  points->InsertNextPoint(2.0, 1.0, 7.0);
+  points->InsertNextPoint(std::nan(""), 1.0, 7.0);
+  input->SetPoints(points);
+
+  vtkNew<vtkDoubleArray> numbers;
+  numbers->SetName("Amplitude");
+  vtkNew<vtkStringArray> names;
+  names->SetName("Name");
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    numbers->InsertNextValue(0.5 * i);
+    names->InsertNextValue(std::to_string(i));
+  }
+  input->GetPointData()->SetScalars(numbers);
+  input->GetPointData()->AddArray(names);
+  vtkNew<vtkIntArray> survey;
+  survey->SetName("Survey");
+  survey->InsertNextValue(42);
+  input->GetFieldData()->AddArray(survey);
+  return input;
+}
+
+void TestOutput(int precision)
+{
+  auto input = MakeInput(precision);
+  const vtkMTimeType time = input->GetMTime();
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+  delaunay->Update();
+  vtkPolyData* output = delaunay->GetOutput();
+
+  Check(input->GetMTime() == time && input->GetNumberOfCells() == 0 &&
+      input->GetFieldData()->GetNumberOfArrays() == 1,
+    "the input is not written");
+  Check(output->GetPoints() == input->GetPoints(), "the points are shared with the input");
+  Check(output->GetPointData()->GetScalars() == input->GetPointData()->GetScalars() &&
+      output->GetPointData()->GetAbstractArray("Name") != nullptr,
+    "point data passes");
+  Check(output->GetFieldData()->GetArray("Survey") != nullptr, "field data passes");
+  Check(output->GetNumberOfPolys() == 2 * 4 * 3, "every cell of the lattice has two triangles");
+  Check(output->GetNumberOfCells() == output->GetNumberOfPolys(), "there are no other cells");
+
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  bool isUp = true;
+  for (vtkIdType cell = 0; cell < output->GetNumberOfPolys(); ++cell)
+  {
+    output->GetPolys()->GetCellAtId(cell, size, ids);
+    double p[3][3];
+    for (int i = 0; i < 3; ++i)
+    {
+      output->GetPoint(ids[i], p[i]);
+    }
+    isUp = isUp && size == 3 &&
+      (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]) > 0;
+  }
+  Check(isUp, "triangles are counter-clockwise seen from +z");
+
+  Check(delaunay->GetNumberOfDuplicatePoints() == 1, "one duplicate is counted");
+  Check(delaunay->GetNumberOfNonFinitePoints() == 1, "one point that is not finite is counted");
+  auto* unused = vtkIdTypeArray::SafeDownCast(output->GetFieldData()->GetArray("UnusedPointIds"));
+  auto* reasons =
+    vtkUnsignedCharArray::SafeDownCast(output->GetFieldData()->GetArray("UnusedPointReasons"));
+  Check(unused && unused->GetNumberOfTuples() == 2 && unused->GetValue(0) == 20 &&
+      unused->GetValue(1) == 21,
+    "unused points are listed");
+  Check(reasons && reasons->GetNumberOfTuples() == 2 && reasons->GetValue(0) == 1 &&
+      reasons->GetValue(1) == 2,
+    "with their reasons");
+  Check(output->GetFieldData()->GetArray("NumberOfDuplicatePoints")->GetTuple1(0) == 1 &&
+      output->GetFieldData()->GetArray("NumberOfNonFinitePoints")->GetTuple1(0) == 1,
+    "counts stand in the field data");
+
+  delaunay->SetDuplicatePolicyToKeepHighest();
+  delaunay->Update();
+  unused =
+    vtkIdTypeArray::SafeDownCast(delaunay->GetOutput()->GetFieldData()->GetArray("UnusedPointIds"));
+  Check(unused->GetValue(0) == 7, "the highest of two points at one place is the vertex");
+
+  delaunay->SetMaximumEdgeLength(1.2);
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfPolys() == 0, "diagonals are longer than the limit");
+}
+
+void TestOtherPointSets()
+{
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(MakeInput(VTK_DOUBLE)->GetPoints());
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(grid);
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfPolys() == 24, "any point set is an input");
+
+  vtkNew<vtkPoints> integers;
+  integers->SetDataType(VTK_INT);
+  for (int i = 0; i < 9; ++i)
+  {
+    integers->InsertNextPoint(i % 3, i / 3, 0);
+  }
+  vtkNew<vtkPolyData> whole;
+  whole->SetPoints(integers);
+  delaunay->SetInputData(whole);
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfPolys() == 8, "points of any type are an input");
+}
+
+void TestTooFewPoints()
+{
+  for (const int count : { 0, 1, 2, 6 })
+  {
+    vtkNew<vtkPoints> points;
+    for (int i = 0; i < count; ++i)
+    {
+      points->InsertNextPoint(i, 2.0 * i, 0.0);
+    }
+    vtkNew<vtkPolyData> input;
+    input->SetPoints(points);
+    vtkNew<vtkGridDelaunay2D> delaunay;
+    vtkNew<vtkTest::ErrorObserver> observer;
+    delaunay->AddObserver(vtkCommand::WarningEvent, observer);
+    delaunay->AddObserver(vtkCommand::ErrorEvent, observer);
+    delaunay->SetInputData(input);
+    delaunay->Update();
+    Check(observer->GetWarning() && !observer->GetError(), "too few points give a warning");
+    Check(delaunay->GetOutput()->GetNumberOfPoints() == count &&
+        delaunay->GetOutput()->GetNumberOfCells() == 0,
+      "points pass, without a triangle");
+  }
+}
+
+void TestProgressAndAbort()
+{
+  vtkNew<vtkMinimalStandardRandomSequence> random;
+  random->SetSeed(5);
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 100000; ++i)
+  {
+    const double x = random->GetValue();
+    random->Next();
+    points->InsertNextPoint(x, random->GetValue(), 0.0);
+    random->Next();
+  }
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+
+  struct State
+  {
+    double Last = 0.0;
+    bool IsRising = true;
+    double AbortAt = 2.0;
+  } state;
+  vtkNew<vtkCallbackCommand> callback;
+  callback->SetClientData(&state);
+  callback->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    auto* seen = static_cast<State*>(data);
+    auto* filter = static_cast<vtkAlgorithm*>(caller);
+    seen->IsRising = seen->IsRising && filter->GetProgress() >= seen->Last;
+    seen->Last = filter->GetProgress();
+    if (seen->Last >= seen->AbortAt)
+    {
+      filter->SetAbortExecute(1);
+    }
+  });
+  delaunay->AddObserver(vtkCommand::ProgressEvent, callback);
+  delaunay->Update();
+  Check(state.IsRising && state.Last == 1.0, "progress rises to 1");
+  Check(delaunay->GetOutput()->GetNumberOfPolys() > 199000, "all triangles are there");
+
+  state = State();
+  state.AbortAt = 0.4;
+  delaunay->Modified();
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfCells() == 0 &&
+      delaunay->GetOutput()->GetNumberOfPoints() == 0,
+    "an abort leaves empty output");
+}
+} // namespace
+
+int TestGridDelaunay2D(int, char*[])
+{
+  TestOutput(VTK_FLOAT);
+  TestOutput(VTK_DOUBLE);
+  TestOtherPointSets();
+  TestTooFewPoints();
+  TestProgressAndAbort();
+  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""vtkGridDelaunay2D from Python: names, defaults, and a triangulation through NumPy."""
+import unittest
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+from vtkelevationsurface import vtkGridDelaunay2D
+
+
+def cloud(coordinates):
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates), deep=True))
+    data = vtkPolyData()
+    data.SetPoints(points)
+    return data
+
+
+def triangles(data):
+    return vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+class TestGridDelaunay2D(unittest.TestCase):
+    def test_defaults(self):
+        delaunay = vtkGridDelaunay2D()
+        self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
+        self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)
+        self.assertEqual(delaunay.GetDuplicatePolicyAsString(), "KeepFirst")
+
+    def test_values_are_clamped(self):
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetMaximumEdgeLength(-1.0)
+        self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
+        delaunay.SetDuplicatePolicy(99)
+        self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_HIGHEST)
+
+    def test_every_property_is_printed(self):
+        text = str(vtkGridDelaunay2D())
+        for name in ("MaximumEdgeLength", "DuplicatePolicy", "NumberOfDuplicatePoints",
+                     "NumberOfNonFinitePoints"):
+            self.assertIn(name, text)
+
+    def test_triangles_do_not_depend_on_the_order_of_points(self):
+        random = numpy.random.RandomState(3)
+        coordinates = random.rand(2000, 3)
+        order = random.permutation(2000)
+
+        def corner_sets(data):
+            xy = vtk_to_numpy(data.GetPoints().GetData())[:, :2]
+            return {frozenset(map(tuple, xy[t])) for t in triangles(data)}
+
+        sets = []
+        for c in (coordinates, coordinates[order]):
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(cloud(c))
+            delaunay.Update()
+            sets.append(corner_sets(delaunay.GetOutput()))
+        self.assertEqual(sets[0], sets[1])
+
+    def test_unused_points_are_listed(self):
+        coordinates = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 5], [numpy.inf, 0, 0]], float)
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(coordinates))
+        delaunay.Update()
+        fields = delaunay.GetOutput().GetFieldData()
+        self.assertEqual(list(vtk_to_numpy(fields.GetArray("UnusedPointIds"))), [3, 4])
+        self.assertEqual(list(vtk_to_numpy(fields.GetArray("UnusedPointReasons"))), [1, 2])
+        self.assertEqual(delaunay.GetNumberOfDuplicatePoints(), 1)
+        self.assertEqual(delaunay.GetNumberOfNonFinitePoints(), 1)
+        self.assertEqual(triangles(delaunay.GetOutput()).tolist(), [[0, 1, 2]])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["TestGridDelaunay2D"])
