@@ -286,6 +286,21 @@ class Run:
         self.progress = Progress(sys.stderr.isatty() and not options.quiet)
         self.times = {}
         self.notes = []
+        self.updating = False
+        self.stopped = False
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self.stop)
+
+    def stop(self, _number, _frame):
+        """A running filter is asked to abort: an exception would not get through VTK.
+
+        Asked twice, the program ends at once; while filters run, nothing is being written.
+        """
+        if self.updating and self.stopped:
+            os._exit(130)
+        self.stopped = True
+        if not self.updating:
+            raise KeyboardInterrupt
 
     def timed(self, name, text, work):
         self.progress.start(text)
@@ -299,11 +314,17 @@ class Run:
 
         def show(caller, _event):
             self.progress(caller.GetProgress())
+            if self.stopped:
+                caller.SetAbortExecute(1)
 
         tag = algorithm.AddObserver("ProgressEvent", show)
+        self.updating = True
         with files.Messages() as messages:
             self.timed(name, text, algorithm.Update)
+        self.updating = False
         algorithm.RemoveObserver(tag)
+        if self.stopped:
+            raise KeyboardInterrupt
         if messages.errors:
             raise Failure(f"{self.options.file}: {text}: {messages.errors[0]}")
         for warning in messages.warnings:
@@ -700,10 +721,6 @@ def main(arguments=None):
         )
         return 1
 
-    def stop(_number, _frame):
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGTERM, stop)
     results = Results()
     try:
         work(options, results)

@@ -18,7 +18,7 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the window)
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkFeatureEdges, vtkPolyDataNormals
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import (
@@ -168,6 +168,17 @@ def segments(paths):
     return numpy.concatenate(pairs) if pairs else numpy.empty((0, 2), dtype="i8")
 
 
+def outline(triangles):
+    """The edges that belong to one of the triangles only, as (n, 2) index pairs."""
+    edges = numpy.concatenate([triangles[:, (0, 1)], triangles[:, (1, 2)], triangles[:, (2, 0)]])
+    edges = numpy.sort(edges, axis=1).astype("i8")
+    # One number for each edge: sorting numbers is many times faster than sorting pairs.
+    size = int(edges.max()) + 1
+    keys, counts = numpy.unique(edges[:, 0] * size + edges[:, 1], return_counts=True)
+    keys = keys[counts == 1]
+    return numpy.column_stack((keys // size, keys % size))
+
+
 class Frame:
     """Real coordinates -> picture coordinates: shifted to the middle, z exaggerated."""
 
@@ -271,7 +282,7 @@ def round_text(value):
 def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=None):
     """Renders the surface into a PNG file.
 
-    surface   vtkPolyData with triangles
+    surface   vtkPolyData with triangles; with a cell array HoleId, patches are outlined
     holes     None, or the second output of vtkFillElevationHoles
     view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
     exaggeration  None, or the factor for z
@@ -294,7 +305,6 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
 
     renderer = vtkRenderer()
     renderer.SetBackground(1.0, 1.0, 1.0)
-    renderer.SetBackground2(0.88, 0.90, 0.92)
     colours = colour_map(low, high)
 
     data = poly_data(points, polys=surface.GetPolys())
@@ -320,36 +330,24 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
 
     # The block: walls under every rim. Rims of holes that stay open get walls too, as pits.
-    rims = vtkFeatureEdges()
-    rims.SetInputData(data)
-    rims.BoundaryEdgesOn()
-    rims.FeatureEdgesOff()
-    rims.NonManifoldEdgesOff()
-    rims.ManifoldEdgesOff()
-    rims.ColoringOff()
-    rims.Update()
-    rim = rims.GetOutput()
     floor = -0.05 * math.sqrt(max(float(numpy.prod(numpy.ptp(xy, axis=0))), 1e-300))
-    legend = []
-    if rim.GetNumberOfCells():
-        rim_points = vtk_to_numpy(rim.GetPoints().GetData()).astype("f8")
-        rim_pairs = segments(line_cells(rim))
-        if height < 89.0:
-            renderer.AddActor(walls_actor(rim_points, rim_pairs, floor))
-        renderer.AddActor(lines_actor(rim_points, rim_pairs, INK, 2.5))
-        legend.append(("boundary", INK))
+    rim = outline(corners.reshape(-1, 3))
+    if height < 89.0:
+        renderer.AddActor(walls_actor(points, rim, floor))
+    renderer.AddActor(lines_actor(points, rim, INK, 2.5))
+    legend = [("boundary", INK)]
+    patches = surface.GetCellData().GetArray("HoleId")
+    if patches is not None:
+        filled = corners.reshape(-1, 3)[vtk_to_numpy(patches) >= 0]
+        if len(filled):
+            renderer.AddActor(lines_actor(points, outline(filled), FILLED, 2.0))
+            legend.append(("filled hole", FILLED))
     if holes is not None and holes.GetNumberOfLines():
-        status = vtk_to_numpy(holes.GetCellData().GetArray("Status"))
-        paths = line_cells(holes)
-        hole_points = frame.of(holes)
-        for name, rgb, chosen in (
-            ("filled hole", FILLED, status == 0),
-            ("hole left open", OPEN, status != 0),
-        ):
-            pairs = segments([p for p, c in zip(paths, chosen) if c])
-            if len(pairs):
-                renderer.AddActor(lines_actor(hole_points, pairs, rgb, 2.0))
-                legend.append((name, rgb))
+        still_open = vtk_to_numpy(holes.GetCellData().GetArray("Status")) != 0
+        pairs = segments([p for p, o in zip(line_cells(holes), still_open) if o])
+        if len(pairs):
+            renderer.AddActor(lines_actor(frame.of(holes), pairs, OPEN, 3.0))
+            legend.append(("hole left open", OPEN))
 
     window = place_camera(renderer, points[used], floor, bearing, height)
     scale = renderer.GetActiveCamera().GetParallelScale()
