@@ -404,6 +404,7 @@ def why_no_triangle(points, options):
 # ---- report -----------------------------------------------------------------------------------
 
 REASONS = {1: "same x,y as another point", 2: "not finite"}
+LONELY = "in no triangle below the edge limit"
 OUTSIDE = "outside the boundary"
 STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed"}
 
@@ -417,14 +418,19 @@ def make_report(run, cloud, delaunay, trim, fill):
     reasons = [REASONS[int(r)] for r in vtk_to_numpy(fields.GetArray("UnusedPointReasons"))]
     surface = (fill or trim or delaunay).GetOutput()
 
-    taken = numpy.zeros(surface.GetNumberOfPoints(), dtype=bool)
-    taken[vtk_to_numpy(surface.GetPolys().GetConnectivityArray())] = True
-    taken = taken[: len(coordinates)]
-    known = numpy.zeros(len(coordinates), dtype=bool)
-    known[ids] = True
-    outside = numpy.flatnonzero(~taken & ~known)
-    reason = OUTSIDE if trim else "in no triangle"
-    unused = sorted(list(zip(ids.tolist(), reasons)) + [(int(i), reason) for i in outside])
+    def in_triangles(mesh):
+        found = numpy.zeros(mesh.GetNumberOfPoints(), dtype=bool)
+        found[vtk_to_numpy(mesh.GetPolys().GetConnectivityArray())] = True
+        return found[: len(coordinates)]
+
+    lonely = ~in_triangles(delaunay.GetOutput())
+    lonely[ids] = False
+    outside = ~in_triangles(surface) & ~lonely
+    outside[ids] = False
+    unused = list(zip(ids.tolist(), reasons))
+    unused += [(i, LONELY) for i in numpy.flatnonzero(lonely).tolist()]
+    unused += [(i, OUTSIDE) for i in numpy.flatnonzero(outside).tolist()]
+    unused.sort()
     listed = []
     for point, why in unused:
         entry = {"point": point, "reason": why}
@@ -482,8 +488,10 @@ def make_report(run, cloud, delaunay, trim, fill):
         }
         report["triangles"]["filled"] = surface.GetNumberOfPolys()
 
+    # All points that the user wants in the surface, used or not.
     measured = numpy.isfinite(coordinates).all(axis=1)
-    measured[outside] = False
+    if options.boundary:
+        measured &= ~outside
     report["distance"] = run.timed(
         "measure", "measuring", lambda: distance_to(surface, coordinates[measured])
     )

@@ -224,7 +224,8 @@ def read_with_vtk(path, no_data):
     if data.GetNumberOfPoints() == 0:
         raise FileError(f"{path}: holds no points")
     cloud = Cloud(data)
-    if data.GetNumberOfCells() > 0:
+    vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
+    if data.GetNumberOfCells() > vertices:
         cloud.notes.append("only the points are used, not the file's cells")
     if suffix_of(path) in (".ply", ".stl", ".obj"):
         note = rounding_note(vtk_to_numpy(data.GetPoints().GetData()))
@@ -699,6 +700,8 @@ def find_columns(path, columns, header, width, needed):
         matches = [i for i, name in enumerate(names) if name in NAMES[axis]]
         found.append(matches[0] if matches else None)
     if None not in found:
+        if found == list(range(width)):
+            return found, None
         text = ", ".join(f"{axis} = {header[i]}" for axis, i in zip(axes, found))
         return found, f"columns by their names: {text}"
     if width > needed:

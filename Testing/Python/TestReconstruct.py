@@ -21,7 +21,8 @@ import surface_files as files
 SIZE = 12
 # A sheet of SIZE x SIZE points, one apart; z is a plane, so that nothing depends on the triangles.
 SHEET = [(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)]
-# The same with 3 x 3 points taken out of the middle: 16 cells, a hole of 4 x 4.
+# The same with 3 x 3 points taken out of the middle. With edges of at most 1.5 that leaves a hole of
+# 4 x 4 with its corners cut: 12 edges, an area of 14.
 HOLED = [p for p in SHEET if not (4 <= p[0] <= 6 and 4 <= p[1] <= 6)]
 
 
@@ -99,11 +100,11 @@ class Report(Program):
     def test_a_hole_is_filled_and_listed(self):
         name = self.file("holed.xyz", text_of(HOLED))
         report = self.report(name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
-        self.assertEqual(report["triangles"]["delaunay"], 2 * (SIZE - 1) ** 2 - 32)
+        self.assertEqual(report["triangles"]["delaunay"], 2 * (SIZE - 1) ** 2 - 28)
         self.assertEqual((report["holes"]["found"], report["holes"]["filled"]), (1, 1))
         hole = report["holes"]["list"][0]
-        self.assertEqual((hole["status"], hole["edges"]), ("filled", 16))
-        self.assertAlmostEqual(hole["area"], 16.0)
+        self.assertEqual((hole["status"], hole["edges"]), ("filled", 12))
+        self.assertAlmostEqual(hole["area"], 14.0)
         self.assertGreater(hole["inserted_points"], 0)
         self.assertGreater(report["triangles"]["filled"], report["triangles"]["trimmed"])
 
@@ -112,7 +113,7 @@ class Report(Program):
         common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
         for option, value, reason in (
             ("--maximum-hole-size", "2", "too large"),
-            ("--maximum-hole-edges", "15", "too many edges"),
+            ("--maximum-hole-edges", "11", "too many edges"),
         ):
             with self.subTest(option=option):
                 report = self.report(*common, option, value)
@@ -158,6 +159,15 @@ class Report(Program):
         self.assertGreater(
             report["distance"]["rms"], math.sqrt(sum(d * d for d in expected) / (first + 2)) - 1e-9
         )
+
+    def test_points_beyond_the_edge_limit_are_listed_and_measured(self):
+        name = self.file("far.xyz", text_of(SHEET) + "30 5 13.75\n")
+        report = self.report(name, "--maximum-edge-length", "1.5")
+        far = {"point": SIZE * SIZE, "reason": "in no triangle below the edge limit"}
+        self.assertEqual(report["unused"], [{**far, "line": SIZE * SIZE + 1}])
+        # From the rim at x = 11, which rises by -0.25 for each step of y.
+        squared = 19**2 + 9.5**2 - (0.25 * 9.5) ** 2 / (1 + 0.25**2)
+        self.assertAlmostEqual(report["distance"]["maximum"], math.sqrt(squared))
 
     def test_the_duplicate_policy_chooses_the_elevation(self):
         name = self.file("twice.xyz", text_of(SHEET) + "3 3 99\n3 3 -99\n")
@@ -226,8 +236,7 @@ class Report(Program):
                 report = self.report(os.path.join(DATA, name))
                 self.assertEqual(report["points"], points)
                 self.assertEqual(report["points_unused"], len(report["unused"]))
-                outside = report["unused_reasons"].get("outside the boundary", 0)
-                self.assertEqual(report["distance"]["points"] + outside, points)
+                self.assertEqual(report["distance"]["points"], points)
                 self.assertLess(report["distance"]["maximum"], 1e-6)
 
 
