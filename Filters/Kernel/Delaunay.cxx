@@ -295,7 +295,7 @@ private:
         {
           continue;
         }
-        if (!(isClear && difference < -error) && !this->IsBetter(slot))
+        if (!(isClear && difference < -error) && (slot == this->Best || !this->IsBetter(slot)))
         {
           continue;
         }
