@@ -111,8 +111,7 @@ std::string ToText(double value)
 }
 
 /** The limits, and what cannot be filled. All that could make a hole run away is stopped here. */
-void Judge(
-  HoleReport& report, bool isTouched, const Point2& where, double room, const FillOptions& options)
+void Judge(HoleReport& report, bool isTouched, double room, const FillOptions& options)
 {
   if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
   {
@@ -135,12 +134,6 @@ void Judge(
     return;
   }
   const double points = EstimatedPoints(report);
-  if (points >= 1.0 && IsBelowPrecision(report, where, options))
-  {
-    fail("The spacing of " + ToText(report.Spacing) +
-      " is below what the coordinates can tell apart; a larger spacing helps.");
-    return;
-  }
   // Rows of points count as points: a long thin hole has many rows, though few points.
   const double rows = report.Perimeter / report.Spacing - report.NumberOfEdges;
   if (!(points <= room && rows <= room))
@@ -203,10 +196,6 @@ struct Blocked
  */
 void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& patch)
 {
-  if (IsBelowPrecision(report, patch.At(0), options))
-  {
-    return; // a hole of a few steps' size: its boundary alone is triangulated
-  }
   Point2 low = patch.At(0);
   Point2 high = low;
   for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
@@ -300,6 +289,11 @@ void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& pa
     const double last = std::floor(blocked[i + 1].Begin / d - shift);
     for (double k = std::ceil(blocked[i].End / d - shift); k <= last; ++k)
     {
+      if (IsBelowPrecision(report, centre, options))
+      {
+        throw Error("The spacing of " + ToText(d) +
+          " is below what the coordinates can tell apart; a larger spacing helps.");
+      }
       double x = centre.X + (k + shift) * d;
       double y = centre.Y + row * rowHeight;
       if (options.SinglePrecision)
@@ -623,8 +617,7 @@ FillResult FillHoles(
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
     HoleReport report = Measure(mesh, holes, hole, options.Spacing);
-    const Point2 where = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
-    Judge(report, holes.Touched[hole] != 0, where, room, options);
+    Judge(report, holes.Touched[hole] != 0, room, options);
     if (report.Status == FillStatus::Filled)
     {
       room = std::max(0.0, room - EstimatedPoints(report));
@@ -675,6 +668,7 @@ FillResult FillHoles(
       told = done + PointsPerReport;
     }
   }
+  Report(options.Monitor, 1.0);
   return result;
 }
 
