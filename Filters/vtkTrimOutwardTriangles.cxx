@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -139,7 +140,10 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const elevation::TrimRe
   output->GetFieldData()->PassData(input->GetFieldData());
   output->GetCellData()->CopyAllOn();
   output->GetCellData()->CopyAllocate(input->GetCellData(), cells->GetNumberOfIds());
-  output->GetCellData()->CopyData(input->GetCellData(), cells);
+  vtkNew<vtkIdList> places;
+  places->SetNumberOfIds(cells->GetNumberOfIds());
+  std::iota(places->begin(), places->end(), 0);
+  output->GetCellData()->CopyData(input->GetCellData(), cells, places);
 }
 
 /** Output 2. */
