@@ -1,0 +1,550 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The pipeline side of vtkFillElevationHoles, by numbers: what comes first and unchanged, what
+// arrays get at new points and triangles, the report, the limits, refusals, warnings and aborts.
+#include "SheetOfSquares.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
+#include "vtkFillElevationHoles.h"
+#include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkMath.h"
+#include "vtkPointData.h"
+#include "vtkStringArray.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+namespace
+{
+int failures = 0;
+
+void Check(bool isTrue, const std::string& claim)
+{
+  if (!isTrue)
+  {
+    std::cerr << "Not true: " << claim << "\n";
+    ++failures;
+  }
+}
+
+const std::vector<std::string> OneHole = { "######", "#   ##", "#   ##", "#   ##", "######" };
+// Areas 9 with a rim of 12; 12 - 2 with 14 + 6; 1 with 4 edges.
+const std::vector<std::string> ThreeHoles = { "##############", "#   ##     ###", "#   ## ##  ###",
+  "#   ##     # #", "##############" };
+
+double Tilted(int x, int y)
+{
+  return 10.0 + x - 0.5 * y;
+}
+
+template <typename Array>
+Array* Named(vtkFieldData* data, const char* name)
+{
+  return Array::SafeDownCast(data->GetAbstractArray(name));
+}
+
+/** One hole, arrays of every kind, a vertex and a line among the cells, and one clockwise triangle.
+ */
+vtkSmartPointer<vtkPolyData> MakeRichInput(int precision)
+{
+  auto input = MakeSheet(OneHole, precision, Tilted);
+  const vtkIdType points = input->GetNumberOfPoints();
+  vtkNew<vtkCellArray> vertices;
+  const vtkIdType vertex[1] = { 3 };
+  vertices->InsertNextCell(1, vertex);
+  input->SetVerts(vertices);
+  vtkNew<vtkCellArray> lines;
+  const vtkIdType line[2] = { 0, 1 };
+  lines->InsertNextCell(2, line);
+  input->SetLines(lines);
+  const vtkIdType clockwise[3] = { 0, 2, 1 };
+  input->GetPolys()->ReplaceCellAtId(0, 3, clockwise);
+  const vtkIdType cells = input->GetNumberOfCells();
+
+  vtkNew<vtkDoubleArray> amplitude;
+  amplitude->SetName("Amplitude");
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("Normals");
+  vectors->SetNumberOfComponents(3);
+  vtkNew<vtkIntArray> numbers;
+  numbers->SetName("Number");
+  vtkNew<vtkStringArray> names;
+  names->SetName("Name");
+  vtkNew<vtkIdTypeArray> globalIds;
+  globalIds->SetName("GlobalIds");
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType i = 0; i < points; ++i)
+  {
+    double p[3];
+    input->GetPoint(i, p);
+    amplitude->InsertNextValue(100.0 + 2.0 * p[2]);
+    const double angle = 0.3 * p[0];
+    vectors->InsertNextTuple3(std::sin(angle), 0.0, std::cos(angle));
+    numbers->InsertNextValue(1000 + i);
+    names->InsertNextValue("p" + std::to_string(i));
+    globalIds->InsertNextValue(50 + i);
+    ghosts->InsertNextValue(1);
+  }
+  input->GetPointData()->SetScalars(amplitude);
+  input->GetPointData()->SetNormals(vectors);
+  input->GetPointData()->AddArray(numbers);
+  input->GetPointData()->AddArray(names);
+  input->GetPointData()->SetGlobalIds(globalIds);
+  input->GetPointData()->AddArray(ghosts);
+
+  vtkNew<vtkFloatArray> quality;
+  quality->SetName("Quality");
+  vtkNew<vtkIntArray> facies;
+  facies->SetName("Facies");
+  vtkNew<vtkStringArray> labels;
+  labels->SetName("Label");
+  for (vtkIdType i = 0; i < cells; ++i)
+  {
+    quality->InsertNextValue(0.5f * i);
+    facies->InsertNextValue(7 + i);
+    labels->InsertNextValue("c" + std::to_string(i));
+  }
+  input->GetCellData()->AddArray(quality);
+  input->GetCellData()->SetScalars(facies);
+  input->GetCellData()->AddArray(labels);
+  vtkNew<vtkStringArray> source;
+  source->SetName("Source");
+  source->InsertNextValue("survey");
+  input->GetFieldData()->AddArray(source);
+  return input;
+}
+
+void TestArrays(int precision)
+{
+  auto input = MakeRichInput(precision);
+  auto before = vtkSmartPointer<vtkPolyData>::New();
+  before->DeepCopy(input);
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->Update();
+  vtkPolyData* output = fill->GetOutput();
+  const vtkIdType points = input->GetNumberOfPoints();
+  const vtkIdType cells = input->GetNumberOfCells();
+  const vtkIdType newPoints = output->GetNumberOfPoints() - points;
+  Check(newPoints >= 4, "a hole of 3 x 3 squares gets points");
+  Check(output->GetPoints()->GetDataType() == precision, "the type of points is kept");
+  Check(output->GetNumberOfVerts() == 1 && output->GetNumberOfLines() == 1, "other cells pass");
+  Check(std::fabs(ProjectedArea(output) - 30.0) < 1e-10, "the projected area is that of the sheet");
+  Check(NumberOfNonManifoldEdges(output) == 0, "the output is manifold");
+
+  auto* filled = Named<vtkUnsignedCharArray>(output->GetPointData(), "FilledPoint");
+  auto* amplitude = Named<vtkDoubleArray>(output->GetPointData(), "Amplitude");
+  auto* normals = Named<vtkFloatArray>(output->GetPointData(), "Normals");
+  auto* numbers = Named<vtkIntArray>(output->GetPointData(), "Number");
+  auto* names = Named<vtkStringArray>(output->GetPointData(), "Name");
+  auto* ids = Named<vtkIdTypeArray>(output->GetPointData(), "GlobalIds");
+  auto* ghosts =
+    Named<vtkUnsignedCharArray>(output->GetPointData(), vtkDataSetAttributes::GhostArrayName());
+  Check(output->GetPointData()->GetScalars() == amplitude, "scalars stay scalars");
+  Check(output->GetPointData()->GetNormals() == normals, "normals stay normals");
+  Check(!output->GetPointData()->GetGlobalIds(), "repeated ids are no global ids");
+  for (vtkIdType i = 0; i < points + newPoints; ++i)
+  {
+    double p[3];
+    output->GetPoint(i, p);
+    Check(filled->GetValue(i) == (i >= points), "FilledPoint marks the new points, which are last");
+    if (i < points)
+    {
+      double q[3];
+      before->GetPoint(i, q);
+      Check(p[0] == q[0] && p[1] == q[1] && p[2] == q[2], "input points are unchanged and first");
+      Check(ghosts->GetValue(i) == 1, "values of input points are unchanged");
+      continue;
+    }
+    const double tolerance = precision == VTK_FLOAT ? 1e-4 : 1e-10;
+    Check(std::fabs(amplitude->GetValue(i) - 100.0 - 2.0 * p[2]) < tolerance,
+      "floating-point values get the same mean as z");
+    double normal[3];
+    normals->GetTuple(i, normal);
+    Check(std::fabs(std::hypot(normal[0], normal[2]) - 1.0) < 1e-6, "normals have unit length");
+    const vtkIdType nearest = numbers->GetValue(i) - 1000;
+    Check(nearest >= 0 && nearest < points, "integers are taken from a point");
+    Check(names->GetValue(i) == "p" + std::to_string(nearest), "strings from the same");
+    Check(ids->GetValue(i) == 50 + nearest, "ids from the same");
+    Check(ghosts->GetValue(i) == 0, "new points are no ghosts");
+    double q[3];
+    output->GetPoint(nearest, q);
+    Check(std::hypot(p[0] - q[0], p[1] - q[1]) < 1.6, "from a point of the boundary that is near");
+  }
+
+  auto* hole = Named<vtkIdTypeArray>(output->GetCellData(), "HoleId");
+  auto* quality = Named<vtkFloatArray>(output->GetCellData(), "Quality");
+  auto* facies = Named<vtkIntArray>(output->GetCellData(), "Facies");
+  auto* labels = Named<vtkStringArray>(output->GetCellData(), "Label");
+  Check(output->GetCellData()->GetScalars() == facies, "cell scalars stay scalars");
+  Check(hole->GetNumberOfTuples() == output->GetNumberOfCells(), "one HoleId a cell");
+  for (vtkIdType i = 0; i < output->GetNumberOfCells(); ++i)
+  {
+    const bool isNew = i >= cells;
+    Check(hole->GetValue(i) == (isNew ? 0 : -1), "HoleId is -1 for cells of the input");
+    Check(isNew ? std::isnan(quality->GetValue(i)) : quality->GetValue(i) == 0.5f * i, "NaN");
+    Check(facies->GetValue(i) == (isNew ? 0 : 7 + i), "0 for integers");
+    Check(labels->GetValue(i) == (isNew ? "" : "c" + std::to_string(i)), "nothing for strings");
+    vtkNew<vtkIdList> corners;
+    output->GetCellPoints(i, corners);
+    if (!isNew && i != 2)
+    {
+      vtkNew<vtkIdList> same;
+      before->GetCellPoints(i, same);
+      bool isSame = corners->GetNumberOfIds() == same->GetNumberOfIds();
+      for (vtkIdType k = 0; isSame && k < same->GetNumberOfIds(); ++k)
+      {
+        isSame = corners->GetId(k) == same->GetId(k);
+      }
+      Check(isSame, "input cells are unchanged");
+    }
+    if (corners->GetNumberOfIds() == 3)
+    {
+      double a[3];
+      double b[3];
+      double c[3];
+      output->GetPoint(corners->GetId(0), a);
+      output->GetPoint(corners->GetId(1), b);
+      output->GetPoint(corners->GetId(2), c);
+      Check((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0,
+        "triangles are counter-clockwise, the clockwise one of the input too");
+    }
+  }
+  Check(output->GetFieldData()->GetAbstractArray("Source") != nullptr, "field data pass");
+  vtkNew<vtkIdList> first;
+  input->GetPolys()->GetCellAtId(0, first);
+  Check(first->GetId(1) == 2, "the input is not written to");
+  Check(!input->GetPointData()->GetAbstractArray("FilledPoint"), "nor are arrays added to it");
+
+  fill->InterpolatePointDataOff();
+  fill->Update();
+  output = fill->GetOutput();
+  amplitude = Named<vtkDoubleArray>(output->GetPointData(), "Amplitude");
+  numbers = Named<vtkIntArray>(output->GetPointData(), "Number");
+  names = Named<vtkStringArray>(output->GetPointData(), "Name");
+  Check(output->GetNumberOfPoints() == points + newPoints, "the same points without interpolation");
+  for (vtkIdType i = points; i < points + newPoints; ++i)
+  {
+    Check(std::isnan(amplitude->GetValue(i)), "off: NaN");
+    Check(numbers->GetValue(i) == 0, "off: 0");
+    Check(names->GetValue(i).empty(), "off: nothing");
+    Check(!std::isnan(output->GetPoint(i)[2]), "z is there all the same");
+  }
+}
+
+void TestNaNIsLeftOut()
+{
+  auto input = MakeSheet(OneHole, VTK_DOUBLE, Tilted);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("Values");
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    values->InsertNextValue(i % 3 == 0 ? vtkMath::Nan() : 5.0);
+  }
+  input->GetPointData()->AddArray(values);
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->Update();
+  auto* filled = Named<vtkDoubleArray>(fill->GetOutput()->GetPointData(), "Values");
+  for (vtkIdType i = input->GetNumberOfPoints(); i < filled->GetNumberOfTuples(); ++i)
+  {
+    Check(std::fabs(filled->GetValue(i) - 5.0) < 1e-12, "a mean leaves NaN out");
+  }
+}
+
+void TestReport()
+{
+  auto input = MakeSheet(ThreeHoles, VTK_DOUBLE, Tilted);
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->SetMaximumHoleEdges(19);
+  fill->Update();
+  Check(fill->GetNumberOfHoles() == 3 && fill->GetNumberOfFilledHoles() == 2, "getters count");
+  for (int port = 0; port < 2; ++port)
+  {
+    vtkFieldData* field = fill->GetOutput(port)->GetFieldData();
+    Check(
+      field->GetArray("NumberOfHoles")->GetTuple1(0) == 3, "field data tell the number of holes");
+    Check(field->GetArray("NumberOfFilledHoles")->GetTuple1(0) == 2, "and of those filled");
+  }
+  vtkPolyData* report = fill->GetOutput(1);
+  vtkCellData* data = report->GetCellData();
+  Check(report->GetNumberOfCells() == 3 && report->GetNumberOfLines() == 3, "one line a hole");
+  Check(report->GetNumberOfPoints() == 12 + 16 + 4, "with the points of the rims alone");
+  for (vtkIdType i = 0; i < 3; ++i)
+  {
+    vtkNew<vtkIdList> ids;
+    report->GetLines()->GetCellAtId(i, ids);
+    const vtkIdType count = ids->GetNumberOfIds();
+    Check(ids->GetId(0) == ids->GetId(count - 1), "lines are closed");
+    double twice = 0.0;
+    for (vtkIdType k = 0; k + 1 < count; ++k)
+    {
+      double a[3];
+      double b[3];
+      report->GetPoint(ids->GetId(k), a);
+      report->GetPoint(ids->GetId(k + 1), b);
+      twice += a[0] * b[1] - a[1] * b[0];
+      Check(a[2] == Tilted(static_cast<int>(a[0]), static_cast<int>(a[1])), "with their z");
+    }
+    const double edges = data->GetArray("NumberOfEdges")->GetTuple1(i);
+    const double area = data->GetArray("Area")->GetTuple1(i);
+    const double status = data->GetArray("Status")->GetTuple1(i);
+    Check(0.5 * twice == (edges == 12 ? 9 : edges == 22 ? 15 : 1), "rims run counter-clockwise");
+    Check(area == (edges == 12 ? 9 : edges == 22 ? 13 : 1), "Area is without islands");
+    Check(data->GetArray("HoleId")->GetTuple1(i) == i, "HoleId is the number of the row");
+    Check(status ==
+        (edges == 22 ? vtkFillElevationHoles::TOO_MANY_EDGES : vtkFillElevationHoles::FILLED),
+      "Status");
+    Check(data->GetArray("Perimeter")->GetTuple1(i) == edges, "Perimeter counts islands");
+    Check(data->GetArray("Interpolation")->GetTuple1(i) == 0, "Interpolation");
+    vtkIdType inserted = 0;
+    vtkIdType triangles = 0;
+    auto* hole = Named<vtkIdTypeArray>(fill->GetOutput()->GetCellData(), "HoleId");
+    for (vtkIdType cell = 0; cell < hole->GetNumberOfTuples(); ++cell)
+    {
+      triangles += hole->GetValue(cell) == i;
+    }
+    inserted = static_cast<vtkIdType>(data->GetArray("NumberOfInsertedPoints")->GetTuple1(i));
+    Check(
+      triangles == (status == 0 ? edges - 2 + 2 * inserted : 0), "triangles carry their HoleId");
+  }
+
+  fill->SetMaximumHoleEdges(0);
+  fill->SetMaximumHoleSize(4.3); // 3 x 3 has 4.24, 5 x 3 has 5.83
+  fill->Update();
+  Check(fill->GetNumberOfFilledHoles() == 2, "MaximumHoleSize is a diagonal");
+  data = fill->GetOutput(1)->GetCellData();
+  for (vtkIdType i = 0; i < 3; ++i)
+  {
+    Check((data->GetArray("Status")->GetTuple1(i) == vtkFillElevationHoles::TOO_LARGE) ==
+        (data->GetArray("Area")->GetTuple1(i) == 13.0),
+      "the large hole is told");
+  }
+  fill->SetMaximumHoleSize(0.0);
+  fill->Update();
+  Check(fill->GetNumberOfFilledHoles() == 3, "0 is no limit");
+  Check(std::fabs(ProjectedArea(fill->GetOutput()) - 70.0) < 1e-10, "everything is filled");
+  const vtkIdType points = fill->GetOutput()->GetNumberOfPoints();
+  fill->SetSpacing(0.25);
+  fill->Update();
+  Check(fill->GetOutput()->GetNumberOfPoints() > points + 250, "Spacing makes patches finer");
+  Check(std::fabs(ProjectedArea(fill->GetOutput()) - 70.0) < 1e-10, "and conserves the area");
+}
+
+void TestRange()
+{
+  auto input =
+    MakeSheet(ThreeHoles, VTK_DOUBLE, [](int x, int y) { return std::sin(3.0 * x + 5.0 * y); });
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->SetSpacing(0.1);
+  fill->Update();
+  double before[6];
+  double after[6];
+  input->GetBounds(before);
+  fill->GetOutput()->GetBounds(after);
+  Check(after[4] >= before[4] && after[5] <= before[5], "z stays within that of the boundary");
+}
+
+void TestUnlimitedSpacing()
+{
+  auto input = MakeSheet(ThreeHoles, VTK_DOUBLE, Tilted);
+  for (double spacing : { 1e-6, 1e-15, 1e-300, 1e300 })
+  {
+    vtkNew<vtkTest::ErrorObserver> observer;
+    vtkNew<vtkFillElevationHoles> fill;
+    fill->AddObserver(vtkCommand::WarningEvent, observer);
+    fill->AddObserver(vtkCommand::ErrorEvent, observer);
+    fill->SetInputData(input);
+    fill->SetSpacing(spacing);
+    fill->Update();
+    Check(!observer->GetError(), "an extreme spacing is no error");
+    Check(observer->GetWarning() == (spacing < 1.0), "holes that take too much warn");
+    Check(fill->GetNumberOfHoles() == 3, "all holes are listed");
+    Check(fill->GetNumberOfFilledHoles() == (spacing < 1.0 ? 0 : 3), "and those possible filled");
+    Check(
+      fill->GetOutput()->GetNumberOfCells() >= input->GetNumberOfCells(), "the surface is there");
+    if (spacing < 1.0)
+    {
+      Check(
+        observer->GetWarningMessage().find("Hole 0") != std::string::npos, "the warning names it");
+      Check(fill->GetOutput(1)->GetCellData()->GetArray("Status")->GetTuple1(0) ==
+          vtkFillElevationHoles::FAILED,
+        "Status tells it");
+    }
+  }
+}
+
+/** The message of the error that the filter gives for an input; checks that its outputs are empty.
+ */
+std::string Refusal(vtkPolyData* input)
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->AddObserver(vtkCommand::ErrorEvent, observer);
+  fill->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  fill->SetInputData(input);
+  fill->Update();
+  for (int port = 0; port < 2; ++port)
+  {
+    Check(fill->GetOutput(port)->GetNumberOfPoints() == 0, "an error leaves no points");
+    Check(fill->GetOutput(port)->GetNumberOfCells() == 0, "an error leaves no cells");
+  }
+  Check(fill->GetNumberOfHoles() == 0, "an error leaves no counts");
+  return observer->GetErrorMessage();
+}
+
+void TestRefusals()
+{
+  const auto names = [](const std::string& message, const std::string& what) {
+    Check(message.find(what) != std::string::npos, "'" + message + "' names " + what);
+  };
+  // A vertex first: cell ids are not numbers of polygons.
+  vtkNew<vtkCellArray> vertices;
+  const vtkIdType vertex[1] = { 0 };
+  vertices->InsertNextCell(1, vertex);
+
+  auto quad = MakeFlatSheet({ "##" });
+  quad->SetVerts(vertices);
+  const vtkIdType corners[4] = { 0, 1, 2, 3 };
+  quad->GetPolys()->InsertNextCell(4, corners);
+  names(Refusal(quad), "Cell 5");
+
+  auto folded = MakeFlatSheet({ "##" });
+  folded->SetVerts(vertices);
+  const vtkIdType over[3] = { folded->GetPoints()->InsertNextPoint(0.2, 0.3, 1.0),
+    folded->GetPoints()->InsertNextPoint(1.2, 0.3, 1.0),
+    folded->GetPoints()->InsertNextPoint(1.2, 0.6, 1.0) };
+  folded->GetPolys()->InsertNextCell(3, over);
+  names(Refusal(folded), "Cell 5");
+
+  auto fan = MakeFlatSheet({ "#" });
+  const vtkIdType third[3] = { 0, 2, fan->GetPoints()->InsertNextPoint(0.5, 2.0, 0.0) };
+  fan->GetPolys()->InsertNextCell(3, third);
+  names(Refusal(fan), "2");
+
+  auto wall = MakeFlatSheet({ "#" });
+  const vtkIdType upright[3] = { 0, 1, wall->GetPoints()->InsertNextPoint(0.5, 0.0, 9.0) };
+  wall->GetPolys()->InsertNextCell(3, upright);
+  names(Refusal(wall), "Cell 2");
+
+  auto nan = MakeSheet({ "#" }, VTK_DOUBLE, [](int x, int) { return x / 0.0 - x / 0.0; });
+  names(Refusal(nan), "finite");
+
+  auto strip = MakeFlatSheet({ "#" });
+  vtkNew<vtkCellArray> strips;
+  strips->InsertNextCell(4, corners);
+  strip->SetStrips(strips);
+  names(Refusal(strip), "strip");
+}
+
+void TestSurfacesThatPass()
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->AddObserver(vtkCommand::WarningEvent, observer);
+  fill->AddObserver(vtkCommand::ErrorEvent, observer);
+  auto closed = MakeFlatSheet({ "##", "##" });
+  fill->SetInputData(closed);
+  fill->Update();
+  Check(
+    !observer->GetWarning() && !observer->GetError(), "a surface without holes passes in silence");
+  Check(fill->GetOutput()->GetPoints() == closed->GetPoints(), "with its own points");
+  Check(fill->GetOutput()->GetNumberOfCells() == 8, "and all cells");
+  Check(fill->GetOutput(1)->GetNumberOfCells() == 0, "and an empty report");
+
+  vtkNew<vtkPolyData> empty;
+  fill->SetInputData(empty);
+  fill->Update();
+  Check(observer->GetWarning() && !observer->GetError(), "an empty input gets a warning");
+  Check(fill->GetOutput()->GetNumberOfPoints() == 0, "and empty output");
+  observer->Clear();
+
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(closed->GetPoints());
+  fill->SetInputData(cloud);
+  fill->Update();
+  Check(observer->GetWarning() && !observer->GetError(), "points alone get a warning");
+  Check(fill->GetOutput()->GetNumberOfPoints() == 9, "and pass");
+  observer->Clear();
+
+  // Two squares that lie side by side, each with points of its own.
+  auto soup = MakeFlatSheet({ "#" });
+  const vtkIdType a = soup->GetPoints()->InsertNextPoint(1, 0, 0);
+  const vtkIdType b = soup->GetPoints()->InsertNextPoint(2, 0, 0);
+  const vtkIdType c = soup->GetPoints()->InsertNextPoint(1, 1, 0);
+  const vtkIdType triangle[3] = { a, b, c };
+  soup->GetPolys()->InsertNextCell(3, triangle);
+  fill->SetInputData(soup);
+  fill->Update();
+  Check(
+    observer->GetWarning() && !observer->GetError(), "points that should be merged get a warning");
+  Check(observer->GetWarningMessage().find("vtkCleanPolyData") != std::string::npos, "which helps");
+}
+
+void TestAbort()
+{
+  auto input = MakeSheet(ThreeHoles, VTK_DOUBLE, Tilted);
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->SetSpacing(0.01);
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    auto* filter = static_cast<vtkFillElevationHoles*>(caller);
+    if (filter->GetProgress() > 0.3)
+    {
+      filter->AbortExecuteOn();
+    }
+  });
+  fill->AddObserver(vtkCommand::ProgressEvent, stop);
+  fill->Update();
+  Check(fill->GetOutput(0)->GetNumberOfPoints() == 0, "an abort leaves an empty surface");
+  Check(fill->GetOutput(1)->GetNumberOfPoints() == 0, "an abort leaves an empty report");
+}
+
+void TestPrint()
+{
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetMaximumHoleSize(-1.0);
+  fill->SetMaximumHoleEdges(-1);
+  fill->SetSpacing(-1.0);
+  Check(fill->GetMaximumHoleSize() == 0.0 && fill->GetMaximumHoleEdges() == 0 &&
+      fill->GetSpacing() == 0.0,
+    "negative values are taken as 0");
+  std::ostringstream text;
+  fill->Print(text);
+  for (const char* name : { "MaximumHoleSize", "MaximumHoleEdges", "Spacing: 0",
+         "InterpolatePointData: On", "NumberOfHoles", "NumberOfFilledHoles" })
+  {
+    Check(text.str().find(name) != std::string::npos, std::string("Print shows ") + name);
+  }
+}
+} // namespace
+
+int TestFillElevationHoles(int, char*[])
+{
+  TestArrays(VTK_DOUBLE);
+  TestArrays(VTK_FLOAT);
+  TestNaNIsLeftOut();
+  TestReport();
+  TestRange();
+  TestUnlimitedSpacing();
+  TestRefusals();
+  TestSurfacesThatPass();
+  TestAbort();
+  TestPrint();
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
+}

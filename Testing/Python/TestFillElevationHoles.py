@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""vtkFillElevationHoles from Python: names, defaults, and a filled surface through NumPy."""
+import unittest
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+from vtkelevationsurface import vtkFillElevationHoles
+
+
+def sheet(size, is_empty, elevation):
+    """A sheet of size x size unit squares cut in two, without those for which is_empty(x, y)."""
+    x, y = numpy.meshgrid(numpy.arange(size + 1.0), numpy.arange(size + 1.0))
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(
+        numpy.column_stack([x.ravel(), y.ravel(), elevation(x, y).ravel()]), deep=True))
+    triangles = []
+    for j in range(size):
+        for i in range(size):
+            if not is_empty(i, j):
+                a, b = j * (size + 1) + i, (j + 1) * (size + 1) + i
+                triangles += [[a, a + 1, b + 1], [a, b + 1, b]]
+    cells = vtkCellArray()
+    connectivity = numpy.array(triangles, dtype=numpy.int64).ravel()
+    offsets = numpy.arange(0, len(connectivity) + 1, 3, dtype=numpy.int64)
+    cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True),
+                  numpy_to_vtkIdTypeArray(connectivity, deep=True))
+    data = vtkPolyData()
+    data.SetPoints(points)
+    data.SetPolys(cells)
+    return data
+
+
+def projected_area(data):
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    corners = points[vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
+    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return 0.5 * numpy.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+
+
+class TestFillElevationHoles(unittest.TestCase):
+    def setUp(self):
+        # A hole of 4 x 3 at the lower left, one of 2 x 2 at the upper right.
+        self.surface = sheet(
+            10, lambda i, j: (1 <= i < 5 and 2 <= j < 5) or (7 <= i < 9 and 6 <= j < 8),
+            lambda x, y: 0.1 * x * y)
+
+    def test_defaults(self):
+        fill = vtkFillElevationHoles()
+        self.assertEqual(fill.GetMaximumHoleSize(), 0.0)
+        self.assertEqual(fill.GetMaximumHoleEdges(), 0)
+        self.assertEqual(fill.GetSpacing(), 0.0)
+        self.assertTrue(fill.GetInterpolatePointData())
+        self.assertEqual(
+            (fill.FILLED, fill.TOO_LARGE, fill.TOO_MANY_EDGES, fill.FAILED), (0, 1, 2, 3))
+
+    def test_every_property_is_printed(self):
+        text = str(vtkFillElevationHoles())
+        for name in ("MaximumHoleSize", "MaximumHoleEdges", "Spacing", "InterpolatePointData",
+                     "NumberOfHoles", "NumberOfFilledHoles"):
+            self.assertIn(name + ":", text)
+
+    def test_fills_holes_and_reports_them(self):
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(self.surface)
+        fill.Update()
+        self.assertEqual((fill.GetNumberOfHoles(), fill.GetNumberOfFilledHoles()), (2, 2))
+        output, report = fill.GetOutput(0), fill.GetOutput(1)
+        self.assertAlmostEqual(projected_area(output), 100.0, places=10)
+
+        before = self.surface.GetNumberOfPoints()
+        numpy.testing.assert_array_equal(
+            vtk_to_numpy(output.GetPoints().GetData())[:before],
+            vtk_to_numpy(self.surface.GetPoints().GetData()))
+        filled = vtk_to_numpy(output.GetPointData().GetArray("FilledPoint"))
+        self.assertFalse(filled[:before].any())
+        self.assertTrue(filled[before:].all())
+
+        table = {name: vtk_to_numpy(report.GetCellData().GetArray(name)) for name in (
+            "HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
+            "Interpolation")}
+        order = numpy.argsort(table["Area"])
+        numpy.testing.assert_array_equal(table["HoleId"], [0, 1])
+        numpy.testing.assert_array_equal(table["Status"], [0, 0])
+        numpy.testing.assert_array_equal(table["Area"][order], [4.0, 12.0])
+        numpy.testing.assert_array_equal(table["NumberOfEdges"][order], [8, 14])
+        numpy.testing.assert_array_equal(table["Perimeter"][order], [8.0, 14.0])
+        self.assertEqual(table["NumberOfInsertedPoints"].sum(), filled.sum())
+        holes = vtk_to_numpy(output.GetCellData().GetArray("HoleId"))
+        self.assertTrue((holes[:self.surface.GetNumberOfCells()] == -1).all())
+        for hole in table["HoleId"]:
+            self.assertEqual(
+                (holes == hole).sum(),
+                table["NumberOfEdges"][hole] - 2 + 2 * table["NumberOfInsertedPoints"][hole])
+
+    def test_limits_leave_holes_open(self):
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(self.surface)
+        fill.SetMaximumHoleSize(4.9)  # the larger hole measures 5
+        fill.Update()
+        self.assertEqual((fill.GetNumberOfHoles(), fill.GetNumberOfFilledHoles()), (2, 1))
+        self.assertAlmostEqual(projected_area(fill.GetOutput()), 88.0, places=10)
+        status = vtk_to_numpy(fill.GetOutput(1).GetCellData().GetArray("Status"))
+        self.assertEqual(sorted(status), [fill.FILLED, fill.TOO_LARGE])
+        fill.SetMaximumHoleSize(0.0)
+        fill.SetMaximumHoleEdges(13)
+        fill.Update()
+        status = vtk_to_numpy(fill.GetOutput(1).GetCellData().GetArray("Status"))
+        self.assertEqual(sorted(status), [fill.FILLED, fill.TOO_MANY_EDGES])
+
+    def test_point_arrays_follow(self):
+        values = numpy_to_vtk(numpy.full(self.surface.GetNumberOfPoints(), 2.5), deep=True)
+        values.SetName("Amplitude")
+        self.surface.GetPointData().AddArray(values)
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(self.surface)
+        fill.Update()
+        amplitude = vtk_to_numpy(fill.GetOutput().GetPointData().GetArray("Amplitude"))
+        numpy.testing.assert_allclose(amplitude, 2.5, rtol=1e-15)
+        fill.InterpolatePointDataOff()
+        fill.Update()
+        amplitude = vtk_to_numpy(fill.GetOutput().GetPointData().GetArray("Amplitude"))
+        filled = vtk_to_numpy(fill.GetOutput().GetPointData().GetArray("FilledPoint"))
+        numpy.testing.assert_array_equal(numpy.isnan(amplitude), filled == 1)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["TestFillElevationHoles"])
