@@ -6,6 +6,7 @@
 set(es_kernel_concepts
   Predicates
   BinGrid
+  Surroundings
   Mesh
   Delaunay
   Constraints

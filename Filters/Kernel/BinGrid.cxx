@@ -27,6 +27,13 @@ void ChooseBins(BinGrid::Level& level, double width, double height, Index count)
   level.Rows = height > 0.0 ? static_cast<Index>(std::max(1.0, std::floor(bins / columns))) : 1;
   level.PerX = width > 0.0 ? std::min(level.Columns / width, DBL_MAX) : 0.0;
   level.PerY = height > 0.0 ? std::min(level.Rows / height, DBL_MAX) : 0.0;
+  level.BinWidth = width / level.Columns;
+  level.BinHeight = height / level.Rows;
+  const auto isPlain = [](double bin, double low, double extent) {
+    return bin > 1e-12 && bin < 1e12 && bin > 1e-12 * (std::fabs(low) + extent);
+  };
+  level.HasPlainBins = isPlain(level.BinWidth, level.OriginX, width) &&
+    isPlain(level.BinHeight, level.OriginY, height);
   const double area = width * height;
   level.Spacing =
     area > 0.0 && std::isfinite(area) ? std::sqrt(area / count) : std::max(width, height) / count;
@@ -171,6 +178,8 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
     starts[bin] = sum;
     sum += inBin;
   }
+  this->X.Reserve(static_cast<std::size_t>(count) + 8);
+  this->Y.Reserve(static_cast<std::size_t>(count) + 8);
   this->X.Resize(count);
   this->Y.Resize(count);
   this->Ids.Resize(count);

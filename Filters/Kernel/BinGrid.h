@@ -38,6 +38,10 @@ public:
     double OriginX = 0.0, OriginY = 0.0; ///< lower left corner of the points' bounding box
     double PerX = 0.0, PerY = 0.0;       ///< bins a unit of length
     Index Columns = 1, Rows = 1;
+    double BinWidth = 0.0, BinHeight = 0.0;
+    /** Whether the bins' bounds are where OriginX + k * BinWidth is, to a thousandth of a bin, and
+     * single precision holds squares. */
+    bool HasPlainBins = false;
     double Spacing = 0.0; ///< about the distance of neighbouring points, were they evenly spread
     std::size_t FirstBin = 0; ///< where its bins begin in Starts; there are Columns * Rows + 1
     std::size_t FirstRow = 0; ///< where its rows begin in RowLow, RowHigh and ChildrenOfRow
@@ -83,7 +87,7 @@ public:
   /** The level whose bin holds the point without further subdivision. */
   const Level& LeafLevel(const Point2& p) const;
 
-  Buffer<double> X, Y;       ///< coordinates by slot
+  Buffer<double> X, Y;       ///< coordinates by slot; eight more values may be read than there are
   Buffer<Index> Ids;         ///< the input's point id by slot
   double Scale = 1.0;        ///< what the input's coordinates were multiplied by
   std::vector<Level> Levels; ///< the whole cloud's first

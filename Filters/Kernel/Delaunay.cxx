@@ -4,6 +4,7 @@
 
 #include "BinGrid.h"
 #include "Predicates.h"
+#include "Surroundings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,36 +21,119 @@ constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 constexpr Index ReportStride = 4096;
 
 /**
- * All slots by increasing (y, x). A row of the grid is wholly below the next, so only the points of
- * each row are sorted.
+ * Sorts the slots of a row of the grid by (y, x). Spread over the row's height first, they are
+ * nearly sorted, which insertion finishes in linear time; where it does not, because the heights
+ * are uneven, the row is sorted by comparisons.
  */
-Buffer<Index> OrderFromLowest(const BinGrid& grid, const Progress& progress)
+class RowSorter
 {
+public:
+  explicit RowSorter(const BinGrid& grid)
+    : Grid(grid)
+  {
+  }
+
+  /** @param[out] order  room for the slots of the row */
+  void Sort(std::pair<Index, Index> slots, double low, double high, Index* order)
+  {
+    const Index count = slots.second - slots.first;
+    const double* y = this->Grid.Y.data();
+    const double perHeight = high > low ? (count - 1) / (high - low) : 0.0;
+    if (!(perHeight < std::numeric_limits<double>::max()))
+    {
+      return this->SortByComparisons(slots, order);
+    }
+    const auto bucketOf = [&](
+                            Index slot) { return static_cast<Index>((y[slot] - low) * perHeight); };
+    this->Ends.assign(static_cast<std::size_t>(count) + 1, 0);
+    for (Index slot = slots.first; slot < slots.second; ++slot)
+    {
+      ++this->Ends[bucketOf(slot) + 1];
+    }
+    for (Index bucket = 0; bucket < count; ++bucket)
+    {
+      this->Ends[bucket + 1] += this->Ends[bucket];
+    }
+    this->Entries.resize(count);
+    for (Index slot = slots.first; slot < slots.second; ++slot)
+    {
+      this->Entries[this->Ends[bucketOf(slot)]++] = { y[slot], slot };
+    }
+    Index budget = 8 * count;
+    for (Index i = 1; i < count; ++i)
+    {
+      const Entry entry = this->Entries[i];
+      Index at = i;
+      for (; at > 0 && this->IsBefore(entry, this->Entries[at - 1]); --at)
+      {
+        this->Entries[at] = this->Entries[at - 1];
+      }
+      this->Entries[at] = entry;
+      budget -= i - at;
+      if (budget < 0)
+      {
+        return this->SortByComparisons(slots, order);
+      }
+    }
+    for (Index i = 0; i < count; ++i)
+    {
+      order[i] = this->Entries[i].Slot;
+    }
+  }
+
+private:
   struct Entry
   {
     double Y;
     Index Slot;
   };
-  Buffer<Index> order;
-  order.Resize(grid.NumberOfPoints());
-  std::vector<Entry> row;
-  const BinGrid::Level& level = grid.Levels.front();
-  for (Index r = 0; r < level.Rows; ++r)
+
+  bool IsBefore(const Entry& p, const Entry& q) const
   {
-    const auto slots = grid.Slots(level, r, 0, level.Columns - 1);
-    row.clear();
+    return p.Y < q.Y || (p.Y == q.Y && this->Grid.X[p.Slot] < this->Grid.X[q.Slot]);
+  }
+
+  void SortByComparisons(std::pair<Index, Index> slots, Index* order)
+  {
+    this->Entries.clear();
     for (Index slot = slots.first; slot < slots.second; ++slot)
     {
-      row.push_back({ grid.Y[slot], slot });
+      this->Entries.push_back({ this->Grid.Y[slot], slot });
     }
-    std::sort(row.begin(), row.end(), [&grid](const Entry& p, const Entry& q) {
-      return p.Y < q.Y || (p.Y == q.Y && grid.X[p.Slot] < grid.X[q.Slot]);
-    });
-    for (Index i = 0; i < static_cast<Index>(row.size()); ++i)
+    std::sort(this->Entries.begin(), this->Entries.end(),
+      [this](const Entry& p, const Entry& q) { return this->IsBefore(p, q); });
+    for (const Entry& entry : this->Entries)
     {
-      order[slots.first + i] = row[i].Slot;
+      *order++ = entry.Slot;
     }
-    Report(progress, double(r) / level.Rows);
+  }
+
+  const BinGrid& Grid;
+  std::vector<Index> Ends;
+  std::vector<Entry> Entries;
+};
+
+/**
+ * All slots by increasing (y, x). A row of the grid is wholly below the next, so only the points of
+ * each row are sorted.
+ */
+Buffer<Index> OrderFromLowest(const BinGrid& grid, const Progress& progress)
+{
+  Buffer<Index> order;
+  order.Resize(grid.NumberOfPoints());
+  RowSorter sorter(grid);
+  const BinGrid::Level& level = grid.Levels.front();
+  for (Index row = 0; row < level.Rows; ++row)
+  {
+    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    if (slots.first < slots.second)
+    {
+      sorter.Sort(slots, grid.RowLow[row], grid.RowHigh[row], order.data() + slots.first);
+    }
+    if (row % 64 == 0)
+    {
+      Report(progress, double(row) / level.Rows);
+    }
   }
   return order;
 }
@@ -75,12 +159,92 @@ std::vector<Index> HullChain(const BinGrid& grid, const Buffer<Index>& order, Si
   return chain;
 }
 
+/**
+ * The points that may be on the convex hull, by increasing (y, x): those not well within the hull
+ * of the leftmost and rightmost points of the rows. Nearly all points are.
+ */
+Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
+{
+  const BinGrid::Level& level = grid.Levels.front();
+  Buffer<Index> extremes;
+  for (Index row = 0; row < level.Rows; ++row)
+  {
+    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    if (slots.first < slots.second)
+    {
+      const auto range =
+        std::minmax_element(grid.X.begin() + slots.first, grid.X.begin() + slots.second);
+      Index left = static_cast<Index>(range.first - grid.X.begin());
+      Index right = static_cast<Index>(range.second - grid.X.begin());
+      if (IsLower(grid.PointAt(right), grid.PointAt(left)))
+      {
+        std::swap(left, right);
+      }
+      extremes.Append(left);
+      if (right != left)
+      {
+        extremes.Append(right);
+      }
+    }
+  }
+  const std::vector<Index> rightChain = HullChain(grid, extremes, Negative);
+  const std::vector<Index> leftChain = HullChain(grid, extremes, Positive);
+
+  // Where a chain is at a height; wrong by a few roundoffs of the greatest coordinate.
+  const auto at = [&grid](const std::vector<Index>& chain, std::size_t& edge, double y) {
+    while (edge + 2 < chain.size() && grid.Y[chain[edge + 1]] < y)
+    {
+      ++edge;
+    }
+    const Point2 p = grid.PointAt(chain[edge]), q = grid.PointAt(chain[edge + 1]);
+    return p.X + (q.X - p.X) * ((y - p.Y) / (q.Y - p.Y));
+  };
+  const double margin = level.HasPlainBins
+    ? 1e-12 * (std::fabs(level.OriginX) + level.Columns * level.BinWidth)
+    : Infinity;
+  Buffer<Index> candidates;
+  std::size_t leftEdge = 0, rightEdge = 0;
+  const Point2 lowest = grid.PointAt(extremes[0]);
+  const Point2 highest = grid.PointAt(extremes[extremes.size() - 1]);
+  for (Index row = 0; row < level.Rows; ++row)
+  {
+    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    if (slots.first == slots.second)
+    {
+      continue;
+    }
+    // A chain is convex: over the row's height it is innermost at its lower or its upper end.
+    const double low = grid.RowLow[row], high = grid.RowHigh[row];
+    double left = Infinity, right = -Infinity;
+    if (low > lowest.Y && high < highest.Y)
+    {
+      left = at(leftChain, leftEdge, low);
+      right = at(rightChain, rightEdge, low);
+      left = std::max(left, at(leftChain, leftEdge, high));
+      right = std::min(right, at(rightChain, rightEdge, high));
+      left += margin;
+      right -= margin;
+    }
+    for (Index i = slots.first; i < slots.second; ++i)
+    {
+      const double x = grid.X[order[i]];
+      if (!(x > left && x < right)) // also where a chain is not a number
+      {
+        candidates.Append(order[i]);
+      }
+    }
+  }
+  return candidates;
+}
+
 /** Looks for the apex of the triangle over an edge: the voxel traversal search. */
 class ApexSearch
 {
 public:
-  explicit ApexSearch(const BinGrid& grid)
+  ApexSearch(const BinGrid& grid, bool useWideInstructions)
     : Grid(grid)
+    , Around(grid)
+    , UseAround(useWideInstructions && Surroundings::IsSupported())
   {
   }
 
@@ -89,7 +253,8 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
-    this->FirstHeight = 1.3 * this->Grid.LeafLevel(this->A).Spacing;
+    this->FirstHeight = 0.0;
+    this->HasAround = this->UseAround && this->Around.Gather(slot);
   }
 
   /**
@@ -104,6 +269,17 @@ public:
   {
     this->Target = b;
     this->B = this->Grid.PointAt(b);
+    if (this->HasAround)
+    {
+      if (std::uint64_t candidates = this->Around.FindCandidates(b))
+      {
+        return this->BestOf(candidates);
+      }
+    }
+    if (this->FirstHeight == 0.0)
+    {
+      this->FirstHeight = 1.3 * this->Grid.LeafLevel(this->A).Spacing;
+    }
     this->EdgeX = this->B.X - this->A.X;
     this->EdgeY = this->B.Y - this->A.Y;
     this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
@@ -136,6 +312,21 @@ public:
   }
 
 private:
+  /** Nearly always there is one candidate; else exact comparisons decide. */
+  Index BestOf(std::uint64_t candidates)
+  {
+    Index best = None;
+    for (int i = 0; candidates; ++i, candidates >>= 1)
+    {
+      if (candidates & 1)
+      {
+        const Index slot = this->Around.SlotOf(i);
+        best = best == None || this->IsBetter(slot, best) ? slot : best;
+      }
+    }
+    return best;
+  }
+
   static double PositionOfHeight(double height) { return 0.5 * (height - 0.25 / height); }
 
   /** An upper bound of s for the circle through the edge and the best point. */
@@ -295,7 +486,8 @@ private:
         {
           continue;
         }
-        if (!(isClear && difference < -error) && (slot == this->Best || !this->IsBetter(slot)))
+        if (!(isClear && difference < -error) &&
+          (slot == this->Best || !this->IsBetter(slot, this->Best)))
         {
           continue;
         }
@@ -309,14 +501,14 @@ private:
   }
 
   /**
-   * Whether p beats the best point, exactly; of co-circular points the one that the fan of the
+   * Whether a point beats another one, exactly; of co-circular points the one that the fan of the
    * lowest vertex of their polygon asks for: that vertex itself, or the neighbour of the edge's
    * other end when the edge leaves from it.
    */
-  bool IsBetter(Index slot) const
+  bool IsBetter(Index slot, Index other) const
   {
     const Point2 p = this->Grid.PointAt(slot);
-    const Point2 best = this->Grid.PointAt(this->Best);
+    const Point2 best = this->Grid.PointAt(other);
     const Sign side = InCircle(this->A, this->B, best, p);
     if (side != Zero)
     {
@@ -333,6 +525,9 @@ private:
   }
 
   const BinGrid& Grid;
+  Surroundings Around;
+  const bool UseAround;
+  bool HasAround = false;
 
   // The edge.
   Index Origin = None, Target = None;
@@ -354,8 +549,7 @@ private:
  * everything below is done: each is an edge of a triangle below, or of the hull.
  */
 void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Index>& rightChain,
-  const std::vector<Index>& leftChain, double maximumEdgeLength, const Progress& progress,
-  Buffer<Index>& triangles)
+  const std::vector<Index>& leftChain, const DelaunayOptions& options, Buffer<Index>& triangles)
 {
   const Index count = grid.NumberOfPoints();
   Buffer<Index> first, last;
@@ -370,7 +564,8 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
     last[leftChain[i]] = leftChain[i + 1];
   }
 
-  const double limit = maximumEdgeLength > 0.0 ? maximumEdgeLength * grid.Scale : Infinity;
+  const bool isLimited = options.MaximumEdgeLength > 0.0;
+  const double limit = isLimited ? options.MaximumEdgeLength * grid.Scale : Infinity;
   const double limitSquared = limit * limit;
   const auto isShort = [&](Index p, Index q) {
     const double dx = grid.X[p] - grid.X[q], dy = grid.Y[p] - grid.Y[q];
@@ -380,9 +575,10 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
   // Euler: 2 n - 2 - h triangles.
   const std::size_t hull = rightChain.size() + leftChain.size() - 2;
   const std::size_t total = 2 * static_cast<std::size_t>(count) - 2 - hull;
-  triangles.Reserve(maximumEdgeLength > 0.0 ? 0 : 3 * total);
+  triangles.Reserve(isLimited ? 0 : 3 * total);
 
-  ApexSearch search(grid);
+  const Progress progress = Part(options.Monitor, 0.2, 1.0);
+  ApexSearch search(grid, options.UseWideInstructions);
   std::size_t made = 0;
   for (Index i = 0; i + 1 < count; ++i)
   {
@@ -393,6 +589,10 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
     const Index lowest = order[i];
     const Index end = last[lowest];
     Index current = first[lowest];
+    if (current == end)
+    {
+      continue;
+    }
     search.SetOrigin(lowest);
     while (current != end)
     {
@@ -449,15 +649,15 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& option
   }
 
   const Buffer<Index> order = OrderFromLowest(grid, Part(options.Monitor, 0.1, 0.2));
-  const std::vector<Index> rightChain = HullChain(grid, order, Negative);
-  const std::vector<Index> leftChain = HullChain(grid, order, Positive);
+  const Buffer<Index> outermost = HullCandidates(grid, order);
+  const std::vector<Index> rightChain = HullChain(grid, outermost, Negative);
+  const std::vector<Index> leftChain = HullChain(grid, outermost, Positive);
   if (rightChain == leftChain)
   {
     return result; // all points on one line
   }
   result.NumberOfHullPoints = static_cast<Index>(rightChain.size() + leftChain.size() - 2);
-  Grow(grid, order, rightChain, leftChain, options.MaximumEdgeLength,
-    Part(options.Monitor, 0.2, 1.0), result.Triangles);
+  Grow(grid, order, rightChain, leftChain, options, result.Triangles);
   Report(options.Monitor, 1.0);
   return result;
 }

@@ -58,6 +58,9 @@ struct DelaunayOptions
   double MaximumEdgeLength = 0.0;
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
   Progress Monitor;
+  /** Off: the search without wide instructions, as on processors without them. The result is the
+   * same. */
+  bool UseWideInstructions = true;
 };
 
 struct Triangulation

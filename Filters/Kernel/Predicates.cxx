@@ -349,6 +349,30 @@ bool AreWithin(std::initializer_list<Point2> points, double least, double greate
   return true;
 }
 
+/** Whether a difference is an integer so small that products of four of them are exact in double.
+ */
+inline bool IsSmallInteger(double difference)
+{
+  return std::fabs(difference) < 4096.0 &&
+    difference == static_cast<double>(static_cast<int>(difference));
+}
+
+/** Whether p - d loses nothing to rounding, for each p. */
+bool AreExact(std::initializer_list<Point2> points, const Point2& d)
+{
+  for (const Point2& p : points)
+  {
+    double difference, errorX, errorY;
+    TwoSum(p.X, -d.X, difference, errorX);
+    TwoSum(p.Y, -d.Y, difference, errorY);
+    if (errorX != 0.0 || errorY != 0.0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /** The determinants themselves, for any exact number type. */
 template <typename Number>
 Sign OrientationOf(const Number& acx, const Number& acy, const Number& bcx, const Number& bcy)
@@ -400,6 +424,18 @@ Sign ExactOrientation(const Point2& a, const Point2& b, const Point2& c)
 
 Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
 {
+  // On lattices co-circular points are the rule, and differences small integers: the determinant is
+  // below 2^53, so every step of it is exact in double.
+  const double adx = a.X - d.X, ady = a.Y - d.Y, bdx = b.X - d.X, bdy = b.Y - d.Y, cdx = c.X - d.X,
+               cdy = c.Y - d.Y;
+  if (IsSmallInteger(adx) && IsSmallInteger(ady) && IsSmallInteger(bdx) && IsSmallInteger(bdy) &&
+    IsSmallInteger(cdx) && IsSmallInteger(cdy) && AreExact({ a, b, c }, d))
+  {
+    const double determinant = (adx * adx + ady * ady) * (bdx * cdy - cdx * bdy) +
+      (bdx * bdx + bdy * bdy) * (cdx * ady - adx * cdy) +
+      (cdx * cdx + cdy * cdy) * (adx * bdy - bdx * ady);
+    return determinant > 0.0 ? Positive : (determinant < 0.0 ? Negative : Zero);
+  }
   // As above for products of four: multiples of 2^-1068, at most 2^970.
   if (!AreWithin({ a, b, c, d }, std::ldexp(1.0, -215), std::ldexp(1.0, 240)))
   {

@@ -179,7 +179,7 @@ public:
   /** Gives back what Reserve took and nobody filled. */
   void Shrink()
   {
-    if (this->Length<this->Capacity&& this->Length> 0)
+    if (this->Length > 0 && this->Length != this->Capacity)
     {
       this->Reallocate(this->Length);
     }

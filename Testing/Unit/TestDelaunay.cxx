@@ -70,6 +70,12 @@ void ExpectValid(const Cloud& cloud, const std::string& name)
   SCOPED_TRACE(name);
   const Triangulation triangulation = Triangulate(cloud);
   EXPECT_EQ(FindingsOf(cloud, triangulation), "");
+  DelaunayOptions options;
+  options.UseWideInstructions = false;
+  const Triangulation narrow = elevation::Triangulate(cloud.View(), options);
+  EXPECT_TRUE(std::equal(triangulation.Triangles.begin(), triangulation.Triangles.end(),
+    narrow.Triangles.begin(), narrow.Triangles.end()))
+    << "wide instructions change the triangles";
   std::mt19937_64 random(5);
   const Cloud shuffled = cloud.Shuffled(random);
   EXPECT_TRUE(TriangleSet(cloud, triangulation) == TriangleSet(shuffled, Triangulate(shuffled)))

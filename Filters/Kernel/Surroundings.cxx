@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Surroundings.h"
+
+#include "Predicates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#define ELEVATION_HAS_AVX2
+#include <immintrin.h>
+#endif
+
+namespace elevation
+{
+namespace
+{
+constexpr Index ColumnsToEachSide = 2;
+constexpr Index RowsAbove = 3;
+constexpr float Infinity = std::numeric_limits<float>::infinity();
+} // namespace
+
+#ifdef ELEVATION_HAS_AVX2
+
+namespace
+{
+__attribute__((target("avx2,fma"), always_inline)) inline __m256 EightRelative(
+  const double* values, __m256d from)
+{
+  const __m128 low = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(values), from));
+  const __m128 high = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(values + 4), from));
+  return _mm256_set_m128(high, low);
+}
+} // namespace
+
+bool Surroundings::IsSupported()
+{
+  static const bool isSupported = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return isSupported;
+}
+
+__attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
+{
+  this->Count = 0;
+  this->Origin = origin;
+  const BinGrid::Level& level = this->Grid.Levels.front();
+  if (!level.HasPlainBins)
+  {
+    return false;
+  }
+  const double originX = this->Grid.X[origin], originY = this->Grid.Y[origin];
+  const Index row = level.Row(originY), column = level.Column(originX);
+  const Index firstColumn = std::max(column - ColumnsToEachSide, 0);
+  const Index lastColumn = std::min(column + ColumnsToEachSide, level.Columns - 1);
+  const Index lastRow = std::min(row + RowsAbove, level.Rows - 1);
+
+  const __m256d x0 = _mm256_set1_pd(originX), y0 = _mm256_set1_pd(originY);
+  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  int count = 0;
+  for (Index r = row; r <= lastRow; ++r)
+  {
+    if (level.HasChildren && !this->Grid.ChildrenOfRow[level.FirstRow + r].empty())
+    {
+      return false;
+    }
+    const auto slots = this->Grid.Slots(level, r, firstColumn, lastColumn);
+    if (count + (slots.second - slots.first) > Capacity)
+    {
+      return false;
+    }
+    // Whole vectors: what is too much is overwritten by the next row, or made not a number below.
+    for (Index slot = slots.first; slot < slots.second; slot += 8)
+    {
+      const int at = count + (slot - slots.first);
+      _mm256_storeu_ps(this->X + at, EightRelative(this->Grid.X.data() + slot, x0));
+      _mm256_storeu_ps(this->Y + at, EightRelative(this->Grid.Y.data() + slot, y0));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(this->Slots + at),
+        _mm256_add_epi32(_mm256_set1_epi32(slot), lanes));
+    }
+    count += slots.second - slots.first;
+  }
+  const __m256 nothing = _mm256_set1_ps(std::numeric_limits<float>::quiet_NaN());
+  _mm256_storeu_ps(this->X + count, nothing);
+  _mm256_storeu_ps(this->Y + count, nothing);
+  this->Count = count;
+
+  // The bounds of the bins as BinGrid finds them are those below but for rounding, which
+  // BinGrid::Level::HasPlainBins bounds by a thousandth of a bin.
+  const double width = level.BinWidth, height = level.BinHeight;
+  const double margin = 0.002;
+  const double left = originX - (level.OriginX + (firstColumn + margin) * width);
+  const double right = (level.OriginX + (lastColumn + 1 - margin) * width) - originX;
+  const double top = (level.OriginY + (lastRow + 1 - margin) * height) - originY;
+  this->Left = firstColumn == 0 ? Infinity : static_cast<float>(left);
+  this->Right = lastColumn == level.Columns - 1 ? Infinity : static_cast<float>(right);
+  this->Top = lastRow == level.Rows - 1 ? Infinity : static_cast<float>(top);
+  const double across = (2 * ColumnsToEachSide + 1) * width, up = (RowsAbove + 1) * height;
+  this->ReachSquared = static_cast<float>(across * across + up * up);
+  this->Margin = static_cast<float>(0.01 * std::min(width, height));
+  return true;
+}
+
+__attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(Index b) const
+{
+  const Point2 a = this->Grid.PointAt(this->Origin);
+  const Point2 end = this->Grid.PointAt(b);
+  const float bx = static_cast<float>(end.X - a.X), by = static_cast<float>(end.Y - a.Y);
+  const float lengthSquared = bx * bx + by * by;
+  if (!(lengthSquared <= this->ReachSquared))
+  {
+    return 0;
+  }
+  // Points and edge are shorter than the reach D. With u = 2^-24, cross is then wrong by at most
+  // 4 u D^2, and dot by at most 12 u D^2.
+  const float error = 24.0f * 0x1p-24f * this->ReachSquared;
+  const __m256 edgeX = _mm256_set1_ps(bx), edgeY = _mm256_set1_ps(by);
+  const __m256 errors = _mm256_set1_ps(error), one = _mm256_set1_ps(1.0f);
+  const __m256 clear = _mm256_set1_ps(16.0f * error), minusError = _mm256_set1_ps(-error);
+  const __m256 infinity = _mm256_set1_ps(Infinity);
+  const __m256 signBit = _mm256_set1_ps(-0.0f);
+
+  __m256 lower[(Capacity + 8) / 8];
+  __m256 least = infinity;
+  const int vectors = (this->Count + 7) / 8;
+  for (int i = 0; i < vectors; ++i)
+  {
+    const __m256 x = _mm256_load_ps(this->X + 8 * i), y = _mm256_load_ps(this->Y + 8 * i);
+    const __m256 cross = _mm256_fmsub_ps(edgeX, y, _mm256_mul_ps(edgeY, x));
+    const __m256 dot =
+      _mm256_fmadd_ps(x, _mm256_sub_ps(x, edgeX), _mm256_mul_ps(y, _mm256_sub_ps(y, edgeY)));
+    const __m256 isLeft = _mm256_cmp_ps(cross, clear, _CMP_GT_OQ);
+    // Near the edge's line: neither clearly left nor clearly right. Not the ends themselves.
+    const __m256 isNear = _mm256_andnot_ps(isLeft, _mm256_cmp_ps(cross, minusError, _CMP_GE_OQ));
+    for (int near = _mm256_movemask_ps(isNear); near; near &= near - 1)
+    {
+      const Index slot = this->Slots[8 * i + __builtin_ctz(near)];
+      if (slot != b && slot != this->Origin &&
+        Orientation(a, end, this->Grid.PointAt(slot)) == Positive)
+      {
+        return 0;
+      }
+    }
+    // quotient +- error / cross (1 + |quotient|): cross is wrong by less than a sixteenth here,
+    // which the bounds' being twice as wide as needed covers.
+    const __m256 perCross = _mm256_div_ps(one, cross);
+    const __m256 quotient = _mm256_mul_ps(dot, perCross);
+    const __m256 spread = _mm256_mul_ps(
+      _mm256_mul_ps(errors, perCross), _mm256_add_ps(one, _mm256_andnot_ps(signBit, quotient)));
+    lower[i] = _mm256_blendv_ps(infinity, _mm256_sub_ps(quotient, spread), isLeft);
+    least =
+      _mm256_min_ps(least, _mm256_blendv_ps(infinity, _mm256_add_ps(quotient, spread), isLeft));
+  }
+  __m128 half = _mm_min_ps(_mm256_castps256_ps128(least), _mm256_extractf128_ps(least, 1));
+  half = _mm_min_ps(half, _mm_movehl_ps(half, half));
+  half = _mm_min_ss(half, _mm_shuffle_ps(half, half, 1));
+  const float upper = _mm_cvtss_f32(half);
+  if (!(upper < Infinity))
+  {
+    return 0;
+  }
+
+  // The disc of that quotient, within the window?
+  const float s = 0.5f * upper;
+  const float radius = std::sqrt(lengthSquared * (0.25f + s * s)) * 1.0001f + this->Margin;
+  const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
+  if (!(centerX - radius > -this->Left && centerX + radius < this->Right &&
+        centerY + radius < this->Top))
+  {
+    return 0;
+  }
+  const __m256 uppers = _mm256_set1_ps(upper);
+  std::uint64_t candidates = 0;
+  for (int i = 0; i < vectors; ++i)
+  {
+    const int within = _mm256_movemask_ps(_mm256_cmp_ps(lower[i], uppers, _CMP_LE_OQ));
+    candidates |= static_cast<std::uint64_t>(within) << (8 * i);
+  }
+  return candidates;
+}
+
+#else
+
+bool Surroundings::IsSupported()
+{
+  return false;
+}
+
+bool Surroundings::Gather(Index)
+{
+  return false;
+}
+
+std::uint64_t Surroundings::FindCandidates(Index) const
+{
+  return 0;
+}
+
+#endif
+
+} // namespace elevation
