@@ -349,7 +349,7 @@ int vtkFillElevationHoles::RequestData(
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     Mesh mesh;
     elevation::ToMesh(input, mesh);
-    mesh.ConnectTwins();
+    mesh.ConnectTwins(static_cast<Index>(elevation::FirstPolygon(input)));
     elevation::Report(progress, 0.1);
     const Holes holes = elevation::FindHoles(mesh,
       static_cast<Index>(elevation::FirstPolygon(input)), elevation::Part(progress, 0.1, 0.2));

@@ -222,7 +222,7 @@ int vtkTrimOutwardTriangles::RequestData(
     elevation::Report(progress, 0.0);
     Mesh mesh;
     elevation::ToMesh(input, mesh);
-    mesh.ConnectTwins();
+    mesh.ConnectTwins(static_cast<Index>(elevation::FirstPolygon(input)));
     elevation::Report(progress, 0.2);
     elevation::FindHoles(mesh, static_cast<Index>(elevation::FirstPolygon(input)),
       elevation::Part(progress, 0.2, 0.3)); // for its proof that nothing is covered twice

@@ -9,7 +9,7 @@
 namespace elevation
 {
 
-void Mesh::ConnectTwins()
+void Mesh::ConnectTwins(Index firstCell)
 {
   const Index count = this->NumberOfHalfEdges();
   this->Twins.assign(count, Border);
@@ -52,9 +52,11 @@ void Mesh::ConnectTwins()
       const bool isPair = last - first == 2;
       if (last - first > 2 || (isPair && this->Origin(first[0]) == this->Origin(first[1])))
       {
-        throw Error("Triangle " + std::to_string(Triangle(last[-1])) +
-          " shares the edge of points " + std::to_string(v) + " and " +
-          std::to_string(high(*first)) + " with triangle " + std::to_string(Triangle(first[0])) +
+        const auto cell = [firstCell](Index h) {
+          return std::to_string(static_cast<std::int64_t>(firstCell) + Triangle(h));
+        };
+        throw Error("Cell " + cell(last[-1]) + " shares the edge of points " + std::to_string(v) +
+          " and " + std::to_string(high(*first)) + " with cell " + cell(first[0]) +
           (last - first > 2
               ? " and another one: an edge of a surface has at most two triangles."
               : " on the same side: the triangles overlap or are oriented differently."));

@@ -52,10 +52,11 @@ public:
 
   /**
    * Fills Twins from Triangles. Linear in time and memory.
+   * @param[in] firstCell  what messages add to the id of a triangle to name it as the user's cell
    * @throws Error naming the triangle and its edge when an edge has more than two triangles or two
    *         that run the same way (the mesh is not a consistently oriented manifold).
    */
-  void ConnectTwins();
+  void ConnectTwins(Index firstCell = 0);
 };
 
 /**

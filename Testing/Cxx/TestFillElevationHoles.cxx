@@ -432,9 +432,10 @@ void TestRefusals()
   names(Refusal(folded), "Cell 5");
 
   auto fan = MakeFlatSheet({ "#" });
+  fan->SetVerts(vertices);
   const vtkIdType third[3] = { 0, 2, fan->GetPoints()->InsertNextPoint(0.5, 2.0, 0.0) };
   fan->GetPolys()->InsertNextCell(3, third);
-  names(Refusal(fan), "2");
+  names(Refusal(fan), "Cell 3");
 
   auto wall = MakeFlatSheet({ "#" });
   const vtkIdType upright[3] = { 0, 1, wall->GetPoints()->InsertNextPoint(0.5, 0.0, 9.0) };
