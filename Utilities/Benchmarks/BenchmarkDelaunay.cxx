@@ -1,0 +1,784 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Times vtkGridDelaunay2D beside other Delaunay codes on the same points, and checks the results
+// against each other. See README.md for how to run it and how to read what it prints.
+//
+// For each data set:
+//   1. Trial: every code runs once in a process of its own. This tells its peak of memory, and
+//      whether it survives within the time limit.
+//   2. Check: in another process the survivors run once and their meshes are examined.
+//   3. Timing: in that same process they run in turn, A B C A B C ..., so that whatever else the
+//      machine does meets all of them alike.
+#include "ChildProcess.h"
+#include "Competitor.h"
+#include "MeshCheck.h"
+#include "PointSets.h"
+
+#include "vtkObject.h"
+#include "vtkVersion.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace
+{
+using namespace benchmark;
+
+constexpr int MaximumRepeats = 101;
+constexpr std::size_t MaximumCompetitors = 3;
+constexpr Index MostPointsOfVTK = 20000;
+
+// ---- options -----------------------------------------------------------------------------------
+
+const char* const Usage =
+  R"(Usage: BenchmarkDelaunay [options]
+
+Times vtkGridDelaunay2D beside CGAL (where built with it) and vtkDelaunay2D on the same points, in
+one process and in turn, measures peak memory, and checks the results against each other.
+
+  --sets LIST       generated data sets, or "all"; default L,D,U where no file is named
+  --points LIST     numbers of points of the generated sets; default 886639
+  --seed N          seed of the generators; default 1
+  --file FILE       a .f64 (little-endian doubles x y z) or .vtp file; may be given several times
+  --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA, where that is set
+  --repeats N       timed runs of each code; default 5
+  --time-limit S    seconds a code may take for its trial, and for all its timed runs together (it
+                    is then left out of further rounds); default 60, 0 is no limit
+  --no-cgal         leaves CGAL out
+  --vtk             runs vtkDelaunay2D on more than 20000 points too
+  --no-vtk          leaves vtkDelaunay2D out
+  --no-check        does not check the results
+  --json FILE       writes all figures to a file
+  --help            shows this text
+
+Data sets, all in random order
+)";
+
+const char* const Examples = R"(
+Examples
+  BenchmarkDelaunay --points 100000,886639
+  BenchmarkDelaunay --sets U,clustered,tracks,voids --no-vtk
+  BenchmarkDelaunay --file Data/jacksboro_fault.vtp --json figures.json
+
+The exit code is 1 when a result of vtkGridDelaunay2D is wrong or missing, 2 for a wrong option.
+)";
+
+struct Options
+{
+  std::vector<std::string> Sets;
+  std::vector<Index> Points{ 886639 };
+  std::vector<std::string> Files;
+  std::uint64_t Seed = 1;
+  int Repeats = 5;
+  unsigned TimeLimit = 60;
+  bool UseCGAL = true;
+  bool UseVTK = true;
+  bool UseVTKAlways = false;
+  bool Check = true;
+  std::string JSONFile;
+};
+
+class UsageError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+std::vector<std::string> Split(const std::string& list)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(list);
+  for (std::string part; std::getline(stream, part, ',');)
+  {
+    if (!part.empty())
+    {
+      parts.push_back(part);
+    }
+  }
+  return parts;
+}
+
+std::uint64_t ToNumber(
+  const std::string& option, const std::string& text, std::uint64_t least, std::uint64_t most)
+{
+  const bool isNumber =
+    !text.empty() && text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos;
+  const std::uint64_t number = isNumber ? std::stoull(text) : 0;
+  if (!isNumber || number < least || number > most)
+  {
+    throw UsageError(option + " takes whole numbers from " + std::to_string(least) + " to " +
+      std::to_string(most) + ", not \"" + text + "\"");
+  }
+  return number;
+}
+
+void AddSets(const std::string& list, std::vector<std::string>& sets)
+{
+  for (const std::string& name : Split(list))
+  {
+    bool isKnown = false;
+    std::string known;
+    for (const Generator& generator : Generators())
+    {
+      if (name == generator.Name || name == "all")
+      {
+        sets.push_back(generator.Name);
+        isKnown = true;
+      }
+      known += std::string(" ") + generator.Name;
+    }
+    if (!isKnown)
+    {
+      throw UsageError("there is no data set \"" + name + "\"; there are: all" + known);
+    }
+  }
+}
+
+void AddExtraFiles(std::vector<std::string>& files)
+{
+  const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
+  if (!folder || !*folder)
+  {
+    std::fprintf(stderr, "--extra: skipped, ELEVATION_SURFACE_EXTRA_DATA is not set\n");
+    return;
+  }
+  const std::vector<std::string> found = FilesOf(folder);
+  files.insert(files.end(), found.begin(), found.end());
+}
+
+/** @return false when the help was asked for */
+bool ReadOptions(int argc, char* argv[], Options& options)
+{
+  constexpr std::uint64_t any = 1000000000000000000u;
+  bool isExtra = false;
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string option = argv[i];
+    const auto value = [&]() {
+      if (i + 1 >= argc)
+      {
+        throw UsageError(option + " needs a value");
+      }
+      return std::string(argv[++i]);
+    };
+    if (option == "--help" || option == "-h")
+    {
+      return false;
+    }
+    else if (option == "--sets")
+    {
+      AddSets(value(), options.Sets);
+    }
+    else if (option == "--points")
+    {
+      options.Points.clear();
+      for (const std::string& count : Split(value()))
+      {
+        options.Points.push_back(
+          static_cast<Index>(ToNumber(option, count, 10, elevation::MaximumNumberOfPoints)));
+      }
+    }
+    else if (option == "--seed")
+    {
+      options.Seed = ToNumber(option, value(), 0, any);
+    }
+    else if (option == "--file")
+    {
+      options.Files.push_back(value());
+    }
+    else if (option == "--extra")
+    {
+      isExtra = true;
+      AddExtraFiles(options.Files);
+    }
+    else if (option == "--repeats")
+    {
+      options.Repeats = static_cast<int>(ToNumber(option, value(), 1, MaximumRepeats));
+    }
+    else if (option == "--time-limit")
+    {
+      options.TimeLimit = static_cast<unsigned>(ToNumber(option, value(), 0, 1000000));
+    }
+    else if (option == "--no-cgal")
+    {
+      options.UseCGAL = false;
+    }
+    else if (option == "--vtk")
+    {
+      options.UseVTKAlways = true;
+    }
+    else if (option == "--no-vtk")
+    {
+      options.UseVTK = false;
+    }
+    else if (option == "--no-check")
+    {
+      options.Check = false;
+    }
+    else if (option == "--json")
+    {
+      options.JSONFile = value();
+    }
+    else
+    {
+      throw UsageError("there is no option \"" + option + "\"; --help lists them");
+    }
+  }
+  if (options.Sets.empty() && options.Files.empty() && !isExtra)
+  {
+    AddSets("L,D,U", options.Sets);
+  }
+  return true;
+}
+
+std::vector<PointSource> SourcesOf(const Options& options)
+{
+  std::vector<PointSource> sources;
+  for (const Index count : options.Points)
+  {
+    for (const std::string& name : options.Sets)
+    {
+      for (const Generator& generator : Generators())
+      {
+        if (name == generator.Name)
+        {
+          const auto generate = generator.Generate;
+          const std::uint64_t seed = options.Seed;
+          sources.push_back({ name, [generate, count, seed]() { return generate(count, seed); } });
+        }
+      }
+    }
+  }
+  for (const std::string& file : options.Files)
+  {
+    sources.push_back(FileSource(file));
+  }
+  return sources;
+}
+
+// ---- measuring ---------------------------------------------------------------------------------
+// Results are plain values of fixed size: they come out of a child process.
+
+enum class Verdict
+{
+  NotChecked,
+  Right,
+  Wrong
+};
+
+/** What is known of one code on one data set. */
+struct Result
+{
+  bool TakesPart = false;
+  Outcome Trial;
+  Index Points = 0;          ///< of the data set
+  double PeakBytes = -1.0;   ///< growth of the peak during Run; -1: not known
+  double OutputBytes = 0.0;  ///< of it, what is the output
+  double TrialSeconds = 0.0; ///< the run in a fresh process
+  int Runs = 0;
+  std::array<double, MaximumRepeats> Seconds{};
+  std::array<double, MaximumRepeats> ProcessorSeconds{}; ///< of all threads
+  Verdict Checked = Verdict::NotChecked;
+  std::size_t Triangles = 0;
+  char Remark[160] = "";
+
+  /** Memory the code needed for itself, above input and output, in bytes a point; -1: not known. */
+  double BytesPerPoint() const
+  {
+    return this->PeakBytes < 0.0
+      ? -1.0
+      : std::max(0.0, this->PeakBytes - this->OutputBytes) / this->Points;
+  }
+};
+
+using Results = std::array<Result, MaximumCompetitors>;
+using Competitors = std::vector<std::unique_ptr<Competitor>>;
+
+/** The first is ours; the others are compared with it. */
+Competitors MakeCompetitors(const Options& options)
+{
+  Competitors competitors;
+  competitors.push_back(NewGridDelaunay());
+#if defined(ES_BENCHMARK_CGAL)
+  if (options.UseCGAL)
+  {
+    competitors.push_back(NewCGALDelaunay());
+  }
+#endif
+  if (options.UseVTK)
+  {
+    competitors.push_back(NewVTKDelaunay());
+  }
+  return competitors;
+}
+
+bool IsVTK(const Competitor& competitor)
+{
+  return competitor.Name().compare(0, 13, "vtkDelaunay2D") == 0;
+}
+
+/** Time on the clock, and time that processors spent on this process. */
+struct Duration
+{
+  double Seconds;
+  double ProcessorSeconds;
+};
+
+Duration TimeOf(Competitor& competitor)
+{
+  using Clock = std::chrono::steady_clock;
+  const std::clock_t processorStart = std::clock();
+  const Clock::time_point start = Clock::now();
+  competitor.Run();
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return { seconds, static_cast<double>(std::clock() - processorStart) / CLOCKS_PER_SEC };
+}
+
+/** Runs a code once on few points, so that its program code is in memory and its tables are made.
+ */
+void WarmUp(Competitor& competitor)
+{
+  const Coordinates few = Generators().front().Generate(1000, 1);
+  competitor.SetPoints(few);
+  competitor.Run();
+  competitor.Release();
+}
+
+/** In a process of its own. */
+void Try(Competitor& competitor, const PointSource& source, const Options& options, Result& result)
+{
+  WarmUp(competitor);
+  const Coordinates points = source.Make();
+  result.Points = static_cast<Index>(points.size() / 3);
+  competitor.SetPoints(points);
+  if (IsVTK(competitor) && !options.UseVTKAlways && result.Points > MostPointsOfVTK)
+  {
+    return;
+  }
+  LimitTime(options.TimeLimit);
+  const PeakMemory peak;
+  result.TrialSeconds = TimeOf(competitor).Seconds;
+  result.PeakBytes = peak.Growth();
+  LimitTime(0);
+  result.OutputBytes = static_cast<double>(competitor.OutputBytes());
+  result.TakesPart = true;
+}
+
+void Remark(Result& result, const std::string& text)
+{
+  const std::size_t length = std::min(text.size(), sizeof(result.Remark) - 1);
+  std::copy_n(text.begin(), length, result.Remark);
+  result.Remark[length] = '\0';
+}
+
+std::string Percent(double part)
+{
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2g %%", 100.0 * part);
+  return text;
+}
+
+/** Everything that is wrong with a mesh by the points alone, or nothing. */
+std::string Complaints(const PointFacts& points, const MeshFacts& mesh)
+{
+  // The areas are sums in floating point; a thin triangle at the hull may be lost in it. The count
+  // of triangles is exact.
+  constexpr double tolerance = 1e-9;
+  std::string text;
+  const auto add = [&text](const std::string& complaint) {
+    text += (text.empty() ? "" : "; ") + complaint;
+  };
+  if (mesh.Triangles != points.ExpectedTriangles())
+  {
+    add(std::to_string(mesh.Triangles) + " triangles, must be " +
+      std::to_string(points.ExpectedTriangles()));
+  }
+  if (mesh.MissingPoints != 0)
+  {
+    add(std::to_string(mesh.MissingPoints) + " points missing");
+  }
+  if (mesh.Coverage < 1.0 - tolerance)
+  {
+    add(Percent(1.0 - mesh.Coverage) + " of the area missing");
+  }
+  else if (!(mesh.Coverage <= 1.0 + tolerance))
+  {
+    add(Percent(mesh.Coverage - 1.0) + " of the area covered twice");
+  }
+  if (mesh.FlatTriangles != 0)
+  {
+    add(std::to_string(mesh.FlatTriangles) + " flat triangles");
+  }
+  return text;
+}
+
+/** Runs every code once and examines what it made. Ours comes first, the others are held to it. */
+void Check(const Competitors& competitors, const Coordinates& coordinates, Results& results)
+{
+  const PointFacts points(coordinates);
+  MeshFacts ours;
+  for (std::size_t i = 0; i < competitors.size(); ++i)
+  {
+    if (!results[i].TakesPart)
+    {
+      continue;
+    }
+    Competitor& competitor = *competitors[i];
+    competitor.Run();
+    const std::vector<Index> triangles = competitor.Triangles();
+    const std::vector<Index> unused = competitor.UnusedPoints();
+    competitor.Release();
+    results[i].Triangles = triangles.size() / 3;
+    if (points.HullArea <= 0.0)
+    {
+      Remark(results[i], "all points are on one line");
+      continue;
+    }
+    MeshFacts mesh = Examine(points, triangles);
+    std::string text = Complaints(points, mesh);
+    if (i == 0)
+    {
+      const std::string finding = FirstFinding(points, triangles, unused);
+      text += (text.empty() || finding.empty() ? "" : "; ") + finding;
+      results[i].Checked = text.empty() ? Verdict::Right : Verdict::Wrong;
+      Remark(results[i],
+        text.empty() ? "valid, " + std::to_string(mesh.Ties) + " ties" : "WRONG: " + text);
+      ours = std::move(mesh);
+      continue;
+    }
+    const std::size_t differences = Differences(ours, mesh);
+    if (differences != 0)
+    {
+      text += (text.empty() ? "" : "; ") + std::to_string(differences) + " edges differ from ours";
+    }
+    results[i].Checked = text.empty() ? Verdict::Right : Verdict::Wrong;
+    Remark(results[i],
+      !text.empty()      ? text
+        : ours.Ties == 0 ? "same triangles"
+                         : "same triangles but for ties");
+  }
+}
+
+/** In turn, until all have run often enough or their time is up. */
+void Time(const Competitors& competitors, const Options& options, Results& results)
+{
+  std::array<double, MaximumCompetitors> total{};
+  for (int round = 0; round < options.Repeats; ++round)
+  {
+    for (std::size_t i = 0; i < competitors.size(); ++i)
+    {
+      const bool isTimeUp = options.TimeLimit > 0 && total[i] > options.TimeLimit;
+      if (results[i].TakesPart && !isTimeUp)
+      {
+        TrimMemory();
+        const Duration duration = TimeOf(*competitors[i]);
+        competitors[i]->Release();
+        results[i].Seconds[results[i].Runs] = duration.Seconds;
+        results[i].ProcessorSeconds[results[i].Runs] = duration.ProcessorSeconds;
+        ++results[i].Runs;
+        total[i] += duration.Seconds;
+      }
+    }
+  }
+}
+
+/** All steps for one data set. Ours may take part without a result: Trial says why. */
+Results Measure(const PointSource& source, const Options& options, const Competitors& competitors)
+{
+  Results results;
+  for (std::size_t i = 0; i < competitors.size(); ++i)
+  {
+    Result& result = results[i];
+    const Outcome outcome =
+      RunInChild(result, [&](Result& answer) { Try(*competitors[i], source, options, answer); });
+    result.Trial = outcome;
+    if (i == 0 && outcome.How == Ending::Failed)
+    {
+      // The points could not be made. The message is out; the others would repeat it.
+      results.fill(result);
+      return results;
+    }
+  }
+  RunInChild(results, [&](Results& answer) {
+    const Coordinates points = source.Make();
+    for (const auto& competitor : competitors)
+    {
+      WarmUp(*competitor);
+      competitor->SetPoints(points);
+    }
+    if (options.Check)
+    {
+      Check(competitors, points, answer);
+    }
+    Time(competitors, options, answer);
+  });
+  return results;
+}
+
+// ---- figures -----------------------------------------------------------------------------------
+
+double Median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+std::vector<double> NanosecondsPerPoint(
+  const Result& result, const std::array<double, MaximumRepeats>& seconds)
+{
+  std::vector<double> values(seconds.begin(), seconds.begin() + result.Runs);
+  for (double& value : values)
+  {
+    value *= 1e9 / result.Points;
+  }
+  return values;
+}
+
+std::vector<double> NanosecondsPerPoint(const Result& result)
+{
+  return NanosecondsPerPoint(result, result.Seconds);
+}
+
+double ProcessorNanosecondsPerPoint(const Result& result)
+{
+  return Median(NanosecondsPerPoint(result, result.ProcessorSeconds));
+}
+
+/** A code's time in parts of ours, round by round. */
+std::vector<double> PairRatios(const Result& result, const Result& ours)
+{
+  std::vector<double> ratios;
+  for (int i = 0; i < std::min(result.Runs, ours.Runs); ++i)
+  {
+    ratios.push_back(result.Seconds[i] / ours.Seconds[i]);
+  }
+  return ratios;
+}
+
+std::string WhyNot(const Result& result, unsigned timeLimit)
+{
+  switch (result.Trial.How)
+  {
+    case Ending::OutOfTime:
+      return "more than " + std::to_string(timeLimit) + " s";
+    case Ending::Crashed:
+      return "crashed (signal " + std::to_string(result.Trial.Signal) + ")";
+    case Ending::Failed:
+      return "failed";
+    case Ending::Finished:
+      break;
+  }
+  return result.TakesPart ? "crashed when run again" : "not run (--vtk runs it)";
+}
+
+void PrintHeader(const Options& options)
+{
+  std::printf(
+    "ns/pt: time per point on the clock, median, least and greatest of %d runs (one thread)\n"
+    "cpu:   median of the processor time, which suffers less where others compute too\n"
+    "ratio: median time in parts of ours; pairs: least and greatest ratio of a round;\n"
+    "       cpu: ratio of the processor times\n"
+    "B/pt:  peak memory above input and output, bytes per point\n\n"
+    "%-22s %9s  %-20s %7s %7s %8s %7s %7s %13s %7s %6s  %s\n",
+    options.Repeats, "data set", "points", "code", "ns/pt", "least", "greatest", "cpu", "ratio",
+    "pairs", "cpu", "B/pt", "result");
+  std::fflush(stdout);
+}
+
+void PrintRows(const std::string& set, const Competitors& competitors, const Results& results,
+  unsigned timeLimit)
+{
+  Index count = 0;
+  for (const Result& result : results)
+  {
+    count = std::max(count, result.Points);
+  }
+  for (std::size_t i = 0; i < competitors.size(); ++i)
+  {
+    const Result& result = results[i];
+    std::printf("%-22s %9s  %-20s ", i == 0 ? set.c_str() : "",
+      i == 0 ? std::to_string(count).c_str() : "", competitors[i]->Name().c_str());
+    if (result.Runs == 0)
+    {
+      std::printf("%7s %s\n", "-", WhyNot(result, timeLimit).c_str());
+      continue;
+    }
+    const std::vector<double> times = NanosecondsPerPoint(result);
+    const auto range = std::minmax_element(times.begin(), times.end());
+    std::printf("%7.0f %7.0f %8.0f %7.0f ", Median(times), *range.first, *range.second,
+      ProcessorNanosecondsPerPoint(result));
+    char ratio[16] = "", pairs[32] = "", processorRatio[16] = "", bytes[16] = "";
+    if (i > 0 && results[0].Runs > 0)
+    {
+      const std::vector<double> ratios = PairRatios(result, results[0]);
+      const auto ends = std::minmax_element(ratios.begin(), ratios.end());
+      std::snprintf(
+        ratio, sizeof(ratio), "%.2f", Median(times) / Median(NanosecondsPerPoint(results[0])));
+      std::snprintf(pairs, sizeof(pairs), "%.2f-%.2f", *ends.first, *ends.second);
+      std::snprintf(processorRatio, sizeof(processorRatio), "%.2f",
+        ProcessorNanosecondsPerPoint(result) / ProcessorNanosecondsPerPoint(results[0]));
+    }
+    if (result.BytesPerPoint() >= 0.0)
+    {
+      std::snprintf(bytes, sizeof(bytes), "%.0f", result.BytesPerPoint());
+    }
+    std::printf("%7s %13s %7s %6s  %s\n", ratio, pairs, processorRatio, bytes, result.Remark);
+  }
+  std::fflush(stdout);
+}
+
+std::string Quoted(const std::string& text)
+{
+  std::string quoted = "\"";
+  for (const char c : text)
+  {
+    if (c == '"' || c == '\\')
+    {
+      quoted += '\\';
+    }
+    quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return quoted + "\"";
+}
+
+void WriteResult(std::ostream& json, const Competitor& competitor, const Result& result,
+  const Result& ours, unsigned timeLimit)
+{
+  json << "        {\"code\": " << Quoted(competitor.Name());
+  if (result.Runs == 0)
+  {
+    json << ", \"not_run\": " << Quoted(WhyNot(result, timeLimit)) << "}";
+    return;
+  }
+  const std::vector<double> times = NanosecondsPerPoint(result);
+  json << ",\n         \"ns_per_point\": {\"median\": " << Median(times)
+       << ", \"least\": " << *std::min_element(times.begin(), times.end())
+       << ", \"greatest\": " << *std::max_element(times.begin(), times.end()) << ", \"runs\": [";
+  for (std::size_t i = 0; i < times.size(); ++i)
+  {
+    json << (i ? ", " : "") << times[i];
+  }
+  json << "]},\n         \"processor_ns_per_point\": " << ProcessorNanosecondsPerPoint(result)
+       << ",\n         \"trial_ns_per_point\": " << 1e9 * result.TrialSeconds / result.Points;
+  if (ours.Runs > 0)
+  {
+    json << ",\n         \"ratio_of_medians\": "
+         << Median(times) / Median(NanosecondsPerPoint(ours))
+         << ", \"median_of_pair_ratios\": " << Median(PairRatios(result, ours));
+  }
+  if (result.BytesPerPoint() >= 0.0)
+  {
+    json << ",\n         \"bytes_per_point_above_input_and_output\": " << result.BytesPerPoint()
+         << ", \"output_bytes_per_point\": " << result.OutputBytes / result.Points;
+  }
+  if (result.Checked != Verdict::NotChecked)
+  {
+    json << ",\n         \"triangles\": " << result.Triangles
+         << ", \"right\": " << (result.Checked == Verdict::Right ? "true" : "false")
+         << ", \"result\": " << Quoted(result.Remark);
+  }
+  json << "}";
+}
+
+/** The sets come one by one, so that the file can be written as they are measured. */
+void WriteSet(std::ostream& json, const std::string& set, const Competitors& competitors,
+  const Results& results, unsigned timeLimit)
+{
+  json << "    {\"set\": " << Quoted(set) << ", \"points\": " << results[0].Points
+       << ", \"codes\": [\n";
+  for (std::size_t i = 0; i < competitors.size(); ++i)
+  {
+    WriteResult(json, *competitors[i], results[i], results[0], timeLimit);
+    json << (i + 1 < competitors.size() ? ",\n" : "\n");
+  }
+  json << "      ]}";
+}
+
+int Run(const Options& options)
+{
+  const std::vector<PointSource> sources = SourcesOf(options);
+  if (sources.empty()) // --extra alone, without a folder
+  {
+    return 0;
+  }
+  const Competitors competitors = MakeCompetitors(options);
+  std::ofstream json;
+  if (!options.JSONFile.empty())
+  {
+    json.open(options.JSONFile);
+    if (!json)
+    {
+      throw elevation::Error(options.JSONFile + ": cannot be written");
+    }
+    json << "{\n  \"benchmark\": \"BenchmarkDelaunay\", \"vtk\": "
+         << Quoted(vtkVersion::GetVTKVersion()) << ", \"threads\": 1, \"seed\": " << options.Seed
+         << ", \"repeats\": " << options.Repeats << ",\n  \"sets\": [\n";
+  }
+  PrintHeader(options);
+  bool isRight = true;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+  {
+    const Results results = Measure(sources[i], options, competitors);
+    PrintRows(sources[i].Name, competitors, results, options.TimeLimit);
+    isRight = isRight && results[0].Runs > 0 && results[0].Checked != Verdict::Wrong;
+    if (json.is_open())
+    {
+      json << (i ? ",\n" : "");
+      WriteSet(json, sources[i].Name, competitors, results, options.TimeLimit);
+    }
+  }
+  if (json.is_open())
+  {
+    json << "\n  ]\n}\n";
+    json.close();
+    if (!json)
+    {
+      throw elevation::Error(options.JSONFile + ": cannot be written to its end");
+    }
+  }
+  return isRight ? 0 : 1;
+}
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  try
+  {
+    Options options;
+    if (!ReadOptions(argc, argv, options))
+    {
+      std::fputs(Usage, stdout);
+      for (const Generator& generator : Generators())
+      {
+        std::printf("  %-16s  %s\n", generator.Name, generator.Description);
+      }
+      std::fputs(Examples, stdout);
+      return 0;
+    }
+    return Run(options);
+  }
+  catch (const UsageError& error)
+  {
+    std::fprintf(stderr, "BenchmarkDelaunay: %s\n", error.what());
+    return 2;
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "BenchmarkDelaunay: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Competitor.h"
+
+#include "vtkGridDelaunay2D.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDelaunay2D.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkVersion.h"
+
+namespace
+{
+using benchmark::Index;
+
+template <typename Filter>
+class VTKCompetitor : public benchmark::Competitor
+{
+public:
+  explicit VTKCompetitor(std::string name)
+    : FilterName(std::move(name))
+  {
+  }
+
+  std::string Name() const override { return this->FilterName; }
+
+  void SetPoints(const benchmark::Coordinates& coordinates) override
+  {
+    vtkNew<vtkDoubleArray> array;
+    array->SetNumberOfComponents(3);
+    // The array keeps the caller's memory and never writes to it.
+    array->SetArray(
+      const_cast<double*>(coordinates.data()), static_cast<vtkIdType>(coordinates.size()), 1);
+    vtkNew<vtkPoints> points;
+    points->SetData(array);
+    this->Input->Initialize();
+    this->Input->SetPoints(points);
+  }
+
+  void Run() override
+  {
+    this->Input->Modified();
+    vtkNew<Filter> filter;
+    filter->SetInputData(this->Input);
+    filter->Update();
+    this->Output = filter->GetOutput();
+  }
+
+  void Release() override { this->Output = nullptr; }
+
+  std::size_t OutputBytes() const override
+  {
+    vtkCellArray* cells = this->Output->GetPolys();
+    const std::size_t values =
+      static_cast<std::size_t>(cells->GetNumberOfConnectivityIds() + cells->GetNumberOfOffsets());
+    return values * (cells->IsStorage64Bit() ? 8 : 4);
+  }
+
+  std::vector<Index> Triangles() const override
+  {
+    std::vector<Index> triangles;
+    vtkCellArray* cells = this->Output->GetPolys();
+    triangles.reserve(3 * static_cast<std::size_t>(cells->GetNumberOfCells()));
+    auto iterator = vtk::TakeSmartPointer(cells->NewIterator());
+    for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+    {
+      vtkIdType size = 0;
+      const vtkIdType* ids = nullptr;
+      iterator->GetCurrentCell(size, ids);
+      if (size != 3)
+      {
+        throw elevation::Error(this->FilterName + " made a cell that is not a triangle");
+      }
+      for (int i = 0; i < 3; ++i)
+      {
+        triangles.push_back(static_cast<Index>(ids[i]));
+      }
+    }
+    return triangles;
+  }
+
+  std::vector<Index> UnusedPoints() const override
+  {
+    std::vector<Index> unused;
+    auto* ids =
+      vtkIdTypeArray::SafeDownCast(this->Output->GetFieldData()->GetArray("UnusedPointIds"));
+    for (vtkIdType i = 0; ids && i < ids->GetNumberOfValues(); ++i)
+    {
+      unused.push_back(static_cast<Index>(ids->GetValue(i)));
+    }
+    return unused;
+  }
+
+private:
+  std::string FilterName;
+  vtkNew<vtkPolyData> Input;
+  vtkSmartPointer<vtkPolyData> Output;
+};
+} // namespace
+
+namespace benchmark
+{
+std::unique_ptr<Competitor> NewGridDelaunay()
+{
+  return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>("vtkGridDelaunay2D");
+}
+
+std::unique_ptr<Competitor> NewVTKDelaunay()
+{
+  return std::make_unique<VTKCompetitor<vtkDelaunay2D>>(
+    std::string("vtkDelaunay2D ") + vtkVersion::GetVTKVersion());
+}
+} // namespace benchmark
