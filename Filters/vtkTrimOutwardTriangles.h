@@ -23,9 +23,9 @@
  * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its longest
  * edge is at most GapTolerance times the spacing of the points there; so dense and thin parts of a cloud
  * are both outlined well. The details:
- * - The spacing at a point is the distance of its 6th nearest point, divided by the square root of
- *   two: one step on a square lattice, and about the mean spacing of random points. The spacing of a
- *   triangle is the middle one of its three points', but at most twice the least.
+ * - The spacing at a point is half the distance of its 6th nearest point: at the rim of a gap, where
+ *   points are on one side only, one step of a square lattice, or the mean spacing of random points. The
+ *   spacing of a triangle is the middle one of its three points', but at most twice the least.
  * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance spacings.
  *   A smaller one is surface.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
@@ -83,8 +83,8 @@ public:
   ///@{
   /**
    * For the extracted boundary: how many spacings an empty stretch may measure and still be
-   * surface. 0 (default): 2.5 times what the typical (median) triangle's longest edge measures,
-   * which is 3.5 on a square lattice and on random points about 3.6; see GetEffectiveGapTolerance.
+   * surface. 0 (default): 2.25 times what the typical (median) triangle's longest edge measures,
+   * which is 4.5 on a square lattice and about 4.6 on random points; see GetEffectiveGapTolerance.
    * Negative values are taken as 0. Not used when a boundary is given.
    */
   vtkSetClampMacro(GapTolerance, double, 0.0, VTK_DOUBLE_MAX);

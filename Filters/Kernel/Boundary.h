@@ -109,12 +109,13 @@ struct ExtractedBoundary
  * Every edge of the outline is an edge of the mesh.
  *
  * The rule:
- *   - The spacing at a vertex is the distance of its 6th nearest vertex, over the square root of two: one
- *     step on a square lattice, 0.98 of the mean spacing of random points. So it follows the density.
- *     The spacing of a triangle is the middle one of its corners' spacings, but at most twice the least.
+ *   - The spacing at a vertex is half the distance of its 6th nearest vertex. So it follows the
+ *     density. At the rim of a gap, where vertices are on one side only, it is one step on a square
+ *     lattice and 0.98 of the mean spacing of random points; away from gaps 0.7 of that. The
+ *     spacing of a triangle is the middle one of its corners', but at most twice the least.
  *   - A triangle is surface when its longest edge is at most GapTolerance times its spacing.
- *     0 chooses 2.5 times what the typical (median) triangle of the mesh measures: 3.5 on a square
- *     lattice, about 3.6 for random points, more where points lie dense along lines.
+ *     0 chooses 2.25 times what the typical (median) triangle of the mesh measures: 4.5 on a square
+ *     lattice, about 4.6 for random points, more where points lie dense along lines.
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side of
  *     GapTolerance spacings; a smaller one is closed.
  *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,

@@ -1,0 +1,497 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunayMesh.h"
+
+#include "Kernel/Boundary.h"
+#include "Kernel/Predicates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+
+using namespace elevation;
+using namespace testing_surfaces;
+
+namespace
+{
+
+Rings MakeRings(const std::vector<std::vector<Index>>& lists)
+{
+  Rings rings;
+  for (const std::vector<Index>& list : lists)
+  {
+    rings.Vertices.insert(rings.Vertices.end(), list.begin(), list.end());
+    rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
+  }
+  return rings;
+}
+
+/** Cells are numbered from 10, to tell them from positions. */
+BoundaryLines MakeLines(
+  const std::vector<Point2>& points, const std::vector<std::vector<Index>>& lists, bool polygons)
+{
+  BoundaryLines lines;
+  lines.Points = points;
+  lines.Lines = MakeRings(lists);
+  lines.IsPolygon.assign(lists.size(), polygons);
+  for (std::size_t i = 0; i < lists.size(); ++i)
+  {
+    lines.Cells.push_back(static_cast<Index>(10 + i));
+  }
+  return lines;
+}
+
+/** A 4 x 4 lattice, point x + 4 y at (x, y). */
+Mesh Lattice4()
+{
+  std::vector<Point2> points;
+  for (int i = 0; i < 16; ++i)
+  {
+    points.push_back({ static_cast<double>(i % 4), static_cast<double>(i / 4) });
+  }
+  return Delaunay(points);
+}
+
+std::string MessageOf(const BoundaryLines& lines)
+{
+  try
+  {
+    JoinLines(Lattice4(), lines);
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "no error";
+}
+
+#define EXPECT_HAS(text, part)                                                                     \
+  EXPECT_NE((text).find(part), std::string::npos) << "no \"" << (part) << "\" in: " << (text)
+
+/** Twice the area within rings, each by its direction. */
+double TwiceArea(const std::vector<Point2>& points, const Rings& rings)
+{
+  double area = 0.0;
+  for (Index ring = 0; ring < rings.Count(); ++ring)
+  {
+    for (Index i = 0; i < rings.Size(ring); ++i)
+    {
+      const Point2& p = points[rings.Begin(ring)[i]];
+      const Point2& q = points[rings.Begin(ring)[(i + 1) % rings.Size(ring)]];
+      area += p.X * q.Y - p.Y * q.X;
+    }
+  }
+  return area;
+}
+
+using Mask = std::function<bool(double, double)>;
+
+std::vector<Point2> MaskedLattice(int width, int height, const Mask& mask)
+{
+  std::vector<Point2> points;
+  for (int y = 0; y < height; ++y)
+  {
+    for (int x = 0; x < width; ++x)
+    {
+      if (mask(x, y))
+      {
+        points.push_back({ static_cast<double>(x), static_cast<double>(y) });
+      }
+    }
+  }
+  return points;
+}
+
+/** A coast with waves, a fjord, a channel, and lakes, one with an island; in the unit square. */
+bool Coast(double x, double y)
+{
+  if (y < 0.12 + 0.03 * std::sin(14 * x) || y > 0.9 + 0.03 * std::sin(9 * x + 2) ||
+    x < 0.08 + 0.03 * std::sin(11 * y) || x > 0.93 + 0.03 * std::sin(17 * y))
+  {
+    return false;
+  }
+  const double lake = std::hypot(x - 0.3, y - 0.4);
+  return (lake > 0.08 || lake < 0.03) && std::hypot((x - 0.7) / 1.5, y - 0.65) > 0.07 &&
+    !(x > 0.55 && std::fabs(y - 0.45 - 0.03 * std::sin(12 * x)) < 0.03) &&
+    !(y > 0.6 && std::fabs(x - 0.4) < 0.025);
+}
+
+/**
+ * The area between the coast and the outline that was found for points on land, as a share of the area
+ * within one spacing of the coast; by samples.
+ */
+double ErrorOfOutline(const std::vector<Point2>& points, const Mask& coast,
+  const std::function<double(double, double)>& spacing)
+{
+  const Mesh mesh = Delaunay(points);
+  const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
+  const RingLocator locator(mesh.Points, boundary.Vertices);
+  constexpr int samples = 300;
+  double between = 0.0;
+  double near = 0.0;
+  for (int j = 0; j < samples; ++j)
+  {
+    for (int i = 0; i < samples; ++i)
+    {
+      const double x = (i + 0.5) / samples;
+      const double y = (j + 0.5) / samples;
+      const bool isLand = coast(x, y);
+      between += isLand != (locator.Locate({ x, y }) == Location::Inside);
+      const double s = spacing(x, y);
+      bool isNear = false;
+      for (int k = 0; k < 16 && !isNear; ++k)
+      {
+        const double angle = k * 0.39269908169872414;
+        for (const double r : { 0.25 * s, 0.5 * s, 0.75 * s, s })
+        {
+          isNear = isNear || coast(x + r * std::cos(angle), y + r * std::sin(angle)) != isLand;
+        }
+      }
+      near += isNear;
+    }
+  }
+  return between / near;
+}
+
+} // namespace
+
+TEST(Locate, TellsInsideOutsideAndOnByTheEvenOddRule)
+{
+  // A square, a lake in it, an island in the lake that touches its rim at (2, 2).
+  const std::vector<Point2> points{ { 0, 0 }, { 9, 0 }, { 9, 9 }, { 0, 9 }, { 2, 2 }, { 2, 7 },
+    { 7, 7 }, { 7, 2 }, { 4, 3 }, { 3, 4 } };
+  const Rings rings = MakeRings({ { 0, 1, 2, 3 }, { 4, 5, 6, 7 }, { 4, 8, 9 } });
+  const RingLocator locator(points, rings);
+  struct
+  {
+    Point2 Place;
+    Location Expected;
+  } const places[] = { { { 1, 1 }, Location::Inside }, { { 5, 5 }, Location::Outside },
+    { { 3, 3 }, Location::Inside }, { { 10, 9 }, Location::Outside },
+    { { -1, 0 }, Location::Outside }, { { -1, 2 }, Location::Outside }, { { 1, 2 }, Location::Inside },
+    { { 8, 7 }, Location::Inside }, { { 0, 0 }, Location::On }, { { 5, 0 }, Location::On },
+    { { 9, 4 }, Location::On }, { { 2, 5 }, Location::On }, { { 3.5, 3.5 }, Location::On },
+    { { 5, 9 }, Location::On }, { { 5, 10 }, Location::Outside }, { { 2, 2 }, Location::On } };
+  for (const auto& place : places)
+  {
+    EXPECT_EQ(Locate(points, rings, place.Place), place.Expected)
+      << place.Place.X << " " << place.Place.Y;
+    EXPECT_EQ(locator.Locate(place.Place), place.Expected);
+  }
+}
+
+TEST(Locate, IsExactNextToAnEdge)
+{
+  const std::vector<Point2> points{ { 0.1, 0.1 }, { 0.7, 0.3 }, { 0.2, 0.9 } };
+  const Rings rings = MakeRings({ { 0, 1, 2 } });
+  const RingLocator locator(points, rings);
+  int on = 0;
+  for (int i = 1; i < 1000; ++i)
+  {
+    Point2 p{ 0.1 + 0.6 * i / 1000, 0.1 + 0.2 * i / 1000 };
+    for (int ulp = 0; ulp < 4; ++ulp, p.Y = std::nextafter(p.Y, 1.0))
+    {
+      const Sign side = Orientation(points[0], points[1], p);
+      EXPECT_EQ(locator.Locate(p),
+        side == Zero           ? Location::On
+          : side == Positive ? Location::Inside
+                             : Location::Outside);
+      on += side == Zero;
+    }
+  }
+  EXPECT_LT(on, 4000);
+}
+
+TEST(Locate, IsTheSameInBinsAsEdgeByEdge)
+{
+  Random random(11);
+  for (int round = 0; round < 200; ++round)
+  {
+    std::vector<Point2> points(40);
+    for (Point2& p : points)
+    {
+      p = { static_cast<double>(random.Below(12)), static_cast<double>(random.Below(12)) };
+    }
+    std::vector<std::vector<Index>> lists(1 + random.Below(4));
+    for (std::vector<Index>& list : lists)
+    {
+      for (int i = 3 + random.Below(10); i > 0; --i)
+      {
+        list.push_back(random.Below(40));
+      }
+    }
+    const Rings rings = MakeRings(lists);
+    const RingLocator locator(points, rings);
+    for (int i = 0; i < 100; ++i)
+    {
+      const Point2 p{ random.Below(30) / 2.0 - 1.0, random.Below(30) / 2.0 - 1.0 };
+      ASSERT_EQ(locator.Locate(p), Locate(points, rings, p));
+    }
+  }
+}
+
+TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
+{
+  const Mesh mesh = Lattice4();
+  auto joined = JoinLines(mesh, MakeLines(mesh.Points, { { 0, 3, 15, 12, 0 } }, false));
+  EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
+  joined = JoinLines(mesh, MakeLines(mesh.Points, { { 5, 6, 10 }, { 0, 3, 15 } }, true));
+  EXPECT_EQ(joined.Vertices.Offsets, (std::vector<Index>{ 0, 3, 6 }));
+  // Segments in any order and direction.
+  joined =
+    JoinLines(mesh, MakeLines(mesh.Points, { { 0, 3 }, { 12, 0 }, { 3, 15 }, { 12, 15 } }, false));
+  EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
+  // Closed by coordinates; a repeated point; ids that are not those of the mesh; minus zero.
+  joined = JoinLines(mesh,
+    MakeLines({ { -0.0, 0.0 }, { 3, 0 }, { 3, 0 }, { 3, 3 }, { 0, -0.0 } }, { { 0, 1, 2, 3, 4 } }, false));
+  EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15 }));
+  EXPECT_EQ(joined.Points, (std::vector<Index>{ 0, 1, 3 }));
+  // Four ends in one vertex: two rings that touch, or one through it twice.
+  joined = JoinLines(
+    mesh, MakeLines(mesh.Points, { { 5, 0, 1 }, { 1, 5 }, { 5, 10, 6 }, { 6, 5 } }, false));
+  EXPECT_EQ(joined.Vertices.Vertices.size(), 6u);
+}
+
+TEST(JoinLines, RefusesWhatIsNoBoundaryByName)
+{
+  const std::vector<Point2> points = Lattice4().Points;
+  EXPECT_HAS(MessageOf(MakeLines(points, {}, false)), "no line and no polygon");
+  std::string message = MessageOf(MakeLines(points, { { 0, 3, 15, 0 }, { 5, 6, 10 } }, false));
+  EXPECT_HAS(message, "not closed: line (cell 11) ends at point 5 (1, 1)");
+  message = MessageOf(MakeLines(points, { { 0, 3, 0 } }, false));
+  EXPECT_HAS(message, "line (cell 10) has only 2 different points");
+  message = MessageOf(MakeLines(points, { { 0, 3 } }, true));
+  EXPECT_HAS(message, "polygon (cell 10) has only 2 different points");
+  message = MessageOf(MakeLines(points, { { 0, 3 }, { 3, 0 } }, false));
+  EXPECT_HAS(message, "ring of only two points");
+  message = MessageOf(MakeLines(points, { { 0, 1 }, { 0, 2 }, { 0, 3 } }, false));
+  EXPECT_HAS(message, "where 3 lines end");
+  message = MessageOf(MakeLines({ { 0, 0 }, { 3, 0 }, { 1.5, 1.25 } }, { { 0, 1, 2 } }, true));
+  EXPECT_HAS(message, "point 2 (1.5, 1.25) of polygon (cell 10) is not a corner of the mesh");
+  message = MessageOf(MakeLines({ { 0, 0 }, { std::nan(""), 0 }, { 1, 1 } }, { { 0, 1, 2 } }, true));
+  EXPECT_HAS(message, "point 1 (nan, 0) of polygon (cell 10) is not finite");
+}
+
+TEST(JoinLines, RefusesPointsThatAreTwoCornersOfTheMesh)
+{
+  Mesh mesh;
+  mesh.Points = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 0, 0 }, { -1, 0 }, { 0, -1 } };
+  mesh.Triangles = { 0, 1, 2, 3, 4, 5 };
+  mesh.ConnectTwins();
+  try
+  {
+    JoinLines(mesh, MakeLines(mesh.Points, { { 0, 1, 2 } }, true));
+    FAIL() << "no error";
+  }
+  catch (const Error& error)
+  {
+    EXPECT_HAS(std::string(error.what()), "Points 0 and 3 of the mesh");
+  }
+}
+
+TEST(ExtractBoundary, OfAFullLatticeIsItsOutline)
+{
+  const Mesh mesh = Delaunay(MaskedLattice(12, 9, [](double, double) { return true; }));
+  const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
+  EXPECT_EQ(boundary.Vertices.Count(), 1);
+  EXPECT_EQ(boundary.Vertices.Vertices.size(), 2u * (11 + 8));
+  EXPECT_EQ(boundary.Vertices.Vertices.front(), 0);
+  EXPECT_EQ(TwiceArea(mesh.Points, boundary.Vertices), 2.0 * 11 * 8);
+  EXPECT_NEAR(boundary.GapTolerance, 4.5, 1e-12);
+}
+
+TEST(ExtractBoundary, HasLakesAndIslands)
+{
+  // A block with a lake of 10 x 10 missing nodes and an island of 4 x 4 in it; another block apart.
+  const Mesh mesh = Delaunay(MaskedLattice(45, 24, [](double x, double y) {
+    const bool isLake = 5 <= x && x <= 18 && 5 <= y && y <= 18;
+    const bool isIsland = 10 <= x && x <= 13 && 10 <= y && y <= 13;
+    return (x <= 24 || x >= 32) && (!isLake || isIsland);
+  }));
+  const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
+  ASSERT_EQ(boundary.Vertices.Count(), 4);
+  std::multiset<double> areas;
+  for (Index ring = 0; ring < 4; ++ring)
+  {
+    areas.insert(TwiceArea(mesh.Points, MakeRings({ std::vector<Index>(
+      boundary.Vertices.Begin(ring), boundary.Vertices.End(ring)) })) / 2);
+  }
+  // In each of the lake's four corners, triangles with edges within the tolerance stay.
+  EXPECT_EQ(*areas.rbegin(), 24.0 * 23);
+  EXPECT_EQ(areas.count(12.0 * 23), 1u);
+  EXPECT_EQ(areas.count(9.0), 1u);
+  EXPECT_LE(*areas.begin(), -15.0 * 15 + 4 * 4.5 * 4.5 / 2);
+  EXPECT_GE(*areas.begin(), -15.0 * 15);
+}
+
+TEST(ExtractBoundary, BridgesWhatTheToleranceSays)
+{
+  // Two blocks, apart by 1 to 8 steps.
+  for (int steps = 1; steps <= 8; ++steps)
+  {
+    const Mesh mesh = Delaunay(
+      MaskedLattice(16 + steps, 8, [&](double x, double) { return x < 8 || x >= 7 + steps; }));
+    ExtractOptions options;
+    EXPECT_EQ(ExtractBoundary(mesh, options).Vertices.Count(), steps <= 4 ? 1 : 2) << steps;
+    options.GapTolerance = 6.2;
+    const ExtractedBoundary wider = ExtractBoundary(mesh, options);
+    EXPECT_EQ(wider.GapTolerance, 6.2);
+    EXPECT_EQ(wider.Vertices.Count(), steps <= 6 ? 1 : 2) << steps;
+  }
+}
+
+TEST(ExtractBoundary, LeavesOutLonePointsAndSmallGroups)
+{
+  std::vector<Point2> points = MaskedLattice(20, 20, [](double, double) { return true; });
+  points.insert(points.end(), { { 40, 3 }, { 45, 30 }, { 45.5, 30 }, { 45, 30.5 }, { 46, 31 },
+                                { -30, 10 }, { -30, 11 } });
+  const Mesh mesh = Delaunay(points);
+  const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
+  EXPECT_EQ(boundary.Vertices.Count(), 1);
+  EXPECT_EQ(TwiceArea(mesh.Points, boundary.Vertices), 2.0 * 19 * 19);
+  // But a cloud of a few points alone is a surface.
+  const Mesh few = Delaunay({ { 0, 0 }, { 1, 0 }, { 0, 1 }, { 1, 1.5 } });
+  EXPECT_EQ(ExtractBoundary(few, ExtractOptions()).Vertices.Count(), 1);
+}
+
+TEST(ExtractBoundary, ClosesSpeckle)
+{
+  // Single missing nodes and a few together, all over a lattice, are no lakes.
+  Random random(12);
+  const Mesh mesh = Delaunay(MaskedLattice(60, 60, [&](double x, double y) {
+    return x == 0 || y == 0 || x == 59 || y == 59 || random.Below(100) < 80;
+  }));
+  const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
+  EXPECT_EQ(boundary.Vertices.Count(), 1);
+}
+
+TEST(ExtractBoundary, FollowsMaskedLatticesAndThinnedGradedAndScannedPoints)
+{
+  Random random(13);
+  std::vector<Point2> full, thinned, scattered, graded, scanned;
+  for (int j = 0; j <= 300; ++j)
+  {
+    for (int i = 0; i <= 300; ++i)
+    {
+      const Point2 p{ i / 300.0, j / 300.0 };
+      const bool isLand = Coast(p.X, p.Y);
+      if (isLand && i % 3 == 0 && j % 3 == 0)
+      {
+        full.push_back(p);
+      }
+      if (isLand && random.Below(10) == 0)
+      {
+        thinned.push_back(p);
+      }
+    }
+  }
+  const auto gradedSpacing = [](double x, double) { return 0.003 * std::pow(10.0, x); };
+  for (int i = 0; i < 100000; ++i)
+  {
+    const Point2 p{ random.Unit(), random.Unit() };
+    if (!Coast(p.X, p.Y))
+    {
+      continue;
+    }
+    if (i < 9000)
+    {
+      scattered.push_back(p);
+    }
+    const double relative = gradedSpacing(p.X, p.Y) / 0.003;
+    if (random.Unit() < 1.0 / (relative * relative))
+    {
+      graded.push_back(p);
+    }
+  }
+  for (int j = 0; j <= 100; ++j)
+  {
+    for (int i = 0; i <= 800; ++i)
+    {
+      const Point2 p{ i / 800.0 + 2e-4 * random.Unit(), j / 100.0 + 5e-4 * random.Unit() };
+      if (Coast(p.X, p.Y))
+      {
+        scanned.push_back(p);
+      }
+    }
+  }
+  const auto even = [](double s) { return [s](double, double) { return s; }; };
+  EXPECT_LE(ErrorOfOutline(full, Coast, even(0.01)), 0.25);
+  EXPECT_LE(ErrorOfOutline(thinned, Coast, even(std::sqrt(10.0) / 300)), 0.25);
+  EXPECT_LE(ErrorOfOutline(scattered, Coast, even(1 / std::sqrt(9000.0))), 0.25);
+  EXPECT_LE(ErrorOfOutline(graded, Coast, gradedSpacing), 0.25);
+  EXPECT_LE(ErrorOfOutline(scanned, Coast, even(0.01)), 0.25);
+}
+
+TEST(ExtractBoundary, DoesNotDependOnTheOrderOfPoints)
+{
+  Random random(14);
+  std::vector<Point2> points = LatticePoints(random, 50, 50, 700);
+  const auto ringsOf = [](const std::vector<Point2>& ordered) {
+    const Mesh mesh = Delaunay(ordered);
+    const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
+    std::vector<std::pair<double, double>> rings{ { boundary.GapTolerance, 0.0 } };
+    for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)
+    {
+      rings.push_back({ -1.0, -1.0 });
+      for (const Index* v = boundary.Vertices.Begin(ring); v != boundary.Vertices.End(ring); ++v)
+      {
+        rings.push_back({ mesh.PointOf(*v).X, mesh.PointOf(*v).Y });
+      }
+    }
+    return rings;
+  };
+  const auto expected = ringsOf(points);
+  EXPECT_GT(expected.size(), 20u);
+  for (int round = 0; round < 5; ++round)
+  {
+    random.Shuffle(points);
+    EXPECT_EQ(ringsOf(points), expected);
+  }
+}
+
+TEST(ExtractBoundary, HasSimpleRings)
+{
+  // A random lattice, thin enough for pinched vertices: no ring passes a vertex twice.
+  Random random(15);
+  for (int round = 0; round < 30; ++round)
+  {
+    const Mesh mesh = Delaunay(LatticePoints(random, 60, 60, 500));
+    ExtractOptions options;
+    options.GapTolerance = 2.5;
+    const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
+    for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)
+    {
+      const Index* begin = boundary.Vertices.Begin(ring);
+      const Index* end = boundary.Vertices.End(ring);
+      ASSERT_EQ(std::set<Index>(begin, end).size(), static_cast<std::size_t>(end - begin));
+    }
+  }
+}
+
+TEST(ExtractBoundary, TakesCoordinatesOfAnySize)
+{
+  Random random(16);
+  const std::vector<Point2> points = LatticePoints(random, 30, 30, 600);
+  const auto countOf = [&](double scale) {
+    std::vector<Point2> scaled = points;
+    for (Point2& p : scaled)
+    {
+      p = { p.X * scale, p.Y * scale };
+    }
+    return ExtractBoundary(Delaunay(scaled), ExtractOptions()).Vertices.Vertices;
+  };
+  const std::vector<Index> expected = countOf(1.0);
+  EXPECT_EQ(countOf(std::ldexp(1.0, 900)), expected);
+  EXPECT_EQ(countOf(std::ldexp(1.0, -900)), expected);
+}
+
+TEST(ExtractBoundary, StopsWhenAskedAndTakesAnEmptyMesh)
+{
+  EXPECT_EQ(ExtractBoundary(Mesh(), ExtractOptions()).Vertices.Count(), 0);
+  ExtractOptions options;
+  options.Monitor = [](double) { return false; };
+  EXPECT_THROW(ExtractBoundary(Lattice4(), options), Aborted);
+}
