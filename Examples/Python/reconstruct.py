@@ -326,7 +326,9 @@ class Run:
         if self.stopped:
             raise KeyboardInterrupt
         if messages.errors:
-            raise Failure(f"{self.options.file}: {text}: {messages.errors[0]}")
+            # With a boundary of the user's, what trimming refuses is that boundary.
+            culprit = self.options.boundary if name == "trim" else None
+            raise Failure(f"{culprit or self.options.file}: {text}: {messages.errors[0]}")
         for warning in messages.warnings:
             self.notes.append(f"{text}: {warning}")
         return algorithm
@@ -493,34 +495,47 @@ def make_report(run, cloud, delaunay, trim, fill):
     if options.boundary:
         measured &= ~outside
     report["distance"] = run.timed(
-        "measure", "measuring", lambda: distance_to(surface, coordinates[measured])
+        "measure", "measuring", lambda: distance_to(surface, coordinates, measured)
     )
     return report
 
 
-def distance_to(surface, coordinates):
-    """Distance of points from a surface: max, mean and root mean square, as Metro tells them.
+def distance_to(surface, coordinates, chosen):
+    """Distance of input points from a surface: max, mean and root mean square, as Metro tells them.
 
-    vtkImplicitPolyDataDistance finds the closest triangle of each point exactly, in one call for
-    all points: about 1.3 s for 150,000 points and 300,000 triangles.
+    coordinates  (n, 3), the input points; those that are points of the surface come first there too
+    chosen       (n,) of bool: which of them are measured
+
+    A point that is a corner of a triangle, with all three coordinates the same, has distance 0. For
+    all others vtkImplicitPolyDataDistance finds the closest place of the surface, in one call; that
+    takes some 10 to 40 microseconds a point.
     """
-    # Only what the search needs, near the origin, where doubles are finest.
-    middle = coordinates.mean(axis=0)
-    corners = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8") - middle
-    corners = numpy.nan_to_num(corners, nan=0.0, posinf=0.0, neginf=0.0)
-    bare = vtkPolyData()
-    bare.SetPoints(files.make_points(corners).GetPoints())
-    bare.SetPolys(surface.GetPolys())
-    search = vtkImplicitPolyDataDistance()
-    search.SetInput(bare)
-    result = vtkDoubleArray()
-    search.EvaluateFunction(files.make_points(coordinates - middle).GetPoints().GetData(), result)
-    distance = numpy.abs(vtk_to_numpy(result))
+    corners = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
+    is_corner = numpy.zeros(len(corners), dtype=bool)
+    is_corner[vtk_to_numpy(surface.GetPolys().GetConnectivityArray())] = True
+    here = is_corner[: len(coordinates)]
+    here &= (corners[: len(coordinates)] == coordinates).all(axis=1)
+    away = coordinates[chosen & ~here]
+    distance = numpy.zeros(len(away))
+    if len(away):
+        # Only what the search needs, near the origin, where doubles are finest.
+        middle = corners[is_corner].mean(axis=0)
+        corners = numpy.where(is_corner[:, None], corners - middle, 0.0)
+        bare = vtkPolyData()
+        bare.SetPoints(files.make_points(corners).GetPoints())
+        bare.SetPolys(surface.GetPolys())
+        search = vtkImplicitPolyDataDistance()
+        search.SetInput(bare)
+        result = vtkDoubleArray()
+        search.EvaluateFunction(files.make_points(away - middle).GetPoints().GetData(), result)
+        distance = numpy.abs(vtk_to_numpy(result))
+    count = int(numpy.count_nonzero(chosen))
     return {
-        "points": len(distance),
-        "maximum": float(distance.max()),
-        "mean": float(distance.mean()),
-        "rms": float(math.sqrt((distance**2).mean())),
+        "points": count,
+        "points_not_corners": len(away),
+        "maximum": float(distance.max(initial=0.0)),
+        "mean": float(distance.sum() / count),
+        "rms": float(math.sqrt((distance**2).sum() / count)),
     }
 
 

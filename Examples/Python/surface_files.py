@@ -898,7 +898,7 @@ def write_surface(data, path, suffix):
     coarse = rounding_note(coordinates) is not None
     if suffix == ".vtp":
         writer = vtkXMLPolyDataWriter()
-        writer.EncodeAppendedDataOff()
+        writer.SetDataModeToBinary()  # ParaView 5.11 cannot read appended data with newer libexpat
     elif suffix == ".ply":
         writer = vtkPLYWriter()
         if coarse:

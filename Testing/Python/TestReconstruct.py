@@ -295,6 +295,24 @@ class Results(Program):
         self.assertIn("survey_surface.vtp", done.stdout)
 
 
+class ShortExample(Program):
+    def test_it_makes_the_same_surface_as_the_program(self):
+        data = os.path.join(DATA, "b9_ground.vtp")
+        script = os.path.join(os.path.dirname(PROGRAM), "three_filters.py")
+        done = subprocess.run(
+            [sys.executable, script, data, "short.vtp", "2"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=True,
+        )
+        self.assertIn("holes filled", done.stdout)
+        report = self.report(data, "--maximum-edge-length", "2")
+        surface = files.run_vtk_reader(self.path("short.vtp"))
+        self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
+
+
 class Pictures(Program):
     def picture(self, *arguments):
         from vtkmodules.util.numpy_support import vtk_to_numpy
