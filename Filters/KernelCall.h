@@ -35,7 +35,8 @@ inline Progress ProgressOf(vtkAlgorithm* filter)
 /**
  * Runs the body of a RequestData. When it throws, every output is emptied; anything but an abort is
  * reported as one error of the filter.
- * @return what RequestData returns: 1, or 0 after an error.
+ * @return what RequestData returns: always 1, because with 0 the executive adds an error of its own, of
+ *         ten lines that tell the user nothing.
  */
 template <typename Body>
 int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
@@ -61,12 +62,11 @@ int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
   {
     vtkDataObject::GetData(outputs, port)->Initialize();
   }
-  if (message.empty())
+  if (!message.empty())
   {
-    return 1;
+    vtkErrorWithObjectMacro(filter, << message);
   }
-  vtkErrorWithObjectMacro(filter, << message);
-  return 0;
+  return 1;
 }
 
 /** A count as an array of one value, for the output's field data. */

@@ -898,7 +898,10 @@ def write_surface(data, path, suffix):
     coarse = rounding_note(coordinates) is not None
     if suffix == ".vtp":
         writer = vtkXMLPolyDataWriter()
-        writer.SetDataModeToBinary()  # ParaView 5.11 cannot read appended data with newer libexpat
+        # Not appended: ParaView 5.11 cannot read appended data with a newer libexpat. In memory first:
+        # the writer crashes on a full disk.
+        writer.SetDataModeToBinary()
+        writer.WriteToOutputStringOn()
     elif suffix == ".ply":
         writer = vtkPLYWriter()
         if coarse:
@@ -929,6 +932,9 @@ def write_surface(data, path, suffix):
         writer.SetFileName(path)
         writer.SetInputData(data)
         done = writer.Write()
+    if suffix == ".vtp" and done and not messages.errors:
+        with open(path, "w", encoding="ascii", newline="") as stream:
+            stream.write(writer.GetOutputString())
     if messages.errors or not done:
         raise FileError(messages.errors[0] if messages.errors else "VTK's writer gave no reason")
     if not is_whole(path, suffix, data):
