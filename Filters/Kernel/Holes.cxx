@@ -100,12 +100,10 @@ public:
   {
     this->MakeSegments();
     this->FindTurns();
-    std::sort(this->Events.begin(), this->Events.end(),
-      [](const Event& a, const Event& b)
-      {
-        return a.At != b.At ? IsLower(a.At, b.At)
-                            : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
-      });
+    std::sort(this->Events.begin(), this->Events.end(), [](const Event& a, const Event& b) {
+      return a.At != b.At ? IsLower(a.At, b.At)
+                          : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
+    });
     std::size_t told = 0;
     for (std::size_t first = 0; first < this->Events.size();)
     {
@@ -232,15 +230,13 @@ private:
     }
     this->CheckOrder(hasLeft ? left : this->Status.begin(), behind, p);
 
-    for (std::size_t i = first; i < last; ++i)
+    // The first edges of a walk are at its lowest point: what is left of them is empty.
+    for (Place place = hasLeft ? std::next(left) : this->Status.begin(); place != behind; ++place)
     {
-      const Index walk = this->Segments[this->Events[i].Segment].Walk;
-      if (this->Regions[walk] == NotLocated)
+      Index& region = this->Regions[this->Segments[*place].Walk];
+      if (region == NotLocated)
       {
-        // The first edge of a walk is at its lowest point.
-        this->Regions[walk] = !this->Passing.empty() ? this->RegionOf(this->Passing.front())
-          : hasLeft                                  ? this->RegionOf(*left)
-                                                     : Outside;
+        region = place == this->Status.begin() ? Outside : this->RegionOf(*std::prev(place));
       }
     }
     this->MarkContacts(p, last);
@@ -316,8 +312,7 @@ private:
   void MarkContacts(const Point2& p, std::size_t last)
   {
     // The same vertex as seen from different empty regions is no contact.
-    const auto vertexAt = [&](const Segment& segment)
-    {
+    const auto vertexAt = [&](const Segment& segment) {
       const Index origin = this->Surface.Origin(segment.HalfEdge);
       return this->Surface.PointOf(origin) == p ? origin
                                                 : this->Surface.Destination(segment.HalfEdge);

@@ -518,6 +518,20 @@ TEST(Fill, FailsTheLargeHoleAndFillsTheSmallOne)
   EXPECT_LE(run.Patches.NumberOfPoints(), 20);
 }
 
+TEST(Fill, SharesTheRoomForPointsAmongHoles)
+{
+  FillOptions options;
+  options.Spacing = 0.5;
+  options.MaximumInsertedPoints = 70; // each of the holes takes about 40
+  const Outcome run =
+    Fill(Draw({ "#########", "#   #   #", "#   #   #", "#   #   #", "#########" }), options);
+  ExpectPatchesFit(run, 1e-14);
+  ASSERT_EQ(run.Found.Count(), 2);
+  EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled);
+  EXPECT_EQ(run.Patches.Reports[1].Status, FillStatus::Failed);
+  EXPECT_LE(run.Patches.NumberOfPoints(), 70);
+}
+
 TEST(Fill, FailsALongThinHoleThatWouldTakeTooManyRows)
 {
   // A sliver 1000 high and 1e-9 wide: no area to speak of, but 1e8 spacings long.

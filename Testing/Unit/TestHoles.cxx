@@ -332,6 +332,25 @@ TEST(Holes, WithAnIslandThatTouchesTheRimAreMarked)
   EXPECT_EQ(holes.Touched[0], 1);
 }
 
+TEST(Holes, WithTwoPointsAtOnePlaceAreMarkedAndTheOthersNot)
+{
+  // An island whose corner lies on a corner of the rim, but is another point.
+  std::vector<Index> triangles = Draw({ "######", "#  # #", "#  ###", "######" }).Triangles;
+  std::vector<Point2> points = Draw({ "######", "#  # #", "#  ###", "######" }).Points;
+  const Index first = static_cast<Index>(points.size());
+  points.insert(points.end(), { { 1, 1 }, { 2, 1.5 }, { 1.5, 2 } });
+  triangles.insert(triangles.end(), { first, first + 1, first + 2 });
+  const Holes holes = FindHoles(Make(points, triangles));
+  ASSERT_EQ(holes.Count(), 2);
+  EXPECT_EQ(holes.NumberOfContacts, 1);
+  const Index touched = holes.Touched[0] ? 0 : 1;
+  EXPECT_EQ(holes.Touched[touched], 1);
+  EXPECT_EQ(holes.NumberOfEdges(touched), 8 + 3);
+  EXPECT_EQ(NumberOfIslands(holes, touched), 1);
+  EXPECT_EQ(holes.Touched[1 - touched], 0);
+  EXPECT_EQ(NumberOfIslands(holes, 1 - touched), 0);
+}
+
 TEST(Holes, StopWhenAskedTo)
 {
   const Mesh mesh = Draw({ "####", "# ##", "####" });
