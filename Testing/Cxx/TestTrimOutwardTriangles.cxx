@@ -1,0 +1,360 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what passes with
+// them, what is counted, what errors and aborts leave behind, and that the inputs are never written.
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkTrimOutwardTriangles.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <initializer_list>
+#include <iostream>
+#include <string>
+
+namespace
+{
+constexpr int Size = 9;
+int failures = 0;
+
+void Check(bool isTrue, const std::string& claim)
+{
+  if (!isTrue)
+  {
+    std::cerr << "Not true: " << claim << "\n";
+    ++failures;
+  }
+}
+
+vtkIdType At(int x, int y)
+{
+  return x + Size * y;
+}
+
+/**
+ * The Delaunay triangulation of a lattice of unit squares, every second triangle clockwise, with a vertex
+ * and a line before the triangles, and arrays.
+ */
+vtkSmartPointer<vtkPolyData> MakeMesh()
+{
+  vtkNew<vtkPolyData> cloud;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("Id");
+  for (vtkIdType i = 0; i < Size * Size; ++i)
+  {
+    points->InsertNextPoint(i % Size, i / Size, 100.0 + i);
+    ids->InsertNextValue(i);
+  }
+  cloud->SetPoints(points);
+  cloud->GetPointData()->AddArray(ids);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  delaunay->Update();
+
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->ShallowCopy(delaunay->GetOutput());
+  vtkNew<vtkCellArray> vertex;
+  vertex->InsertNextCell({ 0 });
+  vtkNew<vtkCellArray> line;
+  line->InsertNextCell({ 0, 1, 2 });
+  vtkNew<vtkCellArray> triangles;
+  vtkNew<vtkIdTypeArray> cellIds;
+  cellIds->SetName("Cell");
+  cellIds->InsertNextValue(0);
+  cellIds->InsertNextValue(1);
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPolys(); ++i)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* t = nullptr;
+    mesh->GetPolys()->GetCellAtId(i, size, t);
+    triangles->InsertNextCell({ t[0], t[1 + i % 2], t[2 - i % 2] });
+    cellIds->InsertNextValue(2 + i);
+  }
+  mesh->SetVerts(vertex);
+  mesh->SetLines(line);
+  mesh->SetPolys(triangles);
+  mesh->GetCellData()->AddArray(cellIds);
+  return mesh;
+}
+
+/** Closed lines through nodes of the lattice, at elevation 7. */
+vtkSmartPointer<vtkPolyData> MakeRings(
+  std::initializer_list<std::initializer_list<std::pair<double, double>>> rings)
+{
+  auto boundary = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> lines;
+  for (const auto& ring : rings)
+  {
+    const vtkIdType first = points->GetNumberOfPoints();
+    lines->InsertNextCell(static_cast<int>(ring.size()) + 1);
+    for (const auto& p : ring)
+    {
+      lines->InsertCellPoint(points->InsertNextPoint(p.first, p.second, 7.0));
+    }
+    lines->InsertCellPoint(first);
+  }
+  boundary->SetPoints(points);
+  boundary->SetLines(lines);
+  return boundary;
+}
+
+/** Twice the area of the polygons; checks that each is counter-clockwise. */
+double TwiceArea(vtkPolyData* mesh)
+{
+  double sum = 0.0;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPolys(); ++i)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* t = nullptr;
+    mesh->GetPolys()->GetCellAtId(i, size, t);
+    double a[3], b[3], c[3];
+    mesh->GetPoint(t[0], a);
+    mesh->GetPoint(t[1], b);
+    mesh->GetPoint(t[2], c);
+    const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    Check(area > 0.0, "triangles are counter-clockwise");
+    sum += area;
+  }
+  return sum;
+}
+
+void TestGivenBoundary()
+{
+  auto mesh = MakeMesh();
+  auto boundary = MakeRings({ { { 1, 1 }, { 7, 2 }, { 6, 7 }, { 2, 6 } }, // twice: 47
+    { { 3, 3 }, { 3, 5 }, { 5, 5 }, { 5, 3 } } });                        // 8
+  const vtkMTimeType time = mesh->GetMTime();
+  const vtkMTimeType boundaryTime = boundary->GetMTime();
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputData(mesh);
+  trim->SetBoundaryData(boundary);
+  Check(trim->GetBoundary() == boundary, "the boundary can be asked for");
+  trim->Update();
+  vtkPolyData* kept = trim->GetOutput(0);
+  vtkPolyData* outward = trim->GetOutput(1);
+  vtkPolyData* used = trim->GetOutput(2);
+
+  Check(mesh->GetMTime() == time && boundary->GetMTime() == boundaryTime,
+    "the inputs are not written");
+  const double expected = (1 * 2 - 7 * 1) + (7 * 7 - 6 * 2) + (6 * 6 - 2 * 7) + (2 * 1 - 1 * 6) - 8;
+  Check(TwiceArea(kept) == expected, "the kept triangles cover the inside");
+  Check(TwiceArea(kept) + TwiceArea(outward) == 2.0 * 64, "both together cover the input");
+  Check(kept->GetNumberOfPolys() + outward->GetNumberOfPolys() == mesh->GetNumberOfPolys(),
+    "the number of triangles is conserved");
+  Check(trim->GetNumberOfOutwardTriangles() == outward->GetNumberOfPolys(), "outward is counted");
+  Check(trim->GetNumberOfRecoveredEdges() == 4, "the four slanted edges were missing");
+  Check(trim->GetEffectiveGapTolerance() == 0.0, "no gap tolerance with a boundary given");
+  for (vtkPolyData* output : { kept, outward, used })
+  {
+    vtkFieldData* field = output->GetFieldData();
+    Check(field->GetArray("NumberOfOutwardTriangles") &&
+        field->GetArray("NumberOfOutwardTriangles")->GetTuple1(0) == outward->GetNumberOfPolys() &&
+        field->GetArray("NumberOfRecoveredEdges")->GetTuple1(0) == 4 &&
+        field->GetArray("EffectiveGapTolerance")->GetTuple1(0) == 0.0,
+      "counts stand in the field data");
+  }
+  Check(kept->GetPoints() == mesh->GetPoints() && outward->GetPoints() == mesh->GetPoints(),
+    "points are shared with the input");
+  Check(kept->GetPointData()->GetArray("Id") == mesh->GetPointData()->GetArray("Id") &&
+      outward->GetPointData()->GetArray("Id") == mesh->GetPointData()->GetArray("Id"),
+    "point data passes");
+  Check(kept->GetFieldData()->GetAbstractArray("UnusedPointIds") != nullptr, "field data passes");
+  Check(kept->GetNumberOfVerts() == 1 && kept->GetNumberOfLines() == 1 &&
+      outward->GetNumberOfVerts() == 0 && outward->GetNumberOfLines() == 0,
+    "vertices and lines are in output 0");
+
+  Check(used->GetNumberOfLines() == 2 && used->GetNumberOfPoints() == 8, "two rings were used");
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  used->GetLines()->GetCellAtId(0, size, ids);
+  Check(size == 5 && ids[0] == ids[4], "the line of a ring is closed");
+  Check(used->GetPoint(ids[1])[0] == 7.0 && used->GetPoint(ids[1])[2] == 7.0,
+    "the ring has the elevation of the boundary");
+}
+
+void TestCellData()
+{
+  auto mesh = MakeMesh();
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputData(mesh);
+  trim->SetBoundaryData(MakeRings({ { { 1, 1 }, { 6, 1 }, { 6, 6 }, { 1, 6 } } }));
+  trim->RecoverBoundaryOff();
+  trim->Update();
+  Check(trim->GetOutput(0)->GetNumberOfPolys() == 50, "25 squares are kept");
+  Check(trim->GetOutput(0)->GetCellData()->GetArray("Cell")->GetTuple1(0) == 0 &&
+      trim->GetOutput(0)->GetCellData()->GetArray("Cell")->GetTuple1(1) == 1,
+    "cell data of vertices and lines passes");
+  for (int port = 0; port < 2; ++port)
+  {
+    vtkPolyData* output = trim->GetOutput(port);
+    vtkDataArray* cells = output->GetCellData()->GetArray("Cell");
+    const vtkIdType first = output->GetNumberOfCells() - output->GetNumberOfPolys();
+    Check(cells && cells->GetNumberOfTuples() == output->GetNumberOfCells(), "cell data fits");
+    bool isSame = true;
+    for (vtkIdType i = 0; i < output->GetNumberOfPolys(); ++i)
+    {
+      vtkIdType size = 0;
+      const vtkIdType* t = nullptr;
+      output->GetPolys()->GetCellAtId(i, size, t);
+      const vtkIdType sum = t[0] + t[1] + t[2];
+      mesh->GetPolys()->GetCellAtId(
+        static_cast<vtkIdType>(cells->GetTuple1(first + i)) - 2, size, t);
+      isSame = isSame && sum == t[0] + t[1] + t[2];
+    }
+    Check(isSame, "a triangle keeps its cell data");
+  }
+}
+
+void TestExtractedBoundary()
+{
+  // Two blocks apart, and a lone point.
+  vtkNew<vtkPolyData> cloud;
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 10 * 30; ++i)
+  {
+    if (i % 30 < 12 || i % 30 > 21)
+    {
+      points->InsertNextPoint(i % 30, i / 30, 3.0);
+    }
+  }
+  points->InsertNextPoint(16, 40, 0);
+  cloud->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputConnection(delaunay->GetOutputPort());
+  trim->Update();
+  Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 9 * (11 + 7), "the blocks are kept");
+  Check(trim->GetOutput(2)->GetNumberOfLines() == 2, "each block has its outline");
+  Check(trim->GetOutput(2)->GetPoint(0)[2] == 3.0, "the outline has the points' elevation");
+  Check(std::fabs(trim->GetEffectiveGapTolerance() - 4.5) < 1e-12, "the tolerance can be read");
+  Check(trim->GetNumberOfRecoveredEdges() == 0, "nothing is recovered");
+  trim->SetGapTolerance(14.0);
+  trim->Update();
+  Check(trim->GetOutput(2)->GetNumberOfLines() == 1, "a wide tolerance bridges the gap");
+  Check(trim->GetEffectiveGapTolerance() == 14.0, "the tolerance set is the one used");
+}
+
+void ExpectError(vtkPolyData* mesh, vtkPolyData* boundary, bool recover, const std::string& part)
+{
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->AddObserver(vtkCommand::ErrorEvent, observer);
+  vtkNew<vtkTest::ErrorObserver> ofExecutive; // which adds that the request failed
+  trim->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, ofExecutive);
+  trim->SetInputData(mesh);
+  trim->SetBoundaryData(boundary);
+  trim->SetRecoverBoundary(recover);
+  trim->Update();
+  const std::string message = observer->GetErrorMessage();
+  Check(message.find(part) != std::string::npos &&
+      message.find("ERROR:") == message.rfind("ERROR:"),
+    "one error with \"" + part + "\"; it was: " + message);
+  for (int port = 0; port < 3; ++port)
+  {
+    Check(trim->GetOutput(port)->GetNumberOfPoints() == 0 &&
+        trim->GetOutput(port)->GetNumberOfCells() == 0,
+      "an error leaves empty outputs");
+  }
+}
+
+void TestErrors()
+{
+  auto mesh = MakeMesh();
+  auto open = MakeRings({ { { 1, 1 }, { 7, 2 }, { 6, 7 } } });
+  vtkNew<vtkCellArray> line;
+  line->InsertNextCell({ 0, 1, 2 });
+  open->SetLines(line);
+  ExpectError(mesh, open, true, "line (cell 0) ends at point 0 (1, 1)");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7, 6 }, { 7, 0 }, { 0, 5 } } }), true, "crosses");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7.5, 6 }, { 7, 0 } } }), true, "point 1 (7.5, 6)");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { std::nan(""), 6 }, { 7, 0 } } }), true, "not finite");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 0 } } }), false, "not an edge");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7, 2 } } }), true, "at least three");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 4, 4 }, { 2, 2 } } }), true, "encloses no triangle");
+  vtkNew<vtkPolyData> nothing;
+  ExpectError(mesh, nothing, true, "no line and no polygon");
+  auto heights = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 0 } } });
+  heights->GetPoints()->SetPoint(1, 7, 2, std::nan(""));
+  ExpectError(mesh, heights, true, "Point 1 of the boundary's cell 0 is not finite");
+
+  vtkNew<vtkPolyData> quad;
+  quad->SetPoints(mesh->GetPoints());
+  vtkNew<vtkCellArray> cells;
+  cells->InsertNextCell({ At(0, 0), At(1, 0), At(1, 1), At(0, 1) });
+  quad->SetPolys(cells);
+  ExpectError(quad, nullptr, true, "Cell 0 has 4 points");
+  vtkNew<vtkPolyData> folded;
+  folded->SetPoints(mesh->GetPoints());
+  vtkNew<vtkCellArray> two;
+  two->InsertNextCell({ At(0, 0), At(5, 0), At(0, 5) });
+  two->InsertNextCell({ At(1, 1), At(6, 1), At(1, 6) });
+  folded->SetPolys(two);
+  ExpectError(folded, nullptr, true, "Cell 1 lies over");
+}
+
+void TestEmptyMeshAndAbort()
+{
+  vtkNew<vtkPolyData> empty;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->AddObserver(vtkCommand::WarningEvent, observer);
+  trim->SetInputData(empty);
+  trim->Update();
+  Check(observer->GetWarning() && trim->GetOutput()->GetNumberOfCells() == 0,
+    "an empty mesh passes with a warning");
+
+  vtkNew<vtkTrimOutwardTriangles> aborted;
+  aborted->SetInputData(MakeMesh());
+  double last = 0.0;
+  vtkNew<vtkCallbackCommand> progress;
+  progress->SetClientData(&last);
+  progress->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    auto* filter = static_cast<vtkTrimOutwardTriangles*>(caller);
+    auto* before = static_cast<double*>(data);
+    Check(filter->GetProgress() >= *before && filter->GetProgress() <= 1.0, "progress rises");
+    *before = filter->GetProgress();
+  });
+  aborted->AddObserver(vtkCommand::ProgressEvent, progress);
+  aborted->Update();
+  Check(last == 1.0, "progress ends at 1");
+  Check(aborted->GetOutput(0)->GetNumberOfPolys() == 128, "a full lattice is all surface");
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    static_cast<vtkTrimOutwardTriangles*>(caller)->SetAbortExecute(1);
+  });
+  aborted->RemoveObservers(vtkCommand::ProgressEvent);
+  aborted->AddObserver(vtkCommand::ProgressEvent, stop);
+  aborted->Modified();
+  aborted->Update();
+  for (int port = 0; port < 3; ++port)
+  {
+    Check(aborted->GetOutput(port)->GetNumberOfCells() == 0, "an abort leaves empty outputs");
+  }
+}
+} // namespace
+
+int TestTrimOutwardTriangles(int, char*[])
+{
+  TestGivenBoundary();
+  TestCellData();
+  TestExtractedBoundary();
+  TestErrors();
+  TestEmptyMeshAndAbort();
+  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

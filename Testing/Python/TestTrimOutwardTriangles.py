@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""vtkTrimOutwardTriangles from Python: names, defaults, both kinds of boundary, through NumPy."""
+import unittest
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+from vtkelevationsurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
+
+
+def triangulate(xy):
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(numpy.column_stack([xy, numpy.zeros(len(xy))]), deep=True))
+    cloud = vtkPolyData()
+    cloud.SetPoints(points)
+    delaunay = vtkGridDelaunay2D()
+    delaunay.SetInputData(cloud)
+    delaunay.Update()
+    return delaunay.GetOutput()
+
+
+def area(mesh):
+    xy = vtk_to_numpy(mesh.GetPoints().GetData())[:, :2]
+    t = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    a, b, c = xy[t[:, 0]], xy[t[:, 1]], xy[t[:, 2]]
+    return 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum()
+
+
+class TestTrimOutwardTriangles(unittest.TestCase):
+    def test_defaults(self):
+        trim = vtkTrimOutwardTriangles()
+        self.assertEqual(trim.GetGapTolerance(), 0.0)
+        self.assertTrue(trim.GetRecoverBoundary())
+        self.assertIsNone(trim.GetBoundary())
+        self.assertEqual(trim.GetNumberOfOutputPorts(), 3)
+
+    def test_values_are_clamped(self):
+        trim = vtkTrimOutwardTriangles()
+        trim.SetGapTolerance(-1.0)
+        self.assertEqual(trim.GetGapTolerance(), 0.0)
+
+    def test_every_property_is_printed(self):
+        text = str(vtkTrimOutwardTriangles())
+        for name in ("GapTolerance", "RecoverBoundary", "EffectiveGapTolerance",
+                     "NumberOfOutwardTriangles", "NumberOfRecoveredEdges"):
+            self.assertIn(name, text)
+
+    def test_a_star_has_its_area(self):
+        # A star through random points: its corners are points, its edges are recovered.
+        angle = numpy.linspace(0.0, 2.0 * numpy.pi, 40, endpoint=False)
+        radius = numpy.where(numpy.arange(40) % 2, 0.2, 0.45)
+        star = 0.5 + radius[:, None] * numpy.column_stack([numpy.cos(angle), numpy.sin(angle)])
+        mesh = triangulate(numpy.vstack([star, numpy.random.RandomState(1).rand(3000, 2)]))
+        boundary = vtkPolyData()
+        boundary.SetPoints(mesh.GetPoints())
+        cells = vtkCellArray()
+        cells.InsertNextCell(40)
+        for i in range(40):
+            cells.InsertCellPoint(i)
+        boundary.SetPolys(cells)
+        trim = vtkTrimOutwardTriangles()
+        trim.SetInputData(mesh)
+        trim.SetBoundaryData(boundary)
+        trim.Update()
+        x, y = star.T
+        expected = 0.5 * (x * numpy.roll(y, -1) - y * numpy.roll(x, -1)).sum()
+        self.assertAlmostEqual(area(trim.GetOutput(0)), expected, places=12)
+        self.assertAlmostEqual(area(trim.GetOutput(0)) + area(trim.GetOutput(1)), area(mesh), places=12)
+        self.assertGreater(trim.GetNumberOfRecoveredEdges(), 20)
+
+    def test_the_boundary_is_found(self):
+        # A ring of points: its inside is a lake, the corners of its hull are outward.
+        # The outline of points runs inside that of the ring by less than half a spacing (0.014).
+        xy = numpy.random.RandomState(2).rand(20000, 2) * 2.0 - 1.0
+        radius = numpy.hypot(xy[:, 0], xy[:, 1])
+        trim = vtkTrimOutwardTriangles()
+        trim.SetInputData(triangulate(xy[(radius > 0.4) & (radius < 0.9)]))
+        trim.Update()
+        self.assertEqual(trim.GetOutput(2).GetNumberOfLines(), 2)
+        self.assertAlmostEqual(area(trim.GetOutput(0)), numpy.pi * (0.81 - 0.16), delta=0.06)
+        field = trim.GetOutput().GetFieldData()
+        self.assertEqual(field.GetArray("EffectiveGapTolerance").GetValue(0),
+                         trim.GetEffectiveGapTolerance())
+        self.assertGreater(trim.GetEffectiveGapTolerance(), 4.0)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["TestTrimOutwardTriangles"])
