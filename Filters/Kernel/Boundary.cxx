@@ -412,12 +412,13 @@ public:
       ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))))
       : 1.0;
   }
-  double Squared(Index v, Index w) const
+  double Squared(const Point2& p, const Point2& q) const
   {
-    const double x = this->Points[v].X * this->Scale - this->Points[w].X * this->Scale;
-    const double y = this->Points[v].Y * this->Scale - this->Points[w].Y * this->Scale;
+    const double x = p.X * this->Scale - q.X * this->Scale;
+    const double y = p.Y * this->Scale - q.Y * this->Scale;
     return x * x + y * y;
   }
+  double Squared(Index v, Index w) const { return this->Squared(this->Points[v], this->Points[w]); }
   double TwiceArea(Index u, Index v, Index w) const
   {
     const double ux = this->Points[u].X * this->Scale;
@@ -440,13 +441,35 @@ private:
 std::vector<double> FindSpacings(
   const Mesh& mesh, const Distances& distances, const Progress& progress)
 {
-  const std::size_t count = mesh.Points.size();
+  // Vertices are renumbered as the triangles name them: neighbours come to lie near in memory.
+  std::vector<Index> rank(mesh.Points.size(), None);
+  std::vector<Index> vertices;
+  for (const Index vertex : mesh.Triangles)
+  {
+    if (rank[vertex] == None)
+    {
+      rank[vertex] = static_cast<Index>(vertices.size());
+      vertices.push_back(vertex);
+    }
+  }
+  const std::size_t count = vertices.size();
+  std::vector<Point2> points(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    points[i] = mesh.PointOf(vertices[i]);
+  }
+  const auto origin = [&](Index h) { return rank[mesh.Origin(h)]; };
+  const auto destination = [&](Index h) { return rank[mesh.Destination(h)]; };
+
   std::vector<Index> offsets(count + 1, 0);
   const Index halfEdges = mesh.NumberOfHalfEdges();
   for (Index h = 0; h < halfEdges; ++h)
   {
-    ++offsets[mesh.Origin(h)];
-    offsets[mesh.Destination(h)] += mesh.IsBorder(h) ? 1 : 0;
+    ++offsets[origin(h)];
+    if (mesh.IsBorder(h))
+    {
+      ++offsets[destination(h)];
+    }
   }
   Index sum = 0;
   for (Index& offset : offsets)
@@ -456,10 +479,10 @@ std::vector<double> FindSpacings(
   std::vector<Index> neighbors(sum);
   for (Index h = 0; h < halfEdges; ++h)
   {
-    neighbors[--offsets[mesh.Origin(h)]] = mesh.Destination(h);
+    neighbors[--offsets[origin(h)]] = destination(h);
     if (mesh.IsBorder(h))
     {
-      neighbors[--offsets[mesh.Destination(h)]] = mesh.Origin(h);
+      neighbors[--offsets[destination(h)]] = origin(h);
     }
   }
 
@@ -468,7 +491,7 @@ std::vector<double> FindSpacings(
     double Squared;
     Index Vertex;
   };
-  std::vector<double> spacings(count, 0.0);
+  std::vector<double> spacings(mesh.Points.size(), 0.0);
   std::vector<Index> seenFrom(count, None);
   std::vector<Candidate> candidates;
   for (Index v = 0; v < static_cast<Index>(count); ++v)
@@ -491,7 +514,7 @@ std::vector<double> FindSpacings(
           if (seenFrom[w] != v)
           {
             seenFrom[w] = v;
-            candidates.push_back({ distances.Squared(v, w), w });
+            candidates.push_back({ distances.Squared(points[v], points[w]), w });
           }
         }
       }
@@ -508,7 +531,7 @@ std::vector<double> FindSpacings(
       *nearest = candidates.back();
       candidates.pop_back();
     }
-    spacings[v] = SpacingPerNeighborDistance * std::sqrt(squared);
+    spacings[vertices[v]] = SpacingPerNeighborDistance * std::sqrt(squared);
   }
   return spacings;
 }
