@@ -162,7 +162,7 @@ TEST(Predicates, AgreeWithIntegersNearLinesAndCircles)
   // products of four.
   std::mt19937_64 random(13);
   const auto uniform = [&random]() { return static_cast<double>(random() >> 11) * 0x1p-53; };
-  for (const int exponent : { -530, -300, -20, 0, 14, 24, 300 })
+  for (const int exponent : { -530, -514, -300, -258, -20, 0, 14, 24, 300 })
   {
     const double size = std::ldexp(1.0, exponent);
     const bool isWhole = exponent == 14 || exponent == 24;
