@@ -372,12 +372,17 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines)
       }
     }
     ring.pop_back();
-    if (ring.size() < 3)
+    // Two lines along one edge, as of two parcels that share it, cancel out. Whether they meet here
+    // or in two larger rings depends on the order of the lines alone.
+    if (ring.size() > 2)
     {
-      throw Error("The boundary's " + NameOfLine(lines, pieces[i].Line) +
-        " makes a ring of only two points; a ring has at least three.");
+      Append(joined, ring, vertexOf);
     }
-    Append(joined, ring, vertexOf);
+  }
+  if (joined.Points.empty())
+  {
+    throw Error("The boundary's " + NameOfLine(lines, pieces.front().Line) +
+      " makes a ring of only two points, and so do all others; a ring has at least three.");
   }
   return joined;
 }

@@ -79,10 +79,12 @@ struct BoundaryLines
 
 /**
  * Joins lines to rings of mesh vertices. A line is a ring when it returns to its first point
- * (the same id or the same x,y); other lines are chained with each other where their ends meet.
+ * (the same id or the same x,y); other lines are chained with each other where their ends meet. Two
+ * lines that lie on each other and close a ring of two points are left out: they cancel out.
  * Points are matched to the corners of the mesh's triangles by equal x,y.
  * @throws Error naming the line and the point: a point not finite or not a mesh vertex; an end
- * where no other line goes on; a ring of fewer than three points; no line at all
+ * where no other line goes on; a line that is a ring of fewer than three points; no line at all, or
+ * only lines that cancel each other
  */
 struct JoinedBoundary
 {

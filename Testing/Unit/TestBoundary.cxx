@@ -257,6 +257,38 @@ TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
   EXPECT_EQ(joined.Vertices.Vertices.size(), 6u);
 }
 
+TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
+{
+  // Two parcels side by side, cut into edges, so that the one they share is there twice.
+  const Mesh mesh = Lattice4();
+  std::vector<std::vector<Index>> edges{ { 1, 9 }, { 9, 1 }, { 9, 8 }, { 8, 0 }, { 0, 1 }, { 1, 3 },
+    { 3, 11 }, { 11, 9 } };
+  Random random(17);
+  for (int round = 0; round < 500; ++round)
+  {
+    const JoinedBoundary joined = JoinLines(mesh, MakeLines(mesh.Points, edges, false));
+    std::set<std::pair<Index, Index>> odd; // edges that the rings run along an odd number of times
+    for (Index ring = 0; ring < joined.Vertices.Count(); ++ring)
+    {
+      const Index size = joined.Vertices.Size(ring);
+      EXPECT_GE(size, 3);
+      for (Index i = 0; i < size; ++i)
+      {
+        const std::pair<Index, Index> edge = std::minmax(
+          { joined.Vertices.Begin(ring)[i], joined.Vertices.Begin(ring)[(i + 1) % size] });
+        if (!odd.insert(edge).second)
+        {
+          odd.erase(edge);
+        }
+      }
+    }
+    ASSERT_EQ(odd,
+      (std::set<std::pair<Index, Index>>{
+        { 8, 9 }, { 0, 8 }, { 0, 1 }, { 1, 3 }, { 3, 11 }, { 9, 11 } }));
+    random.Shuffle(edges);
+  }
+}
+
 TEST(JoinLines, RefusesWhatIsNoBoundaryByName)
 {
   const std::vector<Point2> points = Lattice4().Points;
