@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <unordered_map>
 
 namespace elevation
@@ -176,13 +175,6 @@ struct HashOfPoint
   }
 };
 
-std::string NameOf(Index id, const Point2& p)
-{
-  char text[96];
-  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), p.X, p.Y);
-  return text;
-}
-
 std::string NameOfLine(const BoundaryLines& lines, Index line)
 {
   return (lines.IsPolygon[line] ? "polygon (cell " : "line (cell ") +
@@ -200,8 +192,8 @@ std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
       const Point2& p = lines.Points[*point];
       if (!std::isfinite(p.X) || !std::isfinite(p.Y))
       {
-        throw Error("The boundary's " + NameOf(*point, p) + " of " + NameOfLine(lines, line) +
-          " is not finite.");
+        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
+          NameOfLine(lines, line) + " is not finite.");
       }
       vertexAt.emplace(p, None);
     }
@@ -238,7 +230,7 @@ std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
       vertices[*point] = vertexAt.at(lines.Points[*point]);
       if (vertices[*point] == None)
       {
-        throw Error("The boundary's " + NameOf(*point, lines.Points[*point]) + " of " +
+        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
           NameOfLine(lines, line) + " is not a corner of the mesh: no triangle has a point with " +
           "exactly the same x,y. Add the boundary's points to the points before triangulating "
           "them.");
@@ -331,7 +323,7 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines)
       if (!piece.IsClosed && meeting->second.size() % 2 != 0)
       {
         throw Error("The boundary is not closed: " + NameOfLine(lines, piece.Line) + " ends at " +
-          NameOf(end, lines.Points[end]) +
+          NameOf(lines.Points, end) +
           (meeting->second.size() == 1 ? ", where no other line goes on."
                                        : ", where " + std::to_string(meeting->second.size()) +
                 " lines end, which cannot be paired."));

@@ -5,9 +5,18 @@
 #include "Predicates.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace elevation
 {
+
+std::string NameOf(const std::vector<Point2>& points, Index id)
+{
+  char text[96];
+  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), points[id].X,
+    points[id].Y);
+  return text;
+}
 
 void Mesh::ConnectTwins(Index firstCell)
 {
