@@ -14,20 +14,6 @@ namespace elevation
 namespace
 {
 
-/** Whether p lies on the edge, whose ends are given from the lower to the higher (by y). */
-bool IsOn(const Point2& low, const Point2& high, const Point2& p)
-{
-  return low.Y <= p.Y && p.Y <= high.Y && std::min(low.X, high.X) <= p.X &&
-    p.X <= std::max(low.X, high.X) && Orientation(low, high, p) == Zero;
-}
-
-/** Whether the edge passes p on its left, at p's height; an edge has its lower end, not its upper.
- */
-bool PassesOnTheLeft(const Point2& low, const Point2& high, const Point2& p)
-{
-  return low.Y <= p.Y && p.Y < high.Y && Orientation(low, high, p) == Negative;
-}
-
 template <typename Visitor>
 void VisitEdges(const Rings& rings, Visitor&& visit)
 {
@@ -42,20 +28,6 @@ void VisitEdges(const Rings& rings, Visitor&& visit)
 }
 
 } // namespace
-
-Location Locate(const std::vector<Point2>& points, const Rings& rings, const Point2& p)
-{
-  bool isOn = false;
-  bool isInside = false;
-  VisitEdges(rings, [&](Index a, Index b) {
-    const bool up = points[a].Y <= points[b].Y;
-    const Point2& low = up ? points[a] : points[b];
-    const Point2& high = up ? points[b] : points[a];
-    isOn = isOn || IsOn(low, high, p);
-    isInside ^= PassesOnTheLeft(low, high, p);
-  });
-  return isOn ? Location::On : isInside ? Location::Inside : Location::Outside;
-}
 
 RingLocator::RingLocator(const std::vector<Point2>& points, const Rings& rings)
   : Points(points)
@@ -125,17 +97,6 @@ void RingLocator::VisitEdgesAt(double y, Visitor&& visit) const
     const Edge& edge = this->Edges[this->BinEdges[i]];
     visit(this->Points[edge.Low], this->Points[edge.High]);
   }
-}
-
-Location RingLocator::Locate(const Point2& p) const
-{
-  bool isOn = false;
-  bool isInside = false;
-  this->VisitEdgesAt(p.Y, [&](const Point2& low, const Point2& high) {
-    isOn = isOn || IsOn(low, high, p);
-    isInside ^= PassesOnTheLeft(low, high, p);
-  });
-  return isOn ? Location::On : isInside ? Location::Inside : Location::Outside;
 }
 
 bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) const

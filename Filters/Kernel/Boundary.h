@@ -19,30 +19,14 @@
 namespace elevation
 {
 
-enum class Location
-{
-  Outside,
-  Inside,
-  On
-};
-
 /**
- * Where point p lies with respect to rings of points, by the even-odd rule. Exact. Linear in the
- * number of edges; for many points use RingLocator.
- */
-Location Locate(const std::vector<Point2>& points, const Rings& rings, const Point2& p);
-
-/**
- * Answers many questions of location. The edges are binned by y, so that a question looks only at
- * those about its height. n log n set-up; keeps a reference to the points.
+ * Tells which triangles lie inside rings, by the even-odd rule. The edges are binned by y, so that
+ * a question looks only at those about its height. Linear set-up; keeps a reference to the points.
  */
 class RingLocator
 {
 public:
   RingLocator(const std::vector<Point2>& points, const Rings& rings);
-
-  /** As the function above. */
-  Location Locate(const Point2& p) const;
 
   /**
    * Whether the triangle is inside, which no edge of the rings may cut. Exact, also when all its
