@@ -23,12 +23,12 @@
  * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its
  * longest edge is at most GapTolerance times the spacing of the points there; so dense and thin
  * parts of a cloud are both outlined well. The details:
- * - The spacing at a point is half the distance of its 6th nearest point: at the rim of a gap,
- * where points are on one side only, one step of a square lattice, or the mean spacing of random
- * points. The spacing of a triangle is the middle one of its three points', but at most twice the
- * least.
+ * - The spacing at a point is half the distance of its 6th nearest point: at the rim of a
+ *   gap, where points are on one side only, one step of a square lattice, or the mean spacing
+ *   of random points. The spacing of a triangle is the middle one of its three points', but
+ *   at most twice the least.
  * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance
- * spacings. A smaller one is surface.
+ *   spacings. A smaller one is surface.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
  * - The input should be a Delaunay triangulation. Its holes stay open and are part of the boundary.
  *
@@ -36,7 +36,7 @@
  * - 0: the triangles inside. Vertices and lines of the input come first.
  * - 1: the triangles outside.
  * - 2: the boundary used: one closed line (its last point is its first) for each ring, with the
- * points and point data of input 1, or of input 0 when it was extracted (counter-clockwise around
+ *   points and point data of input 1, or of input 0 when it was extracted (counter-clockwise around
  *   surface, clockwise around lakes, starting at the lowest y).
  *
  * Outputs 0 and 1 share the input's points and pass its point data; their triangles are
@@ -75,7 +75,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The boundary, input 1. Optional: without it the boundary is extracted. nullptr takes it away.
+  /**
+   * The boundary, input 1. Optional: without it the boundary is extracted. nullptr takes it away.
    */
   void SetBoundaryConnection(vtkAlgorithmOutput* output);
   void SetBoundaryData(vtkPolyData* boundary);

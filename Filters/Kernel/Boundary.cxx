@@ -114,8 +114,8 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
       return;
     }
     const Sign side = Orientation(low, high, p);
-    // An edge that goes up from p passes the triangle on its left or on its right: it does not cut
-    // it.
+    // An edge that goes up from p passes the triangle on its left or on its
+    // right: it does not cut it.
     isInside ^= side == Negative || (side == Zero && Orientation(p, high, q) == Negative);
   });
   return isInside;
@@ -608,7 +608,8 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
   }
 }
 
-/** The border of the triangles to keep, as simple rings of vertices in an order of their positions.
+/**
+ * The border of the triangles to keep, as simple rings of vertices in an order of their positions.
  */
 Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
 {

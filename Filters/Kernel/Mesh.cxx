@@ -23,8 +23,8 @@ void Mesh::ConnectTwins(Index firstCell)
   const Index count = this->NumberOfHalfEdges();
   this->Twins.assign(count, Border);
 
-  // Half-edges by the lower id of their two vertices: both half-edges of an edge meet in one
-  // bucket.
+  // Half-edges by the lower id of their two vertices: both half-edges of an
+  // edge meet in one bucket.
   std::vector<Index> bucket(this->Points.size() + 1, 0);
   const auto low = [this](Index h) { return std::min(this->Origin(h), this->Destination(h)); };
   const auto high = [this](Index h) { return std::max(this->Origin(h), this->Destination(h)); };

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what passes
-// with them, what is counted, what errors and aborts leave behind, and that the inputs are never
-// written.
+// The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what
+// passes with them, what is counted, what errors and aborts leave behind, and that the
+// inputs are never written.
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
