@@ -24,6 +24,7 @@ import re
 import struct
 
 import numpy
+import surface_checks
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import (
     VTK_STRING,
@@ -202,17 +203,36 @@ def vtk_reader(suffix):
 
 def run_vtk_reader(path):
     """The data object of a file in one of VTK's formats."""
+    reason = surface_checks.why_damaged(path)
+    if reason:
+        raise FileError(f"{path}: {reason}")
     reader = vtk_reader(suffix_of(path))
     with Messages() as messages:
         reader.SetFileName(path)
         reader.Update()
-    if messages.errors:
-        raise FileError(f"{path}: cannot be read: {messages.errors[0]}")
+    # What VTK's legacy readers could not read, they leave as it was, with a warning only.
+    short = [words for words in messages.warnings if words.startswith("Error reading")]
+    if messages.errors or short:
+        raise FileError(f"{path}: cannot be read: {(messages.errors + short)[0]}")
     data = reader.GetOutputDataObject(0)
     if data is None or messages.warnings and data.GetNumberOfElements(0) == 0:
         reason = messages.warnings[0] if messages.warnings else "VTK found no data in it"
         raise FileError(f"{path}: cannot be read: {reason}")
+    if isinstance(data, vtkPolyData):
+        check_point_ids(path, data)
     return data
+
+
+def check_point_ids(path, data):
+    """Refuses cells with corners that are not there: filters trust these numbers."""
+    for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
+        ids = vtk_to_numpy(cells.GetConnectivityArray())
+        if len(ids) and not (0 <= ids.min() and ids.max() < data.GetNumberOfPoints()):
+            bad = ids.max() if ids.min() >= 0 else ids.min()
+            raise FileError(
+                f"{path}: is damaged: a cell has the corner {bad}, "
+                f"but there are {data.GetNumberOfPoints():,} points"
+            )
 
 
 def read_with_vtk(path, no_data):
