@@ -5,6 +5,7 @@
 // has a bay in its outline and three voids. The triangulation spans them as far as the limit on
 // the length of edges lets it, trimming opens them again, filling closes the voids. Numbers
 // first, then a picture.
+#include "MeshRules.h"
 #include "PictureFromAbove.h"
 #include "SheetOfSquares.h"
 #include "vtkCellData.h"
@@ -81,7 +82,10 @@ int TestReconstructionChain(int argc, char* argv[])
   Check(trim->GetNumberOfOutwardTriangles() > 20, "the bay is trimmed");
   Check(fill->GetNumberOfHoles() == 3, "the three voids are holes, the bay is none");
   Check(fill->GetNumberOfFilledHoles() == 3, "all are filled");
-  Check(NumberOfNonManifoldEdges(surface) == 0, "the surface is manifold");
+  Check(NumberOfFindings(delaunay->GetOutput(), RulesOfDelaunayPart()) == 0 &&
+      NumberOfFindings(trim->GetOutput(), RulesOfDelaunayPart()) == 0 &&
+      NumberOfFindings(surface, RulesOfSurface()) == 0,
+    "every step makes a surface, the first two a Delaunay triangulation");
   double holes = 0.0;
   for (vtkIdType hole = 0; hole < report->GetNumberOfCells(); ++hole)
   {
