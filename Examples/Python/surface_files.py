@@ -127,6 +127,8 @@ def check_readable(path):
     """Refuses what cannot be opened, before any reader sees it."""
     if not os.path.exists(path):
         raise FileError(f"{path}: no such file")
+    if os.path.isdir(path):
+        raise FileError(f"{path}: is a folder, not a file")
     if not os.path.isfile(path):
         raise FileError(f"{path}: is not a file")
     try:
@@ -144,6 +146,11 @@ def check_suffix(path, suffixes, verb):
         raise FileError(f"{path}: {ending} cannot be {verb}; use one of {' '.join(suffixes)}")
 
 
+def check_columns_wanted(path):
+    if suffix_of(path) not in TEXT_SUFFIXES:
+        raise FileError(f"{path}: --columns is for text files ({' '.join(TEXT_SUFFIXES)})")
+
+
 def read_points(path, columns=None, no_data=None):
     """Reads the points of a file, whatever its kind.
 
@@ -151,11 +158,12 @@ def read_points(path, columns=None, no_data=None):
     no_data  None, or the elevation that marks missing values; such rows and pixels are left out
     Raises FileError. Takes about a second for a million rows of text, less for other kinds.
     """
-    check_suffix(path, READ_SUFFIXES, "read")
+    if not os.path.isdir(path):
+        check_suffix(path, READ_SUFFIXES, "read")
     check_readable(path)
     suffix = suffix_of(path)
-    if columns and suffix not in TEXT_SUFFIXES:
-        raise FileError(f"{path}: --columns is for text files ({' '.join(TEXT_SUFFIXES)})")
+    if columns:
+        check_columns_wanted(path)
     if suffix in TEXT_SUFFIXES:
         return read_text(path, columns, no_data)
     if suffix in (".tif", ".tiff"):
@@ -806,7 +814,8 @@ def careful_row(where, layout, words, indices):
         value = layout.number(word)
         if value is None:
             raise FileError(
-                f"{where}: '{word[:40]}' in column {index + 1} ({axis}) is not a number"
+                f"{where}: '{word[:40]}' in column {index + 1} ({axis}) is not a number; "
+                "--columns chooses other columns"
             )
         row.append(value)
     return row
@@ -830,7 +839,7 @@ def check_preamble(path, layout, preamble, indices, width):
             column = indices[axis]
             raise FileError(
                 f"{path}, line {number}: '{words[column][:40]}' in column {column + 1} "
-                f"({'xyz'[axis]}) is not a number"
+                f"({'xyz'[axis]}) is not a number; --columns chooses other columns"
             )
 
 
