@@ -759,8 +759,8 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     // From here on the share of a square of the size that the tolerance bridges.
     const double side = result.GapTolerance * local[t];
     const double square = side * side;
-    const double area = 0.5 *
-      distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
+    const double area =
+      0.5 * distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
     ratios[t] = square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
   }
   CloseSmallOpenings(mesh, ratios, keep, Part(options.Monitor, 0.75, 0.82));

@@ -99,8 +99,8 @@ public:
 
 /**
  * Told the fraction done, which rises in [0, 1]; returns false to stop. Every pass over all points
- * or triangles calls it between stretches of some tens of milliseconds, so that an abort takes effect
- * within half a second at any size. May be empty.
+ * or triangles calls it between stretches of some tens of milliseconds, so that an abort takes
+ * effect within half a second. May be empty.
  */
 using Progress = std::function<bool(double)>;
 
@@ -124,8 +124,8 @@ inline void ReportStep(
 }
 
 /**
- * The sub-interval [begin, end] of a progress, for a step of a longer computation. Keeps a reference
- * to the progress.
+ * The sub-interval [begin, end] of a progress, for a step of a longer computation. Keeps a
+ * reference to the progress.
  */
 inline Progress Part(const Progress& progress, double begin, double end)
 {
