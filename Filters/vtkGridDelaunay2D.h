@@ -22,7 +22,8 @@
  *   Coordinates may be of any size a double holds.
  *
  * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
- * triangle. An error, such as more points than can be handled (357,913,941), leaves empty output.
+ * triangle. An error, such as more points than can be handled (357,913,941), or a point array that
+ * has not as many tuples as there are points, leaves empty output.
  *
  * Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;

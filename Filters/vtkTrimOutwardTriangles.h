@@ -54,8 +54,10 @@
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed, has a point that is not finite or
  * not in the mesh, a ring of fewer than three points, edges that cross each other or lead out of
- * the mesh, a boundary that encloses no triangle. A mesh without triangles passes with a warning;
- * so does one of which no triangle is surface (all are outward then).
+ * the mesh, a boundary that encloses no triangle; also a point or cell array of an input that has
+ * not as many tuples as there are points or cells. A mesh without triangles passes with a warning,
+ * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
+ * outward then).
  *
  * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges.
  *
@@ -128,8 +130,6 @@ protected:
   vtkIdType NumberOfRecoveredEdges = 0;
 
 private:
-  void AddCounts(vtkInformationVector* outputVector) const;
-
   vtkTrimOutwardTriangles(const vtkTrimOutwardTriangles&) = delete;
   void operator=(const vtkTrimOutwardTriangles&) = delete;
 };

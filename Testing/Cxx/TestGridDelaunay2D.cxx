@@ -240,6 +240,38 @@ void TestProgressAndAbort()
   Check(delaunay->GetOutput()->GetNumberOfCells() == 0 &&
       delaunay->GetOutput()->GetNumberOfPoints() == 0,
     "an abort leaves empty output");
+
+  points->SetPoint(0, points->GetPoint(1)); // a duplicate, to be counted
+  state = State();
+  state.AbortAt = 1.0;
+  delaunay->Modified();
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfCells() == 0 &&
+      delaunay->GetNumberOfDuplicatePoints() == 0,
+    "an abort at the last report leaves no counts");
+}
+
+void TestArraysThatDoNotFit()
+{
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(0, 0, 0);
+  points->InsertNextPoint(1, 0, 0);
+  points->InsertNextPoint(0, 1, 0);
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(points);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("Picks");
+  values->InsertNextValue(1.0);
+  input->GetPointData()->AddArray(values);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  delaunay->AddObserver(vtkCommand::ErrorEvent, observer);
+  delaunay->SetInputData(input);
+  delaunay->Update();
+  Check(observer->GetErrorMessage().find(
+          "Point array \"Picks\" has 1 tuples, but there are 3 points.") != std::string::npos,
+    "an array that does not fit the points is refused by name");
+  Check(delaunay->GetOutput()->GetNumberOfPoints() == 0, "and leaves empty output");
 }
 } // namespace
 
@@ -250,5 +282,6 @@ int TestGridDelaunay2D(int, char*[])
   TestOtherPointSets();
   TestTooFewPoints();
   TestProgressAndAbort();
+  TestArraysThatDoNotFit();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

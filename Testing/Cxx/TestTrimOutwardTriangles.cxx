@@ -8,6 +8,7 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkGridDelaunay2D.h"
@@ -302,6 +303,22 @@ void TestErrors()
   heights->GetPoints()->SetPoint(1, 7, 2, std::nan(""));
   ExpectError(mesh, heights, true, "Point 1 of the boundary's cell 0 is not finite");
 
+  // Data that do not fit: of the mesh, of its cells, of the boundary.
+  vtkNew<vtkDoubleArray> three;
+  three->SetName("Picks");
+  three->SetNumberOfTuples(3);
+  three->Fill(1.0);
+  auto rings = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 7 }, { 0, 5 } } });
+  rings->GetPointData()->AddArray(three);
+  ExpectError(mesh, rings, true,
+    "The boundary's point array \"Picks\" has 3 tuples, but there are 4 points.");
+  auto unfit = MakeMesh();
+  unfit->GetPointData()->AddArray(three);
+  ExpectError(unfit, nullptr, true, "Point array \"Picks\" has 3 tuples, but there are 81 points.");
+  unfit = MakeMesh();
+  unfit->GetCellData()->AddArray(three);
+  ExpectError(unfit, nullptr, true, "Cell array \"Picks\" has 3 tuples, but there are 130 cells.");
+
   vtkNew<vtkPolyData> quad;
   quad->SetPoints(mesh->GetPoints());
   vtkNew<vtkCellArray> cells;
@@ -355,6 +372,23 @@ void TestEmptyMeshAndAbort()
   {
     Check(aborted->GetOutput(port)->GetNumberOfCells() == 0, "an abort leaves empty outputs");
   }
+
+  vtkNew<vtkCallbackCommand> stopLate;
+  stopLate->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    auto* filter = static_cast<vtkTrimOutwardTriangles*>(caller);
+    if (filter->GetProgress() == 1.0)
+    {
+      filter->SetAbortExecute(1);
+    }
+  });
+  aborted->RemoveObservers(vtkCommand::ProgressEvent);
+  aborted->AddObserver(vtkCommand::ProgressEvent, stopLate);
+  aborted->SetBoundaryData(MakeRings({ { { 0, 0 }, { 7, 2 }, { 0, 5 } } }));
+  aborted->Update();
+  Check(aborted->GetOutput(0)->GetNumberOfCells() == 0 &&
+      aborted->GetNumberOfOutwardTriangles() == 0 && aborted->GetNumberOfRecoveredEdges() == 0 &&
+      aborted->GetEffectiveGapTolerance() == 0.0,
+    "an abort at the last report leaves no counts");
 }
 } // namespace
 
