@@ -403,6 +403,7 @@ def make_report(run, cloud, delaunay, trim, fill):
         cells = fill.GetOutput(1).GetCellData()
         names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints")
         columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
+        columns.append(hole_sizes(fill.GetOutput(1)))
         holes = [
             {
                 "hole": hole,
@@ -410,9 +411,10 @@ def make_report(run, cloud, delaunay, trim, fill):
                 "edges": edges,
                 "perimeter": perimeter,
                 "area": area,
+                "size": size,
                 "inserted_points": inserted,
             }
-            for hole, status, edges, perimeter, area, inserted in zip(*columns)
+            for hole, status, edges, perimeter, area, inserted, size in zip(*columns)
         ]
         by_status = {}
         for hole in holes:
@@ -436,6 +438,19 @@ def make_report(run, cloud, delaunay, trim, fill):
     return report
 
 
+def hole_sizes(lines):
+    """The diagonal of each line's box in x,y: what --maximum-hole-size is compared with."""
+    if lines.GetNumberOfLines() == 0:
+        return []
+    cells = lines.GetLines()
+    xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
+    xy = xy[vtk_to_numpy(cells.GetConnectivityArray())]
+    starts = vtk_to_numpy(cells.GetOffsetsArray())[:-1]
+    low = numpy.minimum.reduceat(xy, starts, axis=0)
+    high = numpy.maximum.reduceat(xy, starts, axis=0)
+    return numpy.hypot(*(high - low).T).tolist()
+
+
 def distance_to(surface, coordinates, chosen):
     """Distance of input points from a surface: max, mean and root mean square, as Metro tells them.
 
@@ -453,9 +468,15 @@ def distance_to(surface, coordinates, chosen):
     here &= (corners[: len(coordinates)] == coordinates).all(axis=1)
     away = coordinates[chosen & ~here]
     distance = numpy.zeros(len(away))
+    unit = 1.0
     if len(away):
         # Only what the search needs, near the origin, where doubles are finest.
-        middle = corners[is_corner].mean(axis=0)
+        middle = 0.5 * corners[is_corner].min(axis=0) + 0.5 * corners[is_corner].max(axis=0)
+        size = max(float(numpy.abs(corners[is_corner]).max()), float(numpy.abs(away).max()))
+        if size > 1e100:
+            # Squares would be infinite.
+            unit = 2.0 ** math.floor(math.log2(size))
+            corners, away, middle = corners / unit, away / unit, middle / unit
         corners = numpy.where(is_corner[:, None], corners - middle, 0.0)
         bare = vtkPolyData()
         bare.SetPoints(files.make_points(corners).GetPoints())
@@ -469,10 +490,15 @@ def distance_to(surface, coordinates, chosen):
     return {
         "points": count,
         "points_not_corners": len(away),
-        "maximum": float(distance.max(initial=0.0)),
-        "mean": float(distance.sum() / count),
-        "rms": float(math.sqrt((distance**2).sum() / count)),
+        "maximum": unit * float(distance.max(initial=0.0)),
+        "mean": unit * float(distance.sum() / count),
+        "rms": unit * float(math.sqrt((distance**2).sum() / count)),
     }
+
+
+def counted(count, singular, plural=None):
+    """1 hole, 2 holes"""
+    return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
 
 
 def print_report(report, options):
@@ -503,30 +529,37 @@ def print_report(report, options):
         rings = trim["boundary_rings"]
         line(
             "trimmed",
-            f"{trim['outward_triangles']:,} outward triangles; boundary {trim['boundary']}, "
-            f"{rings:,} ring{'s' * (rings != 1)}",
+            f"{counted(trim['outward_triangles'], 'outward triangle')}; "
+            f"boundary {trim['boundary']}, {counted(rings, 'ring')}",
         )
         if "effective_gap_tolerance" in trim:
             line("", f"gap tolerance {trim['effective_gap_tolerance']:.4g} spacings")
         if trim["recovered_edges"]:
-            line("", f"{trim['recovered_edges']:,} boundary edges recovered")
+            line("", f"{counted(trim['recovered_edges'], 'boundary edge')} recovered")
     if "holes" in report:
         holes = report["holes"]
         line(
             "holes",
             f"{holes['found']:,} found, {holes['filled']:,} filled with "
-            f"{holes['inserted_points']:,} points",
+            f"{counted(holes['inserted_points'], 'point')}",
         )
         for status, count in holes["by_status"].items():
             if status != "filled":
-                some = [str(h["hole"]) for h in holes["list"] if h["status"] == status][:8]
+                some = [h for h in holes["list"] if h["status"] == status][:5]
                 more = ", ..." if count > len(some) else ""
+                if status == "too many edges":
+                    some = [f"{h['hole']} ({counted(h['edges'], 'edge')})" for h in some]
+                else:
+                    some = [f"{h['hole']} (size {h['size']:.4g})" for h in some]
                 line("", f"{count:,} not filled, {status}: hole {', '.join(some)}{more}")
-    line("surface", f"{list(report['triangles'].values())[-1]:,} triangles")
+    line("surface", counted(list(report["triangles"].values())[-1], "triangle"))
     d = report["distance"]
+    beyond = ""
+    if report["unused_reasons"].get(OUTSIDE):
+        beyond = ", those outside left out" if options.boundary else ", those outside too"
     line(
         "distance",
-        f"of {d['points']:,} points from the surface: max {d['maximum']:.3g}, "
+        f"of {counted(d['points'], 'point')}{beyond} from the surface: max {d['maximum']:.3g}, "
         f"mean {d['mean']:.3g}, RMS {d['rms']:.3g}",
     )
     line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in report["times"].items()))
@@ -577,8 +610,8 @@ class Results:
 
 def picture_subtitle(report):
     parts = [
-        f"{report['points']:,} points",
-        f"{list(report['triangles'].values())[-1]:,} triangles",
+        counted(report["points"], "point"),
+        counted(list(report["triangles"].values())[-1], "triangle"),
     ]
     if "holes" in report and report["holes"]["found"]:
         holes = report["holes"]
@@ -646,6 +679,13 @@ def work(options, results):
             ),
         )
         if picture:
+            reason = picture.why_not_drawn(surface)
+            if reason and options.picture_wanted:
+                raise Failure(f"{options.picture}: cannot be drawn: {reason}")
+            if reason:
+                report["notes"].append(f"no picture: {reason}")
+                picture = None
+        if picture:
             report["picture"] = run.timed(
                 "draw",
                 "drawing",
@@ -687,6 +727,8 @@ def main(arguments=None):
         )
         return 1
 
+    # Numbers near the end of their range make infinities; what these mean is told where it matters.
+    numpy.seterr(all="ignore")
     results = Results()
     try:
         work(options, results)

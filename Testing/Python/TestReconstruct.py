@@ -114,15 +114,18 @@ class Report(Program):
     def test_a_hole_over_a_limit_stays_open_and_the_reason_is_given(self):
         name = self.file("holed.xyz", text_of(HOLED))
         common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
-        for option, value, reason in (
-            ("--maximum-hole-size", "2", "too large"),
-            ("--maximum-hole-edges", "11", "too many edges"),
+        for option, value, reason, told in (
+            ("--maximum-hole-size", "2", "too large", "size 5.657"),
+            ("--maximum-hole-edges", "11", "too many edges", "12 edges"),
         ):
             with self.subTest(option=option):
                 report = self.report(*common, option, value)
                 self.assertEqual(report["holes"]["by_status"], {reason: 1})
                 self.assertEqual(report["holes"]["inserted_points"], 0)
-                self.assertIn(f"1 not filled, {reason}: hole 0", self.output)
+                self.assertIn(f"1 not filled, {reason}: hole 0 ({told})", self.output)
+                self.assertAlmostEqual(
+                    report["holes"]["list"][0]["size"], math.sqrt(32), msg="a box of 4 x 4"
+                )
 
     def test_spacing_decides_how_many_points_are_inserted(self):
         name = self.file("holed.xyz", text_of(HOLED))
@@ -411,6 +414,32 @@ class Pictures(Program):
         views = [self.picture("--view", v) for v in ("top", "200,30", "20,30")]
         self.assertTrue(any(v.shape != views[0].shape or (v != views[0]).any() for v in views[1:]))
 
+    @unittest.skipIf(
+        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
+    )
+    def test_outliers_strips_and_odd_names_leave_something_to_see(self):
+        import numpy
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOImage import vtkPNGReader
+
+        tilted = [(x, y, x + y) for y in range(40) for x in range(40)]
+        for name, rows in (
+            ("outlier.xyz", tilted + [(20.5, 20.5, 1e6)]),
+            ("flat.xyz", [(x, y, 0) for x, y, _ in tilted] + [(20.5, 20.5, 1e6)]),
+            ("strip.xyz", [(x, y, x / 10) for y in range(3) for x in range(1000)]),
+            ("slanted.xyz", [(x - y, x + y, x / 10) for y in range(3) for x in range(1000)]),
+            ("\u5730\u5f62" + "a" * 200 + ".xyz", tilted),
+        ):
+            with self.subTest(name=name):
+                done = self.call(self.file(name, text_of(rows)), "--picture", "p.png")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                reader = vtkPNGReader()
+                reader.SetFileName(self.path("p.png"))
+                reader.Update()
+                pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
+                coloured = numpy.ptp(pixels, axis=1) > 25
+                self.assertGreater(coloured.mean(), 0.04)
+
     @unittest.skipUnless(
         sys.platform.startswith("linux"), "only X has displays that may be missing"
     )
@@ -597,6 +626,15 @@ class BadInput(Program):
                 self.assertIn(words, done.stderr)
                 self.assertTrue(done.stderr.endswith("; see --help\n"), done.stderr)
                 self.assertEqual(os.listdir(self.folder), [name])
+
+    def test_coordinates_near_the_end_of_their_range_give_no_noise(self):
+        rows = "".join(f"{x}e306 {y}e306 {x * y}\n" for x in range(9) for y in range(9))
+        name = self.file("huge.xyz", rows + "1e306 1e306 1e306\n")
+        report = self.report(name)
+        self.assertAlmostEqual(report["distance"]["maximum"] / 1e306, 1, delta=1e-6)
+        done = self.call(name)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("no picture: ", done.stdout)
 
     def test_without_the_module_one_line_tells_what_to_do(self):
         environment = dict(os.environ, PYTHONPATH="")
