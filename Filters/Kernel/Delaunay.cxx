@@ -122,17 +122,17 @@ Buffer<Index> OrderFromLowest(const BinGrid& grid, const Progress& progress)
   Buffer<Index> order;
   order.Resize(grid.NumberOfPoints());
   RowSorter sorter(grid);
-  const BinGrid::Level& level = grid.Levels.front();
-  for (Index row = 0; row < level.Rows; ++row)
+  const BinGrid::Layout& bins = grid.Bins;
+  for (Index row = 0; row < bins.Rows; ++row)
   {
-    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first < slots.second)
     {
       sorter.Sort(slots, grid.RowLow[row], grid.RowHigh[row], order.data() + slots.first);
     }
     if (row % 64 == 0)
     {
-      Report(progress, double(row) / level.Rows);
+      Report(progress, double(row) / bins.Rows);
     }
   }
   return order;
@@ -165,11 +165,11 @@ std::vector<Index> HullChain(const BinGrid& grid, const Buffer<Index>& order, Si
  */
 Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
 {
-  const BinGrid::Level& level = grid.Levels.front();
+  const BinGrid::Layout& bins = grid.Bins;
   Buffer<Index> extremes;
-  for (Index row = 0; row < level.Rows; ++row)
+  for (Index row = 0; row < bins.Rows; ++row)
   {
-    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first < slots.second)
     {
       const auto range =
@@ -199,16 +199,16 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
     const Point2 p = grid.PointAt(chain[edge]), q = grid.PointAt(chain[edge + 1]);
     return p.X + (q.X - p.X) * ((y - p.Y) / (q.Y - p.Y));
   };
-  const double margin = level.HasPlainBins
-    ? 1e-12 * (std::fabs(level.OriginX) + level.Columns * level.BinWidth)
+  const double margin = bins.HasPlainBins
+    ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth)
     : Infinity;
   Buffer<Index> candidates;
   std::size_t leftEdge = 0, rightEdge = 0;
   const Point2 lowest = grid.PointAt(extremes[0]);
   const Point2 highest = grid.PointAt(extremes[extremes.size() - 1]);
-  for (Index row = 0; row < level.Rows; ++row)
+  for (Index row = 0; row < bins.Rows; ++row)
   {
-    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first == slots.second)
     {
       continue;
@@ -244,7 +244,7 @@ public:
   ApexSearch(const BinGrid& grid, bool useWideInstructions)
     : Grid(grid)
     , Around(grid)
-    , UseAround(useWideInstructions && Surroundings::IsSupported())
+    , IsWide(useWideInstructions && Surroundings::IsSupported())
   {
   }
 
@@ -253,65 +253,51 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
-    this->FirstHeight = 0.0;
-    this->HasAround = this->UseAround && this->Around.Gather(slot);
+    this->HasAround = this->IsWide && this->Around.Gather(slot);
   }
 
   /**
    * The apex of the Delaunay triangle on the left of the edge from the origin to b.
    * Only points above the origin are looked for: the caller knows that the origin is the lowest
-   * vertex of the triangle. The first look goes into the disc through both ends of the edge whose
-   * height over the edge is about one spacing; it grows until a point is found. The disc through
-   * the best point found is then looked at, unless it lies within what has been seen.
+   * vertex of the triangle. The points around the origin come first. Where they do not tell, the
+   * tree of boxes is entered, nearest box first; what the disc through the best point so far does
+   * not reach is passed over.
    * @return None when no point lies on the left of the edge
    */
   Index Find(Index b)
   {
     this->Target = b;
     this->B = this->Grid.PointAt(b);
+    Index best = None;
     if (this->HasAround)
     {
-      if (std::uint64_t candidates = this->Around.FindCandidates(b))
+      const Surroundings::Candidates found = this->Around.FindCandidates(b);
+      best = this->BestOf(found.Bits);
+      if (found.IsProved)
       {
-        return this->BestOf(candidates);
+        return best;
       }
     }
-    if (this->FirstHeight == 0.0)
-    {
-      this->FirstHeight = 1.3 * this->Grid.LeafLevel(this->A).Spacing;
-    }
-    this->EdgeX = this->B.X - this->A.X;
-    this->EdgeY = this->B.Y - this->A.Y;
-    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
-    this->Best = None;
 
     // A disc through both ends is told by the position s of its centre, in edge lengths along the
     // edge's left normal. On the left of the edge a disc of larger s contains every disc of smaller
     // s.
-    double height = this->FirstHeight;
-    const double length = std::sqrt(this->LengthSquared);
-    double seen = PositionOfHeight(height / length);
-    this->Look(seen);
-    while (this->Best == None && seen < Infinity)
+    this->EdgeX = this->B.X - this->A.X;
+    this->EdgeY = this->B.Y - this->A.Y;
+    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
+    this->Best = None;
+    this->SetDisc(Infinity);
+    if (best != None)
     {
-      height *= 2.0;
-      const double next = PositionOfHeight(height / length);
-      // Far beyond the edge a disc is all but the half-plane; also where the numbers end.
-      seen = next < 1e6 && next > seen ? next : Infinity;
-      this->Look(seen);
+      this->Compare(best, 1);
     }
-    if (this->Best != None)
-    {
-      const double needed = this->UpperPositionOfBest();
-      if (!(needed <= seen))
-      {
-        this->Look(needed);
-      }
-    }
+    this->LookInto(this->Grid.Nodes[this->Grid.Nodes.size() - 1]);
     return this->Best;
   }
 
 private:
+  using Node = BinGrid::Node;
+
   /** Nearly always there is one candidate; else exact comparisons decide. */
   Index BestOf(std::uint64_t candidates)
   {
@@ -326,8 +312,6 @@ private:
     }
     return best;
   }
-
-  static double PositionOfHeight(double height) { return 0.5 * (height - 0.25 / height); }
 
   /** An upper bound of s for the circle through the edge and the best point. */
   double UpperPositionOfBest() const
@@ -346,103 +330,82 @@ private:
     return position + 8.0 * UnitRoundoff * std::fabs(position) + 1e-160;
   }
 
-  /** Compares the best point with all points that the disc of position s may contain. */
-  void Look(double s)
+  /** From now on, only what the disc of position s may contain is looked at. */
+  void SetDisc(double s)
   {
-    // The disc, relative to the origin. Every bound below is widened by more than the rounding of
-    // what leads to it (at most 25 roundoffs of the radius), so no point inside is missed.
-    constexpr double slack = 64.0 * UnitRoundoff;
+    // The centre and the radius, relative to the origin, are wrong by at most 25 roundoffs of the
+    // radius; the distance of a box from the centre, when the box holds a point of the disc, by 8
+    // more. The square is widened by four times that, so no point inside is missed.
+    constexpr double slack = 256.0 * UnitRoundoff;
     const double radiusSquared = this->LengthSquared * (0.25 + s * s) * (1.0 + slack);
-    if (radiusSquared < 1e280 && radiusSquared > 1e-280)
-    {
-      const double radius = std::sqrt(radiusSquared);
-      this->CenterX = 0.5 * this->EdgeX - s * this->EdgeY;
-      this->CenterY = 0.5 * this->EdgeY + s * this->EdgeX;
-      this->RadiusSquared = radiusSquared;
-      this->Slack = slack * radius;
-      this->Top = this->A.Y + (this->CenterY + radius + this->Slack);
-    }
-    else
-    {
-      this->RadiusSquared = Infinity;
-      this->Top = Infinity;
-    }
-    // On the left of an edge that rises, x is less than that of the edge at the same y. Not made
-    // use of where the quotient might leave the range of double.
-    const double run = std::fabs(this->EdgeX);
-    const bool isTame =
-      this->EdgeY > 1e-140 && this->EdgeY < 1e140 && (run == 0.0 || (run > 1e-140 && run < 1e140));
-    this->Slope = isTame ? this->EdgeX / this->EdgeY : Infinity;
-    this->LookInto(this->Grid.Levels.front());
+    const bool isDisc = radiusSquared < 1e280 && radiusSquared > 1e-280;
+    this->RadiusSquared = isDisc ? radiusSquared : Infinity;
+    this->CenterX = isDisc ? 0.5 * this->EdgeX - s * this->EdgeY : 0.0;
+    this->CenterY = isDisc ? 0.5 * this->EdgeY + s * this->EdgeX : 0.0;
   }
 
-  void LookInto(const BinGrid::Level& level)
+  /** The children of a node in order of their distance from the edge, as long as any is reached. */
+  void LookInto(const Node& node)
   {
-    const Index lastRow = level.Row(this->Top);
-    for (Index row = level.Row(this->A.Y); row <= lastRow; ++row)
+    double distances[Node::Places];
+    unsigned int left = this->Reached(node, distances);
+    while (left != 0)
     {
-      const double low = std::max(this->Grid.RowLow[level.FirstRow + row] - this->A.Y, 0.0);
-      const double high = this->Grid.RowHigh[level.FirstRow + row] - this->A.Y;
-      if (!(high >= 0.0))
+      int nearest = -1;
+      for (int place = 0; left >> place; ++place)
       {
-        continue; // no points in the row, or none above the origin
-      }
-      double left = -Infinity, right = Infinity;
-      if (this->RadiusSquared < Infinity)
-      {
-        const double off = std::max(std::max(low - this->CenterY, this->CenterY - high), 0.0);
-        const double halfSquared = this->RadiusSquared - off * off;
-        if (halfSquared < 0.0)
+        if ((left >> place & 1) && (nearest < 0 || distances[place] < distances[nearest]))
         {
-          continue;
+          nearest = place;
         }
-        const double half = std::sqrt(halfSquared) + this->Slack;
-        left = this->CenterX - half;
-        right = this->CenterX + half;
       }
-      if (this->Slope < Infinity)
+      left &= ~(1u << nearest);
+      const double radiusSquared = this->RadiusSquared;
+      if (node.Count[nearest] > 0)
       {
-        const double edge = (this->Slope > 0.0 ? high : low) * this->Slope;
-        right = std::min(right, edge + 16.0 * UnitRoundoff * std::fabs(edge));
+        this->Compare(node.First[nearest], node.Count[nearest]);
       }
-      // Adding the origin rounds monotonically, as finding the column does: nothing is lost.
-      left += this->A.X;
-      right += this->A.X;
-      if (!(left <= right))
+      else
       {
-        continue;
+        this->LookInto(this->Grid.Nodes[node.First[nearest]]);
       }
-      const Index firstColumn = level.Column(left);
-      const Index lastColumn = level.Column(right);
-      if (!level.HasChildren)
+      if (left != 0 && this->RadiusSquared < radiusSquared)
       {
-        this->Compare(this->Grid.Slots(level, row, firstColumn, lastColumn));
-        continue;
-      }
-      const auto& children = this->Grid.ChildrenOfRow[level.FirstRow + row];
-      Index column = firstColumn;
-      for (const BinGrid::Child& child : children)
-      {
-        if (child.Column < column)
-        {
-          continue;
-        }
-        if (child.Column > lastColumn)
-        {
-          break;
-        }
-        if (column < child.Column)
-        {
-          this->Compare(this->Grid.Slots(level, row, column, child.Column - 1));
-        }
-        this->LookInto(this->Grid.Levels[child.Level]);
-        column = child.Column + 1;
-      }
-      if (column <= lastColumn)
-      {
-        this->Compare(this->Grid.Slots(level, row, column, lastColumn));
+        left &= this->Reached(node, distances);
       }
     }
+  }
+
+  /**
+   * The children of a node, as bits, that may hold a point inside the disc, on the left of the edge
+   * and not below the origin; and the squares of their distances from the middle of the edge.
+   */
+  unsigned int Reached(const Node& node, double* distances) const
+  {
+    unsigned int reached = 0;
+    for (int place = 0; place < Node::Places; ++place)
+    {
+      // Differences round monotonically: relative to the origin, a box still holds its points.
+      const double lowX = node.LowX[place] - this->A.X, highX = node.HighX[place] - this->A.X;
+      const double lowY = node.LowY[place] - this->A.Y, highY = node.HighY[place] - this->A.Y;
+      const double offX = std::max(std::max(lowX - this->CenterX, this->CenterX - highX), 0.0);
+      const double offY = std::max(std::max(lowY - this->CenterY, this->CenterY - highY), 0.0);
+      // The greatest cross product over the box: so are products. The sum is below zero by more
+      // than its rounding only where all points are on the right.
+      const double up = std::max(this->EdgeX * lowY, this->EdgeX * highY);
+      const double across = std::max(-this->EdgeY * lowX, -this->EdgeY * highX);
+      const double cross =
+        up + across + 16.0 * UnitRoundoff * (std::fabs(up) + std::fabs(across));
+      if (highY >= 0.0 && !(offX * offX + offY * offY > this->RadiusSquared) && !(cross < -1e-290))
+      {
+        reached |= 1u << place;
+      }
+      const double x = 0.5 * this->EdgeX, y = 0.5 * this->EdgeY;
+      const double fromX = std::max(std::max(lowX - x, x - highX), 0.0);
+      const double fromY = std::max(std::max(lowY - y, y - highY), 0.0);
+      distances[place] = fromX * fromX + fromY * fromY;
+    }
+    return reached;
   }
 
   /**
@@ -450,11 +413,12 @@ private:
    * cross = (b-a)x(p-a), the quotient dot / cross is the cotangent of the angle under which p sees
    * the edge: of two points, the one with the smaller quotient lies inside the other's circle.
    */
-  void Compare(std::pair<Index, Index> slots)
+  void Compare(Index first, Index count)
   {
     const double* const xs = this->Grid.X.data();
     const double* const ys = this->Grid.Y.data();
-    for (Index slot = slots.first; slot < slots.second; ++slot)
+    bool isChanged = false;
+    for (Index slot = first; slot < first + count; ++slot)
     {
       const double px = xs[slot] - this->A.X, py = ys[slot] - this->A.Y;
       const double left = this->EdgeX * py, right = this->EdgeY * px;
@@ -492,11 +456,16 @@ private:
           continue;
         }
       }
+      isChanged = true;
       this->Best = slot;
       this->BestCross = cross;
       this->BestCrossMagnitude = crossMagnitude;
       this->BestDot = dot;
       this->BestDotMagnitude = dotMagnitude;
+    }
+    if (isChanged)
+    {
+      this->SetDisc(this->UpperPositionOfBest());
     }
   }
 
@@ -526,17 +495,16 @@ private:
 
   const BinGrid& Grid;
   Surroundings Around;
-  const bool UseAround;
+  const bool IsWide;
   bool HasAround = false;
 
   // The edge.
   Index Origin = None, Target = None;
   Point2 A{ 0.0, 0.0 }, B{ 0.0, 0.0 };
-  double FirstHeight = 0.0;
-  double EdgeX = 0.0, EdgeY = 0.0, LengthSquared = 0.0, Slope = 0.0;
+  double EdgeX = 0.0, EdgeY = 0.0, LengthSquared = 0.0;
 
-  // What is looked at: relative to A, but for Top.
-  double CenterX = 0.0, CenterY = 0.0, RadiusSquared = 0.0, Slack = 0.0, Top = 0.0;
+  // The disc that is looked at, relative to A.
+  double CenterX = 0.0, CenterY = 0.0, RadiusSquared = 0.0;
 
   // The best point so far.
   Index Best = None;

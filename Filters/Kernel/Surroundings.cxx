@@ -44,7 +44,7 @@ __attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
 {
   this->Count = 0;
   this->Origin = origin;
-  const BinGrid::Level& level = this->Grid.Levels.front();
+  const BinGrid::Layout& level = this->Grid.Bins;
   if (!level.HasPlainBins)
   {
     return false;
@@ -60,11 +60,7 @@ __attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
   int count = 0;
   for (Index r = row; r <= lastRow; ++r)
   {
-    if (level.HasChildren && !this->Grid.ChildrenOfRow[level.FirstRow + r].empty())
-    {
-      return false;
-    }
-    const auto slots = this->Grid.Slots(level, r, firstColumn, lastColumn);
+    const auto slots = this->Grid.Slots(r, firstColumn, lastColumn);
     if (count + (slots.second - slots.first) > Capacity)
     {
       return false;
@@ -101,7 +97,7 @@ __attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
   return true;
 }
 
-__attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(Index b) const
+__attribute__((target("avx2,fma"))) Surroundings::Candidates Surroundings::FindCandidates(Index b) const
 {
   const Point2 a = this->Grid.PointAt(this->Origin);
   const Point2 end = this->Grid.PointAt(b);
@@ -109,7 +105,7 @@ __attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(I
   const float lengthSquared = bx * bx + by * by;
   if (!(lengthSquared <= this->ReachSquared))
   {
-    return 0;
+    return {};
   }
   // Points and edge are shorter than the reach D. With u = 2^-24, cross is then wrong by at most
   // 4 u D^2, and dot by at most 12 u D^2.
@@ -138,7 +134,7 @@ __attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(I
       if (slot != b && slot != this->Origin &&
         Orientation(a, end, this->Grid.PointAt(slot)) == Positive)
       {
-        return 0;
+        return {};
       }
     }
     // quotient +- error / cross (1 + |quotient|): cross is wrong by less than a sixteenth here,
@@ -157,26 +153,23 @@ __attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(I
   const float upper = _mm_cvtss_f32(half);
   if (!(upper < Infinity))
   {
-    return 0;
+    return {};
   }
 
   // The disc of that quotient, within the window?
   const float s = 0.5f * upper;
   const float radius = std::sqrt(lengthSquared * (0.25f + s * s)) * 1.0001f + this->Margin;
   const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
-  if (!(centerX - radius > -this->Left && centerX + radius < this->Right &&
-        centerY + radius < this->Top))
-  {
-    return 0;
-  }
+  Candidates found;
+  found.IsProved = centerX - radius > -this->Left && centerX + radius < this->Right &&
+    centerY + radius < this->Top;
   const __m256 uppers = _mm256_set1_ps(upper);
-  std::uint64_t candidates = 0;
   for (int i = 0; i < vectors; ++i)
   {
     const int within = _mm256_movemask_ps(_mm256_cmp_ps(lower[i], uppers, _CMP_LE_OQ));
-    candidates |= static_cast<std::uint64_t>(within) << (8 * i);
+    found.Bits |= static_cast<std::uint64_t>(within) << (8 * i);
   }
-  return candidates;
+  return found;
 }
 
 #else
@@ -191,9 +184,9 @@ bool Surroundings::Gather(Index)
   return false;
 }
 
-std::uint64_t Surroundings::FindCandidates(Index) const
+Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {
-  return 0;
+  return {};
 }
 
 #endif

@@ -46,12 +46,19 @@ public:
    */
   bool Gather(Index origin);
 
+  struct Candidates
+  {
+    std::uint64_t Bits = 0; ///< numbers that SlotOf takes
+    /** Whether one of them is the apex; otherwise one is the best point of the window, if any. */
+    bool IsProved = false;
+  };
+
   /**
-   * The points that may be the apex over the edge from the vertex to b, as bits of an Index into
-   * SlotOf. Points all but on the edge's line are told apart exactly.
-   * @return 0 when it cannot tell
+   * The points that may be the apex over the edge from the vertex to b. Points all but on the
+   * edge's line are told apart exactly.
+   * @return none when it cannot tell
    */
-  std::uint64_t FindCandidates(Index b) const;
+  Candidates FindCandidates(Index b) const;
 
   Index SlotOf(int candidate) const { return this->Slots[candidate]; }
 
