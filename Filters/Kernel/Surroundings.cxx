@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define ELEVATION_HAS_AVX2
+#ifdef ELEVATION_HAS_AVX2
 #include <immintrin.h>
 #endif
 

@@ -25,6 +25,11 @@
 
 #include "BinGrid.h"
 
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+/** Defined where functions can be compiled for processors with AVX2 among others that are not. */
+#define ELEVATION_HAS_AVX2
+#endif
+
 namespace elevation
 {
 
