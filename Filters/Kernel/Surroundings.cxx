@@ -15,8 +15,7 @@ namespace elevation
 {
 namespace
 {
-constexpr Index ColumnsToEachSide = 2;
-constexpr Index RowsAbove = 3;
+constexpr double PointsInBox = 32.0; // as expected; half of that when it was too much
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 } // namespace
 
@@ -39,20 +38,31 @@ bool Surroundings::IsSupported()
   return isSupported;
 }
 
-__attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
+bool Surroundings::Gather(Index origin)
 {
   this->Count = 0;
   this->Origin = origin;
-  const BinGrid::Layout& level = this->Grid.Bins;
-  if (!level.HasPlainBins)
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  if (bins.HasPlainBins)
   {
-    return false;
+    const Index row = bins.Row(this->Grid.Y[origin]), column = bins.Column(this->Grid.X[origin]);
+    if (this->GatherBins(column, row, 2, 3) || this->GatherBins(column, row, 1, 2) ||
+      this->GatherBins(column, row, 1, 1))
+    {
+      return true;
+    }
   }
-  const double originX = this->Grid.X[origin], originY = this->Grid.Y[origin];
-  const Index row = level.Row(originY), column = level.Column(originX);
-  const Index firstColumn = std::max(column - ColumnsToEachSide, 0);
-  const Index lastColumn = std::min(column + ColumnsToEachSide, level.Columns - 1);
-  const Index lastRow = std::min(row + RowsAbove, level.Rows - 1);
+  return this->GatherBox();
+}
+
+__attribute__((target("avx2,fma"))) bool Surroundings::GatherBins(
+  Index column, Index row, Index columnsToEachSide, Index rowsAbove)
+{
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  const double originX = this->Grid.X[this->Origin], originY = this->Grid.Y[this->Origin];
+  const Index firstColumn = std::max(column - columnsToEachSide, 0);
+  const Index lastColumn = std::min(column + columnsToEachSide, bins.Columns - 1);
+  const Index lastRow = std::min(row + rowsAbove, bins.Rows - 1);
 
   const __m256d x0 = _mm256_set1_pd(originX), y0 = _mm256_set1_pd(originY);
   const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
@@ -81,18 +91,145 @@ __attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
   this->Count = count;
 
   // The bounds of the bins as BinGrid finds them are those below but for rounding, which
-  // BinGrid::Level::HasPlainBins bounds by a thousandth of a bin.
-  const double width = level.BinWidth, height = level.BinHeight;
+  // BinGrid::Layout::HasPlainBins bounds by a thousandth of a bin.
+  const double width = bins.BinWidth, height = bins.BinHeight;
   const double margin = 0.002;
-  const double left = originX - (level.OriginX + (firstColumn + margin) * width);
-  const double right = (level.OriginX + (lastColumn + 1 - margin) * width) - originX;
-  const double top = (level.OriginY + (lastRow + 1 - margin) * height) - originY;
+  const double left = originX - (bins.OriginX + (firstColumn + margin) * width);
+  const double right = (bins.OriginX + (lastColumn + 1 - margin) * width) - originX;
+  const double top = (bins.OriginY + (lastRow + 1 - margin) * height) - originY;
   this->Left = firstColumn == 0 ? Infinity : static_cast<float>(left);
-  this->Right = lastColumn == level.Columns - 1 ? Infinity : static_cast<float>(right);
-  this->Top = lastRow == level.Rows - 1 ? Infinity : static_cast<float>(top);
-  const double across = (2 * ColumnsToEachSide + 1) * width, up = (RowsAbove + 1) * height;
+  this->Right = lastColumn == bins.Columns - 1 ? Infinity : static_cast<float>(right);
+  this->Top = lastRow == bins.Rows - 1 ? Infinity : static_cast<float>(top);
+  const double across = (2 * columnsToEachSide + 1) * width, up = (rowsAbove + 1) * height;
   this->ReachSquared = static_cast<float>(across * across + up * up);
   this->Margin = static_cast<float>(0.01 * std::min(width, height));
+  return true;
+}
+
+bool Surroundings::GatherBox()
+{
+  const Point2 p = this->Grid.PointAt(this->Origin);
+  // Down to the node above the leaf: boxes of siblings have no point in common.
+  const Index root = static_cast<Index>(this->Grid.Nodes.size() - 1);
+  this->Path.assign(1, root);
+  double width = 0.0, height = 0.0;
+  for (;;)
+  {
+    const BinGrid::Node& node = this->Grid.Nodes[this->Path.back()];
+    int place = 0;
+    while (!(node.LowX[place] <= p.X && p.X <= node.HighX[place] && node.LowY[place] <= p.Y &&
+      p.Y <= node.HighY[place]))
+    {
+      ++place;
+    }
+    if (node.Count[place] > 0)
+    {
+      break;
+    }
+    width = node.HighX[place] - node.LowX[place];
+    height = node.HighY[place] - node.LowY[place];
+    this->Path.push_back(node.First[place]);
+  }
+
+  const double size = this->Grid.Nodes[this->Path.back()].Size;
+  for (double points : { PointsInBox, 0.5 * PointsInBox })
+  {
+    // The side of a square with so many points; where points lie in a strip narrower than that, the
+    // length of it.
+    double side = std::sqrt(points / size * width * height);
+    if (!(side < std::min(width, height)))
+    {
+      side = points / size * std::max(width, height);
+    }
+    if (!(side > 1e-14 && side < 1e14)) // single precision holds squares
+    {
+      return false;
+    }
+    const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
+    std::size_t top = this->Path.size() - 1;
+    for (; top > 0; --top)
+    {
+      // The box of the node, as its parent knows it.
+      const BinGrid::Node& parent = this->Grid.Nodes[this->Path[top - 1]];
+      int place = 0;
+      while (parent.Count[place] > 0 || parent.First[place] != this->Path[top])
+      {
+        ++place;
+      }
+      if (parent.LowX[place] < lowX && highX < parent.HighX[place] && highY < parent.HighY[place])
+      {
+        break;
+      }
+    }
+    if (this->GatherBox(this->Grid.Nodes[this->Path[top]], lowX, highX, highY))
+    {
+      this->Left = static_cast<float>(0.999999 * (p.X - lowX));
+      this->Right = static_cast<float>(0.999999 * (highX - p.X));
+      this->Top = static_cast<float>(0.999999 * (highY - p.Y));
+      this->ReachSquared = static_cast<float>(3.0 * side * side);
+      this->Margin = static_cast<float>(0.002 * side);
+      return true;
+    }
+  }
+  return false;
+}
+
+/** All points of the box below a node, not below the origin; false when they are too many. */
+__attribute__((target("avx2,fma"))) bool Surroundings::GatherBox(
+  const BinGrid::Node& top, double lowX, double highX, double highY)
+{
+  const Point2 p = this->Grid.PointAt(this->Origin);
+  const __m256d boxLowX = _mm256_set1_pd(lowX), boxHighX = _mm256_set1_pd(highX);
+  const __m256d boxLowY = _mm256_set1_pd(p.Y), boxHighY = _mm256_set1_pd(highY);
+  const BinGrid::Node* stack[64];
+  stack[0] = &top;
+  int height = 1;
+  int count = 0;
+  while (height > 0)
+  {
+    const BinGrid::Node& node = *stack[--height];
+    for (int half = 0; half < BinGrid::Node::Places; half += 4)
+    {
+      const __m256d isWithinX =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowX + half), boxHighX, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node.HighX + half), boxLowX, _CMP_GE_OQ));
+      const __m256d isWithinY =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowY + half), boxHighY, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node.HighY + half), boxLowY, _CMP_GE_OQ));
+      for (int within = _mm256_movemask_pd(_mm256_and_pd(isWithinX, isWithinY)); within;
+           within &= within - 1)
+      {
+        const int place = half + __builtin_ctz(within);
+        if (node.Count[place] == 0)
+        {
+          if (height == 64)
+          {
+            return false;
+          }
+          stack[height++] = &this->Grid.Nodes[node.First[place]];
+          continue;
+        }
+        const Index end = node.First[place] + node.Count[place];
+        for (Index slot = node.First[place]; slot < end; ++slot)
+        {
+          // Written wherever it is, and kept when within; there is room for one too many.
+          const double x = this->Grid.X[slot], y = this->Grid.Y[slot];
+          this->X[count] = static_cast<float>(x - p.X);
+          this->Y[count] = static_cast<float>(y - p.Y);
+          this->Slots[count] = slot;
+          count += (x >= lowX) & (x <= highX) & (y >= p.Y) & (y <= highY);
+          if (count > Capacity)
+          {
+            return false;
+          }
+        }
+      }
+    }
+  }
+  const __m256 nothing = _mm256_set1_ps(std::numeric_limits<float>::quiet_NaN());
+  _mm256_storeu_ps(this->X + count, nothing);
+  _mm256_storeu_ps(this->Y + count, nothing);
+  this->Count = count;
   return true;
 }
 

@@ -11,7 +11,8 @@
  * matters.
  *
  * The proof. Around the vertex all points of five columns and four rows of bins are gathered: the
- * window. For each point, an interval is computed that holds the quotient by which apexes are
+ * window. Where these are too many, it is three columns and less rows; in full bins, a box in which
+ * the density thereabouts promises about thirty points. For each point, an interval is computed that holds the quotient by which apexes are
  * compared (see ApexSearch in Delaunay.cxx), with the rounding of single precision bounded by the
  * size of the window. Points whose interval begins above the least upper end are not the apex. The
  * disc that belongs to that end holds the apex's empty circle; if it lies within the window above
@@ -46,8 +47,7 @@ public:
 
   /**
    * Gathers the window of a vertex.
-   * @return false when there is none: density so uneven there that bins are subdivided, or too many
-   * points
+   * @return false when there is none: too many points in each that was tried
    */
   bool Gather(Index origin);
 
@@ -70,16 +70,21 @@ public:
 private:
   static constexpr int Capacity = 56; // and one more vector may be written beyond
 
+  bool GatherBins(Index column, Index row, Index columnsToEachSide, Index rowsAbove);
+  bool GatherBox();
+  bool GatherBox(const BinGrid::Node& top, double lowX, double highX, double highY);
+
   const BinGrid& Grid;
   alignas(32) float X[Capacity + 8];
   alignas(32) float Y[Capacity + 8];
   Index Slots[Capacity + 8];
   int Count = 0;
   Index Origin = None;
+  std::vector<Index> Path; ///< nodes from the root of the tree to the one above the origin's leaf
   // How far the window certainly reaches from the vertex; infinite at the border of the grid.
   float Left = 0.0f, Right = 0.0f, Top = 0.0f;
   float ReachSquared = 0.0f; ///< squared diagonal of the window
-  float Margin = 0.0f;       ///< a hundredth of a bin
+  float Margin = 0.0f;       ///< what a disc must keep from the window's border
 };
 
 } // namespace elevation
