@@ -257,7 +257,7 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
-    this->HasAround = this->IsWide && this->Around.Gather(slot);
+    this->HasAround = this->IsWide ? this->Around.Gather(slot) : this->ChooseWindow();
   }
 
   /**
@@ -273,7 +273,7 @@ public:
     this->Target = b;
     this->B = this->Grid.PointAt(b);
     Index best = None;
-    if (this->HasAround)
+    if (this->HasAround && this->IsWide)
     {
       const Surroundings::Candidates found = this->Around.FindCandidates(b);
       best = this->BestOf(found.Bits);
@@ -295,12 +295,65 @@ public:
     {
       this->Compare(best, 1);
     }
+    if (this->HasAround && !this->IsWide && this->LookIntoWindow())
+    {
+      return this->Best;
+    }
     this->LookInto(this->Grid.Nodes[this->Grid.Nodes.size() - 1]);
     return this->Best;
   }
 
 private:
   using Node = BinGrid::Node;
+
+  /**
+   * Without wide instructions: the bins around the origin that are looked at first, fewer where
+   * there are many points in them. False when there are too many in any case.
+   */
+  bool ChooseWindow()
+  {
+    constexpr Index tooMany = 56;
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    const Index column = bins.Column(this->A.X);
+    this->FirstRow = bins.Row(this->A.Y);
+    for (Index reach = 2; reach > 0 && bins.HasPlainBins; --reach)
+    {
+      this->FirstColumn = std::max(column - reach, 0);
+      this->LastColumn = std::min(column + reach, bins.Columns - 1);
+      this->LastRow = std::min(this->FirstRow + reach + 1, bins.Rows - 1);
+      Index count = 0;
+      for (Index row = this->FirstRow; row <= this->LastRow; ++row)
+      {
+        const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
+        count += slots.second - slots.first;
+      }
+      if (count <= tooMany)
+      {
+        // Bounds of bins are known to a thousandth of a bin.
+        const double low = bins.OriginX + (this->FirstColumn + 0.002) * bins.BinWidth;
+        const double high = bins.OriginX + (this->LastColumn + 0.998) * bins.BinWidth;
+        const double top = bins.OriginY + (this->LastRow + 0.998) * bins.BinHeight;
+        this->Left = this->FirstColumn == 0 ? -Infinity : low - this->A.X;
+        this->Right = this->LastColumn == bins.Columns - 1 ? Infinity : high - this->A.X;
+        this->Top = this->LastRow == bins.Rows - 1 ? Infinity : top - this->A.Y;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /** Whether the best point is known, because its disc lies within the window. */
+  bool LookIntoWindow()
+  {
+    for (Index row = this->FirstRow; row <= this->LastRow; ++row)
+    {
+      const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
+      this->Compare(slots.first, slots.second - slots.first);
+    }
+    const double radius = std::sqrt(this->RadiusSquared);
+    return this->Best != None && this->CenterX - radius > this->Left &&
+      this->CenterX + radius < this->Right && this->CenterY + radius < this->Top;
+  }
 
   /** Nearly always there is one candidate; else exact comparisons decide. */
   Index BestOf(std::uint64_t candidates)
@@ -620,6 +673,10 @@ private:
   Surroundings Around;
   const bool IsWide;
   bool HasAround = false;
+
+  // The window where there are no wide instructions, its bounds relative to A.
+  Index FirstRow = 0, LastRow = 0, FirstColumn = 0, LastColumn = 0;
+  double Left = 0.0, Right = 0.0, Top = 0.0;
 
   // The edge.
   Index Origin = None, Target = None;

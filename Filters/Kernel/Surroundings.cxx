@@ -15,7 +15,7 @@ namespace elevation
 {
 namespace
 {
-constexpr double PointsInBox = 32.0; // as expected; half of that when it was too much
+constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 } // namespace
 
@@ -106,32 +106,40 @@ __attribute__((target("avx2,fma"))) bool Surroundings::GatherBins(
   return true;
 }
 
-bool Surroundings::GatherBox()
+__attribute__((target("avx2,fma"))) bool Surroundings::GatherBox()
 {
   const Point2 p = this->Grid.PointAt(this->Origin);
+  const __m256d x = _mm256_set1_pd(p.X), y = _mm256_set1_pd(p.Y);
   // Down to the node above the leaf: boxes of siblings have no point in common.
-  const Index root = static_cast<Index>(this->Grid.Nodes.size() - 1);
-  this->Path.assign(1, root);
-  double width = 0.0, height = 0.0;
+  const double infinity = std::numeric_limits<double>::infinity();
+  const BinGrid::Node* node = &this->Grid.Nodes[this->Grid.Nodes.size() - 1];
+  this->Path.assign(1, { node, -infinity, infinity, -infinity, infinity });
   for (;;)
   {
-    const BinGrid::Node& node = this->Grid.Nodes[this->Path.back()];
     int place = 0;
-    while (!(node.LowX[place] <= p.X && p.X <= node.HighX[place] && node.LowY[place] <= p.Y &&
-      p.Y <= node.HighY[place]))
+    for (int half = 0; half < BinGrid::Node::Places; half += 4)
     {
-      ++place;
+      const __m256d holdsX =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node->LowX + half), x, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node->HighX + half), x, _CMP_GE_OQ));
+      const __m256d holdsY =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node->LowY + half), y, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node->HighY + half), y, _CMP_GE_OQ));
+      place |= _mm256_movemask_pd(_mm256_and_pd(holdsX, holdsY)) << half;
     }
-    if (node.Count[place] > 0)
+    place = __builtin_ctz(place);
+    if (node->Count[place] > 0)
     {
       break;
     }
-    width = node.HighX[place] - node.LowX[place];
-    height = node.HighY[place] - node.LowY[place];
-    this->Path.push_back(node.First[place]);
+    const BinGrid::Node* const child = &this->Grid.Nodes[node->First[place]];
+    this->Path.push_back({ child, node->LowX[place], node->HighX[place], node->LowY[place],
+      node->HighY[place] });
+    node = child;
   }
 
-  const double size = this->Grid.Nodes[this->Path.back()].Size;
+  const Step& last = this->Path.back();
+  const double size = node->Size, width = last.HighX - last.LowX, height = last.HighY - last.LowY;
   for (double points : { PointsInBox, 0.5 * PointsInBox })
   {
     // The side of a square with so many points; where points lie in a strip narrower than that, the
@@ -146,22 +154,13 @@ bool Surroundings::GatherBox()
       return false;
     }
     const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
-    std::size_t top = this->Path.size() - 1;
-    for (; top > 0; --top)
+    const Step* top = &last;
+    while (!(top->LowX < lowX && highX < top->HighX && highY < top->HighY) &&
+      top != this->Path.data())
     {
-      // The box of the node, as its parent knows it.
-      const BinGrid::Node& parent = this->Grid.Nodes[this->Path[top - 1]];
-      int place = 0;
-      while (parent.Count[place] > 0 || parent.First[place] != this->Path[top])
-      {
-        ++place;
-      }
-      if (parent.LowX[place] < lowX && highX < parent.HighX[place] && highY < parent.HighY[place])
-      {
-        break;
-      }
+      --top;
     }
-    if (this->GatherBox(this->Grid.Nodes[this->Path[top]], lowX, highX, highY))
+    if (this->GatherBox(*top->Node, lowX, highX, highY))
     {
       this->Left = static_cast<float>(0.999999 * (p.X - lowX));
       this->Right = static_cast<float>(0.999999 * (highX - p.X));

@@ -12,7 +12,7 @@
  *
  * The proof. Around the vertex all points of five columns and four rows of bins are gathered: the
  * window. Where these are too many, it is three columns and less rows; in full bins, a box in which
- * the density thereabouts promises about thirty points. For each point, an interval is computed that holds the quotient by which apexes are
+ * the density thereabouts promises about fifteen points. For each point, an interval is computed that holds the quotient by which apexes are
  * compared (see ApexSearch in Delaunay.cxx), with the rounding of single precision bounded by the
  * size of the window. Points whose interval begins above the least upper end are not the apex. The
  * disc that belongs to that end holds the apex's empty circle; if it lies within the window above
@@ -80,7 +80,15 @@ private:
   Index Slots[Capacity + 8];
   int Count = 0;
   Index Origin = None;
-  std::vector<Index> Path; ///< nodes from the root of the tree to the one above the origin's leaf
+
+  /** A node of the tree with the box of its points. */
+  struct Step
+  {
+    const BinGrid::Node* Node;
+    double LowX, HighX, LowY, HighY;
+  };
+  std::vector<Step> Path; ///< from the root of the tree to the node above the origin's leaf
+
   // How far the window certainly reaches from the vertex; infinite at the border of the grid.
   float Left = 0.0f, Right = 0.0f, Top = 0.0f;
   float ReachSquared = 0.0f; ///< squared diagonal of the window
