@@ -433,6 +433,11 @@ private:
     }
   }
 
+  static double OffInterval(double x, double low, double high)
+  {
+    return std::max(std::max(low - x, x - high), 0.0);
+  }
+
   /**
    * The children of a node, as bits, that may hold a point inside the disc, on the left of the edge
    * and not below the origin; and the squares of their distances from the middle of the edge.
@@ -449,23 +454,30 @@ private:
     for (int place = 0; place < Node::Places; ++place)
     {
       // Differences round monotonically: relative to the origin, a box still holds its points.
+      const double highY = node.HighY[place] - this->A.Y;
+      if (!(highY >= 0.0))
+      {
+        continue;
+      }
       const double lowX = node.LowX[place] - this->A.X, highX = node.HighX[place] - this->A.X;
-      const double lowY = node.LowY[place] - this->A.Y, highY = node.HighY[place] - this->A.Y;
-      const double offX = std::max(std::max(lowX - this->CenterX, this->CenterX - highX), 0.0);
-      const double offY = std::max(std::max(lowY - this->CenterY, this->CenterY - highY), 0.0);
+      const double lowY = node.LowY[place] - this->A.Y;
+      const double offX = OffInterval(this->CenterX, lowX, highX);
+      const double offY = OffInterval(this->CenterY, lowY, highY);
+      if (offX * offX + offY * offY > this->RadiusSquared)
+      {
+        continue;
+      }
       // The greatest cross product over the box: so are products. The sum is below zero by more
       // than its rounding only where all points are on the right.
-      const double up = std::max(this->EdgeX * lowY, this->EdgeX * highY);
-      const double across = std::max(-this->EdgeY * lowX, -this->EdgeY * highX);
-      const double cross =
-        up + across + 16.0 * UnitRoundoff * (std::fabs(up) + std::fabs(across));
-      if (highY >= 0.0 && !(offX * offX + offY * offY > this->RadiusSquared) && !(cross < -1e-290))
+      const double up = this->EdgeX * (this->EdgeX > 0.0 ? highY : lowY);
+      const double across = -this->EdgeY * (this->EdgeY < 0.0 ? highX : lowX);
+      if (up + across + 16.0 * UnitRoundoff * (std::fabs(up) + std::fabs(across)) < -1e-290)
       {
-        reached |= 1u << place;
+        continue;
       }
-      const double x = 0.5 * this->EdgeX, y = 0.5 * this->EdgeY;
-      const double fromX = std::max(std::max(lowX - x, x - highX), 0.0);
-      const double fromY = std::max(std::max(lowY - y, y - highY), 0.0);
+      reached |= 1u << place;
+      const double fromX = OffInterval(0.5 * this->EdgeX, lowX, highX);
+      const double fromY = OffInterval(0.5 * this->EdgeY, lowY, highY);
       distances[place] = fromX * fromX + fromY * fromY;
     }
     return reached;
