@@ -412,6 +412,30 @@ BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress
   this->FindRanges();
 }
 
+void BinGrid::FindPath(const Point2& p, std::vector<Step>& path) const
+{
+  const Node* node = &this->Nodes[this->Nodes.size() - 1];
+  path.assign(1, { node, 0, -Infinity, Infinity, -Infinity, Infinity });
+  for (;;)
+  {
+    // Boxes of siblings have no point in common.
+    int place = 0;
+    while (!(node->LowX[place] <= p.X && p.X <= node->HighX[place] && node->LowY[place] <= p.Y &&
+      p.Y <= node->HighY[place]))
+    {
+      ++place;
+    }
+    if (node->Count[place] > 0)
+    {
+      return;
+    }
+    const Node* const child = &this->Nodes[node->First[place]];
+    path.push_back({ child, place, node->LowX[place], node->HighX[place], node->LowY[place],
+      node->HighY[place] });
+    node = child;
+  }
+}
+
 void BinGrid::Fill(const PointView& points, const Progress& progress)
 {
   constexpr Index stride = 1 << 20; // points between two reports

@@ -71,6 +71,14 @@ public:
     Index Size;          ///< number of points below
   };
 
+  /** A node on a way through the tree, with the box of its points and its place in its parent. */
+  struct Step
+  {
+    const BinGrid::Node* Node;
+    int Place;
+    double LowX, HighX, LowY, HighY;
+  };
+
   /**
    * Bins the finite points and sets duplicates aside.
    * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
@@ -87,6 +95,12 @@ public:
     const Index* starts = this->Starts.data() + static_cast<std::size_t>(row) * this->Bins.Columns;
     return { starts[firstColumn], starts[lastColumn + 1] };
   }
+
+  /**
+   * The nodes from the root to the one above the leaf that holds a point of the grid. All points
+   * within the box of a step are below its node. The root's box is the whole plane.
+   */
+  void FindPath(const Point2& p, std::vector<Step>& path) const;
 
   Buffer<double> X, Y; ///< coordinates by slot; eight more values may be read than there are
   Buffer<Index> Ids;   ///< the input's point id by slot

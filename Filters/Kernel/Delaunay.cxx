@@ -257,6 +257,7 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
+    this->Path.clear();
     this->HasAround = this->IsWide ? this->Around.Gather(slot) : this->ChooseWindow();
   }
 
@@ -299,7 +300,16 @@ public:
     {
       return this->Best;
     }
-    this->LookInto(this->Grid.Nodes[this->Grid.Nodes.size() - 1]);
+    // From the node around the origin upwards, until it holds the disc.
+    const std::vector<BinGrid::Step>& path = this->PathToOrigin();
+    const BinGrid::Step* step = &path.back();
+    this->LookInto(*step->Node, ~0u);
+    while (step != path.data() && !this->HoldsDisc(*step))
+    {
+      const unsigned int others = ~(1u << step->Place);
+      --step;
+      this->LookInto(*step->Node, others);
+    }
     return this->Best;
   }
 
@@ -401,11 +411,37 @@ private:
     this->CenterY = isDisc ? 0.5 * this->EdgeY + s * this->EdgeX : 0.0;
   }
 
-  /** The children of a node in order of their distance from the edge, as long as any is reached. */
-  void LookInto(const Node& node)
+  const std::vector<BinGrid::Step>& PathToOrigin()
+  {
+    if (this->IsWide)
+    {
+      return this->Around.PathToOrigin();
+    }
+    if (this->Path.empty())
+    {
+      this->Grid.FindPath(this->A, this->Path);
+    }
+    return this->Path;
+  }
+
+  /** Whether the disc, as far as it is above the origin, lies within the box of a step. */
+  bool HoldsDisc(const BinGrid::Step& step) const
+  {
+    // The radius has been widened by more than the rounding of these differences.
+    const double radius = std::sqrt(this->RadiusSquared);
+    return this->CenterX - radius > step.LowX - this->A.X &&
+      this->CenterX + radius < step.HighX - this->A.X &&
+      this->CenterY + radius < step.HighY - this->A.Y;
+  }
+
+  /**
+   * The children of a node at the given places (as bits) in order of their distance from the edge,
+   * as long as any is reached.
+   */
+  void LookInto(const Node& node, unsigned int places)
   {
     double distances[Node::Places];
-    unsigned int left = this->Reached(node, distances);
+    unsigned int left = this->Reached(node, distances) & places;
     while (left != 0)
     {
       int nearest = -1;
@@ -424,7 +460,7 @@ private:
       }
       else
       {
-        this->LookInto(this->Grid.Nodes[node.First[nearest]]);
+        this->LookInto(this->Grid.Nodes[node.First[nearest]], ~0u);
       }
       if (left != 0 && this->RadiusSquared < radiusSquared)
       {
@@ -685,6 +721,8 @@ private:
   Surroundings Around;
   const bool IsWide;
   bool HasAround = false;
+
+  std::vector<BinGrid::Step> Path; ///< to A, where there are no wide instructions; or empty
 
   // The window where there are no wide instructions, its bounds relative to A.
   Index FirstRow = 0, LastRow = 0, FirstColumn = 0, LastColumn = 0;

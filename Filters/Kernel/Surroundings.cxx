@@ -42,6 +42,7 @@ bool Surroundings::Gather(Index origin)
 {
   this->Count = 0;
   this->Origin = origin;
+  this->Path.clear();
   const BinGrid::Layout& bins = this->Grid.Bins;
   if (bins.HasPlainBins)
   {
@@ -106,14 +107,14 @@ __attribute__((target("avx2,fma"))) bool Surroundings::GatherBins(
   return true;
 }
 
-__attribute__((target("avx2,fma"))) bool Surroundings::GatherBox()
+/** As BinGrid::FindPath(), four boxes at a time. */
+__attribute__((target("avx2,fma"))) void Surroundings::FindPath()
 {
   const Point2 p = this->Grid.PointAt(this->Origin);
   const __m256d x = _mm256_set1_pd(p.X), y = _mm256_set1_pd(p.Y);
-  // Down to the node above the leaf: boxes of siblings have no point in common.
   const double infinity = std::numeric_limits<double>::infinity();
   const BinGrid::Node* node = &this->Grid.Nodes[this->Grid.Nodes.size() - 1];
-  this->Path.assign(1, { node, -infinity, infinity, -infinity, infinity });
+  this->Path.assign(1, { node, 0, -infinity, infinity, -infinity, infinity });
   for (;;)
   {
     int place = 0;
@@ -130,16 +131,21 @@ __attribute__((target("avx2,fma"))) bool Surroundings::GatherBox()
     place = __builtin_ctz(place);
     if (node->Count[place] > 0)
     {
-      break;
+      return;
     }
     const BinGrid::Node* const child = &this->Grid.Nodes[node->First[place]];
-    this->Path.push_back({ child, node->LowX[place], node->HighX[place], node->LowY[place],
-      node->HighY[place] });
+    this->Path.push_back({ child, place, node->LowX[place], node->HighX[place],
+      node->LowY[place], node->HighY[place] });
     node = child;
   }
+}
 
-  const Step& last = this->Path.back();
-  const double size = node->Size, width = last.HighX - last.LowX, height = last.HighY - last.LowY;
+bool Surroundings::GatherBox()
+{
+  const Point2 p = this->Grid.PointAt(this->Origin);
+  this->FindPath();
+  const BinGrid::Step& last = this->Path.back();
+  const double size = last.Node->Size, width = last.HighX - last.LowX, height = last.HighY - last.LowY;
   for (double points : { PointsInBox, 0.5 * PointsInBox })
   {
     // The side of a square with so many points; where points lie in a strip narrower than that, the
@@ -154,7 +160,7 @@ __attribute__((target("avx2,fma"))) bool Surroundings::GatherBox()
       return false;
     }
     const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
-    const Step* top = &last;
+    const BinGrid::Step* top = &last;
     while (!(top->LowX < lowX && highX < top->HighX && highY < top->HighY) &&
       top != this->Path.data())
     {
@@ -317,6 +323,10 @@ bool Surroundings::IsSupported()
 bool Surroundings::Gather(Index)
 {
   return false;
+}
+
+void Surroundings::FindPath()
+{
 }
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const

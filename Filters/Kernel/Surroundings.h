@@ -65,12 +65,23 @@ public:
    */
   Candidates FindCandidates(Index b) const;
 
+  /** The path through the tree to the vertex, as BinGrid::FindPath() finds it. */
+  const std::vector<BinGrid::Step>& PathToOrigin()
+  {
+    if (this->Path.empty())
+    {
+      this->FindPath();
+    }
+    return this->Path;
+  }
+
   Index SlotOf(int candidate) const { return this->Slots[candidate]; }
 
 private:
   static constexpr int Capacity = 56; // and one more vector may be written beyond
 
   bool GatherBins(Index column, Index row, Index columnsToEachSide, Index rowsAbove);
+  void FindPath();
   bool GatherBox();
   bool GatherBox(const BinGrid::Node& top, double lowX, double highX, double highY);
 
@@ -80,15 +91,7 @@ private:
   Index Slots[Capacity + 8];
   int Count = 0;
   Index Origin = None;
-
-  /** A node of the tree with the box of its points. */
-  struct Step
-  {
-    const BinGrid::Node* Node;
-    double LowX, HighX, LowY, HighY;
-  };
-  std::vector<Step> Path; ///< from the root of the tree to the node above the origin's leaf
-
+  std::vector<BinGrid::Step> Path; ///< of the origin; empty when it was not needed
   // How far the window certainly reaches from the vertex; infinite at the border of the grid.
   float Left = 0.0f, Right = 0.0f, Top = 0.0f;
   float ReachSquared = 0.0f; ///< squared diagonal of the window
