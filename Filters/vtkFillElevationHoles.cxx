@@ -41,7 +41,8 @@ using elevation::Holes;
 using elevation::Index;
 using elevation::Mesh;
 
-/** What a new point costs at the peak, in the kernel and in the output, with a margin for arrays.
+/**
+ * What a new point costs at the peak, in the kernel and in the output, with a margin for arrays.
  */
 constexpr double BytesPerPoint = 500.0;
 
@@ -138,7 +139,8 @@ void Average(const FillResult& patches, bool unitLength, vtkDataArray* values)
   }
 }
 
-/** All arrays of the input, extended by @a more tuples, which fill(input array, output array) sets.
+/**
+ * All arrays of the input, extended by @a more tuples, which fill(input array, output array) sets.
  */
 template <typename Fill>
 void PassExtended(
@@ -291,7 +293,8 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
   output->SetLines(lines);
 }
 
-/** One warning about all that was not filled though the limits allow it; empty when there is none.
+/**
+ * One warning about all that was not filled though the limits allow it; empty when there is none.
  */
 std::string Complaint(const Holes& holes, const FillResult& patches)
 {

@@ -18,10 +18,10 @@
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
  *   (floating-point numbers), 0 (integers), or nothing (strings). When points (triangles) were
- * added, an array of global ids stays in the point (cell) data, but is no longer marked as global
- * ids, because new ones repeat. Arrays of the input called FilledPoint or HoleId are replaced.
+ *   added, an array of global ids stays in the point (cell) data, but is no longer marked as global
+ *   ids, because new ones repeat. Arrays of the input called FilledPoint or HoleId are replaced.
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
- * before they are triangulated, so that the result stays exact.
+ *   before they are triangulated, so that the result stays exact.
  *
  * Output 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise.
  * Cell data:
@@ -37,9 +37,9 @@
  *
  * The method, for each hole on its own:
  * 1. The spacing of new points is the mean length of the hole's boundary edges, unless given.
- * 2. New points are put into the hole in rows, one spacing apart, every second row moved by half a
- *    spacing. Points nearer to the boundary than 0.6 spacings are left out; a small hole may get
- * none.
+ * 2. New points are put into the hole in rows, one spacing apart, every second row moved
+ *    by half a spacing. Points nearer to the boundary than 0.6 spacings are left out; a
+ *    small hole may get none.
  * 3. They are joined with the boundary by a constrained Delaunay triangulation.
  * 4. The z of a new point is the mean over its known neighbours, layer by layer from the boundary
  *    inwards. z thus stays between the least and the greatest z of the hole's boundary.
@@ -51,10 +51,10 @@
  * - it would take more new points than there is memory for (about 500 bytes a point), or than leave
  *   the surface 357,913,941 points;
  * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
- * - borders touch in it without sharing a point: a point lies inside another border edge, or two
- * points have the same x,y. Merge such points (vtkCleanPolyData), or split the edge. A border of
- * that kind may also join a hole to the outside, so that it is no hole; a warning names such a
- * point.
+ * - borders touch in it without sharing a point: a point lies inside another border edge, or
+ *   two points have the same x,y. Merge such points (vtkCleanPolyData), or split the edge. A
+ *   border of that kind may also join a hole to the outside, so that it is no hole; a
+ *   warning names such a point.
  *
  * An error that names the cell, and empty output, is the answer to an input that is no elevation
  * surface: cells other than triangles, triangles that are flat in x,y, an edge with more than two

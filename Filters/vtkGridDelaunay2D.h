@@ -7,9 +7,9 @@
  * Input: a vtkPointSet (float or double); only its points are used, its cells are ignored. x,y is
  * the plane of projection, z the elevation.
  *
- * Output: a vtkPolyData with the same points in the same order (shared with the input, never
- * written), all point data and field data, and the triangles in Polys, counter-clockwise seen from
- * +z.
+ * Output: a vtkPolyData with the same points in the same order (shared with the input,
+ * never written), all point data and field data, and the triangles in Polys,
+ * counter-clockwise seen from +z.
  *
  * What can be relied on, with MaximumEdgeLength 0:
  * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact

@@ -57,7 +57,8 @@ struct FillOptions
   Index MaximumHoleEdges = 0;
   /** Distance of new points; 0: the mean length of the hole's edges. */
   double Spacing = 0.0;
-  /** New x,y are rounded to float (before they are triangulated, so that the result stays exact).
+  /**
+   * New x,y are rounded to float (before they are triangulated, so that the result stays exact).
    */
   bool SinglePrecision = false;
   /** A hole that would take more new points than are left of this number fails. */

@@ -5,17 +5,26 @@
 #include "Predicates.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace elevation
 {
+
+std::string NameOf(const std::vector<Point2>& points, Index id)
+{
+  char text[96];
+  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), points[id].X,
+    points[id].Y);
+  return text;
+}
 
 void Mesh::ConnectTwins(Index firstCell)
 {
   const Index count = this->NumberOfHalfEdges();
   this->Twins.assign(count, Border);
 
-  // Half-edges by the lower id of their two vertices: both half-edges of an edge meet in one
-  // bucket.
+  // Half-edges by the lower id of their two vertices: both half-edges of an
+  // edge meet in one bucket.
   std::vector<Index> bucket(this->Points.size() + 1, 0);
   const auto low = [this](Index h) { return std::min(this->Origin(h), this->Destination(h)); };
   const auto high = [this](Index h) { return std::max(this->Origin(h), this->Destination(h)); };

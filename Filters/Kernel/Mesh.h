@@ -19,10 +19,14 @@
 
 #include "Types.h"
 
+#include <string>
 #include <vector>
 
 namespace elevation
 {
+
+/** A point as messages name it: "point 7 (1.5, 2)". */
+std::string NameOf(const std::vector<Point2>& points, Index id);
 
 class Mesh
 {

@@ -5,7 +5,6 @@
 #include "Constraints.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 namespace elevation
@@ -13,14 +12,6 @@ namespace elevation
 
 namespace
 {
-
-std::string NameOf(const Mesh& mesh, Index vertex)
-{
-  char text[96];
-  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(vertex),
-    mesh.Points[vertex].X, mesh.Points[vertex].Y);
-  return text;
-}
 
 std::vector<Segment> SegmentsOf(const Rings& rings)
 {
@@ -51,8 +42,8 @@ std::vector<char> MarkEdges(const Mesh& mesh, const std::vector<Segment>& segmen
       const SegmentStep step = StepAlong(mesh, fans, vertex, segment.B);
       if (step.HalfEdge == None)
       {
-        throw Error("The boundary's edge from " + NameOf(mesh, segment.A) + " to " +
-          NameOf(mesh, segment.B) +
+        throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
+          NameOf(mesh.Points, segment.B) +
           " is not an edge of the mesh. Turn RecoverBoundary on, or triangulate with it.");
       }
       isOdd[step.HalfEdge] ^= 1;

@@ -122,9 +122,9 @@ inline Progress Part(const Progress& progress, double begin, double end)
 }
 
 /**
- * A growable array of plain values that are not initialised, in memory from malloc, so that it can
- * be handed over to a VTK array without a copy, and grows without one where the system can move
- * pages.
+ * A growable array of plain values that are not initialised, in memory from malloc, so that
+ * it can be handed over to a VTK array without a copy, and grows without one where the
+ * system can move pages.
  */
 template <typename T>
 class Buffer

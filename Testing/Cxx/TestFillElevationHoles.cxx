@@ -54,7 +54,8 @@ Array* Named(vtkFieldData* data, const char* name)
   return Array::SafeDownCast(data->GetAbstractArray(name));
 }
 
-/** One hole, arrays of every kind, a vertex and a line among the cells, and one clockwise triangle.
+/**
+ * One hole, arrays of every kind, a vertex and a line among the cells, and one clockwise triangle.
  */
 vtkSmartPointer<vtkPolyData> MakeRichInput(int precision)
 {
@@ -388,7 +389,8 @@ void TestUnlimitedSpacing()
   }
 }
 
-/** The message of the error that the filter gives for an input; checks that its outputs are empty.
+/**
+ * The message of the error that the filter gives for an input; checks that its outputs are empty.
  */
 std::string Refusal(vtkPolyData* input)
 {

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The three filters in a row, from points to a surface: grid Delaunay, trim, fill. The cloud has a
-// bay in its outline and three voids. The triangulation spans them as far as the limit on the length of
-// edges lets it, trimming opens them again, filling closes the voids. Numbers first, then a picture.
+// The three filters in a row, from points to a surface: grid Delaunay, trim, fill. The cloud
+// has a bay in its outline and three voids. The triangulation spans them as far as the limit on
+// the length of edges lets it, trimming opens them again, filling closes the voids. Numbers
+// first, then a picture.
 #include "SheetOfSquares.h"
 #include "vtkActor.h"
 #include "vtkCamera.h"

@@ -20,7 +20,8 @@ Triangulation Triangulate(const Cloud& cloud)
   return elevation::Triangulate(cloud.View(), DelaunayOptions());
 }
 
-/** The triangulation by its definition: every triple whose circle is empty, ties cut by the rule.
+/**
+ * The triangulation by its definition: every triple whose circle is empty, ties cut by the rule.
  */
 std::vector<Corners> BruteForce(const Cloud& cloud)
 {
@@ -44,9 +45,9 @@ std::vector<Corners> BruteForce(const Cloud& cloud)
         {
           continue;
         }
-        // Kept when no point is inside, none on the circle is lower than p, and none on the circle
-        // lies beyond the edge qr: p is then the lowest of a polygon in which q and r are
-        // neighbours.
+        // Kept when no point is inside, none on the circle is lower than p, and none on
+        // the circle lies beyond the edge qr: p is then the lowest of a polygon in which
+        // q and r are neighbours.
         bool isKept = true;
         for (std::size_t k = 0; k < n && isKept; ++k)
         {

@@ -287,8 +287,8 @@ TEST(Fill, KeepsPointsApartAndClearOfTheBoundary)
       ASSERT_GT(std::hypot(points[i] - p.X, points[i + 1] - p.Y), 0.599 * spacing);
     }
   }
-  // Nearly equilateral: no angle below 20 degrees, no edge of 1.6 spacings but a few at the
-  // boundary.
+  // Nearly equilateral: no angle below 20 degrees, no edge of 1.6 spacings but
+  // a few at the boundary.
   const Mesh patch = run.Patch();
   Index longEdges = 0;
   for (Index h = 0; h < patch.NumberOfHalfEdges(); ++h)
@@ -593,8 +593,8 @@ TEST(Fill, FillsHolesOfOneStepOfTheCoordinates)
 
 TEST(Fill, StaysExactInSinglePrecision)
 {
-  // Coordinates where float steps by 0.25: new points are moved by up to 0.18 before they are
-  // joined.
+  // Coordinates where float steps by 0.25: new points are moved by up to 0.18
+  // before they are joined.
   Mesh mesh = TurnedSheet(30, 10.0, 0.0);
   for (Point2& p : mesh.Points)
   {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "Location.h"
 
 #include "Kernel/Predicates.h"
 #include "Kernel/Trim.h"
@@ -20,8 +21,8 @@ template <typename Drop>
 Mesh LatticeMesh(Random& random, int size, Drop&& drop)
 {
   std::vector<Point2> points = LatticePoints(random, size, size, size * size);
-  points.erase(std::remove_if(points.begin(), points.end(),
-                 [&](const Point2& p) { return drop(p.X, p.Y); }),
+  points.erase(
+    std::remove_if(points.begin(), points.end(), [&](const Point2& p) { return drop(p.X, p.Y); }),
     points.end());
   return Delaunay(points);
 }
@@ -102,10 +103,10 @@ TEST(Trim, KeepsExactlyTheInsideOfNestedRings)
   Mesh mesh = LatticeMesh(random, 21);
   const double all = TwiceArea(mesh);
   Rings rings;
-  AddRing(mesh, { { 1, 1 }, { 19, 3 }, { 17, 19 }, { 4, 17 } }, rings);    // land
-  AddRing(mesh, { { 5, 5 }, { 6, 13 }, { 14, 14 }, { 13, 6 } }, rings);    // lake, clockwise
-  AddRing(mesh, { { 7, 7 }, { 11, 8 }, { 8, 11 } }, rings);                // island
-  AddRing(mesh, { { 8, 8 }, { 9, 8 }, { 8, 9 } }, rings);                  // pond
+  AddRing(mesh, { { 1, 1 }, { 19, 3 }, { 17, 19 }, { 4, 17 } }, rings); // land
+  AddRing(mesh, { { 5, 5 }, { 6, 13 }, { 14, 14 }, { 13, 6 } }, rings); // lake, clockwise
+  AddRing(mesh, { { 7, 7 }, { 11, 8 }, { 8, 11 } }, rings);             // island
+  AddRing(mesh, { { 8, 8 }, { 9, 8 }, { 8, 9 } }, rings);               // pond
   const auto twice = [](const std::vector<Point2>& ring) {
     double area = 0.0;
     for (std::size_t i = 0; i < ring.size(); ++i)
@@ -172,9 +173,15 @@ TEST(Trim, OfRandomTriangleRingsAgreesWithTheEvenOddRule)
       continue;
     }
     ++decided;
+    const RingLocator locator(mesh.Points, rings);
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
     {
-      ASSERT_EQ(MiddleIsInside(mesh, rings, t), !trimmed.IsOutward[t]);
+      const bool isInside = MiddleIsInside(mesh, rings, t);
+      ASSERT_EQ(isInside, !trimmed.IsOutward[t]);
+      // Also when all corners of the triangle are on the rings.
+      ASSERT_EQ(isInside,
+        locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
+          mesh.PointOf(mesh.Origin(3 * t + 2))));
     }
   }
   EXPECT_GT(decided, 300);

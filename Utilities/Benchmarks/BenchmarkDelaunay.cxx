@@ -347,7 +347,8 @@ Duration TimeOf(Competitor& competitor)
   return { seconds, static_cast<double>(std::clock() - processorStart) / CLOCKS_PER_SEC };
 }
 
-/** Runs a code once on few points, so that its program code is in memory and its tables are made.
+/**
+ * Runs a code once on few points, so that its program code is in memory and its tables are made.
  */
 void WarmUp(Competitor& competitor)
 {
@@ -462,7 +463,8 @@ void Check(const Competitors& competitors, const Coordinates& coordinates, Resul
     const std::size_t differences = Differences(ours, mesh);
     if (differences != 0)
     {
-      text += (text.empty() ? "" : "; ") + std::to_string(differences) + " edges differ from ours";
+      text += (text.empty() ? "" : "; ") + std::string("edges that differ from ours: ") +
+        std::to_string(differences);
     }
     results[i].Checked = text.empty() ? Verdict::Right : Verdict::Wrong;
     Remark(results[i],
@@ -582,7 +584,7 @@ std::string WhyNot(const Result& result, unsigned timeLimit)
     case Ending::Finished:
       break;
   }
-  return result.TakesPart ? "crashed when run again" : "not run (--vtk runs it)";
+  return result.TakesPart ? "failed in the process of the timed runs" : "not run (--vtk runs it)";
 }
 
 void PrintHeader(const Options& options)
