@@ -39,8 +39,8 @@ void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
   const auto isPlain = [](double bin, double low, double extent) {
     return bin > 1e-12 && bin < 1e12 && bin > 1e-12 * (std::fabs(low) + extent);
   };
-  bins.HasPlainBins = isPlain(bins.BinWidth, bins.OriginX, width) &&
-    isPlain(bins.BinHeight, bins.OriginY, height);
+  bins.HasPlainBins =
+    isPlain(bins.BinWidth, bins.OriginX, width) && isPlain(bins.BinHeight, bins.OriginY, height);
 }
 
 /** A point of a full bin while it is halved. */
@@ -203,8 +203,7 @@ private:
       int widest = -1;
       for (int i = 0; i < count; ++i)
       {
-        if (!this->IsUndivided(parts[i]) &&
-          (widest < 0 || parts[i].Area() > parts[widest].Area()))
+        if (!this->IsUndivided(parts[i]) && (widest < 0 || parts[i].Area() > parts[widest].Area()))
         {
           widest = i;
         }
@@ -369,8 +368,8 @@ private:
 
   /** Points before the value first, or up to the value when none is before: both parts have some. */
   template <typename Key>
-  static Placed* Divide(Placed* begin, Placed* end, const Key& key, double value,
-    const Box& bounds, bool isWide)
+  static Placed* Divide(
+    Placed* begin, Placed* end, const Key& key, double value, const Box& bounds, bool isWide)
   {
     const bool hasBefore = (isWide ? bounds.LowX : bounds.LowY) < value;
     Placed* middle = begin;

@@ -108,7 +108,7 @@ public:
   Layout Bins;
   Buffer<Index> Starts; ///< first slot of each bin, row by row, and the number of slots
   std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row
-  Buffer<Node> Nodes;   ///< the tree, children before parents: the root is the last
+  Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite

@@ -203,9 +203,8 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
     const Point2 p = grid.PointAt(chain[edge]), q = grid.PointAt(chain[edge + 1]);
     return p.X + (q.X - p.X) * ((y - p.Y) / (q.Y - p.Y));
   };
-  const double margin = bins.HasPlainBins
-    ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth)
-    : Infinity;
+  const double margin =
+    bins.HasPlainBins ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth) : Infinity;
   Buffer<Index> candidates;
   std::size_t leftEdge = 0, rightEdge = 0;
   const Point2 lowest = grid.PointAt(extremes[0]);
@@ -554,8 +553,7 @@ private:
         _mm256_add_pd(_mm256_mul_pd(offX, offX), _mm256_mul_pd(offY, offY));
       const __m256d isOutside = _mm256_or_pd(_mm256_cmp_pd(offSquared, radiusSquared, _CMP_GT_OQ),
         _mm256_cmp_pd(cross, right, _CMP_LT_OQ));
-      const __m256d isReached =
-        _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, zero, _CMP_GE_OQ));
+      const __m256d isReached = _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, zero, _CMP_GE_OQ));
       reached |= static_cast<unsigned int>(_mm256_movemask_pd(isReached)) << place;
       const __m256d fromX = _mm256_max_pd(
         _mm256_max_pd(_mm256_sub_pd(lowX, middleX), _mm256_sub_pd(middleX, highX)), zero);
@@ -583,8 +581,7 @@ private:
     const __m256d crossError =
       _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(8.0), roundoffs), crossMagnitude),
         _mm256_set1_pd(1e-290));
-    const __m256d isRight =
-      _mm256_cmp_pd(cross, _mm256_xor_pd(signBit, crossError), _CMP_LT_OQ);
+    const __m256d isRight = _mm256_cmp_pd(cross, _mm256_xor_pd(signBit, crossError), _CMP_LT_OQ);
     if (this->Best == None)
     {
       return ~static_cast<unsigned int>(_mm256_movemask_pd(isRight)) & 15u;
@@ -593,9 +590,9 @@ private:
     const __m256d dotY = _mm256_mul_pd(py, _mm256_sub_pd(y, _mm256_set1_pd(this->B.Y)));
     const __m256d dotMagnitude =
       _mm256_add_pd(_mm256_andnot_pd(signBit, dotX), _mm256_andnot_pd(signBit, dotY));
-    const __m256d difference = _mm256_sub_pd(
-      _mm256_mul_pd(_mm256_add_pd(dotX, dotY), _mm256_set1_pd(this->BestCross)),
-      _mm256_mul_pd(_mm256_set1_pd(this->BestDot), cross));
+    const __m256d difference =
+      _mm256_sub_pd(_mm256_mul_pd(_mm256_add_pd(dotX, dotY), _mm256_set1_pd(this->BestCross)),
+        _mm256_mul_pd(_mm256_set1_pd(this->BestDot), cross));
     const __m256d magnitude =
       _mm256_add_pd(_mm256_mul_pd(dotMagnitude, _mm256_set1_pd(this->BestCrossMagnitude)),
         _mm256_mul_pd(_mm256_set1_pd(this->BestDotMagnitude), crossMagnitude));
@@ -603,14 +600,14 @@ private:
       _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(16.0), roundoffs), magnitude),
         _mm256_set1_pd(1e-170));
     // Worse only counts where cross is certain; else Compare() asks for the side first.
-    const __m256d isWorse =
-      _mm256_and_pd(_mm256_cmp_pd(cross, crossError, _CMP_GT_OQ),
-        _mm256_and_pd(_mm256_cmp_pd(error, _mm256_set1_pd(1e140), _CMP_LT_OQ),
-          _mm256_cmp_pd(difference, error, _CMP_GT_OQ)));
+    const __m256d isWorse = _mm256_and_pd(_mm256_cmp_pd(cross, crossError, _CMP_GT_OQ),
+      _mm256_and_pd(_mm256_cmp_pd(error, _mm256_set1_pd(1e140), _CMP_LT_OQ),
+        _mm256_cmp_pd(difference, error, _CMP_GT_OQ)));
     return ~static_cast<unsigned int>(_mm256_movemask_pd(_mm256_or_pd(isRight, isWorse))) & 15u;
   }
 #endif
 
+  /** Compares a stretch of slots with the best so far; the disc shrinks when one is better. */
   void Compare(Index first, Index count)
   {
     bool isChanged = false;

@@ -134,8 +134,8 @@ __attribute__((target("avx2,fma"))) void Surroundings::FindPath()
       return;
     }
     const BinGrid::Node* const child = &this->Grid.Nodes[node->First[place]];
-    this->Path.push_back({ child, place, node->LowX[place], node->HighX[place],
-      node->LowY[place], node->HighY[place] });
+    this->Path.push_back({ child, place, node->LowX[place], node->HighX[place], node->LowY[place],
+      node->HighY[place] });
     node = child;
   }
 }
@@ -145,7 +145,8 @@ bool Surroundings::GatherBox()
   const Point2 p = this->Grid.PointAt(this->Origin);
   this->FindPath();
   const BinGrid::Step& last = this->Path.back();
-  const double size = last.Node->Size, width = last.HighX - last.LowX, height = last.HighY - last.LowY;
+  const double size = last.Node->Size, width = last.HighX - last.LowX,
+               height = last.HighY - last.LowY;
   for (double points : { PointsInBox, 0.5 * PointsInBox })
   {
     // The side of a square with so many points; where points lie in a strip narrower than that, the
@@ -161,8 +162,8 @@ bool Surroundings::GatherBox()
     }
     const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
     const BinGrid::Step* top = &last;
-    while (!(top->LowX < lowX && highX < top->HighX && highY < top->HighY) &&
-      top != this->Path.data())
+    while (
+      !(top->LowX < lowX && highX < top->HighX && highY < top->HighY) && top != this->Path.data())
     {
       --top;
     }
@@ -238,7 +239,8 @@ __attribute__((target("avx2,fma"))) bool Surroundings::GatherBox(
   return true;
 }
 
-__attribute__((target("avx2,fma"))) Surroundings::Candidates Surroundings::FindCandidates(Index b) const
+__attribute__((target("avx2,fma"))) Surroundings::Candidates Surroundings::FindCandidates(
+  Index b) const
 {
   const Point2 a = this->Grid.PointAt(this->Origin);
   const Point2 end = this->Grid.PointAt(b);
@@ -325,9 +327,7 @@ bool Surroundings::Gather(Index)
   return false;
 }
 
-void Surroundings::FindPath()
-{
-}
+void Surroundings::FindPath() {}
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {

@@ -89,8 +89,8 @@ void ExpectAllFound(const Cloud& cloud, const BinGrid& grid)
     bool isInLeaf = false;
     for (int place = 0; place < BinGrid::Node::Places; ++place)
     {
-      isInLeaf = isInLeaf ||
-        (last.First[place] <= slot && slot < last.First[place] + last.Count[place]);
+      isInLeaf =
+        isInLeaf || (last.First[place] <= slot && slot < last.First[place] + last.Count[place]);
     }
     ASSERT_TRUE(isInLeaf) << "the path ends above the leaf";
     ASSERT_LE(path.size(), 40u) << "the tree is not balanced";

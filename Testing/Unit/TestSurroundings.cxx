@@ -18,8 +18,7 @@ Index Apex(const BinGrid& grid, Index a, Index b)
   for (Index slot = 0; slot < grid.NumberOfPoints(); ++slot)
   {
     const Point2 p = grid.PointAt(slot);
-    if (slot != a && slot != b &&
-      Orientation(grid.PointAt(a), grid.PointAt(b), p) == Positive &&
+    if (slot != a && slot != b && Orientation(grid.PointAt(a), grid.PointAt(b), p) == Positive &&
       (best == None ||
         InCircle(grid.PointAt(a), grid.PointAt(b), grid.PointAt(best), p) == Positive))
     {
@@ -48,8 +47,7 @@ double ExpectProofsHold(const Cloud& cloud)
     {
       if (IsLower(origin, grid.PointAt(b)))
       {
-        above.emplace_back(
-          std::hypot(grid.X[b] - origin.X, grid.Y[b] - origin.Y), b);
+        above.emplace_back(std::hypot(grid.X[b] - origin.X, grid.Y[b] - origin.Y), b);
       }
     }
     std::sort(above.begin(), above.end());
