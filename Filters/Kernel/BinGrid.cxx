@@ -196,19 +196,14 @@ private:
       return this->BuildRun(whole);
     }
     Part parts[BinGrid::Node::Places];
+    double areas[BinGrid::Node::Places]; // 0 for what is not divided
     parts[0] = whole;
+    areas[0] = whole.Area();
     int count = 1;
     while (count < BinGrid::Node::Places)
     {
-      int widest = -1;
-      for (int i = 0; i < count; ++i)
-      {
-        if (!this->IsUndivided(parts[i]) && (widest < 0 || parts[i].Area() > parts[widest].Area()))
-        {
-          widest = i;
-        }
-      }
-      if (widest < 0)
+      const auto widest = std::max_element(areas, areas + count) - areas;
+      if (areas[widest] == 0.0)
       {
         break;
       }
@@ -223,6 +218,8 @@ private:
       {
         part.EndRow = other.FirstRow = part.FirstRow + part.Rows() / 2;
       }
+      areas[widest] = this->IsUndivided(part) ? 0.0 : part.Area();
+      areas[count - 1] = this->IsUndivided(other) ? 0.0 : other.Area();
     }
     Child children[BinGrid::Node::Places];
     int filled = 0;
