@@ -72,7 +72,10 @@ public:
   };
 
   ///@{
-  /** Which of several points with the same x,y becomes the vertex; default KEEP_FIRST. */
+  /**
+   * Which of several points with the same x,y becomes the vertex: a DuplicatePolicyType, to which
+   * other numbers are clamped. Default: KEEP_FIRST.
+   */
   vtkSetClampMacro(DuplicatePolicy, int, KEEP_FIRST, KEEP_HIGHEST);
   vtkGetMacro(DuplicatePolicy, int);
   void SetDuplicatePolicyToKeepFirst() { this->SetDuplicatePolicy(KEEP_FIRST); }

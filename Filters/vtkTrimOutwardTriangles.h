@@ -76,7 +76,7 @@ public:
 
   ///@{
   /**
-   * The boundary, input 1. Optional: without it the boundary is extracted. nullptr takes it away.
+   * The boundary, input 1. Default: none, so that it is extracted. nullptr takes it away again.
    */
   void SetBoundaryConnection(vtkAlgorithmOutput* output);
   void SetBoundaryData(vtkPolyData* boundary);
@@ -104,7 +104,7 @@ public:
   vtkBooleanMacro(RecoverBoundary, bool);
   ///@}
 
-  /** After Update(): the GapTolerance that was used; 0 when a boundary was given. */
+  /** After Update(): the GapTolerance that was used, in spacings; 0 when a boundary was given. */
   vtkGetMacro(EffectiveGapTolerance, double);
 
   /** After Update(): the number of triangles in output 1. */

@@ -72,7 +72,7 @@ struct HoleReport
   Index NumberOfEdges = 0; ///< of the rim and the islands
   double Size = 0.0;       ///< diagonal of the rim's bounding box
   double Perimeter = 0.0;  ///< length of all edges
-  double Area = 0.0;       ///< inside the rim, outside the islands
+  double Area = 0.0;       ///< inside the rim, outside the islands; NaN when Size is beyond 1e-150 or 1e150
   double Spacing = 0.0;    ///< the one used
   Index NumberOfInsertedPoints = 0;
   std::string Reason; ///< of Failed, a sentence without the hole's name

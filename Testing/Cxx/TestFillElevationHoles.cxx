@@ -3,6 +3,7 @@
 //
 // The pipeline side of vtkFillElevationHoles, by numbers: what comes first and unchanged, what
 // arrays get at new points and triangles, the report, the limits, refusals, warnings and aborts.
+#include "MeshRules.h"
 #include "SheetOfSquares.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
@@ -143,7 +144,7 @@ void TestArrays(int precision)
   Check(output->GetPoints()->GetDataType() == precision, "the type of points is kept");
   Check(output->GetNumberOfVerts() == 1 && output->GetNumberOfLines() == 1, "other cells pass");
   Check(std::fabs(ProjectedArea(output) - 30.0) < 1e-10, "the projected area is that of the sheet");
-  Check(NumberOfNonManifoldEdges(output) == 0, "the output is manifold");
+  Check(NumberOfFindings(output, RulesOfSurface()) == 0, "the output is a surface");
 
   auto* filled = Named<vtkUnsignedCharArray>(output->GetPointData(), "FilledPoint");
   auto* amplitude = Named<vtkDoubleArray>(output->GetPointData(), "Amplitude");
@@ -338,11 +339,13 @@ void TestReport()
   fill->Update();
   Check(fill->GetNumberOfFilledHoles() == 3, "0 is no limit");
   Check(std::fabs(ProjectedArea(fill->GetOutput()) - 70.0) < 1e-10, "everything is filled");
+  Check(NumberOfFindings(fill->GetOutput(), RulesOfSurface()) == 0, "patches overlap nothing");
   const vtkIdType points = fill->GetOutput()->GetNumberOfPoints();
   fill->SetSpacing(0.25);
   fill->Update();
   Check(fill->GetOutput()->GetNumberOfPoints() > points + 250, "Spacing makes patches finer");
   Check(std::fabs(ProjectedArea(fill->GetOutput()) - 70.0) < 1e-10, "and conserves the area");
+  Check(NumberOfFindings(fill->GetOutput(), RulesOfSurface()) == 0, "also when they are fine");
 }
 
 void TestRange()

@@ -4,10 +4,10 @@
 // The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what
 // passes with them, what is counted, what errors and aborts leave behind, and that the
 // inputs are never written.
+#include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkGridDelaunay2D.h"
@@ -159,6 +159,9 @@ void TestGivenBoundary()
     "the number of triangles is conserved");
   Check(trim->GetNumberOfOutwardTriangles() == outward->GetNumberOfPolys(), "outward is counted");
   Check(trim->GetNumberOfRecoveredEdges() == 4, "the four slanted edges were missing");
+  Check(NumberOfFindings(kept, RulesOfSurface()) == 0 &&
+      NumberOfFindings(outward, RulesOfSurface()) == 0,
+    "both parts are surfaces, after recovery too");
   Check(trim->GetEffectiveGapTolerance() == 0.0, "no gap tolerance with a boundary given");
   for (vtkPolyData* output : { kept, outward, used })
   {
@@ -197,6 +200,8 @@ void TestCellData()
   trim->RecoverBoundaryOff();
   trim->Update();
   Check(trim->GetOutput(0)->GetNumberOfPolys() == 50, "25 squares are kept");
+  Check(NumberOfFindings(trim->GetOutput(0), RulesOfDelaunayPart()) == 0,
+    "along edges of the mesh nothing changes");
   Check(trim->GetOutput(0)->GetCellData()->GetArray("Cell")->GetTuple1(0) == 0 &&
       trim->GetOutput(0)->GetCellData()->GetArray("Cell")->GetTuple1(1) == 1,
     "cell data of vertices and lines passes");
@@ -241,6 +246,9 @@ void TestExtractedBoundary()
   trim->SetInputConnection(delaunay->GetOutputPort());
   trim->Update();
   Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 9 * (11 + 7), "the blocks are kept");
+  Check(NumberOfFindings(trim->GetOutput(0), RulesOfDelaunayPart()) == 0 &&
+      NumberOfFindings(trim->GetOutput(1), RulesOfDelaunayPart()) == 0,
+    "what lies inside and what lies outside are parts of the triangulation");
   Check(trim->GetOutput(2)->GetNumberOfLines() == 2, "each block has its outline");
   Check(trim->GetOutput(2)->GetPoint(0)[2] == 3.0, "the outline has the points' elevation");
   Check(std::fabs(trim->GetEffectiveGapTolerance() - 4.5) < 1e-12, "the tolerance can be read");
