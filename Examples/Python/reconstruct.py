@@ -82,7 +82,7 @@ def view_angles(text):
 
 
 NUMBER = "a number of 0 or more"
-# What each option with a value takes, for errors. All options are explained in reconstruct_help.txt.
+# What each option with a value takes, for errors. reconstruct_help.txt explains all options.
 TAKES = {
     "--columns": "three columns by name or number from 1, as x,y,z or 1,2,3",
     "--no-data": "an elevation",
@@ -266,7 +266,9 @@ class Run:
             culprit = self.options.boundary if name == "trim" else None
             raise Failure(f"{culprit or self.options.file}: {text}: {messages.errors[0]}")
         for warning in messages.warnings:
-            self.notes.append(f"{text}: {warning}")
+            # A filter may tell of several holes in one message.
+            for sentence in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n"):
+                self.notes.append(f"{text}: {sentence}")
         return algorithm
 
 

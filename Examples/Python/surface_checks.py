@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Finds out whether a .ply, .stl or legacy .vtk file holds what its header announces.
+"""Finds out whether a .ply, .stl, .vtk or XML file of VTK's holds what its header announces.
 
 VTK's readers of these formats trust the header: a file that was cut off, or one that announces too
 much, ends the program or gives points of zero. So the announced counts are compared with what is
@@ -9,6 +9,7 @@ some seconds for as many lines of text.
 """
 
 import os
+import re
 import struct
 
 import numpy
@@ -23,11 +24,15 @@ class Damage(Exception):
 def why_damaged(path):
     """What is wrong with the file, as words to follow its name, or None.
 
-    Files of other kinds than .ply, .stl and .vtk are not looked at. Raises OSError.
+    Files of other kinds than those above are not looked at. Raises OSError.
     """
-    check = {".ply": check_ply, ".stl": check_stl, ".vtk": check_legacy_vtk}.get(
-        os.path.splitext(path)[1].lower()
-    )
+    check = {
+        ".ply": check_ply,
+        ".stl": check_stl,
+        ".vtk": check_legacy_vtk,
+        ".vtp": check_xml,
+        ".vtu": check_xml,
+    }.get(os.path.splitext(path)[1].lower())
     if check is None:
         return None
     with open(path, "rb") as stream:
@@ -43,6 +48,20 @@ def count_of(word, what):
     if not word.isdigit():
         raise Damage(f"{CUT}: '{word.decode('latin-1')[:40]}' is no count of {what}")
     return int(word)
+
+
+# ---- .vtp, .vtu -------------------------------------------------------------------------------
+
+# Equal numbers can be packed to some thousandth of their size.
+PACKED = 10000
+
+
+def check_xml(data):
+    """VTK's XML readers notice nearly all by themselves, but not a count beyond all memory."""
+    counts = re.compile(rb'\bNumberOf(Points|Verts|Lines|Polys|Cells)="(\d+)"')
+    for what, count in counts.findall(data[:65536]):
+        if int(count) > PACKED * len(data):
+            raise Damage(f"is damaged: it cannot hold {int(count):,} {what.decode().lower()}")
 
 
 # ---- .ply -------------------------------------------------------------------------------------
@@ -71,7 +90,10 @@ PLY_LINE = 4095
 
 
 class PlyElement:
-    """One "element" of a header. properties: [(name, type of the value, None or type of the count)]"""
+    """One "element" of a header.
+
+    properties  [(name, type of the value, None or for a list the type of its count)]
+    """
 
     def __init__(self, name, count):
         self.name = name
@@ -320,7 +342,7 @@ class LegacyFile:
         self.line_words = []
 
     def line(self):
-        """The words of the next line that is not blank, keywords in small letters; None at the end."""
+        """The words of the next line that is not blank, the first in small letters, or None."""
         while self.at < len(self.data):
             end = self.data.find(b"\n", self.at)
             end = len(self.data) if end < 0 else end

@@ -333,7 +333,8 @@ class Script(Program):
     SCRIPT = os.path.join(ROOT, "Utilities", "reconstruct")
 
     def test_help_needs_neither_python_nor_a_build(self):
-        environment = dict(os.environ, ELEVATION_SURFACE_PYTHON="/no", ELEVATION_SURFACE_BUILD="/no")
+        nowhere = {"ELEVATION_SURFACE_PYTHON": "/no", "ELEVATION_SURFACE_BUILD": "/no"}
+        environment = {**os.environ, **nowhere}
         done = subprocess.run(
             [self.SCRIPT, "a.csv", "--help"],
             cwd=self.folder,

@@ -169,12 +169,12 @@ class Text(InFolder):
 
 class Paths(InFolder):
     def test_what_cannot_be_opened_is_named(self):
-        for name, words in (("no.csv", "no such file"), ("", "cannot be read; use one of")):
+        for name, words in (("no.csv", "no such file"), ("", "is a folder")):
             with self.assertRaises(files.FileError) as caught:
                 files.read_points(self.path(name))
             self.assertIn(words, str(caught.exception))
         os.mkdir(self.path("folder.csv"))
-        with self.assertRaisesRegex(files.FileError, "is not a file"):
+        with self.assertRaisesRegex(files.FileError, "is a folder, not a file"):
             files.read_points(self.path("folder.csv"))
 
     @unittest.skipIf(
@@ -332,6 +332,13 @@ class VtkFormats(InFolder):
                 if old in content:
                     with self.subTest(what=what, new=new):
                         self.assert_refused("", content.replace(old, new), "lie." + suffix)
+
+        files.write_surface(files.make_points(ROWS), self.path("a.vtp"), ".vtp")
+        with open(self.path("a.vtp"), encoding="ascii") as stream:
+            text = stream.read()
+        self.assertIn('NumberOfPoints="3"', text)
+        text = text.replace('NumberOfPoints="3"', 'NumberOfPoints="99999999999999"')
+        self.assert_refused("cannot hold 99,999,999,999,999 points", text, "lie.vtp")
 
     def test_text_in_the_place_of_numbers_is_refused(self):
         for what, suffix, content in self.whole_files():
