@@ -15,6 +15,9 @@ constexpr Index FewestPoints = 6;    // fewer than that fit some lattice by chan
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
 constexpr std::size_t Vectors = 128; // shortest of their differences
 constexpr double SampleSize = 1024.0;
+// A remainder of so many steps is taken for none, tried in turn: exact coordinates allow large
+// multiples of the steps, rounded ones do not.
+constexpr std::array<double, 3> Nothings{ 0.02, 0.06, 0.15 };
 constexpr int Cells = 64; // along each side of the first histogram
 
 double Dot(const Point2& p, const Point2& q)
@@ -283,6 +286,18 @@ void KeepFullest(std::vector<Point2>& points)
   }
 }
 
+/** Area a point in the fullest part; where that has no area, a thousandth of the mean of all. */
+double MeanAreaOf(const std::vector<Point2>& points, double ofAll)
+{
+  Point2 low = points.front(), high = points.front();
+  for (const Point2& p : points)
+  {
+    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+  }
+  return std::max((high.X - low.X) * (high.Y - low.Y) / points.size(), 1e-3 * ofAll);
+}
+
 /** The shortest differences of the points, by increasing length. */
 std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
 {
@@ -345,8 +360,8 @@ void Direct(Point2& u, Point2& v)
         continue;
       }
       double score = p.X / std::sqrt(Dot(p, p)) + q.Y / std::sqrt(Dot(q, q));
-      score += Dot(p, q) > -1e-6 * size ? 1e-5 : 0.0;
-      score += p.Y > -1e-6 * std::sqrt(size) ? 1e-6 : 0.0;
+      score += Dot(p, q) > -1e-3 * size ? 1e-3 : 0.0;
+      score += p.Y > -1e-3 * std::sqrt(size) ? 1e-4 : 0.0;
       if (score > best + 1e-9)
       {
         best = score;
@@ -527,16 +542,6 @@ LatticeSearch FindLattice(const PointView& points, double tolerance, const Progr
 
   SortUnique(around);
   KeepFullest(around);
-  const double leastArea = width * height / (MaximumNodesPerPoint * count);
-  Generators generators(leastArea, 1e-9 * extent / count, std::min(std::max(4.0 * tolerance, 0.01), 0.2));
-  for (const Point2& vector : ShortestDifferences(around))
-  {
-    if (!generators.Insert(vector))
-    {
-      return search;
-    }
-  }
-
   // Relative to a point in the middle of the fullest place, and from there outwards.
   const Point2 middle = around[around.size() / 2];
   sample.insert(sample.end(), around.begin(), around.end());
@@ -549,7 +554,22 @@ LatticeSearch FindLattice(const PointView& points, double tolerance, const Progr
     const double a = Dot(p, p), b = Dot(q, q);
     return a != b ? a < b : IsLower(p, q);
   });
-  search.Found = FitOutwards(sample, generators, tolerance, extent, search.Steps);
+  const double leastArea = 0.5 * MeanAreaOf(around, width * height / count) / MaximumNodesPerPoint;
+  const std::vector<Point2> differences = ShortestDifferences(around);
+  for (const double nothing : Nothings)
+  {
+    Generators generators(leastArea, 1e-9 * extent / count, nothing);
+    bool isLattice = true;
+    for (std::size_t i = 0; i < differences.size() && isLattice; ++i)
+    {
+      isLattice = generators.Insert(differences[i]);
+    }
+    if (isLattice && FitOutwards(sample, generators, tolerance, extent, search.Steps))
+    {
+      search.Found = true;
+      break;
+    }
+  }
   search.Steps.Origin.X += middle.X;
   search.Steps.Origin.Y += middle.Y;
   return search;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LatticeNodes.h"
 
+#include <cfloat>
 #include <cmath>
 
 namespace elevation
@@ -24,25 +25,29 @@ public:
   {
   }
 
-  /** The corners of a box tell the first node and the number of columns and rows. */
-  void Bound(const Point2& low, const Point2& high, double& columns, double& rows)
+  /** What the nodes of points lie within. */
+  struct Box
   {
-    double lowI = 0.0, highI = 0.0, lowJ = 0.0, highJ = 0.0;
-    bool isFirst = true;
-    for (const Point2& p : { low, Point2{ high.X, low.Y }, Point2{ low.X, high.Y }, high })
-    {
-      const double i = this->I(p), j = this->J(p);
-      lowI = isFirst ? i : std::min(lowI, i);
-      highI = isFirst ? i : std::max(highI, i);
-      lowJ = isFirst ? j : std::min(lowJ, j);
-      highJ = isFirst ? j : std::max(highJ, j);
-      isFirst = false;
-    }
-    // A point rounds to no lower node than the box does, nor to a higher one.
-    this->FirstI = std::floor(lowI + 0.25);
-    this->FirstJ = std::floor(lowJ + 0.25);
-    columns = std::ceil(highI - 0.25) - this->FirstI + 1.0;
-    rows = std::ceil(highJ - 0.25) - this->FirstJ + 1.0;
+    double LowI = DBL_MAX, HighI = -DBL_MAX, LowJ = DBL_MAX, HighJ = -DBL_MAX;
+    double FirstI() const { return std::floor(this->LowI + 0.25); }
+    double FirstJ() const { return std::floor(this->LowJ + 0.25); }
+    double Columns() const { return std::ceil(this->HighI - 0.25) - this->FirstI() + 1.0; }
+    double Rows() const { return std::ceil(this->HighJ - 0.25) - this->FirstJ() + 1.0; }
+  };
+
+  void Extend(Box& box, const Point2& p) const
+  {
+    const double i = this->I(p), j = this->J(p);
+    box.LowI = std::min(box.LowI, i);
+    box.HighI = std::max(box.HighI, i);
+    box.LowJ = std::min(box.LowJ, j);
+    box.HighJ = std::max(box.HighJ, j);
+  }
+
+  void Start(const Box& box)
+  {
+    this->FirstI = box.FirstI();
+    this->FirstJ = box.FirstJ();
   }
 
   double I(const Point2& p) const
@@ -89,8 +94,22 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
 {
   const double count = points.Count - static_cast<double>(search.NotFinite.size());
   NodeOfPoint nodeOf(search.Steps);
-  double columns, rows;
-  nodeOf.Bound(search.Low, search.High, columns, rows);
+  NodeOfPoint::Box box;
+  const Point2 &low = search.Low, &high = search.High;
+  for (const Point2& p : { low, Point2{ high.X, low.Y }, Point2{ low.X, high.Y }, high })
+  {
+    nodeOf.Extend(box, p);
+  }
+  const double nodesInBox = (high.X - low.X) * (high.Y - low.Y) / search.Steps.Area();
+  if (box.Columns() * box.Rows() > 1.2 * nodesInBox + 64.0)
+  {
+    // A lattice across the axes: the points themselves tell it better.
+    box = NodeOfPoint::Box();
+    ForEachPoint(points, search.NotFinite, Part(progress, 0.0, 0.2),
+      [&](Index, const Point2& p) { nodeOf.Extend(box, p); });
+  }
+  nodeOf.Start(box);
+  const double columns = box.Columns(), rows = box.Rows();
   const double wordsPerRow = std::floor((columns + 63.0) / 64.0) + 1.0;
   const double words = wordsPerRow * (rows + RowsBeyond) + 2.0;
   if (!(columns <= MaximumSide && rows <= MaximumSide) ||
@@ -114,7 +133,7 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   try
   {
     // A point that does not fit ends the pass before long, by way of the progress.
-    ForEachPoint(points, search.NotFinite, Progress([&](double f) { return check(0.5 * f); }),
+    ForEachPoint(points, search.NotFinite, Progress([&](double f) { return check(0.2 + 0.3 * f); }),
       [&](Index id, const Point2& p) {
         Index column, row;
         largest = std::max(largest, nodeOf(p, column, row));
