@@ -169,6 +169,7 @@ public:
     const double gx = this->A * this->EdgeX + this->B * this->EdgeY;
     const double gy = this->B * this->EdgeX + this->C * this->EdgeY;
     this->LengthSquared = gx * this->EdgeX + gy * this->EdgeY;
+    this->LengthOfStep = std::min(this->A, this->C);
     this->NormalX = -gy / this->Root;
     this->NormalY = gx / this->Root;
   }
@@ -190,44 +191,52 @@ public:
     this->RadiusSquared = this->LengthSquared * (0.25 + position * position);
     this->CenterX = 0.5 * this->EdgeX + position * this->NormalX;
     this->CenterY = 0.5 * this->EdgeY + position * this->NormalY;
-    // In steps. Where it is so large that rounding might matter, it is the half-plane.
-    this->HalfWidth = std::sqrt(this->RadiusSquared * this->C) / this->Root;
-    this->HalfHeight = std::sqrt(this->RadiusSquared * this->A) / this->Root;
-    this->IsHalfPlane = !(this->HalfWidth + this->HalfHeight < 1e8);
+    // Bounds, in steps, of what lies on the left of the edge: all of it is in the disc of position 0,
+    // where the position is less. A disc so large that rounding might matter is the half-plane.
+    const double bound = std::max(position, 0.0);
+    const double squared = this->LengthSquared * (0.25 + bound * bound);
+    const double halfWidth = std::sqrt(squared * this->C) / this->Root;
+    const double halfHeight = std::sqrt(squared * this->A) / this->Root;
+    const double centerX = 0.5 * this->EdgeX + bound * this->NormalX;
+    const double centerY = 0.5 * this->EdgeY + bound * this->NormalY;
+    this->IsHalfPlane = !(this->RadiusSquared < 1e16 * this->LengthOfStep);
+    this->Left = centerX - halfWidth * (1.0 + 1e-9);
+    this->Right = centerX + halfWidth * (1.0 + 1e-9);
+    this->Top = centerY + halfHeight * (1.0 + 1e-9);
   }
 
-  /** Columns of a row within the disc, a little too many rather than too few. */
-  bool Row(double y, double& left, double& right) const
+  double Left = 0.0, Right = 0.0, Top = 0.0;
+
+  /** Leaves of a range of columns what a row of the disc has, a little more rather than less.
+   * @return false when no column is left */
+  bool ClipRow(double y, double& left, double& right) const
   {
-    if (this->IsHalfPlane)
-    {
-      left = -Infinity;
-      right = Infinity;
-      return true;
-    }
     constexpr double slack = 1e-6;
-    const double dy = y - this->CenterY;
-    const double squared = (this->RadiusSquared - this->Determinant / this->A * dy * dy) / this->A;
-    const double tolerance = 1e-14 * this->RadiusSquared / this->A;
-    if (squared < -tolerance)
+    double low = this->Left - slack, high = this->Right + slack;
+    if (!this->IsHalfPlane)
     {
-      return false;
+      const double dy = y - this->CenterY;
+      const double tolerance = 1e-14 * this->RadiusSquared / this->A;
+      const double squared =
+        (this->RadiusSquared - this->Determinant / this->A * dy * dy) / this->A + tolerance;
+      if (squared < 0.0)
+      {
+        return false;
+      }
+      const double half = std::sqrt(squared) + slack;
+      const double middle = this->CenterX - this->B / this->A * dy;
+      low = std::max(low, middle - half);
+      high = std::min(high, middle + half);
     }
-    const double half = std::sqrt(std::max(squared, 0.0) + tolerance) + slack;
-    const double middle = this->CenterX - this->B / this->A * dy;
-    left = middle - half;
-    right = middle + half;
-    return true;
+    left = std::max(left, low);
+    right = std::min(right, high);
+    return std::ceil(left) <= std::floor(right);
   }
-
-  double Left() const { return this->IsHalfPlane ? -Infinity : this->CenterX - this->HalfWidth; }
-  double Right() const { return this->IsHalfPlane ? Infinity : this->CenterX + this->HalfWidth; }
-  double Top() const { return this->IsHalfPlane ? Infinity : this->CenterY + this->HalfHeight; }
 
 private:
   double A, B, Determinant, Root, EdgeX, EdgeY, C;
   double LengthSquared, NormalX, NormalY;
-  double RadiusSquared = 0.0, CenterX = 0.0, CenterY = 0.0, HalfWidth = 0.0, HalfHeight = 0.0;
+  double RadiusSquared = 0.0, CenterX = 0.0, CenterY = 0.0, LengthOfStep = 0.0;
   bool IsHalfPlane = true;
 };
 
@@ -267,7 +276,7 @@ public:
       const Apex& apex = all[i];
       disc.Set(disc.PositionOf(apex));
       const double limit = Reach + 1 - 1e-6;
-      if (!(disc.Left() > -limit && disc.Right() < limit && disc.Top() < limit))
+      if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit))
       {
         break;
       }
@@ -378,6 +387,7 @@ private:
     const LatticeNodes& nodes = this->Nodes;
     const auto wordsOf = [&](Index row) { return nodes.NodeAt(row, 0) / 64; };
     Index lowestRow = None, highestRow = None;
+    this->Ends.resize(nodes.Rows);
     for (Index row = 0; row < nodes.Rows; ++row)
     {
       const Index begin = wordsOf(row), end = begin + nodes.WordsPerRow - 1;
@@ -402,6 +412,7 @@ private:
         --highestBit;
       }
       const Index rightmost = 64 * right + highestBit;
+      this->Ends[row] = { nodes.ColumnOf(leftmost, row), nodes.ColumnOf(rightmost, row) };
       if (lowestRow == None)
       {
         // The whole of the lowest row is on the right side.
@@ -571,13 +582,15 @@ private:
     const Index column = nodes.ColumnOf(node, row);
     const Index firstRow = first == node + 1 ? row : nodes.RowOf(first);
     Offset e{ nodes.ColumnOf(first, firstRow) - column, firstRow - row };
+    const Index lastRow = nodes.RowOf(last);
+    const Offset end{ nodes.ColumnOf(last, lastRow) - column, lastRow - row };
     Index current = first;
     Index rankOfCurrent = nodes.RankOf(first);
     const Index id = nodes.Ids[rank];
     while (current != last)
     {
       Offset p;
-      const Index apex = this->Find(row, column, node, e, p);
+      const Index apex = this->Find(row, column, node, e, end, p);
       const Index rankOfApex = nodes.RankOf(apex);
       this->NeedRoom(1);
       const Index b = nodes.Ids[rankOfCurrent], c = nodes.Ids[rankOfApex];
@@ -617,7 +630,8 @@ private:
   }
 
   /** The apex over the edge from a vertex to the node at e from it. */
-  Index Find(Index row, Index column, Index node, const Offset& e, Offset& p)
+  Index Find(
+    Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
   {
     if (std::abs(e.X) <= ListedReach && e.Y <= ListedReach)
     {
@@ -640,80 +654,73 @@ private:
         }
       }
     }
-    return this->Search(row, column, node, e, p);
+    return this->Search(row, column, node, e, end, p);
   }
 
-  Index Search(Index row, Index column, Index node, const Offset& e, Offset& p)
+  /**
+   * The first look goes into a disc about one spacing high over the edge, the next ones are twice as
+   * high. The last vertex of the fan is on the free side as well: its disc bounds them all.
+   */
+  Index Search(
+    Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
   {
     DiscOfEdge disc(this->Metric, e);
-    Apex best{ { 0, 0 }, 0, 0 };
-    double height = this->FirstHeight;
-    double seen = disc.PositionOfHeight(height);
-    this->Look(disc, seen, row, column, e, best);
-    while (best.Cross == 0 && seen < Infinity)
+    Apex best = ApexAt(this->Metric, e, end);
+    for (double height = this->FirstHeight;; height *= 2.0)
     {
-      height *= 2.0;
-      const double next = disc.PositionOfHeight(height);
-      seen = next < 1e6 && next > seen ? next : Infinity;
-      this->Look(disc, seen, row, column, e, best);
-    }
-    if (best.Cross == 0)
-    {
-      throw std::logic_error("the fan of a lattice node does not close; this is a fault of the "
-                             "triangulation, please report it");
-    }
-    const double needed = disc.PositionOf(best);
-    if (!(needed <= seen))
-    {
-      this->Look(disc, needed, row, column, e, best);
+      const double seen = disc.PositionOfHeight(height), needed = disc.PositionOf(best);
+      if (!(seen < needed))
+      {
+        this->Look(disc, needed, row, column, e, best);
+        break;
+      }
+      if (this->Look(disc, seen, row, column, e, best))
+      {
+        if (!(disc.PositionOf(best) <= seen))
+        {
+          this->Look(disc, disc.PositionOf(best), row, column, e, best);
+        }
+        break;
+      }
     }
     p = best.Place;
     return node + static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);
   }
 
-  /** Compares all nodes in a disc, which shrinks with the best that is found. */
-  void Look(DiscOfEdge& disc, double position, Index row, Index column, const Offset& e, Apex& best)
+  /**
+   * Compares all nodes in a disc, which shrinks with the best that is found.
+   * @return whether a better one was found
+   */
+  bool Look(DiscOfEdge& disc, double position, Index row, Index column, const Offset& e, Apex& best)
   {
     const LatticeNodes& nodes = this->Nodes;
     disc.Set(position);
     const double slope = e.Y > 0 ? double(e.X) / double(e.Y) : Infinity;
-    const Index rowsLeft = nodes.Rows - 1 - row;
-    for (Index y = 0; y <= rowsLeft && y <= disc.Top() + 1e-6; ++y)
+    bool isAnyBetter = false;
+    for (Index y = 0; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
-      double left, right;
-      if (!disc.Row(y, left, right))
-      {
-        continue;
-      }
-      // Only what is above the vertex, and left of the edge's line.
+      // Only occupied columns, above the vertex and left of the edge's line.
+      const RowEnds& ends = this->Ends[row + y];
+      double left = y == 0 ? 1.0 : ends.Left - column;
+      double right = ends.Right - column;
       right = e.Y > 0 ? std::min(right, y * slope + 1e-6) : right;
-      left = y == 0 ? std::max(left, 0.5) : left;
-      left = std::max(left, -double(column));
-      right = std::min(right, double(nodes.Columns - 1 - column));
-      if (!(left <= right))
-      {
-        continue;
-      }
-      const Index from = static_cast<Index>(std::ceil(left)), to = static_cast<Index>(std::floor(right));
-      if (from > to)
+      if (!(left <= right) || !disc.ClipRow(y, left, right))
       {
         continue;
       }
       const Index origin = nodes.NodeAt(row + y, column);
-      const Index firstNode = origin + from, lastNode = origin + to;
+      const Index firstNode = origin + static_cast<Index>(std::ceil(left));
+      const Index lastNode = origin + static_cast<Index>(std::floor(right));
       bool isBetter = false;
-      for (Index w = firstNode >> 6; w <= lastNode >> 6; ++w)
+      const Index firstWord = firstNode >> 6, lastWord = lastNode >> 6;
+      for (Index w = firstWord; w <= lastWord; ++w)
       {
         std::uint64_t bits = nodes.Words[w];
-        if (bits == 0)
-        {
-          continue;
-        }
-        if (w == firstNode >> 6)
+        if (w == firstWord)
         {
           bits = bits >> (firstNode & 63) << (firstNode & 63);
         }
-        if (w == lastNode >> 6)
+        if (w == lastWord)
         {
           bits = bits << (63 - (lastNode & 63)) >> (63 - (lastNode & 63));
         }
@@ -721,7 +728,7 @@ private:
         {
           const Offset p{ 64 * w + LowestBit(bits) - origin, y };
           const Apex apex = ApexAt(this->Metric, e, p);
-          if (apex.Cross > 0 && (best.Cross == 0 || IsBetter(apex, best)))
+          if (apex.Cross > 0 && IsBetter(apex, best))
           {
             best = apex;
             isBetter = true;
@@ -730,6 +737,7 @@ private:
       }
       if (isBetter)
       {
+        isAnyBetter = true;
         const double next = disc.PositionOf(best);
         if (next < position)
         {
@@ -738,6 +746,7 @@ private:
         }
       }
     }
+    return isAnyBetter;
   }
 
   static constexpr Index ListedReach = 10;
@@ -757,6 +766,11 @@ private:
   Index* Next = nullptr;
   Index* End = nullptr;
   Index SinceReport = 0;
+  struct RowEnds
+  {
+    Index Left = 0, Right = -1; ///< first and last column that is occupied
+  };
+  std::vector<RowEnds> Ends;                ///< one a row
   std::vector<Index> RightChain, LeftChain; ///< nodes
   Buffer<Index> First, Last; ///< first and last neighbour of the fan above a vertex, by rank
   std::array<std::unique_ptr<ApexList>, NumberOfLists> Lists;
