@@ -186,6 +186,8 @@ public:
     return 0.5 * (h - 0.25 / h);
   }
 
+  double Length() const { return std::sqrt(this->LengthSquared); }
+
   void Set(double position)
   {
     this->RadiusSquared = this->LengthSquared * (0.25 + position * position);
@@ -666,7 +668,7 @@ private:
   {
     DiscOfEdge disc(this->Metric, e);
     Apex best = ApexAt(this->Metric, e, end);
-    for (double height = this->FirstHeight;; height *= 2.0)
+    for (double height = std::max(this->FirstHeight, disc.Length() / 8.0);; height *= 4.0)
     {
       const double seen = disc.PositionOfHeight(height), needed = disc.PositionOf(best);
       if (!(seen < needed))
@@ -699,11 +701,12 @@ private:
     bool isAnyBetter = false;
     for (Index y = 0; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
-      // Only occupied columns, above the vertex and left of the edge's line.
+      // Only occupied columns, above the vertex and left of the edge's line; a node beside the line is
+      // at least 2^-20 from it.
       const RowEnds& ends = this->Ends[row + y];
       double left = y == 0 ? 1.0 : ends.Left - column;
       double right = ends.Right - column;
-      right = e.Y > 0 ? std::min(right, y * slope + 1e-6) : right;
+      right = e.Y > 0 ? std::min(right, y * slope - 4e-7) : right;
       if (!(left <= right) || !disc.ClipRow(y, left, right))
       {
         continue;

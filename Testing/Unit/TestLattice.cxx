@@ -361,12 +361,15 @@ TEST(Lattice, IsFoundInRoundedCoordinates)
 
 TEST(Lattice, StaysExactOverALongRoundedLattice)
 {
-  // A step of 12.5 / sqrt(2), rounded to decimetres, over two thousand nodes.
+  // Steps of 12.5 along the diagonals, rounded to decimetres, over two thousand nodes.
   std::mt19937_64 random(34);
   Frame frame = MakeFrame(12.5, 12.5, 45.0, 90.0, { 612000.0, 6073000.0 });
   frame.Decimals = 0.1;
   const Cloud cloud = CloudOn(frame, RandomNodes(random, 2000, 20, 0.7));
-  ExpectLattice(cloud, frame.U, frame.V, "long", 2e-5);
+  ExpectLattice(cloud, frame.U, frame.V, "long", 5e-4);
+  const Lattice steps = Triangulate(cloud.View(), Automatic()).Steps;
+  EXPECT_NEAR(steps.StepU.X, frame.U.X, 1e-5);
+  EXPECT_NEAR(steps.StepU.Y, frame.U.Y, 1e-5);
 }
 
 TEST(Lattice, OriginIsTheLowestOccupiedNode)
