@@ -56,6 +56,7 @@ class Failure(Exception):
     """Something the user must know in one line; nothing is written."""
 
 
+LATTICE_MODES = ("automatic", "off")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
 
@@ -140,6 +141,21 @@ def parse_arguments(arguments):
         choices=DUPLICATES,
         default=DUPLICATES[0],
         help="which of several points with the same x,y is used (default: keep-first)",
+    )
+    group.add_argument(
+        "--lattice-mode",
+        choices=LATTICE_MODES,
+        default=LATTICE_MODES[0],
+        help="automatic: points of a grid, turned or not, are triangulated as a grid; off: the "
+        "coordinates as they are (default: automatic)",
+    )
+    group.add_argument(
+        "--lattice-tolerance",
+        type=number_at_least_zero,
+        default=0.01,
+        metavar="STEPS",
+        help="how far a point may lie from its node of the grid, in steps, at most 0.25 "
+        "(default: 0.01)",
     )
 
     group = parser.add_argument_group("trimming (vtkTrimOutwardTriangles)")
@@ -227,6 +243,8 @@ def parse_arguments(arguments):
     group.add_argument("--quiet", action="store_true", help="print errors only")
     options = parser.parse_args(arguments)
 
+    if options.lattice_tolerance > 0.25:
+        parser.error("--lattice-tolerance is at most 0.25 steps")
     if options.no_trim and (
         options.boundary or options.gap_tolerance or options.no_recover_boundary
     ):
@@ -341,6 +359,8 @@ def reconstruct(run, cloud, boundary):
     delaunay.SetInputData(cloud.points)
     delaunay.SetMaximumEdgeLength(options.maximum_edge_length)
     delaunay.SetDuplicatePolicy(DUPLICATES.index(options.duplicates))
+    delaunay.SetLatticeMode(LATTICE_MODES.index(options.lattice_mode))
+    delaunay.SetLatticeTolerance(options.lattice_tolerance)
     run.update("triangulate", "triangulating", delaunay)
     if delaunay.GetOutput().GetNumberOfPolys() == 0:
         raise Failure(f"{options.file}: {why_no_triangle(cloud.points, options)}")
@@ -411,6 +431,23 @@ OUTSIDE = "outside the boundary"
 STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed"}
 
 
+def lattice_of(fields):
+    """The lattice that was found, or None: a node, two steps, their lengths and their directions.
+
+    Directions are in degrees from x to y.
+    """
+    array = fields.GetArray("Lattice")
+    if array is None:
+        return None
+    origin, *steps = numpy.reshape(array.GetTuple(0), (3, 2)).tolist()
+    return {
+        "origin": origin,
+        "steps": steps,
+        "lengths": [math.hypot(*step) for step in steps],
+        "directions": [math.degrees(math.atan2(step[1], step[0])) for step in steps],
+    }
+
+
 def make_report(run, cloud, delaunay, trim, fill):
     """Everything the user may want to know, as plain numbers and words."""
     options = run.options
@@ -451,6 +488,7 @@ def make_report(run, cloud, delaunay, trim, fill):
         "points_unused": len(unused),
         "unused_reasons": counts,
         "unused": listed,
+        "lattice": lattice_of(fields),
         "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
     }
     if trim:
@@ -561,6 +599,16 @@ def print_report(report, options):
         else:
             where = "point " + ", ".join(str(u["point"]) for u in some)
         line("unused", f"{count:,} {reason}: {where}{', ...' if count > len(some) else ''}")
+    if report["lattice"]:
+        steps = [
+            f"{length:.7g} towards {direction + 0.0:.4g} degrees"
+            for length, direction in zip(
+                report["lattice"]["lengths"], report["lattice"]["directions"]
+            )
+        ]
+        line("lattice", f"steps of {' and '.join(steps)}")
+    elif options.lattice_mode == "automatic":
+        line("lattice", "none: the points are not on the nodes of a grid")
     line("triangles", f"{report['triangles']['delaunay']:,} in the triangulation")
     if "trim" in report:
         trim = report["trim"]
