@@ -231,8 +231,8 @@ int vtkTrimOutwardTriangles::RequestData(
     elevation::TrimResult trimmed;
     if (mesh.NumberOfTriangles() > 0)
     {
-      boundary = FindBoundary(
-        mesh, input, given, this->GapTolerance, elevation::Part(progress, 0.3, 0.6));
+      boundary =
+        FindBoundary(mesh, input, given, this->GapTolerance, elevation::Part(progress, 0.3, 0.6));
     }
     if (boundary.Vertices.Count() > 0)
     {
@@ -243,10 +243,11 @@ int vtkTrimOutwardTriangles::RequestData(
     }
     else
     {
-      vtkWarningMacro(<< (mesh.NumberOfTriangles() == 0
-          ? "The input has no triangles, so there is nothing to trim."
-          : "No triangle is surface: all have an edge longer than GapTolerance spacings. "
-            "Raise GapTolerance."));
+      vtkWarningMacro(
+        << (mesh.NumberOfTriangles() == 0
+               ? "The input has no triangles, so there is nothing to trim."
+               : "No triangle is surface: all have an edge longer than GapTolerance spacings. "
+                 "Raise GapTolerance."));
       boundary.Source = input;
       trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
       trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();

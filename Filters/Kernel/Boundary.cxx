@@ -22,7 +22,8 @@ bool IsOn(const Point2& low, const Point2& high, const Point2& p)
     p.X <= std::max(low.X, high.X) && Orientation(low, high, p) == Zero;
 }
 
-/** Whether the edge passes p on its left, at p's height; an edge has its lower end, not its upper. */
+/** Whether the edge passes p on its left, at p's height; an edge has its lower end, not its upper.
+ */
 bool PassesOnTheLeft(const Point2& low, const Point2& high, const Point2& p)
 {
   return low.Y <= p.Y && p.Y < high.Y && Orientation(low, high, p) == Negative;
@@ -153,7 +154,8 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
       return;
     }
     const Sign side = Orientation(low, high, p);
-    // An edge that goes up from p passes the triangle on its left or on its right: it does not cut it.
+    // An edge that goes up from p passes the triangle on its left or on its right: it does not cut
+    // it.
     isInside ^= side == Negative || (side == Zero && Orientation(p, high, q) == Negative);
   });
   return isInside;
@@ -177,8 +179,7 @@ struct HashOfPoint
 std::string NameOf(Index id, const Point2& p)
 {
   char text[96];
-  std::snprintf(
-    text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), p.X, p.Y);
+  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), p.X, p.Y);
   return text;
 }
 
@@ -222,7 +223,8 @@ std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
     {
       throw Error("Points " + std::to_string(std::min(found->second, vertex)) + " and " +
         std::to_string(std::max(found->second, vertex)) +
-        " of the mesh have the same x,y and both are corners of triangles, so that the boundary's " +
+        " of the mesh have the same x,y and both are corners of triangles, so that the "
+        "boundary's " +
         "point there is not one place of the mesh. Merge them, as vtkStaticCleanPolyData does.");
     }
     found->second = vertex;
@@ -238,7 +240,8 @@ std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
       {
         throw Error("The boundary's " + NameOf(*point, lines.Points[*point]) + " of " +
           NameOfLine(lines, line) + " is not a corner of the mesh: no triangle has a point with " +
-          "exactly the same x,y. Add the boundary's points to the points before triangulating them.");
+          "exactly the same x,y. Add the boundary's points to the points before triangulating "
+          "them.");
       }
     }
   }
@@ -288,8 +291,8 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines, const std::vector<Inde
   return pieces;
 }
 
-void Append(JoinedBoundary& joined, const std::vector<Index>& points,
-  const std::vector<Index>& vertexOf)
+void Append(
+  JoinedBoundary& joined, const std::vector<Index>& points, const std::vector<Index>& vertexOf)
 {
   for (const Index point : points)
   {
@@ -329,9 +332,8 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines)
       {
         throw Error("The boundary is not closed: " + NameOfLine(lines, piece.Line) + " ends at " +
           NameOf(end, lines.Points[end]) +
-          (meeting->second.size() == 1
-              ? ", where no other line goes on."
-              : ", where " + std::to_string(meeting->second.size()) +
+          (meeting->second.size() == 1 ? ", where no other line goes on."
+                                       : ", where " + std::to_string(meeting->second.size()) +
                 " lines end, which cannot be paired."));
       }
     }
@@ -386,9 +388,10 @@ namespace
 {
 
 // The figures of the rule (see Boundary.h), found by trials: lattices, lattices thinned to a tenth,
-// random points, points graded tenfold and scan lines eight times denser along than across, all cut out
-// by one outline with lakes, a fjord and an island. The area between truth and outline was 0.08 to 0.22
-// of the area within one spacing of the true outline; with 2 or 2.5 typical triangles 0.24 at worst.
+// random points, points graded tenfold and scan lines eight times denser along than across, all cut
+// out by one outline with lakes, a fjord and an island. The area between truth and outline was 0.08
+// to 0.22 of the area within one spacing of the true outline; with 2 or 2.5 typical triangles 0.24
+// at worst.
 constexpr int NeighborOfSpacing = 6;
 constexpr double SpacingPerNeighborDistance = 0.5;
 constexpr double ToleranceOfTypicalTriangle = 2.25;
@@ -435,8 +438,8 @@ private:
 /**
  * The spacing at each vertex: half the distance of its 6th nearest vertex.
  * In a Delaunay triangulation the next nearest vertex is always a neighbour of the vertex or of one
- * nearer, so that a search over neighbours finds the right one. It does not pass through vertices with
- * very many neighbours, which would make it quadratic.
+ * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
+ * with very many neighbours, which would make it quadratic.
  */
 std::vector<double> FindSpacings(
   const Mesh& mesh, const Distances& distances, const Progress& progress)
@@ -506,7 +509,8 @@ std::vector<double> FindSpacings(
     double squared = 0.0;
     for (int k = 1; k <= NeighborOfSpacing; ++k)
     {
-      if (pass == v || static_cast<std::size_t>(offsets[pass + 1] - offsets[pass]) <= NeighborsOfHub)
+      if (pass == v ||
+        static_cast<std::size_t>(offsets[pass + 1] - offsets[pass]) <= NeighborsOfHub)
       {
         for (Index i = offsets[pass]; i < offsets[pass + 1]; ++i)
         {
@@ -579,7 +583,8 @@ struct Parts
 };
 
 /** Closes the openings that are smaller than what the tolerance bridges. */
-void CloseSmallOpenings(const Mesh& mesh, const std::vector<double>& shares, std::vector<char>& keep)
+void CloseSmallOpenings(
+  const Mesh& mesh, const std::vector<double>& shares, std::vector<char>& keep)
 {
   const Parts parts(mesh, keep);
   std::vector<double> ofPart;
@@ -625,7 +630,8 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
     {
       continue;
     }
-    bool large = end - begin > 3 * NeighborOfSpacing; // more triangles than so few vertices can have
+    bool large =
+      end - begin > 3 * NeighborOfSpacing; // more triangles than so few vertices can have
     if (!large)
     {
       corners.clear();
@@ -644,7 +650,8 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
   }
 }
 
-/** The border of the triangles to keep, as simple rings of vertices in an order of their positions. */
+/** The border of the triangles to keep, as simple rings of vertices in an order of their positions.
+ */
 Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
 {
   Mesh kept;
@@ -701,16 +708,17 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
     cutRing(0);
     path.clear();
   }
-  std::sort(rings.begin(), rings.end(), [&](const std::vector<Index>& r, const std::vector<Index>& s) {
-    for (std::size_t i = 0; i < std::min(r.size(), s.size()); ++i)
-    {
-      if (r[i] != s[i])
+  std::sort(
+    rings.begin(), rings.end(), [&](const std::vector<Index>& r, const std::vector<Index>& s) {
+      for (std::size_t i = 0; i < std::min(r.size(), s.size()); ++i)
       {
-        return IsLower(mesh.PointOf(r[i]), mesh.PointOf(s[i]));
+        if (r[i] != s[i])
+        {
+          return IsLower(mesh.PointOf(r[i]), mesh.PointOf(s[i]));
+        }
       }
-    }
-    return r.size() < s.size();
-  });
+      return r.size() < s.size();
+    });
   Rings result;
   for (const std::vector<Index>& ring : rings)
   {
@@ -751,8 +759,8 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     double s[3] = { spacings[a], spacings[b], spacings[c] };
     std::sort(s, s + 3);
     local[t] = std::min(s[1], LargestSpacingInTriangle * s[0]);
-    ratios[t] = std::sqrt(std::max({ distances.Squared(a, b), distances.Squared(b, c),
-                  distances.Squared(c, a) })) /
+    ratios[t] = std::sqrt(std::max(
+                  { distances.Squared(a, b), distances.Squared(b, c), distances.Squared(c, a) })) /
       local[t];
   }
   if (!(result.GapTolerance > 0.0))

@@ -72,17 +72,17 @@ private:
 struct BoundaryLines
 {
   std::vector<Point2> Points;
-  Rings Lines;                  ///< ids of Points; a line is closed only if it returns to its first
-  std::vector<char> IsPolygon;  ///< one a line; a polygon closes by itself
-  std::vector<Index> Cells;     ///< one a line; the number that messages use
+  Rings Lines;                 ///< ids of Points; a line is closed only if it returns to its first
+  std::vector<char> IsPolygon; ///< one a line; a polygon closes by itself
+  std::vector<Index> Cells;    ///< one a line; the number that messages use
 };
 
 /**
  * Joins lines to rings of mesh vertices. A line is a ring when it returns to its first point
  * (the same id or the same x,y); other lines are chained with each other where their ends meet.
  * Points are matched to the corners of the mesh's triangles by equal x,y.
- * @throws Error naming the line and the point: a point not finite or not a mesh vertex; an end where no
- *         other line goes on; a ring of fewer than three points; no line at all
+ * @throws Error naming the line and the point: a point not finite or not a mesh vertex; an end
+ * where no other line goes on; a ring of fewer than three points; no line at all
  */
 struct JoinedBoundary
 {
@@ -93,7 +93,8 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines);
 
 struct ExtractOptions
 {
-  /** How many local spacings an empty stretch may measure and still be surface; 0: from the data. */
+  /** How many local spacings an empty stretch may measure and still be surface; 0: from the data.
+   */
   double GapTolerance = 0.0;
   Progress Monitor;
 };
@@ -105,8 +106,8 @@ struct ExtractedBoundary
 };
 
 /**
- * The outline of the surface that the vertices of a mesh (with Twins) sample, with lakes and islands.
- * Every edge of the outline is an edge of the mesh.
+ * The outline of the surface that the vertices of a mesh (with Twins) sample, with lakes and
+ * islands. Every edge of the outline is an edge of the mesh.
  *
  * The rule:
  *   - The spacing at a vertex is half the distance of its 6th nearest vertex. So it follows the
@@ -116,13 +117,14 @@ struct ExtractedBoundary
  *   - A triangle is surface when its longest edge is at most GapTolerance times its spacing.
  *     0 chooses 2.25 times what the typical (median) triangle of the mesh measures: 4.5 on a square
  *     lattice, about 4.6 for random points, more where points lie dense along lines.
- *   - An opening between surface triangles is a lake only if it is larger than a square with a side of
- *     GapTolerance spacings; a smaller one is closed.
+ *   - An opening between surface triangles is a lake only if it is larger than a square with a side
+ * of GapTolerance spacings; a smaller one is closed.
  *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,
  *     unless all pieces are as small.
  * Nothing depends on the order of points or triangles. Rings are simple and start at their lowest
  * vertex; they are in the order of these.
- * Cost: linear (the rings are sorted by their first vertices); about 20 neighbours a vertex are looked at.
+ * Cost: linear (the rings are sorted by their first vertices); about 20 neighbours a vertex are
+ * looked at.
  * @return no ring when no triangle is surface
  * @throws Aborted, std::bad_alloc
  */

@@ -7,9 +7,10 @@
  * In: a mesh with Twins, segments between its vertices. Out: the same mesh, in which every segment
  * is an edge, or a chain of edges where it runs exactly through other vertices.
  * For each segment:
- *   1. Walk from its first end through the triangles it crosses, up to the next vertex exactly on it.
- *   2. Take these triangles out. Every corner of the empty polygon on either side of the segment sees
- *      the segment, so that one scan with a stack fills the polygon with triangles.
+ *   1. Walk from its first end through the triangles it crosses, up to the next vertex exactly on
+ * it.
+ *   2. Take these triangles out. Every corner of the empty polygon on either side of the segment
+ * sees the segment, so that one scan with a stack fills the polygon with triangles.
  *   3. Flip the edges inside each polygon until they are locally Delaunay [Lawson 1977].
  *   4. Write the triangles back into the slots of those taken out.
  * Only crossed triangles change. When the mesh was (constrained) Delaunay before, it is constrained
@@ -45,8 +46,8 @@ struct Segment
 };
 
 /**
- * The half-edges around the vertices of a mesh with Twins, also where several fans of triangles meet
- * in one vertex (pinched) and at the border. Linear in time and memory to set up.
+ * The half-edges around the vertices of a mesh with Twins, also where several fans of triangles
+ * meet in one vertex (pinched) and at the border. Linear in time and memory to set up.
  */
 class Fans
 {
@@ -57,9 +58,9 @@ public:
   bool IsUsed(Index vertex) const { return this->First[vertex] != None; }
 
   /**
-   * Calls visit(h) for every half-edge that leaves the vertex, fan by fan, counter-clockwise within a
-   * fan, until visit returns false. (An edge whose only half-edge arrives at the vertex is the last
-   * of its fan: it is Previous of the last h, and a border.)
+   * Calls visit(h) for every half-edge that leaves the vertex, fan by fan, counter-clockwise within
+   * a fan, until visit returns false. (An edge whose only half-edge arrives at the vertex is the
+   * last of its fan: it is Previous of the last h, and a border.)
    */
   template <typename Visitor>
   void Visit(const Mesh& mesh, Index vertex, Visitor&& visit) const
@@ -128,25 +129,26 @@ struct SegmentStep
 };
 
 /**
- * The edge at vertex @a from that lies on the straight way to vertex @a to and does not go beyond it.
- * Exact. Cost: the triangles around @a from.
+ * The edge at vertex @a from that lies on the straight way to vertex @a to and does not go beyond
+ * it. Exact. Cost: the triangles around @a from.
  */
 SegmentStep StepAlong(const Mesh& mesh, const Fans& fans, Index from, Index to);
 
 /**
  * Makes every segment an edge of the mesh, or a chain of edges where it runs exactly through other
  * vertices.
- * @param[in,out] mesh         with Twins; the number of triangles is conserved, their slots are reused
+ * @param[in,out] mesh         with Twins; the number of triangles is conserved, their slots are
+ * reused
  * @param[in]     segments     in any order and direction; the same one may come twice, they may
  *                             overlap. A segment from a vertex to itself is left out.
- * @param[in,out] constrained  one flag a half-edge: in, edges that must stay (empty: none); out, 1 for
- *                             these and for both half-edges of every segment's edges, else 0
+ * @param[in,out] constrained  one flag a half-edge: in, edges that must stay (empty: none); out, 1
+ * for these and for both half-edges of every segment's edges, else 0
  * @param[in]     progress     may be empty
  * @return the number of segments that were not edges or chains of edges before
  * @throws Error naming the two points when a segment crosses a constrained edge (so two segments
- *         cross), leaves the mesh (crosses a hole or the outside), or ends in a point that is not the
- *         corner of any triangle. The mesh then is valid, with the segments before recovered.
- *         Aborted; std::bad_alloc.
+ *         cross), leaves the mesh (crosses a hole or the outside), or ends in a point that is not
+ * the corner of any triangle. The mesh then is valid, with the segments before recovered. Aborted;
+ * std::bad_alloc.
  */
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress = Progress());

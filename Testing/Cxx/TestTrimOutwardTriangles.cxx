@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what passes with
-// them, what is counted, what errors and aborts leave behind, and that the inputs are never written.
+// The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what passes
+// with them, what is counted, what errors and aborts leave behind, and that the inputs are never
+// written.
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -45,8 +46,8 @@ vtkIdType At(int x, int y)
 }
 
 /**
- * The Delaunay triangulation of a lattice of unit squares, every second triangle clockwise, with a vertex
- * and a line before the triangles, and arrays.
+ * The Delaunay triangulation of a lattice of unit squares, every second triangle clockwise, with a
+ * vertex and a line before the triangles, and arrays.
  */
 vtkSmartPointer<vtkPolyData> MakeMesh()
 {
@@ -149,8 +150,8 @@ void TestGivenBoundary()
   vtkPolyData* outward = trim->GetOutput(1);
   vtkPolyData* used = trim->GetOutput(2);
 
-  Check(mesh->GetMTime() == time && boundary->GetMTime() == boundaryTime,
-    "the inputs are not written");
+  Check(
+    mesh->GetMTime() == time && boundary->GetMTime() == boundaryTime, "the inputs are not written");
   const double expected = (1 * 2 - 7 * 1) + (7 * 7 - 6 * 2) + (6 * 6 - 2 * 7) + (2 * 1 - 1 * 6) - 8;
   Check(TwiceArea(kept) == expected, "the kept triangles cover the inside");
   Check(TwiceArea(kept) + TwiceArea(outward) == 2.0 * 64, "both together cover the input");
@@ -262,8 +263,8 @@ void ExpectError(vtkPolyData* mesh, vtkPolyData* boundary, bool recover, const s
   trim->SetRecoverBoundary(recover);
   trim->Update();
   const std::string message = observer->GetErrorMessage();
-  Check(message.find(part) != std::string::npos &&
-      message.find("ERROR:") == message.rfind("ERROR:"),
+  Check(
+    message.find(part) != std::string::npos && message.find("ERROR:") == message.rfind("ERROR:"),
     "one error with \"" + part + "\"; it was: " + message);
   for (int port = 0; port < 3; ++port)
   {

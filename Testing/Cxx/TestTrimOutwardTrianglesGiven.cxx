@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A lattice trimmed along given rings, nested three deep, whose edges mostly are not in the lattice.
-// Kept triangles are yellow, outward ones blue, the boundary is red.
+// A lattice trimmed along given rings, nested three deep, whose edges mostly are not in the
+// lattice. Kept triangles are yellow, outward ones blue, the boundary is red.
 #include "vtkActor.h"
 #include "vtkCamera.h"
 #include "vtkCellArray.h"

@@ -43,20 +43,31 @@ if (NOT count EQUAL 4)
   message(FATAL_ERROR "Four headers were expected, there are ${count}: ${headers}")
 endif ()
 
-step("Configuring the consumer"
-  "${CMAKE_COMMAND}" -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" ${platform} ${flags}
-  "-DCMAKE_PREFIX_PATH=${prefix}"
-  "-DVTK_DIR=${VTK_DIR}"
-  "-DCMAKE_C_COMPILER=${C_COMPILER}"
-  "-DCMAKE_CXX_COMPILER=${COMPILER}"
-  "-DCMAKE_BUILD_TYPE=${CONFIG}"
-  "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin")
-step("Building the consumer"
-  "${CMAKE_COMMAND}" --build "${build}" --config "${CONFIG}")
+# Configures and builds the project in a folder, and sets program to its executable.
+function (build_against_prefix folder name)
+  set(binary "${build}/${name}")
+  step("Configuring ${name}"
+    "${CMAKE_COMMAND}" -S "${folder}" -B "${binary}" -G "${GENERATOR}" ${platform} ${flags}
+    "-DCMAKE_PREFIX_PATH=${prefix}"
+    "-DVTK_DIR=${VTK_DIR}"
+    "-DCMAKE_C_COMPILER=${C_COMPILER}"
+    "-DCMAKE_CXX_COMPILER=${COMPILER}"
+    "-DCMAKE_BUILD_TYPE=${CONFIG}"
+    "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${binary}/bin")
+  step("Building ${name}" "${CMAKE_COMMAND}" --build "${binary}" --config "${CONFIG}")
+  find_program("${name}_program" NAMES "${name}"
+    PATHS "${binary}/bin" "${binary}/bin/${CONFIG}" NO_DEFAULT_PATH REQUIRED)
+  set(program "${${name}_program}" PARENT_SCOPE)
+endfunction ()
 
-find_program(consumer NAMES Consumer
-  PATHS "${build}/bin" "${build}/bin/${CONFIG}" NO_DEFAULT_PATH REQUIRED)
-step("Running the consumer" "${consumer}")
+build_against_prefix("${CONSUMER}" Consumer)
+step("Running the consumer" "${program}")
+
+build_against_prefix("${EXAMPLE}" ReconstructSurface)
+step("Running the example" "${program}" "${EXAMPLE_INPUT}" "${build}/surface.vtp" 2)
+if (NOT EXISTS "${build}/surface.vtp")
+  message(FATAL_ERROR "The example wrote no surface.")
+endif ()
 
 # What was installed for Python must find its library there, not in the build.
 if (PYTHON)

@@ -67,7 +67,8 @@ inline elevation::Mesh Delaunay(const std::vector<elevation::Point2>& points)
 }
 
 /** Distinct points of a lattice of width x height, in random order. */
-inline std::vector<elevation::Point2> LatticePoints(Random& random, int width, int height, int count)
+inline std::vector<elevation::Point2> LatticePoints(
+  Random& random, int width, int height, int count)
 {
   std::vector<elevation::Point2> points;
   for (int y = 0; y < height; ++y)

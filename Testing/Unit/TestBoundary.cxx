@@ -120,8 +120,8 @@ bool Coast(double x, double y)
 }
 
 /**
- * The area between the coast and the outline that was found for points on land, as a share of the area
- * within one spacing of the coast; by samples.
+ * The area between the coast and the outline that was found for points on land, as a share of the
+ * area within one spacing of the coast; by samples.
  */
 double ErrorOfOutline(const std::vector<Point2>& points, const Mask& coast,
   const std::function<double(double, double)>& spacing)
@@ -171,10 +171,11 @@ TEST(Locate, TellsInsideOutsideAndOnByTheEvenOddRule)
     Location Expected;
   } const places[] = { { { 1, 1 }, Location::Inside }, { { 5, 5 }, Location::Outside },
     { { 3, 3 }, Location::Inside }, { { 10, 9 }, Location::Outside },
-    { { -1, 0 }, Location::Outside }, { { -1, 2 }, Location::Outside }, { { 1, 2 }, Location::Inside },
-    { { 8, 7 }, Location::Inside }, { { 0, 0 }, Location::On }, { { 5, 0 }, Location::On },
-    { { 9, 4 }, Location::On }, { { 2, 5 }, Location::On }, { { 3.5, 3.5 }, Location::On },
-    { { 5, 9 }, Location::On }, { { 5, 10 }, Location::Outside }, { { 2, 2 }, Location::On } };
+    { { -1, 0 }, Location::Outside }, { { -1, 2 }, Location::Outside },
+    { { 1, 2 }, Location::Inside }, { { 8, 7 }, Location::Inside }, { { 0, 0 }, Location::On },
+    { { 5, 0 }, Location::On }, { { 9, 4 }, Location::On }, { { 2, 5 }, Location::On },
+    { { 3.5, 3.5 }, Location::On }, { { 5, 9 }, Location::On }, { { 5, 10 }, Location::Outside },
+    { { 2, 2 }, Location::On } };
   for (const auto& place : places)
   {
     EXPECT_EQ(Locate(points, rings, place.Place), place.Expected)
@@ -196,7 +197,7 @@ TEST(Locate, IsExactNextToAnEdge)
     {
       const Sign side = Orientation(points[0], points[1], p);
       EXPECT_EQ(locator.Locate(p),
-        side == Zero           ? Location::On
+        side == Zero         ? Location::On
           : side == Positive ? Location::Inside
                              : Location::Outside);
       on += side == Zero;
@@ -246,7 +247,8 @@ TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
   EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
   // Closed by coordinates; a repeated point; ids that are not those of the mesh; minus zero.
   joined = JoinLines(mesh,
-    MakeLines({ { -0.0, 0.0 }, { 3, 0 }, { 3, 0 }, { 3, 3 }, { 0, -0.0 } }, { { 0, 1, 2, 3, 4 } }, false));
+    MakeLines(
+      { { -0.0, 0.0 }, { 3, 0 }, { 3, 0 }, { 3, 3 }, { 0, -0.0 } }, { { 0, 1, 2, 3, 4 } }, false));
   EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15 }));
   EXPECT_EQ(joined.Points, (std::vector<Index>{ 0, 1, 3 }));
   // Four ends in one vertex: two rings that touch, or one through it twice.
@@ -271,7 +273,8 @@ TEST(JoinLines, RefusesWhatIsNoBoundaryByName)
   EXPECT_HAS(message, "where 3 lines end");
   message = MessageOf(MakeLines({ { 0, 0 }, { 3, 0 }, { 1.5, 1.25 } }, { { 0, 1, 2 } }, true));
   EXPECT_HAS(message, "point 2 (1.5, 1.25) of polygon (cell 10) is not a corner of the mesh");
-  message = MessageOf(MakeLines({ { 0, 0 }, { std::nan(""), 0 }, { 1, 1 } }, { { 0, 1, 2 } }, true));
+  message =
+    MessageOf(MakeLines({ { 0, 0 }, { std::nan(""), 0 }, { 1, 1 } }, { { 0, 1, 2 } }, true));
   EXPECT_HAS(message, "point 1 (nan, 0) of polygon (cell 10) is not finite");
 }
 
@@ -316,8 +319,10 @@ TEST(ExtractBoundary, HasLakesAndIslands)
   std::multiset<double> areas;
   for (Index ring = 0; ring < 4; ++ring)
   {
-    areas.insert(TwiceArea(mesh.Points, MakeRings({ std::vector<Index>(
-      boundary.Vertices.Begin(ring), boundary.Vertices.End(ring)) })) / 2);
+    areas.insert(TwiceArea(mesh.Points,
+                   MakeRings({ std::vector<Index>(
+                     boundary.Vertices.Begin(ring), boundary.Vertices.End(ring)) })) /
+      2);
   }
   // In each of the lake's four corners, triangles with edges within the tolerance stay.
   EXPECT_EQ(*areas.rbegin(), 24.0 * 23);
@@ -346,8 +351,8 @@ TEST(ExtractBoundary, BridgesWhatTheToleranceSays)
 TEST(ExtractBoundary, LeavesOutLonePointsAndSmallGroups)
 {
   std::vector<Point2> points = MaskedLattice(20, 20, [](double, double) { return true; });
-  points.insert(points.end(), { { 40, 3 }, { 45, 30 }, { 45.5, 30 }, { 45, 30.5 }, { 46, 31 },
-                                { -30, 10 }, { -30, 11 } });
+  points.insert(points.end(),
+    { { 40, 3 }, { 45, 30 }, { 45.5, 30 }, { 45, 30.5 }, { 46, 31 }, { -30, 10 }, { -30, 11 } });
   const Mesh mesh = Delaunay(points);
   const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
   EXPECT_EQ(boundary.Vertices.Count(), 1);

@@ -271,9 +271,8 @@ TEST(Constraints, InMeshesWithHolesAndPinchedVerticesAreRecoveredOrRefused)
   int refused = 0;
   for (int round = 0; round < 600 && !HasFailure(); ++round)
   {
-    const std::vector<Point2> points = round % 2
-      ? ScatteredPoints(random, 10 + random.Below(40))
-      : LatticePoints(random, 6, 6, 36);
+    const std::vector<Point2> points =
+      round % 2 ? ScatteredPoints(random, 10 + random.Below(40)) : LatticePoints(random, 6, 6, 36);
     Mesh mesh =
       Without(Delaunay(points), [&](Index) { return random.Below(100) < 5 + round % 40; });
     const Index triangles = mesh.NumberOfTriangles();
@@ -364,7 +363,8 @@ TEST(Constraints, ThatEndOutsideTheMeshAreRefusedByName)
 
 TEST(Constraints, AcrossAHundredThousandEdgesAreRecovered)
 {
-  // Two rows of points, and a segment slightly slanted between them, over all edges from row to row.
+  // Two rows of points, and a segment slightly slanted between them, over all edges from row to
+  // row.
   const int count = 50000;
   std::vector<Point2> points{ { -1.0, 0.4 }, { count + 1.0, 0.6 } };
   for (int i = 0; i < count; ++i)

@@ -155,6 +155,40 @@ TEST(Predicates, SurviveUnderflowAndOverflow)
   }
 }
 
+TEST(Predicates, AgreeWithIntegersNearLinesAndCircles)
+{
+  // Points rounded onto a line and a circle, so that the signs are those of the rounding errors;
+  // over many sizes, down to where products underflow, and with whole numbers too large for
+  // products of four.
+  std::mt19937_64 random(13);
+  const auto uniform = [&random]() { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  for (const int exponent : { -530, -514, -300, -258, -20, 0, 14, 24, 300 })
+  {
+    const double size = std::ldexp(1.0, exponent);
+    const bool isWhole = exponent == 14 || exponent == 24;
+    const auto round = [&](double value) { return isWhole ? std::round(value) : value; };
+    for (int i = 0; i < 3000; ++i)
+    {
+      const Point2 a{ round(size * uniform()), round(size * uniform()) };
+      const Point2 b{ round(size * uniform()), round(size * uniform()) };
+      const double t = uniform();
+      const Point2 c{ round(a.X + t * (b.X - a.X)), round(a.Y + t * (b.Y - a.Y)) };
+      ASSERT_EQ(Orientation(a, b, c), detail::IntegerOrientation(a, b, c)) << exponent;
+      ASSERT_EQ(Orientation(c, a, b), detail::IntegerOrientation(c, a, b)) << exponent;
+
+      Point2 onCircle[4];
+      for (Point2& p : onCircle)
+      {
+        const double angle = 6.283185307179586 * uniform();
+        p = { round(size * std::cos(angle)), round(size * std::sin(angle)) };
+      }
+      const Sign side = InCircle(onCircle[0], onCircle[1], onCircle[2], onCircle[3]);
+      ASSERT_EQ(side, detail::IntegerInCircle(onCircle[0], onCircle[1], onCircle[2], onCircle[3]))
+        << exponent;
+    }
+  }
+}
+
 TEST(Predicates, ChangeSignWhenTwoPointsAreSwapped)
 {
   std::mt19937_64 random(3);

@@ -20,8 +20,8 @@ template <typename Drop>
 Mesh LatticeMesh(Random& random, int size, Drop&& drop)
 {
   std::vector<Point2> points = LatticePoints(random, size, size, size * size);
-  points.erase(std::remove_if(points.begin(), points.end(),
-                 [&](const Point2& p) { return drop(p.X, p.Y); }),
+  points.erase(
+    std::remove_if(points.begin(), points.end(), [&](const Point2& p) { return drop(p.X, p.Y); }),
     points.end());
   return Delaunay(points);
 }
@@ -102,10 +102,10 @@ TEST(Trim, KeepsExactlyTheInsideOfNestedRings)
   Mesh mesh = LatticeMesh(random, 21);
   const double all = TwiceArea(mesh);
   Rings rings;
-  AddRing(mesh, { { 1, 1 }, { 19, 3 }, { 17, 19 }, { 4, 17 } }, rings);    // land
-  AddRing(mesh, { { 5, 5 }, { 6, 13 }, { 14, 14 }, { 13, 6 } }, rings);    // lake, clockwise
-  AddRing(mesh, { { 7, 7 }, { 11, 8 }, { 8, 11 } }, rings);                // island
-  AddRing(mesh, { { 8, 8 }, { 9, 8 }, { 8, 9 } }, rings);                  // pond
+  AddRing(mesh, { { 1, 1 }, { 19, 3 }, { 17, 19 }, { 4, 17 } }, rings); // land
+  AddRing(mesh, { { 5, 5 }, { 6, 13 }, { 14, 14 }, { 13, 6 } }, rings); // lake, clockwise
+  AddRing(mesh, { { 7, 7 }, { 11, 8 }, { 8, 11 } }, rings);             // island
+  AddRing(mesh, { { 8, 8 }, { 9, 8 }, { 8, 9 } }, rings);               // pond
   const auto twice = [](const std::vector<Point2>& ring) {
     double area = 0.0;
     for (std::size_t i = 0; i < ring.size(); ++i)

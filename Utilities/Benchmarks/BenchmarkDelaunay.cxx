@@ -462,7 +462,8 @@ void Check(const Competitors& competitors, const Coordinates& coordinates, Resul
     const std::size_t differences = Differences(ours, mesh);
     if (differences != 0)
     {
-      text += (text.empty() ? "" : "; ") + std::to_string(differences) + " edges differ from ours";
+      text += (text.empty() ? "" : "; ") + std::string("edges that differ from ours: ") +
+        std::to_string(differences);
     }
     results[i].Checked = text.empty() ? Verdict::Right : Verdict::Wrong;
     Remark(results[i],
@@ -582,7 +583,7 @@ std::string WhyNot(const Result& result, unsigned timeLimit)
     case Ending::Finished:
       break;
   }
-  return result.TakesPart ? "crashed when run again" : "not run (--vtk runs it)";
+  return result.TakesPart ? "failed in the process of the timed runs" : "not run (--vtk runs it)";
 }
 
 void PrintHeader(const Options& options)
