@@ -22,17 +22,18 @@
  *   Coordinates may be of any size a double holds.
  *
  * Lattices: points of a grid, such as inlines and crosslines in map coordinates or the pixels of an
- * elevation model, are ideally on the nodes of a lattice, but rounding moves each of them a little, and
- * then the exact triangulation of the moved points cuts the cells at random and has thin triangles
- * along the border. With LatticeMode Automatic (default) the filter looks for a lattice: an origin
- * and two step vectors, which may be turned, sheared, of unequal lengths, with any number of nodes
- * missing (down to about 1 in 64 of the nodes around the points). Where every point lies on its own
- * node, within LatticeTolerance, the result is the exact Delaunay triangulation of the nodes, in
- * the metric of the two steps and in integers, which is also many times faster. Steps that are
- * perpendicular or equal but for a ten-thousandth count as such. "Lowest" is then by row of the
- * lattice, then column; on a lattice parallel to the axes with exact coordinates the triangles are the
- * same in both modes. No triangle is inverted or flat in the coordinates of the points; where one
- * would be, or a point does not fit, the coordinates are triangulated as they are.
+ * elevation model, are ideally on the nodes of a lattice, but rounding moves each of them a little,
+ * and then the exact triangulation of the moved points cuts the cells at random and has thin
+ * triangles along the border. With LatticeMode Automatic (default) the filter looks for a lattice:
+ * an origin and two step vectors, which may be turned, sheared, of unequal lengths, with any number
+ * of nodes missing (down to about 1 in 64 of the nodes around the points). Where every point lies
+ * on its own node, within LatticeTolerance, the result is the exact Delaunay triangulation of the
+ * nodes, in the metric of the two steps and in integers, which is also many times faster. Steps
+ * that are perpendicular or equal but for a ten-thousandth count as such. "Lowest" is then by row
+ * of the lattice, then column; on a lattice parallel to the axes with exact coordinates the
+ * triangles are the same in both modes. No triangle is inverted or flat in the coordinates of the
+ * points; where one would be, or a point does not fit, the coordinates are triangulated as they
+ * are.
  *
  * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
  * triangle. An error, such as more points than can be handled (357,913,941), leaves empty output.
@@ -42,8 +43,8 @@
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
  *   the same x,y is the vertex), 2 = not finite (x, y or z);
  * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value);
- * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node x,y,
- *   the first step x,y, the second step x,y, counter-clockwise from it, in input units.
+ * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node
+ * x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units.
  *
  * Cost: expected time proportional to the number of points for points of even density, with a
  * sorting step; memory about 60 bytes a point during the run, at most 40 on a lattice.

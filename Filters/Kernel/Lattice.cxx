@@ -11,9 +11,9 @@ namespace elevation
 {
 namespace
 {
-constexpr Index FewestPoints = 6;    // fewer than that fit some lattice by chance
+constexpr Index FewestPoints = 6;      // fewer than that fit some lattice by chance
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
-constexpr std::size_t Vectors = 128; // shortest of their differences
+constexpr std::size_t Vectors = 128;   // shortest of their differences
 constexpr double SampleSize = 1024.0;
 // A remainder of so many steps is taken for none, tried in turn: exact coordinates allow large
 // multiples of the steps, rounded ones do not.
@@ -380,8 +380,8 @@ double Rounded(double value, double allowed)
   for (int decimals = -9; decimals <= 15; ++decimals)
   {
     const double power = std::pow(10.0, std::abs(decimals));
-    const double candidate = decimals < 0 ? std::round(value / power) * power
-                                          : std::round(value * power) / power;
+    const double candidate =
+      decimals < 0 ? std::round(value / power) * power : std::round(value * power) / power;
     if (std::fabs(candidate - value) <= allowed)
     {
       return candidate + 0.0;
@@ -528,17 +528,16 @@ LatticeSearch FindLattice(const PointView& points, double tolerance, const Progr
   const double share = SampleSize / count;
   const std::uint64_t threshold =
     share < 1.0 ? static_cast<std::uint64_t>(share * 0x1p32) : std::uint64_t(1) << 32;
-  ForEachPoint(
-    points, search.NotFinite, Part(progress, 0.6, 1.0), [&](Index, const Point2& p) {
-      if (isFew || histogram.CellOf(p) == fullest)
-      {
-        around.push_back(p);
-      }
-      if ((HashOf(p) & 0xffffffffu) < threshold)
-      {
-        sample.push_back(p);
-      }
-    });
+  ForEachPoint(points, search.NotFinite, Part(progress, 0.6, 1.0), [&](Index, const Point2& p) {
+    if (isFew || histogram.CellOf(p) == fullest)
+    {
+      around.push_back(p);
+    }
+    if ((HashOf(p) & 0xffffffffu) < threshold)
+    {
+      sample.push_back(p);
+    }
+  });
 
   SortUnique(around);
   KeepFullest(around);

@@ -5,15 +5,15 @@
  * Finds the lattice of a cloud: an origin and two step vectors such that the points lie on nodes.
  *
  * In: points in any order, on a lattice that may be rotated, sheared, of unequal steps, with most
- * nodes missing, with coordinates rounded to decimals. Out: the lattice, or the answer that there is
- * none. The passes:
+ * nodes missing, with coordinates rounded to decimals. Out: the lattice, or the answer that there
+ * is none. The passes:
  *   1. Bounding box; the fullest place of the cloud (a coarse histogram, refined).
  *   2. The points there, and a sample of the whole cloud, chosen by a hash of the coordinates.
  *   3. The shortest differences of the points there generate the lattice: an algorithm of Euclid on
  *      vectors, which takes a remainder below a few tolerances for none.
  *   4. From there outwards over the sample the steps are fitted by least squares to more and more
- *      points, so that rounding never amounts to a part of a step. A point between the nodes refines
- *      the lattice.
+ *      points, so that rounding never amounts to a part of a step. A point between the nodes
+ * refines the lattice.
  *   5. The steps are reduced [Lagrange], directed along the axes as far as possible, and rounded to
  *      the fewest decimals that move no node noticeably, so that steps that are round stay round.
  * Each step depends on the set of points alone, not on their order. What remains is to check every
@@ -32,7 +32,8 @@
 namespace elevation
 {
 
-/** Node (i, j) is at Origin + i StepU + j StepV. The steps are a reduced basis, counter-clockwise. */
+/** Node (i, j) is at Origin + i StepU + j StepV. The steps are a reduced basis, counter-clockwise.
+ */
 struct Lattice
 {
   Point2 Origin{ 0.0, 0.0 };

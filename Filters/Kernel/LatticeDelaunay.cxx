@@ -55,8 +55,8 @@ int CompareProducts(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t
     return value < 0 ? ~static_cast<std::uint64_t>(value) + 1 : static_cast<std::uint64_t>(value);
   };
   const Product p = Multiply(magnitude(a), magnitude(b)), q = Multiply(magnitude(c), magnitude(d));
-  const int larger = p.High != q.High ? (p.High > q.High ? 1 : -1)
-                                      : (p.Low > q.Low) - (p.Low < q.Low);
+  const int larger =
+    p.High != q.High ? (p.High > q.High ? 1 : -1) : (p.Low > q.Low) - (p.Low < q.Low);
   return left * larger;
 }
 
@@ -145,8 +145,8 @@ Apex ApexAt(const LatticeMetric& metric, const Offset& e, const Offset& p)
   return { p, metric.Dot(p.X, p.Y, p.X - e.X, p.Y - e.Y), Cross(e, p) };
 }
 
-/** Of co-circular ones, the fan of the lowest vertex, which is the vertex itself, asks for the first
- * counter-clockwise. */
+/** Of co-circular ones, the fan of the lowest vertex, which is the vertex itself, asks for the
+ * first counter-clockwise. */
 bool IsBetter(const Apex& p, const Apex& q)
 {
   const int order = CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
@@ -193,8 +193,8 @@ public:
     this->RadiusSquared = this->LengthSquared * (0.25 + position * position);
     this->CenterX = 0.5 * this->EdgeX + position * this->NormalX;
     this->CenterY = 0.5 * this->EdgeY + position * this->NormalY;
-    // Bounds, in steps, of what lies on the left of the edge: all of it is in the disc of position 0,
-    // where the position is less. A disc so large that rounding might matter is the half-plane.
+    // Bounds, in steps, of what lies on the left of the edge: all of it is in the disc of position
+    // 0, where the position is less. A disc so large that rounding might matter is the half-plane.
     const double bound = std::max(position, 0.0);
     const double squared = this->LengthSquared * (0.25 + bound * bound);
     const double halfWidth = std::sqrt(squared * this->C) / this->Root;
@@ -460,12 +460,12 @@ private:
   }
 
   /**
-   * The vertices of a row in turn. With an obtuse or right angle between the steps, full cells are cut
-   * from their lower left corner; with an acute one, from the lower right one to the upper left.
-   * A unit edge is in the triangulation wherever both of its nodes are occupied, and so are the
-   * triangles of the cut cell: their circles are empty even when all nodes are occupied. This makes
-   * the fan of a vertex known when the nodes left, right, above and beside that are occupied, and
-   * its first and last edge known when only some are.
+   * The vertices of a row in turn. With an obtuse or right angle between the steps, full cells are
+   * cut from their lower left corner; with an acute one, from the lower right one to the upper
+   * left. A unit edge is in the triangulation wherever both of its nodes are occupied, and so are
+   * the triangles of the cut cell: their circles are empty even when all nodes are occupied. This
+   * makes the fan of a vertex known when the nodes left, right, above and beside that are occupied,
+   * and its first and last edge known when only some are.
    */
   void GrowRow(Index row, bool isAcute)
   {
@@ -632,8 +632,7 @@ private:
   }
 
   /** The apex over the edge from a vertex to the node at e from it. */
-  Index Find(
-    Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
+  Index Find(Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
   {
     if (std::abs(e.X) <= ListedReach && e.Y <= ListedReach)
     {
@@ -660,11 +659,10 @@ private:
   }
 
   /**
-   * The first look goes into a disc about one spacing high over the edge, the next ones are twice as
-   * high. The last vertex of the fan is on the free side as well: its disc bounds them all.
+   * The first look goes into a disc about one spacing high over the edge, the next ones are twice
+   * as high. The last vertex of the fan is on the free side as well: its disc bounds them all.
    */
-  Index Search(
-    Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
+  Index Search(Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
   {
     DiscOfEdge disc(this->Metric, e);
     Apex best = ApexAt(this->Metric, e, end);
@@ -701,8 +699,8 @@ private:
     bool isAnyBetter = false;
     for (Index y = 0; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
-      // Only occupied columns, above the vertex and left of the edge's line; a node beside the line is
-      // at least 2^-20 from it.
+      // Only occupied columns, above the vertex and left of the edge's line; a node beside the line
+      // is at least 2^-20 from it.
       const RowEnds& ends = this->Ends[row + y];
       double left = y == 0 ? 1.0 : ends.Left - column;
       double right = ends.Right - column;

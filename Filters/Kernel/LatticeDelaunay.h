@@ -10,15 +10,15 @@
  *   2. The metric of the two steps, as integers: |i u + j v|^2 = A i^2 + 2 B i j + C j^2.
  *   3. Find the convex hull, from the ends of the rows.
  *   4. Grow, as the general path does (Delaunay.h): each vertex, from the lowest up, completes the
- *      fan of triangles of which it is the lowest vertex. Where the grid is full, the fan is the two
- *      triangles of one cell, and all such vertices of 64 nodes are told at once by a few operations
+ *      fan of triangles of which it is the lowest vertex. Where the grid is full, the fan is the
+ * two triangles of one cell, and all such vertices of 64 nodes are told at once by a few operations
  *      on words. For all others the apex is the first occupied node in a list of the nodes near the
  *      edge, by increasing circle, that is made once for each edge vector; what the lists do not
  *      reach is searched for row by row, in a disc that is proved to hold all better nodes.
  *
- * Guarantees: exact and unique, as the general path, for the nodes in the metric: no node lies inside
- * a triangle's circle, and co-circular nodes are cut into the fan of the lowest (by row, then
- * column). On a lattice parallel to the axes this is the same set of triangles. No triangle is
+ * Guarantees: exact and unique, as the general path, for the nodes in the metric: no node lies
+ * inside a triangle's circle, and co-circular nodes are cut into the fan of the lowest (by row,
+ * then column). On a lattice parallel to the axes this is the same set of triangles. No triangle is
  * inverted or flat in the coordinates of the points: where it might be, the answer is "no lattice".
  *
  * The metric: steps within a ten-thousandth of a right angle count as perpendicular, and if their

@@ -170,17 +170,16 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   Index* const ids = this->Ids.data();
   std::size_t nextSecond = 0;
   second.push_back(None);
-  ForEachPoint(
-    points, search.NotFinite, Part(progress, 0.5, 1.0), [&](Index id, const Point2& p) {
-      if (id == second[nextSecond])
-      {
-        ++nextSecond;
-        return;
-      }
-      Index column, row;
-      nodeOf(p, column, row);
-      ids[this->RankOf(this->NodeAt(row, column))] = id;
-    });
+  ForEachPoint(points, search.NotFinite, Part(progress, 0.5, 1.0), [&](Index id, const Point2& p) {
+    if (id == second[nextSecond])
+    {
+      ++nextSecond;
+      return;
+    }
+    Index column, row;
+    nodeOf(p, column, row);
+    ids[this->RankOf(this->NodeAt(row, column))] = id;
+  });
   second.pop_back();
   for (Index id : second)
   {

@@ -4,10 +4,10 @@
  * @file
  * Points on the nodes of a lattice, as a bitmap: which nodes are occupied, and by which point.
  *
- * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids in
- * the order of their nodes (by row, then column), which the number of bits before a node tells; or
- * the answer that a point does not fit. No sorting: two passes over the points, one that sets the
- * bits and one that writes each id to its place.
+ * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
+ * in the order of their nodes (by row, then column), which the number of bits before a node tells;
+ * or the answer that a point does not fit. No sorting: two passes over the points, one that sets
+ * the bits and one that writes each id to its place.
  *
  * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
  * the last row are rows of zeros, so that neighbours may be looked at without a check.
@@ -61,8 +61,8 @@ public:
 
   /**
    * Puts the points on the nodes.
-   * @return false when a point lies farther from its node than the tolerance, two points that are not
-   * equal share one, or the lattice takes too much memory for so few points
+   * @return false when a point lies farther from its node than the tolerance, two points that are
+   * not equal share one, or the lattice takes too much memory for so few points
    */
   bool Place(const PointView& points, const LatticeSearch& search, double tolerance,
     DuplicatePolicy policy, const Progress& progress);
@@ -84,10 +84,10 @@ public:
 
   Index Columns = 0, Rows = 0, WordsPerRow = 0;
   Buffer<std::uint64_t> Words;
-  Buffer<Index> Before; ///< occupied nodes before each word
-  Buffer<Index> Ids;    ///< point ids by rank
-  double LargestOffset = 0.0; ///< no point is farther from its node, in steps along each step
-  Lattice Steps;              ///< Origin is the lowest occupied node
+  Buffer<Index> Before;          ///< occupied nodes before each word
+  Buffer<Index> Ids;             ///< point ids by rank
+  double LargestOffset = 0.0;    ///< no point is farther from its node, in steps along each step
+  Lattice Steps;                 ///< Origin is the lowest occupied node
   std::vector<Index> Duplicates; ///< ids, increasing
 };
 

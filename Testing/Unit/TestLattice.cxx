@@ -170,8 +170,8 @@ std::string LatticeFindings(const Cloud& cloud, const Triangulation& triangulati
     const Node &a = nodes[mesh.Origin(h)], &b = nodes[mesh.Destination(h)];
     const Node &c = nodes[mesh.Apex(h)], &d = nodes[mesh.Apex(twin)];
     // The angles at c and d make less than two right ones: the sum of their cotangents is positive.
-    const int sign = CompareProducts(DotOf(metric, c, a, b), CrossOf(d, b, a),
-      -DotOf(metric, d, a, b), CrossOf(c, a, b));
+    const int sign = CompareProducts(
+      DotOf(metric, c, a, b), CrossOf(d, b, a), -DotOf(metric, d, a, b), CrossOf(c, a, b));
     const Node& lowEnd = IsLowerNode(a, b) ? a : b;
     const Node& lowApex = IsLowerNode(c, d) ? c : d;
     if (sign < 0 || (sign == 0 && !IsLowerNode(lowEnd, lowApex)))
@@ -354,7 +354,8 @@ TEST(Lattice, IsFoundInRoundedCoordinates)
       const std::string name = std::to_string(fill) + " filled, " + std::to_string(angle);
       const Point2 u = frame.U, v = frame.V;
       const bool isUp = angle > 45.0;
-      ExpectLattice(CloudOn(frame, nodes), isUp ? Point2{ -v.X, -v.Y } : u, isUp ? u : v, name, 1e-3);
+      ExpectLattice(
+        CloudOn(frame, nodes), isUp ? Point2{ -v.X, -v.Y } : u, isUp ? u : v, name, 1e-3);
     }
   }
 }
@@ -469,7 +470,8 @@ TEST(Lattice, IsRefusedWhenTooWide)
     nodes.push_back({ 11 * std::int64_t(i), i % 2 });
     nodes.push_back({ 11 * std::int64_t(i) + 1, i % 2 });
   }
-  EXPECT_FALSE(Triangulate(CloudOn(MakeFrame(1.0, 1.0, 0.0), nodes).View(), Automatic()).LatticeFound);
+  EXPECT_FALSE(
+    Triangulate(CloudOn(MakeFrame(1.0, 1.0, 0.0), nodes).View(), Automatic()).LatticeFound);
 }
 
 TEST(Lattice, IsRefusedForTooFewPointsToTell)
