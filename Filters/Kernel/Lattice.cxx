@@ -18,7 +18,7 @@ constexpr double SampleSize = 1024.0;
 // A remainder of so many steps is taken for none, tried in turn: exact coordinates allow large
 // multiples of the steps, rounded ones do not.
 constexpr std::array<double, 3> Nothings{ 0.02, 0.06, 0.15 };
-constexpr int Cells = 64; // along each side of the first histogram
+constexpr int MostCells = 64; // along each side of the first histogram
 
 double Dot(const Point2& p, const Point2& q)
 {
@@ -139,6 +139,7 @@ public:
     return false;
   }
 
+  const double LeastArea, LeastLength, Nothing;
   int Rank = 0;
   Point2 U{ 0.0, 0.0 }, V{ 0.0, 0.0 };
 
@@ -155,8 +156,6 @@ private:
     this->Rank = rank;
     return true;
   }
-
-  const double LeastArea, LeastLength, Nothing;
 };
 
 /** Least squares: a node and two steps from points whose node is known. */
@@ -394,7 +393,7 @@ double Rounded(double value, double allowed)
 bool FitOutwards(const std::vector<Point2>& sample, Generators generators, double tolerance,
   double extent, Lattice& lattice)
 {
-  constexpr double far = 0.2; // steps: between the nodes, certainly
+  const double far = 1.5 * generators.Nothing; // steps: between the nodes
   bool isFitted = false;
   Point2 origin{ 0.0, 0.0 }, u, v;
   for (int round = 0; round < 64 && !isFitted; ++round)
@@ -515,7 +514,8 @@ LatticeSearch FindLattice(const PointView& points, double tolerance, const Progr
     return search;
   }
 
-  Histogram histogram(low, high, Cells);
+  const double cells = std::sqrt(count / static_cast<double>(Neighbors));
+  Histogram histogram(low, high, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
   int fullest = 0;
   if (count > static_cast<Index>(Neighbors))
   {

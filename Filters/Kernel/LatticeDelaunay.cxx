@@ -676,7 +676,7 @@ private:
       }
       if (this->Look(disc, seen, row, column, e, best))
       {
-        if (!(disc.PositionOf(best) <= seen))
+        if (!(disc.PositionOf(best) <= seen)) // found beside the disc, by rounding
         {
           this->Look(disc, disc.PositionOf(best), row, column, e, best);
         }

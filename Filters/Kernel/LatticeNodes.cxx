@@ -101,7 +101,7 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
     nodeOf.Extend(box, p);
   }
   const double nodesInBox = (high.X - low.X) * (high.Y - low.Y) / search.Steps.Area();
-  if (box.Columns() * box.Rows() > 1.2 * nodesInBox + 64.0)
+  if (box.Columns() * box.Rows() > 1.05 * nodesInBox + 64.0)
   {
     // A lattice across the axes: the points themselves tell it better.
     box = NodeOfPoint::Box();

@@ -360,6 +360,40 @@ TEST(Lattice, IsFoundInRoundedCoordinates)
   }
 }
 
+TEST(Lattice, IsFoundWithOffsetsNearTheTolerance)
+{
+  std::mt19937_64 random(51);
+  for (const double fill : { 0.08, 0.3, 1.0 })
+  {
+    for (int i = 0; i < 20; ++i)
+    {
+      const Frame frame = MakeFrame(25.0, 20.0, 23.0, 95.0, { 612000.0, 6073000.0 });
+      Cloud cloud = CloudOn(frame, RandomNodes(random, 150, 100, fill));
+      for (Index id = 0; id < cloud.Count(); ++id)
+      {
+        const double p = 0.016 * (Uniform(random) - 0.5), q = 0.016 * (Uniform(random) - 0.5);
+        cloud.Coordinates[3 * id] += p * frame.U.X + q * frame.V.X;
+        cloud.Coordinates[3 * id + 1] += p * frame.U.Y + q * frame.V.Y;
+      }
+      const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
+      EXPECT_TRUE(triangulation.LatticeFound) << fill << " filled, cloud " << i;
+      EXPECT_NEAR(triangulation.Steps.StepU.X, frame.U.X, 0.01);
+      EXPECT_NEAR(triangulation.Steps.StepV.Y, frame.V.Y, 0.01);
+    }
+  }
+}
+
+TEST(Lattice, IsFoundWithOneNodeInFiftyOccupied)
+{
+  std::mt19937_64 random(52);
+  for (int i = 0; i < 40; ++i)
+  {
+    const Frame frame = MakeFrame(3.0, 2.0, i * 4.5, 90.0, { 612000.0, 6073000.0 });
+    const Cloud cloud = CloudOn(frame, RandomNodes(random, 200 + 10 * i, 180, 0.02));
+    EXPECT_TRUE(Triangulate(cloud.View(), Automatic()).LatticeFound) << "cloud " << i;
+  }
+}
+
 TEST(Lattice, StaysExactOverALongRoundedLattice)
 {
   // Steps of 12.5 along the diagonals, rounded to decimetres, over two thousand nodes.
@@ -452,6 +486,16 @@ TEST(Lattice, IsRefusedWhenTwoPointsShareANode)
   EXPECT_FALSE(triangulation.LatticeFound);
   EXPECT_EQ(triangulation.NumberOfDuplicates, 0);
   EXPECT_EQ(FindingsOf(cloud, triangulation), "");
+
+  // Within the tolerance, and too few among many to be seen in a sample.
+  const Cloud large = CloudOn(MakeFrame(10.0, 10.0, 0.0), RandomNodes(random, 200, 200, 1.0));
+  for (int i = 0; i < 10; ++i)
+  {
+    cloud = large;
+    const std::size_t id = random() % static_cast<std::size_t>(cloud.Count());
+    cloud.Add(cloud.Coordinates[3 * id] + 0.05, cloud.Coordinates[3 * id + 1]);
+    EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound);
+  }
 }
 
 TEST(Lattice, IsRefusedWhenTooWide)
@@ -487,6 +531,7 @@ TEST(Lattice, IsRefusedForTooFewPointsToTell)
     const Cloud any = RandomCloud(random, 3 + static_cast<Index>(random() % 10));
     ASSERT_FALSE(Triangulate(any.View(), Automatic()).LatticeFound);
     ASSERT_FALSE(Triangulate(any.View(), Automatic(0.1)).LatticeFound);
+    ASSERT_FALSE(Triangulate(any.View(), Automatic(0.25)).LatticeFound);
   }
 }
 
@@ -718,8 +763,10 @@ TEST(CompareProducts, IsExactForAllNumbers)
   __extension__ using Wide = __int128;
   for (int i = 0; i < 100000; ++i)
   {
-    const std::int64_t a = number(), b = number(), c = number();
-    const std::int64_t d = i % 2 ? number() : (c != 0 ? a / c * b : 0);
+    const std::int64_t a = number(), b = number();
+    // Nearly the same product, every other time.
+    const std::int64_t c = i % 2 ? number() : b;
+    const std::int64_t d = i % 2 ? number() : a + static_cast<std::int64_t>(random() % 3) - 1;
     const Wide p = Wide(a) * b, q = Wide(c) * d;
     ASSERT_EQ(CompareProducts(a, b, c, d), (p > q) - (p < q));
   }
