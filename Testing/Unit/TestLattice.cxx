@@ -394,6 +394,21 @@ TEST(Lattice, IsFoundWithOneNodeInFiftyOccupied)
   }
 }
 
+TEST(Lattice, IsFoundWhereOnlyLargeMultiplesOfAStepOccur)
+{
+  std::vector<Node> nodes;
+  for (std::int64_t j = 0; j < 50; ++j)
+  {
+    for (std::int64_t i = 0; i < 600; i += 15)
+    {
+      nodes.push_back({ i, j });
+      nodes.push_back({ i + 7, j });
+    }
+  }
+  const Frame frame = MakeFrame(12.5, 25.0, 31.0, 90.0, { 612000.0, 6073000.0 });
+  ExpectLattice(CloudOn(frame, nodes), frame.U, frame.V, "columns 7 and 8 apart", 1e-6);
+}
+
 TEST(Lattice, StaysExactOverALongRoundedLattice)
 {
   // Steps of 12.5 along the diagonals, rounded to decimetres, over two thousand nodes.
@@ -531,7 +546,10 @@ TEST(Lattice, IsRefusedForTooFewPointsToTell)
     const Cloud any = RandomCloud(random, 3 + static_cast<Index>(random() % 10));
     ASSERT_FALSE(Triangulate(any.View(), Automatic()).LatticeFound);
     ASSERT_FALSE(Triangulate(any.View(), Automatic(0.1)).LatticeFound);
-    ASSERT_FALSE(Triangulate(any.View(), Automatic(0.25)).LatticeFound);
+  }
+  for (int i = 0; i < 20000; ++i)
+  {
+    ASSERT_FALSE(Triangulate(RandomCloud(random, 6).View(), Automatic(0.25)).LatticeFound);
   }
 }
 
