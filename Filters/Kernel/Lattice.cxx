@@ -391,7 +391,7 @@ double Rounded(double value, double allowed)
 
 /** Pass 4 and 5: from the middle of the sample outwards. Points are relative to the first. */
 bool FitOutwards(const std::vector<Point2>& sample, Generators generators, double tolerance,
-  double extent, Lattice& lattice)
+  double extent, double mostNodes, Lattice& lattice)
 {
   const double far = 1.5 * generators.Nothing; // steps: between the nodes
   bool isFitted = false;
@@ -473,14 +473,21 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
   v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
   origin.X = std::fabs(origin.X) <= 1e-6 * length ? 0.0 : origin.X;
   origin.Y = std::fabs(origin.Y) <= 1e-6 * length ? 0.0 : origin.Y;
+  Point2 low{ DBL_MAX, DBL_MAX }, high{ -DBL_MAX, -DBL_MAX };
   for (const Point2& p : sample)
   {
     const Point2 steps = InSteps(Minus(p, origin), u, v);
+    low = { std::min(low.X, steps.X), std::min(low.Y, steps.Y) };
+    high = { std::max(high.X, steps.X), std::max(high.Y, steps.Y) };
     if (!(std::fabs(steps.X - std::round(steps.X)) <= 1.01 * tolerance + 1e-8) ||
       !(std::fabs(steps.Y - std::round(steps.Y)) <= 1.01 * tolerance + 1e-8))
     {
       return false;
     }
+  }
+  if ((high.X - low.X) * (high.Y - low.Y) > mostNodes)
+  {
+    return false; // coarser steps may do
   }
   lattice.Origin = origin;
   lattice.StepU = u;
@@ -563,7 +570,9 @@ LatticeSearch FindLattice(const PointView& points, double tolerance, const Progr
     {
       isLattice = generators.Insert(differences[i]);
     }
-    if (isLattice && FitOutwards(sample, generators, tolerance, extent, search.Steps))
+    if (isLattice &&
+      FitOutwards(
+        sample, generators, tolerance, extent, MaximumNodesPerPoint * count, search.Steps))
     {
       search.Found = true;
       break;

@@ -394,6 +394,24 @@ TEST(Lattice, IsFoundWithOneNodeInFiftyOccupied)
   }
 }
 
+TEST(Lattice, IsFoundWhereOffsetsThemselvesFitAFinerLattice)
+{
+  // Offsets of 0.03 steps: multiples of 0.01, which would be a hundred nodes a point.
+  Cloud cloud;
+  for (int j = 0; j < 12; ++j)
+  {
+    for (int i = 0; i < 12; ++i)
+    {
+      cloud.Add(i + (i == j ? 0.03 : 0.0), j);
+    }
+  }
+  EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound);
+  const Triangulation triangulation = Triangulate(cloud.View(), Automatic(0.05));
+  ASSERT_TRUE(triangulation.LatticeFound);
+  EXPECT_NEAR(triangulation.Steps.StepU.X, 1.0, 0.01);
+  EXPECT_EQ(LatticeFindings(cloud, triangulation), "");
+}
+
 TEST(Lattice, IsFoundWhereOnlyLargeMultiplesOfAStepOccur)
 {
   std::vector<Node> nodes;
