@@ -62,7 +62,7 @@ int CompareProducts(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t
 
 bool LatticeMetric::Set(const Lattice& lattice)
 {
-  constexpr double isEqual = 1e-4, precision = 1e-7, most = 1 << 20;
+  constexpr double isEqual = 1e-4, precision = 1e-5, most = 1 << 20;
   const Point2 &u = lattice.StepU, &v = lattice.StepV;
   const double a = u.X * u.X + u.Y * u.Y, c = v.X * v.X + v.Y * v.Y;
   const double b = u.X * v.X + u.Y * v.Y;

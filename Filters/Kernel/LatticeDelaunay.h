@@ -23,7 +23,7 @@
  *
  * The metric: steps within a ten-thousandth of a right angle count as perpendicular, and if their
  * lengths agree as well as equal. The squared lengths of other perpendicular steps are a ratio of
- * integers, within 1e-7; other steps have squared lengths and product rounded to 2^-20 of the
+ * integers, within 1e-5; other steps have squared lengths and product rounded to 2^-20 of the
  * longest. In it, all tests are exact.
  */
 #ifndef elevation_LatticeDelaunay_h

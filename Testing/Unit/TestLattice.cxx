@@ -357,6 +357,13 @@ TEST(Lattice, IsFoundInRoundedCoordinates)
       ExpectLattice(
         CloudOn(frame, nodes), isUp ? Point2{ -v.X, -v.Y } : u, isUp ? u : v, name, 1e-3);
     }
+    Frame frame = MakeFrame(12.5, 25.0, 31.7, 90.0, { 605000.0, 6073000.0 });
+    frame.Decimals = 0.01;
+    const Cloud cloud = CloudOn(frame, nodes);
+    ExpectLattice(cloud, frame.U, frame.V, std::to_string(fill) + " filled, unequal", 1e-3);
+    LatticeMetric metric;
+    EXPECT_TRUE(metric.Set(Triangulate(cloud.View(), Automatic()).Steps));
+    EXPECT_EQ(metric.C, 4 * metric.A);
   }
 }
 
@@ -774,10 +781,17 @@ TEST(LatticeMetric, IsThatOfTheIdealLattice)
   expect(MakeFrame(25.0, 25.0005, 33.0, 90.001), 1, 0, 1);
   expect(MakeFrame(2.0, 3.0, 33.0), 4, 0, 9);
   expect(MakeFrame(12.5, 25.0, 33.0), 1, 0, 4);
+  expect(MakeFrame(12.5, 25.00002, 33.0), 1, 0, 4);
   expect(MakeFrame(1.0, 1.0, 33.0, 60.0), 2, 1, 2);
   expect(MakeFrame(1.0, 1.0, 33.0, 120.0), 2, -1, 2);
   expect(MakeFrame(1.0, 500.0, 33.0), 1, 0, 250000);
   LatticeMetric metric;
+  for (const double ratio : { 1.001, 1.23456789, 3.14159265, 17.77, 300.1, 999.9 })
+  {
+    const Frame any = MakeFrame(1.0, ratio, 33.0);
+    EXPECT_TRUE(metric.Set({ any.Origin, any.U, any.V })) << ratio;
+    EXPECT_NEAR(std::sqrt(double(metric.C) / double(metric.A)) / ratio, 1.0, 1e-5);
+  }
   const Frame tooUnequal = MakeFrame(1.0, 5000.0, 0.0);
   EXPECT_FALSE(metric.Set({ tooUnequal.Origin, tooUnequal.U, tooUnequal.V }));
 }
