@@ -78,7 +78,7 @@ bool LatticeMetric::Set(const Lattice& lattice)
       q = 0.0;
       for (int i = 0; i < 64 && std::fabs(p - ratio * q) > precision * ratio * q; ++i)
       {
-        const double whole = std::floor(rest);
+        const double whole = std::floor(rest * (1.0 + 1e-9)); // not below an integer by rounding
         const double nextP = whole * p + before, nextQ = whole * q + beforeQ;
         before = p;
         beforeQ = q;
