@@ -35,8 +35,8 @@ inline Progress ProgressOf(vtkAlgorithm* filter)
 /**
  * Runs the body of a RequestData. When it throws, every output is emptied; anything but an abort is
  * reported as one error of the filter.
- * @return what RequestData returns: always 1, because with 0 the executive adds an error of its own, of
- *         ten lines that tell the user nothing.
+ * @return what RequestData returns: always 1, because with 0 the executive adds an error of its
+ *         own, of ten lines that tell the user nothing.
  */
 template <typename Body>
 int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)

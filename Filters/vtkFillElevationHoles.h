@@ -18,10 +18,10 @@
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
  *   (floating-point numbers), 0 (integers), or nothing (strings). When points (triangles) were
- * added, an array of global ids stays in the point (cell) data, but is no longer marked as global
- * ids, because new ones repeat. Arrays of the input called FilledPoint or HoleId are replaced.
+ *   added, an array of global ids stays in the point (cell) data, but is no longer marked as global
+ *   ids, because new ones repeat. Arrays of the input called FilledPoint or HoleId are replaced.
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
- * before they are triangulated, so that the result stays exact.
+ *   before they are triangulated, so that the result stays exact.
  *
  * Output 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise.
  * Cell data:
@@ -29,7 +29,8 @@
  * - Status (vtkUnsignedCharArray): see HoleStatusType.
  * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands.
  * - Perimeter (vtkDoubleArray): the length of all these edges in x,y.
- * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands.
+ * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
+ *   the hole is above 1e150 or below 1e-150.
  * - NumberOfInsertedPoints (vtkIdTypeArray).
  * - Interpolation (vtkUnsignedCharArray): how z was found; 0 is the mean of the neighbours.
  *
@@ -37,9 +38,9 @@
  *
  * The method, for each hole on its own:
  * 1. The spacing of new points is the mean length of the hole's boundary edges, unless given.
- * 2. New points are put into the hole in rows, one spacing apart, every second row moved by half a
- *    spacing. Points nearer to the boundary than 0.6 spacings are left out; a small hole may get
- * none.
+ * 2. New points are put into the hole in rows, one spacing apart, every second row moved
+ *    by half a spacing. Points nearer to the boundary than 0.6 spacings are left out; a
+ *    small hole may get none.
  * 3. They are joined with the boundary by a constrained Delaunay triangulation.
  * 4. The z of a new point is the mean over its known neighbours, layer by layer from the boundary
  *    inwards. z thus stays between the least and the greatest z of the hole's boundary.
@@ -49,17 +50,21 @@
  *
  * A hole is left open, with status FAILED and a warning that says why, when
  * - it would take more new points than there is memory for (about 500 bytes a point), or than leave
- *   the surface 357,913,941 points;
+ *   the surface 357,913,941 points; so, where memory is short, and only there, results may differ
+ *   between machines;
+ * - its extent is above 1e150, or its extent or spacing is below 1e-150, so that squares leave the
+ *   range of double;
  * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
- * - borders touch in it without sharing a point: a point lies inside another border edge, or two
- * points have the same x,y. Merge such points (vtkCleanPolyData), or split the edge. A border of
- * that kind may also join a hole to the outside, so that it is no hole; a warning names such a
- * point.
+ * - borders touch in it without sharing a point: a point lies inside another border edge, or
+ *   two points have the same x,y. Merge such points (vtkCleanPolyData), or split the edge. A
+ *   border of that kind may also join a hole to the outside, so that it is no hole; a
+ *   warning names such a point.
  *
  * An error that names the cell, and empty output, is the answer to an input that is no elevation
  * surface: cells other than triangles, triangles that are flat in x,y, an edge with more than two
- * triangles, cells that lie over each other in x,y. A surface without holes passes; an input
- * without triangles passes with a warning.
+ * triangles, cells that lie over each other in x,y. So is an error that names the array the answer
+ * to a point or cell array that has not as many tuples as there are points or cells. A surface
+ * without holes passes; an input without triangles passes with a warning.
  *
  * Cost: proportional to the size of the input and to the number of new points (a few microseconds
  * each), with sorting of the border.

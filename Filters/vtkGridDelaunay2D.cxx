@@ -77,12 +77,11 @@ int vtkGridDelaunay2D::RequestData(
     options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
     options.LatticeTolerance = this->LatticeTolerance;
     options.Monitor = elevation::ProgressOf(this);
+    elevation::Report(options.Monitor, 0.0);
+    elevation::CheckPointArrays(input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     elevation::Triangulation triangulation = elevation::Triangulate(points.View, options);
 
-    this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
-    this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
-    this->LatticeFound = triangulation.LatticeFound;
     if (triangulation.NumberOfHullPoints == 0)
     {
       vtkWarningMacro(
@@ -99,6 +98,10 @@ int vtkGridDelaunay2D::RequestData(
       AddLattice(triangulation.Steps, output->GetFieldData());
     }
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles)));
+    // Only now, as an abort or an error leaves no counts.
+    this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
+    this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
+    this->LatticeFound = triangulation.LatticeFound;
   });
 }
 

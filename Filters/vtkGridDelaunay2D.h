@@ -7,9 +7,9 @@
  * Input: a vtkPointSet (float or double); only its points are used, its cells are ignored. x,y is
  * the plane of projection, z the elevation.
  *
- * Output: a vtkPolyData with the same points in the same order (shared with the input, never
- * written), all point data and field data, and the triangles in Polys, counter-clockwise seen from
- * +z.
+ * Output: a vtkPolyData with the same points in the same order (shared with the input,
+ * never written), all point data and field data, and the triangles in Polys,
+ * counter-clockwise seen from +z.
  *
  * What can be relied on, with MaximumEdgeLength 0:
  * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact
@@ -36,7 +36,8 @@
  * are.
  *
  * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
- * triangle. An error, such as more points than can be handled (357,913,941), leaves empty output.
+ * triangle. An error, such as more points than can be handled (357,913,941), or a point array that
+ * has not as many tuples as there are points, leaves empty output.
  *
  * Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
@@ -88,7 +89,10 @@ public:
   };
 
   ///@{
-  /** Which of several points with the same x,y becomes the vertex; default KEEP_FIRST. */
+  /**
+   * Which of several points with the same x,y becomes the vertex: a DuplicatePolicyType, to which
+   * other numbers are clamped. Default: KEEP_FIRST.
+   */
   vtkSetClampMacro(DuplicatePolicy, int, KEEP_FIRST, KEEP_HIGHEST);
   vtkGetMacro(DuplicatePolicy, int);
   void SetDuplicatePolicyToKeepFirst() { this->SetDuplicatePolicy(KEEP_FIRST); }

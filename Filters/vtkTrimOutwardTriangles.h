@@ -23,12 +23,12 @@
  * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its
  * longest edge is at most GapTolerance times the spacing of the points there; so dense and thin
  * parts of a cloud are both outlined well. The details:
- * - The spacing at a point is half the distance of its 6th nearest point: at the rim of a gap,
- * where points are on one side only, one step of a square lattice, or the mean spacing of random
- * points. The spacing of a triangle is the middle one of its three points', but at most twice the
- * least.
+ * - The spacing at a point is half the distance of its 6th nearest point: at the rim of a
+ *   gap, where points are on one side only, one step of a square lattice, or the mean spacing
+ *   of random points. The spacing of a triangle is the middle one of its three points', but
+ *   at most twice the least.
  * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance
- * spacings. A smaller one is surface.
+ *   spacings. A smaller one is surface.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
  * - The input should be a Delaunay triangulation. Its holes stay open and are part of the boundary.
  *
@@ -36,7 +36,7 @@
  * - 0: the triangles inside. Vertices and lines of the input come first.
  * - 1: the triangles outside.
  * - 2: the boundary used: one closed line (its last point is its first) for each ring, with the
- * points and point data of input 1, or of input 0 when it was extracted (counter-clockwise around
+ *   points and point data of input 1, or of input 0 when it was extracted (counter-clockwise around
  *   surface, clockwise around lakes, starting at the lowest y).
  *
  * Outputs 0 and 1 share the input's points and pass its point data; their triangles are
@@ -54,8 +54,10 @@
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed, has a point that is not finite or
  * not in the mesh, a ring of fewer than three points, edges that cross each other or lead out of
- * the mesh, a boundary that encloses no triangle. A mesh without triangles passes with a warning;
- * so does one of which no triangle is surface (all are outward then).
+ * the mesh, a boundary that encloses no triangle; also a point or cell array of an input that has
+ * not as many tuples as there are points or cells. A mesh without triangles passes with a warning,
+ * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
+ * outward then).
  *
  * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges.
  *
@@ -75,7 +77,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /** The boundary, input 1. Optional: without it the boundary is extracted. nullptr takes it away.
+  /**
+   * The boundary, input 1. Default: none, so that it is extracted. nullptr takes it away again.
    */
   void SetBoundaryConnection(vtkAlgorithmOutput* output);
   void SetBoundaryData(vtkPolyData* boundary);
@@ -103,7 +106,7 @@ public:
   vtkBooleanMacro(RecoverBoundary, bool);
   ///@}
 
-  /** After Update(): the GapTolerance that was used; 0 when a boundary was given. */
+  /** After Update(): the GapTolerance that was used, in spacings; 0 when a boundary was given. */
   vtkGetMacro(EffectiveGapTolerance, double);
 
   /** After Update(): the number of triangles in output 1. */
@@ -127,8 +130,6 @@ protected:
   vtkIdType NumberOfRecoveredEdges = 0;
 
 private:
-  void AddCounts(vtkInformationVector* outputVector) const;
-
   vtkTrimOutwardTriangles(const vtkTrimOutwardTriangles&) = delete;
   void operator=(const vtkTrimOutwardTriangles&) = delete;
 };

@@ -5,85 +5,439 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 namespace elevation
 {
 namespace
 {
+constexpr double Infinity = std::numeric_limits<double>::infinity();
 // Mean points a bin: fewer make the searches visit many empty bins, more make them look at points
 // in vain.
 constexpr double PointsPerBin = 1.3;
-// A bin with more points gets a level of its own; evenly spread points never fill one so.
-constexpr Index FullBin = 24;
+// A bin with more points is halved until no part has more; evenly spread points hardly fill one so.
+constexpr Index FullBin = 8;
+// A leaf of the tree is at most so many bins of a row, with at most so many points.
+constexpr Index LeafColumns = 16;
+constexpr Index LeafPoints = 32;
 
 /** Bins along both sides of a box for so many points, as square as its proportions allow. */
-void ChooseBins(BinGrid::Level& level, double width, double height, Index count)
+void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
 {
-  const double bins = std::max(1.0, count / PointsPerBin);
+  const double number = std::max(1.0, count / PointsPerBin);
   // A box without height is a row, one without width a column; the quotient may be 0 or infinite.
   const double proportion = width > 0.0 ? (height > 0.0 ? width / height : DBL_MAX) : 0.0;
-  const double columns = std::min(std::max(1.0, std::floor(std::sqrt(bins * proportion))), bins);
-  level.Columns = static_cast<Index>(columns);
-  level.Rows = height > 0.0 ? static_cast<Index>(std::max(1.0, std::floor(bins / columns))) : 1;
-  level.PerX = width > 0.0 ? std::min(level.Columns / width, DBL_MAX) : 0.0;
-  level.PerY = height > 0.0 ? std::min(level.Rows / height, DBL_MAX) : 0.0;
-  level.BinWidth = width / level.Columns;
-  level.BinHeight = height / level.Rows;
+  const double columns =
+    std::min(std::max(1.0, std::floor(std::sqrt(number * proportion))), number);
+  bins.Columns = static_cast<Index>(columns);
+  bins.Rows = height > 0.0 ? static_cast<Index>(std::max(1.0, std::floor(number / columns))) : 1;
+  bins.PerX = width > 0.0 ? std::min(bins.Columns / width, DBL_MAX) : 0.0;
+  bins.PerY = height > 0.0 ? std::min(bins.Rows / height, DBL_MAX) : 0.0;
+  bins.BinWidth = width / bins.Columns;
+  bins.BinHeight = height / bins.Rows;
   const auto isPlain = [](double bin, double low, double extent) {
     return bin > 1e-12 && bin < 1e12 && bin > 1e-12 * (std::fabs(low) + extent);
   };
-  level.HasPlainBins = isPlain(level.BinWidth, level.OriginX, width) &&
-    isPlain(level.BinHeight, level.OriginY, height);
-  const double area = width * height;
-  level.Spacing =
-    area > 0.0 && std::isfinite(area) ? std::sqrt(area / count) : std::max(width, height) / count;
+  bins.HasPlainBins =
+    isPlain(bins.BinWidth, bins.OriginX, width) && isPlain(bins.BinHeight, bins.OriginY, height);
 }
+
+/** A point of a full bin while it is halved. */
+struct Placed
+{
+  double X, Y;
+  Index Id;
+};
+
+struct Box
+{
+  double LowX = DBL_MAX, HighX = -DBL_MAX, LowY = DBL_MAX, HighY = -DBL_MAX;
+
+  void Add(double x, double y)
+  {
+    this->LowX = x < this->LowX ? x : this->LowX;
+    this->HighX = x > this->HighX ? x : this->HighX;
+    this->LowY = y < this->LowY ? y : this->LowY;
+    this->HighY = y > this->HighY ? y : this->HighY;
+  }
+  void Add(const Box& box)
+  {
+    this->Add(box.LowX, box.LowY);
+    this->Add(box.HighX, box.HighY);
+  }
+  bool IsOnePlace() const { return this->LowX == this->HighX && this->LowY == this->HighY; }
+};
+
+/**
+ * Builds the tree from the top down; orders the slots of full bins; tells each group of points
+ * among which all duplicates of its points are.
+ */
+class TreeBuilder
+{
+public:
+  /** Told slots [begin, end); the last argument, whether all of them are equal. */
+  using Visitor = std::function<void(Index, Index, bool)>;
+
+  TreeBuilder(BinGrid& grid, Visitor visitDuplicates, const Progress& progress)
+    : Grid(grid)
+    , VisitDuplicates(std::move(visitDuplicates))
+    , Monitor(progress)
+  {
+  }
+
+  void Build()
+  {
+    const Part all{ 0, this->Grid.Bins.Rows, 0, this->Grid.Bins.Columns };
+    const Child root = this->BuildBins(all);
+    if (root.Count > 0)
+    {
+      const Child* only = &root;
+      this->AddNode(only, 1);
+    }
+  }
+
+private:
+  /** What a place of a node holds; no points at all when Size is 0. */
+  struct Child
+  {
+    Box Bounds;
+    Index First = None;
+    Index Count = 0;
+    Index Size = 0;
+  };
+
+  /** Bins of some rows and columns, ends excluded. */
+  struct Part
+  {
+    Index FirstRow, EndRow, FirstColumn, EndColumn;
+
+    Index Rows() const { return this->EndRow - this->FirstRow; }
+    Index Columns() const { return this->EndColumn - this->FirstColumn; }
+    double Area() const { return static_cast<double>(this->Rows()) * this->Columns(); }
+  };
+
+  /** Points of a full bin, slots [Begin, End). */
+  struct Heap
+  {
+    Index Begin, End;
+    Box Bounds;
+
+    Index Size() const { return this->End - this->Begin; }
+    bool IsLeaf() const { return this->Size() <= FullBin || this->Bounds.IsOnePlace(); }
+  };
+
+  /** A single child needs no node of its own. */
+  Child Join(const Child* children, int count)
+  {
+    return count == 0 ? Child() : count == 1 ? children[0] : this->AddNode(children, count);
+  }
+
+  Child AddNode(const Child* children, int count)
+  {
+    BinGrid::Node node;
+    Child joined;
+    node.Size = 0;
+    for (int place = 0; place < BinGrid::Node::Places; ++place)
+    {
+      const Child child = place < count ? children[place] : Child();
+      node.LowX[place] = child.Size > 0 ? child.Bounds.LowX : Infinity;
+      node.HighX[place] = child.Size > 0 ? child.Bounds.HighX : -Infinity;
+      node.LowY[place] = child.Size > 0 ? child.Bounds.LowY : Infinity;
+      node.HighY[place] = child.Size > 0 ? child.Bounds.HighY : -Infinity;
+      node.First[place] = child.First;
+      node.Count[place] = child.Count;
+      node.Size += child.Size;
+      if (child.Size > 0)
+      {
+        joined.Bounds.Add(child.Bounds);
+      }
+    }
+    joined.Size = node.Size;
+    joined.First = static_cast<Index>(this->Grid.Nodes.size());
+    this->Grid.Nodes.Append(node);
+    return joined;
+  }
+
+  /** Whether the part is a leaf, nothing, or one bin: not to be divided by rows and columns. */
+  bool IsUndivided(const Part& part) const
+  {
+    if (part.Rows() > 1)
+    {
+      return false;
+    }
+    const auto slots = this->SlotsOf(part);
+    if (part.Columns() == 1 || slots.first == slots.second)
+    {
+      return true;
+    }
+    if (part.Columns() > LeafColumns || slots.second - slots.first > LeafPoints)
+    {
+      return false;
+    }
+    bool isFull = false;
+    for (Index column = part.FirstColumn; column < part.EndColumn && !isFull; ++column)
+    {
+      const auto bin = this->Grid.Slots(part.FirstRow, column, column);
+      isFull = bin.second - bin.first > FullBin;
+    }
+    return !isFull;
+  }
+
+  std::pair<Index, Index> SlotsOf(const Part& part) const
+  {
+    return this->Grid.Slots(part.FirstRow, part.FirstColumn, part.EndColumn - 1);
+  }
+
+  Child BuildBins(const Part& whole)
+  {
+    if (this->IsUndivided(whole))
+    {
+      return this->BuildRun(whole);
+    }
+    // What fits into one node stays together, so that the lowest nodes are full.
+    const auto fits = [](const Part& part) {
+      return part.Rows() <= BinGrid::Node::Places && part.Columns() <= LeafColumns;
+    };
+    const bool isLowest = fits(whole);
+    const auto areaOf = [&](const Part& part) {
+      return this->IsUndivided(part) || (!isLowest && fits(part)) ? 0.0 : part.Area();
+    };
+    Part parts[BinGrid::Node::Places];
+    double areas[BinGrid::Node::Places]; // 0 for what is not divided
+    parts[0] = whole;
+    areas[0] = whole.Area();
+    int count = 1;
+    while (count < BinGrid::Node::Places)
+    {
+      const auto widest = std::max_element(areas, areas + count) - areas;
+      if (areas[widest] == 0.0)
+      {
+        break;
+      }
+      Part& part = parts[widest];
+      Part& other = parts[count++];
+      other = part;
+      if (part.Rows() == 1 || (part.Columns() > part.Rows() && part.Columns() > LeafColumns))
+      {
+        part.EndColumn = other.FirstColumn = part.FirstColumn + part.Columns() / 2;
+      }
+      else
+      {
+        part.EndRow = other.FirstRow = part.FirstRow + part.Rows() / 2;
+      }
+      areas[widest] = areaOf(part);
+      areas[count - 1] = areaOf(other);
+    }
+    Child children[BinGrid::Node::Places];
+    int filled = 0;
+    for (int i = 0; i < count; ++i)
+    {
+      const Child child = this->BuildBins(parts[i]);
+      if (child.Size > 0)
+      {
+        children[filled++] = child;
+      }
+    }
+    return this->Join(children, filled);
+  }
+
+  /** A leaf of some bins of a row; nothing; or a full bin. */
+  Child BuildRun(const Part& part)
+  {
+    const auto slots = this->SlotsOf(part);
+    const Index count = slots.second - slots.first;
+    this->ReportProgress(count);
+    if (part.Columns() == 1 && count > FullBin)
+    {
+      return this->BuildFullBin(slots);
+    }
+    Child child;
+    for (Index slot = slots.first; slot < slots.second; ++slot)
+    {
+      child.Bounds.Add(this->Grid.X[slot], this->Grid.Y[slot]);
+    }
+    child.First = slots.first;
+    child.Count = child.Size = count;
+    for (Index column = part.FirstColumn; column < part.EndColumn && count > 1; ++column)
+    {
+      const auto bin = this->Grid.Slots(part.FirstRow, column, column);
+      if (bin.second - bin.first > 1)
+      {
+        this->VisitDuplicates(bin.first, bin.second, false);
+      }
+    }
+    return child;
+  }
+
+  Child BuildFullBin(std::pair<Index, Index> slots)
+  {
+    this->FirstSlot = slots.first;
+    this->Points.clear();
+    Heap heap{ slots.first, slots.second, Box() };
+    for (Index slot = slots.first; slot < slots.second; ++slot)
+    {
+      this->Points.push_back({ this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot] });
+      heap.Bounds.Add(this->Grid.X[slot], this->Grid.Y[slot]);
+    }
+    return this->BuildHeap(heap);
+  }
+
+  Child BuildHeap(const Heap& whole)
+  {
+    if (whole.IsLeaf())
+    {
+      for (Index slot = whole.Begin; slot < whole.End; ++slot)
+      {
+        const Placed& p = this->Points[slot - this->FirstSlot];
+        this->Grid.X[slot] = p.X;
+        this->Grid.Y[slot] = p.Y;
+        this->Grid.Ids[slot] = p.Id;
+      }
+      this->VisitDuplicates(whole.Begin, whole.End, whole.Bounds.IsOnePlace());
+      return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
+    }
+    if (whole.Size() > 65536)
+    {
+      this->ReportProgress(0);
+    }
+    Heap heaps[BinGrid::Node::Places];
+    heaps[0] = whole;
+    int count = 1;
+    while (count < BinGrid::Node::Places)
+    {
+      int largest = -1;
+      for (int i = 0; i < count; ++i)
+      {
+        if (!heaps[i].IsLeaf() && (largest < 0 || heaps[i].Size() > heaps[largest].Size()))
+        {
+          largest = i;
+        }
+      }
+      if (largest < 0)
+      {
+        break;
+      }
+      this->Halve(heaps[largest], heaps[count++]);
+    }
+    Child children[BinGrid::Node::Places];
+    for (int i = 0; i < count; ++i)
+    {
+      children[i] = this->BuildHeap(heaps[i]);
+    }
+    return this->AddNode(children, count);
+  }
+
+  /**
+   * Divides a heap across its longer side, near the median. All points with the same coordinate go
+   * to the same part, so that equal points stay together.
+   */
+  void Halve(Heap& heap, Heap& other)
+  {
+    const bool isWide = heap.Bounds.HighX - heap.Bounds.LowX > heap.Bounds.HighY - heap.Bounds.LowY;
+    const auto key = [isWide](const Placed& p) { return isWide ? p.X : p.Y; };
+    Placed* const begin = this->Points.data() + (heap.Begin - this->FirstSlot);
+    Placed* const end = this->Points.data() + (heap.End - this->FirstSlot);
+
+    // The median of a sample nearly always divides well; else that of all.
+    constexpr Index sampleSize = 31;
+    double sample[sampleSize];
+    const Index size = heap.Size();
+    const Index samples = std::min(size, sampleSize);
+    for (Index i = 0; i < samples; ++i)
+    {
+      sample[i] = key(begin[static_cast<std::int64_t>(i) * size / samples]);
+    }
+    std::nth_element(sample, sample + samples / 2, sample + samples);
+    Placed* middle = Divide(begin, end, key, sample[samples / 2], heap.Bounds, isWide);
+    if (std::min(middle - begin, end - middle) < size / 8)
+    {
+      std::nth_element(begin, begin + size / 2, end,
+        [&key](const Placed& p, const Placed& q) { return key(p) < key(q); });
+      middle = Divide(begin, end, key, key(begin[size / 2]), heap.Bounds, isWide);
+    }
+
+    other.Begin = heap.Begin + static_cast<Index>(middle - begin);
+    other.End = heap.End;
+    heap.End = other.Begin;
+    heap.Bounds = other.Bounds = Box();
+    for (const Placed* p = begin; p < middle; ++p)
+    {
+      heap.Bounds.Add(p->X, p->Y);
+    }
+    for (const Placed* p = middle; p < end; ++p)
+    {
+      other.Bounds.Add(p->X, p->Y);
+    }
+  }
+
+  /** Points before the value first, or up to the value when none is before: both parts have some. */
+  template <typename Key>
+  static Placed* Divide(
+    Placed* begin, Placed* end, const Key& key, double value, const Box& bounds, bool isWide)
+  {
+    const bool hasBefore = (isWide ? bounds.LowX : bounds.LowY) < value;
+    Placed* middle = begin;
+    for (Placed* p = begin; p < end; ++p)
+    {
+      // Without a branch, which could not be predicted.
+      const Placed moved = *p;
+      const bool isBefore = hasBefore ? key(moved) < value : key(moved) <= value;
+      *p = *middle;
+      *middle = moved;
+      middle += isBefore;
+    }
+    return middle;
+  }
+
+  void ReportProgress(Index visited)
+  {
+    this->Visited += visited;
+    if (visited == 0 || this->Visited >= this->NextReport)
+    {
+      Report(this->Monitor, double(this->Visited) / this->Grid.NumberOfPoints());
+      this->NextReport = this->Visited + 65536;
+    }
+  }
+
+  BinGrid& Grid;
+  const Visitor VisitDuplicates;
+  const Progress& Monitor;
+  std::int64_t Visited = 0, NextReport = 0;
+  Index FirstSlot = 0;        ///< of the full bin at hand
+  std::vector<Placed> Points; ///< of the full bin at hand
+};
 } // namespace
 
 BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress)
 {
-  this->Fill(points, progress);
-  this->Subdivide();
-  this->SetDuplicatesAside(points, policy);
-  for (std::size_t level = 0; level < this->Levels.size(); ++level)
-  {
-    this->FinishRows(level);
-  }
+  this->Fill(points, Part(progress, 0.0, 0.7));
+  this->BuildTree(points, policy, Part(progress, 0.7, 1.0));
+  this->FindRanges();
 }
 
-const BinGrid::Level& BinGrid::LeafLevel(const Point2& p) const
+void BinGrid::FindPath(const Point2& p, std::vector<Step>& path) const
 {
-  const Level* level = &this->Levels.front();
-  while (level->HasChildren)
+  const Node* node = &this->Nodes[this->Nodes.size() - 1];
+  path.assign(1, { node, 0, -Infinity, Infinity, -Infinity, Infinity });
+  for (;;)
   {
-    const Index column = level->Column(p.X);
-    const auto& children = this->ChildrenOfRow[level->FirstRow + level->Row(p.Y)];
-    const auto child = std::lower_bound(children.begin(), children.end(), column,
-      [](const Child& c, Index value) { return c.Column < value; });
-    if (child == children.end() || child->Column != column)
+    // Boxes of siblings have no point in common.
+    int place = 0;
+    while (!(node->LowX[place] <= p.X && p.X <= node->HighX[place] && node->LowY[place] <= p.Y &&
+      p.Y <= node->HighY[place]))
     {
-      break;
+      ++place;
     }
-    level = &this->Levels[child->Level];
+    if (node->Count[place] > 0)
+    {
+      return;
+    }
+    const Node* const child = &this->Nodes[node->First[place]];
+    path.push_back({ child, place, node->LowX[place], node->HighX[place], node->LowY[place],
+      node->HighY[place] });
+    node = child;
   }
-  return *level;
-}
-
-void BinGrid::AddLevel(Index begin, Index end, double lowX, double highX, double lowY, double highY)
-{
-  Level level;
-  level.OriginX = lowX;
-  level.OriginY = lowY;
-  ChooseBins(level, highX - lowX, highY - lowY, end - begin);
-  level.FirstBin = this->Starts.size();
-  level.FirstRow = this->RowLow.size();
-  const std::size_t bins = static_cast<std::size_t>(level.Columns) * level.Rows;
-  this->Starts.Resize(level.FirstBin + bins + 1);
-  std::fill(this->Starts.begin() + level.FirstBin, this->Starts.end(), 0);
-  this->RowLow.resize(level.FirstRow + level.Rows, DBL_MAX);
-  this->RowHigh.resize(level.FirstRow + level.Rows, -DBL_MAX);
-  this->ChildrenOfRow.resize(level.FirstRow + level.Rows);
-  this->Levels.push_back(level);
 }
 
 void BinGrid::Fill(const PointView& points, const Progress& progress)
@@ -117,8 +471,6 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
   const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
   if (count == 0)
   {
-    this->Levels.emplace_back();
-    this->Levels.front().Columns = this->Levels.front().Rows = 0;
     this->Starts.Append(0);
     return;
   }
@@ -140,11 +492,16 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
     }
   }
 
-  this->AddLevel(0, count, lowX, highX, lowY, highY);
-  const Level& level = this->Levels.front();
+  this->Bins.OriginX = lowX;
+  this->Bins.OriginY = lowY;
+  ChooseBins(this->Bins, highX - lowX, highY - lowY, count);
+  const std::size_t bins = static_cast<std::size_t>(this->Bins.Columns) * this->Bins.Rows;
+  this->Starts.Resize(bins + 1);
+  std::fill(this->Starts.begin(), this->Starts.end(), 0);
   Index* starts = this->Starts.data();
   const auto binOf = [&](const Point2& p) {
-    return static_cast<std::size_t>(level.Row(p.Y)) * level.Columns + level.Column(p.X);
+    return static_cast<std::size_t>(this->Bins.Row(p.Y)) * this->Bins.Columns +
+      this->Bins.Column(p.X);
   };
   const double scale = this->Scale;
   const auto forEachPoint = [&](double begin, double end, auto&& visit) {
@@ -169,7 +526,6 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
 
   // Count, prefix sum, fill: while filling, Starts[b + 1] runs from the first slot of bin b to its
   // end, which is the first slot of the next.
-  const std::size_t bins = static_cast<std::size_t>(level.Columns) * level.Rows;
   forEachPoint(0.25, 0.5, [&](Index, const Point2& p) { ++starts[binOf(p) + 1]; });
   Index sum = 0;
   for (std::size_t bin = 1; bin <= bins; ++bin)
@@ -191,72 +547,7 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
   });
 }
 
-void BinGrid::Subdivide()
-{
-  std::vector<double> x, y;
-  std::vector<Index> ids;
-  // Levels grows while it is walked: the bins of new levels are looked at in their turn.
-  for (std::size_t parent = 0; parent < this->Levels.size(); ++parent)
-  {
-    const Index rows = this->Levels[parent].Rows;
-    const Index columns = this->Levels[parent].Columns;
-    for (Index row = 0; row < rows; ++row)
-    {
-      for (Index column = 0; column < columns; ++column)
-      {
-        const auto slots = this->Slots(this->Levels[parent], row, column, column);
-        const Index begin = slots.first, end = slots.second;
-        if (end - begin <= FullBin)
-        {
-          continue;
-        }
-        const auto rangeX = std::minmax_element(this->X.begin() + begin, this->X.begin() + end);
-        const auto rangeY = std::minmax_element(this->Y.begin() + begin, this->Y.begin() + end);
-        const double lowX = *rangeX.first, highX = *rangeX.second;
-        const double lowY = *rangeY.first, highY = *rangeY.second;
-        if (lowX == highX && lowY == highY)
-        {
-          continue; // all points equal
-        }
-        this->AddLevel(begin, end, lowX, highX, lowY, highY);
-        const Level level = this->Levels.back();
-        this->Levels[parent].HasChildren = true;
-        this->ChildrenOfRow[this->Levels[parent].FirstRow + row].push_back(
-          { column, static_cast<Index>(this->Levels.size() - 1) });
-
-        Index* starts = this->Starts.data() + level.FirstBin;
-        const auto binOf = [&](double px, double py) {
-          return static_cast<std::size_t>(level.Row(py)) * level.Columns + level.Column(px);
-        };
-        x.assign(this->X.begin() + begin, this->X.begin() + end);
-        y.assign(this->Y.begin() + begin, this->Y.begin() + end);
-        ids.assign(this->Ids.begin() + begin, this->Ids.begin() + end);
-        for (std::size_t i = 0; i < ids.size(); ++i)
-        {
-          ++starts[binOf(x[i], y[i]) + 1];
-        }
-        Index sum = begin;
-        starts[0] = begin;
-        for (std::size_t bin = 1; bin <= static_cast<std::size_t>(level.Columns) * level.Rows;
-             ++bin)
-        {
-          const Index inBin = starts[bin];
-          starts[bin] = sum;
-          sum += inBin;
-        }
-        for (std::size_t i = 0; i < ids.size(); ++i)
-        {
-          const Index slot = starts[binOf(x[i], y[i]) + 1]++;
-          this->X[slot] = x[i];
-          this->Y[slot] = y[i];
-          this->Ids[slot] = ids[i];
-        }
-      }
-    }
-  }
-}
-
-void BinGrid::SetDuplicatesAside(const PointView& points, DuplicatePolicy policy)
+void BinGrid::BuildTree(const PointView& points, DuplicatePolicy policy, const Progress& progress)
 {
   const auto isPreferred = [&](Index id, Index other) {
     if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)
@@ -270,9 +561,8 @@ void BinGrid::SetDuplicatesAside(const PointView& points, DuplicatePolicy policy
     return policy == DuplicatePolicy::KeepLast ? id > other : id < other;
   };
 
-  // Equal points share a bin. Full bins that are not subdivided hold equal points only.
   std::vector<bool> isAside;
-  const auto compare = [&](Index kept, Index slot) {
+  const auto setAside = [&](Index kept, Index slot) {
     if (isAside.empty())
     {
       isAside.resize(this->Ids.size(), false);
@@ -284,55 +574,35 @@ void BinGrid::SetDuplicatesAside(const PointView& points, DuplicatePolicy policy
     isAside[slot] = true;
     this->Duplicates.push_back(this->Ids[slot]);
   };
-  const auto visitBin = [&](Index begin, Index end) {
-    if (end - begin > FullBin)
-    {
-      bool allEqual = true;
-      for (Index slot = begin + 1; slot < end && allEqual; ++slot)
-      {
-        allEqual = this->PointAt(slot) == this->PointAt(begin);
-      }
-      if (allEqual)
-      {
-        for (Index slot = begin + 1; slot < end; ++slot)
-        {
-          compare(begin, slot);
-        }
-      }
-      return; // otherwise it has a level of its own
-    }
+  const auto visit = [&](Index begin, Index end, bool areEqual) {
     for (Index slot = begin + 1; slot < end; ++slot)
     {
-      for (Index kept = begin; kept < slot; ++kept)
+      for (Index kept = begin; kept < (areEqual ? begin + 1 : slot); ++kept)
       {
         if (this->X[kept] == this->X[slot] && this->Y[kept] == this->Y[slot] &&
           (isAside.empty() || !isAside[kept]))
         {
-          compare(kept, slot);
+          setAside(kept, slot);
           break;
         }
       }
     }
   };
-  for (const Level& level : this->Levels)
+  if (this->NumberOfPoints() > 0)
   {
-    const Index* starts = this->Starts.data() + level.FirstBin;
-    const std::size_t bins = static_cast<std::size_t>(level.Columns) * level.Rows;
-    for (std::size_t bin = 0; bin < bins; ++bin)
-    {
-      if (starts[bin + 1] - starts[bin] > 1)
-      {
-        visitBin(starts[bin], starts[bin + 1]);
-      }
-    }
+    TreeBuilder(*this, visit, progress).Build();
+    this->Nodes.Shrink();
   }
-  if (this->Duplicates.empty())
+  if (!this->Duplicates.empty())
   {
-    return;
+    std::sort(this->Duplicates.begin(), this->Duplicates.end());
+    this->SetAside(isAside);
   }
-  std::sort(this->Duplicates.begin(), this->Duplicates.end());
+}
 
-  // Close the gaps: Moved[s] is the number of slots kept before s.
+void BinGrid::SetAside(const std::vector<bool>& isAside)
+{
+  // Close the gaps: moved[s] is the number of slots kept before s.
   const Index count = this->NumberOfPoints();
   Buffer<Index> moved;
   moved.Resize(static_cast<std::size_t>(count) + 1);
@@ -356,20 +626,33 @@ void BinGrid::SetDuplicatesAside(const PointView& points, DuplicatePolicy policy
   {
     start = moved[start];
   }
+  for (Node& node : this->Nodes)
+  {
+    for (int place = 0; place < Node::Places; ++place)
+    {
+      if (node.Count[place] > 0)
+      {
+        const Index first = moved[node.First[place]];
+        node.Count[place] = moved[node.First[place] + node.Count[place]] - first;
+        node.First[place] = first;
+      }
+    }
+  }
 }
 
-void BinGrid::FinishRows(std::size_t levelId)
+void BinGrid::FindRanges()
 {
-  const Level& level = this->Levels[levelId];
-  for (Index row = 0; row < level.Rows; ++row)
+  this->RowLow.assign(this->Bins.Rows, DBL_MAX);
+  this->RowHigh.assign(this->Bins.Rows, -DBL_MAX);
+  for (Index row = 0; row < this->Bins.Rows; ++row)
   {
-    const auto slots = this->Slots(level, row, 0, level.Columns - 1);
+    const auto slots = this->Slots(row, 0, this->Bins.Columns - 1);
     if (slots.first < slots.second)
     {
       const auto range =
         std::minmax_element(this->Y.begin() + slots.first, this->Y.begin() + slots.second);
-      this->RowLow[level.FirstRow + row] = *range.first;
-      this->RowHigh[level.FirstRow + row] = *range.second;
+      this->RowLow[row] = *range.first;
+      this->RowHigh[row] = *range.second;
     }
   }
 }

@@ -2,20 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points sorted into the bins of a uniform grid over their bounding box, for the searches of the
- * triangulation.
+ * Points sorted into the bins of a uniform grid over their bounding box, and a tree of boxes over
+ * the bins, for the searches of the triangulation.
  *
  * In: points. Out: the same points in *slots*, row of bins after row of bins, so that the points of
  * neighbouring bins of a row are contiguous; equal points set aside; the rest is a lookup.
- * A bin that holds many points has a grid of its own (a level) over the bounding box of its points,
- * and so on, so that uneven density does not collapse into a few full bins; its points' slots stay
- * within the bin's. The passes: count, prefix sum, fill, subdivide, set duplicates aside.
+ * Where density is even, a bin holds about one point. Where it is not, some bins hold many: the
+ * slots of a full bin are ordered by halving its points again and again, whatever their density.
+ * The tree joins both: a leaf is a stretch of slots, the bins of part of a row or a few points of a
+ * full bin; a node knows the bounding boxes of its eight children. So voids are passed over, and
+ * clusters are entered, in a number of steps that is logarithmic in the number of points.
+ * The passes: count, prefix sum, fill, halve full bins and set duplicates aside, build the tree.
  *
  * The bin of a coordinate is a monotone function of it, also in floating point: all points with x
  * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
+ * The boxes of a node's children have no point in common.
  *
- * Cost: linear (times the number of levels where density is uneven); 16 + 4 bytes a point, and
- * about 3 for the bins.
+ * Cost: linear, and n log n where density is uneven; 16 + 4 bytes a point, about 3 for the bins and
+ * 2 for the tree (6 to 9 in full bins).
  */
 #ifndef elevation_BinGrid_h
 #define elevation_BinGrid_h
@@ -32,20 +36,16 @@ namespace elevation
 class BinGrid
 {
 public:
-  /** One uniform grid: the whole cloud's, or that of one full bin. */
-  struct Level
+  /** Where the bins are. */
+  struct Layout
   {
     double OriginX = 0.0, OriginY = 0.0; ///< lower left corner of the points' bounding box
     double PerX = 0.0, PerY = 0.0;       ///< bins a unit of length
-    Index Columns = 1, Rows = 1;
+    Index Columns = 0, Rows = 0;
     double BinWidth = 0.0, BinHeight = 0.0;
     /** Whether the bins' bounds are where OriginX + k * BinWidth is, to a thousandth of a bin, and
      * single precision holds squares. */
     bool HasPlainBins = false;
-    double Spacing = 0.0; ///< about the distance of neighbouring points, were they evenly spread
-    std::size_t FirstBin = 0; ///< where its bins begin in Starts; there are Columns * Rows + 1
-    std::size_t FirstRow = 0; ///< where its rows begin in RowLow, RowHigh and ChildrenOfRow
-    bool HasChildren = false; ///< whether some bins have a level of their own
 
     Index Column(double x) const { return Cell((x - this->OriginX) * this->PerX, this->Columns); }
     Index Row(double y) const { return Cell((y - this->OriginY) * this->PerY, this->Rows); }
@@ -58,11 +58,25 @@ public:
     }
   };
 
-  /** A bin of a level that has a level of its own. */
-  struct Child
+  /**
+   * A node of the tree: bounding boxes of the points of up to eight children. The other places hold
+   * the empty box, from infinity to minus infinity, which nothing reaches.
+   */
+  struct Node
   {
-    Index Column;
-    Index Level;
+    static constexpr int Places = 8;
+    double LowX[Places], HighX[Places], LowY[Places], HighY[Places];
+    Index First[Places]; ///< of a leaf the first slot, else the node
+    Index Count[Places]; ///< of a leaf the number of slots, else 0
+    Index Size;          ///< number of points below
+  };
+
+  /** A node on a way through the tree, with the box of its points and its place in its parent. */
+  struct Step
+  {
+    const BinGrid::Node* Node;
+    int Place;
+    double LowX, HighX, LowY, HighY;
   };
 
   /**
@@ -75,35 +89,35 @@ public:
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
   Point2 PointAt(Index slot) const { return { this->X[slot], this->Y[slot] }; }
 
-  /** Slots of the bins firstColumn..lastColumn of a row of a level: [first, second). */
-  std::pair<Index, Index> Slots(
-    const Level& level, Index row, Index firstColumn, Index lastColumn) const
+  /** Slots of the bins firstColumn..lastColumn of a row: [first, second). */
+  std::pair<Index, Index> Slots(Index row, Index firstColumn, Index lastColumn) const
   {
-    const Index* starts =
-      this->Starts.data() + level.FirstBin + static_cast<std::size_t>(row) * level.Columns;
+    const Index* starts = this->Starts.data() + static_cast<std::size_t>(row) * this->Bins.Columns;
     return { starts[firstColumn], starts[lastColumn + 1] };
   }
 
-  /** The level whose bin holds the point without further subdivision. */
-  const Level& LeafLevel(const Point2& p) const;
+  /**
+   * The nodes from the root to the one above the leaf that holds a point of the grid. All points
+   * within the box of a step are below its node. The root's box is the whole plane.
+   */
+  void FindPath(const Point2& p, std::vector<Step>& path) const;
 
-  Buffer<double> X, Y;       ///< coordinates by slot; eight more values may be read than there are
-  Buffer<Index> Ids;         ///< the input's point id by slot
-  double Scale = 1.0;        ///< what the input's coordinates were multiplied by
-  std::vector<Level> Levels; ///< the whole cloud's first
-  Buffer<Index> Starts;      ///< first slot of each bin, bins row by row, level after level
-  std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row of each level
-  std::vector<std::vector<Child>> ChildrenOfRow; ///< by increasing column; only rows that have some
+  Buffer<double> X, Y; ///< coordinates by slot; eight more values may be read than there are
+  Buffer<Index> Ids;   ///< the input's point id by slot
+  double Scale = 1.0;  ///< what the input's coordinates were multiplied by
+  Layout Bins;
+  Buffer<Index> Starts; ///< first slot of each bin, row by row, and the number of slots
+  std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row
+  Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite
 
 private:
   void Fill(const PointView& points, const Progress& progress);
-  void AddLevel(Index begin, Index end, double lowX, double highX, double lowY, double highY);
-  void FinishRows(std::size_t level);
-  void Subdivide();
-  void SetDuplicatesAside(const PointView& points, DuplicatePolicy policy);
+  void BuildTree(const PointView& points, DuplicatePolicy policy, const Progress& progress);
+  void SetAside(const std::vector<bool>& isAside);
+  void FindRanges();
 };
 
 } // namespace elevation

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <unordered_map>
 
 namespace elevation
@@ -14,20 +13,6 @@ namespace elevation
 
 namespace
 {
-
-/** Whether p lies on the edge, whose ends are given from the lower to the higher (by y). */
-bool IsOn(const Point2& low, const Point2& high, const Point2& p)
-{
-  return low.Y <= p.Y && p.Y <= high.Y && std::min(low.X, high.X) <= p.X &&
-    p.X <= std::max(low.X, high.X) && Orientation(low, high, p) == Zero;
-}
-
-/** Whether the edge passes p on its left, at p's height; an edge has its lower end, not its upper.
- */
-bool PassesOnTheLeft(const Point2& low, const Point2& high, const Point2& p)
-{
-  return low.Y <= p.Y && p.Y < high.Y && Orientation(low, high, p) == Negative;
-}
 
 template <typename Visitor>
 void VisitEdges(const Rings& rings, Visitor&& visit)
@@ -43,20 +28,6 @@ void VisitEdges(const Rings& rings, Visitor&& visit)
 }
 
 } // namespace
-
-Location Locate(const std::vector<Point2>& points, const Rings& rings, const Point2& p)
-{
-  bool isOn = false;
-  bool isInside = false;
-  VisitEdges(rings, [&](Index a, Index b) {
-    const bool up = points[a].Y <= points[b].Y;
-    const Point2& low = up ? points[a] : points[b];
-    const Point2& high = up ? points[b] : points[a];
-    isOn = isOn || IsOn(low, high, p);
-    isInside ^= PassesOnTheLeft(low, high, p);
-  });
-  return isOn ? Location::On : isInside ? Location::Inside : Location::Outside;
-}
 
 RingLocator::RingLocator(const std::vector<Point2>& points, const Rings& rings)
   : Points(points)
@@ -128,17 +99,6 @@ void RingLocator::VisitEdgesAt(double y, Visitor&& visit) const
   }
 }
 
-Location RingLocator::Locate(const Point2& p) const
-{
-  bool isOn = false;
-  bool isInside = false;
-  this->VisitEdgesAt(p.Y, [&](const Point2& low, const Point2& high) {
-    isOn = isOn || IsOn(low, high, p);
-    isInside ^= PassesOnTheLeft(low, high, p);
-  });
-  return isOn ? Location::On : isInside ? Location::Inside : Location::Outside;
-}
-
 bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) const
 {
   // p is the lowest corner, q the next one: the inside of the triangle near p is above p and on the
@@ -154,8 +114,8 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
       return;
     }
     const Sign side = Orientation(low, high, p);
-    // An edge that goes up from p passes the triangle on its left or on its right: it does not cut
-    // it.
+    // An edge that goes up from p passes the triangle on its left or on its
+    // right: it does not cut it.
     isInside ^= side == Negative || (side == Zero && Orientation(p, high, q) == Negative);
   });
   return isInside;
@@ -176,13 +136,6 @@ struct HashOfPoint
   }
 };
 
-std::string NameOf(Index id, const Point2& p)
-{
-  char text[96];
-  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), p.X, p.Y);
-  return text;
-}
-
 std::string NameOfLine(const BoundaryLines& lines, Index line)
 {
   return (lines.IsPolygon[line] ? "polygon (cell " : "line (cell ") +
@@ -190,7 +143,8 @@ std::string NameOfLine(const BoundaryLines& lines, Index line)
 }
 
 /** The mesh vertex at each point of the lines that a line uses. */
-std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
+std::vector<Index> MatchPoints(
+  const Mesh& mesh, const BoundaryLines& lines, const Progress& progress)
 {
   std::unordered_map<Point2, Index, HashOfPoint> vertexAt;
   for (Index line = 0; line < lines.Lines.Count(); ++line)
@@ -200,15 +154,17 @@ std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
       const Point2& p = lines.Points[*point];
       if (!std::isfinite(p.X) || !std::isfinite(p.Y))
       {
-        throw Error("The boundary's " + NameOf(*point, p) + " of " + NameOfLine(lines, line) +
-          " is not finite.");
+        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
+          NameOfLine(lines, line) + " is not finite.");
       }
       vertexAt.emplace(p, None);
     }
   }
   std::vector<char> seen(mesh.Points.size(), 0);
-  for (const Index vertex : mesh.Triangles)
+  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
+    ReportStep(progress, h, mesh.Triangles.size());
+    const Index vertex = mesh.Origin(h);
     if (seen[vertex])
     {
       continue;
@@ -238,7 +194,7 @@ std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
       vertices[*point] = vertexAt.at(lines.Points[*point]);
       if (vertices[*point] == None)
       {
-        throw Error("The boundary's " + NameOf(*point, lines.Points[*point]) + " of " +
+        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
           NameOfLine(lines, line) + " is not a corner of the mesh: no triangle has a point with " +
           "exactly the same x,y. Add the boundary's points to the points before triangulating "
           "them.");
@@ -304,9 +260,9 @@ void Append(
 
 } // namespace
 
-JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines)
+JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines, const Progress& progress)
 {
-  const std::vector<Index> vertexOf = MatchPoints(mesh, lines);
+  const std::vector<Index> vertexOf = MatchPoints(mesh, lines, progress);
   const std::vector<Piece> pieces = MakePieces(lines, vertexOf);
   if (pieces.empty())
   {
@@ -331,7 +287,7 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines)
       if (!piece.IsClosed && meeting->second.size() % 2 != 0)
       {
         throw Error("The boundary is not closed: " + NameOfLine(lines, piece.Line) + " ends at " +
-          NameOf(end, lines.Points[end]) +
+          NameOf(lines.Points, end) +
           (meeting->second.size() == 1 ? ", where no other line goes on."
                                        : ", where " + std::to_string(meeting->second.size()) +
                 " lines end, which cannot be paired."));
@@ -372,12 +328,17 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines)
       }
     }
     ring.pop_back();
-    if (ring.size() < 3)
+    // Two lines along one edge, as of two parcels that share it, cancel out. Whether they meet here
+    // or in two larger rings depends on the order of the lines alone.
+    if (ring.size() > 2)
     {
-      throw Error("The boundary's " + NameOfLine(lines, pieces[i].Line) +
-        " makes a ring of only two points; a ring has at least three.");
+      Append(joined, ring, vertexOf);
     }
-    Append(joined, ring, vertexOf);
+  }
+  if (joined.Points.empty())
+  {
+    throw Error("The boundary's " + NameOfLine(lines, pieces.front().Line) +
+      " makes a ring of only two points, and so do all others; a ring has at least three.");
   }
   return joined;
 }
@@ -397,6 +358,8 @@ constexpr double SpacingPerNeighborDistance = 0.5;
 constexpr double ToleranceOfTypicalTriangle = 2.25;
 constexpr double LargestSpacingInTriangle = 2.0;
 constexpr std::size_t NeighborsOfHub = 64;
+// Smaller ones, whose squares leave the range of double, are taken as this, so that no spacing is 0.
+constexpr double LeastSpacing = 1e-150;
 
 /** Squared distances at a scale where they do not leave the range of double. */
 class Distances
@@ -447,8 +410,12 @@ std::vector<double> FindSpacings(
   // Vertices are renumbered as the triangles name them: neighbours come to lie near in memory.
   std::vector<Index> rank(mesh.Points.size(), None);
   std::vector<Index> vertices;
-  for (const Index vertex : mesh.Triangles)
+  const Index halfEdges = mesh.NumberOfHalfEdges();
+  const Progress ranking = Part(progress, 0.0, 0.1);
+  for (Index h = 0; h < halfEdges; ++h)
   {
+    ReportStep(ranking, h, halfEdges);
+    const Index vertex = mesh.Origin(h);
     if (rank[vertex] == None)
     {
       rank[vertex] = static_cast<Index>(vertices.size());
@@ -465,9 +432,10 @@ std::vector<double> FindSpacings(
   const auto destination = [&](Index h) { return rank[mesh.Destination(h)]; };
 
   std::vector<Index> offsets(count + 1, 0);
-  const Index halfEdges = mesh.NumberOfHalfEdges();
+  const Progress counting = Part(progress, 0.1, 0.2);
   for (Index h = 0; h < halfEdges; ++h)
   {
+    ReportStep(counting, h, halfEdges);
     ++offsets[origin(h)];
     if (mesh.IsBorder(h))
     {
@@ -480,8 +448,10 @@ std::vector<double> FindSpacings(
     offset = sum += offset;
   }
   std::vector<Index> neighbors(sum);
+  const Progress gathering = Part(progress, 0.2, 0.3);
   for (Index h = 0; h < halfEdges; ++h)
   {
+    ReportStep(gathering, h, halfEdges);
     neighbors[--offsets[origin(h)]] = destination(h);
     if (mesh.IsBorder(h))
     {
@@ -497,12 +467,10 @@ std::vector<double> FindSpacings(
   std::vector<double> spacings(mesh.Points.size(), 0.0);
   std::vector<Index> seenFrom(count, None);
   std::vector<Candidate> candidates;
+  const Progress searching = Part(progress, 0.3, 1.0);
   for (Index v = 0; v < static_cast<Index>(count); ++v)
   {
-    if (v % 65536 == 0)
-    {
-      Report(progress, static_cast<double>(v) / count);
-    }
+    ReportStep(searching, v, count);
     candidates.clear();
     seenFrom[v] = v;
     Index pass = v;
@@ -547,7 +515,7 @@ struct Parts
   std::vector<Index> Offsets{ 0 };
   std::vector<Index> Triangles; ///< part after part
 
-  Parts(const Mesh& mesh, const std::vector<char>& flags)
+  Parts(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
     : PartOf(flags.size(), None)
   {
     this->Triangles.reserve(flags.size());
@@ -563,6 +531,7 @@ struct Parts
       this->Triangles.push_back(static_cast<Index>(seed));
       for (; next < this->Triangles.size(); ++next)
       {
+        ReportStep(progress, next, flags.size());
         const Index t = this->Triangles[next];
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
@@ -583,15 +552,17 @@ struct Parts
 };
 
 /** Closes the openings that are smaller than what the tolerance bridges. */
-void CloseSmallOpenings(
-  const Mesh& mesh, const std::vector<double>& shares, std::vector<char>& keep)
+void CloseSmallOpenings(const Mesh& mesh, const std::vector<double>& shares,
+  std::vector<char>& keep, const Progress& progress)
 {
-  const Parts parts(mesh, keep);
+  const Parts parts(mesh, keep, Part(progress, 0.0, 0.5));
+  const Progress closing = Part(progress, 0.5, 1.0);
   std::vector<double> ofPart;
   for (Index part = 0; part < parts.Count(); ++part)
   {
     const Index* begin = parts.Begin(part);
     const Index* end = parts.End(part);
+    ReportStep(closing, part, parts.Count(), 256);
     const bool reachesBorder = std::any_of(begin, end, [&](Index t) {
       return mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
     });
@@ -616,9 +587,10 @@ void CloseSmallOpenings(
 }
 
 /** Takes out pieces with too few vertices to have a spacing of their own, if others have more. */
-void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
+void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Parts parts(mesh, keep);
+  const Parts parts(mesh, keep, Part(progress, 0.0, 0.5));
+  const Progress dropping = Part(progress, 0.5, 1.0);
   std::vector<char> isSmall(parts.Count(), 0);
   bool anyLarge = false;
   std::vector<Index> corners;
@@ -626,6 +598,7 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
   {
     const Index* begin = parts.Begin(part);
     const Index* end = parts.End(part);
+    ReportStep(dropping, part, parts.Count());
     if (!keep[*begin])
     {
       continue;
@@ -650,16 +623,22 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
   }
 }
 
-/** The border of the triangles to keep, as simple rings of vertices in an order of their positions.
+/**
+ * The border of the triangles to keep, as simple rings of vertices in an order of their positions.
  */
-Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
+Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
+  const Progress choosing = Part(progress, 0.0, 0.2);
+  const Progress linking = Part(progress, 0.2, 0.4);
+  const Progress tracing = Part(progress, 0.4, 0.8);
+  const Progress cutting = Part(progress, 0.8, 1.0);
   Mesh kept;
   kept.Points = mesh.Points;
   std::vector<Index> before; // the half-edge of each kept one
   std::vector<Index> after(mesh.Triangles.size(), Mesh::Border);
   for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
+    ReportStep(choosing, h, after.size());
     if (keep[Mesh::Triangle(h)])
     {
       after[h] = static_cast<Index>(before.size());
@@ -669,11 +648,12 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
   }
   for (const Index h : before)
   {
+    ReportStep(linking, kept.Twins.size(), before.size());
     kept.Twins.push_back(mesh.IsBorder(h) ? Mesh::Border : after[mesh.Twin(h)]);
   }
 
   // A walk that comes back to a vertex it has passed has closed a ring.
-  const Rings walks = TraceBorder(kept);
+  const Rings walks = TraceBorder(kept, tracing);
   std::vector<std::vector<Index>> rings;
   std::vector<Index> path;
   std::vector<char> isOnPath(mesh.Points.size(), 0);
@@ -687,6 +667,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
     };
     for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
     {
+      ReportStep(cutting, h - walks.Vertices.data(), walks.Vertices.size());
       const Index vertex = kept.Origin(*h);
       if (isOnPath[vertex])
       {
@@ -745,20 +726,18 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
 
   // The longest edge of each triangle and its spacing: the middle one of its corners' three, which
   // the spacing of a point that lies alone is not, nor of two that lie alone.
+  const Progress measuring = Part(options.Monitor, 0.6, 0.7);
   std::vector<double> ratios(count);
   std::vector<double> local(count);
   for (Index t = 0; t < count; ++t)
   {
-    if (t % 65536 == 0)
-    {
-      Report(options.Monitor, 0.6 + 0.2 * t / count);
-    }
+    ReportStep(measuring, t, count);
     const Index a = mesh.Origin(3 * t);
     const Index b = mesh.Origin(3 * t + 1);
     const Index c = mesh.Origin(3 * t + 2);
     double s[3] = { spacings[a], spacings[b], spacings[c] };
     std::sort(s, s + 3);
-    local[t] = std::min(s[1], LargestSpacingInTriangle * s[0]);
+    local[t] = std::max(LeastSpacing, std::min(s[1], LargestSpacingInTriangle * s[0]));
     ratios[t] = std::sqrt(std::max(
                   { distances.Squared(a, b), distances.Squared(b, c), distances.Squared(c, a) })) /
       local[t];
@@ -771,20 +750,22 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     result.GapTolerance = ToleranceOfTypicalTriangle * *median;
   }
 
+  const Progress deciding = Part(options.Monitor, 0.7, 0.75);
   std::vector<char> keep(count);
   for (Index t = 0; t < count; ++t)
   {
+    ReportStep(deciding, t, count);
     keep[t] = ratios[t] <= result.GapTolerance;
     // From here on the share of a square of the size that the tolerance bridges.
     const double side = result.GapTolerance * local[t];
-    ratios[t] = 0.5 *
-      distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2)) /
-      (side * side);
+    const double square = side * side;
+    const double area =
+      0.5 * distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
+    ratios[t] = square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
   }
-  CloseSmallOpenings(mesh, ratios, keep);
-  Report(options.Monitor, 0.9);
-  DropSmallPieces(mesh, keep);
-  result.Vertices = BorderOf(mesh, keep);
+  CloseSmallOpenings(mesh, ratios, keep, Part(options.Monitor, 0.75, 0.82));
+  DropSmallPieces(mesh, keep, Part(options.Monitor, 0.82, 0.89));
+  result.Vertices = BorderOf(mesh, keep, Part(options.Monitor, 0.89, 1.0));
   Report(options.Monitor, 1.0);
   return result;
 }

@@ -19,30 +19,14 @@
 namespace elevation
 {
 
-enum class Location
-{
-  Outside,
-  Inside,
-  On
-};
-
 /**
- * Where point p lies with respect to rings of points, by the even-odd rule. Exact. Linear in the
- * number of edges; for many points use RingLocator.
- */
-Location Locate(const std::vector<Point2>& points, const Rings& rings, const Point2& p);
-
-/**
- * Answers many questions of location. The edges are binned by y, so that a question looks only at
- * those about its height. n log n set-up; keeps a reference to the points.
+ * Tells which triangles lie inside rings, by the even-odd rule. The edges are binned by y, so that
+ * a question looks only at those about its height. Linear set-up; keeps a reference to the points.
  */
 class RingLocator
 {
 public:
   RingLocator(const std::vector<Point2>& points, const Rings& rings);
-
-  /** As the function above. */
-  Location Locate(const Point2& p) const;
 
   /**
    * Whether the triangle is inside, which no edge of the rings may cut. Exact, also when all its
@@ -77,23 +61,28 @@ struct BoundaryLines
   std::vector<Index> Cells;    ///< one a line; the number that messages use
 };
 
-/**
- * Joins lines to rings of mesh vertices. A line is a ring when it returns to its first point
- * (the same id or the same x,y); other lines are chained with each other where their ends meet.
- * Points are matched to the corners of the mesh's triangles by equal x,y.
- * @throws Error naming the line and the point: a point not finite or not a mesh vertex; an end
- * where no other line goes on; a ring of fewer than three points; no line at all
- */
 struct JoinedBoundary
 {
   Rings Vertices;            ///< mesh vertices
   std::vector<Index> Points; ///< beside each of Vertices: its point among the lines' points
 };
-JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines);
+
+/**
+ * Joins lines to rings of mesh vertices. A line is a ring when it returns to its first point
+ * (the same id or the same x,y); other lines are chained with each other where their ends meet. Two
+ * lines that lie on each other and close a ring of two points are left out: they cancel out.
+ * Points are matched to the corners of the mesh's triangles by equal x,y.
+ * @throws Error naming the line and the point: a point not finite or not a mesh vertex; an end
+ *         where no other line goes on; a line that is a ring of fewer than three points; no line at
+ *         all, or only lines that cancel each other
+ */
+JoinedBoundary JoinLines(
+  const Mesh& mesh, const BoundaryLines& lines, const Progress& progress = Progress());
 
 struct ExtractOptions
 {
-  /** How many local spacings an empty stretch may measure and still be surface; 0: from the data.
+  /**
+   * How many local spacings an empty stretch may measure and still be surface; 0: from the data.
    */
   double GapTolerance = 0.0;
   Progress Monitor;
@@ -118,7 +107,7 @@ struct ExtractedBoundary
  *     0 chooses 2.25 times what the typical (median) triangle of the mesh measures: 4.5 on a square
  *     lattice, about 4.6 for random points, more where points lie dense along lines.
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
- * of GapTolerance spacings; a smaller one is closed.
+ *     of GapTolerance spacings; a smaller one is closed.
  *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,
  *     unless all pieces are as small.
  * Nothing depends on the order of points or triangles. Rings are simple and start at their lowest

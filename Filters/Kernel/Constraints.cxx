@@ -5,19 +5,19 @@
 #include "Predicates.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 namespace elevation
 {
 
-Fans::Fans(const Mesh& mesh)
+Fans::Fans(const Mesh& mesh, const Progress& progress)
   : First(mesh.Points.size(), None)
   , OnBorder(mesh.Points.size(), 0)
 {
   const Index count = mesh.NumberOfHalfEdges();
   for (Index h = 0; h < count; ++h)
   {
+    ReportStep(progress, h, count);
     const Index vertex = mesh.Origin(h);
     if (!mesh.IsBorder(h))
     {
@@ -55,17 +55,10 @@ void Fans::ReplaceBorder(Index vertex, Index before, Index after)
 namespace
 {
 
-std::string NameOf(const Mesh& mesh, Index vertex)
+std::string NameOfSegment(const Mesh& mesh, const Segment& segment)
 {
-  char text[96];
-  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(vertex),
-    mesh.Points[vertex].X, mesh.Points[vertex].Y);
-  return text;
-}
-
-std::string NameOf(const Mesh& mesh, const Segment& segment)
-{
-  return "the segment from " + NameOf(mesh, segment.A) + " to " + NameOf(mesh, segment.B);
+  return "The segment from " + NameOf(mesh.Points, segment.A) + " to " +
+    NameOf(mesh.Points, segment.B);
 }
 
 /** Of points on one line: whether p lies from a in the direction of b, and not beyond b. */
@@ -210,10 +203,10 @@ private:
 class Recovery
 {
 public:
-  Recovery(Mesh& mesh, std::vector<char>& constrained)
+  Recovery(Mesh& mesh, std::vector<char>& constrained, const Progress& progress)
     : Surface(mesh)
     , Constrained(constrained)
-    , VertexFans(mesh)
+    , VertexFans(mesh, progress)
   {
   }
 
@@ -227,7 +220,7 @@ public:
         throw Error("A segment ends in " +
           (end < 0 || end >= this->Surface.NumberOfPoints()
               ? "point " + std::to_string(end) + ", which does not exist."
-              : NameOf(this->Surface, end) + ", which is not the corner of any triangle."));
+              : NameOf(this->Surface.Points, end) + ", which is not the corner of any triangle."));
       }
     }
     bool missing = false;
@@ -301,8 +294,9 @@ private:
     {
       if (this->Constrained[crossed])
       {
-        throw Error(Capital(NameOf(mesh, segment)) + " crosses the fixed edge from " +
-          NameOf(mesh, mesh.Origin(crossed)) + " to " + NameOf(mesh, mesh.Destination(crossed)) +
+        throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
+          NameOf(mesh.Points, mesh.Origin(crossed)) + " to " +
+          NameOf(mesh.Points, mesh.Destination(crossed)) +
           ". Segments may not cross; they may meet in a vertex.");
       }
       const Index beyond = mesh.Twin(crossed);
@@ -445,15 +439,9 @@ private:
 
   [[noreturn]] void ThrowLeaves(Index from, const Segment& segment) const
   {
-    throw Error(Capital(NameOf(this->Surface, segment)) +
+    throw Error(NameOfSegment(this->Surface, segment) +
       " leaves the mesh: it crosses a hole or the outside" +
-      (from == segment.A ? "." : " after " + NameOf(this->Surface, from) + "."));
-  }
-
-  static std::string Capital(std::string text)
-  {
-    text[0] = 'T';
-    return text;
+      (from == segment.A ? "." : " after " + NameOf(this->Surface.Points, from) + "."));
   }
 
   struct OldEdge
@@ -505,14 +493,12 @@ Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress)
 {
   constrained.resize(mesh.Triangles.size(), 0);
-  Recovery recovery(mesh, constrained);
+  Recovery recovery(mesh, constrained, Part(progress, 0.0, 0.5));
+  const Progress recovering = Part(progress, 0.5, 1.0);
   Index missing = 0;
   for (std::size_t i = 0; i < segments.size(); ++i)
   {
-    if (i % 256 == 0)
-    {
-      Report(progress, static_cast<double>(i) / segments.size());
-    }
+    ReportStep(recovering, i, segments.size(), 256);
     missing += recovery.Recover(segments[i]) ? 1 : 0;
   }
   return missing;

@@ -7,10 +7,10 @@
  * In: a mesh with Twins, segments between its vertices. Out: the same mesh, in which every segment
  * is an edge, or a chain of edges where it runs exactly through other vertices.
  * For each segment:
- *   1. Walk from its first end through the triangles it crosses, up to the next vertex exactly on
- * it.
+ *   1. Walk from its first end through the triangles it crosses, up to the
+ *      next vertex exactly on it.
  *   2. Take these triangles out. Every corner of the empty polygon on either side of the segment
- * sees the segment, so that one scan with a stack fills the polygon with triangles.
+ *      sees the segment, so that one scan with a stack fills the polygon with triangles.
  *   3. Flip the edges inside each polygon until they are locally Delaunay [Lawson 1977].
  *   4. Write the triangles back into the slots of those taken out.
  * Only crossed triangles change. When the mesh was (constrained) Delaunay before, it is constrained
@@ -52,7 +52,7 @@ struct Segment
 class Fans
 {
 public:
-  explicit Fans(const Mesh& mesh);
+  explicit Fans(const Mesh& mesh, const Progress& progress = Progress());
 
   /** Whether the vertex is a corner of a triangle. */
   bool IsUsed(Index vertex) const { return this->First[vertex] != None; }
@@ -137,18 +137,18 @@ SegmentStep StepAlong(const Mesh& mesh, const Fans& fans, Index from, Index to);
 /**
  * Makes every segment an edge of the mesh, or a chain of edges where it runs exactly through other
  * vertices.
- * @param[in,out] mesh         with Twins; the number of triangles is conserved, their slots are
- * reused
+ * @param[in,out] mesh         with Twins; the number of triangles is conserved,
+ *                             their slots are reused
  * @param[in]     segments     in any order and direction; the same one may come twice, they may
  *                             overlap. A segment from a vertex to itself is left out.
  * @param[in,out] constrained  one flag a half-edge: in, edges that must stay (empty: none); out, 1
- * for these and for both half-edges of every segment's edges, else 0
+ *                             for these and for both half-edges of every segment's edges, else 0
  * @param[in]     progress     may be empty
  * @return the number of segments that were not edges or chains of edges before
  * @throws Error naming the two points when a segment crosses a constrained edge (so two segments
  *         cross), leaves the mesh (crosses a hole or the outside), or ends in a point that is not
- * the corner of any triangle. The mesh then is valid, with the segments before recovered. Aborted;
- * std::bad_alloc.
+ *         the corner of any triangle. The mesh then is valid, with the segments before recovered.
+ *         Aborted; std::bad_alloc.
  */
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress = Progress());

@@ -10,6 +10,10 @@
 #include <algorithm>
 #include <cmath>
 
+#ifdef ELEVATION_HAS_AVX2
+#include <immintrin.h>
+#endif
+
 namespace elevation
 {
 namespace
@@ -123,17 +127,17 @@ Buffer<Index> OrderFromLowest(const BinGrid& grid, const Progress& progress)
   Buffer<Index> order;
   order.Resize(grid.NumberOfPoints());
   RowSorter sorter(grid);
-  const BinGrid::Level& level = grid.Levels.front();
-  for (Index row = 0; row < level.Rows; ++row)
+  const BinGrid::Layout& bins = grid.Bins;
+  for (Index row = 0; row < bins.Rows; ++row)
   {
-    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first < slots.second)
     {
       sorter.Sort(slots, grid.RowLow[row], grid.RowHigh[row], order.data() + slots.first);
     }
     if (row % 64 == 0)
     {
-      Report(progress, double(row) / level.Rows);
+      Report(progress, double(row) / bins.Rows);
     }
   }
   return order;
@@ -166,11 +170,11 @@ std::vector<Index> HullChain(const BinGrid& grid, const Buffer<Index>& order, Si
  */
 Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
 {
-  const BinGrid::Level& level = grid.Levels.front();
+  const BinGrid::Layout& bins = grid.Bins;
   Buffer<Index> extremes;
-  for (Index row = 0; row < level.Rows; ++row)
+  for (Index row = 0; row < bins.Rows; ++row)
   {
-    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first < slots.second)
     {
       const auto range =
@@ -200,16 +204,15 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
     const Point2 p = grid.PointAt(chain[edge]), q = grid.PointAt(chain[edge + 1]);
     return p.X + (q.X - p.X) * ((y - p.Y) / (q.Y - p.Y));
   };
-  const double margin = level.HasPlainBins
-    ? 1e-12 * (std::fabs(level.OriginX) + level.Columns * level.BinWidth)
-    : Infinity;
+  const double margin =
+    bins.HasPlainBins ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth) : Infinity;
   Buffer<Index> candidates;
   std::size_t leftEdge = 0, rightEdge = 0;
   const Point2 lowest = grid.PointAt(extremes[0]);
   const Point2 highest = grid.PointAt(extremes[extremes.size() - 1]);
-  for (Index row = 0; row < level.Rows; ++row)
+  for (Index row = 0; row < bins.Rows; ++row)
   {
-    const auto slots = grid.Slots(level, row, 0, level.Columns - 1);
+    const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first == slots.second)
     {
       continue;
@@ -245,7 +248,7 @@ public:
   ApexSearch(const BinGrid& grid, bool useWideInstructions)
     : Grid(grid)
     , Around(grid)
-    , UseAround(useWideInstructions && Surroundings::IsSupported())
+    , IsWide(useWideInstructions && Surroundings::IsSupported())
   {
   }
 
@@ -254,65 +257,114 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
-    this->FirstHeight = 0.0;
-    this->HasAround = this->UseAround && this->Around.Gather(slot);
+    this->Path.clear();
+    this->HasAround = this->IsWide ? this->Around.Gather(slot) : this->ChooseWindow();
   }
 
   /**
    * The apex of the Delaunay triangle on the left of the edge from the origin to b.
    * Only points above the origin are looked for: the caller knows that the origin is the lowest
-   * vertex of the triangle. The first look goes into the disc through both ends of the edge whose
-   * height over the edge is about one spacing; it grows until a point is found. The disc through
-   * the best point found is then looked at, unless it lies within what has been seen.
+   * vertex of the triangle. The points around the origin come first. Where they do not tell, the
+   * tree of boxes is entered, nearest box first; what the disc through the best point so far does
+   * not reach is passed over.
    * @return None when no point lies on the left of the edge
    */
   Index Find(Index b)
   {
     this->Target = b;
     this->B = this->Grid.PointAt(b);
-    if (this->HasAround)
+    Index best = None;
+    if (this->HasAround && this->IsWide)
     {
-      if (std::uint64_t candidates = this->Around.FindCandidates(b))
+      const Surroundings::Candidates found = this->Around.FindCandidates(b);
+      best = this->BestOf(found.Bits);
+      if (found.IsProved)
       {
-        return this->BestOf(candidates);
+        return best;
       }
     }
-    if (this->FirstHeight == 0.0)
-    {
-      this->FirstHeight = 1.3 * this->Grid.LeafLevel(this->A).Spacing;
-    }
-    this->EdgeX = this->B.X - this->A.X;
-    this->EdgeY = this->B.Y - this->A.Y;
-    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
-    this->Best = None;
 
     // A disc through both ends is told by the position s of its centre, in edge lengths along the
     // edge's left normal. On the left of the edge a disc of larger s contains every disc of smaller
     // s.
-    double height = this->FirstHeight;
-    const double length = std::sqrt(this->LengthSquared);
-    double seen = PositionOfHeight(height / length);
-    this->Look(seen);
-    while (this->Best == None && seen < Infinity)
+    this->EdgeX = this->B.X - this->A.X;
+    this->EdgeY = this->B.Y - this->A.Y;
+    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
+    this->Best = None;
+    this->SetDisc(Infinity);
+    if (best != None)
     {
-      height *= 2.0;
-      const double next = PositionOfHeight(height / length);
-      // Far beyond the edge a disc is all but the half-plane; also where the numbers end.
-      seen = next < 1e6 && next > seen ? next : Infinity;
-      this->Look(seen);
+      this->Compare(best, 1);
     }
-    if (this->Best != None)
+    if (this->HasAround && !this->IsWide && this->LookIntoWindow())
     {
-      const double needed = this->UpperPositionOfBest();
-      if (!(needed <= seen))
-      {
-        this->Look(needed);
-      }
+      return this->Best;
+    }
+    // From the node around the origin upwards, until it holds the disc.
+    const std::vector<BinGrid::Step>& path = this->PathToOrigin();
+    const BinGrid::Step* step = &path.back();
+    this->LookInto(*step->Node, ~0u);
+    while (step != path.data() && !this->HoldsDisc(*step))
+    {
+      const unsigned int others = ~(1u << step->Place);
+      --step;
+      this->LookInto(*step->Node, others);
     }
     return this->Best;
   }
 
 private:
+  using Node = BinGrid::Node;
+
+  /**
+   * Without wide instructions: the bins around the origin that are looked at first, fewer where
+   * there are many points in them. False when there are too many in any case.
+   */
+  bool ChooseWindow()
+  {
+    constexpr Index tooMany = 56;
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    const Index column = bins.Column(this->A.X);
+    this->FirstRow = bins.Row(this->A.Y);
+    for (Index reach = 2; reach > 0 && bins.HasPlainBins; --reach)
+    {
+      this->FirstColumn = std::max(column - reach, 0);
+      this->LastColumn = std::min(column + reach, bins.Columns - 1);
+      this->LastRow = std::min(this->FirstRow + reach + 1, bins.Rows - 1);
+      Index count = 0;
+      for (Index row = this->FirstRow; row <= this->LastRow; ++row)
+      {
+        const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
+        count += slots.second - slots.first;
+      }
+      if (count <= tooMany)
+      {
+        // Bounds of bins are known to a thousandth of a bin.
+        const double low = bins.OriginX + (this->FirstColumn + 0.002) * bins.BinWidth;
+        const double high = bins.OriginX + (this->LastColumn + 0.998) * bins.BinWidth;
+        const double top = bins.OriginY + (this->LastRow + 0.998) * bins.BinHeight;
+        this->Left = this->FirstColumn == 0 ? -Infinity : low - this->A.X;
+        this->Right = this->LastColumn == bins.Columns - 1 ? Infinity : high - this->A.X;
+        this->Top = this->LastRow == bins.Rows - 1 ? Infinity : top - this->A.Y;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /** Whether the best point is known, because its disc lies within the window. */
+  bool LookIntoWindow()
+  {
+    for (Index row = this->FirstRow; row <= this->LastRow; ++row)
+    {
+      const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
+      this->Compare(slots.first, slots.second - slots.first);
+    }
+    const double radius = std::sqrt(this->RadiusSquared);
+    return this->Best != None && this->CenterX - radius > this->Left &&
+      this->CenterX + radius < this->Right && this->CenterY + radius < this->Top;
+  }
+
   /** Nearly always there is one candidate; else exact comparisons decide. */
   Index BestOf(std::uint64_t candidates)
   {
@@ -327,8 +379,6 @@ private:
     }
     return best;
   }
-
-  static double PositionOfHeight(double height) { return 0.5 * (height - 0.25 / height); }
 
   /** An upper bound of s for the circle through the edge and the best point. */
   double UpperPositionOfBest() const
@@ -347,158 +397,298 @@ private:
     return position + 8.0 * UnitRoundoff * std::fabs(position) + 1e-160;
   }
 
-  /** Compares the best point with all points that the disc of position s may contain. */
-  void Look(double s)
+  /** From now on, only what the disc of position s may contain is looked at. */
+  void SetDisc(double s)
   {
-    // The disc, relative to the origin. Every bound below is widened by more than the rounding of
-    // what leads to it (at most 25 roundoffs of the radius), so no point inside is missed.
-    constexpr double slack = 64.0 * UnitRoundoff;
+    // The centre and the radius, relative to the origin, are wrong by at most 25 roundoffs of the
+    // radius; the distance of a box from the centre, when the box holds a point of the disc, by 8
+    // more. The square is widened by four times that, so no point inside is missed.
+    constexpr double slack = 256.0 * UnitRoundoff;
     const double radiusSquared = this->LengthSquared * (0.25 + s * s) * (1.0 + slack);
-    if (radiusSquared < 1e280 && radiusSquared > 1e-280)
-    {
-      const double radius = std::sqrt(radiusSquared);
-      this->CenterX = 0.5 * this->EdgeX - s * this->EdgeY;
-      this->CenterY = 0.5 * this->EdgeY + s * this->EdgeX;
-      this->RadiusSquared = radiusSquared;
-      this->Slack = slack * radius;
-      this->Top = this->A.Y + (this->CenterY + radius + this->Slack);
-    }
-    else
-    {
-      this->RadiusSquared = Infinity;
-      this->Top = Infinity;
-    }
-    // On the left of an edge that rises, x is less than that of the edge at the same y. Not made
-    // use of where the quotient might leave the range of double.
-    const double run = std::fabs(this->EdgeX);
-    const bool isTame =
-      this->EdgeY > 1e-140 && this->EdgeY < 1e140 && (run == 0.0 || (run > 1e-140 && run < 1e140));
-    this->Slope = isTame ? this->EdgeX / this->EdgeY : Infinity;
-    this->LookInto(this->Grid.Levels.front());
+    const bool isDisc = radiusSquared < 1e280 && radiusSquared > 1e-280;
+    this->RadiusSquared = isDisc ? radiusSquared : Infinity;
+    this->CenterX = isDisc ? 0.5 * this->EdgeX - s * this->EdgeY : 0.0;
+    this->CenterY = isDisc ? 0.5 * this->EdgeY + s * this->EdgeX : 0.0;
   }
 
-  void LookInto(const BinGrid::Level& level)
+  const std::vector<BinGrid::Step>& PathToOrigin()
   {
-    const Index lastRow = level.Row(this->Top);
-    for (Index row = level.Row(this->A.Y); row <= lastRow; ++row)
+    if (this->IsWide)
     {
-      const double low = std::max(this->Grid.RowLow[level.FirstRow + row] - this->A.Y, 0.0);
-      const double high = this->Grid.RowHigh[level.FirstRow + row] - this->A.Y;
-      if (!(high >= 0.0))
+      return this->Around.PathToOrigin();
+    }
+    if (this->Path.empty())
+    {
+      this->Grid.FindPath(this->A, this->Path);
+    }
+    return this->Path;
+  }
+
+  /** Whether the disc, as far as it is above the origin, lies within the box of a step. */
+  bool HoldsDisc(const BinGrid::Step& step) const
+  {
+    // The radius has been widened by more than the rounding of these differences.
+    const double radius = std::sqrt(this->RadiusSquared);
+    return this->CenterX - radius > step.LowX - this->A.X &&
+      this->CenterX + radius < step.HighX - this->A.X &&
+      this->CenterY + radius < step.HighY - this->A.Y;
+  }
+
+  /**
+   * The children of a node at the given places (as bits) in order of their distance from the edge,
+   * as long as any is reached.
+   */
+  void LookInto(const Node& node, unsigned int places)
+  {
+    double distances[Node::Places];
+    unsigned int left = this->Reached(node, distances) & places;
+    while (left != 0)
+    {
+      int nearest = -1;
+      for (int place = 0; left >> place; ++place)
       {
-        continue; // no points in the row, or none above the origin
-      }
-      double left = -Infinity, right = Infinity;
-      if (this->RadiusSquared < Infinity)
-      {
-        const double off = std::max(std::max(low - this->CenterY, this->CenterY - high), 0.0);
-        const double halfSquared = this->RadiusSquared - off * off;
-        if (halfSquared < 0.0)
+        if ((left >> place & 1) && (nearest < 0 || distances[place] < distances[nearest]))
         {
-          continue;
+          nearest = place;
         }
-        const double half = std::sqrt(halfSquared) + this->Slack;
-        left = this->CenterX - half;
-        right = this->CenterX + half;
       }
-      if (this->Slope < Infinity)
+      left &= ~(1u << nearest);
+      const double radiusSquared = this->RadiusSquared;
+      if (node.Count[nearest] > 0)
       {
-        const double edge = (this->Slope > 0.0 ? high : low) * this->Slope;
-        right = std::min(right, edge + 16.0 * UnitRoundoff * std::fabs(edge));
+        this->Compare(node.First[nearest], node.Count[nearest]);
       }
-      // Adding the origin rounds monotonically, as finding the column does: nothing is lost.
-      left += this->A.X;
-      right += this->A.X;
-      if (!(left <= right))
+      else
+      {
+        this->LookInto(this->Grid.Nodes[node.First[nearest]], ~0u);
+      }
+      if (left != 0 && this->RadiusSquared < radiusSquared)
+      {
+        left &= this->Reached(node, distances);
+      }
+    }
+  }
+
+  static double OffInterval(double x, double low, double high)
+  {
+    return std::max(std::max(low - x, x - high), 0.0);
+  }
+
+  /**
+   * The children of a node, as bits, that may hold a point inside the disc, on the left of the edge
+   * and not below the origin; and the squares of their distances from the middle of the edge.
+   */
+  unsigned int Reached(const Node& node, double* distances) const
+  {
+#ifdef ELEVATION_HAS_AVX2
+    if (this->IsWide)
+    {
+      return this->ReachedWide(node, distances);
+    }
+#endif
+    unsigned int reached = 0;
+    for (int place = 0; place < Node::Places; ++place)
+    {
+      // Differences round monotonically: relative to the origin, a box still holds its points.
+      const double highY = node.HighY[place] - this->A.Y;
+      if (!(highY >= 0.0))
       {
         continue;
       }
-      const Index firstColumn = level.Column(left);
-      const Index lastColumn = level.Column(right);
-      if (!level.HasChildren)
+      const double lowX = node.LowX[place] - this->A.X, highX = node.HighX[place] - this->A.X;
+      const double lowY = node.LowY[place] - this->A.Y;
+      const double offX = OffInterval(this->CenterX, lowX, highX);
+      const double offY = OffInterval(this->CenterY, lowY, highY);
+      if (offX * offX + offY * offY > this->RadiusSquared)
       {
-        this->Compare(this->Grid.Slots(level, row, firstColumn, lastColumn));
         continue;
       }
-      const auto& children = this->Grid.ChildrenOfRow[level.FirstRow + row];
-      Index column = firstColumn;
-      for (const BinGrid::Child& child : children)
+      // The greatest cross product over the box: so are products. The sum is below zero by more
+      // than its rounding only where all points are on the right.
+      const double up = this->EdgeX * (this->EdgeX > 0.0 ? highY : lowY);
+      const double across = -this->EdgeY * (this->EdgeY < 0.0 ? highX : lowX);
+      if (up + across + 16.0 * UnitRoundoff * (std::fabs(up) + std::fabs(across)) < -1e-290)
       {
-        if (child.Column < column)
-        {
-          continue;
-        }
-        if (child.Column > lastColumn)
-        {
-          break;
-        }
-        if (column < child.Column)
-        {
-          this->Compare(this->Grid.Slots(level, row, column, child.Column - 1));
-        }
-        this->LookInto(this->Grid.Levels[child.Level]);
-        column = child.Column + 1;
+        continue;
       }
-      if (column <= lastColumn)
+      reached |= 1u << place;
+      const double fromX = OffInterval(0.5 * this->EdgeX, lowX, highX);
+      const double fromY = OffInterval(0.5 * this->EdgeY, lowY, highY);
+      distances[place] = fromX * fromX + fromY * fromY;
+    }
+    return reached;
+  }
+
+#ifdef ELEVATION_HAS_AVX2
+  /** The same, four children at a time, operation by operation. */
+  __attribute__((target("avx2"))) unsigned int ReachedWide(
+    const Node& node, double* distances) const
+  {
+    const __m256d zero = _mm256_setzero_pd(), signBit = _mm256_set1_pd(-0.0);
+    const __m256d originX = _mm256_set1_pd(this->A.X), originY = _mm256_set1_pd(this->A.Y);
+    const __m256d centerX = _mm256_set1_pd(this->CenterX), centerY = _mm256_set1_pd(this->CenterY);
+    const __m256d middleX = _mm256_set1_pd(0.5 * this->EdgeX);
+    const __m256d middleY = _mm256_set1_pd(0.5 * this->EdgeY);
+    const __m256d edgeX = _mm256_set1_pd(this->EdgeX), minusEdgeY = _mm256_set1_pd(-this->EdgeY);
+    const __m256d radiusSquared = _mm256_set1_pd(this->RadiusSquared);
+    const __m256d roundoffs = _mm256_set1_pd(16.0 * UnitRoundoff), right = _mm256_set1_pd(-1e-290);
+    unsigned int reached = 0;
+    for (int place = 0; place < Node::Places; place += 4)
+    {
+      const __m256d lowX = _mm256_sub_pd(_mm256_loadu_pd(node.LowX + place), originX);
+      const __m256d highX = _mm256_sub_pd(_mm256_loadu_pd(node.HighX + place), originX);
+      const __m256d lowY = _mm256_sub_pd(_mm256_loadu_pd(node.LowY + place), originY);
+      const __m256d highY = _mm256_sub_pd(_mm256_loadu_pd(node.HighY + place), originY);
+      const __m256d offX = _mm256_max_pd(
+        _mm256_max_pd(_mm256_sub_pd(lowX, centerX), _mm256_sub_pd(centerX, highX)), zero);
+      const __m256d offY = _mm256_max_pd(
+        _mm256_max_pd(_mm256_sub_pd(lowY, centerY), _mm256_sub_pd(centerY, highY)), zero);
+      const __m256d up = _mm256_max_pd(_mm256_mul_pd(edgeX, lowY), _mm256_mul_pd(edgeX, highY));
+      const __m256d across =
+        _mm256_max_pd(_mm256_mul_pd(minusEdgeY, lowX), _mm256_mul_pd(minusEdgeY, highX));
+      const __m256d magnitude =
+        _mm256_add_pd(_mm256_andnot_pd(signBit, up), _mm256_andnot_pd(signBit, across));
+      const __m256d cross =
+        _mm256_add_pd(_mm256_add_pd(up, across), _mm256_mul_pd(roundoffs, magnitude));
+      const __m256d offSquared =
+        _mm256_add_pd(_mm256_mul_pd(offX, offX), _mm256_mul_pd(offY, offY));
+      const __m256d isOutside = _mm256_or_pd(_mm256_cmp_pd(offSquared, radiusSquared, _CMP_GT_OQ),
+        _mm256_cmp_pd(cross, right, _CMP_LT_OQ));
+      const __m256d isReached = _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, zero, _CMP_GE_OQ));
+      reached |= static_cast<unsigned int>(_mm256_movemask_pd(isReached)) << place;
+      const __m256d fromX = _mm256_max_pd(
+        _mm256_max_pd(_mm256_sub_pd(lowX, middleX), _mm256_sub_pd(middleX, highX)), zero);
+      const __m256d fromY = _mm256_max_pd(
+        _mm256_max_pd(_mm256_sub_pd(lowY, middleY), _mm256_sub_pd(middleY, highY)), zero);
+      _mm256_storeu_pd(
+        distances + place, _mm256_add_pd(_mm256_mul_pd(fromX, fromX), _mm256_mul_pd(fromY, fromY)));
+    }
+    return reached;
+  }
+
+  /** Four slots from this one: which of them Compare() would not pass over at once, as bits. */
+  __attribute__((target("avx2"))) unsigned int MayBeBetter(Index slot) const
+  {
+    const __m256d signBit = _mm256_set1_pd(-0.0), roundoffs = _mm256_set1_pd(UnitRoundoff);
+    const __m256d edgeX = _mm256_set1_pd(this->EdgeX), edgeY = _mm256_set1_pd(this->EdgeY);
+    const __m256d x = _mm256_loadu_pd(this->Grid.X.data() + slot);
+    const __m256d y = _mm256_loadu_pd(this->Grid.Y.data() + slot);
+    const __m256d px = _mm256_sub_pd(x, _mm256_set1_pd(this->A.X));
+    const __m256d py = _mm256_sub_pd(y, _mm256_set1_pd(this->A.Y));
+    const __m256d left = _mm256_mul_pd(edgeX, py), right = _mm256_mul_pd(edgeY, px);
+    const __m256d cross = _mm256_sub_pd(left, right);
+    const __m256d crossMagnitude =
+      _mm256_add_pd(_mm256_andnot_pd(signBit, left), _mm256_andnot_pd(signBit, right));
+    const __m256d crossError =
+      _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(8.0), roundoffs), crossMagnitude),
+        _mm256_set1_pd(1e-290));
+    const __m256d isRight = _mm256_cmp_pd(cross, _mm256_xor_pd(signBit, crossError), _CMP_LT_OQ);
+    if (this->Best == None)
+    {
+      return ~static_cast<unsigned int>(_mm256_movemask_pd(isRight)) & 15u;
+    }
+    const __m256d dotX = _mm256_mul_pd(px, _mm256_sub_pd(x, _mm256_set1_pd(this->B.X)));
+    const __m256d dotY = _mm256_mul_pd(py, _mm256_sub_pd(y, _mm256_set1_pd(this->B.Y)));
+    const __m256d dotMagnitude =
+      _mm256_add_pd(_mm256_andnot_pd(signBit, dotX), _mm256_andnot_pd(signBit, dotY));
+    const __m256d difference =
+      _mm256_sub_pd(_mm256_mul_pd(_mm256_add_pd(dotX, dotY), _mm256_set1_pd(this->BestCross)),
+        _mm256_mul_pd(_mm256_set1_pd(this->BestDot), cross));
+    const __m256d magnitude =
+      _mm256_add_pd(_mm256_mul_pd(dotMagnitude, _mm256_set1_pd(this->BestCrossMagnitude)),
+        _mm256_mul_pd(_mm256_set1_pd(this->BestDotMagnitude), crossMagnitude));
+    const __m256d error =
+      _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(16.0), roundoffs), magnitude),
+        _mm256_set1_pd(1e-170));
+    // Worse only counts where cross is certain; else Compare() asks for the side first.
+    const __m256d isWorse = _mm256_and_pd(_mm256_cmp_pd(cross, crossError, _CMP_GT_OQ),
+      _mm256_and_pd(_mm256_cmp_pd(error, _mm256_set1_pd(1e140), _CMP_LT_OQ),
+        _mm256_cmp_pd(difference, error, _CMP_GT_OQ)));
+    return ~static_cast<unsigned int>(_mm256_movemask_pd(_mm256_or_pd(isRight, isWorse))) & 15u;
+  }
+#endif
+
+  /** Compares a stretch of slots with the best so far; the disc shrinks when one is better. */
+  void Compare(Index first, Index count)
+  {
+    bool isChanged = false;
+#ifdef ELEVATION_HAS_AVX2
+    if (this->IsWide)
+    {
+      for (Index slot = first; slot < first + count; slot += 4)
       {
-        this->Compare(this->Grid.Slots(level, row, column, lastColumn));
+        unsigned int left = this->MayBeBetter(slot);
+        for (int lane = 0; left >> lane && slot + lane < first + count; ++lane)
+        {
+          isChanged = (left >> lane & 1 && this->CompareOne(slot + lane)) || isChanged;
+        }
       }
+    }
+    else
+#endif
+    {
+      for (Index slot = first; slot < first + count; ++slot)
+      {
+        isChanged = this->CompareOne(slot) || isChanged;
+      }
+    }
+    if (isChanged)
+    {
+      this->SetDisc(this->UpperPositionOfBest());
     }
   }
 
   /**
-   * Takes each point on the left of the edge that beats the best so far. With dot = (p-a).(p-b) and
-   * cross = (b-a)x(p-a), the quotient dot / cross is the cotangent of the angle under which p sees
-   * the edge: of two points, the one with the smaller quotient lies inside the other's circle.
+   * Takes the point if it lies on the left of the edge and beats the best so far. With
+   * dot = (p-a).(p-b) and cross = (b-a)x(p-a), the quotient dot / cross is the cotangent of the
+   * angle under which p sees the edge: of two points, the one with the smaller quotient lies inside
+   * the other's circle.
    */
-  void Compare(std::pair<Index, Index> slots)
+  bool CompareOne(Index slot)
   {
-    const double* const xs = this->Grid.X.data();
-    const double* const ys = this->Grid.Y.data();
-    for (Index slot = slots.first; slot < slots.second; ++slot)
+    const Point2 p = this->Grid.PointAt(slot);
+    const double px = p.X - this->A.X, py = p.Y - this->A.Y;
+    const double left = this->EdgeX * py, right = this->EdgeY * px;
+    const double cross = left - right;
+    const double crossMagnitude = std::fabs(left) + std::fabs(right);
+    const double crossError = 8.0 * UnitRoundoff * crossMagnitude + 1e-290;
+    if (!(cross > crossError)) // also when it is not a number
     {
-      const double px = xs[slot] - this->A.X, py = ys[slot] - this->A.Y;
-      const double left = this->EdgeX * py, right = this->EdgeY * px;
-      const double cross = left - right;
-      const double crossMagnitude = std::fabs(left) + std::fabs(right);
-      const double crossError = 8.0 * UnitRoundoff * crossMagnitude + 1e-290;
-      if (!(cross > crossError)) // also when it is not a number
+      if (cross < -crossError || slot == this->Origin || slot == this->Target ||
+        Orientation(this->A, this->B, p) != Positive)
       {
-        if (cross < -crossError || slot == this->Origin || slot == this->Target ||
-          Orientation(this->A, this->B, this->Grid.PointAt(slot)) != Positive)
-        {
-          continue;
-        }
+        return false;
       }
-      const double dotX = px * (xs[slot] - this->B.X), dotY = py * (ys[slot] - this->B.Y);
-      const double dot = dotX + dotY;
-      const double dotMagnitude = std::fabs(dotX) + std::fabs(dotY);
-      if (this->Best != None)
-      {
-        const double difference = dot * this->BestCross - this->BestDot * cross;
-        // 10 roundoffs cover the rounding, 1e-170 what underflow may lose as long as no factor is
-        // above 1e150; when one is, the product is too large or not a number, and the sign is left
-        // to the exact predicate.
-        const double error = 16.0 * UnitRoundoff *
-            (dotMagnitude * this->BestCrossMagnitude + this->BestDotMagnitude * crossMagnitude) +
-          1e-170;
-        const bool isClear = error < 1e140;
-        if (isClear && difference > error)
-        {
-          continue;
-        }
-        if (!(isClear && difference < -error) &&
-          (slot == this->Best || !this->IsBetter(slot, this->Best)))
-        {
-          continue;
-        }
-      }
-      this->Best = slot;
-      this->BestCross = cross;
-      this->BestCrossMagnitude = crossMagnitude;
-      this->BestDot = dot;
-      this->BestDotMagnitude = dotMagnitude;
     }
+    const double dotX = px * (p.X - this->B.X), dotY = py * (p.Y - this->B.Y);
+    const double dot = dotX + dotY;
+    const double dotMagnitude = std::fabs(dotX) + std::fabs(dotY);
+    if (this->Best != None)
+    {
+      const double difference = dot * this->BestCross - this->BestDot * cross;
+      // 10 roundoffs cover the rounding, 1e-170 what underflow may lose as long as no factor is
+      // above 1e150; when one is, the product is too large or not a number, and the sign is left
+      // to the exact predicate.
+      const double error = 16.0 * UnitRoundoff *
+          (dotMagnitude * this->BestCrossMagnitude + this->BestDotMagnitude * crossMagnitude) +
+        1e-170;
+      const bool isClear = error < 1e140;
+      if (isClear && difference > error)
+      {
+        return false;
+      }
+      if (!(isClear && difference < -error) &&
+        (slot == this->Best || !this->IsBetter(slot, this->Best)))
+      {
+        return false;
+      }
+    }
+    this->Best = slot;
+    this->BestCross = cross;
+    this->BestCrossMagnitude = crossMagnitude;
+    this->BestDot = dot;
+    this->BestDotMagnitude = dotMagnitude;
+    return true;
   }
 
   /**
@@ -527,17 +717,22 @@ private:
 
   const BinGrid& Grid;
   Surroundings Around;
-  const bool UseAround;
+  const bool IsWide;
   bool HasAround = false;
+
+  std::vector<BinGrid::Step> Path; ///< to A, where there are no wide instructions; or empty
+
+  // The window where there are no wide instructions, its bounds relative to A.
+  Index FirstRow = 0, LastRow = 0, FirstColumn = 0, LastColumn = 0;
+  double Left = 0.0, Right = 0.0, Top = 0.0;
 
   // The edge.
   Index Origin = None, Target = None;
   Point2 A{ 0.0, 0.0 }, B{ 0.0, 0.0 };
-  double FirstHeight = 0.0;
-  double EdgeX = 0.0, EdgeY = 0.0, LengthSquared = 0.0, Slope = 0.0;
+  double EdgeX = 0.0, EdgeY = 0.0, LengthSquared = 0.0;
 
-  // What is looked at: relative to A, but for Top.
-  double CenterX = 0.0, CenterY = 0.0, RadiusSquared = 0.0, Slack = 0.0, Top = 0.0;
+  // The disc that is looked at, relative to A.
+  double CenterX = 0.0, CenterY = 0.0, RadiusSquared = 0.0;
 
   // The best point so far.
   Index Best = None;

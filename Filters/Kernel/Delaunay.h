@@ -10,8 +10,8 @@
  *   2. Find the convex hull; its edges open the first fans.
  *   3. Grow: the vertices, from the lowest up, complete the fan of triangles of which they are
  *      the lowest vertex. The apex over an edge is found by voxel traversal search [Nguyen]: the
- *      grid is visited from the edge outwards where an equilateral triangle would have its apex,
- *      and then the rest of the best triangle's circle, so that the circle is proved empty.
+ *      grid is visited from the edge outwards, as far as the best triangle's circle reaches, so
+ *      that the circle is proved empty.
  * A triangle told to its two upper vertices opens or closes their fans, so that the edge pool of
  * the published method has two entries a vertex and every triangle is looked for once.
  *
@@ -20,8 +20,9 @@
  * fan of its lowest vertex (by y, then x), so the set of triangles depends on the positions alone.
  * Triangles come in the order of their lowest vertices, each starting with its lowest vertex.
  *
- * Cost: expected linear in the number of points for evenly spread points; sorting rows of the grid
- * adds n log(points in a row).
+ * Cost: expected linear in the number of points for evenly spread points, and n log n where density
+ * is uneven; sorting rows of the grid adds n log(points in a row). Only k points on one circle, or
+ * within roundoff of it, cost k * k.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  * [Fang & Piegl 1993] Delaunay triangulation using a uniform grid, IEEE CG&A 13(3).

@@ -57,7 +57,8 @@ struct FillOptions
   Index MaximumHoleEdges = 0;
   /** Distance of new points; 0: the mean length of the hole's edges. */
   double Spacing = 0.0;
-  /** New x,y are rounded to float (before they are triangulated, so that the result stays exact).
+  /**
+   * New x,y are rounded to float (before they are triangulated, so that the result stays exact).
    */
   bool SinglePrecision = false;
   /** A hole that would take more new points than are left of this number fails. */
@@ -71,8 +72,9 @@ struct HoleReport
   Index NumberOfEdges = 0; ///< of the rim and the islands
   double Size = 0.0;       ///< diagonal of the rim's bounding box
   double Perimeter = 0.0;  ///< length of all edges
-  double Area = 0.0;       ///< inside the rim, outside the islands
-  double Spacing = 0.0;    ///< the one used
+  /** Inside the rim, outside the islands; NaN when Size is above 1e150 or below 1e-150. */
+  double Area = 0.0;
+  double Spacing = 0.0; ///< the one used
   Index NumberOfInsertedPoints = 0;
   std::string Reason; ///< of Failed, a sentence without the hole's name
 };

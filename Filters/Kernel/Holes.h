@@ -8,9 +8,9 @@
  * In: a mesh with counter-clockwise triangles and Twins. Out: its border walks (Mesh.h), and which
  * of them bound which hole. The passes:
  *   1. Trace the border. Each walk has one empty region of the plane on its right.
- *   2. Turn: at the lowest vertex of a walk the empty wedge opens downwards (the walk is the
- * outside of a component) or not (it is the rim of a hole). A pinched walk has several wedges
- * there.
+ *   2. Turn: at the lowest vertex of a walk the empty wedge opens downwards (the walk
+ *      is the outside of a component) or not (it is the rim of a hole). A pinched walk
+ *      has several wedges there.
  *   3. Sweep the plane upwards over all border edges, kept from left to right. Seen from the left,
  *      edges must enter the surface and leave it in turn, and must not cross. The edge left of an
  *      outside's lowest vertex tells which empty region that component lies in: none, or a hole, of

@@ -349,7 +349,8 @@ bool AreWithin(std::initializer_list<Point2> points, double least, double greate
   return true;
 }
 
-/** Whether a difference is an integer so small that products of four of them are exact in double.
+/**
+ * Whether a difference is an integer so small that products of four of them are exact in double.
  */
 inline bool IsSmallInteger(double difference)
 {

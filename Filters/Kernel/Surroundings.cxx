@@ -7,24 +7,19 @@
 #include <algorithm>
 #include <cmath>
 
-#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-#define ELEVATION_HAS_AVX2
+#ifdef ELEVATION_HAS_AVX2
 #include <immintrin.h>
 #endif
 
 namespace elevation
 {
-namespace
-{
-constexpr Index ColumnsToEachSide = 2;
-constexpr Index RowsAbove = 3;
-constexpr float Infinity = std::numeric_limits<float>::infinity();
-} // namespace
-
 #ifdef ELEVATION_HAS_AVX2
 
 namespace
 {
+constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
+constexpr float Infinity = std::numeric_limits<float>::infinity();
+
 __attribute__((target("avx2,fma"), always_inline)) inline __m256 EightRelative(
   const double* values, __m256d from)
 {
@@ -40,31 +35,39 @@ bool Surroundings::IsSupported()
   return isSupported;
 }
 
-__attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
+bool Surroundings::Gather(Index origin)
 {
   this->Count = 0;
   this->Origin = origin;
-  const BinGrid::Level& level = this->Grid.Levels.front();
-  if (!level.HasPlainBins)
+  this->Path.clear();
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  if (bins.HasPlainBins)
   {
-    return false;
+    const Index row = bins.Row(this->Grid.Y[origin]), column = bins.Column(this->Grid.X[origin]);
+    if (this->GatherBins(column, row, 2, 3) || this->GatherBins(column, row, 1, 2) ||
+      this->GatherBins(column, row, 1, 1))
+    {
+      return true;
+    }
   }
-  const double originX = this->Grid.X[origin], originY = this->Grid.Y[origin];
-  const Index row = level.Row(originY), column = level.Column(originX);
-  const Index firstColumn = std::max(column - ColumnsToEachSide, 0);
-  const Index lastColumn = std::min(column + ColumnsToEachSide, level.Columns - 1);
-  const Index lastRow = std::min(row + RowsAbove, level.Rows - 1);
+  return this->GatherBox();
+}
+
+__attribute__((target("avx2,fma"))) bool Surroundings::GatherBins(
+  Index column, Index row, Index columnsToEachSide, Index rowsAbove)
+{
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  const double originX = this->Grid.X[this->Origin], originY = this->Grid.Y[this->Origin];
+  const Index firstColumn = std::max(column - columnsToEachSide, 0);
+  const Index lastColumn = std::min(column + columnsToEachSide, bins.Columns - 1);
+  const Index lastRow = std::min(row + rowsAbove, bins.Rows - 1);
 
   const __m256d x0 = _mm256_set1_pd(originX), y0 = _mm256_set1_pd(originY);
   const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   int count = 0;
   for (Index r = row; r <= lastRow; ++r)
   {
-    if (level.HasChildren && !this->Grid.ChildrenOfRow[level.FirstRow + r].empty())
-    {
-      return false;
-    }
-    const auto slots = this->Grid.Slots(level, r, firstColumn, lastColumn);
+    const auto slots = this->Grid.Slots(r, firstColumn, lastColumn);
     if (count + (slots.second - slots.first) > Capacity)
     {
       return false;
@@ -86,22 +89,155 @@ __attribute__((target("avx2,fma"))) bool Surroundings::Gather(Index origin)
   this->Count = count;
 
   // The bounds of the bins as BinGrid finds them are those below but for rounding, which
-  // BinGrid::Level::HasPlainBins bounds by a thousandth of a bin.
-  const double width = level.BinWidth, height = level.BinHeight;
+  // BinGrid::Layout::HasPlainBins bounds by a thousandth of a bin.
+  const double width = bins.BinWidth, height = bins.BinHeight;
   const double margin = 0.002;
-  const double left = originX - (level.OriginX + (firstColumn + margin) * width);
-  const double right = (level.OriginX + (lastColumn + 1 - margin) * width) - originX;
-  const double top = (level.OriginY + (lastRow + 1 - margin) * height) - originY;
+  const double left = originX - (bins.OriginX + (firstColumn + margin) * width);
+  const double right = (bins.OriginX + (lastColumn + 1 - margin) * width) - originX;
+  const double top = (bins.OriginY + (lastRow + 1 - margin) * height) - originY;
   this->Left = firstColumn == 0 ? Infinity : static_cast<float>(left);
-  this->Right = lastColumn == level.Columns - 1 ? Infinity : static_cast<float>(right);
-  this->Top = lastRow == level.Rows - 1 ? Infinity : static_cast<float>(top);
-  const double across = (2 * ColumnsToEachSide + 1) * width, up = (RowsAbove + 1) * height;
+  this->Right = lastColumn == bins.Columns - 1 ? Infinity : static_cast<float>(right);
+  this->Top = lastRow == bins.Rows - 1 ? Infinity : static_cast<float>(top);
+  const double across = (2 * columnsToEachSide + 1) * width, up = (rowsAbove + 1) * height;
   this->ReachSquared = static_cast<float>(across * across + up * up);
   this->Margin = static_cast<float>(0.01 * std::min(width, height));
   return true;
 }
 
-__attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(Index b) const
+/** As BinGrid::FindPath(), four boxes at a time. */
+__attribute__((target("avx2,fma"))) void Surroundings::FindPath()
+{
+  const Point2 p = this->Grid.PointAt(this->Origin);
+  const __m256d x = _mm256_set1_pd(p.X), y = _mm256_set1_pd(p.Y);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const BinGrid::Node* node = &this->Grid.Nodes[this->Grid.Nodes.size() - 1];
+  this->Path.assign(1, { node, 0, -infinity, infinity, -infinity, infinity });
+  for (;;)
+  {
+    int place = 0;
+    for (int half = 0; half < BinGrid::Node::Places; half += 4)
+    {
+      const __m256d holdsX =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node->LowX + half), x, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node->HighX + half), x, _CMP_GE_OQ));
+      const __m256d holdsY =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node->LowY + half), y, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node->HighY + half), y, _CMP_GE_OQ));
+      place |= _mm256_movemask_pd(_mm256_and_pd(holdsX, holdsY)) << half;
+    }
+    place = __builtin_ctz(place);
+    if (node->Count[place] > 0)
+    {
+      return;
+    }
+    const BinGrid::Node* const child = &this->Grid.Nodes[node->First[place]];
+    this->Path.push_back({ child, place, node->LowX[place], node->HighX[place], node->LowY[place],
+      node->HighY[place] });
+    node = child;
+  }
+}
+
+bool Surroundings::GatherBox()
+{
+  const Point2 p = this->Grid.PointAt(this->Origin);
+  this->FindPath();
+  const BinGrid::Step& last = this->Path.back();
+  const double size = last.Node->Size, width = last.HighX - last.LowX,
+               height = last.HighY - last.LowY;
+  for (double points : { PointsInBox, 0.5 * PointsInBox })
+  {
+    // The side of a square with so many points; where points lie in a strip narrower than that, the
+    // length of it.
+    double side = std::sqrt(points / size * width * height);
+    if (!(side < std::min(width, height)))
+    {
+      side = points / size * std::max(width, height);
+    }
+    if (!(side > 1e-14 && side < 1e14)) // single precision holds squares
+    {
+      return false;
+    }
+    const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
+    const BinGrid::Step* top = &last;
+    while (
+      !(top->LowX < lowX && highX < top->HighX && highY < top->HighY) && top != this->Path.data())
+    {
+      --top;
+    }
+    if (this->GatherBox(*top->Node, lowX, highX, highY))
+    {
+      this->Left = static_cast<float>(0.999999 * (p.X - lowX));
+      this->Right = static_cast<float>(0.999999 * (highX - p.X));
+      this->Top = static_cast<float>(0.999999 * (highY - p.Y));
+      this->ReachSquared = static_cast<float>(3.0 * side * side);
+      this->Margin = static_cast<float>(0.002 * side);
+      return true;
+    }
+  }
+  return false;
+}
+
+/** All points of the box below a node, not below the origin; false when they are too many. */
+__attribute__((target("avx2,fma"))) bool Surroundings::GatherBox(
+  const BinGrid::Node& top, double lowX, double highX, double highY)
+{
+  const Point2 p = this->Grid.PointAt(this->Origin);
+  const __m256d boxLowX = _mm256_set1_pd(lowX), boxHighX = _mm256_set1_pd(highX);
+  const __m256d boxLowY = _mm256_set1_pd(p.Y), boxHighY = _mm256_set1_pd(highY);
+  const BinGrid::Node* stack[64];
+  stack[0] = &top;
+  int height = 1;
+  int count = 0;
+  while (height > 0)
+  {
+    const BinGrid::Node& node = *stack[--height];
+    for (int half = 0; half < BinGrid::Node::Places; half += 4)
+    {
+      const __m256d isWithinX =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowX + half), boxHighX, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node.HighX + half), boxLowX, _CMP_GE_OQ));
+      const __m256d isWithinY =
+        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node.LowY + half), boxHighY, _CMP_LE_OQ),
+          _mm256_cmp_pd(_mm256_loadu_pd(node.HighY + half), boxLowY, _CMP_GE_OQ));
+      for (int within = _mm256_movemask_pd(_mm256_and_pd(isWithinX, isWithinY)); within;
+           within &= within - 1)
+      {
+        const int place = half + __builtin_ctz(within);
+        if (node.Count[place] == 0)
+        {
+          if (height == 64)
+          {
+            return false;
+          }
+          stack[height++] = &this->Grid.Nodes[node.First[place]];
+          continue;
+        }
+        const Index end = node.First[place] + node.Count[place];
+        for (Index slot = node.First[place]; slot < end; ++slot)
+        {
+          // Written wherever it is, and kept when within; there is room for one too many.
+          const double x = this->Grid.X[slot], y = this->Grid.Y[slot];
+          this->X[count] = static_cast<float>(x - p.X);
+          this->Y[count] = static_cast<float>(y - p.Y);
+          this->Slots[count] = slot;
+          count += (x >= lowX) & (x <= highX) & (y >= p.Y) & (y <= highY);
+          if (count > Capacity)
+          {
+            return false;
+          }
+        }
+      }
+    }
+  }
+  const __m256 nothing = _mm256_set1_ps(std::numeric_limits<float>::quiet_NaN());
+  _mm256_storeu_ps(this->X + count, nothing);
+  _mm256_storeu_ps(this->Y + count, nothing);
+  this->Count = count;
+  return true;
+}
+
+__attribute__((target("avx2,fma"))) Surroundings::Candidates Surroundings::FindCandidates(
+  Index b) const
 {
   const Point2 a = this->Grid.PointAt(this->Origin);
   const Point2 end = this->Grid.PointAt(b);
@@ -109,7 +245,7 @@ __attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(I
   const float lengthSquared = bx * bx + by * by;
   if (!(lengthSquared <= this->ReachSquared))
   {
-    return 0;
+    return {};
   }
   // Points and edge are shorter than the reach D. With u = 2^-24, cross is then wrong by at most
   // 4 u D^2, and dot by at most 12 u D^2.
@@ -138,7 +274,7 @@ __attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(I
       if (slot != b && slot != this->Origin &&
         Orientation(a, end, this->Grid.PointAt(slot)) == Positive)
       {
-        return 0;
+        return {};
       }
     }
     // quotient +- error / cross (1 + |quotient|): cross is wrong by less than a sixteenth here,
@@ -157,26 +293,23 @@ __attribute__((target("avx2,fma"))) std::uint64_t Surroundings::FindCandidates(I
   const float upper = _mm_cvtss_f32(half);
   if (!(upper < Infinity))
   {
-    return 0;
+    return {};
   }
 
   // The disc of that quotient, within the window?
   const float s = 0.5f * upper;
   const float radius = std::sqrt(lengthSquared * (0.25f + s * s)) * 1.0001f + this->Margin;
   const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
-  if (!(centerX - radius > -this->Left && centerX + radius < this->Right &&
-        centerY + radius < this->Top))
-  {
-    return 0;
-  }
+  Candidates found;
+  found.IsProved = centerX - radius > -this->Left && centerX + radius < this->Right &&
+    centerY + radius < this->Top;
   const __m256 uppers = _mm256_set1_ps(upper);
-  std::uint64_t candidates = 0;
   for (int i = 0; i < vectors; ++i)
   {
     const int within = _mm256_movemask_ps(_mm256_cmp_ps(lower[i], uppers, _CMP_LE_OQ));
-    candidates |= static_cast<std::uint64_t>(within) << (8 * i);
+    found.Bits |= static_cast<std::uint64_t>(within) << (8 * i);
   }
-  return candidates;
+  return found;
 }
 
 #else
@@ -191,9 +324,11 @@ bool Surroundings::Gather(Index)
   return false;
 }
 
-std::uint64_t Surroundings::FindCandidates(Index) const
+void Surroundings::FindPath() {}
+
+Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {
-  return 0;
+  return {};
 }
 
 #endif

@@ -11,7 +11,8 @@
  * matters.
  *
  * The proof. Around the vertex all points of five columns and four rows of bins are gathered: the
- * window. For each point, an interval is computed that holds the quotient by which apexes are
+ * window. Where these are too many, it is three columns and less rows; in full bins, a box in which
+ * the density thereabouts promises about fifteen points. For each point, an interval is computed that holds the quotient by which apexes are
  * compared (see ApexSearch in Delaunay.cxx), with the rounding of single precision bounded by the
  * size of the window. Points whose interval begins above the least upper end are not the apex. The
  * disc that belongs to that end holds the apex's empty circle; if it lies within the window above
@@ -24,6 +25,11 @@
 #define elevation_Surroundings_h
 
 #include "BinGrid.h"
+
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+/** Defined where functions can be compiled for processors with AVX2 among others that are not. */
+#define ELEVATION_HAS_AVX2
+#endif
 
 namespace elevation
 {
@@ -41,22 +47,43 @@ public:
 
   /**
    * Gathers the window of a vertex.
-   * @return false when there is none: density so uneven there that bins are subdivided, or too many
-   * points
+   * @return false when there is none: too many points in each that was tried
    */
   bool Gather(Index origin);
 
+  struct Candidates
+  {
+    std::uint64_t Bits = 0; ///< numbers that SlotOf takes
+    /** Whether one of them is the apex; otherwise one is the best point of the window, if any. */
+    bool IsProved = false;
+  };
+
   /**
-   * The points that may be the apex over the edge from the vertex to b, as bits of an Index into
-   * SlotOf. Points all but on the edge's line are told apart exactly.
-   * @return 0 when it cannot tell
+   * The points that may be the apex over the edge from the vertex to b. Points all but on the
+   * edge's line are told apart exactly.
+   * @return none when it cannot tell
    */
-  std::uint64_t FindCandidates(Index b) const;
+  Candidates FindCandidates(Index b) const;
+
+  /** The path through the tree to the vertex, as BinGrid::FindPath() finds it. */
+  const std::vector<BinGrid::Step>& PathToOrigin()
+  {
+    if (this->Path.empty())
+    {
+      this->FindPath();
+    }
+    return this->Path;
+  }
 
   Index SlotOf(int candidate) const { return this->Slots[candidate]; }
 
 private:
   static constexpr int Capacity = 56; // and one more vector may be written beyond
+
+  bool GatherBins(Index column, Index row, Index columnsToEachSide, Index rowsAbove);
+  void FindPath();
+  bool GatherBox();
+  bool GatherBox(const BinGrid::Node& top, double lowX, double highX, double highY);
 
   const BinGrid& Grid;
   alignas(32) float X[Capacity + 8];
@@ -64,10 +91,11 @@ private:
   Index Slots[Capacity + 8];
   int Count = 0;
   Index Origin = None;
+  std::vector<BinGrid::Step> Path; ///< of the origin; empty when it was not needed
   // How far the window certainly reaches from the vertex; infinite at the border of the grid.
   float Left = 0.0f, Right = 0.0f, Top = 0.0f;
   float ReachSquared = 0.0f; ///< squared diagonal of the window
-  float Margin = 0.0f;       ///< a hundredth of a bin
+  float Margin = 0.0f;       ///< what a disc must keep from the window's border
 };
 
 } // namespace elevation

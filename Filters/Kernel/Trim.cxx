@@ -5,7 +5,6 @@
 #include "Constraints.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 namespace elevation
@@ -13,14 +12,6 @@ namespace elevation
 
 namespace
 {
-
-std::string NameOf(const Mesh& mesh, Index vertex)
-{
-  char text[96];
-  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(vertex),
-    mesh.Points[vertex].X, mesh.Points[vertex].Y);
-  return text;
-}
 
 std::vector<Segment> SegmentsOf(const Rings& rings)
 {
@@ -39,20 +30,24 @@ std::vector<Segment> SegmentsOf(const Rings& rings)
 }
 
 /** One flag a half-edge: whether the segments run along its edge an odd number of times. */
-std::vector<char> MarkEdges(const Mesh& mesh, const std::vector<Segment>& segments)
+std::vector<char> MarkEdges(
+  const Mesh& mesh, const std::vector<Segment>& segments, const Progress& progress)
 {
-  const Fans fans(mesh);
+  const Fans fans(mesh, Part(progress, 0.0, 0.5));
+  const Progress marking = Part(progress, 0.5, 1.0);
   std::vector<char> isOdd(mesh.Triangles.size(), 0);
+  std::size_t done = 0;
   for (const Segment& segment : segments)
   {
+    ReportStep(marking, done++, segments.size());
     Index vertex = segment.A;
     while (vertex != segment.B)
     {
       const SegmentStep step = StepAlong(mesh, fans, vertex, segment.B);
       if (step.HalfEdge == None)
       {
-        throw Error("The boundary's edge from " + NameOf(mesh, segment.A) + " to " +
-          NameOf(mesh, segment.B) +
+        throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
+          NameOf(mesh.Points, segment.B) +
           " is not an edge of the mesh. Turn RecoverBoundary on, or triangulate with it.");
       }
       isOdd[step.HalfEdge] ^= 1;
@@ -80,13 +75,12 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
     result.NumberOfRecoveredEdges =
       RecoverSegments(mesh, segments, constrained, Part(options.Monitor, 0.0, 0.4));
   }
-  Report(options.Monitor, 0.4);
-  const std::vector<char> isOdd = MarkEdges(mesh, segments);
-  Report(options.Monitor, 0.6);
+  const std::vector<char> isOdd = MarkEdges(mesh, segments, Part(options.Monitor, 0.4, 0.6));
 
   const RingLocator locator(mesh.Points, boundary);
   constexpr char unknown = 2;
   result.IsOutward.assign(count, unknown);
+  const Progress walking = Part(options.Monitor, 0.6, 1.0);
   std::vector<Index> next;
   Index done = 0;
   for (Index seed = 0; seed < count; ++seed)
@@ -104,10 +98,7 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
       const Index t = next.back();
       next.pop_back();
       result.NumberOfOutwardTriangles += result.IsOutward[t];
-      if (++done % 65536 == 0)
-      {
-        Report(options.Monitor, 0.6 + 0.4 * done / count);
-      }
+      ReportStep(walking, ++done, count);
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const Index other = mesh.IsBorder(h) ? None : Mesh::Triangle(mesh.Twin(h));

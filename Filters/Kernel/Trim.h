@@ -7,7 +7,7 @@
  * In: a mesh with Twins, rings of its vertices. Out: one flag a triangle. The passes:
  *   1. Recover the edges of the rings that the mesh lacks (Constraints.h).
  *   2. Count, for every edge of the mesh, how many times the rings run along it: passing over an
- * edge with an odd count leads from inside to outside, or back.
+ *      edge with an odd count leads from inside to outside, or back.
  *   3. Walk each connected part of the mesh from one of its triangles, whose own place is found by
  *      the even-odd rule (Boundary.h).
  *
@@ -44,7 +44,7 @@ struct TrimResult
  * @param[in,out] mesh      with Twins; changed only by recovery (number of triangles conserved)
  * @param[in]     boundary  rings of vertices of the mesh, closed from last to first
  * @throws Error naming the two points of an edge: of two that cross; that is missing, or leads out
- * of the mesh or over one of its holes; or when the boundary encloses no triangle. Aborted.
+ *         of the mesh or over one of its holes; or when the boundary encloses no triangle. Aborted.
  */
 TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options);
 

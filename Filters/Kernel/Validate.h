@@ -11,7 +11,8 @@
  *   Manifold      an edge has at most two triangles, which run it in opposite ways.
  *   EmptyCircle   no vertex opposite an edge lies inside the circle of the edge's other triangle
  *                 (locally Delaunay; with Hull it is Delaunay everywhere). Constrained edges are
- * exempt. TieRule       co-circular vertices are cut into the fan of their lowest (by y, then x).
+ *                 exempt.
+ *   TieRule       co-circular vertices are cut into the fan of their lowest (by y, then x).
  *   Hull          the border is one convex loop, counter-clockwise, so the convex hull is covered.
  *   Vertices      every point that is not listed as unused is a vertex.
  *   Overlap       border edges do not cross, and nest so that no place is covered twice.

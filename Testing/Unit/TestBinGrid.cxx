@@ -13,25 +13,87 @@ using namespace testing_points;
 
 namespace
 {
-/** Every point is in exactly one slot, and found through the bin of its coordinates. */
+struct Box
+{
+  double LowX, HighX, LowY, HighY;
+};
+
+/**
+ * Walks the tree: each slot is in one leaf, boxes are those of their points, boxes of siblings have
+ * no point in common, and a leaf is no larger than promised.
+ */
+Box ExpectTree(const BinGrid& grid, Index nodeId, std::vector<int>& visits)
+{
+  const BinGrid::Node& node = grid.Nodes[nodeId];
+  Box whole{ INFINITY, -INFINITY, INFINITY, -INFINITY };
+  for (int place = 0; place < BinGrid::Node::Places; ++place)
+  {
+    const Box box{ node.LowX[place], node.HighX[place], node.LowY[place], node.HighY[place] };
+    if (!(box.LowX <= box.HighX))
+    {
+      EXPECT_EQ(node.Count[place], 0);
+      continue;
+    }
+    Box expected{ INFINITY, -INFINITY, INFINITY, -INFINITY };
+    if (node.Count[place] == 0)
+    {
+      EXPECT_LT(node.First[place], nodeId);
+      expected = ExpectTree(grid, node.First[place], visits);
+    }
+    EXPECT_LE(node.Count[place], 32);
+    for (Index i = 0; i < node.Count[place]; ++i)
+    {
+      const Point2 p = grid.PointAt(node.First[place] + i);
+      ++visits[node.First[place] + i];
+      expected = { std::min(expected.LowX, p.X), std::max(expected.HighX, p.X),
+        std::min(expected.LowY, p.Y), std::max(expected.HighY, p.Y) };
+    }
+    EXPECT_TRUE(box.LowX == expected.LowX && box.HighX == expected.HighX &&
+      box.LowY == expected.LowY && box.HighY == expected.HighY);
+    for (int other = 0; other < place; ++other)
+    {
+      EXPECT_TRUE(node.LowX[other] > box.HighX || node.HighX[other] < box.LowX ||
+        node.LowY[other] > box.HighY || node.HighY[other] < box.LowY)
+        << "siblings overlap";
+    }
+    whole = { std::min(whole.LowX, box.LowX), std::max(whole.HighX, box.HighX),
+      std::min(whole.LowY, box.LowY), std::max(whole.HighY, box.HighY) };
+  }
+  return whole;
+}
+
+/** Every point is in exactly one slot, and found through the bin of its coordinates and the tree.
+ */
 void ExpectAllFound(const Cloud& cloud, const BinGrid& grid)
 {
   std::set<Index> ids(grid.Ids.begin(), grid.Ids.end());
   ids.insert(grid.Duplicates.begin(), grid.Duplicates.end());
   ids.insert(grid.NotFinite.begin(), grid.NotFinite.end());
   EXPECT_EQ(static_cast<Index>(ids.size()), cloud.Count());
+  std::vector<int> visits(grid.NumberOfPoints(), 0);
+  ExpectTree(grid, static_cast<Index>(grid.Nodes.size()) - 1, visits);
+  std::vector<BinGrid::Step> path;
   for (Index slot = 0; slot < grid.NumberOfPoints(); ++slot)
   {
+    ASSERT_EQ(visits[slot], 1) << "in one leaf";
     const Point2 p = grid.PointAt(slot);
     const Point2 q = cloud.View().At(grid.Ids[slot]);
     ASSERT_TRUE(p.X == q.X * grid.Scale && p.Y == q.Y * grid.Scale);
-    const BinGrid::Level& leaf = grid.LeafLevel(p);
-    const Index row = leaf.Row(p.Y), column = leaf.Column(p.X);
-    const auto slots = grid.Slots(leaf, row, column, column);
+    const Index row = grid.Bins.Row(p.Y), column = grid.Bins.Column(p.X);
+    const auto slots = grid.Slots(row, column, column);
     ASSERT_TRUE(slots.first <= slot && slot < slots.second) << "point " << grid.Ids[slot];
-    ASSERT_LE(slots.second - slots.first, 24) << "a full bin is subdivided";
-    ASSERT_LE(grid.RowLow[leaf.FirstRow + row], p.Y);
-    ASSERT_GE(grid.RowHigh[leaf.FirstRow + row], p.Y);
+    ASSERT_LE(grid.RowLow[row], p.Y);
+    ASSERT_GE(grid.RowHigh[row], p.Y);
+    grid.FindPath(p, path);
+    const BinGrid::Node& last = *path.back().Node;
+    bool isInLeaf = false;
+    for (int place = 0; place < BinGrid::Node::Places; ++place)
+    {
+      isInLeaf =
+        isInLeaf || (last.First[place] <= slot && slot < last.First[place] + last.Count[place]);
+    }
+    ASSERT_TRUE(isInLeaf) << "the path ends above the leaf";
+    ASSERT_LE(path.size(), 40u) << "the tree is not balanced";
   }
 }
 } // namespace
@@ -42,10 +104,10 @@ TEST(BinGrid, FindsEveryPointInTheBinOfItsCoordinates)
   const Cloud cloud = RandomCloud(random, 5000);
   const BinGrid grid(cloud.View(), DuplicatePolicy::KeepFirst, Progress());
   ExpectAllFound(cloud, grid);
-  EXPECT_EQ(grid.Levels.size(), 1u) << "evenly spread points need one level";
+  EXPECT_LT(grid.Nodes.size(), 5000u / 40) << "evenly spread points need few nodes";
 }
 
-TEST(BinGrid, SubdividesWhereDensityIsUneven)
+TEST(BinGrid, HalvesFullBinsWhereDensityIsUneven)
 {
   std::mt19937_64 random(2);
   Cloud cloud = RandomCloud(random, 2000);
@@ -58,7 +120,27 @@ TEST(BinGrid, SubdividesWhereDensityIsUneven)
   cloud.Add(1e9, -1e7); // and one outlier
   const BinGrid grid(cloud.View(), DuplicatePolicy::KeepFirst, Progress());
   ExpectAllFound(cloud, grid);
-  EXPECT_GT(grid.Levels.size(), 2u);
+}
+
+TEST(BinGrid, StaysBalancedWhateverTheDensity)
+{
+  std::mt19937_64 random(4);
+  Cloud graded, repeated;
+  for (int i = 0; i < 20000; ++i)
+  {
+    const double x = std::exp2(-900.0 * Uniform(random));
+    graded.Add(x, std::exp2(-900.0 * Uniform(random)));
+    // Most coordinates are among a few, so that medians divide badly.
+    const double column = random() % 4 ? static_cast<double>(random() % 3) : Uniform(random);
+    repeated.Add(column, random() % 3 ? static_cast<double>(random() % 5) : Uniform(random));
+  }
+  repeated.Add(1e6, 1e6); // all others in one bin
+  for (const Cloud* cloud : { &graded, &repeated })
+  {
+    const BinGrid grid(cloud->View(), DuplicatePolicy::KeepFirst, Progress());
+    ExpectAllFound(*cloud, grid);
+    EXPECT_LT(grid.Nodes.size(), 20000u / 8);
+  }
 }
 
 TEST(BinGrid, HoldsPointsOnALine)

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "Location.h"
 
 #include "Kernel/Boundary.h"
 #include "Kernel/Predicates.h"
@@ -139,7 +140,7 @@ double ErrorOfOutline(const std::vector<Point2>& points, const Mask& coast,
       const double x = (i + 0.5) / samples;
       const double y = (j + 0.5) / samples;
       const bool isLand = coast(x, y);
-      between += isLand != (locator.Locate({ x, y }) == Location::Inside);
+      between += isLand != locator.IsInside({ x, y }, { x + 1e-9, y }, { x, y + 1e-9 });
       const double s = spacing(x, y);
       bool isNear = false;
       for (int k = 0; k < 16 && !isNear; ++k)
@@ -158,7 +159,7 @@ double ErrorOfOutline(const std::vector<Point2>& points, const Mask& coast,
 
 } // namespace
 
-TEST(Locate, TellsInsideOutsideAndOnByTheEvenOddRule)
+TEST(RingLocator, FollowsTheEvenOddRule)
 {
   // A square, a lake in it, an island in the lake that touches its rim at (2, 2).
   const std::vector<Point2> points{ { 0, 0 }, { 9, 0 }, { 9, 9 }, { 0, 9 }, { 2, 2 }, { 2, 7 },
@@ -167,47 +168,54 @@ TEST(Locate, TellsInsideOutsideAndOnByTheEvenOddRule)
   const RingLocator locator(points, rings);
   struct
   {
-    Point2 Place;
-    Location Expected;
-  } const places[] = { { { 1, 1 }, Location::Inside }, { { 5, 5 }, Location::Outside },
-    { { 3, 3 }, Location::Inside }, { { 10, 9 }, Location::Outside },
-    { { -1, 0 }, Location::Outside }, { { -1, 2 }, Location::Outside },
-    { { 1, 2 }, Location::Inside }, { { 8, 7 }, Location::Inside }, { { 0, 0 }, Location::On },
-    { { 5, 0 }, Location::On }, { { 9, 4 }, Location::On }, { { 2, 5 }, Location::On },
-    { { 3.5, 3.5 }, Location::On }, { { 5, 9 }, Location::On }, { { 5, 10 }, Location::Outside },
-    { { 2, 2 }, Location::On } };
-  for (const auto& place : places)
+    Point2 Corners[3];
+    bool IsInside;
+  } const triangles[] = { { { { 0, 0 }, { 9, 0 }, { 2, 2 } }, true },
+    { { { 9, 0 }, { 9, 9 }, { 7, 7 } }, true }, { { { 2, 2 }, { 4, 3 }, { 3, 4 } }, true },
+    { { { 2, 2 }, { 7, 2 }, { 4, 3 } }, false }, { { { 3, 4 }, { 4, 3 }, { 7, 7 } }, false },
+    { { { 9, 0 }, { 12, 4 }, { 9, 9 } }, false }, { { { -1, 2 }, { 0, 0 }, { 0, 9 } }, false },
+    { { { 4, 10 }, { 5, 10 }, { 5, 11 } }, false },
+    { { { 1, 1 }, { 1.5, 1 }, { 1, 1.5 } }, true } };
+  for (const auto& t : triangles)
   {
-    EXPECT_EQ(Locate(points, rings, place.Place), place.Expected)
-      << place.Place.X << " " << place.Place.Y;
-    EXPECT_EQ(locator.Locate(place.Place), place.Expected);
+    for (int first = 0; first < 3; ++first) // whichever corner is named first
+    {
+      EXPECT_EQ(
+        locator.IsInside(t.Corners[first], t.Corners[(first + 1) % 3], t.Corners[(first + 2) % 3]),
+        t.IsInside)
+        << t.Corners[0].X << " " << t.Corners[0].Y;
+    }
   }
 }
 
-TEST(Locate, IsExactNextToAnEdge)
+TEST(RingLocator, IsExactNextToAnEdge)
 {
+  // Triangles with one corner on a slanted edge or a few steps of double above it, another far in.
   const std::vector<Point2> points{ { 0.1, 0.1 }, { 0.7, 0.3 }, { 0.2, 0.9 } };
-  const Rings rings = MakeRings({ { 0, 1, 2 } });
-  const RingLocator locator(points, rings);
-  int on = 0;
+  const RingLocator locator(points, MakeRings({ { 0, 1, 2 } }));
+  int seen = 0;
   for (int i = 1; i < 1000; ++i)
   {
     Point2 p{ 0.1 + 0.6 * i / 1000, 0.1 + 0.2 * i / 1000 };
     for (int ulp = 0; ulp < 4; ++ulp, p.Y = std::nextafter(p.Y, 1.0))
     {
-      const Sign side = Orientation(points[0], points[1], p);
-      EXPECT_EQ(locator.Locate(p),
-        side == Zero         ? Location::On
-          : side == Positive ? Location::Inside
-                             : Location::Outside);
-      on += side == Zero;
+      if (Orientation(points[0], points[1], p) != Negative)
+      {
+        ++seen;
+        EXPECT_TRUE(locator.IsInside(p, { 0.4, 0.4 }, { 0.39, 0.4 }));
+      }
+      if (Orientation(points[0], points[1], p) != Positive)
+      {
+        EXPECT_FALSE(locator.IsInside({ 0.9, -1 }, p, { 0.89, -1 }));
+      }
     }
   }
-  EXPECT_LT(on, 4000);
+  EXPECT_GT(seen, 1000);
 }
 
-TEST(Locate, IsTheSameInBinsAsEdgeByEdge)
+TEST(RingLocator, AgreesWithEveryEdgeAsked)
 {
+  // Rings with corners on a lattice that may cross themselves, and triangles too small to be cut.
   Random random(11);
   for (int round = 0; round < 200; ++round)
   {
@@ -229,7 +237,12 @@ TEST(Locate, IsTheSameInBinsAsEdgeByEdge)
     for (int i = 0; i < 100; ++i)
     {
       const Point2 p{ random.Below(30) / 2.0 - 1.0, random.Below(30) / 2.0 - 1.0 };
-      ASSERT_EQ(locator.Locate(p), Locate(points, rings, p));
+      const Location expected = Locate(points, rings, p);
+      if (expected != Location::On)
+      {
+        ASSERT_EQ(locator.IsInside(p, { p.X + 0.01, p.Y }, { p.X, p.Y + 0.01 }),
+          expected == Location::Inside);
+      }
     }
   }
 }
@@ -255,6 +268,38 @@ TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
   joined = JoinLines(
     mesh, MakeLines(mesh.Points, { { 5, 0, 1 }, { 1, 5 }, { 5, 10, 6 }, { 6, 5 } }, false));
   EXPECT_EQ(joined.Vertices.Vertices.size(), 6u);
+}
+
+TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
+{
+  // Two parcels side by side, cut into edges, so that the one they share is there twice.
+  const Mesh mesh = Lattice4();
+  std::vector<std::vector<Index>> edges{ { 1, 9 }, { 9, 1 }, { 9, 8 }, { 8, 0 }, { 0, 1 }, { 1, 3 },
+    { 3, 11 }, { 11, 9 } };
+  Random random(17);
+  for (int round = 0; round < 500; ++round)
+  {
+    const JoinedBoundary joined = JoinLines(mesh, MakeLines(mesh.Points, edges, false));
+    std::set<std::pair<Index, Index>> odd; // edges that the rings run along an odd number of times
+    for (Index ring = 0; ring < joined.Vertices.Count(); ++ring)
+    {
+      const Index size = joined.Vertices.Size(ring);
+      EXPECT_GE(size, 3);
+      for (Index i = 0; i < size; ++i)
+      {
+        const std::pair<Index, Index> edge = std::minmax(
+          { joined.Vertices.Begin(ring)[i], joined.Vertices.Begin(ring)[(i + 1) % size] });
+        if (!odd.insert(edge).second)
+        {
+          odd.erase(edge);
+        }
+      }
+    }
+    ASSERT_EQ(odd,
+      (std::set<std::pair<Index, Index>>{
+        { 8, 9 }, { 0, 8 }, { 0, 1 }, { 1, 3 }, { 3, 11 }, { 9, 11 } }));
+    random.Shuffle(edges);
+  }
 }
 
 TEST(JoinLines, RefusesWhatIsNoBoundaryByName)
@@ -491,6 +536,24 @@ TEST(ExtractBoundary, TakesCoordinatesOfAnySize)
   const std::vector<Index> expected = countOf(1.0);
   EXPECT_EQ(countOf(std::ldexp(1.0, 900)), expected);
   EXPECT_EQ(countOf(std::ldexp(1.0, -900)), expected);
+}
+
+TEST(ExtractBoundary, TakesDistancesBelowTheRangeOfSquares)
+{
+  // Most of the points are so near to each other that their spacing is not told from 0.
+  std::vector<Point2> points;
+  for (int i = 0; i < 100; ++i)
+  {
+    points.push_back({ std::ldexp(i % 10, -700), std::ldexp(i / 10, -700) });
+    points.push_back({ 1.0 + i % 10, 1.0 + i / 10 });
+  }
+  const Mesh mesh = Delaunay(points);
+  for (const double tolerance : { 0.0, 1e-300, 1.0, 1e300 })
+  {
+    ExtractOptions options;
+    options.GapTolerance = tolerance;
+    EXPECT_TRUE(std::isfinite(ExtractBoundary(mesh, options).GapTolerance));
+  }
 }
 
 TEST(ExtractBoundary, StopsWhenAskedAndTakesAnEmptyMesh)

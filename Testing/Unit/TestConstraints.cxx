@@ -363,8 +363,8 @@ TEST(Constraints, ThatEndOutsideTheMeshAreRefusedByName)
 
 TEST(Constraints, AcrossAHundredThousandEdgesAreRecovered)
 {
-  // Two rows of points, and a segment slightly slanted between them, over all edges from row to
-  // row.
+  // Two rows of points, and a segment slightly slanted between them, over all
+  // edges from row to row.
   const int count = 50000;
   std::vector<Point2> points{ { -1.0, 0.4 }, { count + 1.0, 0.6 } };
   for (int i = 0; i < count; ++i)

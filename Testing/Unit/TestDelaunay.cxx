@@ -20,7 +20,8 @@ Triangulation Triangulate(const Cloud& cloud)
   return elevation::Triangulate(cloud.View(), DelaunayOptions());
 }
 
-/** The triangulation by its definition: every triple whose circle is empty, ties cut by the rule.
+/**
+ * The triangulation by its definition: every triple whose circle is empty, ties cut by the rule.
  */
 std::vector<Corners> BruteForce(const Cloud& cloud)
 {
@@ -44,9 +45,9 @@ std::vector<Corners> BruteForce(const Cloud& cloud)
         {
           continue;
         }
-        // Kept when no point is inside, none on the circle is lower than p, and none on the circle
-        // lies beyond the edge qr: p is then the lowest of a polygon in which q and r are
-        // neighbours.
+        // Kept when no point is inside, none on the circle is lower than p, and none on
+        // the circle lies beyond the edge qr: p is then the lowest of a polygon in which
+        // q and r are neighbours.
         bool isKept = true;
         for (std::size_t k = 0; k < n && isKept; ++k)
         {
@@ -151,7 +152,7 @@ TEST(Delaunay, KeepsEveryRuleOnARotatedLatticeInMapCoordinates)
 TEST(Delaunay, KeepsEveryRuleOnUnevenDensity)
 {
   std::mt19937_64 random(22);
-  Cloud clustered, tracks, graded;
+  Cloud clustered, tracks, rotated, graded, voids;
   for (int i = 0; i < 5000; ++i)
   {
     const double angle = 6.283185307179586 * Uniform(random);
@@ -159,12 +160,21 @@ TEST(Delaunay, KeepsEveryRuleOnUnevenDensity)
     clustered.Add(radius * std::cos(angle), radius * std::sin(angle));
     const double along = 10000.0 * Uniform(random);
     tracks.Add(along, 100.0 * static_cast<double>(random() % 20) + 0.3 * Uniform(random));
+    const double across = 100.0 * static_cast<double>(random() % 20) + Uniform(random);
+    rotated.Add(0.8 * along - 0.6 * across, 0.6 * along + 0.8 * across);
+    const double u = Uniform(random), v = Uniform(random);
+    if (std::hypot(std::fmod(u, 0.25) - 0.125, std::fmod(v, 0.25) - 0.125) > 0.11)
+    {
+      voids.Add(u, v);
+    }
     const double x = std::exp2(-30.0 * Uniform(random));
     graded.Add(x, std::exp2(-30.0 * Uniform(random)));
   }
   ExpectValid(clustered, "clustered");
   ExpectValid(tracks, "ship tracks");
+  ExpectValid(rotated, "ship tracks askew");
   ExpectValid(graded, "graded");
+  ExpectValid(voids, "voids");
   clustered.Add(1e12, 3.0);
   ExpectValid(clustered, "one far outlier");
 }

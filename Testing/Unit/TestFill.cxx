@@ -287,8 +287,8 @@ TEST(Fill, KeepsPointsApartAndClearOfTheBoundary)
       ASSERT_GT(std::hypot(points[i] - p.X, points[i + 1] - p.Y), 0.599 * spacing);
     }
   }
-  // Nearly equilateral: no angle below 20 degrees, no edge of 1.6 spacings but a few at the
-  // boundary.
+  // Nearly equilateral: no angle below 20 degrees, no edge of 1.6 spacings but
+  // a few at the boundary.
   const Mesh patch = run.Patch();
   Index longEdges = 0;
   for (Index h = 0; h < patch.NumberOfHalfEdges(); ++h)
@@ -593,8 +593,8 @@ TEST(Fill, FillsHolesOfOneStepOfTheCoordinates)
 
 TEST(Fill, StaysExactInSinglePrecision)
 {
-  // Coordinates where float steps by 0.25: new points are moved by up to 0.18 before they are
-  // joined.
+  // Coordinates where float steps by 0.25: new points are moved by up to 0.18
+  // before they are joined.
   Mesh mesh = TurnedSheet(30, 10.0, 0.0);
   for (Point2& p : mesh.Points)
   {
@@ -644,6 +644,25 @@ TEST(Fill, WorksForCoordinatesOfAnySize)
     EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled) << scale;
     EXPECT_GT(run.Patches.NumberOfPoints(), 3);
     ExpectPatchesFit(run, 1e-12);
+  }
+}
+
+TEST(Fill, FailsWhereSquaresLeaveTheRangeOfNumbers)
+{
+  for (const double scale : { std::ldexp(1.0, 1000), std::ldexp(1.0, 520), std::ldexp(1.0, -520),
+         std::ldexp(1.0, -1000) })
+  {
+    Mesh mesh = Draw({ "#####", "#   #", "#   #", "#   #", "#####" });
+    for (Point2& p : mesh.Points)
+    {
+      p = { p.X * scale, p.Y * scale };
+    }
+    const Outcome run = Fill(mesh);
+    ASSERT_EQ(run.Patches.Reports.size(), 1u);
+    EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Failed);
+    EXPECT_NE(run.Patches.Reports[0].Reason.find("range of numbers"), std::string::npos);
+    EXPECT_EQ(run.Patches.Reports[0].Reason.find("nan"), std::string::npos);
+    EXPECT_EQ(run.Patches.NumberOfTriangles(), 0);
   }
 }
 

@@ -127,8 +127,8 @@ TEST(Holes, BelongToTheirOwnComponent)
 
 TEST(Holes, PinchedAtAVertexAreOne)
 {
-  // What lies inside touches the rim at one vertex, so it is no island: one walk passes there
-  // twice.
+  // What lies inside touches the rim at one vertex, so it is no island: one
+  // walk passes there twice.
   const Holes holes = FindHoles(Draw({ "#####", "#   #", "# # #", "##  #", "#####" }));
   ASSERT_EQ(holes.Count(), 1);
   EXPECT_EQ(NumberOfIslands(holes, 0), 0);

@@ -74,8 +74,8 @@ TEST(InCircle, IsZeroForCocircularPoints)
 
 TEST(Predicates, AreExactOneRoundoffFromALine)
 {
-  // All points of a small neighbourhood of the line y = x, where a determinant of doubles gets most
-  // wrong.
+  // All points of a small neighbourhood of the line y = x, where a determinant of
+  // doubles gets most wrong.
   const Point2 a{ 12.0, 12.0 }, b{ 24.0, 24.0 };
   for (int i = -40; i <= 40; ++i)
   {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "Location.h"
 
 #include "Kernel/Predicates.h"
 #include "Kernel/Trim.h"
@@ -172,9 +173,15 @@ TEST(Trim, OfRandomTriangleRingsAgreesWithTheEvenOddRule)
       continue;
     }
     ++decided;
+    const RingLocator locator(mesh.Points, rings);
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
     {
-      ASSERT_EQ(MiddleIsInside(mesh, rings, t), !trimmed.IsOutward[t]);
+      const bool isInside = MiddleIsInside(mesh, rings, t);
+      ASSERT_EQ(isInside, !trimmed.IsOutward[t]);
+      // Also when all corners of the triangle are on the rings.
+      ASSERT_EQ(isInside,
+        locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
+          mesh.PointOf(mesh.Origin(3 * t + 2))));
     }
   }
   EXPECT_GT(decided, 300);

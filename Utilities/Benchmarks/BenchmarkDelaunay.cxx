@@ -347,7 +347,8 @@ Duration TimeOf(Competitor& competitor)
   return { seconds, static_cast<double>(std::clock() - processorStart) / CLOCKS_PER_SEC };
 }
 
-/** Runs a code once on few points, so that its program code is in memory and its tables are made.
+/**
+ * Runs a code once on few points, so that its program code is in memory and its tables are made.
  */
 void WarmUp(Competitor& competitor)
 {

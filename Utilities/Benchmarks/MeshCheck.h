@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Whether a triangulation is the Delaunay triangulation of its points, and whether two are the
- * same.
+ * Whether a triangulation is the Delaunay triangulation of its points, and
+ * whether two are the same.
  */
 #ifndef MeshCheck_h
 #define MeshCheck_h

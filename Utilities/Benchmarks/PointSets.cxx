@@ -255,7 +255,8 @@ Coordinates Voids(Index count, std::uint64_t seed)
   return points.Take();
 }
 
-/** Inlines 25 m and crosslines 12.5 m apart, turned into map coordinates; perUnit 0: not rounded.
+/**
+ * Inlines 25 m and crosslines 12.5 m apart, turned into map coordinates; perUnit 0: not rounded.
  */
 Coordinates Survey(Index count, std::uint64_t seed, double perUnit)
 {
