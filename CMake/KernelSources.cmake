@@ -5,10 +5,13 @@
 # The module and the unit tests both compile this list: a new kernel file is one line here.
 set(es_kernel_concepts
   Predicates
+  Lattice
   BinGrid
   Surroundings
   Mesh
   Delaunay
+  LatticeNodes
+  LatticeDelaunay
   Constraints
   Boundary
   Trim

@@ -7,6 +7,7 @@
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -37,6 +38,17 @@ void AddUnusedPoints(const elevation::Triangulation& triangulation, vtkFieldData
   elevation::AddCount(fieldData, "NumberOfDuplicatePoints", triangulation.NumberOfDuplicates);
   elevation::AddCount(fieldData, "NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
 }
+
+void AddLattice(const elevation::Lattice& lattice, vtkFieldData* fieldData)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName("Lattice");
+  array->SetNumberOfComponents(6);
+  const double values[] = { lattice.Origin.X, lattice.Origin.Y, lattice.StepU.X, lattice.StepU.Y,
+    lattice.StepV.X, lattice.StepV.Y };
+  array->InsertNextTuple(values);
+  fieldData->AddArray(array);
+}
 } // namespace
 
 vtkGridDelaunay2D::vtkGridDelaunay2D() = default;
@@ -56,11 +68,14 @@ int vtkGridDelaunay2D::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   this->NumberOfDuplicatePoints = 0;
   this->NumberOfNonFinitePoints = 0;
+  this->LatticeFound = false;
 
   return elevation::CallKernel(this, outputVector, [&]() {
     elevation::DelaunayOptions options;
     options.MaximumEdgeLength = this->MaximumEdgeLength;
     options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
+    options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
+    options.LatticeTolerance = this->LatticeTolerance;
     options.Monitor = elevation::ProgressOf(this);
     elevation::Report(options.Monitor, 0.0);
     elevation::CheckPointArrays(input);
@@ -77,10 +92,16 @@ int vtkGridDelaunay2D::RequestData(
     output->GetPointData()->PassData(input->GetPointData());
     output->GetFieldData()->PassData(input->GetFieldData());
     AddUnusedPoints(triangulation, output->GetFieldData());
+    output->GetFieldData()->RemoveArray("Lattice"); // an input's, of other points
+    if (triangulation.LatticeFound)
+    {
+      AddLattice(triangulation.Steps, output->GetFieldData());
+    }
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles)));
     // Only now, as an abort or an error leaves no counts.
     this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
     this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
+    this->LatticeFound = triangulation.LatticeFound;
   });
 }
 
@@ -90,11 +111,19 @@ const char* vtkGridDelaunay2D::GetDuplicatePolicyAsString() const
   return names[this->DuplicatePolicy];
 }
 
+const char* vtkGridDelaunay2D::GetLatticeModeAsString() const
+{
+  return this->LatticeMode == OFF ? "Off" : "Automatic";
+}
+
 void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
+  os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";
+  os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
+  os << indent << "LatticeFound: " << this->LatticeFound << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";
   os << indent << "NumberOfNonFinitePoints: " << this->NumberOfNonFinitePoints << "\n";
 }

@@ -14,12 +14,26 @@
  * What can be relied on, with MaximumEdgeLength 0:
  * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact
  *   arithmetic; the triangles cover the whole convex hull; every point that is finite and not a
- *   duplicate is a vertex.
+ *   duplicate is a vertex. On a lattice (below) this holds for its nodes.
  * - Unique: where four or more points lie on one empty circle, their polygon is cut into the fan of
  *   its lowest point (least y, then least x). The set of triangles depends on the positions of the
  *   points alone, not on their order.
  * - Complete: points that are not vertices are counted, and listed in the field data.
  *   Coordinates may be of any size a double holds.
+ *
+ * Lattices: points of a grid, such as inlines and crosslines in map coordinates or the pixels of an
+ * elevation model, are ideally on the nodes of a lattice, but rounding moves each of them a little,
+ * and then the exact triangulation of the moved points cuts the cells at random and has thin
+ * triangles along the border. With LatticeMode Automatic (default) the filter looks for a lattice:
+ * an origin and two step vectors, which may be turned, sheared, of unequal lengths, with any number
+ * of nodes missing (down to about 1 in 64 of the nodes around the points). Where every point lies
+ * on its own node, within LatticeTolerance, the result is the exact Delaunay triangulation of the
+ * nodes, in the metric of the two steps and in integers, which is also many times faster. Steps
+ * that are perpendicular or equal but for a ten-thousandth count as such. "Lowest" is then by row
+ * of the lattice, then column; on a lattice parallel to the axes with exact coordinates the
+ * triangles are the same in both modes. No triangle is inverted or flat in the coordinates of the
+ * points; where one would be, or a point does not fit, the coordinates are triangulated as they
+ * are.
  *
  * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
  * triangle. An error, such as more points than can be handled (357,913,941), or a point array that
@@ -29,10 +43,12 @@
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
  *   the same x,y is the vertex), 2 = not finite (x, y or z);
- * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value).
+ * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value);
+ * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node
+ * x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units.
  *
  * Cost: expected time proportional to the number of points for points of even density, with a
- * sorting step; memory about 60 bytes a point during the run.
+ * sorting step; memory about 60 bytes a point during the run, at most 40 on a lattice.
  *
  * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an
  * Elevation Surface of 3D Point Clouds": the third point of an edge is looked for by a voxel
@@ -86,6 +102,34 @@ public:
   const char* GetDuplicatePolicyAsString() const;
   ///@}
 
+  /** Whether points that are on a lattice are triangulated as such. */
+  enum LatticeModeType
+  {
+    AUTOMATIC = 0, ///< when a lattice is found that all points fit
+    OFF = 1        ///< never: the coordinates are triangulated as they are
+  };
+
+  ///@{
+  /** Whether a lattice is looked for, see above; default AUTOMATIC. */
+  vtkSetClampMacro(LatticeMode, int, AUTOMATIC, OFF);
+  vtkGetMacro(LatticeMode, int);
+  void SetLatticeModeToAutomatic() { this->SetLatticeMode(AUTOMATIC); }
+  void SetLatticeModeToOff() { this->SetLatticeMode(OFF); }
+  const char* GetLatticeModeAsString() const;
+  ///@}
+
+  ///@{
+  /**
+   * How far a point may lie from its node, along each of the two steps, in steps: 0.01 (default) is
+   * 0.25 for a step of 25. Clamped to 0 .. 0.25. Two points that are not equal never share a node.
+   */
+  vtkSetClampMacro(LatticeTolerance, double, 0.0, 0.25);
+  vtkGetMacro(LatticeTolerance, double);
+  ///@}
+
+  /** After Update(): whether the triangles are those of a lattice; it is in the field data. */
+  vtkGetMacro(LatticeFound, bool);
+
   /** After Update(): points left aside because another point has the same x,y. */
   vtkGetMacro(NumberOfDuplicatePoints, vtkIdType);
 
@@ -101,7 +145,10 @@ protected:
 
   double MaximumEdgeLength = 0.0;
   int DuplicatePolicy = KEEP_FIRST;
+  int LatticeMode = AUTOMATIC;
+  double LatticeTolerance = 0.01;
 
+  bool LatticeFound = false;
   vtkIdType NumberOfDuplicatePoints = 0;
   vtkIdType NumberOfNonFinitePoints = 0;
 

@@ -48,12 +48,20 @@ class WrongOption(Failure):
     """A Failure of the command line: the exit code is 2."""
 
 
+LATTICE_MODES = ("automatic", "off")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
 
 def number_at_least_zero(text):
     value = float(text)
     if not (value >= 0 and math.isfinite(value)):
+        raise ValueError
+    return value
+
+
+def number_up_to_a_quarter(text):
+    value = float(text)
+    if not 0 <= value <= 0.25:
         raise ValueError
     return value
 
@@ -88,6 +96,8 @@ TAKES = {
     "--no-data": "an elevation",
     "--maximum-edge-length": NUMBER,
     "--duplicates": "one of " + ", ".join(DUPLICATES),
+    "--lattice-mode": "one of " + ", ".join(LATTICE_MODES),
+    "--lattice-tolerance": "a number from 0 to 0.25",
     "--boundary": "a file",
     "--gap-tolerance": NUMBER,
     "--maximum-hole-size": NUMBER,
@@ -137,6 +147,8 @@ def make_parser():
     add("--no-data", type=float)
     add("--maximum-edge-length", type=number_at_least_zero, default=0.0)
     add("--duplicates", choices=DUPLICATES, default=DUPLICATES[0])
+    add("--lattice-mode", choices=LATTICE_MODES, default=LATTICE_MODES[0])
+    add("--lattice-tolerance", type=number_up_to_a_quarter, default=0.01)
     add("--boundary")
     add("--gap-tolerance", type=number_at_least_zero, default=0.0)
     add("--no-recover-boundary", action="store_true")
@@ -279,6 +291,8 @@ def reconstruct(run, cloud, boundary):
     delaunay.SetInputData(cloud.points)
     delaunay.SetMaximumEdgeLength(options.maximum_edge_length)
     delaunay.SetDuplicatePolicy(DUPLICATES.index(options.duplicates))
+    delaunay.SetLatticeMode(LATTICE_MODES.index(options.lattice_mode))
+    delaunay.SetLatticeTolerance(options.lattice_tolerance)
     run.update("triangulate", "triangulating", delaunay)
     if delaunay.GetOutput().GetNumberOfPolys() == 0:
         raise Failure(f"{options.file}: {why_no_triangle(cloud.points, options)}")
@@ -349,6 +363,23 @@ OUTSIDE = "outside the boundary"
 STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed"}
 
 
+def lattice_of(fields):
+    """The lattice that was found, or None: a node, two steps, their lengths and their directions.
+
+    Directions are in degrees from x to y.
+    """
+    array = fields.GetArray("Lattice")
+    if array is None:
+        return None
+    origin, *steps = numpy.reshape(array.GetTuple(0), (3, 2)).tolist()
+    return {
+        "origin": origin,
+        "steps": steps,
+        "lengths": [math.hypot(*step) for step in steps],
+        "directions": [math.degrees(math.atan2(step[1], step[0])) for step in steps],
+    }
+
+
 def make_report(run, cloud, delaunay, trim, fill):
     """Everything the user may want to know, as plain numbers and words."""
     options = run.options
@@ -389,6 +420,7 @@ def make_report(run, cloud, delaunay, trim, fill):
         "points_unused": len(unused),
         "unused_reasons": counts,
         "unused": listed,
+        "lattice": lattice_of(fields),
         "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
     }
     if trim:
@@ -525,6 +557,16 @@ def print_report(report, options):
         else:
             where = "point " + ", ".join(str(u["point"]) for u in some)
         line("unused", f"{count:,} {reason}: {where}{', ...' if count > len(some) else ''}")
+    if report["lattice"]:
+        steps = [
+            f"{length:.7g} towards {direction + 0.0:.4g} degrees"
+            for length, direction in zip(
+                report["lattice"]["lengths"], report["lattice"]["directions"]
+            )
+        ]
+        line("lattice", f"steps of {' and '.join(steps)}")
+    elif options.lattice_mode == "automatic":
+        line("lattice", "none: the points are not on the nodes of a grid")
     line("triangles", f"{report['triangles']['delaunay']:,} in the triangulation")
     if "trim" in report:
         trim = report["trim"]

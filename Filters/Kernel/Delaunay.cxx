@@ -3,6 +3,7 @@
 #include "Delaunay.h"
 
 #include "BinGrid.h"
+#include "LatticeDelaunay.h"
 #include "Predicates.h"
 #include "Surroundings.h"
 
@@ -818,7 +819,23 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
 }
 } // namespace
 
-Triangulation Triangulate(const PointView& points, const DelaunayOptions& options)
+void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
+  Triangulation& triangulation)
+{
+  triangulation.NumberOfDuplicates = static_cast<Index>(duplicates.size());
+  triangulation.NumberOfNotFinite = static_cast<Index>(notFinite.size());
+  triangulation.UnusedPoints.resize(duplicates.size() + notFinite.size());
+  std::merge(duplicates.begin(), duplicates.end(), notFinite.begin(), notFinite.end(),
+    triangulation.UnusedPoints.begin());
+  for (Index id : triangulation.UnusedPoints)
+  {
+    const bool isDuplicate = std::binary_search(duplicates.begin(), duplicates.end(), id);
+    triangulation.UnusedReasons.push_back(
+      isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
+  }
+}
+
+Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
 {
   if (points.Count > MaximumNumberOfPoints)
   {
@@ -826,18 +843,25 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& option
       std::to_string(MaximumNumberOfPoints) + " can be triangulated at once.");
   }
   Triangulation result;
-  const BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.1));
-
-  result.NumberOfDuplicates = static_cast<Index>(grid.Duplicates.size());
-  result.NumberOfNotFinite = static_cast<Index>(grid.NotFinite.size());
-  result.UnusedPoints.resize(grid.Duplicates.size() + grid.NotFinite.size());
-  std::merge(grid.Duplicates.begin(), grid.Duplicates.end(), grid.NotFinite.begin(),
-    grid.NotFinite.end(), result.UnusedPoints.begin());
-  for (Index id : result.UnusedPoints)
+  DelaunayOptions options = asked;
+  double done = 0.0;
+  if (options.UseLattice == LatticeMode::Automatic)
   {
-    const bool isDuplicate = std::binary_search(grid.Duplicates.begin(), grid.Duplicates.end(), id);
-    result.UnusedReasons.push_back(isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
+    if (options.Monitor)
+    {
+      // Where there is no lattice the work begins anew; what is reported never falls.
+      options.Monitor = [&done, &asked](double fraction) {
+        done = std::max(done, fraction);
+        return asked.Monitor(done);
+      };
+    }
+    if (TriangulateLattice(points, options, result))
+    {
+      return result;
+    }
   }
+  const BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.1));
+  SetUnusedPoints(grid.Duplicates, grid.NotFinite, result);
   if (grid.NumberOfPoints() < 3)
   {
     return result;

@@ -30,6 +30,7 @@
 #ifndef elevation_Delaunay_h
 #define elevation_Delaunay_h
 
+#include "Lattice.h"
 #include "Types.h"
 
 #include <vector>
@@ -53,12 +54,23 @@ enum class UnusedReason : unsigned char
   NotFinite = 2
 };
 
+/** Whether points that are on a lattice are triangulated in the metric of its steps. */
+enum class LatticeMode
+{
+  Automatic, ///< when a lattice is found that all points fit
+  Off        ///< never: by the coordinates as they are
+};
+
 struct DelaunayOptions
 {
   /** Triangles with an edge longer than this (in x,y) are left out; 0: no limit. */
   double MaximumEdgeLength = 0.0;
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
   Progress Monitor;
+  /** Off by default: who builds on the triangulation wants the true one of the coordinates. */
+  LatticeMode UseLattice = LatticeMode::Off;
+  /** How far a point may lie from its node along each step, in steps; at most 0.25. */
+  double LatticeTolerance = 0.01;
   /** Off: the search without wide instructions, as on processors without them. The result is the
    * same. */
   bool UseWideInstructions = true;
@@ -72,7 +84,13 @@ struct Triangulation
   std::vector<UnusedReason> UnusedReasons; ///< one an unused point
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;
+  bool LatticeFound = false; ///< the triangles are those of the lattice (LatticeDelaunay.h)
+  Lattice Steps;             ///< where found; Origin is the lowest node that is occupied
 };
+
+/** Lists the unused points of a triangulation from the two kinds of them, each increasing. */
+void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
+  Triangulation& triangulation);
 
 /**
  * Triangulates.

@@ -21,6 +21,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -123,6 +124,18 @@ void TestOutput(int precision)
   Check(output->GetFieldData()->GetArray("NumberOfDuplicatePoints")->GetTuple1(0) == 1 &&
       output->GetFieldData()->GetArray("NumberOfNonFinitePoints")->GetTuple1(0) == 1,
     "counts stand in the field data");
+
+  auto* lattice = vtkDoubleArray::SafeDownCast(output->GetFieldData()->GetArray("Lattice"));
+  const double expected[6] = { 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 };
+  Check(delaunay->GetLatticeFound() && lattice && lattice->GetNumberOfTuples() == 1 &&
+      std::equal(expected, expected + 6, lattice->GetPointer(0)),
+    "the lattice is told");
+  vtkNew<vtkGridDelaunay2D> again;
+  again->SetLatticeModeToOff();
+  again->SetInputData(output);
+  again->Update();
+  Check(!again->GetLatticeFound() && !again->GetOutput()->GetFieldData()->GetArray("Lattice"),
+    "no lattice is told when none was looked for, nor one of the input");
 
   delaunay->SetDuplicatePolicyToKeepHighest();
   delaunay->Update();

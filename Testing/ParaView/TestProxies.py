@@ -11,7 +11,12 @@ from plugin_testing import check, check_equal, finish, start
 
 # For each property: a value other than the default.
 OTHER_VALUES = {
-    "GridDelaunay2D": {"MaximumEdgeLength": 2.5, "DuplicatePolicy": "Keep Highest"},
+    "GridDelaunay2D": {
+        "MaximumEdgeLength": 2.5,
+        "DuplicatePolicy": "Keep Highest",
+        "LatticeMode": "Off",
+        "LatticeTolerance": 0.05,
+    },
     "TrimOutwardTriangles": {"GapTolerance": 3.5, "RecoverBoundary": 0},
     "FillElevationHoles": {
         "MaximumHoleSize": 12.5,

@@ -29,6 +29,9 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)
         self.assertEqual(delaunay.GetDuplicatePolicyAsString(), "KeepFirst")
+        self.assertEqual(delaunay.GetLatticeMode(), vtkGridDelaunay2D.AUTOMATIC)
+        self.assertEqual(delaunay.GetLatticeModeAsString(), "Automatic")
+        self.assertEqual(delaunay.GetLatticeTolerance(), 0.01)
 
     def test_values_are_clamped(self):
         delaunay = vtkGridDelaunay2D()
@@ -36,10 +39,15 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         delaunay.SetDuplicatePolicy(99)
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_HIGHEST)
+        delaunay.SetLatticeTolerance(3.0)
+        self.assertEqual(delaunay.GetLatticeTolerance(), 0.25)
+        delaunay.SetLatticeMode(7)
+        self.assertEqual(delaunay.GetLatticeMode(), vtkGridDelaunay2D.OFF)
 
     def test_every_property_is_printed(self):
         text = str(vtkGridDelaunay2D())
-        for name in ("MaximumEdgeLength", "DuplicatePolicy", "NumberOfDuplicatePoints",
+        for name in ("MaximumEdgeLength", "DuplicatePolicy", "LatticeMode", "LatticeTolerance",
+                     "LatticeFound", "NumberOfDuplicatePoints",
                      "NumberOfNonFinitePoints"):
             self.assertIn(name, text)
 
@@ -59,6 +67,33 @@ class TestGridDelaunay2D(unittest.TestCase):
             delaunay.Update()
             sets.append(corner_sets(delaunay.GetOutput()))
         self.assertEqual(sets[0], sets[1])
+
+    def test_a_turned_and_rounded_grid_is_found_and_told(self):
+        j, i = numpy.mgrid[0:20, 0:30]
+        u, v = numpy.array([20.0, 15.0]), numpy.array([-15.0, 20.0])
+        xy = numpy.array([612000.0, 6073000.0]) + i.reshape(-1, 1) * u + j.reshape(-1, 1) * v
+        xy += 0.04 * numpy.random.RandomState(4).rand(600, 2) - 0.02
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(numpy.column_stack([xy, numpy.zeros(600)])))
+        delaunay.Update()
+        self.assertTrue(delaunay.GetLatticeFound())
+        lattice = delaunay.GetOutput().GetFieldData().GetArray("Lattice")
+        self.assertEqual((lattice.GetNumberOfTuples(), lattice.GetNumberOfComponents()), (1, 6))
+        expected = [612000.0, 6073000.0, 20.0, 15.0, -15.0, 20.0]
+        for value, wanted in zip(lattice.GetTuple(0), expected):
+            self.assertAlmostEqual(value, wanted, delta=0.02)
+        self.assertEqual(len(triangles(delaunay.GetOutput())), 2 * 19 * 29)
+
+        delaunay.SetLatticeTolerance(0.0001)
+        delaunay.Update()
+        self.assertFalse(delaunay.GetLatticeFound())
+        self.assertIsNone(delaunay.GetOutput().GetFieldData().GetArray("Lattice"))
+        self.assertGreater(len(triangles(delaunay.GetOutput())), 2 * 19 * 29)
+
+        delaunay.SetLatticeTolerance(0.01)
+        delaunay.SetLatticeModeToOff()
+        delaunay.Update()
+        self.assertFalse(delaunay.GetLatticeFound())
 
     def test_unused_points_are_listed(self):
         coordinates = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 5], [numpy.inf, 0, 0]], float)

@@ -100,6 +100,24 @@ class Report(Program):
         for step in ("read", "triangulate", "trim", "fill", "measure", "write"):
             self.assertIn(step, report["times"])
 
+    def test_the_lattice_is_told(self):
+        name = self.file("sheet.xyz", text_of((4 * x, 2 * y, z) for x, y, z in SHEET))
+        report = self.report(name)
+        self.assertEqual(report["lattice"]["steps"], [[4.0, 0.0], [0.0, 2.0]])
+        self.assertEqual(report["lattice"]["lengths"], [4.0, 2.0])
+        self.assertEqual(report["lattice"]["directions"], [0.0, 90.0])
+        self.assertIn("steps of 4 towards 0 degrees and 2 towards 90 degrees", self.output)
+        self.assertIsNone(self.report(name, "--lattice-mode", "off")["lattice"])
+        self.assertNotIn("lattice", self.output)
+        moved = [(x + (0.03 if x == y else 0.0), y, z) for x, y, z in SHEET]
+        name = self.file("moved.xyz", text_of(moved))
+        self.assertIsNone(self.report(name)["lattice"])
+        self.assertIn("not on the nodes of a grid", self.output)
+        self.assertIsNotNone(self.report(name, "--lattice-tolerance", "0.05")["lattice"])
+        done = self.call(name, "--lattice-tolerance", "0.3")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--lattice-tolerance takes a number from 0 to 0.25", done.stderr)
+
     def test_a_hole_is_filled_and_listed(self):
         name = self.file("holed.xyz", text_of(HOLED))
         report = self.report(name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")

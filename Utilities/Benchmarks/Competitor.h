@@ -41,6 +41,12 @@ public:
    */
   virtual void Run() = 0;
 
+  /**
+   * Where the last Run found a lattice, runs again by the coordinates as they are (not timed).
+   * @return false when it did not; the result is then that of Run
+   */
+  virtual bool RunWithoutLattice() { return false; }
+
   /** Frees the result of Run, and all that was kept with it (not timed). */
   virtual void Release() = 0;
 

@@ -53,6 +53,23 @@ public:
     this->Output = filter->GetOutput();
   }
 
+  bool RunWithoutLattice() override
+  {
+    if constexpr (std::is_same<Filter, vtkGridDelaunay2D>::value)
+    {
+      if (this->Output->GetFieldData()->GetArray("Lattice"))
+      {
+        vtkNew<Filter> filter;
+        filter->SetLatticeModeToOff();
+        filter->SetInputData(this->Input);
+        filter->Update();
+        this->Output = filter->GetOutput();
+        return true;
+      }
+    }
+    return false;
+  }
+
   void Release() override { this->Output = nullptr; }
 
   std::size_t OutputBytes() const override

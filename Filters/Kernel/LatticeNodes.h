@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Points on the nodes of a lattice, as a bitmap: which nodes are occupied, and by which point.
+ *
+ * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
+ * in the order of their nodes (by row, then column), which the number of bits before a node tells;
+ * or the answer that a point does not fit. No sorting: two passes over the points, one that sets
+ * the bits and one that writes each id to its place.
+ *
+ * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
+ * the last row are rows of zeros, so that neighbours may be looked at without a check.
+ *
+ * Memory: at most 24 bytes a point for the bitmap (two words and two counts), and 4 for the ids.
+ */
+#ifndef elevation_LatticeNodes_h
+#define elevation_LatticeNodes_h
+
+#include "Delaunay.h"
+#include "Lattice.h"
+
+#if defined(_MSC_VER)
+#include <intrin.h>
+#endif
+
+namespace elevation
+{
+
+/** Number of bits that are set. */
+inline int CountBits(std::uint64_t bits)
+{
+  bits -= (bits >> 1) & 0x5555555555555555u;
+  bits = (bits & 0x3333333333333333u) + ((bits >> 2) & 0x3333333333333333u);
+  bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<int>((bits * 0x0101010101010101u) >> 56);
+}
+
+/** Position of the lowest bit that is set; there must be one. */
+inline int LowestBit(std::uint64_t bits)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  return __builtin_ctzll(bits);
+#elif defined(_MSC_VER) && (defined(_M_X64) || defined(_M_ARM64))
+  unsigned long position;
+  _BitScanForward64(&position, bits);
+  return static_cast<int>(position);
+#else
+  return CountBits((bits & (~bits + 1)) - 1);
+#endif
+}
+
+class LatticeNodes
+{
+public:
+  /** Columns and rows a search may look beyond the last without a check. */
+  static constexpr Index ColumnsBeyond = 64;
+  static constexpr Index RowsBeyond = 16;
+  /** Most columns, and most rows: products of four coordinates and steps then fit 128 bits. */
+  static constexpr Index MaximumSide = 1 << 20;
+
+  /**
+   * Puts the points on the nodes.
+   * @return false when a point lies farther from its node than the tolerance, two points that are
+   * not equal share one, or the lattice takes too much memory for so few points
+   */
+  bool Place(const PointView& points, const LatticeSearch& search, double tolerance,
+    DuplicatePolicy policy, const Progress& progress);
+
+  Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
+  Index NodeAt(Index row, Index column) const
+  {
+    return (row * this->WordsPerRow + 1) * 64 + column;
+  }
+  Index RowOf(Index node) const { return (node >> 6) / this->WordsPerRow; }
+  Index ColumnOf(Index node, Index row) const { return node - this->NodeAt(row, 0); }
+  bool IsOccupied(Index node) const { return (this->Words[node >> 6] >> (node & 63)) & 1; }
+  /** How many occupied nodes come before this one. */
+  Index RankOf(Index node) const
+  {
+    const std::uint64_t before = (std::uint64_t(1) << (node & 63)) - 1;
+    return this->Before[node >> 6] + CountBits(this->Words[node >> 6] & before);
+  }
+
+  Index Columns = 0, Rows = 0, WordsPerRow = 0;
+  Buffer<std::uint64_t> Words;
+  Buffer<Index> Before;          ///< occupied nodes before each word
+  Buffer<Index> Ids;             ///< point ids by rank
+  double LargestOffset = 0.0;    ///< no point is farther from its node, in steps along each step
+  Lattice Steps;                 ///< Origin is the lowest occupied node
+  std::vector<Index> Duplicates; ///< ids, increasing
+};
+
+} // namespace elevation
+
+#endif
