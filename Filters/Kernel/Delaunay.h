@@ -59,6 +59,10 @@ struct DelaunayOptions
   double MaximumEdgeLength = 0.0;
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
   Progress Monitor;
+  /** Threads to use; 0: one a core. The result is the same, byte for byte. */
+  int NumberOfThreads = 1;
+  /** For tests: points in a strip that one thread grows; 0: chosen. */
+  Index PointsPerStrip = 0;
   /** Off: the search without wide instructions, as on processors without them. The result is the
    * same. */
   bool UseWideInstructions = true;
