@@ -6,9 +6,11 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTypeInt32Array.h"
@@ -50,12 +52,44 @@ PointsOfDataSet ViewPoints(vtkPointSet* input)
   return points;
 }
 
+namespace
+{
+void CheckTuples(
+  vtkFieldData* data, vtkIdType count, const std::string& kind, const std::string& places)
+{
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* array = data->GetAbstractArray(i);
+    if (array->GetNumberOfTuples() != count)
+    {
+      throw Error(kind + " array " +
+        (array->GetName() ? "\"" + std::string(array->GetName()) + "\"" : std::to_string(i)) +
+        " has " + std::to_string(array->GetNumberOfTuples()) + " tuples, but there are " +
+        std::to_string(count) + " " + places + ".");
+    }
+  }
+}
+} // namespace
+
+void CheckPointArrays(vtkPointSet* input, const std::string& owner)
+{
+  CheckTuples(input->GetPointData(), input->GetNumberOfPoints(),
+    owner + (owner.empty() ? "Point" : " point"), "points");
+}
+
+void CheckArrays(vtkPolyData* input, const std::string& owner)
+{
+  CheckPointArrays(input, owner);
+  CheckTuples(input->GetCellData(), input->GetNumberOfCells(),
+    owner + (owner.empty() ? "Cell" : " cell"), "cells");
+}
+
 vtkIdType FirstPolygon(vtkPolyData* input)
 {
   return input->GetNumberOfVerts() + input->GetNumberOfLines();
 }
 
-void ToMesh(vtkPolyData* input, Mesh& mesh)
+void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress)
 {
   if (input->GetNumberOfStrips() > 0)
   {
@@ -87,6 +121,7 @@ void ToMesh(vtkPolyData* input, Mesh& mesh)
   vtkIdType cell = first;
   for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell(), ++cell)
   {
+    ReportStep(progress, static_cast<std::size_t>(cell - first), static_cast<std::size_t>(count));
     vtkIdType size = 0;
     const vtkIdType* ids = nullptr;
     cells->GetCurrentCell(size, ids);

@@ -12,6 +12,8 @@
 
 #include "vtkSmartPointer.h"
 
+#include <string>
+
 class vtkCellArray;
 class vtkDataArray;
 class vtkPointSet;
@@ -34,14 +36,24 @@ struct PointsOfDataSet
 PointsOfDataSet ViewPoints(vtkPointSet* input);
 
 /**
+ * Looks whether every point (cell) array has as many tuples as there are points (cells), which
+ * nothing in VTK ensures. Filters rely on it.
+ * @param[in] owner  what messages put before "Point array": the name of the input, if not the first
+ * @throws Error that names the first array that has not
+ */
+void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
+void CheckArrays(vtkPolyData* input, const std::string& owner = "");
+
+/**
  * The polygons of a triangulated polydata as a mesh: Points are all points' x,y; triangle i is the
  * i-th polygon, turned counter-clockwise where it is not. Vertices and lines are left alone (their
  * cells precede the polygons in the cell numbering: see FirstPolygon).
  * Twins are not filled.
- * @throws Error that names the cell: not a triangle, a point used twice, a point that is not
- * finite, flat in x,y; or when there are triangle strips.
+ * @throws Error that names the cell: not a triangle, a point that does not exist or is not finite,
+ *         flat in x,y (as is a triangle that has a point twice); or when there are triangle strips.
+ *         Aborted.
  */
-void ToMesh(vtkPolyData* input, Mesh& mesh);
+void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress());
 
 /** The cell id of the first polygon of a polydata. */
 vtkIdType FirstPolygon(vtkPolyData* input);

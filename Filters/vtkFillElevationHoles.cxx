@@ -37,9 +37,14 @@ namespace
 {
 using elevation::FillResult;
 using elevation::FillStatus;
+using elevation::HoleReport;
 using elevation::Holes;
 using elevation::Index;
 using elevation::Mesh;
+using elevation::Part;
+using elevation::Progress;
+using elevation::Report;
+using elevation::ReportStep;
 
 /**
  * What a new point costs at the peak, in the kernel and in the output, with a margin for arrays.
@@ -71,7 +76,8 @@ bool IsGhostArray(vtkAbstractArray* array)
 }
 
 /** The tuples of @a input, and behind them as many as are missing: NaN, 0 or nothing. */
-vtkSmartPointer<vtkAbstractArray> Extend(vtkAbstractArray* input, vtkIdType more)
+vtkSmartPointer<vtkAbstractArray> Extend(
+  vtkAbstractArray* input, vtkIdType more, const Progress& progress)
 {
   const vtkIdType count = input->GetNumberOfTuples();
   auto output = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(input->GetDataType()));
@@ -88,15 +94,19 @@ vtkSmartPointer<vtkAbstractArray> Extend(vtkAbstractArray* input, vtkIdType more
   {
     throw std::bad_alloc();
   }
-  if (count > 0)
+  const std::size_t all = static_cast<std::size_t>(count + more);
+  constexpr vtkIdType block = 65536; // at a time, to report between
+  for (vtkIdType i = 0; i < count; i += block)
   {
-    output->InsertTuples(0, count, 0, input);
+    ReportStep(progress, static_cast<std::size_t>(i), all);
+    output->InsertTuples(i, std::min(block, count - i), i, input);
   }
   if (vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(output.Get()))
   {
     const double value = IsFloatingPoint(output) ? vtkMath::Nan() : 0.0;
     for (vtkIdType i = count; i < count + more; ++i)
     {
+      ReportStep(progress, static_cast<std::size_t>(i), all);
       for (int c = 0; c < output->GetNumberOfComponents(); ++c)
       {
         numbers->SetComponent(i, c, value);
@@ -107,13 +117,15 @@ vtkSmartPointer<vtkAbstractArray> Extend(vtkAbstractArray* input, vtkIdType more
 }
 
 /** The values of new points, as their z was found. */
-void Average(const FillResult& patches, bool unitLength, vtkDataArray* values)
+void Average(
+  const FillResult& patches, bool unitLength, vtkDataArray* values, const Progress& progress)
 {
   const vtkIdType first = values->GetNumberOfTuples() - patches.NumberOfPoints();
   const int components = values->GetNumberOfComponents();
   std::vector<double> mean(components);
   for (Index i = 0; i < patches.NumberOfPoints(); ++i)
   {
+    ReportStep(progress, i, patches.NumberOfPoints());
     double squares = 0.0;
     for (int c = 0; c < components; ++c)
     {
@@ -140,11 +152,12 @@ void Average(const FillResult& patches, bool unitLength, vtkDataArray* values)
 }
 
 /**
- * All arrays of the input, extended by @a more tuples, which fill(input array, output array) sets.
+ * All arrays of the input, extended by @a more tuples, which fill(input array, output array,
+ * progress) sets.
  */
 template <typename Fill>
-void PassExtended(
-  vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttributes* output, Fill&& fill)
+void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttributes* output,
+  const Progress& progress, Fill&& fill)
 {
   if (more == 0)
   {
@@ -154,8 +167,10 @@ void PassExtended(
   for (int i = 0; i < input->GetNumberOfArrays(); ++i)
   {
     vtkAbstractArray* before = input->GetAbstractArray(i);
-    const vtkSmartPointer<vtkAbstractArray> after = Extend(before, more);
-    fill(before, after);
+    const double count = input->GetNumberOfArrays();
+    const Progress ofArray = Part(progress, i / count, (i + 1) / count);
+    const vtkSmartPointer<vtkAbstractArray> after = Extend(before, more, Part(ofArray, 0.0, 0.5));
+    fill(before, after, Part(ofArray, 0.5, 1.0));
     const int index = output->AddArray(after);
     for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
     {
@@ -168,37 +183,47 @@ void PassExtended(
   }
 }
 
-void PassPointData(
-  vtkPointData* input, const FillResult& patches, bool interpolate, vtkPointData* output)
+void PassPointData(vtkPointData* input, const FillResult& patches, bool interpolate,
+  vtkPointData* output, const Progress& progress)
 {
-  PassExtended(input, patches.NumberOfPoints(), output,
-    [&](vtkAbstractArray* before, vtkAbstractArray* after) {
+  PassExtended(input, patches.NumberOfPoints(), output, progress,
+    [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
       if (!interpolate || IsGhostArray(before))
       {
         return;
       }
       if (IsFloatingPoint(before))
       {
-        Average(patches, before == input->GetNormals(), vtkArrayDownCast<vtkDataArray>(after));
+        Average(
+          patches, before == input->GetNormals(), vtkArrayDownCast<vtkDataArray>(after), ofArray);
         return;
       }
       const vtkIdType first = before->GetNumberOfTuples();
       for (Index i = 0; i < patches.NumberOfPoints(); ++i)
       {
+        ReportStep(ofArray, i, patches.NumberOfPoints());
         after->SetTuple(first + i, patches.NearestBoundaryPoints[i], before);
       }
     });
 }
 
-vtkSmartPointer<vtkPoints> AppendPoints(vtkPolyData* input, const FillResult& patches)
+/** Whether the points of the output are float: what new points must be rounded to. */
+bool HasFloatPoints(vtkPolyData* input)
+{
+  return input->GetPoints() && input->GetPoints()->GetDataType() == VTK_FLOAT;
+}
+
+vtkSmartPointer<vtkPoints> AppendPoints(
+  vtkPolyData* input, const FillResult& patches, const Progress& progress)
 {
   const vtkIdType count = input->GetNumberOfPoints();
   auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataType(input->GetPoints()->GetDataType() == VTK_FLOAT ? VTK_FLOAT : VTK_DOUBLE);
+  points->SetDataType(HasFloatPoints(input) ? VTK_FLOAT : VTK_DOUBLE);
   points->SetNumberOfPoints(count + patches.NumberOfPoints());
   points->InsertPoints(0, count, 0, input->GetPoints());
   for (Index i = 0; i < patches.NumberOfPoints(); ++i)
   {
+    ReportStep(progress, i, patches.NumberOfPoints());
     points->SetPoint(count + i, patches.Points.data() + 3 * static_cast<std::size_t>(i));
   }
   return points;
@@ -206,18 +231,24 @@ vtkSmartPointer<vtkPoints> AppendPoints(vtkPolyData* input, const FillResult& pa
 
 /** Output 0. */
 void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,
-  vtkPolyData* output)
+  const Progress& progress, vtkPolyData* output)
 {
-  output->SetPoints(
-    patches.NumberOfPoints() > 0 ? AppendPoints(input, patches).Get() : input->GetPoints());
-  PassPointData(input->GetPointData(), patches, interpolate, output->GetPointData());
+  Report(progress, 0.0);
+  output->SetPoints(patches.NumberOfPoints() > 0
+      ? AppendPoints(input, patches, Part(progress, 0.0, 0.2)).Get()
+      : input->GetPoints());
+  PassPointData(
+    input->GetPointData(), patches, interpolate, output->GetPointData(), Part(progress, 0.2, 0.6));
   vtkNew<vtkUnsignedCharArray> isNew;
   isNew->SetName("FilledPoint");
   isNew->SetNumberOfTuples(output->GetNumberOfPoints());
   std::fill_n(isNew->GetPointer(0), input->GetNumberOfPoints(), 0);
   std::fill_n(isNew->GetPointer(0) + input->GetNumberOfPoints(), patches.NumberOfPoints(), 1);
+  // An array of the input that it replaces may be active as the scalars, say; this one is not.
+  output->GetPointData()->RemoveArray(isNew->GetName());
   output->GetPointData()->AddArray(isNew);
 
+  Report(progress, 0.6);
   output->SetVerts(input->GetVerts());
   output->SetLines(input->GetLines());
   elevation::Buffer<Index> triangles;
@@ -228,7 +259,8 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   output->SetPolys(elevation::ToCellArray(std::move(triangles)));
 
   PassExtended(input->GetCellData(), patches.NumberOfTriangles(), output->GetCellData(),
-    [](vtkAbstractArray*, vtkAbstractArray*) {});
+    Part(progress, 0.7, 0.9), [](vtkAbstractArray*, vtkAbstractArray*, const Progress&) {});
+  Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
   holeIds->SetName("HoleId");
   holeIds->SetNumberOfTuples(input->GetNumberOfCells() + patches.NumberOfTriangles());
@@ -239,13 +271,14 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
     holeId = std::fill_n(holeId, patches.TriangleOffsets[hole + 1] - patches.TriangleOffsets[hole],
       static_cast<vtkIdType>(hole));
   }
+  output->GetCellData()->RemoveArray(holeIds->GetName());
   output->GetCellData()->AddArray(holeIds);
   output->GetFieldData()->PassData(input->GetFieldData());
 }
 
 /** Output 1: rims with points of their own, and the report as cell data. */
 void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const FillResult& patches,
-  vtkPolyData* output)
+  const Progress& progress, vtkPolyData* output)
 {
   const auto add = [&](const char* name, auto* array, auto&& valueOf) {
     array->SetName(name);
@@ -255,19 +288,18 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
     }
     output->GetCellData()->AddArray(array);
   };
-  using Report = elevation::HoleReport;
   vtkIdType id = 0;
-  add("HoleId", vtkNew<vtkIdTypeArray>().Get(), [&id](const Report&) { return id++; });
+  add("HoleId", vtkNew<vtkIdTypeArray>().Get(), [&id](const HoleReport&) { return id++; });
   add("Status", vtkNew<vtkUnsignedCharArray>().Get(),
-    [](const Report& report) { return static_cast<unsigned char>(report.Status); });
+    [](const HoleReport& report) { return static_cast<unsigned char>(report.Status); });
   add("NumberOfEdges", vtkNew<vtkIdTypeArray>().Get(),
-    [](const Report& report) { return report.NumberOfEdges; });
+    [](const HoleReport& report) { return report.NumberOfEdges; });
   add("Perimeter", vtkNew<vtkDoubleArray>().Get(),
-    [](const Report& report) { return report.Perimeter; });
-  add("Area", vtkNew<vtkDoubleArray>().Get(), [](const Report& report) { return report.Area; });
+    [](const HoleReport& report) { return report.Perimeter; });
+  add("Area", vtkNew<vtkDoubleArray>().Get(), [](const HoleReport& report) { return report.Area; });
   add("NumberOfInsertedPoints", vtkNew<vtkIdTypeArray>().Get(),
-    [](const Report& report) { return report.NumberOfInsertedPoints; });
-  add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(), [](const Report&) { return 0; });
+    [](const HoleReport& report) { return report.NumberOfInsertedPoints; });
+  add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(), [](const HoleReport&) { return 0; });
 
   vtkNew<vtkPoints> points;
   points->SetDataType(input->GetPoints() ? input->GetPoints()->GetDataType() : VTK_FLOAT);
@@ -275,6 +307,7 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
   pointData->CopyAllocate(input->GetPointData());
   vtkNew<vtkCellArray> lines;
   std::vector<vtkIdType> line;
+  std::size_t done = 0;
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
     // A rim runs clockwise: backwards, the hole is on the left.
@@ -282,6 +315,7 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
     line.clear();
     for (const Index* h = holes.Walks.End(rim); h != holes.Walks.Begin(rim); --h)
     {
+      ReportStep(progress, done++, holes.Walks.Vertices.size());
       const Index vertex = mesh.Origin(h[-1]);
       line.push_back(points->InsertNextPoint(input->GetPoint(vertex)));
       pointData->CopyData(input->GetPointData(), vertex, line.back());
@@ -303,7 +337,7 @@ std::string Complaint(const Holes& holes, const FillResult& patches)
   int failed = 0;
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
-    const elevation::HoleReport& report = patches.Reports[hole];
+    const HoleReport& report = patches.Reports[hole];
     if (report.Status == FillStatus::Failed && ++failed <= listed)
     {
       text << "Hole " << hole << " (" << report.NumberOfEdges << " edges) was not filled. "
@@ -349,33 +383,34 @@ int vtkFillElevationHoles::RequestData(
 
   return elevation::CallKernel(this, outputVector, [&]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
+    Report(progress, 0.0);
+    elevation::CheckArrays(input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
+    const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
     Mesh mesh;
-    elevation::ToMesh(input, mesh);
-    mesh.ConnectTwins(static_cast<Index>(elevation::FirstPolygon(input)));
-    elevation::Report(progress, 0.1);
-    const Holes holes = elevation::FindHoles(mesh,
-      static_cast<Index>(elevation::FirstPolygon(input)), elevation::Part(progress, 0.1, 0.2));
+    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1));
+    mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
+    const Holes holes = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
 
     elevation::FillOptions options;
     options.MaximumHoleSize = this->MaximumHoleSize;
     options.MaximumHoleEdges =
       static_cast<Index>(std::min<vtkIdType>(this->MaximumHoleEdges, VTK_INT_MAX));
     options.Spacing = this->Spacing;
-    options.SinglePrecision = points.View.Float != nullptr;
+    options.SinglePrecision = HasFloatPoints(input);
     options.MaximumInsertedPoints = PointsThatFit();
-    options.Monitor = elevation::Part(progress, 0.2, 0.9);
+    options.Monitor = Part(progress, 0.3, 0.8);
     const FillResult patches = elevation::FillHoles(mesh, points.View, holes, options);
 
-    MakeSurface(input, mesh, patches, this->InterpolatePointData, surface);
-    MakeReport(input, mesh, holes, patches, report);
-    this->NumberOfHoles = holes.Count();
-    this->NumberOfFilledHoles = std::count_if(patches.Reports.begin(), patches.Reports.end(),
-      [](const elevation::HoleReport& hole) { return hole.Status == FillStatus::Filled; });
+    MakeSurface(
+      input, mesh, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);
+    MakeReport(input, mesh, holes, patches, Part(progress, 0.95, 1.0), report);
+    const vtkIdType filled = std::count_if(patches.Reports.begin(), patches.Reports.end(),
+      [](const HoleReport& hole) { return hole.Status == FillStatus::Filled; });
     for (vtkPolyData* output : { surface, report })
     {
-      elevation::AddCount(output->GetFieldData(), "NumberOfHoles", this->NumberOfHoles);
-      elevation::AddCount(output->GetFieldData(), "NumberOfFilledHoles", this->NumberOfFilledHoles);
+      elevation::AddCount(output->GetFieldData(), "NumberOfHoles", holes.Count());
+      elevation::AddCount(output->GetFieldData(), "NumberOfFilledHoles", filled);
     }
     if (mesh.NumberOfTriangles() == 0)
     {
@@ -386,7 +421,10 @@ int vtkFillElevationHoles::RequestData(
     {
       vtkWarningMacro(<< complaint);
     }
-    elevation::Report(progress, 1.0);
+    Report(progress, 1.0);
+    // Only now, as an abort or an error leaves no counts.
+    this->NumberOfHoles = holes.Count();
+    this->NumberOfFilledHoles = filled;
   });
 }
 

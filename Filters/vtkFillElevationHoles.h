@@ -29,7 +29,8 @@
  * - Status (vtkUnsignedCharArray): see HoleStatusType.
  * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands.
  * - Perimeter (vtkDoubleArray): the length of all these edges in x,y.
- * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands.
+ * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
+ *   the hole is above 1e150 or below 1e-150.
  * - NumberOfInsertedPoints (vtkIdTypeArray).
  * - Interpolation (vtkUnsignedCharArray): how z was found; 0 is the mean of the neighbours.
  *
@@ -49,7 +50,10 @@
  *
  * A hole is left open, with status FAILED and a warning that says why, when
  * - it would take more new points than there is memory for (about 500 bytes a point), or than leave
- *   the surface 357,913,941 points;
+ *   the surface 357,913,941 points; so, where memory is short, and only there, results may differ
+ *   between machines;
+ * - its extent is above 1e150, or its extent or spacing is below 1e-150, so that squares leave the
+ *   range of double;
  * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
  * - borders touch in it without sharing a point: a point lies inside another border edge, or
  *   two points have the same x,y. Merge such points (vtkCleanPolyData), or split the edge. A
@@ -58,8 +62,9 @@
  *
  * An error that names the cell, and empty output, is the answer to an input that is no elevation
  * surface: cells other than triangles, triangles that are flat in x,y, an edge with more than two
- * triangles, cells that lie over each other in x,y. A surface without holes passes; an input
- * without triangles passes with a warning.
+ * triangles, cells that lie over each other in x,y. So is an error that names the array the answer
+ * to a point or cell array that has not as many tuples as there are points or cells. A surface
+ * without holes passes; an input without triangles passes with a warning.
  *
  * Cost: proportional to the size of the input and to the number of new points (a few microseconds
  * each), with sorting of the border.

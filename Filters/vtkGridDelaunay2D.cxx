@@ -62,11 +62,11 @@ int vtkGridDelaunay2D::RequestData(
     options.MaximumEdgeLength = this->MaximumEdgeLength;
     options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
     options.Monitor = elevation::ProgressOf(this);
+    elevation::Report(options.Monitor, 0.0);
+    elevation::CheckPointArrays(input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     elevation::Triangulation triangulation = elevation::Triangulate(points.View, options);
 
-    this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
-    this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
     if (triangulation.NumberOfHullPoints == 0)
     {
       vtkWarningMacro(
@@ -78,6 +78,9 @@ int vtkGridDelaunay2D::RequestData(
     output->GetFieldData()->PassData(input->GetFieldData());
     AddUnusedPoints(triangulation, output->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles)));
+    // Only now, as an abort or an error leaves no counts.
+    this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
+    this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
   });
 }
 

@@ -22,7 +22,8 @@
  *   Coordinates may be of any size a double holds.
  *
  * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
- * triangle. An error, such as more points than can be handled (357,913,941), leaves empty output.
+ * triangle. An error, such as more points than can be handled (357,913,941), or a point array that
+ * has not as many tuples as there are points, leaves empty output.
  *
  * Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
@@ -72,7 +73,10 @@ public:
   };
 
   ///@{
-  /** Which of several points with the same x,y becomes the vertex; default KEEP_FIRST. */
+  /**
+   * Which of several points with the same x,y becomes the vertex: a DuplicatePolicyType, to which
+   * other numbers are clamped. Default: KEEP_FIRST.
+   */
   vtkSetClampMacro(DuplicatePolicy, int, KEEP_FIRST, KEEP_HIGHEST);
   vtkGetMacro(DuplicatePolicy, int);
   void SetDuplicatePolicyToKeepFirst() { this->SetDuplicatePolicy(KEEP_FIRST); }

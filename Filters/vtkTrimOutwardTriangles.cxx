@@ -34,6 +34,10 @@ namespace
 {
 using elevation::Index;
 using elevation::Mesh;
+using elevation::Part;
+using elevation::Progress;
+using elevation::Report;
+using elevation::ReportStep;
 
 /** The rings to trim along, and the data set and point ids that output 2 takes its points from. */
 struct UsedBoundary
@@ -85,12 +89,12 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary)
 }
 
 UsedBoundary FindBoundary(const Mesh& mesh, vtkPolyData* input, vtkPolyData* given,
-  double gapTolerance, const elevation::Progress& progress)
+  double gapTolerance, const Progress& progress)
 {
   UsedBoundary boundary;
   if (given)
   {
-    elevation::JoinedBoundary joined = elevation::JoinLines(mesh, ToLines(given));
+    elevation::JoinedBoundary joined = elevation::JoinLines(mesh, ToLines(given), progress);
     boundary.Vertices = std::move(joined.Vertices);
     boundary.Points = std::move(joined.Points);
     boundary.Source = given;
@@ -109,25 +113,28 @@ UsedBoundary FindBoundary(const Mesh& mesh, vtkPolyData* input, vtkPolyData* giv
 
 /** Outputs 0 and 1: the triangles with the flag, after the first cells, which are no triangles. */
 void PassTriangles(vtkPolyData* input, const Mesh& mesh, const elevation::TrimResult& trimmed,
-  char flag, vtkPolyData* output)
+  char flag, const Progress& progress, vtkPolyData* output)
 {
+  const Progress choosing = Part(progress, 0.0, 0.5);
+  const Progress copying = Part(progress, 0.5, 1.0);
   const vtkIdType first = elevation::FirstPolygon(input);
-  vtkNew<vtkIdList> cells;
+  std::vector<vtkIdType> cells;
   if (!flag)
   {
     output->SetVerts(input->GetVerts());
     output->SetLines(input->GetLines());
     for (vtkIdType cell = 0; cell < first; ++cell)
     {
-      cells->InsertNextId(cell);
+      cells.push_back(cell);
     }
   }
   elevation::Buffer<Index> triangles;
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
+    ReportStep(choosing, t, mesh.NumberOfTriangles());
     if (trimmed.IsOutward[t] == flag)
     {
-      cells->InsertNextId(first + t);
+      cells.push_back(first + t);
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         triangles.Append(mesh.Origin(h));
@@ -139,15 +146,25 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const elevation::TrimRe
   output->GetPointData()->PassData(input->GetPointData());
   output->GetFieldData()->PassData(input->GetFieldData());
   output->GetCellData()->CopyAllOn();
-  output->GetCellData()->CopyAllocate(input->GetCellData(), cells->GetNumberOfIds());
-  vtkNew<vtkIdList> places;
-  places->SetNumberOfIds(cells->GetNumberOfIds());
-  std::iota(places->begin(), places->end(), 0);
-  output->GetCellData()->CopyData(input->GetCellData(), cells, places);
+  const std::size_t count = cells.size();
+  output->GetCellData()->CopyAllocate(input->GetCellData(), static_cast<vtkIdType>(count));
+  vtkNew<vtkIdList> from;
+  vtkNew<vtkIdList> to;
+  constexpr std::size_t block = 65536; // at a time, to report between
+  for (std::size_t begin = 0; begin < count; begin += block)
+  {
+    ReportStep(copying, begin, count);
+    const std::size_t size = std::min(block, count - begin);
+    from->SetNumberOfIds(static_cast<vtkIdType>(size));
+    to->SetNumberOfIds(static_cast<vtkIdType>(size));
+    std::copy_n(cells.begin() + begin, size, from->begin());
+    std::iota(to->begin(), to->end(), static_cast<vtkIdType>(begin));
+    output->GetCellData()->CopyData(input->GetCellData(), from, to);
+  }
 }
 
 /** Output 2. */
-void PassBoundary(const UsedBoundary& boundary, vtkPolyData* output)
+void PassBoundary(const UsedBoundary& boundary, const Progress& progress, vtkPolyData* output)
 {
   vtkPoints* from = boundary.Source->GetPoints();
   vtkNew<vtkPoints> points;
@@ -162,6 +179,7 @@ void PassBoundary(const UsedBoundary& boundary, vtkPolyData* output)
     lines->InsertNextCell(boundary.Vertices.Size(ring) + 1);
     for (Index i = boundary.Vertices.Offsets[ring]; i < boundary.Vertices.Offsets[ring + 1]; ++i)
     {
+      ReportStep(progress, i, boundary.Vertices.Vertices.size());
       const vtkIdType id = points->InsertNextPoint(from->GetPoint(boundary.Points[i]));
       pointData->CopyData(boundary.Source->GetPointData(), boundary.Points[i], id);
       lines->InsertCellPoint(id);
@@ -170,6 +188,22 @@ void PassBoundary(const UsedBoundary& boundary, vtkPolyData* output)
   }
   output->SetPoints(points);
   output->SetLines(lines);
+}
+
+/** In the field data of all outputs. */
+void AddCounts(
+  const elevation::TrimResult& trimmed, double gapTolerance, vtkInformationVector* outputVector)
+{
+  for (int port = 0; port < 3; ++port)
+  {
+    vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
+    elevation::AddCount(fieldData, "NumberOfOutwardTriangles", trimmed.NumberOfOutwardTriangles);
+    elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
+    vtkNew<vtkDoubleArray> tolerance;
+    tolerance->SetName("EffectiveGapTolerance");
+    tolerance->InsertNextValue(gapTolerance);
+    fieldData->AddArray(tolerance);
+  }
 }
 } // namespace
 
@@ -219,26 +253,30 @@ int vtkTrimOutwardTriangles::RequestData(
 
   return elevation::CallKernel(this, outputVector, [&]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
-    elevation::Report(progress, 0.0);
+    Report(progress, 0.0);
+    elevation::CheckArrays(input);
+    if (given)
+    {
+      elevation::CheckArrays(given, "The boundary's");
+    }
+    const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
     Mesh mesh;
-    elevation::ToMesh(input, mesh);
-    mesh.ConnectTwins(static_cast<Index>(elevation::FirstPolygon(input)));
-    elevation::Report(progress, 0.2);
-    elevation::FindHoles(mesh, static_cast<Index>(elevation::FirstPolygon(input)),
-      elevation::Part(progress, 0.2, 0.3)); // for its proof that nothing is covered twice
+    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1));
+    mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
+    // For its proof that nothing is covered twice.
+    elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
 
     UsedBoundary boundary;
     elevation::TrimResult trimmed;
     if (mesh.NumberOfTriangles() > 0)
     {
-      boundary =
-        FindBoundary(mesh, input, given, this->GapTolerance, elevation::Part(progress, 0.3, 0.6));
+      boundary = FindBoundary(mesh, input, given, this->GapTolerance, Part(progress, 0.3, 0.6));
     }
     if (boundary.Vertices.Count() > 0)
     {
       elevation::TrimOptions options;
       options.RecoverBoundary = this->RecoverBoundary;
-      options.Monitor = elevation::Part(progress, 0.6, 0.9);
+      options.Monitor = Part(progress, 0.6, 0.8);
       trimmed = elevation::Trim(mesh, boundary.Vertices, options);
     }
     else
@@ -253,29 +291,18 @@ int vtkTrimOutwardTriangles::RequestData(
       trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
     }
 
+    PassTriangles(
+      input, mesh, trimmed, 0, Part(progress, 0.8, 0.88), vtkPolyData::GetData(outputVector, 0));
+    PassTriangles(
+      input, mesh, trimmed, 1, Part(progress, 0.88, 0.96), vtkPolyData::GetData(outputVector, 1));
+    PassBoundary(boundary, Part(progress, 0.96, 1.0), vtkPolyData::GetData(outputVector, 2));
+    AddCounts(trimmed, boundary.GapTolerance, outputVector);
+    Report(progress, 1.0);
+    // Only now, as an abort or an error leaves no counts.
     this->EffectiveGapTolerance = boundary.GapTolerance;
     this->NumberOfOutwardTriangles = trimmed.NumberOfOutwardTriangles;
     this->NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;
-    PassTriangles(input, mesh, trimmed, 0, vtkPolyData::GetData(outputVector, 0));
-    PassTriangles(input, mesh, trimmed, 1, vtkPolyData::GetData(outputVector, 1));
-    PassBoundary(boundary, vtkPolyData::GetData(outputVector, 2));
-    this->AddCounts(outputVector);
-    elevation::Report(progress, 1.0);
   });
-}
-
-void vtkTrimOutwardTriangles::AddCounts(vtkInformationVector* outputVector) const
-{
-  for (int port = 0; port < 3; ++port)
-  {
-    vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
-    elevation::AddCount(fieldData, "NumberOfOutwardTriangles", this->NumberOfOutwardTriangles);
-    elevation::AddCount(fieldData, "NumberOfRecoveredEdges", this->NumberOfRecoveredEdges);
-    vtkNew<vtkDoubleArray> tolerance;
-    tolerance->SetName("EffectiveGapTolerance");
-    tolerance->InsertNextValue(this->EffectiveGapTolerance);
-    fieldData->AddArray(tolerance);
-  }
 }
 
 void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)

@@ -54,8 +54,10 @@
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed, has a point that is not finite or
  * not in the mesh, a ring of fewer than three points, edges that cross each other or lead out of
- * the mesh, a boundary that encloses no triangle. A mesh without triangles passes with a warning;
- * so does one of which no triangle is surface (all are outward then).
+ * the mesh, a boundary that encloses no triangle; also a point or cell array of an input that has
+ * not as many tuples as there are points or cells. A mesh without triangles passes with a warning,
+ * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
+ * outward then).
  *
  * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges.
  *
@@ -76,7 +78,7 @@ public:
 
   ///@{
   /**
-   * The boundary, input 1. Optional: without it the boundary is extracted. nullptr takes it away.
+   * The boundary, input 1. Default: none, so that it is extracted. nullptr takes it away again.
    */
   void SetBoundaryConnection(vtkAlgorithmOutput* output);
   void SetBoundaryData(vtkPolyData* boundary);
@@ -104,7 +106,7 @@ public:
   vtkBooleanMacro(RecoverBoundary, bool);
   ///@}
 
-  /** After Update(): the GapTolerance that was used; 0 when a boundary was given. */
+  /** After Update(): the GapTolerance that was used, in spacings; 0 when a boundary was given. */
   vtkGetMacro(EffectiveGapTolerance, double);
 
   /** After Update(): the number of triangles in output 1. */
@@ -128,8 +130,6 @@ protected:
   vtkIdType NumberOfRecoveredEdges = 0;
 
 private:
-  void AddCounts(vtkInformationVector* outputVector) const;
-
   vtkTrimOutwardTriangles(const vtkTrimOutwardTriangles&) = delete;
   void operator=(const vtkTrimOutwardTriangles&) = delete;
 };

@@ -4,7 +4,8 @@
 """Reconstructs an elevation surface from a file of points: read, triangulate on the grid, trim
 outward triangles, fill holes, measure, write, draw.
 
-Needs the module on PYTHONPATH, and a display for the picture. Utilities/reconstruct cares for both.
+Needs the module on PYTHONPATH, and a display or Xvfb for the picture. Utilities/reconstruct cares
+for both.
 The chain itself is in reconstruct(); everything around it is files, options and the report.
 """
 
@@ -12,9 +13,12 @@ import argparse
 import json
 import math
 import os
+import re
 import signal
 import sys
 import time
+
+from virtual_display import VirtualDisplay
 
 # What is missing is told by main(), in words; --help works without.
 MISSING = None
@@ -33,27 +37,15 @@ try:
 except ImportError as error:
     MISSING = error.name
 
-EXAMPLES = """\
-examples:
-  reconstruct survey.csv
-      writes survey_surface.vtp and survey_surface.png into the current folder, prints a report
-  reconstruct horizon.txt --columns 3,4,5 --maximum-edge-length 250
-      columns by number; gaps wider than 250 stay holes, which are then filled
-  reconstruct lidar.vtp --boundary outline.vtp --maximum-hole-size 20 -o ground.ply
-      keeps what lies inside the outline; holes larger than 20 are left open and listed
-  reconstruct relief.tif --no-data 0 --no-picture --report relief.json
-      pixels of elevation 0 are left out; the report also goes to a file
-  reconstruct points.xyz --picture --view 225,35
-      draws the surface as seen from the south-west, 35 degrees above the horizon
-
-read:    .vtp .vtu .vts .vtr .vti .vtk .ply .stl .obj .csv .xyz .txt .tif .dem
-written: .vtp .ply .stl .obj, told by the suffix of --output
-Lengths are in the units of x and y. A result of 0 is success; 1 means that a file or its points
-cannot be used, 2 that an option is wrong; then nothing is written."""
+HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "reconstruct_help.txt")
 
 
 class Failure(Exception):
     """Something the user must know in one line; nothing is written."""
+
+
+class WrongOption(Failure):
+    """A Failure of the command line: the exit code is 2."""
 
 
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
@@ -62,169 +54,110 @@ DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 def number_at_least_zero(text):
     value = float(text)
     if not (value >= 0 and math.isfinite(value)):
-        raise argparse.ArgumentTypeError(f"{text} is not a number of 0 or more")
+        raise ValueError
     return value
-
-
-number_at_least_zero.__name__ = "number"
 
 
 def count_at_least_zero(text):
     value = int(text)
     if value < 0:
-        raise argparse.ArgumentTypeError(f"{text} is not a count of 0 or more")
+        raise ValueError
     return value
-
-
-count_at_least_zero.__name__ = "count"
 
 
 def three_columns(text):
     names = [name.strip() for name in text.split(",")]
     if len(names) != 3 or not all(names):
-        raise argparse.ArgumentTypeError(f"'{text}' does not name three columns, as x,y,z or 1,2,3")
+        raise ValueError
     return names
 
 
 def view_angles(text):
     if text == "top":
         return (180.0, 90.0)
-    try:
-        bearing, height = (float(word) for word in text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"'{text}' is neither 'top' nor BEARING,HEIGHT in degrees, as 225,35"
-        ) from None
+    bearing, height = (float(word) for word in text.split(","))
     if not 0 < height <= 90 or not math.isfinite(bearing):
-        raise argparse.ArgumentTypeError(f"the height of '{text}' must be above 0 and at most 90")
+        raise ValueError
     return (bearing % 360.0, height)
 
 
+NUMBER = "a number of 0 or more"
+# What each option with a value takes, for errors. All options are explained in reconstruct_help.txt.
+TAKES = {
+    "--columns": "three columns by name or number from 1, as x,y,z or 1,2,3",
+    "--no-data": "an elevation",
+    "--maximum-edge-length": NUMBER,
+    "--duplicates": "one of " + ", ".join(DUPLICATES),
+    "--boundary": "a file",
+    "--gap-tolerance": NUMBER,
+    "--maximum-hole-size": NUMBER,
+    "--maximum-hole-edges": "a whole number of 0 or more",
+    "--spacing": NUMBER,
+    "--output": "a file",
+    "--picture": "a file, or nothing",
+    "--view": "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35",
+    "--exaggeration": NUMBER,
+    "--report": "a file",
+}
+
+
+class Parser(argparse.ArgumentParser):
+    """Errors are one line that names the option and what it takes."""
+
+    def error(self, message):
+        found = re.match(r"argument ([^:]+): (.*)", message)
+        if found:
+            option = found.group(1).split("/")[-1]
+            given = re.search(r"(?:value|choice): ('.*?')(?: \(choose.*)?$", found.group(2))
+            message = f"{option}: {found.group(2)}"
+            if option in TAKES:
+                given = f", not {given.group(1)}" if given else ""
+                message = f"{option} takes {TAKES[option]}{given}"
+        elif "required: FILE" in message:
+            message = "no file is given"
+        elif message.startswith("unrecognized arguments: "):
+            words = message.split(": ", 1)[1]
+            message = f"unknown option or a second file: {words}"
+        self.exit(2, f"reconstruct: error: {message}; see --help\n")
+
+
+class ShowHelp(argparse.Action):
+    def __call__(self, parser, *_):
+        with open(HELP, encoding="utf-8") as stream:
+            sys.stdout.write(stream.read())
+        parser.exit()
+
+
+def make_parser():
+    parser = Parser(prog="reconstruct", allow_abbrev=False, add_help=False)
+    add = parser.add_argument
+    add("-h", "--help", action=ShowHelp, nargs=0)
+    add("file", metavar="FILE")
+    add("--columns", type=three_columns)
+    add("--no-data", type=float)
+    add("--maximum-edge-length", type=number_at_least_zero, default=0.0)
+    add("--duplicates", choices=DUPLICATES, default=DUPLICATES[0])
+    add("--boundary")
+    add("--gap-tolerance", type=number_at_least_zero, default=0.0)
+    add("--no-recover-boundary", action="store_true")
+    add("--no-trim", action="store_true")
+    add("--maximum-hole-size", type=number_at_least_zero, default=0.0)
+    add("--maximum-hole-edges", type=count_at_least_zero, default=0)
+    add("--spacing", type=number_at_least_zero, default=0.0)
+    add("--no-interpolate-point-data", action="store_true")
+    add("--no-fill", action="store_true")
+    add("-o", "--output")
+    add("--picture", nargs="?", const="")
+    add("--no-picture", action="store_true")
+    add("--view", type=view_angles)
+    add("--exaggeration", type=number_at_least_zero, default=0.0)
+    add("--report")
+    add("--quiet", action="store_true")
+    return parser
+
+
 def parse_arguments(arguments):
-    parser = argparse.ArgumentParser(
-        prog=os.environ.get("ELEVATION_SURFACE_PROGRAM", "reconstruct.py"),
-        description="Reconstructs an elevation surface z = f(x, y) from points: grid Delaunay "
-        "triangulation, removal of outward triangles, hole filling.",
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
-    parser.add_argument("file", metavar="FILE", help="points, raster or mesh to read")
-
-    group = parser.add_argument_group("reading")
-    group.add_argument(
-        "--columns",
-        type=three_columns,
-        metavar="X,Y,Z",
-        help="columns of a text file, by name or by number from 1 (default: those named x, y, z "
-        "or alike, else the first three)",
-    )
-    group.add_argument(
-        "--no-data",
-        type=float,
-        metavar="VALUE",
-        help="elevation that marks missing data; such rows and pixels are left out and counted "
-        "(default: what a .tif says itself)",
-    )
-
-    group = parser.add_argument_group("triangulation (vtkGridDelaunay2D)")
-    group.add_argument(
-        "--maximum-edge-length",
-        type=number_at_least_zero,
-        default=0.0,
-        metavar="LENGTH",
-        help="longest edge of a triangle in x,y; 0: no limit (default)",
-    )
-    group.add_argument(
-        "--duplicates",
-        choices=DUPLICATES,
-        default=DUPLICATES[0],
-        help="which of several points with the same x,y is used (default: keep-first)",
-    )
-
-    group = parser.add_argument_group("trimming (vtkTrimOutwardTriangles)")
-    group.add_argument(
-        "--boundary",
-        metavar="FILE",
-        help="closed lines or polygons that bound the surface: .vtp .vtk .ply .stl .obj, or text "
-        "with x and y, rings apart by a blank line (default: found from the points)",
-    )
-    group.add_argument(
-        "--gap-tolerance",
-        type=number_at_least_zero,
-        default=0.0,
-        metavar="SPACINGS",
-        help="how many point spacings an empty stretch may measure and still count as surface; "
-        "0: chosen from the points (default)",
-    )
-    group.add_argument(
-        "--no-recover-boundary",
-        action="store_true",
-        help="a boundary edge that is missing in the mesh is an error, not recovered",
-    )
-    group.add_argument("--no-trim", action="store_true", help="keep all triangles")
-
-    group = parser.add_argument_group("hole filling (vtkFillElevationHoles)")
-    group.add_argument(
-        "--maximum-hole-size",
-        type=number_at_least_zero,
-        default=0.0,
-        metavar="LENGTH",
-        help="larger holes stay open (diagonal of the hole's x,y box); 0: no limit (default)",
-    )
-    group.add_argument(
-        "--maximum-hole-edges",
-        type=count_at_least_zero,
-        default=0,
-        metavar="COUNT",
-        help="holes with more boundary edges stay open; 0: no limit (default)",
-    )
-    group.add_argument(
-        "--spacing",
-        type=number_at_least_zero,
-        default=0.0,
-        metavar="LENGTH",
-        help="distance of inserted points; 0: the mean edge of each hole's boundary (default)",
-    )
-    group.add_argument(
-        "--no-interpolate-point-data",
-        action="store_true",
-        help="point arrays of inserted points stay NaN or 0",
-    )
-    group.add_argument("--no-fill", action="store_true", help="leave all holes open")
-
-    group = parser.add_argument_group("results")
-    group.add_argument(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help="surface to write (default: FILE's name with _surface.vtp, in the current folder)",
-    )
-    group.add_argument(
-        "--picture",
-        nargs="?",
-        const="",
-        metavar="FILE",
-        help="picture to write, .png (default: beside the surface); without a display this is an "
-        "error, while the default picture is left out with a note",
-    )
-    group.add_argument("--no-picture", action="store_true", help="draw nothing")
-    group.add_argument(
-        "--view",
-        type=view_angles,
-        metavar="top|BEARING,HEIGHT",
-        help="where the picture is seen from: compass bearing of the eye and its height in degrees "
-        "(default: chosen from the shape)",
-    )
-    group.add_argument(
-        "--exaggeration",
-        type=number_at_least_zero,
-        default=0.0,
-        metavar="FACTOR",
-        help="vertical exaggeration of the picture; 0: chosen from the relief (default)",
-    )
-    group.add_argument("--report", metavar="FILE", help="also write the report as JSON")
-    group.add_argument("--quiet", action="store_true", help="print errors only")
+    parser = make_parser()
     options = parser.parse_args(arguments)
 
     if options.no_trim and (
@@ -288,8 +221,10 @@ class Run:
         self.notes = []
         self.updating = False
         self.stopped = False
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self.stop)
+        self.display = VirtualDisplay()
+        for number in ("SIGINT", "SIGTERM", "SIGHUP"):
+            if hasattr(signal, number):
+                signal.signal(getattr(signal, number), self.stop)
 
     def stop(self, _number, _frame):
         """A running filter is asked to abort: an exception would not get through VTK.
@@ -297,6 +232,7 @@ class Run:
         Asked twice, the program ends at once; while filters run, nothing is being written.
         """
         if self.updating and self.stopped:
+            self.display.close()
             os._exit(130)
         self.stopped = True
         if not self.updating:
@@ -467,6 +403,7 @@ def make_report(run, cloud, delaunay, trim, fill):
         cells = fill.GetOutput(1).GetCellData()
         names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints")
         columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
+        columns.append(hole_sizes(fill.GetOutput(1)))
         holes = [
             {
                 "hole": hole,
@@ -474,9 +411,10 @@ def make_report(run, cloud, delaunay, trim, fill):
                 "edges": edges,
                 "perimeter": perimeter,
                 "area": area,
+                "size": size,
                 "inserted_points": inserted,
             }
-            for hole, status, edges, perimeter, area, inserted in zip(*columns)
+            for hole, status, edges, perimeter, area, inserted, size in zip(*columns)
         ]
         by_status = {}
         for hole in holes:
@@ -500,6 +438,19 @@ def make_report(run, cloud, delaunay, trim, fill):
     return report
 
 
+def hole_sizes(lines):
+    """The diagonal of each line's box in x,y: what --maximum-hole-size is compared with."""
+    if lines.GetNumberOfLines() == 0:
+        return []
+    cells = lines.GetLines()
+    xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
+    xy = xy[vtk_to_numpy(cells.GetConnectivityArray())]
+    starts = vtk_to_numpy(cells.GetOffsetsArray())[:-1]
+    low = numpy.minimum.reduceat(xy, starts, axis=0)
+    high = numpy.maximum.reduceat(xy, starts, axis=0)
+    return numpy.hypot(*(high - low).T).tolist()
+
+
 def distance_to(surface, coordinates, chosen):
     """Distance of input points from a surface: max, mean and root mean square, as Metro tells them.
 
@@ -517,9 +468,15 @@ def distance_to(surface, coordinates, chosen):
     here &= (corners[: len(coordinates)] == coordinates).all(axis=1)
     away = coordinates[chosen & ~here]
     distance = numpy.zeros(len(away))
+    unit = 1.0
     if len(away):
         # Only what the search needs, near the origin, where doubles are finest.
-        middle = corners[is_corner].mean(axis=0)
+        middle = 0.5 * corners[is_corner].min(axis=0) + 0.5 * corners[is_corner].max(axis=0)
+        size = max(float(numpy.abs(corners[is_corner]).max()), float(numpy.abs(away).max()))
+        if size > 1e100:
+            # Squares would be infinite.
+            unit = 2.0 ** math.floor(math.log2(size))
+            corners, away, middle = corners / unit, away / unit, middle / unit
         corners = numpy.where(is_corner[:, None], corners - middle, 0.0)
         bare = vtkPolyData()
         bare.SetPoints(files.make_points(corners).GetPoints())
@@ -533,10 +490,15 @@ def distance_to(surface, coordinates, chosen):
     return {
         "points": count,
         "points_not_corners": len(away),
-        "maximum": float(distance.max(initial=0.0)),
-        "mean": float(distance.sum() / count),
-        "rms": float(math.sqrt((distance**2).sum() / count)),
+        "maximum": unit * float(distance.max(initial=0.0)),
+        "mean": unit * float(distance.sum() / count),
+        "rms": unit * float(math.sqrt((distance**2).sum() / count)),
     }
+
+
+def counted(count, singular, plural=None):
+    """1 hole, 2 holes"""
+    return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
 
 
 def print_report(report, options):
@@ -567,30 +529,37 @@ def print_report(report, options):
         rings = trim["boundary_rings"]
         line(
             "trimmed",
-            f"{trim['outward_triangles']:,} outward triangles; boundary {trim['boundary']}, "
-            f"{rings:,} ring{'s' * (rings != 1)}",
+            f"{counted(trim['outward_triangles'], 'outward triangle')}; "
+            f"boundary {trim['boundary']}, {counted(rings, 'ring')}",
         )
         if "effective_gap_tolerance" in trim:
             line("", f"gap tolerance {trim['effective_gap_tolerance']:.4g} spacings")
         if trim["recovered_edges"]:
-            line("", f"{trim['recovered_edges']:,} boundary edges recovered")
+            line("", f"{counted(trim['recovered_edges'], 'boundary edge')} recovered")
     if "holes" in report:
         holes = report["holes"]
         line(
             "holes",
             f"{holes['found']:,} found, {holes['filled']:,} filled with "
-            f"{holes['inserted_points']:,} points",
+            f"{counted(holes['inserted_points'], 'point')}",
         )
         for status, count in holes["by_status"].items():
             if status != "filled":
-                some = [str(h["hole"]) for h in holes["list"] if h["status"] == status][:8]
+                some = [h for h in holes["list"] if h["status"] == status][:5]
                 more = ", ..." if count > len(some) else ""
+                if status == "too many edges":
+                    some = [f"{h['hole']} ({counted(h['edges'], 'edge')})" for h in some]
+                else:
+                    some = [f"{h['hole']} (size {h['size']:.4g})" for h in some]
                 line("", f"{count:,} not filled, {status}: hole {', '.join(some)}{more}")
-    line("surface", f"{list(report['triangles'].values())[-1]:,} triangles")
+    line("surface", counted(list(report["triangles"].values())[-1], "triangle"))
     d = report["distance"]
+    beyond = ""
+    if report["unused_reasons"].get(OUTSIDE):
+        beyond = ", those outside left out" if options.boundary else ", those outside too"
     line(
         "distance",
-        f"of {d['points']:,} points from the surface: max {d['maximum']:.3g}, "
+        f"of {counted(d['points'], 'point')}{beyond} from the surface: max {d['maximum']:.3g}, "
         f"mean {d['mean']:.3g}, RMS {d['rms']:.3g}",
     )
     line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in report["times"].items()))
@@ -641,8 +610,8 @@ class Results:
 
 def picture_subtitle(report):
     parts = [
-        f"{report['points']:,} points",
-        f"{list(report['triangles'].values())[-1]:,} triangles",
+        counted(report["points"], "point"),
+        counted(list(report["triangles"].values())[-1], "triangle"),
     ]
     if "holes" in report and report["holes"]["found"]:
         holes = report["holes"]
@@ -661,16 +630,21 @@ def write_report(path, report):
 
 def work(options, results):
     """Everything between the options and the exit code."""
-    files.check_suffix(options.output, files.WRITE_SUFFIXES, "written")
-    if options.picture is not None:
-        files.check_suffix(options.picture, (".png",), "written as a picture")
+    try:
+        files.check_suffix(options.output, files.WRITE_SUFFIXES, "written")
+        if options.picture is not None:
+            files.check_suffix(options.picture, (".png",), "written as a picture")
+        if options.columns:
+            files.check_columns_wanted(options.file)
+    except files.FileError as error:
+        raise WrongOption(str(error)) from None
     wanted = [p for p in (options.output, options.picture, options.report) if p]
     inputs = [p for p in (options.file, options.boundary) if p]
     for i, path in enumerate(wanted):
         files.check_writable(path)
         for other in inputs + wanted[:i]:
             if os.path.abspath(path) == os.path.abspath(other):
-                raise Failure(f"{path}: would overwrite {other}")
+                raise WrongOption(f"{path}: would overwrite {other}")
 
     run = Run(options)
     try:
@@ -678,9 +652,10 @@ def work(options, results):
         if options.picture is not None:
             import surface_picture as picture
 
-            reason = picture.why_no_picture()
+            reason = None if os.environ.get("DISPLAY") else run.display.open()
+            reason = reason or picture.why_no_picture()
             if reason:
-                advice = "use Utilities/reconstruct or xvfb-run"
+                advice = "use Utilities/reconstruct, which sets everything up"
                 if options.picture_wanted:
                     raise Failure(f"{options.picture}: cannot be drawn: {reason}; {advice}")
                 run.notes.append(f"no picture: {reason}; {advice}")
@@ -703,6 +678,13 @@ def work(options, results):
                 options.output, lambda path: files.write_surface(surface, path, suffix)
             ),
         )
+        if picture:
+            reason = picture.why_not_drawn(surface)
+            if reason and options.picture_wanted:
+                raise Failure(f"{options.picture}: cannot be drawn: {reason}")
+            if reason:
+                report["notes"].append(f"no picture: {reason}")
+                picture = None
         if picture:
             report["picture"] = run.timed(
                 "draw",
@@ -729,6 +711,7 @@ def work(options, results):
         results.publish()
     finally:
         run.progress.clear()
+        run.display.close()
     if not options.quiet:
         print_report(report, options)
 
@@ -744,16 +727,23 @@ def main(arguments=None):
         )
         return 1
 
+    # Numbers near the end of their range make infinities; what these mean is told where it matters.
+    numpy.seterr(all="ignore")
     results = Results()
     try:
         work(options, results)
+        sys.stdout.flush()
         return 0
     except (files.FileError, Failure) as error:
         print(f"{name}: error: {error}", file=sys.stderr)
-        return 1
+        return 2 if isinstance(error, WrongOption) else 1
     except MemoryError:
         print(f"{name}: error: {options.file}: there is not enough memory", file=sys.stderr)
         return 1
+    except BrokenPipeError:
+        # Nobody reads the report any more. What was asked for is done; Python must not try again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except KeyboardInterrupt:
         print(f"{name}: stopped; nothing is written", file=sys.stderr)
         return 130

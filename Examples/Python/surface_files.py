@@ -24,6 +24,7 @@ import re
 import struct
 
 import numpy
+import surface_checks
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import (
     VTK_STRING,
@@ -126,6 +127,8 @@ def check_readable(path):
     """Refuses what cannot be opened, before any reader sees it."""
     if not os.path.exists(path):
         raise FileError(f"{path}: no such file")
+    if os.path.isdir(path):
+        raise FileError(f"{path}: is a folder, not a file")
     if not os.path.isfile(path):
         raise FileError(f"{path}: is not a file")
     try:
@@ -143,6 +146,11 @@ def check_suffix(path, suffixes, verb):
         raise FileError(f"{path}: {ending} cannot be {verb}; use one of {' '.join(suffixes)}")
 
 
+def check_columns_wanted(path):
+    if suffix_of(path) not in TEXT_SUFFIXES:
+        raise FileError(f"{path}: --columns is for text files ({' '.join(TEXT_SUFFIXES)})")
+
+
 def read_points(path, columns=None, no_data=None):
     """Reads the points of a file, whatever its kind.
 
@@ -150,11 +158,12 @@ def read_points(path, columns=None, no_data=None):
     no_data  None, or the elevation that marks missing values; such rows and pixels are left out
     Raises FileError. Takes about a second for a million rows of text, less for other kinds.
     """
-    check_suffix(path, READ_SUFFIXES, "read")
+    if not os.path.isdir(path):
+        check_suffix(path, READ_SUFFIXES, "read")
     check_readable(path)
     suffix = suffix_of(path)
-    if columns and suffix not in TEXT_SUFFIXES:
-        raise FileError(f"{path}: --columns is for text files ({' '.join(TEXT_SUFFIXES)})")
+    if columns:
+        check_columns_wanted(path)
     if suffix in TEXT_SUFFIXES:
         return read_text(path, columns, no_data)
     if suffix in (".tif", ".tiff"):
@@ -202,17 +211,36 @@ def vtk_reader(suffix):
 
 def run_vtk_reader(path):
     """The data object of a file in one of VTK's formats."""
+    reason = surface_checks.why_damaged(path)
+    if reason:
+        raise FileError(f"{path}: {reason}")
     reader = vtk_reader(suffix_of(path))
     with Messages() as messages:
         reader.SetFileName(path)
         reader.Update()
-    if messages.errors:
-        raise FileError(f"{path}: cannot be read: {messages.errors[0]}")
+    # What VTK's legacy readers could not read, they leave as it was, with a warning only.
+    short = [words for words in messages.warnings if words.startswith("Error reading")]
+    if messages.errors or short:
+        raise FileError(f"{path}: cannot be read: {(messages.errors + short)[0]}")
     data = reader.GetOutputDataObject(0)
     if data is None or messages.warnings and data.GetNumberOfElements(0) == 0:
         reason = messages.warnings[0] if messages.warnings else "VTK found no data in it"
         raise FileError(f"{path}: cannot be read: {reason}")
+    if isinstance(data, vtkPolyData):
+        check_point_ids(path, data)
     return data
+
+
+def check_point_ids(path, data):
+    """Refuses cells with corners that are not there: filters trust these numbers."""
+    for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
+        ids = vtk_to_numpy(cells.GetConnectivityArray())
+        if len(ids) and not (0 <= ids.min() and ids.max() < data.GetNumberOfPoints()):
+            bad = ids.max() if ids.min() >= 0 else ids.min()
+            raise FileError(
+                f"{path}: is damaged: a cell has the corner {bad}, "
+                f"but there are {data.GetNumberOfPoints():,} points"
+            )
 
 
 def read_with_vtk(path, no_data):
@@ -786,7 +814,8 @@ def careful_row(where, layout, words, indices):
         value = layout.number(word)
         if value is None:
             raise FileError(
-                f"{where}: '{word[:40]}' in column {index + 1} ({axis}) is not a number"
+                f"{where}: '{word[:40]}' in column {index + 1} ({axis}) is not a number; "
+                "--columns chooses other columns"
             )
         row.append(value)
     return row
@@ -810,7 +839,7 @@ def check_preamble(path, layout, preamble, indices, width):
             column = indices[axis]
             raise FileError(
                 f"{path}, line {number}: '{words[column][:40]}' in column {column + 1} "
-                f"({'xyz'[axis]}) is not a number"
+                f"({'xyz'[axis]}) is not a number; --columns chooses other columns"
             )
 
 

@@ -10,6 +10,8 @@ before rendering: graphics cards work with 24 bits, which is too few for map coo
 import ctypes
 import math
 import os
+import re
+import subprocess
 import sys
 
 import numpy
@@ -46,6 +48,7 @@ FILLED = (0.72, 0.07, 0.30)
 OPEN = (0.95, 0.45, 0.05)
 WALL = (0.66, 0.63, 0.59)
 
+VTK_FONT_FILE = 4  # as in vtkTextProperty.h; not wrapped
 WIDTH = 1800
 TOP, BOTTOM, LEFT, RIGHT = 150, 120, 70, 230
 NICE = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
@@ -70,6 +73,17 @@ def why_no_picture():
     return None
 
 
+def why_not_drawn(surface):
+    """Why this surface cannot be drawn, or None."""
+    points = vtk_to_numpy(surface.GetPoints().GetData())
+    points = points[numpy.unique(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()))]
+    if numpy.abs(points).max() > 1e30:
+        return "coordinates beyond 1e30 are too large for it"
+    if min(numpy.ptp(points[:, :2], axis=0)) < 1e-30:
+        return "the surface is smaller than 1e-30, too small for it"
+    return None
+
+
 def nice_number(value, steps=NICE):
     """The nearest round number, by ratio."""
     power = 10.0 ** math.floor(math.log10(value))
@@ -87,7 +101,10 @@ def choose_exaggeration(points, triangles):
     extent = numpy.ptp(used[:, :2], axis=0)
     size = max(math.sqrt(extent[0] * extent[1]), 0.4 * float(extent.max()))
     if high <= low or size == 0.0:
-        return 1.0
+        # Flat but for a few points: these must not be higher than the picture.
+        relief = float(numpy.ptp(used[:, 2]))
+        factor = 0.17 * size / relief if relief > 0.0 else 1.0
+        return nice_number(factor) if 0.0 < factor < 1.0 else 1.0
     factor = 0.17 * size / (high - low)
     a, b, c = (points[triangles[:, i]] for i in range(3))
     normal = numpy.cross(b - a, c - a)
@@ -97,6 +114,27 @@ def choose_exaggeration(points, triangles):
     steep = slope[order[numpy.searchsorted(covered, 0.9 * covered[-1])]]
     factor = min(factor, 1.1 / max(steep, 1e-300))
     return 1.0 if 0.8 <= factor <= 1.25 else nice_number(factor)
+
+
+def common_range(z):
+    """(lowest, highest) elevation to show, and whether elevations beyond it are cut.
+
+    A few outliers would leave one colour, and a flat line, for everything else. So 0.5 % at both ends
+    are left out where that makes the range less than a third.
+    """
+    low, high = float(z.min()), float(z.max())
+    a, b = (float(value) for value in numpy.percentile(z, (0.5, 99.5)))
+    if b > a and high - low > 3.0 * (b - a):
+        return a, b, True
+    return low, high, False
+
+
+def choose_stretch(xy):
+    """(direction across the surface, factor to widen it by): 1, but for narrow strips."""
+    _, vectors = numpy.linalg.eigh(numpy.cov((xy - xy.mean(axis=0)).T))
+    across, along = numpy.ptp(xy @ vectors, axis=0)
+    ratio = along / max(across, 1e-6 * along)
+    return vectors[:, 0], nice_number(ratio / 10.0) if ratio > 30.0 else 1.0
 
 
 def choose_bearing(xy):
@@ -112,7 +150,9 @@ def choose_bearing(xy):
     short = vectors[:, 0]
     if short[1] > 0:
         short = -short
-    return (math.degrees(math.atan2(short[0], short[1])) + 360.0 + 12.0) % 360.0
+    # Strips are seen straight from the side, for all of their length to be across.
+    turn = 12.0 if ratio < 30.0 else 0.0
+    return (math.degrees(math.atan2(short[0], short[1])) + 360.0 + turn) % 360.0
 
 
 def colour(text):
@@ -180,14 +220,21 @@ def outline(triangles):
 
 
 class Frame:
-    """Real coordinates -> picture coordinates: shifted to the middle, z exaggerated."""
+    """Real coordinates -> picture coordinates: shifted to the middle, z cut to what is shown and
+    exaggerated, narrow strips widened."""
 
-    def __init__(self, middle, floor, exaggeration):
+    def __init__(self, middle, floor, exaggeration, cut, across, stretch):
         self.shift = numpy.array((middle[0], middle[1], floor))
         self.scale = numpy.array((1.0, 1.0, exaggeration))
+        self.cut = cut
+        self.widen = numpy.eye(2) + (stretch - 1.0) * numpy.outer(across, across)
 
     def __call__(self, points):
-        return (points - self.shift) * self.scale
+        points = points.copy()
+        points[:, 2] = numpy.clip(points[:, 2], *self.cut)
+        points = (points - self.shift) * self.scale
+        points[:, :2] = points[:, :2] @ self.widen
+        return points
 
     def of(self, data):
         return self(vtk_to_numpy(data.GetPoints().GetData()).astype("f8"))
@@ -209,13 +256,14 @@ def actor_of(data, rgb=None, width=0.0):
     return actor
 
 
-def lines_actor(points, pairs, rgb, width):
+def lines_actor(points, pairs, rgb, width, layer=0):
     data = poly_data(points, lines=cells_of(pairs))
     actor = actor_of(data, rgb, width)
     # Lines lie in the surface; drawn at equal depth they would flicker in and out of it. Much more
     # than this, and they would show through from behind.
     mapper = actor.GetMapper()
-    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -60.0)
+    # A higher layer lies above a lower one.
+    mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0, -60.0 - 30.0 * layer)
     return actor
 
 
@@ -250,6 +298,54 @@ def add_text(renderer, text, x, y, size, align="left", bold=False, rgb=INK):
     actor.SetPosition(x, y)
     renderer.AddActor2D(actor)
     return actor
+
+
+def missing_glyphs(text):
+    """The characters that the built-in font may lack: it has Latin, Greek and Cyrillic letters."""
+    return sorted({c for c in text if ord(c) > 0x04FF and c not in "\u2013\u2014\u2026\u00b7"})
+
+
+def font_for(characters):
+    """A font file of the system that has all these characters, or None."""
+    codes = " ".join(f"{ord(c):x}" for c in characters)
+    try:
+        found = subprocess.run(
+            ["fc-list", f":charset={codes}", "file"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            timeout=20,
+            check=True,
+        ).stdout.split("\n")
+    except (OSError, subprocess.SubprocessError):
+        return None
+    names = sorted(line.strip().rstrip(":") for line in found)
+    return next((n for n in names if n.lower().endswith((".ttf", ".otf", ".ttc"))), None)
+
+
+def add_title(renderer, text, x, y, room):
+    """The title, shortened in its middle to fit. Characters that no font has become an ellipsis."""
+    font = None
+    strange = missing_glyphs(text)
+    if strange:
+        font = font_for(strange)
+        if font is None:
+            text = re.sub("[" + re.escape("".join(strange)) + "]+", "\u2026", text)
+    actor = add_text(renderer, text, x, y, 40, bold=True)
+    if font:
+        actor.GetTextProperty().SetFontFamily(VTK_FONT_FILE)
+        actor.GetTextProperty().SetFontFile(font)
+
+    def too_wide():
+        box = [0.0] * 4
+        actor.GetBoundingBox(renderer, box)
+        return box[1] - box[0] > room
+
+    keep = len(text)
+    while too_wide() and keep > 8:
+        keep -= 1 + keep // 40
+        head = (keep + 1) // 2
+        actor.SetInput(text[:head] + "\u2026" + text[len(text) - (keep - head) :])
 
 
 def add_strokes(renderer, paths, rgb=INK, width=3.0):
@@ -293,11 +389,15 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
     used = numpy.unique(corners)
     xy, z = real[used, :2], real[used, 2]
-    low, high = float(z.min()), float(z.max())
+    low, high, is_cut = common_range(z)
     middle = 0.5 * (xy.min(axis=0) + xy.max(axis=0))
-    exaggeration = exaggeration or choose_exaggeration(real, corners.reshape(-1, 3))
+    across, stretch = choose_stretch(xy)
     bearing, height = view or (choose_bearing(xy - middle), 42.0)
-    frame = Frame(middle, low, exaggeration)
+    margin = 0.3 * (high - low) if is_cut else 0.0
+    cut = (low - margin, high + margin) if is_cut else (-numpy.inf, numpy.inf)
+    frame = Frame(middle, low, 1.0, cut, across, stretch)
+    exaggeration = exaggeration or choose_exaggeration(frame(real), corners.reshape(-1, 3))
+    frame.scale[2] = exaggeration
     points = frame(numpy.nan_to_num(real, nan=0.0, posinf=0.0, neginf=0.0))
     unused = numpy.ones(len(points), dtype=bool)
     unused[used] = False
@@ -330,7 +430,8 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
 
     # The block: walls under every rim. Rims of holes that stay open get walls too, as pits.
-    floor = -0.05 * math.sqrt(max(float(numpy.prod(numpy.ptp(xy, axis=0))), 1e-300))
+    extent = numpy.ptp(points[used, :2], axis=0)
+    floor = -0.05 * math.sqrt(max(float(numpy.prod(extent)), 1e-300)) - margin * exaggeration
     rim = outline(corners.reshape(-1, 3))
     if height < 89.0:
         renderer.AddActor(walls_actor(points, rim, floor))
@@ -340,22 +441,32 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     if patches is not None:
         filled = corners.reshape(-1, 3)[vtk_to_numpy(patches) >= 0]
         if len(filled):
-            renderer.AddActor(lines_actor(points, outline(filled), FILLED, 2.0))
+            renderer.AddActor(lines_actor(points, outline(filled), FILLED, 2.0, 1))
             legend.append(("filled hole", FILLED))
     if holes is not None and holes.GetNumberOfLines():
         still_open = vtk_to_numpy(holes.GetCellData().GetArray("Status")) != 0
         pairs = segments([p for p, o in zip(line_cells(holes), still_open) if o])
         if len(pairs):
-            renderer.AddActor(lines_actor(frame.of(holes), pairs, OPEN, 3.0))
+            renderer.AddActor(lines_actor(frame.of(holes), pairs, OPEN, 3.5, 2))
             legend.append(("hole left open", OPEN))
 
     window = place_camera(renderer, points[used], floor, bearing, height)
     scale = renderer.GetActiveCamera().GetParallelScale()
     width, tall = window.GetSize()
     add_lights(renderer, bearing)
-    add_frame(renderer, width, tall, title, subtitle, exaggeration, legend)
+    scales = [exaggeration_words(exaggeration)]
+    if stretch != 1.0:
+        scales.append(f"width drawn {round_text(stretch)}\u00d7")
+    if is_cut:
+        scales.append("outliers cut: colours of 99 % of the points")
+    add_frame(renderer, width, tall, title, subtitle, legend, scales)
     add_scalar_bar(renderer, colours, width, tall)
-    add_map_signs(renderer, width, tall / (2.0 * scale), bearing, height)
+    pixels = tall / (2.0 * scale)
+    if stretch != 1.0:
+        # The scale bar then holds along the strip.
+        b = math.radians(bearing)
+        pixels *= max(abs(across[0] * math.sin(b) + across[1] * math.cos(b)), 0.05)
+    add_map_signs(renderer, width, pixels, bearing, height, frame.widen)
 
     window.Render()
     grab = vtkWindowToImageFilter()
@@ -364,13 +475,13 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     grab.SetInputBufferTypeToRGB()
     grab.Update()
     writer = vtkPNGWriter()
-    writer.SetFileName(path)
+    # In memory first: VTK's writer does not tell why it cannot write.
+    writer.WriteToMemoryOn()
     writer.SetInputData(grab.GetOutput())
     writer.Write()
     window.Finalize()
-    with open(path, "rb") as stream:
-        if not stream.read().endswith(b"IEND\xaeB`\x82"):
-            raise OSError("the file is cut off; is the disk full?")
+    with open(path, "wb") as stream:
+        stream.write(vtk_to_numpy(writer.GetResult()).tobytes())
     return {"bearing": bearing, "height": height, "exaggeration": exaggeration}
 
 
@@ -422,8 +533,16 @@ def add_lights(renderer, bearing):
         renderer.AddLight(light)
 
 
-def add_frame(renderer, width, tall, title, subtitle, exaggeration, legend):
-    add_text(renderer, title, LEFT, tall - 78, 40, bold=True)
+def exaggeration_words(factor):
+    if factor == 1.0:
+        return "vertical scale as horizontal"
+    if factor > 1.0:
+        return f"vertical exaggeration {round_text(factor)}\u00d7"
+    return f"z drawn {round_text(factor)}\u00d7"
+
+
+def add_frame(renderer, width, tall, title, subtitle, legend, scales):
+    add_title(renderer, title, LEFT, tall - 78, width - 2 * LEFT)
     add_text(renderer, subtitle, LEFT, tall - 120, 24, rgb=(0.35, 0.37, 0.40))
     x = LEFT
     for name, rgb in legend:
@@ -432,13 +551,10 @@ def add_frame(renderer, width, tall, title, subtitle, exaggeration, legend):
         box = [0.0] * 4
         label.GetBoundingBox(renderer, box)
         x += 56 + box[1] - box[0] + 44
-    if exaggeration == 1.0:
-        words = "vertical scale as horizontal"
-    elif exaggeration > 1.0:
-        words = f"vertical exaggeration {round_text(exaggeration)}\u00d7"
-    else:
-        words = f"z drawn {round_text(exaggeration)}\u00d7"
-    add_text(renderer, words, x, 42, 22)
+    # Several do not fit beside the legend: the others go above it.
+    add_text(renderer, scales[0], x, 42, 22)
+    if scales[1:]:
+        add_text(renderer, "   \u00b7   ".join(scales[1:]), LEFT, 84, 22)
 
 
 def add_scalar_bar(renderer, colours, width, tall):
@@ -473,7 +589,7 @@ def add_scalar_bar(renderer, colours, width, tall):
     renderer.AddActor2D(bar)
 
 
-def add_map_signs(renderer, width, pixels, bearing, height):
+def add_map_signs(renderer, width, pixels, bearing, height, widen):
     """A scale bar that holds across the picture, and an arrow to the north (+y)."""
     length = nice_number(0.13 * WIDTH / pixels, (1.0, 2.0, 5.0))
     right = width - RIGHT - 60
@@ -485,8 +601,12 @@ def add_map_signs(renderer, width, pixels, bearing, height):
     add_text(renderer, round_text(length), 0.5 * (left + right), 66, 22, "centre")
     # +y as the camera sees it: turned by the bearing, foreshortened by the height of the eye.
     b, h = math.radians(bearing), math.radians(height)
-    north = numpy.array((math.sin(b), -math.cos(b) * math.sin(h)))
-    east = numpy.array((-math.cos(b), -math.sin(b) * math.sin(h)))
+    seen = numpy.array(
+        ((-math.cos(b), math.sin(b)), (-math.sin(b) * math.sin(h), -math.cos(b) * math.sin(h)))
+    )
+    north = seen @ widen[:, 1]
+    north /= max(1.0, float(numpy.linalg.norm(north)))
+    east = numpy.array((north[1], -north[0])) if widen[0, 1] or widen[0, 0] != 1 else seen[:, 0]
     middle = numpy.array((width - RIGHT + 110.0, 62.0))
     tip, tail = middle + 34 * north, middle - 34 * north
     barbs = [tip - 15 * north + 9 * east, tip, tip - 15 * north - 9 * east]

@@ -195,6 +195,14 @@ private:
     {
       return this->BuildRun(whole);
     }
+    // What fits into one node stays together, so that the lowest nodes are full.
+    const auto fits = [](const Part& part) {
+      return part.Rows() <= BinGrid::Node::Places && part.Columns() <= LeafColumns;
+    };
+    const bool isLowest = fits(whole);
+    const auto areaOf = [&](const Part& part) {
+      return this->IsUndivided(part) || (!isLowest && fits(part)) ? 0.0 : part.Area();
+    };
     Part parts[BinGrid::Node::Places];
     double areas[BinGrid::Node::Places]; // 0 for what is not divided
     parts[0] = whole;
@@ -218,8 +226,8 @@ private:
       {
         part.EndRow = other.FirstRow = part.FirstRow + part.Rows() / 2;
       }
-      areas[widest] = this->IsUndivided(part) ? 0.0 : part.Area();
-      areas[count - 1] = this->IsUndivided(other) ? 0.0 : other.Area();
+      areas[widest] = areaOf(part);
+      areas[count - 1] = areaOf(other);
     }
     Child children[BinGrid::Node::Places];
     int filled = 0;

@@ -143,7 +143,8 @@ std::string NameOfLine(const BoundaryLines& lines, Index line)
 }
 
 /** The mesh vertex at each point of the lines that a line uses. */
-std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
+std::vector<Index> MatchPoints(
+  const Mesh& mesh, const BoundaryLines& lines, const Progress& progress)
 {
   std::unordered_map<Point2, Index, HashOfPoint> vertexAt;
   for (Index line = 0; line < lines.Lines.Count(); ++line)
@@ -160,8 +161,10 @@ std::vector<Index> MatchPoints(const Mesh& mesh, const BoundaryLines& lines)
     }
   }
   std::vector<char> seen(mesh.Points.size(), 0);
-  for (const Index vertex : mesh.Triangles)
+  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
+    ReportStep(progress, h, mesh.Triangles.size());
+    const Index vertex = mesh.Origin(h);
     if (seen[vertex])
     {
       continue;
@@ -257,9 +260,9 @@ void Append(
 
 } // namespace
 
-JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines)
+JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines, const Progress& progress)
 {
-  const std::vector<Index> vertexOf = MatchPoints(mesh, lines);
+  const std::vector<Index> vertexOf = MatchPoints(mesh, lines, progress);
   const std::vector<Piece> pieces = MakePieces(lines, vertexOf);
   if (pieces.empty())
   {
@@ -355,6 +358,8 @@ constexpr double SpacingPerNeighborDistance = 0.5;
 constexpr double ToleranceOfTypicalTriangle = 2.25;
 constexpr double LargestSpacingInTriangle = 2.0;
 constexpr std::size_t NeighborsOfHub = 64;
+// Smaller ones, whose squares leave the range of double, are taken as this, so that no spacing is 0.
+constexpr double LeastSpacing = 1e-150;
 
 /** Squared distances at a scale where they do not leave the range of double. */
 class Distances
@@ -405,8 +410,12 @@ std::vector<double> FindSpacings(
   // Vertices are renumbered as the triangles name them: neighbours come to lie near in memory.
   std::vector<Index> rank(mesh.Points.size(), None);
   std::vector<Index> vertices;
-  for (const Index vertex : mesh.Triangles)
+  const Index halfEdges = mesh.NumberOfHalfEdges();
+  const Progress ranking = Part(progress, 0.0, 0.1);
+  for (Index h = 0; h < halfEdges; ++h)
   {
+    ReportStep(ranking, h, halfEdges);
+    const Index vertex = mesh.Origin(h);
     if (rank[vertex] == None)
     {
       rank[vertex] = static_cast<Index>(vertices.size());
@@ -423,9 +432,10 @@ std::vector<double> FindSpacings(
   const auto destination = [&](Index h) { return rank[mesh.Destination(h)]; };
 
   std::vector<Index> offsets(count + 1, 0);
-  const Index halfEdges = mesh.NumberOfHalfEdges();
+  const Progress counting = Part(progress, 0.1, 0.2);
   for (Index h = 0; h < halfEdges; ++h)
   {
+    ReportStep(counting, h, halfEdges);
     ++offsets[origin(h)];
     if (mesh.IsBorder(h))
     {
@@ -438,8 +448,10 @@ std::vector<double> FindSpacings(
     offset = sum += offset;
   }
   std::vector<Index> neighbors(sum);
+  const Progress gathering = Part(progress, 0.2, 0.3);
   for (Index h = 0; h < halfEdges; ++h)
   {
+    ReportStep(gathering, h, halfEdges);
     neighbors[--offsets[origin(h)]] = destination(h);
     if (mesh.IsBorder(h))
     {
@@ -455,12 +467,10 @@ std::vector<double> FindSpacings(
   std::vector<double> spacings(mesh.Points.size(), 0.0);
   std::vector<Index> seenFrom(count, None);
   std::vector<Candidate> candidates;
+  const Progress searching = Part(progress, 0.3, 1.0);
   for (Index v = 0; v < static_cast<Index>(count); ++v)
   {
-    if (v % 65536 == 0)
-    {
-      Report(progress, static_cast<double>(v) / count);
-    }
+    ReportStep(searching, v, count);
     candidates.clear();
     seenFrom[v] = v;
     Index pass = v;
@@ -505,7 +515,7 @@ struct Parts
   std::vector<Index> Offsets{ 0 };
   std::vector<Index> Triangles; ///< part after part
 
-  Parts(const Mesh& mesh, const std::vector<char>& flags)
+  Parts(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
     : PartOf(flags.size(), None)
   {
     this->Triangles.reserve(flags.size());
@@ -521,6 +531,7 @@ struct Parts
       this->Triangles.push_back(static_cast<Index>(seed));
       for (; next < this->Triangles.size(); ++next)
       {
+        ReportStep(progress, next, flags.size());
         const Index t = this->Triangles[next];
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
@@ -541,15 +552,17 @@ struct Parts
 };
 
 /** Closes the openings that are smaller than what the tolerance bridges. */
-void CloseSmallOpenings(
-  const Mesh& mesh, const std::vector<double>& shares, std::vector<char>& keep)
+void CloseSmallOpenings(const Mesh& mesh, const std::vector<double>& shares,
+  std::vector<char>& keep, const Progress& progress)
 {
-  const Parts parts(mesh, keep);
+  const Parts parts(mesh, keep, Part(progress, 0.0, 0.5));
+  const Progress closing = Part(progress, 0.5, 1.0);
   std::vector<double> ofPart;
   for (Index part = 0; part < parts.Count(); ++part)
   {
     const Index* begin = parts.Begin(part);
     const Index* end = parts.End(part);
+    ReportStep(closing, part, parts.Count(), 256);
     const bool reachesBorder = std::any_of(begin, end, [&](Index t) {
       return mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
     });
@@ -574,9 +587,10 @@ void CloseSmallOpenings(
 }
 
 /** Takes out pieces with too few vertices to have a spacing of their own, if others have more. */
-void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
+void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Parts parts(mesh, keep);
+  const Parts parts(mesh, keep, Part(progress, 0.0, 0.5));
+  const Progress dropping = Part(progress, 0.5, 1.0);
   std::vector<char> isSmall(parts.Count(), 0);
   bool anyLarge = false;
   std::vector<Index> corners;
@@ -584,6 +598,7 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
   {
     const Index* begin = parts.Begin(part);
     const Index* end = parts.End(part);
+    ReportStep(dropping, part, parts.Count());
     if (!keep[*begin])
     {
       continue;
@@ -611,14 +626,19 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep)
 /**
  * The border of the triangles to keep, as simple rings of vertices in an order of their positions.
  */
-Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
+Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
+  const Progress choosing = Part(progress, 0.0, 0.2);
+  const Progress linking = Part(progress, 0.2, 0.4);
+  const Progress tracing = Part(progress, 0.4, 0.8);
+  const Progress cutting = Part(progress, 0.8, 1.0);
   Mesh kept;
   kept.Points = mesh.Points;
   std::vector<Index> before; // the half-edge of each kept one
   std::vector<Index> after(mesh.Triangles.size(), Mesh::Border);
   for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
+    ReportStep(choosing, h, after.size());
     if (keep[Mesh::Triangle(h)])
     {
       after[h] = static_cast<Index>(before.size());
@@ -628,11 +648,12 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
   }
   for (const Index h : before)
   {
+    ReportStep(linking, kept.Twins.size(), before.size());
     kept.Twins.push_back(mesh.IsBorder(h) ? Mesh::Border : after[mesh.Twin(h)]);
   }
 
   // A walk that comes back to a vertex it has passed has closed a ring.
-  const Rings walks = TraceBorder(kept);
+  const Rings walks = TraceBorder(kept, tracing);
   std::vector<std::vector<Index>> rings;
   std::vector<Index> path;
   std::vector<char> isOnPath(mesh.Points.size(), 0);
@@ -646,6 +667,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep)
     };
     for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
     {
+      ReportStep(cutting, h - walks.Vertices.data(), walks.Vertices.size());
       const Index vertex = kept.Origin(*h);
       if (isOnPath[vertex])
       {
@@ -704,20 +726,18 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
 
   // The longest edge of each triangle and its spacing: the middle one of its corners' three, which
   // the spacing of a point that lies alone is not, nor of two that lie alone.
+  const Progress measuring = Part(options.Monitor, 0.6, 0.7);
   std::vector<double> ratios(count);
   std::vector<double> local(count);
   for (Index t = 0; t < count; ++t)
   {
-    if (t % 65536 == 0)
-    {
-      Report(options.Monitor, 0.6 + 0.2 * t / count);
-    }
+    ReportStep(measuring, t, count);
     const Index a = mesh.Origin(3 * t);
     const Index b = mesh.Origin(3 * t + 1);
     const Index c = mesh.Origin(3 * t + 2);
     double s[3] = { spacings[a], spacings[b], spacings[c] };
     std::sort(s, s + 3);
-    local[t] = std::min(s[1], LargestSpacingInTriangle * s[0]);
+    local[t] = std::max(LeastSpacing, std::min(s[1], LargestSpacingInTriangle * s[0]));
     ratios[t] = std::sqrt(std::max(
                   { distances.Squared(a, b), distances.Squared(b, c), distances.Squared(c, a) })) /
       local[t];
@@ -730,20 +750,22 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     result.GapTolerance = ToleranceOfTypicalTriangle * *median;
   }
 
+  const Progress deciding = Part(options.Monitor, 0.7, 0.75);
   std::vector<char> keep(count);
   for (Index t = 0; t < count; ++t)
   {
+    ReportStep(deciding, t, count);
     keep[t] = ratios[t] <= result.GapTolerance;
     // From here on the share of a square of the size that the tolerance bridges.
     const double side = result.GapTolerance * local[t];
-    ratios[t] = 0.5 *
-      distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2)) /
-      (side * side);
+    const double square = side * side;
+    const double area =
+      0.5 * distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
+    ratios[t] = square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
   }
-  CloseSmallOpenings(mesh, ratios, keep);
-  Report(options.Monitor, 0.9);
-  DropSmallPieces(mesh, keep);
-  result.Vertices = BorderOf(mesh, keep);
+  CloseSmallOpenings(mesh, ratios, keep, Part(options.Monitor, 0.75, 0.82));
+  DropSmallPieces(mesh, keep, Part(options.Monitor, 0.82, 0.89));
+  result.Vertices = BorderOf(mesh, keep, Part(options.Monitor, 0.89, 1.0));
   Report(options.Monitor, 1.0);
   return result;
 }

@@ -76,7 +76,8 @@ struct JoinedBoundary
  *         where no other line goes on; a line that is a ring of fewer than three points; no line at
  *         all, or only lines that cancel each other
  */
-JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines);
+JoinedBoundary JoinLines(
+  const Mesh& mesh, const BoundaryLines& lines, const Progress& progress = Progress());
 
 struct ExtractOptions
 {

@@ -10,13 +10,14 @@
 namespace elevation
 {
 
-Fans::Fans(const Mesh& mesh)
+Fans::Fans(const Mesh& mesh, const Progress& progress)
   : First(mesh.Points.size(), None)
   , OnBorder(mesh.Points.size(), 0)
 {
   const Index count = mesh.NumberOfHalfEdges();
   for (Index h = 0; h < count; ++h)
   {
+    ReportStep(progress, h, count);
     const Index vertex = mesh.Origin(h);
     if (!mesh.IsBorder(h))
     {
@@ -202,10 +203,10 @@ private:
 class Recovery
 {
 public:
-  Recovery(Mesh& mesh, std::vector<char>& constrained)
+  Recovery(Mesh& mesh, std::vector<char>& constrained, const Progress& progress)
     : Surface(mesh)
     , Constrained(constrained)
-    , VertexFans(mesh)
+    , VertexFans(mesh, progress)
   {
   }
 
@@ -492,14 +493,12 @@ Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress)
 {
   constrained.resize(mesh.Triangles.size(), 0);
-  Recovery recovery(mesh, constrained);
+  Recovery recovery(mesh, constrained, Part(progress, 0.0, 0.5));
+  const Progress recovering = Part(progress, 0.5, 1.0);
   Index missing = 0;
   for (std::size_t i = 0; i < segments.size(); ++i)
   {
-    if (i % 256 == 0)
-    {
-      Report(progress, static_cast<double>(i) / segments.size());
-    }
+    ReportStep(recovering, i, segments.size(), 256);
     missing += recovery.Recover(segments[i]) ? 1 : 0;
   }
   return missing;

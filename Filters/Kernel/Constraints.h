@@ -52,7 +52,7 @@ struct Segment
 class Fans
 {
 public:
-  explicit Fans(const Mesh& mesh);
+  explicit Fans(const Mesh& mesh, const Progress& progress = Progress());
 
   /** Whether the vertex is a corner of a triangle. */
   bool IsUsed(Index vertex) const { return this->First[vertex] != None; }

@@ -23,6 +23,10 @@ constexpr double RowHeight = 0.86602540378443864676;
 /** Below this many steps of the coordinates, rounding would push points onto each other. */
 constexpr double LeastStepsPerSpacing = 4.0;
 
+/** Beyond these, squares of lengths leave the range of double. */
+constexpr double LeastLength = 1e-150;
+constexpr double LargestLength = 1e150;
+
 /** Patches of fewer points report no progress of their own. */
 constexpr double PointsPerReport = 20000.0;
 
@@ -62,30 +66,46 @@ double StepAt(double x, bool singlePrecision)
   return std::nextafter(d, std::numeric_limits<double>::infinity()) - d;
 }
 
+/** Whether the square of a length is a number to compute with. */
+bool IsMeasurable(double length)
+{
+  return length >= LeastLength && length <= LargestLength;
+}
+
 HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole, double spacing)
 {
   HoleReport report;
   report.NumberOfEdges = holes.NumberOfEdges(hole);
+  const auto visitEdges = [&](auto&& visit) {
+    for (Index i = holes.Offsets[hole]; i < holes.Offsets[hole + 1]; ++i)
+    {
+      const Index walk = holes.Loops[i];
+      for (const Index* h = holes.Walks.Begin(walk); h != holes.Walks.End(walk); ++h)
+      {
+        visit(mesh.PointOf(mesh.Origin(*h)), mesh.PointOf(mesh.Destination(*h)));
+      }
+    }
+  };
   const Point2 origin = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
   Point2 low = origin;
   Point2 high = origin;
-  double twiceArea = 0.0;
-  for (Index i = holes.Offsets[hole]; i < holes.Offsets[hole + 1]; ++i)
-  {
-    const Index walk = holes.Loops[i];
-    for (const Index* h = holes.Walks.Begin(walk); h != holes.Walks.End(walk); ++h)
-    {
-      const Point2& a = mesh.PointOf(mesh.Origin(*h));
-      const Point2& b = mesh.PointOf(mesh.Destination(*h));
-      report.Perimeter += std::hypot(b.X - a.X, b.Y - a.Y);
-      twiceArea += (a.Y - origin.Y) * (b.X - origin.X) - (a.X - origin.X) * (b.Y - origin.Y);
-      low = { std::min(low.X, a.X), std::min(low.Y, a.Y) };
-      high = { std::max(high.X, a.X), std::max(high.Y, a.Y) };
-    }
-  }
+  visitEdges([&](const Point2& a, const Point2& b) {
+    report.Perimeter += std::hypot(b.X - a.X, b.Y - a.Y);
+    low = { std::min(low.X, a.X), std::min(low.Y, a.Y) };
+    high = { std::max(high.X, a.X), std::max(high.Y, a.Y) };
+  });
   report.Size = std::hypot(high.X - low.X, high.Y - low.Y);
-  report.Area = 0.5 * twiceArea;
   report.Spacing = spacing > 0.0 ? spacing : report.Perimeter / report.NumberOfEdges;
+  if (!IsMeasurable(report.Size))
+  {
+    report.Area = std::numeric_limits<double>::quiet_NaN();
+    return report;
+  }
+  double twiceArea = 0.0;
+  visitEdges([&](const Point2& a, const Point2& b) {
+    twiceArea += (a.Y - origin.Y) * (b.X - origin.X) - (a.X - origin.X) * (b.Y - origin.Y);
+  });
+  report.Area = 0.5 * twiceArea;
   return report;
 }
 
@@ -131,6 +151,13 @@ void Judge(HoleReport& report, bool isTouched, double room, const FillOptions& o
   {
     fail("Borders touch in it without sharing a point: merge points with the same x,y, and split "
          "edges that have a point inside.");
+    return;
+  }
+  if (!IsMeasurable(report.Size) || report.Spacing < LeastLength)
+  {
+    fail("Its size of " + ToText(report.Size) + " at a spacing of " + ToText(report.Spacing) +
+      " leaves the range of numbers to compute with, " + ToText(LeastLength) + " to " +
+      ToText(LargestLength) + "; scale x and y.");
     return;
   }
   const double points = EstimatedPoints(report);
@@ -194,7 +221,8 @@ struct Blocked
  * nearer than the clearance. Between blocked stretches a row is wholly inside the hole or wholly
  * outside, which the number of crossings on its left tells.
  */
-void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& patch)
+void PlacePoints(
+  const FillOptions& options, const HoleReport& report, const Progress& progress, Patch& patch)
 {
   Point2 low = patch.At(0);
   Point2 high = low;
@@ -212,9 +240,16 @@ void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& pa
   const Index lastRow = static_cast<Index>((high.Y - centre.Y) / rowHeight);
   const Index firstRow = -lastRow;
 
+  const Progress blocking = Part(progress, 0.0, 0.4);
+  const Progress sorting = Part(progress, 0.4, 0.6);
+  const Progress placing = Part(progress, 0.6, 1.0);
   std::vector<Blocked> blocked;
+  std::size_t done = 0;
+  std::size_t rows = 0;
   for (const Segment& edge : patch.Edges)
   {
+    // A long edge at a small spacing comes near to many rows.
+    const double share = static_cast<double>(done++) / static_cast<double>(patch.Edges.size());
     Point2 a = patch.At(edge.A);
     Point2 b = patch.At(edge.B);
     if (b.Y < a.Y)
@@ -230,6 +265,10 @@ void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& pa
     const double to = std::min<double>(lastRow, std::floor((b.Y + clearance) / rowHeight));
     for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
     {
+      if (++rows % 16384 == 0)
+      {
+        Report(blocking, share);
+      }
       const double y = row * rowHeight;
       Blocked stretch{ row, std::numeric_limits<double>::infinity(),
         -std::numeric_limits<double>::infinity(), (a.Y <= y) != (b.Y <= y) };
@@ -263,9 +302,12 @@ void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& pa
       }
     }
   }
-  std::sort(blocked.begin(), blocked.end(), [](const Blocked& s, const Blocked& t) {
-    return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
-  });
+  Sort(
+    blocked.begin(), blocked.end(),
+    [](const Blocked& s, const Blocked& t) {
+      return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
+    },
+    sorting);
 
   bool isInside = false;
   for (std::size_t i = 0; i < blocked.size(); ++i)
@@ -289,6 +331,10 @@ void PlacePoints(const FillOptions& options, const HoleReport& report, Patch& pa
     const double last = std::floor(blocked[i + 1].Begin / d - shift);
     for (double k = std::ceil(blocked[i].End / d - shift); k <= last; ++k)
     {
+      if (patch.Points.size() % (3 * 16384) == 0)
+      {
+        Report(placing, static_cast<double>(i) / static_cast<double>(blocked.size()));
+      }
       if (IsBelowPrecision(report, centre, options))
       {
         throw Error("The spacing of " + ToText(d) +
@@ -315,7 +361,7 @@ void Connect(const Progress& progress, Patch& patch)
   view.Double = patch.Points.data();
   view.Count = patch.NumberOfVertices();
   DelaunayOptions options;
-  options.Monitor = progress;
+  options.Monitor = Part(progress, 0.0, 0.6);
   const Triangulation triangulation = Triangulate(view, options);
   if (!triangulation.UnusedPoints.empty())
   {
@@ -328,9 +374,9 @@ void Connect(const Progress& progress, Patch& patch)
     mesh.Points[v] = patch.At(v);
   }
   mesh.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
-  mesh.ConnectTwins();
+  mesh.ConnectTwins(0, Part(progress, 0.6, 0.8));
   std::vector<char> constrained;
-  RecoverSegments(mesh, patch.Edges, constrained);
+  RecoverSegments(mesh, patch.Edges, constrained, Part(progress, 0.8, 0.9));
 
   // The triangulation covers the convex hull. Across an edge of the boundary, and nowhere else,
   // one goes from the hole to outside it or back.
@@ -345,9 +391,12 @@ void Connect(const Progress& progress, Patch& patch)
       stack.push_back(Mesh::Triangle(h));
     }
   }
+  const Progress walking = Part(progress, 0.9, 1.0);
+  std::size_t done = 0;
   Index count = 0;
   while (!stack.empty())
   {
+    ReportStep(walking, done++, isInside.size());
     const Index t = stack.back();
     stack.pop_back();
     count += isInside[t];
@@ -372,14 +421,20 @@ void Connect(const Progress& progress, Patch& patch)
 }
 
 /** The layers of new vertices from the boundary inwards, and the mean of eq. 2 for each. */
-void Elevate(Patch& patch)
+void Elevate(const Progress& progress, Patch& patch)
 {
+  const Progress counting = Part(progress, 0.0, 0.2);
+  const Progress gathering = Part(progress, 0.2, 0.5);
+  const Progress layering = Part(progress, 0.5, 0.8);
+  const Progress averaging = Part(progress, 0.8, 1.0);
   const Index boundary = patch.NumberOfBoundaryVertices();
   const Index count = patch.NumberOfNewVertices();
   // A new vertex is inside, so the half-edges that leave it lead to all its neighbours.
   std::vector<std::size_t> offsets(static_cast<std::size_t>(count) + 1, 0);
-  for (Index vertex : patch.Triangles)
+  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
   {
+    ReportStep(counting, h, patch.Triangles.size());
+    const Index vertex = patch.Triangles[h];
     if (vertex >= boundary)
     {
       ++offsets[vertex - boundary + 1];
@@ -394,6 +449,7 @@ void Elevate(Patch& patch)
     std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
     for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
     {
+      ReportStep(gathering, h, patch.Triangles.size());
       const Index vertex = patch.Triangles[h];
       if (vertex >= boundary)
       {
@@ -420,6 +476,7 @@ void Elevate(Patch& patch)
   }
   for (std::size_t k = 0; k < patch.Order.size(); ++k)
   {
+    ReportStep(layering, k, count);
     const Index i = patch.Order[k] - boundary;
     for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
     {
@@ -436,6 +493,7 @@ void Elevate(Patch& patch)
   patch.Offsets.push_back(0);
   for (Index vertex : patch.Order)
   {
+    ReportStep(averaging, patch.Offsets.size(), static_cast<std::size_t>(count) + 1);
     const Index i = vertex - boundary;
     double sum = 0.0;
     for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
@@ -534,7 +592,7 @@ private:
   double BestSquare = 0.0;
 };
 
-void FindNearest(Patch& patch)
+void FindNearest(const Progress& progress, Patch& patch)
 {
   if (patch.Order.empty())
   {
@@ -545,6 +603,7 @@ void FindNearest(Patch& patch)
   patch.Nearest.reserve(patch.Order.size());
   for (std::size_t k = 0; k < patch.Order.size(); ++k)
   {
+    ReportStep(progress, k, patch.Order.size());
     // What is nearest to a point of the stencil is not far.
     const Index known = patch.Stencil[patch.Offsets[k]];
     const Index first = patch.NumberOfBoundaryVertices();
@@ -616,6 +675,10 @@ FillResult FillHoles(
   };
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
+    if (hole % 4096 == 0)
+    {
+      Report(options.Monitor, 0.0);
+    }
     HoleReport report = Measure(mesh, holes, hole, options.Spacing);
     Judge(report, holes.Touched[hole] != 0, room, options);
     if (report.Status == FillStatus::Filled)
@@ -637,14 +700,14 @@ FillResult FillHoles(
       try
       {
         Patch patch;
+        const Progress ofHole = share < PointsPerReport
+          ? Progress()
+          : Part(options.Monitor, done / work, std::min(1.0, (done + share) / work));
         CollectBoundary(mesh, points, holes, hole, patch);
-        PlacePoints(options, report, patch);
-        Connect(share < PointsPerReport
-            ? Progress()
-            : Part(options.Monitor, done / work, (done + 0.7 * share) / work),
-          patch);
-        Elevate(patch);
-        FindNearest(patch);
+        PlacePoints(options, report, Part(ofHole, 0.0, 0.1), patch);
+        Connect(Part(ofHole, 0.1, 0.8), patch);
+        Elevate(Part(ofHole, 0.8, 0.9), patch);
+        FindNearest(Part(ofHole, 0.9, 1.0), patch);
         Append(patch, mesh.NumberOfPoints(), result);
         report.NumberOfInsertedPoints = patch.NumberOfNewVertices();
       }

@@ -72,8 +72,9 @@ struct HoleReport
   Index NumberOfEdges = 0; ///< of the rim and the islands
   double Size = 0.0;       ///< diagonal of the rim's bounding box
   double Perimeter = 0.0;  ///< length of all edges
-  double Area = 0.0;       ///< inside the rim, outside the islands
-  double Spacing = 0.0;    ///< the one used
+  /** Inside the rim, outside the islands; NaN when Size is above 1e150 or below 1e-150. */
+  double Area = 0.0;
+  double Spacing = 0.0; ///< the one used
   Index NumberOfInsertedPoints = 0;
   std::string Reason; ///< of Failed, a sentence without the hole's name
 };

@@ -99,11 +99,15 @@ public:
   void Run(const Progress& progress)
   {
     this->MakeSegments();
-    this->FindTurns();
-    std::sort(this->Events.begin(), this->Events.end(), [](const Event& a, const Event& b) {
-      return a.At != b.At ? IsLower(a.At, b.At)
-                          : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
-    });
+    this->FindTurns(Part(progress, 0.0, 0.1));
+    Sort(
+      this->Events.begin(), this->Events.end(),
+      [](const Event& a, const Event& b) {
+        return a.At != b.At ? IsLower(a.At, b.At)
+                            : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
+      },
+      Part(progress, 0.1, 0.4));
+    const Progress sweeping = Part(progress, 0.4, 1.0);
     std::size_t told = 0;
     for (std::size_t first = 0; first < this->Events.size();)
     {
@@ -116,7 +120,7 @@ public:
       first = last;
       if (first >= told)
       {
-        Report(progress, static_cast<double>(first) / this->Events.size());
+        Report(sweeping, static_cast<double>(first) / this->Events.size());
         told = first + 4096;
       }
     }
@@ -152,12 +156,13 @@ private:
   }
 
   /** Which walks are rims; each is the border of a region of its own. */
-  void FindTurns()
+  void FindTurns(const Progress& progress)
   {
     const Rings& walks = this->Result.Walks;
     this->Regions.assign(walks.Count(), NotLocated);
     for (Index walk = 0; walk < walks.Count(); ++walk)
     {
+      ReportStep(progress, walk, walks.Count());
       const Index size = walks.Size(walk);
       const Index* h = walks.Begin(walk);
       Point2 lowest = this->Surface.PointOf(this->Surface.Origin(h[0]));
@@ -420,8 +425,8 @@ private:
 Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
   Holes holes;
-  holes.Walks = TraceBorder(mesh);
-  Sweep(mesh, firstCell, holes).Run(progress);
+  holes.Walks = TraceBorder(mesh, Part(progress, 0.0, 0.5));
+  Sweep(mesh, firstCell, holes).Run(Part(progress, 0.5, 1.0));
   return holes;
 }
 

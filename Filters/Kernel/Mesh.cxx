@@ -18,7 +18,7 @@ std::string NameOf(const std::vector<Point2>& points, Index id)
   return text;
 }
 
-void Mesh::ConnectTwins(Index firstCell)
+void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
 {
   const Index count = this->NumberOfHalfEdges();
   this->Twins.assign(count, Border);
@@ -28,8 +28,10 @@ void Mesh::ConnectTwins(Index firstCell)
   std::vector<Index> bucket(this->Points.size() + 1, 0);
   const auto low = [this](Index h) { return std::min(this->Origin(h), this->Destination(h)); };
   const auto high = [this](Index h) { return std::max(this->Origin(h), this->Destination(h)); };
+  const Progress counting = Part(progress, 0.0, 0.2);
   for (Index h = 0; h < count; ++h)
   {
+    ReportStep(counting, h, count);
     ++bucket[low(h) + 1];
   }
   for (std::size_t v = 1; v < bucket.size(); ++v)
@@ -39,14 +41,18 @@ void Mesh::ConnectTwins(Index firstCell)
   std::vector<Index> halfEdges(count);
   {
     std::vector<Index> fill(bucket.begin(), bucket.end() - 1);
+    const Progress filling = Part(progress, 0.2, 0.5);
     for (Index h = 0; h < count; ++h)
     {
+      ReportStep(filling, h, count);
       halfEdges[fill[low(h)]++] = h;
     }
   }
 
+  const Progress pairing = Part(progress, 0.5, 1.0);
   for (Index v = 0; v < this->NumberOfPoints(); ++v)
   {
+    ReportStep(pairing, v, this->Points.size());
     const auto begin = halfEdges.begin() + bucket[v];
     const auto end = halfEdges.begin() + bucket[v + 1];
     std::sort(
@@ -107,14 +113,16 @@ bool TurnsToFirst(const Point2& b, const Point2& r, const Point2& u, const Point
 }
 } // namespace
 
-Rings TraceBorder(const Mesh& mesh)
+Rings TraceBorder(const Mesh& mesh, const Progress& progress)
 {
   // The border half-edges that leave each vertex: one nearly always, several where borders meet.
   std::vector<Index> leaving(mesh.NumberOfPoints(), None);
   std::vector<std::pair<Index, Index>> further; // (vertex, half-edge), sorted
   Index numberOfBorders = 0;
+  const Progress collecting = Part(progress, 0.0, 0.5);
   for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
+    ReportStep(collecting, h, mesh.Triangles.size());
     if (mesh.IsBorder(h))
     {
       ++numberOfBorders;
@@ -150,8 +158,12 @@ Rings TraceBorder(const Mesh& mesh)
   Rings walks;
   walks.Vertices.reserve(numberOfBorders);
   std::vector<bool> seen(mesh.NumberOfHalfEdges(), false);
+  const Progress walking = Part(progress, 0.5, 1.0);
+  const std::size_t steps = mesh.Triangles.size() + numberOfBorders;
+  std::size_t done = 0;
   for (Index start = 0; start < mesh.NumberOfHalfEdges(); ++start)
   {
+    ReportStep(walking, done++, steps);
     if (!mesh.IsBorder(start) || seen[start])
     {
       continue;
@@ -159,6 +171,7 @@ Rings TraceBorder(const Mesh& mesh)
     Index h = start;
     do
     {
+      ReportStep(walking, done++, steps);
       seen[h] = true;
       walks.Vertices.push_back(h);
       h = follow(h);

@@ -58,9 +58,9 @@ public:
    * Fills Twins from Triangles. Linear in time and memory.
    * @param[in] firstCell  what messages add to the id of a triangle to name it as the user's cell
    * @throws Error naming the triangle and its edge when an edge has more than two triangles or two
-   *         that run the same way (the mesh is not a consistently oriented manifold).
+   *         that run the same way (the mesh is not a consistently oriented manifold). Aborted.
    */
-  void ConnectTwins(Index firstCell = 0);
+  void ConnectTwins(Index firstCell = 0, const Progress& progress = Progress());
 };
 
 /**
@@ -86,8 +86,9 @@ struct Rings
  * half-edge is in exactly one walk; a walk starts at its lowest half-edge id, and walks are in the
  * order of their first. The result's Vertices are half-edge ids; their origins are the vertices of
  * the walk. Linear, but for sorting the borders at shared vertices.
+ * @throws Aborted
  */
-Rings TraceBorder(const Mesh& mesh);
+Rings TraceBorder(const Mesh& mesh, const Progress& progress = Progress());
 
 } // namespace elevation
 

@@ -13,16 +13,13 @@
 
 namespace elevation
 {
-namespace
-{
-constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
-constexpr float Infinity = std::numeric_limits<float>::infinity();
-} // namespace
-
 #ifdef ELEVATION_HAS_AVX2
 
 namespace
 {
+constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
+constexpr float Infinity = std::numeric_limits<float>::infinity();
+
 __attribute__((target("avx2,fma"), always_inline)) inline __m256 EightRelative(
   const double* values, __m256d from)
 {

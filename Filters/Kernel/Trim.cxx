@@ -30,12 +30,16 @@ std::vector<Segment> SegmentsOf(const Rings& rings)
 }
 
 /** One flag a half-edge: whether the segments run along its edge an odd number of times. */
-std::vector<char> MarkEdges(const Mesh& mesh, const std::vector<Segment>& segments)
+std::vector<char> MarkEdges(
+  const Mesh& mesh, const std::vector<Segment>& segments, const Progress& progress)
 {
-  const Fans fans(mesh);
+  const Fans fans(mesh, Part(progress, 0.0, 0.5));
+  const Progress marking = Part(progress, 0.5, 1.0);
   std::vector<char> isOdd(mesh.Triangles.size(), 0);
+  std::size_t done = 0;
   for (const Segment& segment : segments)
   {
+    ReportStep(marking, done++, segments.size());
     Index vertex = segment.A;
     while (vertex != segment.B)
     {
@@ -71,13 +75,12 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
     result.NumberOfRecoveredEdges =
       RecoverSegments(mesh, segments, constrained, Part(options.Monitor, 0.0, 0.4));
   }
-  Report(options.Monitor, 0.4);
-  const std::vector<char> isOdd = MarkEdges(mesh, segments);
-  Report(options.Monitor, 0.6);
+  const std::vector<char> isOdd = MarkEdges(mesh, segments, Part(options.Monitor, 0.4, 0.6));
 
   const RingLocator locator(mesh.Points, boundary);
   constexpr char unknown = 2;
   result.IsOutward.assign(count, unknown);
+  const Progress walking = Part(options.Monitor, 0.6, 1.0);
   std::vector<Index> next;
   Index done = 0;
   for (Index seed = 0; seed < count; ++seed)
@@ -95,10 +98,7 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
       const Index t = next.back();
       next.pop_back();
       result.NumberOfOutwardTriangles += result.IsOutward[t];
-      if (++done % 65536 == 0)
-      {
-        Report(options.Monitor, 0.6 + 0.4 * done / count);
-      }
+      ReportStep(walking, ++done, count);
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const Index other = mesh.IsBorder(h) ? None : Mesh::Triangle(mesh.Twin(h));

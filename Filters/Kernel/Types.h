@@ -10,6 +10,8 @@
 #ifndef elevation_Types_h
 #define elevation_Types_h
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -96,8 +98,9 @@ public:
 };
 
 /**
- * Told the fraction done, in [0, 1]; returns false to stop. Called often enough (every few
- * milliseconds of work) for an abort to take effect within half a second. May be empty.
+ * Told the fraction done, which rises in [0, 1]; returns false to stop. Every pass over all points
+ * or triangles calls it between stretches of some tens of milliseconds, so that an abort takes
+ * effect within half a second. May be empty.
  */
 using Progress = std::function<bool(double)>;
 
@@ -110,15 +113,52 @@ inline void Report(const Progress& progress, double fraction)
   }
 }
 
-/** The sub-interval [begin, end] of a progress, for a step of a longer computation. */
+/** In a loop: reports that @a done of @a count steps are done, at one step in @a stride. */
+inline void ReportStep(
+  const Progress& progress, std::size_t done, std::size_t count, std::size_t stride = 16384)
+{
+  if (done % stride == 0)
+  {
+    Report(progress, static_cast<double>(done) / static_cast<double>(count));
+  }
+}
+
+/**
+ * The sub-interval [begin, end] of a progress, for a step of a longer computation. Keeps a
+ * reference to the progress.
+ */
 inline Progress Part(const Progress& progress, double begin, double end)
 {
   if (!progress)
   {
     return progress;
   }
-  return
-    [&progress, begin, end](double fraction) { return progress(begin + fraction * (end - begin)); };
+  return [&progress, begin, end](double fraction) {
+    // Rounding must not lead beyond the end, where the next part begins.
+    return progress(std::min(end, begin + fraction * (end - begin)));
+  };
+}
+
+/** std::sort of plain values that reports; stopped by an abort, the values are of no use. */
+template <typename Iterator, typename Less>
+void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
+{
+  if (!progress)
+  {
+    std::sort(begin, end, less);
+    return;
+  }
+  // About as many comparisons as it takes; the fraction stays below 1 when it takes more.
+  const double count = static_cast<double>(end - begin);
+  const double expected = 1.0 + 1.5 * count * std::log2(1.0 + count);
+  std::size_t comparisons = 0;
+  std::sort(begin, end, [&](const auto& a, const auto& b) {
+    if (++comparisons % 65536 == 0)
+    {
+      Report(progress, std::min(1.0, static_cast<double>(comparisons) / expected));
+    }
+    return less(a, b);
+  });
 }
 
 /**

@@ -3,6 +3,7 @@
 //
 // The pipeline side of vtkFillElevationHoles, by numbers: what comes first and unchanged, what
 // arrays get at new points and triangles, the report, the limits, refusals, warnings and aborts.
+#include "MeshRules.h"
 #include "SheetOfSquares.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
@@ -15,6 +16,7 @@
 #include "vtkIntArray.h"
 #include "vtkMath.h"
 #include "vtkPointData.h"
+#include "vtkSOADataArrayTemplate.h"
 #include "vtkStringArray.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
@@ -143,7 +145,7 @@ void TestArrays(int precision)
   Check(output->GetPoints()->GetDataType() == precision, "the type of points is kept");
   Check(output->GetNumberOfVerts() == 1 && output->GetNumberOfLines() == 1, "other cells pass");
   Check(std::fabs(ProjectedArea(output) - 30.0) < 1e-10, "the projected area is that of the sheet");
-  Check(NumberOfNonManifoldEdges(output) == 0, "the output is manifold");
+  Check(NumberOfFindings(output, RulesOfSurface()) == 0, "the output is a surface");
 
   auto* filled = Named<vtkUnsignedCharArray>(output->GetPointData(), "FilledPoint");
   auto* amplitude = Named<vtkDoubleArray>(output->GetPointData(), "Amplitude");
@@ -338,11 +340,13 @@ void TestReport()
   fill->Update();
   Check(fill->GetNumberOfFilledHoles() == 3, "0 is no limit");
   Check(std::fabs(ProjectedArea(fill->GetOutput()) - 70.0) < 1e-10, "everything is filled");
+  Check(NumberOfFindings(fill->GetOutput(), RulesOfSurface()) == 0, "patches overlap nothing");
   const vtkIdType points = fill->GetOutput()->GetNumberOfPoints();
   fill->SetSpacing(0.25);
   fill->Update();
   Check(fill->GetOutput()->GetNumberOfPoints() > points + 250, "Spacing makes patches finer");
   Check(std::fabs(ProjectedArea(fill->GetOutput()) - 70.0) < 1e-10, "and conserves the area");
+  Check(NumberOfFindings(fill->GetOutput(), RulesOfSurface()) == 0, "also when they are fine");
 }
 
 void TestRange()
@@ -358,6 +362,51 @@ void TestRange()
   input->GetBounds(before);
   fill->GetOutput()->GetBounds(after);
   Check(after[4] >= before[4] && after[5] <= before[5], "z stays within that of the boundary");
+}
+
+/** Float points that do not lie x, y, z one after the other in memory, where steps are coarse. */
+void TestSeparateCoordinates()
+{
+  auto input = MakeSheet(OneHole, VTK_FLOAT, Tilted);
+  vtkNew<vtkSOADataArrayTemplate<float>> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    input->GetPoint(i, p);
+    coordinates->InsertNextTuple3(500000.0 + p[0], 450000.0 + p[1], p[2]);
+  }
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+  input->SetPoints(points);
+
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->SetSpacing(0.3);
+  fill->Update();
+  Check(fill->GetNumberOfFilledHoles() == 1, "float points by coordinate are filled");
+  Check(fill->GetOutput()->GetPoints()->GetDataType() == VTK_FLOAT, "and stay float");
+  bool isUpright = true;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType cell = 0; cell < fill->GetOutput()->GetNumberOfCells(); ++cell)
+  {
+    double p[3][3];
+    fill->GetOutput()->GetCellPoints(cell, corners);
+    for (int i = 0; i < 3; ++i)
+    {
+      fill->GetOutput()->GetPoint(corners->GetId(i), p[i]);
+    }
+    isUpright = isUpright &&
+      (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) > (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+  }
+  Check(isUpright, "no triangle is flat or turned over by rounding");
+
+  fill->SetSpacing(0.01);
+  vtkNew<vtkTest::ErrorObserver> observer;
+  fill->AddObserver(vtkCommand::WarningEvent, observer);
+  fill->Update();
+  Check(observer->GetWarningMessage().find("coordinates can tell apart") != std::string::npos,
+    "a spacing below the steps of float is refused");
 }
 
 void TestUnlimitedSpacing()
@@ -452,6 +501,54 @@ void TestRefusals()
   strips->InsertNextCell(4, corners);
   strip->SetStrips(strips);
   names(Refusal(strip), "strip");
+
+  for (const int size : { 0, 3, 10000 })
+  {
+    vtkNew<vtkIntArray> values;
+    values->SetName("Picks");
+    values->SetNumberOfTuples(size);
+    values->Fill(1);
+    auto points = MakeFlatSheet(OneHole);
+    points->GetPointData()->AddArray(values);
+    names(Refusal(points),
+      "Point array \"Picks\" has " + std::to_string(size) + " tuples, but there are 38 points.");
+    auto cells = MakeFlatSheet(OneHole);
+    cells->GetCellData()->AddArray(values);
+    names(Refusal(cells),
+      "Cell array \"Picks\" has " + std::to_string(size) + " tuples, but there are 42 cells.");
+  }
+}
+
+/** Arrays of the input that have the names of arrays of the output, and are active. */
+void TestReplacedArrays()
+{
+  for (const bool hasHole : { true, false })
+  {
+    auto input = MakeFlatSheet(hasHole ? OneHole : std::vector<std::string>{ "##" });
+    vtkNew<vtkDoubleArray> ofPoints;
+    ofPoints->SetName("FilledPoint");
+    ofPoints->SetNumberOfTuples(input->GetNumberOfPoints());
+    ofPoints->Fill(5.0);
+    input->GetPointData()->SetScalars(ofPoints);
+    vtkNew<vtkDoubleArray> ofCells;
+    ofCells->SetName("HoleId");
+    ofCells->SetNumberOfComponents(3);
+    ofCells->SetNumberOfTuples(input->GetNumberOfCells());
+    ofCells->Fill(5.0);
+    input->GetCellData()->SetNormals(ofCells);
+    vtkNew<vtkFillElevationHoles> fill;
+    fill->SetInputData(input);
+    fill->Update();
+    vtkPointData* pointData = fill->GetOutput()->GetPointData();
+    vtkCellData* cellData = fill->GetOutput()->GetCellData();
+    Check(Named<vtkUnsignedCharArray>(pointData, "FilledPoint") && !pointData->GetScalars(),
+      "a replaced array leaves its role as scalars empty");
+    Check(Named<vtkIdTypeArray>(cellData, "HoleId") && !cellData->GetNormals(),
+      "a replaced array leaves its role as normals empty");
+    Check(input->GetPointData()->GetScalars() == ofPoints &&
+        input->GetCellData()->GetNormals() == ofCells,
+      "the input keeps its arrays");
+  }
 }
 
 void TestSurfacesThatPass()
@@ -518,6 +615,30 @@ void TestAbort()
   Check(fill->GetOutput(1)->GetNumberOfPoints() == 0, "an abort leaves an empty report");
 }
 
+void TestLateAbort()
+{
+  for (const double at : { 0.0, 0.9, 1.0 })
+  {
+    vtkNew<vtkFillElevationHoles> fill;
+    fill->SetInputData(MakeSheet(ThreeHoles, VTK_DOUBLE, Tilted));
+    double limit = at;
+    vtkNew<vtkCallbackCommand> stop;
+    stop->SetClientData(&limit);
+    stop->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+      auto* filter = static_cast<vtkFillElevationHoles*>(caller);
+      if (filter->GetProgress() >= *static_cast<double*>(data))
+      {
+        filter->AbortExecuteOn();
+      }
+    });
+    fill->AddObserver(vtkCommand::ProgressEvent, stop);
+    fill->Update();
+    Check(fill->GetOutput(0)->GetNumberOfPoints() == 0 && fill->GetNumberOfHoles() == 0 &&
+        fill->GetNumberOfFilledHoles() == 0,
+      "an abort at the last report leaves neither a surface nor counts");
+  }
+}
+
 void TestPrint()
 {
   vtkNew<vtkFillElevationHoles> fill;
@@ -544,10 +665,13 @@ int TestFillElevationHoles(int, char*[])
   TestNaNIsLeftOut();
   TestReport();
   TestRange();
+  TestSeparateCoordinates();
   TestUnlimitedSpacing();
   TestRefusals();
   TestSurfacesThatPass();
+  TestReplacedArrays();
   TestAbort();
+  TestLateAbort();
   TestPrint();
   return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

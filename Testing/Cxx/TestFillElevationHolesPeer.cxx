@@ -3,6 +3,7 @@
 //
 // Two surfaces on which vtkFillHolesFilter fails, and what vtkFillElevationHoles makes of them: a
 // sheet whose outer border is not a hole, and a hole with an island in it.
+#include "MeshRules.h"
 #include "SheetOfSquares.h"
 #include "vtkCellData.h"
 #include "vtkFillElevationHoles.h"
@@ -49,7 +50,9 @@ Numbers Measure(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 Numbers Ours(vtkPolyData* input)
 {
   vtkNew<vtkFillElevationHoles> filter;
-  return Measure(filter, input);
+  const Numbers numbers = Measure(filter, input);
+  Check(NumberOfFindings(filter->GetOutput(), RulesOfSurface()) == 0, "ours is a surface");
+  return numbers;
 }
 
 Numbers Peer(vtkPolyData* input)

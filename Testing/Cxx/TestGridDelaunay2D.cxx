@@ -3,6 +3,7 @@
 //
 // The pipeline side of vtkGridDelaunay2D, by numbers: what passes, what is counted and listed, what
 // errors and aborts leave behind, and that the input is never written.
+#include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -105,6 +106,8 @@ void TestOutput(int precision)
       (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]) > 0;
   }
   Check(isUp, "triangles are counter-clockwise seen from +z");
+  Check(NumberOfFindings(output, elevation::ValidateOptions()) == 0,
+    "the triangulation is Delaunay, cuts ties by the rule and covers the hull");
 
   Check(delaunay->GetNumberOfDuplicatePoints() == 1, "one duplicate is counted");
   Check(delaunay->GetNumberOfNonFinitePoints() == 1, "one point that is not finite is counted");
@@ -126,6 +129,8 @@ void TestOutput(int precision)
   unused =
     vtkIdTypeArray::SafeDownCast(delaunay->GetOutput()->GetFieldData()->GetArray("UnusedPointIds"));
   Check(unused->GetValue(0) == 7, "the highest of two points at one place is the vertex");
+  Check(NumberOfFindings(delaunay->GetOutput(), elevation::ValidateOptions()) == 0,
+    "the triangulation with other vertices is as good");
 
   delaunay->SetMaximumEdgeLength(1.2);
   delaunay->Update();
@@ -152,6 +157,8 @@ void TestOtherPointSets()
   delaunay->SetInputData(whole);
   delaunay->Update();
   Check(delaunay->GetOutput()->GetNumberOfPolys() == 8, "points of any type are an input");
+  Check(NumberOfFindings(delaunay->GetOutput(), elevation::ValidateOptions()) == 0,
+    "and make a Delaunay triangulation");
 }
 
 void TestTooFewPoints()
@@ -217,6 +224,14 @@ void TestProgressAndAbort()
   delaunay->Update();
   Check(state.IsRising && state.Last == 1.0, "progress rises to 1");
   Check(delaunay->GetOutput()->GetNumberOfPolys() > 199000, "all triangles are there");
+  Check(NumberOfFindings(delaunay->GetOutput(), elevation::ValidateOptions()) == 0,
+    "the triangulation of random points is Delaunay");
+  delaunay->SetMaximumEdgeLength(0.005);
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfPolys() > 100000 &&
+      NumberOfFindings(delaunay->GetOutput(), RulesOfDelaunayPart()) == 0,
+    "what a limit on edges leaves of it is part of it");
+  delaunay->SetMaximumEdgeLength(0.0);
 
   state = State();
   state.AbortAt = 0.4;
@@ -225,6 +240,38 @@ void TestProgressAndAbort()
   Check(delaunay->GetOutput()->GetNumberOfCells() == 0 &&
       delaunay->GetOutput()->GetNumberOfPoints() == 0,
     "an abort leaves empty output");
+
+  points->SetPoint(0, points->GetPoint(1)); // a duplicate, to be counted
+  state = State();
+  state.AbortAt = 1.0;
+  delaunay->Modified();
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfCells() == 0 &&
+      delaunay->GetNumberOfDuplicatePoints() == 0,
+    "an abort at the last report leaves no counts");
+}
+
+void TestArraysThatDoNotFit()
+{
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(0, 0, 0);
+  points->InsertNextPoint(1, 0, 0);
+  points->InsertNextPoint(0, 1, 0);
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(points);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName("Picks");
+  values->InsertNextValue(1.0);
+  input->GetPointData()->AddArray(values);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  delaunay->AddObserver(vtkCommand::ErrorEvent, observer);
+  delaunay->SetInputData(input);
+  delaunay->Update();
+  Check(observer->GetErrorMessage().find(
+          "Point array \"Picks\" has 1 tuples, but there are 3 points.") != std::string::npos,
+    "an array that does not fit the points is refused by name");
+  Check(delaunay->GetOutput()->GetNumberOfPoints() == 0, "and leaves empty output");
 }
 } // namespace
 
@@ -235,5 +282,6 @@ int TestGridDelaunay2D(int, char*[])
   TestOtherPointSets();
   TestTooFewPoints();
   TestProgressAndAbort();
+  TestArraysThatDoNotFit();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

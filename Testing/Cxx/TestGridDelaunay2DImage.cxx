@@ -4,18 +4,13 @@
 // A picture of vtkGridDelaunay2D: a lattice with a round void, in the left half every node, in the
 // right half every other; with a limit on the edge length that leaves the void open. On the lattice
 // all squares are cut the same way, from their lowest corner.
-#include "vtkActor.h"
-#include "vtkCamera.h"
+#include "PictureFromAbove.h"
 #include "vtkGridDelaunay2D.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkPolyDataMapper.h"
-#include "vtkProperty.h"
-#include "vtkRegressionTestImage.h"
-#include "vtkRenderWindow.h"
-#include "vtkRenderWindowInteractor.h"
-#include "vtkRenderer.h"
+
+#include <cstdlib>
 
 int TestGridDelaunay2DImage(int argc, char* argv[])
 {
@@ -38,35 +33,8 @@ int TestGridDelaunay2DImage(int argc, char* argv[])
   delaunay->SetInputData(input);
   delaunay->SetMaximumEdgeLength(3.0);
 
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(delaunay->GetOutputPort());
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(1.0, 0.9, 0.2);
-  actor->GetProperty()->SetEdgeVisibility(true);
-  actor->GetProperty()->SetEdgeColor(0.0, 0.0, 0.0);
-  actor->GetProperty()->SetLineWidth(2.0);
-  actor->GetProperty()->LightingOff();
-
-  vtkNew<vtkRenderer> renderer;
-  renderer->AddActor(actor);
-  renderer->SetBackground(0.1, 0.2, 0.5);
-  vtkNew<vtkRenderWindow> window;
-  window->SetMultiSamples(0);
-  window->SetSize(300, 300);
-  window->AddRenderer(renderer);
-  vtkNew<vtkRenderWindowInteractor> interactor;
-  interactor->SetRenderWindow(window);
-  renderer->GetActiveCamera()->ParallelProjectionOn();
-  renderer->GetActiveCamera()->SetPosition(8.0, 8.0, 50.0);
-  renderer->GetActiveCamera()->SetFocalPoint(8.0, 8.0, 0.0);
-  renderer->GetActiveCamera()->SetParallelScale(9.0);
-  renderer->ResetCameraClippingRange();
-  window->Render();
-  const int result = vtkRegressionTestImage(window);
-  if (result == vtkRegressionTester::DO_INTERACTOR)
-  {
-    interactor->Start();
-  }
-  return !result;
+  auto surface = MakeSurface(delaunay->GetOutputPort(), Yellow);
+  surface->GetProperty()->SetLineWidth(2.0);
+  return MatchesBaseline(argc, argv, { surface }, { 8.0, 9.0, 300, DarkBlue }) ? EXIT_SUCCESS
+                                                                               : EXIT_FAILURE;
 }

@@ -5,20 +5,13 @@
 // has a bay in its outline and three voids. The triangulation spans them as far as the limit on
 // the length of edges lets it, trimming opens them again, filling closes the voids. Numbers
 // first, then a picture.
+#include "MeshRules.h"
+#include "PictureFromAbove.h"
 #include "SheetOfSquares.h"
-#include "vtkActor.h"
-#include "vtkCamera.h"
 #include "vtkCellData.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
-#include "vtkLookupTable.h"
 #include "vtkNew.h"
-#include "vtkPolyDataMapper.h"
-#include "vtkProperty.h"
-#include "vtkRegressionTestImage.h"
-#include "vtkRenderWindow.h"
-#include "vtkRenderWindowInteractor.h"
-#include "vtkRenderer.h"
 #include "vtkTrimOutwardTriangles.h"
 
 #include <cmath>
@@ -89,7 +82,10 @@ int TestReconstructionChain(int argc, char* argv[])
   Check(trim->GetNumberOfOutwardTriangles() > 20, "the bay is trimmed");
   Check(fill->GetNumberOfHoles() == 3, "the three voids are holes, the bay is none");
   Check(fill->GetNumberOfFilledHoles() == 3, "all are filled");
-  Check(NumberOfNonManifoldEdges(surface) == 0, "the surface is manifold");
+  Check(NumberOfFindings(delaunay->GetOutput(), RulesOfDelaunayPart()) == 0 &&
+      NumberOfFindings(trim->GetOutput(), RulesOfDelaunayPart()) == 0 &&
+      NumberOfFindings(surface, RulesOfSurface()) == 0,
+    "every step makes a surface, the first two a Delaunay triangulation");
   double holes = 0.0;
   for (vtkIdType hole = 0; hole < report->GetNumberOfCells(); ++hole)
   {
@@ -118,50 +114,11 @@ int TestReconstructionChain(int argc, char* argv[])
   }
   Check(isOpen, "no point is put into the bay");
 
-  vtkNew<vtkLookupTable> colors;
-  colors->SetNumberOfTableValues(2);
-  colors->SetTableValue(0, 1.0, 0.9, 0.2);
-  colors->SetTableValue(1, 0.9, 0.1, 0.1);
-  colors->SetTableRange(-1.5, 0.5);
-  vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputConnection(fill->GetOutputPort());
-  mapper->SetScalarModeToUseCellFieldData();
-  mapper->SelectColorArray("HoleId");
-  mapper->SetLookupTable(colors);
-  mapper->UseLookupTableScalarRangeOn();
-  vtkNew<vtkActor> actor;
-  actor->SetMapper(mapper);
-  vtkNew<vtkPolyDataMapper> outwardMapper;
-  outwardMapper->SetInputConnection(trim->GetOutputPort(1));
-  vtkNew<vtkActor> outward;
-  outward->SetMapper(outwardMapper);
-  outward->GetProperty()->SetColor(0.1, 0.6, 0.9);
+  auto patched = MakeSurface(fill->GetOutputPort(), Yellow);
+  ColorByHole(patched, { Yellow, Red, Red, Red });
+  auto outward = MakeSurface(trim->GetOutputPort(1), { 0.1, 0.6, 0.9 });
   outward->SetPosition(0.0, 0.0, -20.0); // patches lie over the triangles trimmed off in voids
-  vtkNew<vtkRenderer> renderer;
-  for (vtkActor* part : { actor.Get(), outward.Get() })
-  {
-    part->GetProperty()->EdgeVisibilityOn();
-    part->GetProperty()->SetEdgeColor(0.0, 0.0, 0.0);
-    part->GetProperty()->LightingOff();
-    renderer->AddActor(part);
-  }
-  renderer->SetBackground(0.1, 0.2, 0.5);
-  vtkNew<vtkRenderWindow> window;
-  window->SetMultiSamples(0);
-  window->SetSize(500, 500);
-  window->AddRenderer(renderer);
-  vtkNew<vtkRenderWindowInteractor> interactor;
-  interactor->SetRenderWindow(window);
-  renderer->GetActiveCamera()->ParallelProjectionOn();
-  renderer->GetActiveCamera()->SetPosition(20.0, 20.0, 90.0);
-  renderer->GetActiveCamera()->SetFocalPoint(20.0, 20.0, 0.0);
-  renderer->GetActiveCamera()->SetParallelScale(21.0);
-  renderer->ResetCameraClippingRange();
-  window->Render();
-  const int result = vtkRegressionTestImage(window);
-  if (result == vtkRegressionTester::DO_INTERACTOR)
-  {
-    interactor->Start();
-  }
-  return failures || !result ? EXIT_FAILURE : EXIT_SUCCESS;
+  Check(MatchesBaseline(argc, argv, { patched, outward }, { 20.0, 21.0, 500, DarkBlue }),
+    "the picture is that of the baseline");
+  return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -4,10 +4,11 @@
 // The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what
 // passes with them, what is counted, what errors and aborts leave behind, and that the
 // inputs are never written.
+#include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-
+#include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkGridDelaunay2D.h"
@@ -159,6 +160,9 @@ void TestGivenBoundary()
     "the number of triangles is conserved");
   Check(trim->GetNumberOfOutwardTriangles() == outward->GetNumberOfPolys(), "outward is counted");
   Check(trim->GetNumberOfRecoveredEdges() == 4, "the four slanted edges were missing");
+  Check(NumberOfFindings(kept, RulesOfSurface()) == 0 &&
+      NumberOfFindings(outward, RulesOfSurface()) == 0,
+    "both parts are surfaces, after recovery too");
   Check(trim->GetEffectiveGapTolerance() == 0.0, "no gap tolerance with a boundary given");
   for (vtkPolyData* output : { kept, outward, used })
   {
@@ -197,6 +201,8 @@ void TestCellData()
   trim->RecoverBoundaryOff();
   trim->Update();
   Check(trim->GetOutput(0)->GetNumberOfPolys() == 50, "25 squares are kept");
+  Check(NumberOfFindings(trim->GetOutput(0), RulesOfDelaunayPart()) == 0,
+    "along edges of the mesh nothing changes");
   Check(trim->GetOutput(0)->GetCellData()->GetArray("Cell")->GetTuple1(0) == 0 &&
       trim->GetOutput(0)->GetCellData()->GetArray("Cell")->GetTuple1(1) == 1,
     "cell data of vertices and lines passes");
@@ -241,6 +247,9 @@ void TestExtractedBoundary()
   trim->SetInputConnection(delaunay->GetOutputPort());
   trim->Update();
   Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 9 * (11 + 7), "the blocks are kept");
+  Check(NumberOfFindings(trim->GetOutput(0), RulesOfDelaunayPart()) == 0 &&
+      NumberOfFindings(trim->GetOutput(1), RulesOfDelaunayPart()) == 0,
+    "what lies inside and what lies outside are parts of the triangulation");
   Check(trim->GetOutput(2)->GetNumberOfLines() == 2, "each block has its outline");
   Check(trim->GetOutput(2)->GetPoint(0)[2] == 3.0, "the outline has the points' elevation");
   Check(std::fabs(trim->GetEffectiveGapTolerance() - 4.5) < 1e-12, "the tolerance can be read");
@@ -293,6 +302,22 @@ void TestErrors()
   auto heights = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 0 } } });
   heights->GetPoints()->SetPoint(1, 7, 2, std::nan(""));
   ExpectError(mesh, heights, true, "Point 1 of the boundary's cell 0 is not finite");
+
+  // Data that do not fit: of the mesh, of its cells, of the boundary.
+  vtkNew<vtkDoubleArray> three;
+  three->SetName("Picks");
+  three->SetNumberOfTuples(3);
+  three->Fill(1.0);
+  auto rings = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 7 }, { 0, 5 } } });
+  rings->GetPointData()->AddArray(three);
+  ExpectError(mesh, rings, true,
+    "The boundary's point array \"Picks\" has 3 tuples, but there are 4 points.");
+  auto unfit = MakeMesh();
+  unfit->GetPointData()->AddArray(three);
+  ExpectError(unfit, nullptr, true, "Point array \"Picks\" has 3 tuples, but there are 81 points.");
+  unfit = MakeMesh();
+  unfit->GetCellData()->AddArray(three);
+  ExpectError(unfit, nullptr, true, "Cell array \"Picks\" has 3 tuples, but there are 130 cells.");
 
   vtkNew<vtkPolyData> quad;
   quad->SetPoints(mesh->GetPoints());
@@ -347,6 +372,23 @@ void TestEmptyMeshAndAbort()
   {
     Check(aborted->GetOutput(port)->GetNumberOfCells() == 0, "an abort leaves empty outputs");
   }
+
+  vtkNew<vtkCallbackCommand> stopLate;
+  stopLate->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    auto* filter = static_cast<vtkTrimOutwardTriangles*>(caller);
+    if (filter->GetProgress() == 1.0)
+    {
+      filter->SetAbortExecute(1);
+    }
+  });
+  aborted->RemoveObservers(vtkCommand::ProgressEvent);
+  aborted->AddObserver(vtkCommand::ProgressEvent, stopLate);
+  aborted->SetBoundaryData(MakeRings({ { { 0, 0 }, { 7, 2 }, { 0, 5 } } }));
+  aborted->Update();
+  Check(aborted->GetOutput(0)->GetNumberOfCells() == 0 &&
+      aborted->GetNumberOfOutwardTriangles() == 0 && aborted->GetNumberOfRecoveredEdges() == 0 &&
+      aborted->GetEffectiveGapTolerance() == 0.0,
+    "an abort at the last report leaves no counts");
 }
 } // namespace
 

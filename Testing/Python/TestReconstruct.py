@@ -5,9 +5,12 @@
 import json
 import math
 import os
+import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -111,15 +114,18 @@ class Report(Program):
     def test_a_hole_over_a_limit_stays_open_and_the_reason_is_given(self):
         name = self.file("holed.xyz", text_of(HOLED))
         common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
-        for option, value, reason in (
-            ("--maximum-hole-size", "2", "too large"),
-            ("--maximum-hole-edges", "11", "too many edges"),
+        for option, value, reason, told in (
+            ("--maximum-hole-size", "2", "too large", "size 5.657"),
+            ("--maximum-hole-edges", "11", "too many edges", "12 edges"),
         ):
             with self.subTest(option=option):
                 report = self.report(*common, option, value)
                 self.assertEqual(report["holes"]["by_status"], {reason: 1})
                 self.assertEqual(report["holes"]["inserted_points"], 0)
-                self.assertIn(f"1 not filled, {reason}: hole 0", self.output)
+                self.assertIn(f"1 not filled, {reason}: hole 0 ({told})", self.output)
+                self.assertAlmostEqual(
+                    report["holes"]["list"][0]["size"], math.sqrt(32), msg="a box of 4 x 4"
+                )
 
     def test_spacing_decides_how_many_points_are_inserted(self):
         name = self.file("holed.xyz", text_of(HOLED))
@@ -294,6 +300,67 @@ class Results(Program):
         self.assertIn("examples:", done.stdout)
         self.assertIn("survey_surface.vtp", done.stdout)
 
+    def test_help_names_every_option(self):
+        import reconstruct
+
+        shown = self.call("--help").stdout
+        for action in reconstruct.make_parser()._actions:
+            for option in action.option_strings:
+                self.assertIn(f"  {option}", shown.replace(", -", "  -"))
+                if action.nargs is None:
+                    self.assertIn(option, [*reconstruct.TAKES, "-o"])
+
+    def test_a_reader_that_goes_away_is_no_error(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        reading, writing = os.pipe()
+        os.close(reading)
+        done = subprocess.run(
+            [sys.executable, PROGRAM, name, "--no-picture"],
+            cwd=self.folder,
+            stdout=writing,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        os.close(writing)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertTrue(os.path.exists(self.path("sheet_surface.vtp")))
+
+
+@unittest.skipUnless(os.path.exists("/bin/bash"), "Utilities/reconstruct needs bash")
+class Script(Program):
+    SCRIPT = os.path.join(ROOT, "Utilities", "reconstruct")
+
+    def test_help_needs_neither_python_nor_a_build(self):
+        environment = dict(os.environ, ELEVATION_SURFACE_PYTHON="/no", ELEVATION_SURFACE_BUILD="/no")
+        done = subprocess.run(
+            [self.SCRIPT, "a.csv", "--help"],
+            cwd=self.folder,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout, self.call("--help").stdout)
+
+    def test_the_project_is_found_through_links(self):
+        os.symlink(self.SCRIPT, self.path("direct"))
+        os.mkdir(self.path("bin"))
+        os.symlink(os.path.join(os.pardir, "direct"), self.path("bin/rec"))
+        done = subprocess.run(
+            [os.path.join("bin", "rec"), "--help"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=True,
+        )
+        self.assertIn("examples:", done.stdout)
+
 
 class ShortExample(Program):
     def test_it_makes_the_same_surface_as_the_program(self):
@@ -347,13 +414,41 @@ class Pictures(Program):
         views = [self.picture("--view", v) for v in ("top", "200,30", "20,30")]
         self.assertTrue(any(v.shape != views[0].shape or (v != views[0]).any() for v in views[1:]))
 
+    @unittest.skipIf(
+        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
+    )
+    def test_outliers_strips_and_odd_names_leave_something_to_see(self):
+        import numpy
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOImage import vtkPNGReader
+
+        tilted = [(x, y, x + y) for y in range(40) for x in range(40)]
+        for name, rows in (
+            ("outlier.xyz", tilted + [(20.5, 20.5, 1e6)]),
+            ("flat.xyz", [(x, y, 0) for x, y, _ in tilted] + [(20.5, 20.5, 1e6)]),
+            ("strip.xyz", [(x, y, x / 10) for y in range(3) for x in range(1000)]),
+            ("slanted.xyz", [(x - y, x + y, x / 10) for y in range(3) for x in range(1000)]),
+            ("\u5730\u5f62" + "a" * 200 + ".xyz", tilted),
+        ):
+            with self.subTest(name=name):
+                done = self.call(self.file(name, text_of(rows)), "--picture", "p.png")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                reader = vtkPNGReader()
+                reader.SetFileName(self.path("p.png"))
+                reader.Update()
+                pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
+                coloured = numpy.ptp(pixels, axis=1) > 25
+                self.assertGreater(coloured.mean(), 0.04)
+
     @unittest.skipUnless(
         sys.platform.startswith("linux"), "only X has displays that may be missing"
     )
     def test_without_a_display_the_surface_is_written_and_the_lack_is_told(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         for display in (None, ":12345"):
+            # Without programs on the PATH there is no Xvfb.
             environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+            environment["PATH"] = self.folder
             if display:
                 environment["DISPLAY"] = display
             with self.subTest(display=display):
@@ -368,11 +463,73 @@ class Pictures(Program):
                 self.assertIn("sheet_surface.png: cannot be drawn", done.stderr)
 
 
+@unittest.skipUnless(shutil.which("Xvfb"), "Xvfb is not installed")
+class VirtualDisplay(Program):
+    """Where there is no display, the program starts one of its own, and leaves nothing of it."""
+
+    def start(self):
+        environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "XAUTHORITY")}
+        environment["TMPDIR"] = self.folder
+        rows = "".join(f"{i % 300} {i // 300} {i % 7}\n" for i in range(90000))
+        name = self.file("sheet.xyz", rows)
+        return subprocess.Popen(
+            [sys.executable, PROGRAM, name, "--picture"],
+            cwd=self.folder,
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def servers(self):
+        """Ids of the Xvfb that use a key in this test's folder."""
+        found = []
+        for entry in os.listdir("/proc"):
+            try:
+                with open(f"/proc/{entry}/cmdline", "rb") as stream:
+                    if self.folder.encode() in stream.read() and entry.isdigit():
+                        with open(f"/proc/{entry}/comm", encoding="utf-8") as stream:
+                            if "Xvfb" in stream.read():
+                                found.append(int(entry))
+            except OSError:
+                pass
+        return found
+
+    def wait_until(self, condition):
+        end = time.monotonic() + 60
+        while not condition():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+
+    def displays(self):
+        return [n for n in os.listdir(self.folder) if n.startswith("reconstruct-display-")]
+
+    def test_a_picture_is_drawn_and_the_server_ends(self):
+        process = self.start()
+        self.wait_until(self.servers)
+        self.assertEqual(process.wait(300), 0)
+        self.assertIn("sheet_surface.png", os.listdir(self.folder))
+        self.assertEqual((self.servers(), self.displays()), ([], []))
+
+    def test_a_stopped_program_leaves_no_server(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
+            with self.subTest(number=number):
+                process = self.start()
+                self.wait_until(self.servers)
+                if number == signal.SIGKILL:
+                    time.sleep(0.5)  # until the program is the server's client
+                process.send_signal(number)
+                process.wait(300)
+                self.wait_until(lambda: not self.servers())
+                if number != signal.SIGKILL:
+                    self.assertEqual(self.displays(), [])
+                    self.assertEqual(process.returncode, 130)
+
+
 class BadInput(Program):
     def test_files_that_cannot_be_read_are_named(self):
         self.assert_refused("no.csv: no such file", "no.csv")
         os.mkdir(self.path("folder.csv"))
-        self.assert_refused("folder.csv: is not a file", "folder.csv")
+        self.assert_refused("folder.csv: is a folder", "folder.csv")
         self.assert_refused("a.las: .las cannot be read", self.file("a.las", "1 2 3\n"))
         self.assert_refused("empty.xyz: is empty", self.file("empty.xyz", ""))
         self.assert_refused("words.txt: holds text, but no numbers", self.file("words.txt", "no\n"))
@@ -423,10 +580,11 @@ class BadInput(Program):
         os.mkdir(self.path("folder.vtp"))
         self.assert_refused("no/s.vtp: cannot be written", name, "-o", "no/s.vtp")
         self.assert_refused("folder.vtp: is a folder", name, "-o", "folder.vtp")
-        self.assert_refused("s.doc: .doc cannot be written", name, "-o", "s.doc")
+        self.assert_refused("s.doc: .doc cannot be written", name, "-o", "s.doc", code=2)
         self.assert_refused("no/r.json: cannot be written", name, "--report", "no/r.json")
         self.file("p.vtp", "")
-        self.assert_refused("p.vtp: would overwrite p.vtp", "p.vtp", "-o", "p.vtp")
+        self.assert_refused("p.vtp: would overwrite p.vtp", "p.vtp", "-o", "p.vtp", code=2)
+        self.assert_refused("--columns is for text files", "p.vtp", "--columns", "1,2,3", code=2)
 
     def test_a_full_disk_leaves_nothing_behind(self):
         try:
@@ -444,22 +602,39 @@ class BadInput(Program):
 
     def test_wrong_options_are_errors_of_usage(self):
         name = self.file("sheet.xyz", text_of(SHEET))
-        for arguments in (
-            (),
-            (name, "--spacing", "-1"),
-            (name, "--spacing", "wide"),
-            (name, "--duplicates", "keep-some"),
-            (name, "--columns", "x,y"),
-            (name, "--view", "up"),
-            (name, "--no-trim", "--boundary", name),
-            (name, "--no-fill", "--spacing", "3"),
-            (name, "--no-picture", "--view", "top"),
+        for words, arguments in (
+            ("no file is given", ()),
+            ("--spacing takes a number of 0 or more, not '-1'", (name, "--spacing=-1")),
+            ("--spacing takes a number of 0 or more, not 'wide'", (name, "--spacing", "wide")),
+            ("--spacing takes a number of 0 or more", (name, "--spacing")),
+            ("a whole number of 0 or more", (name, "--maximum-hole-edges", "1.5")),
+            ("--output takes a file", (name, "-o")),
+            ("one of keep-first,", (name, "--duplicates", "keep-some")),
+            ("as x,y,z or 1,2,3, not 'x,y'", (name, "--columns", "x,y")),
+            ("--view takes top, or", (name, "--view", "up")),
+            ("--view takes top, or", (name, "--view", "10,0")),
+            ("a second file: other.xyz", (name, "other.xyz")),
+            ("unknown option", (name, "--fast")),
+            ("--no-trim leaves nothing", (name, "--no-trim", "--boundary", name)),
+            ("--no-fill leaves nothing", (name, "--no-fill", "--spacing", "3")),
+            ("--no-picture leaves nothing", (name, "--no-picture", "--view", "top")),
         ):
             with self.subTest(arguments=arguments):
                 done = self.call(*arguments)
                 self.assertEqual(done.returncode, 2)
-                self.assertIn("error: ", done.stderr.splitlines()[-1])
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                self.assertIn(words, done.stderr)
+                self.assertTrue(done.stderr.endswith("; see --help\n"), done.stderr)
                 self.assertEqual(os.listdir(self.folder), [name])
+
+    def test_coordinates_near_the_end_of_their_range_give_no_noise(self):
+        rows = "".join(f"{x}e306 {y}e306 {x * y}\n" for x in range(9) for y in range(9))
+        name = self.file("huge.xyz", rows + "1e306 1e306 1e306\n")
+        report = self.report(name)
+        self.assertAlmostEqual(report["distance"]["maximum"] / 1e306, 1, delta=1e-6)
+        done = self.call(name)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("no picture: ", done.stdout)
 
     def test_without_the_module_one_line_tells_what_to_do(self):
         environment = dict(os.environ, PYTHONPATH="")

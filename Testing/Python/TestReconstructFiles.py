@@ -260,6 +260,106 @@ class VtkFormats(InFolder):
             with self.subTest(suffix=suffix):
                 self.assert_refused("", '<VTKFile type="PolyData"><bro', "a" + suffix)
 
+    def mesh(self):
+        """A strip of triangles with odd coordinates, so that a text file has long numbers."""
+        data = files.make_points([(i / 3.0, i % 2, i / 7.0) for i in range(12)])
+        cells = vtkCellArray()
+        for i in range(10):
+            cells.InsertNextCell(3, [i, i + 1, i + 2])
+        data.SetPolys(cells)
+        array = numpy_to_vtk(numpy.arange(12.0) / 9.0, deep=True)
+        array.SetName("Amplitude")
+        data.GetPointData().AddArray(array)
+        return data
+
+    def whole_files(self):
+        """(name, bytes) of the mesh in every format whose reader trusts its header."""
+        from vtkmodules.vtkIOGeometry import vtkSTLWriter
+        from vtkmodules.vtkIOLegacy import vtkPolyDataWriter, vtkUnstructuredGridWriter
+        from vtkmodules.vtkIOPLY import vtkPLYWriter
+
+        mesh = self.mesh()
+        grid = vtkUnstructuredGrid()
+        grid.SetPoints(mesh.GetPoints())
+        grid.SetCells(5, mesh.GetPolys())
+        for kind in ("text", "binary"):
+            for make, source, suffix in (
+                (vtkPLYWriter, mesh, "ply"),
+                (vtkSTLWriter, mesh, "stl"),
+                (vtkPolyDataWriter, mesh, "vtk"),
+                (vtkUnstructuredGridWriter, grid, "vtk"),
+            ):
+                for version in (42, 51) if suffix == "vtk" else (0,):
+                    writer = make()
+                    if kind == "binary":
+                        writer.SetFileTypeToBinary()
+                    else:
+                        writer.SetFileTypeToASCII()
+                    if version:
+                        writer.SetFileVersion(version)
+                    path = self.write(writer, source, f"{kind}.{suffix}")
+                    with open(path, "rb") as stream:
+                        yield f"{kind} {make.__name__} {version}", suffix, stream.read()
+
+    def test_a_file_that_is_cut_off_is_refused_or_has_all_its_points(self):
+        # Where nothing but what follows the points is missing, the points are all there. A cut
+        # within the last number of a text cannot be seen, so this number is not compared.
+        for what, suffix, content in self.whole_files():
+            path = self.file("cut." + suffix, content)
+            expected = coordinates(files.read_points(path)).ravel()[:-1].tolist()
+            refused = 0
+            for size in range(1, len(content), 7):
+                with self.subTest(what=what, size=size):
+                    path = self.file("cut." + suffix, content[:size])
+                    try:
+                        found = coordinates(files.read_points(path)).ravel()[:-1].tolist()
+                    except files.FileError:
+                        refused += 1
+                        continue
+                    self.assertEqual(found, expected)
+            with self.subTest(what=what):
+                self.assertGreater(refused, 0.9 * len(content) / 7)
+
+    def test_a_header_that_announces_too_much_is_refused(self):
+        for what, suffix, content in self.whole_files():
+            for old, new in (
+                (b"element vertex 12", b"element vertex 999999999999"),
+                (b"element face 10", b"element face 999999999999"),
+                (b"POINTS 12 ", b"POINTS 999999999999 "),
+                (b"POINTS 12 ", b"POINTS -1 "),
+                (b"POLYGONS 1", b"POLYGONS 9999999991"),
+            ):
+                if old in content:
+                    with self.subTest(what=what, new=new):
+                        self.assert_refused("", content.replace(old, new), "lie." + suffix)
+
+    def test_text_in_the_place_of_numbers_is_refused(self):
+        for what, suffix, content in self.whole_files():
+            if what.startswith("text"):
+                with self.subTest(what=what):
+                    self.assertIn(b"3.6666", content)
+                    self.assert_refused("", content.replace(b"3.6666", b"spoil"), "a." + suffix)
+
+    def test_lists_of_several_lengths_in_a_binary_ply_are_followed(self):
+        rows = [(i, i * i % 7, 0.5) for i in range(9)]
+        lists = [[0, 1, 2], [1, 2, 3, 4], [2, 3, 4], [4, 5, 6, 7, 8]]
+        head = (
+            "ply\nformat binary_little_endian 1.0\ncomment made by hand\nelement vertex 9\n"
+            "property float x\nproperty float y\nproperty float z\nelement face 4\n"
+            "property list uchar int vertex_indices\nend_header\n"
+        ).encode()
+        body = b"".join(struct.pack("<3f", *row) for row in rows)
+        body += b"".join(struct.pack(f"<B{len(ids)}i", len(ids), *ids) for ids in lists)
+        self.assert_rows(self.read(head + body, "a.ply"), rows)
+        self.assert_refused("4 of face are announced", (head + body)[:-1], "b.ply")
+
+    def test_cells_with_corners_that_are_not_there_are_refused(self):
+        text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
+        text += "0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 77\n"
+        self.assert_refused("a cell has the corner 77, but there are 3 points", text, "a.vtk")
+        with self.assertRaisesRegex(files.FileError, "corner 77"):
+            files.read_boundary(self.path("a.vtk"))
+
     def test_coordinates_too_large_for_the_format_are_told(self):
         from vtkmodules.vtkIOPLY import vtkPLYWriter
 

@@ -538,6 +538,24 @@ TEST(ExtractBoundary, TakesCoordinatesOfAnySize)
   EXPECT_EQ(countOf(std::ldexp(1.0, -900)), expected);
 }
 
+TEST(ExtractBoundary, TakesDistancesBelowTheRangeOfSquares)
+{
+  // Most of the points are so near to each other that their spacing is not told from 0.
+  std::vector<Point2> points;
+  for (int i = 0; i < 100; ++i)
+  {
+    points.push_back({ std::ldexp(i % 10, -700), std::ldexp(i / 10, -700) });
+    points.push_back({ 1.0 + i % 10, 1.0 + i / 10 });
+  }
+  const Mesh mesh = Delaunay(points);
+  for (const double tolerance : { 0.0, 1e-300, 1.0, 1e300 })
+  {
+    ExtractOptions options;
+    options.GapTolerance = tolerance;
+    EXPECT_TRUE(std::isfinite(ExtractBoundary(mesh, options).GapTolerance));
+  }
+}
+
 TEST(ExtractBoundary, StopsWhenAskedAndTakesAnEmptyMesh)
 {
   EXPECT_EQ(ExtractBoundary(Mesh(), ExtractOptions()).Vertices.Count(), 0);

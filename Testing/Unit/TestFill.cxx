@@ -647,6 +647,25 @@ TEST(Fill, WorksForCoordinatesOfAnySize)
   }
 }
 
+TEST(Fill, FailsWhereSquaresLeaveTheRangeOfNumbers)
+{
+  for (const double scale : { std::ldexp(1.0, 1000), std::ldexp(1.0, 520), std::ldexp(1.0, -520),
+         std::ldexp(1.0, -1000) })
+  {
+    Mesh mesh = Draw({ "#####", "#   #", "#   #", "#   #", "#####" });
+    for (Point2& p : mesh.Points)
+    {
+      p = { p.X * scale, p.Y * scale };
+    }
+    const Outcome run = Fill(mesh);
+    ASSERT_EQ(run.Patches.Reports.size(), 1u);
+    EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Failed);
+    EXPECT_NE(run.Patches.Reports[0].Reason.find("range of numbers"), std::string::npos);
+    EXPECT_EQ(run.Patches.Reports[0].Reason.find("nan"), std::string::npos);
+    EXPECT_EQ(run.Patches.NumberOfTriangles(), 0);
+  }
+}
+
 TEST(Fill, FillsThousandsOfHoles)
 {
   const int size = 121;

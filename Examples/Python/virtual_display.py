@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A display for drawing where there is no screen: Xvfb, for as long as this program runs."""
+
+import ctypes
+import os
+import select
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+
+WAIT = 30.0  # seconds; a busy machine may take long
+
+
+class VirtualDisplay:
+    """Starts Xvfb and points DISPLAY and XAUTHORITY to it.
+
+    The server is told to end when its last client leaves, and this program stays its client. So no
+    server is left behind, even if the program is killed. close() also removes the folder with the
+    key that keeps other users out.
+    """
+
+    def __init__(self):
+        self.server = None
+        self.folder = None
+        self.connection = None
+
+    def open(self):
+        """None, or why there is no display."""
+        if not sys.platform.startswith("linux"):
+            return None
+        program = shutil.which("Xvfb")
+        if not program:
+            return "Xvfb is not installed"
+        try:
+            x11 = ctypes.CDLL("libX11.so.6")
+            self.folder = tempfile.mkdtemp(prefix="reconstruct-display-")
+            return self.start(program, x11)
+        except OSError as error:
+            return f"Xvfb cannot be used: {error}"
+
+    def start(self, program, x11):
+        key = os.path.join(self.folder, "key")
+        write_key(key)
+        reading, writing = os.pipe()
+        try:
+            # A session of its own: Ctrl-C on the terminal is for this program to handle.
+            self.server = subprocess.Popen(
+                [
+                    *(program, "-displayfd", str(writing), "-screen", "0", "1280x1024x24"),
+                    *("-auth", key, "-nolisten", "tcp", "-terminate"),
+                ],
+                pass_fds=(writing,),
+                start_new_session=True,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+        finally:
+            os.close(writing)
+        number = read_line(reading)
+        os.close(reading)
+        if not number:
+            return "Xvfb does not start"
+        os.environ["DISPLAY"] = ":" + number
+        os.environ["XAUTHORITY"] = key
+        x11.XOpenDisplay.restype = ctypes.c_void_p
+        self.connection = x11.XOpenDisplay(None)
+        return None if self.connection else "Xvfb does not answer"
+
+    def close(self):
+        if self.server is not None:
+            self.server.send_signal(signal.SIGTERM)
+            try:
+                self.server.wait(5)
+            except subprocess.TimeoutExpired:
+                self.server.kill()
+                self.server.wait()
+            self.server = None
+        if self.folder is not None:
+            shutil.rmtree(self.folder, ignore_errors=True)
+            self.folder = None
+
+
+def write_key(path):
+    """A file as xauth writes it, with a random key for any display: family, address, number, name,
+    data, each but the first with its length before it."""
+    fields = (b"", b"", b"MIT-MAGIC-COOKIE-1", os.urandom(16))
+    with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb") as stream:
+        stream.write(struct.pack(">H", 65535))
+        for field in fields:
+            stream.write(struct.pack(">H", len(field)) + field)
+
+
+def read_line(reading):
+    """The number that the server tells when it is ready; "" if it ends, or not in time."""
+    text = b""
+    while not text.endswith(b"\n"):
+        if not select.select([reading], [], [], WAIT)[0]:
+            return ""
+        more = os.read(reading, 64)
+        if not more:
+            return ""
+        text += more
+    return text.decode().strip()

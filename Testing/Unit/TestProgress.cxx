@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Progress rises, and no step of a long computation is silent, so that an abort is heard soon.
+#include "Kernel/Boundary.h"
+#include "Kernel/Constraints.h"
+#include "Kernel/Fill.h"
+#include "Kernel/Holes.h"
+#include "Kernel/Trim.h"
+#include "LatticeSurface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+using namespace elevation;
+
+namespace
+{
+constexpr Index Width = 500;
+constexpr Index Height = 300;
+
+/** 300,000 triangles, many times what lies between two reports; a hole in the middle. */
+const Mesh& LargeSheet()
+{
+  static const Mesh sheet = []() {
+    std::vector<std::string> picture(Height, std::string(Width, '#'));
+    for (Index row = 150; row < 160; ++row)
+    {
+      picture[row].replace(200, 10, 10, ' ');
+    }
+    return testing_surfaces::Draw(picture);
+  }();
+  return sheet;
+}
+
+/** What a computation reports; the fractions are checked to rise within [0, 1]. */
+template <typename Computation>
+std::vector<double> FractionsOf(Computation&& computation)
+{
+  std::vector<double> fractions{ 0.0 };
+  computation([&fractions](double fraction) {
+    EXPECT_GE(fraction, fractions.back());
+    EXPECT_LE(fraction, 1.0);
+    fractions.push_back(fraction);
+    return true;
+  });
+  fractions.push_back(1.0);
+  return fractions;
+}
+
+/** The largest part of a computation that passes without a report. */
+template <typename Computation>
+double LargestSilence(Computation&& computation)
+{
+  const std::vector<double> fractions = FractionsOf(computation);
+  double largest = 0.0;
+  for (std::size_t i = 1; i < fractions.size(); ++i)
+  {
+    largest = std::max(largest, fractions[i] - fractions[i - 1]);
+  }
+  return largest;
+}
+} // namespace
+
+TEST(Progress, OfPartsDoesNotFallWhereTheyMeet)
+{
+  for (int i = 1; i < 1000; ++i)
+  {
+    const double begin = 0.001 * i;
+    for (int j = i + 1; j <= 1000; ++j)
+    {
+      const double end = 0.001 * j;
+      const Progress progress = [end](double fraction) {
+        EXPECT_LE(fraction, end);
+        return true;
+      };
+      Part(progress, begin, end)(1.0);
+    }
+  }
+}
+
+TEST(Progress, OfSortingRisesAndStops)
+{
+  std::vector<Index> values;
+  for (Index i = 0; i < 300000; ++i)
+  {
+    values.push_back(static_cast<Index>((i * 7919ll) % 300007));
+  }
+  std::vector<Index> sorted = values;
+  const auto sort = [&sorted](const Progress& progress) {
+    Sort(sorted.begin(), sorted.end(), std::less<Index>(), progress);
+  };
+  EXPECT_LT(LargestSilence(sort), 0.3);
+  EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
+  sorted = values;
+  sort(Progress());
+  EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
+  sorted = values;
+  EXPECT_THROW(sort([](double) { return false; }), Aborted);
+}
+
+TEST(Progress, OfConnectingAndTracingAMeshIsNotSilent)
+{
+  Mesh mesh = LargeSheet();
+  EXPECT_LT(LargestSilence([&](const Progress& progress) { mesh.ConnectTwins(0, progress); }), 0.1);
+  EXPECT_LT(LargestSilence([&](const Progress& progress) { TraceBorder(mesh, progress); }), 0.1);
+  EXPECT_LT(LargestSilence([&](const Progress& progress) { FindHoles(mesh, 0, progress); }), 0.55)
+    << "half of it is for borders, of which this mesh has few";
+}
+
+TEST(Progress, OfABoundaryIsNotSilent)
+{
+  EXPECT_LT(LargestSilence([&](const Progress& progress) {
+    ExtractOptions options;
+    options.Monitor = progress;
+    ExtractBoundary(LargeSheet(), options);
+  }),
+    0.1);
+}
+
+TEST(Progress, OfTrimmingIsNotSilent)
+{
+  EXPECT_LT(LargestSilence([&](const Progress& progress) {
+    Mesh mesh = LargeSheet();
+    Rings rings;
+    rings.Vertices = { 0, Width, Height * (Width + 1) };
+    rings.Offsets.push_back(3);
+    TrimOptions options;
+    options.Monitor = progress;
+    Trim(mesh, rings, options);
+  }),
+    0.25);
+}
+
+TEST(Progress, OfFillingOneLargeHoleIsNotSilent)
+{
+  EXPECT_LT(LargestSilence([&](const Progress& progress) {
+    const Mesh& mesh = LargeSheet();
+    std::vector<double> coordinates;
+    for (const Point2& p : mesh.Points)
+    {
+      coordinates.insert(coordinates.end(), { p.X, p.Y, 0.0 });
+    }
+    PointView points;
+    points.Double = coordinates.data();
+    points.Count = mesh.NumberOfPoints();
+    FillOptions options;
+    options.Spacing = 0.02;
+    options.Monitor = progress;
+    const FillResult result = FillHoles(mesh, points, FindHoles(mesh), options);
+    EXPECT_GT(result.NumberOfPoints(), 250000);
+  }),
+    0.1);
+}
