@@ -61,6 +61,7 @@ int vtkGridDelaunay2D::RequestData(
     elevation::DelaunayOptions options;
     options.MaximumEdgeLength = this->MaximumEdgeLength;
     options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
+    options.NumberOfThreads = this->NumberOfThreads;
     options.Monitor = elevation::ProgressOf(this);
     elevation::Report(options.Monitor, 0.0);
     elevation::CheckPointArrays(input);
@@ -95,6 +96,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";
   os << indent << "NumberOfNonFinitePoints: " << this->NumberOfNonFinitePoints << "\n";
 }

@@ -86,6 +86,17 @@ public:
   const char* GetDuplicatePolicyAsString() const;
   ///@}
 
+  ///@{
+  /**
+   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs without
+   * threads by default, as in ParaView. The output is the same, byte for byte, for any number. What
+   * runs on several threads is the ordering of the points and the growing of the triangles, from
+   * some thousands of points on; binning them is done by one. Range: 0 to 1024.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
   /** After Update(): points left aside because another point has the same x,y. */
   vtkGetMacro(NumberOfDuplicatePoints, vtkIdType);
 
@@ -101,6 +112,7 @@ protected:
 
   double MaximumEdgeLength = 0.0;
   int DuplicatePolicy = KEEP_FIRST;
+  int NumberOfThreads = 0;
 
   vtkIdType NumberOfDuplicatePoints = 0;
   vtkIdType NumberOfNonFinitePoints = 0;

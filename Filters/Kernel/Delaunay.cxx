@@ -580,7 +580,8 @@ private:
         _mm256_add_pd(_mm256_mul_pd(offX, offX), _mm256_mul_pd(offY, offY));
       const __m256d isOutside = _mm256_or_pd(_mm256_cmp_pd(offSquared, radiusSquared, _CMP_GT_OQ),
         _mm256_cmp_pd(cross, right, _CMP_LT_OQ));
-      const __m256d isReached = _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, _mm256_set1_pd(this->Floor), _CMP_GE_OQ));
+      const __m256d isReached =
+        _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, _mm256_set1_pd(this->Floor), _CMP_GE_OQ));
       reached |= static_cast<unsigned int>(_mm256_movemask_pd(isReached)) << place;
       const __m256d fromX = _mm256_max_pd(
         _mm256_max_pd(_mm256_sub_pd(lowX, middleX), _mm256_sub_pd(middleX, highX)), zero);
@@ -812,14 +813,16 @@ public:
   /** The first neighbour above the vertex, counter-clockwise; it is not on the right hull chain. */
   Index FirstAbove(Index vertex)
   {
-    return this->EndAbove(vertex, [&](Index b) { return this->Search.FindAnywhere(b, vertex); },
+    return this->EndAbove(
+      vertex, [&](Index b) { return this->Search.FindAnywhere(b, vertex); },
       [&](Index b) { return this->Search.FindAnywhere(vertex, b); });
   }
 
   /** The last one; the vertex is not on the left hull chain. */
   Index LastAbove(Index vertex)
   {
-    return this->EndAbove(vertex, [&](Index b) { return this->Search.FindAnywhere(vertex, b); },
+    return this->EndAbove(
+      vertex, [&](Index b) { return this->Search.FindAnywhere(vertex, b); },
       [&](Index b) { return this->Search.FindAnywhere(b, vertex); });
   }
 
@@ -860,8 +863,7 @@ private:
   {
     Index nearest = None;
     double least = Infinity;
-    this->LookForNearest(
-      this->Grid.Nodes[this->Grid.Nodes.size() - 1], vertex, nearest, least);
+    this->LookForNearest(this->Grid.Nodes[this->Grid.Nodes.size() - 1], vertex, nearest, least);
     for (int attempts = 0; attempts < 64 && nearest != None; ++attempts)
     {
       const Index left = this->Search.FindAnywhere(vertex, nearest);
@@ -883,8 +885,7 @@ private:
     return dx * dx + dy * dy;
   }
 
-  void LookForNearest(
-    const BinGrid::Node& node, Index vertex, Index& nearest, double& least) const
+  void LookForNearest(const BinGrid::Node& node, Index vertex, Index& nearest, double& least) const
   {
     const Point2 p = this->Grid.PointAt(vertex);
     std::pair<double, int> places[BinGrid::Node::Places];

@@ -61,8 +61,8 @@ void ForEachPiece(Index count, int threads, Work&& work)
   const char* current = vtkSMPTools::GetBackend();
   const std::string backend =
     current && std::string(current) != "Sequential" ? current : "STDThread";
-  vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, backend, false },
-    [&]() { vtkSMPTools::For(0, count, 1, run); });
+  vtkSMPTools::LocalScope(
+    vtkSMPTools::Config{ threads, backend, false }, [&]() { vtkSMPTools::For(0, count, 1, run); });
   for (const std::exception_ptr& failure : failures)
   {
     if (failure)

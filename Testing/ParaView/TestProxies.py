@@ -11,7 +11,8 @@ from plugin_testing import check, check_equal, finish, start
 
 # For each property: a value other than the default.
 OTHER_VALUES = {
-    "GridDelaunay2D": {"MaximumEdgeLength": 2.5, "DuplicatePolicy": "Keep Highest"},
+    "GridDelaunay2D": {"MaximumEdgeLength": 2.5, "DuplicatePolicy": "Keep Highest",
+                       "NumberOfThreads": 2},
     "TrimOutwardTriangles": {"GapTolerance": 3.5, "RecoverBoundary": 0},
     "FillElevationHoles": {
         "MaximumHoleSize": 12.5,

@@ -29,6 +29,7 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)
         self.assertEqual(delaunay.GetDuplicatePolicyAsString(), "KeepFirst")
+        self.assertEqual(delaunay.GetNumberOfThreads(), 0)
 
     def test_values_are_clamped(self):
         delaunay = vtkGridDelaunay2D()
@@ -39,7 +40,8 @@ class TestGridDelaunay2D(unittest.TestCase):
 
     def test_every_property_is_printed(self):
         text = str(vtkGridDelaunay2D())
-        for name in ("MaximumEdgeLength", "DuplicatePolicy", "NumberOfDuplicatePoints",
+        for name in ("MaximumEdgeLength", "DuplicatePolicy", "NumberOfThreads",
+                     "NumberOfDuplicatePoints",
                      "NumberOfNonFinitePoints"):
             self.assertIn(name, text)
 
@@ -59,6 +61,18 @@ class TestGridDelaunay2D(unittest.TestCase):
             delaunay.Update()
             sets.append(corner_sets(delaunay.GetOutput()))
         self.assertEqual(sets[0], sets[1])
+
+    def test_the_number_of_threads_does_not_change_a_byte(self):
+        data = cloud(numpy.random.RandomState(4).rand(60000, 3))
+        results = []
+        for threads in (1, 2, 4):
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(data)
+            delaunay.SetNumberOfThreads(threads)
+            delaunay.Update()
+            results.append(triangles(delaunay.GetOutput()).tobytes())
+        self.assertEqual(results[0], results[1])
+        self.assertEqual(results[0], results[2])
 
     def test_unused_points_are_listed(self):
         coordinates = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 5], [numpy.inf, 0, 0]], float)
