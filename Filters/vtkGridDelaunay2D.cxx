@@ -76,6 +76,7 @@ int vtkGridDelaunay2D::RequestData(
     options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
     options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
     options.LatticeTolerance = this->LatticeTolerance;
+    options.NumberOfThreads = this->NumberOfThreads;
     options.Monitor = elevation::ProgressOf(this);
     elevation::Report(options.Monitor, 0.0);
     elevation::CheckPointArrays(input);
@@ -124,6 +125,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";
   os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
   os << indent << "LatticeFound: " << this->LatticeFound << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";
   os << indent << "NumberOfNonFinitePoints: " << this->NumberOfNonFinitePoints << "\n";
 }

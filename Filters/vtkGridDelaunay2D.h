@@ -130,6 +130,17 @@ public:
   /** After Update(): whether the triangles are those of a lattice; it is in the field data. */
   vtkGetMacro(LatticeFound, bool);
 
+  ///@{
+  /**
+   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
+   * without threads by default, as in ParaView. The output is the same, byte for byte, for any
+   * number. Several threads order the points and grow the triangles, from some thousands of points
+   * on; binning, and all of a lattice, is the work of one. Range: 0 to 1024.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
   /** After Update(): points left aside because another point has the same x,y. */
   vtkGetMacro(NumberOfDuplicatePoints, vtkIdType);
 
@@ -147,6 +158,7 @@ protected:
   int DuplicatePolicy = KEEP_FIRST;
   int LatticeMode = AUTOMATIC;
   double LatticeTolerance = 0.01;
+  int NumberOfThreads = 0;
 
   bool LatticeFound = false;
   vtkIdType NumberOfDuplicatePoints = 0;

@@ -98,6 +98,7 @@ TAKES = {
     "--duplicates": "one of " + ", ".join(DUPLICATES),
     "--lattice-mode": "one of " + ", ".join(LATTICE_MODES),
     "--lattice-tolerance": "a number from 0 to 0.25",
+    "--threads": "a whole number of 0 or more",
     "--boundary": "a file",
     "--gap-tolerance": NUMBER,
     "--maximum-hole-size": NUMBER,
@@ -149,6 +150,7 @@ def make_parser():
     add("--duplicates", choices=DUPLICATES, default=DUPLICATES[0])
     add("--lattice-mode", choices=LATTICE_MODES, default=LATTICE_MODES[0])
     add("--lattice-tolerance", type=number_up_to_a_quarter, default=0.01)
+    add("--threads", type=count_at_least_zero, default=0)
     add("--boundary")
     add("--gap-tolerance", type=number_at_least_zero, default=0.0)
     add("--no-recover-boundary", action="store_true")
@@ -293,6 +295,7 @@ def reconstruct(run, cloud, boundary):
     delaunay.SetDuplicatePolicy(DUPLICATES.index(options.duplicates))
     delaunay.SetLatticeMode(LATTICE_MODES.index(options.lattice_mode))
     delaunay.SetLatticeTolerance(options.lattice_tolerance)
+    delaunay.SetNumberOfThreads(options.threads)
     run.update("triangulate", "triangulating", delaunay)
     if delaunay.GetOutput().GetNumberOfPolys() == 0:
         raise Failure(f"{options.file}: {why_no_triangle(cloud.points, options)}")

@@ -4,6 +4,7 @@
 
 #include "BinGrid.h"
 #include "LatticeDelaunay.h"
+#include "Parallel.h"
 #include "Predicates.h"
 #include "Surroundings.h"
 
@@ -122,23 +123,28 @@ private:
  * All slots by increasing (y, x). A row of the grid is wholly below the next, so only the points of
  * each row are sorted.
  */
-Buffer<Index> OrderFromLowest(const BinGrid& grid, const Progress& progress)
+Buffer<Index> OrderFromLowest(const BinGrid& grid, int threads, const Progress& progress)
 {
   Buffer<Index> order;
   order.Resize(grid.NumberOfPoints());
-  RowSorter sorter(grid);
   const BinGrid::Layout& bins = grid.Bins;
-  for (Index row = 0; row < bins.Rows; ++row)
+  constexpr Index rowsAtOnce = 64;
+  const Index blocks = (bins.Rows + rowsAtOnce - 1) / rowsAtOnce;
+  for (Index done = 0; done < blocks; done += 8 * threads)
   {
-    const auto slots = grid.Slots(row, 0, bins.Columns - 1);
-    if (slots.first < slots.second)
-    {
-      sorter.Sort(slots, grid.RowLow[row], grid.RowHigh[row], order.data() + slots.first);
-    }
-    if (row % 64 == 0)
-    {
-      Report(progress, double(row) / bins.Rows);
-    }
+    Report(progress, double(done) / blocks);
+    ForEachPiece(std::min(8 * threads, blocks - done), threads, [&](Index block) {
+      RowSorter sorter(grid);
+      const Index first = (done + block) * rowsAtOnce;
+      for (Index row = first; row < std::min(first + rowsAtOnce, bins.Rows); ++row)
+      {
+        const auto slots = grid.Slots(row, 0, bins.Columns - 1);
+        if (slots.first < slots.second)
+        {
+          sorter.Sort(slots, grid.RowLow[row], grid.RowHigh[row], order.data() + slots.first);
+        }
+      }
+    });
   }
   return order;
 }
@@ -310,6 +316,28 @@ public:
       --step;
       this->LookInto(*step->Node, others);
     }
+    return this->Best;
+  }
+
+  /**
+   * The apex of the Delaunay triangle on the left of any edge of the triangulation, by the tree
+   * alone.
+   * @return None when no point lies on the left of the edge
+   */
+  Index FindAnywhere(Index a, Index b)
+  {
+    this->Origin = a;
+    this->A = this->Grid.PointAt(a);
+    this->Target = b;
+    this->B = this->Grid.PointAt(b);
+    this->EdgeX = this->B.X - this->A.X;
+    this->EdgeY = this->B.Y - this->A.Y;
+    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
+    this->Best = None;
+    this->Floor = -std::numeric_limits<double>::max(); // the empty box is lower still
+    this->SetDisc(Infinity);
+    this->LookInto(this->Grid.Nodes[this->Grid.Nodes.size() - 1], ~0u);
+    this->Floor = 0.0;
     return this->Best;
   }
 
@@ -491,7 +519,7 @@ private:
     {
       // Differences round monotonically: relative to the origin, a box still holds its points.
       const double highY = node.HighY[place] - this->A.Y;
-      if (!(highY >= 0.0))
+      if (!(highY >= this->Floor))
       {
         continue;
       }
@@ -554,7 +582,8 @@ private:
         _mm256_add_pd(_mm256_mul_pd(offX, offX), _mm256_mul_pd(offY, offY));
       const __m256d isOutside = _mm256_or_pd(_mm256_cmp_pd(offSquared, radiusSquared, _CMP_GT_OQ),
         _mm256_cmp_pd(cross, right, _CMP_LT_OQ));
-      const __m256d isReached = _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, zero, _CMP_GE_OQ));
+      const __m256d isReached =
+        _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, _mm256_set1_pd(this->Floor), _CMP_GE_OQ));
       reached |= static_cast<unsigned int>(_mm256_movemask_pd(isReached)) << place;
       const __m256d fromX = _mm256_max_pd(
         _mm256_max_pd(_mm256_sub_pd(lowX, middleX), _mm256_sub_pd(middleX, highX)), zero);
@@ -727,6 +756,7 @@ private:
   double Left = 0.0, Right = 0.0, Top = 0.0;
 
   // The edge.
+  double Floor = 0.0; ///< relative to the origin; what is below is passed over
   Index Origin = None, Target = None;
   Point2 A{ 0.0, 0.0 }, B{ 0.0, 0.0 };
   double EdgeX = 0.0, EdgeY = 0.0, LengthSquared = 0.0;
@@ -740,82 +770,314 @@ private:
 };
 
 /**
- * Grows all triangles. First and Last are the edge pool: the first and the last edge, counter-
- * clockwise, of the fan of triangles above a vertex, which are known when its turn comes because
- * everything below is done: each is an edge of a triangle below, or of the hull.
+ * The first and the last edge, counter-clockwise, of the fan of triangles above each vertex: the
+ * edge pool. None where it is not known yet.
  */
-void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Index>& rightChain,
-  const std::vector<Index>& leftChain, const DelaunayOptions& options, Buffer<Index>& triangles)
+struct EdgePool
 {
-  const Index count = grid.NumberOfPoints();
-  Buffer<Index> first, last;
-  first.Resize(count);
-  last.Resize(count);
-  for (std::size_t i = 0; i + 1 < rightChain.size(); ++i)
+  Buffer<Index> First, Last;
+
+  EdgePool(Index count, const std::vector<Index>& rightChain, const std::vector<Index>& leftChain)
   {
-    first[rightChain[i]] = rightChain[i + 1];
+    this->First.Resize(count);
+    this->Last.Resize(count);
+    std::fill(this->First.begin(), this->First.end(), None);
+    std::fill(this->Last.begin(), this->Last.end(), None);
+    for (std::size_t i = 0; i + 1 < rightChain.size(); ++i)
+    {
+      this->First[rightChain[i]] = rightChain[i + 1];
+    }
+    for (std::size_t i = 0; i + 1 < leftChain.size(); ++i)
+    {
+      this->Last[leftChain[i]] = leftChain[i + 1];
+    }
   }
-  for (std::size_t i = 0; i + 1 < leftChain.size(); ++i)
+};
+
+/** Thrown where distances leave the range of double, so that no neighbour is found to turn from. */
+struct CannotTurn
+{
+};
+
+/**
+ * Finds the ends of the fan above a vertex by turning around it from neighbour to neighbour, for
+ * vertices at the bottom of a strip, which no triangle of the strip has told.
+ */
+class Turn
+{
+public:
+  Turn(const BinGrid& grid, ApexSearch& search)
+    : Grid(grid)
+    , Search(search)
   {
-    last[leftChain[i]] = leftChain[i + 1];
   }
 
+  /** The first neighbour above the vertex, counter-clockwise; it is not on the right hull chain. */
+  Index FirstAbove(Index vertex)
+  {
+    return this->EndAbove(
+      vertex, [&](Index b) { return this->Search.FindAnywhere(b, vertex); },
+      [&](Index b) { return this->Search.FindAnywhere(vertex, b); });
+  }
+
+  /** The last one; the vertex is not on the left hull chain. */
+  Index LastAbove(Index vertex)
+  {
+    return this->EndAbove(
+      vertex, [&](Index b) { return this->Search.FindAnywhere(vertex, b); },
+      [&](Index b) { return this->Search.FindAnywhere(b, vertex); });
+  }
+
+private:
+  /** Turns outwards from a neighbour above to the last one above, or inwards from one below. */
+  template <typename Outwards, typename Inwards>
+  Index EndAbove(Index vertex, Outwards&& outwards, Inwards&& inwards)
+  {
+    const auto isAbove = [&](Index other) {
+      return other != None && IsLower(this->Grid.PointAt(vertex), this->Grid.PointAt(other));
+    };
+    Index neighbor = this->AnyNeighbor(vertex);
+    if (isAbove(neighbor))
+    {
+      for (Index next = outwards(neighbor); isAbove(next); next = outwards(neighbor))
+      {
+        neighbor = next;
+      }
+      return neighbor;
+    }
+    while (!isAbove(neighbor))
+    {
+      neighbor = inwards(neighbor);
+      if (neighbor == None)
+      {
+        throw CannotTurn();
+      }
+    }
+    return neighbor;
+  }
+
+  /**
+   * A neighbour of the vertex. The nearest point is one, because no point lies in the disc that has
+   * the two as diameter. Nearest by rounded distances may be wrong, so the edge is proved: the
+   * points on its two sides whose discs are smallest must lie outside each other's. If not, one of
+   * them takes its place.
+   */
+  Index AnyNeighbor(Index vertex)
+  {
+    Index nearest = None;
+    double least = Infinity;
+    this->LookForNearest(this->Grid.Nodes[this->Grid.Nodes.size() - 1], vertex, nearest, least);
+    for (int attempts = 0; attempts < 64 && nearest != None; ++attempts)
+    {
+      const Index left = this->Search.FindAnywhere(vertex, nearest);
+      const Index right = this->Search.FindAnywhere(nearest, vertex);
+      if (left == None || right == None ||
+        InCircle(this->Grid.PointAt(vertex), this->Grid.PointAt(nearest), this->Grid.PointAt(left),
+          this->Grid.PointAt(right)) == Negative)
+      {
+        return nearest;
+      }
+      nearest = attempts % 2 == 0 ? left : right;
+    }
+    throw CannotTurn();
+  }
+
+  double SquaredDistance(Index p, Index q) const
+  {
+    const double dx = this->Grid.X[p] - this->Grid.X[q], dy = this->Grid.Y[p] - this->Grid.Y[q];
+    return dx * dx + dy * dy;
+  }
+
+  void LookForNearest(const BinGrid::Node& node, Index vertex, Index& nearest, double& least) const
+  {
+    const Point2 p = this->Grid.PointAt(vertex);
+    std::pair<double, int> places[BinGrid::Node::Places];
+    for (int place = 0; place < BinGrid::Node::Places; ++place)
+    {
+      const double dx = std::max(std::max(node.LowX[place] - p.X, p.X - node.HighX[place]), 0.0);
+      const double dy = std::max(std::max(node.LowY[place] - p.Y, p.Y - node.HighY[place]), 0.0);
+      places[place] = { dx * dx + dy * dy, place };
+    }
+    std::sort(places, places + BinGrid::Node::Places);
+    for (const auto& place : places)
+    {
+      if (!(place.first < least))
+      {
+        return;
+      }
+      const Index first = node.First[place.second], count = node.Count[place.second];
+      if (count == 0)
+      {
+        this->LookForNearest(this->Grid.Nodes[first], vertex, nearest, least);
+        continue;
+      }
+      for (Index slot = first; slot < first + count; ++slot)
+      {
+        const double distance = this->SquaredDistance(slot, vertex);
+        if (slot != vertex && distance < least)
+        {
+          least = distance;
+          nearest = slot;
+        }
+      }
+    }
+  }
+
+  const BinGrid& Grid;
+  ApexSearch& Search;
+};
+
+/** Rows of the grid whose vertices' fans are grown together: a stretch of slots. */
+struct Strip
+{
+  Index Begin, End;
+  Buffer<Index> Triangles;
+};
+
+std::vector<Strip> MakeStrips(const BinGrid& grid, Index pointsPerStrip)
+{
+  std::vector<Strip> strips;
+  Index begin = 0;
+  for (Index row = 0; row < grid.Bins.Rows; ++row)
+  {
+    const Index end = grid.Slots(row, 0, grid.Bins.Columns - 1).second;
+    if (end - begin >= pointsPerStrip || row == grid.Bins.Rows - 1)
+    {
+      if (end > begin)
+      {
+        strips.emplace_back();
+        strips.back().Begin = begin;
+        strips.back().End = end;
+      }
+      begin = end;
+    }
+  }
+  return strips;
+}
+
+/**
+ * Grows the triangles whose lowest vertices are in a strip. The pool is read and written only
+ * within the strip, so that strips may be grown at the same time.
+ */
+void GrowStrip(const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options,
+  const Progress& progress, EdgePool& pool, Strip& strip)
+{
   const bool isLimited = options.MaximumEdgeLength > 0.0;
   const double limit = isLimited ? options.MaximumEdgeLength * grid.Scale : Infinity;
-  const double limitSquared = limit * limit;
+  const bool isPlain = limit > 1e-150 && limit < 1e150;
   const auto isShort = [&](Index p, Index q) {
     const double dx = grid.X[p] - grid.X[q], dy = grid.Y[p] - grid.Y[q];
-    return dx * dx + dy * dy <= limitSquared;
+    return isPlain ? dx * dx + dy * dy <= limit * limit : std::hypot(dx, dy) <= limit;
   };
 
-  // Euler: 2 n - 2 - h triangles.
-  const std::size_t hull = rightChain.size() + leftChain.size() - 2;
-  const std::size_t total = 2 * static_cast<std::size_t>(count) - 2 - hull;
-  triangles.Reserve(isLimited ? 0 : 3 * total);
-
-  const Progress progress = Part(options.Monitor, 0.2, 1.0);
+  Buffer<Index>& triangles = strip.Triangles;
   ApexSearch search(grid, options.UseWideInstructions);
+  Turn turn(grid, search);
+  const Index highest = order[grid.NumberOfPoints() - 1];
+  const std::size_t most = 2 * static_cast<std::size_t>(grid.NumberOfPoints());
   std::size_t made = 0;
-  for (Index i = 0; i + 1 < count; ++i)
+  for (Index i = strip.Begin; i < strip.End; ++i)
   {
     if (i % ReportStride == 0)
     {
-      Report(progress, double(i) / count);
+      Report(progress, double(i - strip.Begin) / (strip.End - strip.Begin));
     }
     const Index lowest = order[i];
-    const Index end = last[lowest];
-    Index current = first[lowest];
-    if (current == end)
+    if (lowest == highest)
+    {
+      continue;
+    }
+    Index current = pool.First[lowest];
+    Index end = pool.Last[lowest];
+    if (strip.Begin > 0)
+    {
+      current = current == None ? turn.FirstAbove(lowest) : current;
+      end = end == None ? turn.LastAbove(lowest) : end;
+    }
+    if (current == end && current != None)
     {
       continue;
     }
     search.SetOrigin(lowest);
-    while (current != end)
+    while (current != end || current == None)
     {
-      const Index apex = search.Find(current);
-      if (apex == None || ++made > total)
+      const Index apex = current == None ? None : search.Find(current);
+      if (apex == None || ++made > most)
       {
         throw std::logic_error("the fan of point " + std::to_string(grid.Ids[lowest]) +
           " does not close; this is a fault of the triangulation, please report it");
       }
-      if (limitSquared == Infinity ||
+      if (!isLimited ||
         (isShort(lowest, current) && isShort(current, apex) && isShort(apex, lowest)))
       {
         triangles.Append(grid.Ids[lowest]);
         triangles.Append(grid.Ids[current]);
         triangles.Append(grid.Ids[apex]);
       }
-      if (IsLower(grid.PointAt(current), grid.PointAt(apex)))
+      const bool isRising = IsLower(grid.PointAt(current), grid.PointAt(apex));
+      const Index told = isRising ? current : apex;
+      if (told < strip.End)
       {
-        last[current] = apex;
-      }
-      else
-      {
-        first[apex] = current;
+        (isRising ? pool.Last[told] : pool.First[told]) = isRising ? apex : current;
       }
       current = apex;
     }
   }
+}
+
+/**
+ * Grows all triangles, in strips of rows when there are several threads: as many strips at a time
+ * as threads, with a report between. A strip's triangles do not depend on where strips begin; put
+ * together in their order they are the same, byte for byte, for any number of strips.
+ */
+void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Index>& rightChain,
+  const std::vector<Index>& leftChain, const DelaunayOptions& options, int threads,
+  Buffer<Index>& triangles)
+{
+  const Index count = grid.NumberOfPoints();
+  EdgePool pool(count, rightChain, leftChain);
+
+  // About 0.1 s of work in a strip, and at least as many strips as threads.
+  constexpr Index mostPerStrip = 400000, fewestPerStrip = 5000;
+  const Index perStrip = options.PointsPerStrip > 0
+    ? options.PointsPerStrip
+    : std::max(std::min(count / threads + 1, mostPerStrip), fewestPerStrip);
+  std::vector<Strip> strips = MakeStrips(grid, threads > 1 ? perStrip : count);
+
+  // Euler: 2 n - 2 - h triangles. The first strip's memory becomes that of all.
+  const std::size_t hull = rightChain.size() + leftChain.size() - 2;
+  const std::size_t total = 2 * static_cast<std::size_t>(count) - 2 - hull;
+  if (!(options.MaximumEdgeLength > 0.0))
+  {
+    strips.front().Triangles.Reserve(3 * total);
+  }
+  const Index number = static_cast<Index>(strips.size());
+  const Progress progress = Part(options.Monitor, 0.2, 1.0);
+  if (number == 1)
+  {
+    GrowStrip(grid, order, options, progress, pool, strips.front());
+    triangles = std::move(strips.front().Triangles);
+    return;
+  }
+  for (Index done = 0; done < number; done += threads)
+  {
+    Report(progress, 0.95 * done / number);
+    ForEachPiece(std::min(threads, number - done), threads,
+      [&](Index i) { GrowStrip(grid, order, options, Progress(), pool, strips[done + i]); });
+  }
+  std::vector<std::size_t> ends;
+  std::size_t end = 0;
+  for (const Strip& strip : strips)
+  {
+    ends.push_back(end += strip.Triangles.size());
+  }
+  triangles = std::move(strips.front().Triangles);
+  triangles.Resize(end);
+  ForEachPiece(number - 1, threads, [&](Index i) {
+    Strip& strip = strips[i + 1];
+    std::copy(strip.Triangles.begin(), strip.Triangles.end(), triangles.begin() + ends[i]);
+    strip.Triangles = Buffer<Index>();
+  });
 }
 } // namespace
 
@@ -867,7 +1129,8 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result;
   }
 
-  const Buffer<Index> order = OrderFromLowest(grid, Part(options.Monitor, 0.1, 0.2));
+  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+  const Buffer<Index> order = OrderFromLowest(grid, threads, Part(options.Monitor, 0.1, 0.2));
   const Buffer<Index> outermost = HullCandidates(grid, order);
   const std::vector<Index> rightChain = HullChain(grid, outermost, Negative);
   const std::vector<Index> leftChain = HullChain(grid, outermost, Positive);
@@ -876,7 +1139,14 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result; // all points on one line
   }
   result.NumberOfHullPoints = static_cast<Index>(rightChain.size() + leftChain.size() - 2);
-  Grow(grid, order, rightChain, leftChain, options, result.Triangles);
+  try
+  {
+    Grow(grid, order, rightChain, leftChain, options, threads, result.Triangles);
+  }
+  catch (const CannotTurn&)
+  {
+    Grow(grid, order, rightChain, leftChain, options, 1, result.Triangles);
+  }
   Report(options.Monitor, 1.0);
   return result;
 }

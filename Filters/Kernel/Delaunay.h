@@ -71,6 +71,10 @@ struct DelaunayOptions
   LatticeMode UseLattice = LatticeMode::Off;
   /** How far a point may lie from its node along each step, in steps; at most 0.25. */
   double LatticeTolerance = 0.01;
+  /** Threads to use; 0: one a core. The result is the same, byte for byte. */
+  int NumberOfThreads = 1;
+  /** For tests: points in a strip that one thread grows; 0: chosen. */
+  Index PointsPerStrip = 0;
   /** Off: the search without wide instructions, as on processors without them. The result is the
    * same. */
   bool UseWideInstructions = true;

@@ -16,6 +16,7 @@ OTHER_VALUES = {
         "DuplicatePolicy": "Keep Highest",
         "LatticeMode": "Off",
         "LatticeTolerance": 0.05,
+        "NumberOfThreads": 2,
     },
     "TrimOutwardTriangles": {"GapTolerance": 3.5, "RecoverBoundary": 0},
     "FillElevationHoles": {

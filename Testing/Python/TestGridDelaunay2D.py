@@ -32,6 +32,7 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetLatticeMode(), vtkGridDelaunay2D.AUTOMATIC)
         self.assertEqual(delaunay.GetLatticeModeAsString(), "Automatic")
         self.assertEqual(delaunay.GetLatticeTolerance(), 0.01)
+        self.assertEqual(delaunay.GetNumberOfThreads(), 0)
 
     def test_values_are_clamped(self):
         delaunay = vtkGridDelaunay2D()
@@ -47,7 +48,7 @@ class TestGridDelaunay2D(unittest.TestCase):
     def test_every_property_is_printed(self):
         text = str(vtkGridDelaunay2D())
         for name in ("MaximumEdgeLength", "DuplicatePolicy", "LatticeMode", "LatticeTolerance",
-                     "LatticeFound", "NumberOfDuplicatePoints",
+                     "LatticeFound", "NumberOfThreads", "NumberOfDuplicatePoints",
                      "NumberOfNonFinitePoints"):
             self.assertIn(name, text)
 
@@ -94,6 +95,17 @@ class TestGridDelaunay2D(unittest.TestCase):
         delaunay.SetLatticeModeToOff()
         delaunay.Update()
         self.assertFalse(delaunay.GetLatticeFound())
+    def test_the_number_of_threads_does_not_change_a_byte(self):
+        data = cloud(numpy.random.RandomState(4).rand(60000, 3))
+        results = []
+        for threads in (1, 2, 4):
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(data)
+            delaunay.SetNumberOfThreads(threads)
+            delaunay.Update()
+            results.append(triangles(delaunay.GetOutput()).tobytes())
+        self.assertEqual(results[0], results[1])
+        self.assertEqual(results[0], results[2])
 
     def test_unused_points_are_listed(self):
         coordinates = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 5], [numpy.inf, 0, 0]], float)

@@ -77,6 +77,17 @@ void ExpectValid(const Cloud& cloud, const std::string& name)
   EXPECT_TRUE(std::equal(triangulation.Triangles.begin(), triangulation.Triangles.end(),
     narrow.Triangles.begin(), narrow.Triangles.end()))
     << "wide instructions change the triangles";
+  options.UseWideInstructions = true;
+  options.NumberOfThreads = 3;
+  for (const Index pointsPerStrip : { 1, 30, 0 })
+  {
+    options.PointsPerStrip = pointsPerStrip;
+    const Triangulation inStrips = elevation::Triangulate(cloud.View(), options);
+    EXPECT_EQ(triangulation.Triangles.size(), inStrips.Triangles.size());
+    EXPECT_TRUE(std::equal(triangulation.Triangles.begin(), triangulation.Triangles.end(),
+      inStrips.Triangles.begin(), inStrips.Triangles.end()))
+      << "strips of " << pointsPerStrip << " points change the triangles";
+  }
   std::mt19937_64 random(5);
   const Cloud shuffled = cloud.Shuffled(random);
   EXPECT_TRUE(TriangleSet(cloud, triangulation) == TriangleSet(shuffled, Triangulate(shuffled)))
