@@ -11,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <ostream>
 
 using namespace elevation;
 using namespace testing_points;
@@ -831,6 +832,12 @@ struct RealCloud
   const char* Name;
   bool IsLattice;
 };
+
+/** The name of a test must not hold what differs from run to run. */
+std::ostream& operator<<(std::ostream& stream, const RealCloud& cloud)
+{
+  return stream << (cloud.IsLattice ? "a lattice" : "no lattice");
+}
 
 class LatticeExtraData : public testing::TestWithParam<RealCloud>
 {
