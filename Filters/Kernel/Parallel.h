@@ -61,8 +61,10 @@ void ForEachPiece(Index count, int threads, Work&& work)
   const char* current = vtkSMPTools::GetBackend();
   const std::string backend =
     current && std::string(current) != "Sequential" ? current : "STDThread";
+  // More threads than cores gain nothing, and some backends complain.
+  const int used = std::min(threads, ResolveNumberOfThreads(0));
   vtkSMPTools::LocalScope(
-    vtkSMPTools::Config{ threads, backend, false }, [&]() { vtkSMPTools::For(0, count, 1, run); });
+    vtkSMPTools::Config{ used, backend, false }, [&]() { vtkSMPTools::For(0, count, 1, run); });
   for (const std::exception_ptr& failure : failures)
   {
     if (failure)
