@@ -51,6 +51,7 @@ one process and in turn, measures peak memory, and checks the results against ea
 
   --sets LIST       generated data sets, or "all"; default L,D,U where no file is named
   --points LIST     numbers of points of the generated sets; default 886639
+  --threads N       threads of vtkGridDelaunay2D, 0: one a core; the others have one; default 1
   --seed N          seed of the generators; default 1
   --file FILE       a .f64 (little-endian doubles x y z) or .vtp file; may be given several times
   --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA, where that is set
@@ -82,6 +83,7 @@ struct Options
   std::vector<Index> Points{ 886639 };
   std::vector<std::string> Files;
   std::uint64_t Seed = 1;
+  int Threads = 1;
   int Repeats = 5;
   unsigned TimeLimit = 60;
   bool UseCGAL = true;
@@ -190,6 +192,10 @@ bool ReadOptions(int argc, char* argv[], Options& options)
         options.Points.push_back(
           static_cast<Index>(ToNumber(option, count, 10, elevation::MaximumNumberOfPoints)));
       }
+    }
+    else if (option == "--threads")
+    {
+      options.Threads = static_cast<int>(ToNumber(option, value(), 0, 1024));
     }
     else if (option == "--seed")
     {
@@ -311,7 +317,7 @@ using Competitors = std::vector<std::unique_ptr<Competitor>>;
 Competitors MakeCompetitors(const Options& options)
 {
   Competitors competitors;
-  competitors.push_back(NewGridDelaunay());
+  competitors.push_back(NewGridDelaunay(options.Threads));
 #if defined(ES_BENCHMARK_CGAL)
   if (options.UseCGAL)
   {
@@ -602,15 +608,18 @@ std::string WhyNot(const Result& result, unsigned timeLimit)
 
 void PrintHeader(const Options& options)
 {
-  std::printf(
-    "ns/pt: time per point on the clock, median, least and greatest of %d runs (one thread)\n"
-    "cpu:   median of the processor time, which suffers less where others compute too\n"
-    "ratio: median time in parts of ours; pairs: least and greatest ratio of a round;\n"
-    "       cpu: ratio of the processor times\n"
-    "B/pt:  peak memory above input and output, bytes per point\n\n"
-    "%-22s %9s  %-20s %7s %7s %8s %7s %7s %13s %7s %6s  %s\n",
-    options.Repeats, "data set", "points", "code", "ns/pt", "least", "greatest", "cpu", "ratio",
-    "pairs", "cpu", "B/pt", "result");
+  std::printf("ns/pt: time per point on the clock, median, least and greatest of %d runs (%s)\n"
+              "cpu:   median of the processor time, which suffers less where others compute too\n"
+              "ratio: median time in parts of ours; pairs: least and greatest ratio of a round;\n"
+              "       cpu: ratio of the processor times\n"
+              "B/pt:  peak memory above input and output, bytes per point\n\n"
+              "%-22s %9s  %-20s %7s %7s %8s %7s %7s %13s %7s %6s  %s\n",
+    options.Repeats,
+    options.Threads == 1
+      ? "one thread"
+      : (std::to_string(options.Threads) + " threads, 0: all; others one").c_str(),
+    "data set", "points", "code", "ns/pt", "least", "greatest", "cpu", "ratio", "pairs", "cpu",
+    "B/pt", "result");
   std::fflush(stdout);
 }
 
@@ -740,8 +749,9 @@ int Run(const Options& options)
       throw elevation::Error(options.JSONFile + ": cannot be written");
     }
     json << "{\n  \"benchmark\": \"BenchmarkDelaunay\", \"vtk\": "
-         << Quoted(vtkVersion::GetVTKVersion()) << ", \"threads\": 1, \"seed\": " << options.Seed
-         << ", \"repeats\": " << options.Repeats << ",\n  \"sets\": [\n";
+         << Quoted(vtkVersion::GetVTKVersion()) << ", \"threads\": " << options.Threads
+         << ", \"seed\": " << options.Seed << ", \"repeats\": " << options.Repeats
+         << ",\n  \"sets\": [\n";
   }
   PrintHeader(options);
   bool isRight = true;

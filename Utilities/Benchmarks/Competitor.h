@@ -60,8 +60,8 @@ public:
   virtual std::vector<Index> UnusedPoints() const { return {}; }
 };
 
-/** vtkGridDelaunay2D: vtkPolyData in, vtkPolyData out, a fresh filter each time. */
-std::unique_ptr<Competitor> NewGridDelaunay();
+/** vtkGridDelaunay2D: vtkPolyData in, vtkPolyData out, a fresh filter each time. 0 threads: all. */
+std::unique_ptr<Competitor> NewGridDelaunay(int threads);
 
 /** vtkDelaunay2D with its defaults, in the same way. */
 std::unique_ptr<Competitor> NewVTKDelaunay();

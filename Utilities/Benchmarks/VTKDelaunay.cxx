@@ -24,8 +24,9 @@ template <typename Filter>
 class VTKCompetitor : public benchmark::Competitor
 {
 public:
-  explicit VTKCompetitor(std::string name)
+  explicit VTKCompetitor(std::string name, int threads = 1)
     : FilterName(std::move(name))
+    , Threads(threads)
   {
   }
 
@@ -48,6 +49,10 @@ public:
   {
     this->Input->Modified();
     vtkNew<Filter> filter;
+    if constexpr (std::is_same<Filter, vtkGridDelaunay2D>::value)
+    {
+      filter->SetNumberOfThreads(this->Threads);
+    }
     filter->SetInputData(this->Input);
     filter->Update();
     this->Output = filter->GetOutput();
@@ -117,6 +122,7 @@ public:
 
 private:
   std::string FilterName;
+  int Threads;
   vtkNew<vtkPolyData> Input;
   vtkSmartPointer<vtkPolyData> Output;
 };
@@ -124,9 +130,9 @@ private:
 
 namespace benchmark
 {
-std::unique_ptr<Competitor> NewGridDelaunay()
+std::unique_ptr<Competitor> NewGridDelaunay(int threads)
 {
-  return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>("vtkGridDelaunay2D");
+  return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>("vtkGridDelaunay2D", threads);
 }
 
 std::unique_ptr<Competitor> NewVTKDelaunay()
