@@ -241,6 +241,22 @@ TEST(Delaunay, KeepsEveryRuleOverTheRangeOfDouble)
   }
 }
 
+TEST(Delaunay, KeepsEveryRuleOnAClusterOfTheSmallestNumbers)
+{
+  // The cluster is so small that its extent times anything finite is below one bin.
+  std::mt19937_64 random(30);
+  Cloud cloud;
+  for (int i = 0; i < 30; ++i)
+  {
+    const double x = 1e-310 * Uniform(random);
+    cloud.Add(x, 1e-310 * Uniform(random));
+  }
+  cloud.Add(1.0, 1.0);
+  cloud.Add(1.0, 0.0);
+  cloud.Add(0.0, 1.0);
+  ExpectValid(cloud, "a cluster within 1e-310");
+}
+
 TEST(Delaunay, CutsACocircularPolygonFromItsLowestPoint)
 {
   // Twelve lattice points on the circle of radius 5; the lowest, by y and then x, is (0, -5).
