@@ -13,7 +13,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <random>
+#include <string>
 #include <vector>
 
 namespace testing_points
@@ -57,6 +60,31 @@ struct Cloud
     return cloud;
   }
 };
+
+/**
+ * Reads a real cloud for measuring: little-endian doubles x, y, z, in a file <name>.f64 of the folder
+ * ELEVATION_SURFACE_EXTRA_DATA.
+ * @return why it cannot be read; empty when all is well
+ */
+inline std::string ReadExtraData(const std::string& name, Cloud& cloud)
+{
+  const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
+  if (!folder)
+  {
+    return "ELEVATION_SURFACE_EXTRA_DATA is not set";
+  }
+  const std::string path = std::string(folder) + "/" + name + ".f64";
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file)
+  {
+    return path + " is not there";
+  }
+  cloud.Coordinates.resize(static_cast<std::size_t>(file.tellg()) / sizeof(double));
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(cloud.Coordinates.data()),
+    static_cast<std::streamsize>(cloud.Coordinates.size() * sizeof(double)));
+  return std::string();
+}
 
 /** Uniform in [0, 1), the same with every library. */
 inline double Uniform(std::mt19937_64& random)

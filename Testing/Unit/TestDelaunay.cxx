@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <set>
 
 using namespace elevation;
@@ -411,23 +409,13 @@ class ExtraData : public testing::TestWithParam<const char*>
 
 TEST_P(ExtraData, KeepsEveryRule)
 {
-  const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
-  if (!folder)
-  {
-    GTEST_SKIP() << "ELEVATION_SURFACE_EXTRA_DATA is not set";
-  }
-  const std::string path = std::string(folder) + "/" + GetParam() + ".f64";
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file)
-  {
-    GTEST_SKIP() << path << " is not there";
-  }
   Cloud cloud;
-  cloud.Coordinates.resize(static_cast<std::size_t>(file.tellg()) / sizeof(double));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(cloud.Coordinates.data()),
-    static_cast<std::streamsize>(cloud.Coordinates.size() * sizeof(double)));
-  ExpectValid(cloud, path);
+  const std::string missing = ReadExtraData(GetParam(), cloud);
+  if (!missing.empty())
+  {
+    GTEST_SKIP() << missing;
+  }
+  ExpectValid(cloud, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Delaunay, ExtraData,

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <ostream>
@@ -845,28 +844,18 @@ class LatticeExtraData : public testing::TestWithParam<RealCloud>
 
 TEST_P(LatticeExtraData, KeepsEveryRule)
 {
-  const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
-  if (!folder)
-  {
-    GTEST_SKIP() << "ELEVATION_SURFACE_EXTRA_DATA is not set";
-  }
-  const std::string path = std::string(folder) + "/" + GetParam().Name + ".f64";
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file)
-  {
-    GTEST_SKIP() << path << " is not there";
-  }
   Cloud cloud;
-  cloud.Coordinates.resize(static_cast<std::size_t>(file.tellg()) / sizeof(double));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(cloud.Coordinates.data()),
-    static_cast<std::streamsize>(cloud.Coordinates.size() * sizeof(double)));
+  const std::string missing = ReadExtraData(GetParam().Name, cloud);
+  if (!missing.empty())
+  {
+    GTEST_SKIP() << missing;
+  }
   const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
   ASSERT_EQ(triangulation.LatticeFound, GetParam().IsLattice);
   if (GetParam().IsLattice)
   {
     const Lattice& steps = triangulation.Steps;
-    ExpectLattice(cloud, steps.StepU, steps.StepV, path, 0.0);
+    ExpectLattice(cloud, steps.StepU, steps.StepV, GetParam().Name, 0.0);
   }
   else
   {
