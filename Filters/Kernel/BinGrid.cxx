@@ -15,7 +15,7 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 // Mean points a bin: fewer make the searches visit many empty bins, more make them look at points
 // in vain.
-constexpr double PointsPerBin = 1.3;
+constexpr double PointsPerBin = 1.0;
 // A bin with more points is halved until no part has more; evenly spread points hardly fill one so.
 constexpr Index FullBin = 8;
 // A leaf of the tree is at most so many bins of a row, with at most so many points.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #ifdef ELEVATION_HAS_AVX2
 #include <immintrin.h>
@@ -23,8 +24,8 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 
-/** Vertices between two reports of progress: a few milliseconds of work. */
-constexpr Index ReportStride = 4096;
+/** Vertices that a strip grows between two reports of progress: some tens of milliseconds. */
+constexpr Index VerticesPerRound = 50000;
 
 /**
  * Sorts the slots of a row of the grid by (y, x). Spread over the row's height first, they are
@@ -258,13 +259,34 @@ public:
   {
   }
 
-  /** The vertex from which edges are grown from now on. */
-  void SetOrigin(Index slot)
+  /**
+   * The vertex from which edges are grown from now on.
+   * @param[in] next  the vertex of the next call, or None
+   */
+  void SetOrigin(Index slot, Index next)
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
     this->Path.clear();
-    this->HasAround = this->IsWide ? this->Around.Gather(slot) : this->ChooseWindow();
+    this->HasAround = this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow();
+    this->OpenEnd = None;
+  }
+
+  /**
+   * Appends the origin's neighbours counter-clockwise after the last one in the list, as far as
+   * they are easily told, and not beyond the end of the fan.
+   */
+  void Follow(Buffer<Index>& fan, Index end)
+  {
+    if (this->HasAround && this->IsWide)
+    {
+      const std::size_t count = fan.size();
+      fan.Resize(count + Surroundings::Capacity);
+      const int found =
+        this->Around.Follow(fan[count - 1], end, fan.data() + count, this->Open);
+      fan.Resize(count + found);
+      this->OpenEnd = fan[count + found - 1];
+    }
   }
 
   /**
@@ -282,7 +304,8 @@ public:
     Index best = None;
     if (this->HasAround && this->IsWide)
     {
-      const Surroundings::Candidates found = this->Around.FindCandidates(b);
+      const Surroundings::Candidates found =
+        b == this->OpenEnd ? this->Open : this->Around.FindCandidates(b);
       best = this->BestOf(found.Bits);
       if (found.IsProved)
       {
@@ -748,6 +771,8 @@ private:
   Surroundings Around;
   const bool IsWide;
   bool HasAround = false;
+  Surroundings::Candidates Open; ///< over the edge to OpenEnd
+  Index OpenEnd = None;
 
   std::vector<BinGrid::Step> Path; ///< to A, where there are no wide instructions; or empty
 
@@ -770,28 +795,40 @@ private:
 };
 
 /**
- * The first and the last edge, counter-clockwise, of the fan of triangles above each vertex: the
- * edge pool. None where it is not known yet.
+ * The edge pool: the first and the last edge, counter-clockwise, of the fan of triangles above each
+ * vertex, as their other ends. None where it is not known yet.
  */
-struct EdgePool
+class EdgePool
 {
-  Buffer<Index> First, Last;
-
-  EdgePool(Index count, const std::vector<Index>& rightChain, const std::vector<Index>& leftChain)
+public:
+  EdgePool(Index count, const std::vector<Index>& rightChain, const std::vector<Index>& leftChain,
+    int threads)
   {
-    this->First.Resize(count);
-    this->Last.Resize(count);
-    std::fill(this->First.begin(), this->First.end(), None);
-    std::fill(this->Last.begin(), this->Last.end(), None);
+    this->Ends.Resize(2 * static_cast<std::size_t>(count));
+    ForEachPiece(threads, threads, [&](Index piece) {
+      Index* const ends = this->Ends.data();
+      const std::size_t size = this->Ends.size();
+      std::fill(ends + size * piece / threads, ends + size * (piece + 1) / threads, None);
+    });
     for (std::size_t i = 0; i + 1 < rightChain.size(); ++i)
     {
-      this->First[rightChain[i]] = rightChain[i + 1];
+      this->Tell(rightChain[i], 0, rightChain[i + 1]);
     }
     for (std::size_t i = 0; i + 1 < leftChain.size(); ++i)
     {
-      this->Last[leftChain[i]] = leftChain[i + 1];
+      this->Tell(leftChain[i], 1, leftChain[i + 1]);
     }
   }
+
+  Index First(Index vertex) const { return this->Ends[2 * static_cast<std::size_t>(vertex)]; }
+  Index Last(Index vertex) const { return this->Ends[2 * static_cast<std::size_t>(vertex) + 1]; }
+  void Tell(Index vertex, int isLast, Index end)
+  {
+    this->Ends[2 * static_cast<std::size_t>(vertex) + isLast] = end;
+  }
+
+private:
+  Buffer<Index> Ends;
 };
 
 /** Thrown where distances leave the range of double, so that no neighbour is found to turn from. */
@@ -927,156 +964,200 @@ private:
   ApexSearch& Search;
 };
 
-/** Rows of the grid whose vertices' fans are grown together: a stretch of slots. */
-struct Strip
+/**
+ * Grows the triangles whose lowest vertices are in a strip: a stretch of the vertices from the
+ * lowest up. It reads and writes the pool for these only, so that strips may be grown at the same
+ * time; what triangles of the strips below would have told it finds out by turning.
+ */
+class Strip
 {
-  Index Begin, End;
-  Buffer<Index> Triangles;
-};
-
-std::vector<Strip> MakeStrips(const BinGrid& grid, Index pointsPerStrip)
-{
-  std::vector<Strip> strips;
-  Index begin = 0;
-  for (Index row = 0; row < grid.Bins.Rows; ++row)
+public:
+  Strip(const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options,
+    EdgePool& pool, Index begin, Index end)
+    : Grid(grid)
+    , Order(order)
+    , Pool(pool)
+    , Search(grid, options.UseWideInstructions)
+    , Around(grid, this->Search)
+    , Begin(begin)
+    , End(end)
+    , Next(begin)
+    , Limit(options.MaximumEdgeLength > 0.0 ? options.MaximumEdgeLength * grid.Scale : Infinity)
+    , IsLimitPlain(this->Limit > 1e-150 && this->Limit < 1e150)
   {
-    const Index end = grid.Slots(row, 0, grid.Bins.Columns - 1).second;
-    if (end - begin >= pointsPerStrip || row == grid.Bins.Rows - 1)
+  }
+
+  Buffer<Index> Triangles;
+
+  double Done() const { return double(this->Next - this->Begin) / (this->End - this->Begin); }
+
+  /** Goes on for some vertices. */
+  void Grow(Index vertices)
+  {
+    const Index last = vertices < this->End - this->Next ? this->Next + vertices : this->End;
+    for (; this->Next < last; ++this->Next)
     {
-      if (end > begin)
-      {
-        strips.emplace_back();
-        strips.back().Begin = begin;
-        strips.back().End = end;
-      }
-      begin = end;
+      this->GrowFan(this->Order[this->Next]);
     }
   }
-  return strips;
-}
 
-/**
- * Grows the triangles whose lowest vertices are in a strip. The pool is read and written only
- * within the strip, so that strips may be grown at the same time.
- */
-void GrowStrip(const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options,
-  const Progress& progress, EdgePool& pool, Strip& strip)
-{
-  const bool isLimited = options.MaximumEdgeLength > 0.0;
-  const double limit = isLimited ? options.MaximumEdgeLength * grid.Scale : Infinity;
-  const bool isPlain = limit > 1e-150 && limit < 1e150;
-  const auto isShort = [&](Index p, Index q) {
-    const double dx = grid.X[p] - grid.X[q], dy = grid.Y[p] - grid.Y[q];
-    return isPlain ? dx * dx + dy * dy <= limit * limit : std::hypot(dx, dy) <= limit;
-  };
-
-  Buffer<Index>& triangles = strip.Triangles;
-  ApexSearch search(grid, options.UseWideInstructions);
-  Turn turn(grid, search);
-  const Index highest = order[grid.NumberOfPoints() - 1];
-  const std::size_t most = 2 * static_cast<std::size_t>(grid.NumberOfPoints());
-  std::size_t made = 0;
-  for (Index i = strip.Begin; i < strip.End; ++i)
+private:
+  void GrowFan(Index lowest)
   {
-    if (i % ReportStride == 0)
+    if (lowest == this->Order[this->Grid.NumberOfPoints() - 1])
     {
-      Report(progress, double(i - strip.Begin) / (strip.End - strip.Begin));
+      return;
     }
-    const Index lowest = order[i];
-    if (lowest == highest)
+    Index first = this->Pool.First(lowest), end = this->Pool.Last(lowest);
+    if (this->Begin > 0)
     {
-      continue;
+      first = first == None ? this->Around.FirstAbove(lowest) : first;
+      end = end == None ? this->Around.LastAbove(lowest) : end;
     }
-    Index current = pool.First[lowest];
-    Index end = pool.Last[lowest];
-    if (strip.Begin > 0)
+    if (first == end && first != None)
     {
-      current = current == None ? turn.FirstAbove(lowest) : current;
-      end = end == None ? turn.LastAbove(lowest) : end;
+      return;
     }
-    if (current == end && current != None)
-    {
-      continue;
-    }
-    search.SetOrigin(lowest);
+    this->Fan.Resize(1);
+    this->Fan[0] = first;
+    this->Search.SetOrigin(
+      lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
+    Index current = first;
     while (current != end || current == None)
     {
-      const Index apex = current == None ? None : search.Find(current);
-      if (apex == None || ++made > most)
+      const std::size_t count = this->Fan.size();
+      if (current != None)
       {
-        throw std::logic_error("the fan of point " + std::to_string(grid.Ids[lowest]) +
+        this->Search.Follow(this->Fan, end);
+        if (this->Fan.size() == count)
+        {
+          this->Fan.Append(this->Search.Find(current));
+        }
+        current = this->Fan[this->Fan.size() - 1];
+      }
+      if (current == None || this->Fan.size() > static_cast<std::size_t>(this->Order.size()))
+      {
+        throw std::logic_error("the fan of point " + std::to_string(this->Grid.Ids[lowest]) +
           " does not close; this is a fault of the triangulation, please report it");
       }
-      if (!isLimited ||
-        (isShort(lowest, current) && isShort(current, apex) && isShort(apex, lowest)))
-      {
-        triangles.Append(grid.Ids[lowest]);
-        triangles.Append(grid.Ids[current]);
-        triangles.Append(grid.Ids[apex]);
-      }
-      const bool isRising = IsLower(grid.PointAt(current), grid.PointAt(apex));
+    }
+    this->Emit(lowest);
+  }
+
+  /** Writes the triangles of a fan and tells their upper vertices. */
+  void Emit(Index lowest)
+  {
+    const Point2 lowestPoint = this->Grid.PointAt(lowest);
+    const Index lowestId = this->Grid.Ids[lowest];
+    const bool isLimited = this->Limit < Infinity;
+    const bool isLastStrip = this->End == this->Grid.NumberOfPoints();
+    const Point2 above =
+      this->Grid.PointAt(this->Order[isLastStrip ? this->End - 1 : this->End]);
+    Index current = this->Fan[0];
+    Point2 currentPoint = this->Grid.PointAt(current);
+    const std::size_t triangles = this->Fan.size() - 1;
+    const std::size_t made = this->Triangles.size();
+    this->Triangles.Resize(made + 3 * triangles);
+    Index* out = this->Triangles.data() + made;
+    for (std::size_t i = 1; i <= triangles; ++i)
+    {
+      const Index apex = this->Fan[i];
+      const Point2 apexPoint = this->Grid.PointAt(apex);
+      out[0] = lowestId;
+      out[1] = this->Grid.Ids[current];
+      out[2] = this->Grid.Ids[apex];
+      const bool isWanted = !isLimited ||
+        (this->IsShort(lowestPoint, currentPoint) && this->IsShort(currentPoint, apexPoint) &&
+          this->IsShort(apexPoint, lowestPoint));
+      out += isWanted ? 3 : 0;
+      const bool isRising = IsLower(currentPoint, apexPoint);
       const Index told = isRising ? current : apex;
-      if (told < strip.End)
+      if (isLastStrip || IsLower(isRising ? currentPoint : apexPoint, above))
       {
-        (isRising ? pool.Last[told] : pool.First[told]) = isRising ? apex : current;
+        this->Pool.Tell(told, isRising, isRising ? apex : current);
       }
       current = apex;
+      currentPoint = apexPoint;
     }
+    this->Triangles.Resize(out - this->Triangles.data());
   }
-}
+
+  bool IsShort(const Point2& p, const Point2& q) const
+  {
+    const double dx = p.X - q.X, dy = p.Y - q.Y;
+    return this->IsLimitPlain ? dx * dx + dy * dy <= this->Limit * this->Limit
+                              : std::hypot(dx, dy) <= this->Limit;
+  }
+
+  const BinGrid& Grid;
+  const Buffer<Index>& Order;
+  EdgePool& Pool;
+  ApexSearch Search;
+  Turn Around;
+  const Index Begin, End;
+  Index Next;
+  const double Limit;
+  const bool IsLimitPlain;
+  Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours, counter-clockwise
+};
 
 /**
- * Grows all triangles, in strips of rows when there are several threads: as many strips at a time
- * as threads, with a report between. A strip's triangles do not depend on where strips begin; put
- * together in their order they are the same, byte for byte, for any number of strips.
+ * Grows all triangles, in a strip for each thread; in rounds, with a report between. A strip's
+ * triangles do not depend on where strips begin; put together in their order they are the same, byte
+ * for byte, for any number of strips.
  */
 void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Index>& rightChain,
   const std::vector<Index>& leftChain, const DelaunayOptions& options, int threads,
   Buffer<Index>& triangles)
 {
   const Index count = grid.NumberOfPoints();
-  EdgePool pool(count, rightChain, leftChain);
+  EdgePool pool(count, rightChain, leftChain, threads);
 
-  // About 0.1 s of work in a strip, and at least as many strips as threads.
-  constexpr Index mostPerStrip = 400000, fewestPerStrip = 5000;
-  const Index perStrip = options.PointsPerStrip > 0
-    ? options.PointsPerStrip
-    : std::max(std::min(count / threads + 1, mostPerStrip), fewestPerStrip);
-  std::vector<Strip> strips = MakeStrips(grid, threads > 1 ? perStrip : count);
+  constexpr Index fewestPerStrip = 5000;
+  const Index number = options.PointsPerStrip > 0
+    ? (count - 1) / options.PointsPerStrip + 1
+    : std::max(std::min(threads, count / fewestPerStrip), 1);
+  std::vector<std::unique_ptr<Strip>> strips;
+  for (Index i = 0; i < number; ++i)
+  {
+    const auto at = [&](Index k) {
+      return static_cast<Index>(static_cast<std::int64_t>(count) * k / number);
+    };
+    strips.emplace_back(new Strip(grid, order, options, pool, at(i), at(i + 1)));
+  }
 
   // Euler: 2 n - 2 - h triangles. The first strip's memory becomes that of all.
   const std::size_t hull = rightChain.size() + leftChain.size() - 2;
   const std::size_t total = 2 * static_cast<std::size_t>(count) - 2 - hull;
   if (!(options.MaximumEdgeLength > 0.0))
   {
-    strips.front().Triangles.Reserve(3 * total);
+    for (const auto& strip : strips)
+    {
+      strip->Triangles.Reserve(strip == strips.front() ? 3 * total : 3 * total / number);
+    }
   }
-  const Index number = static_cast<Index>(strips.size());
   const Progress progress = Part(options.Monitor, 0.2, 1.0);
-  if (number == 1)
+  while (strips.back()->Done() < 1.0)
   {
-    GrowStrip(grid, order, options, progress, pool, strips.front());
-    triangles = std::move(strips.front().Triangles);
-    return;
+    Report(progress, 0.95 * strips.back()->Done());
+    ForEachPiece(number, threads, [&](Index i) { strips[i]->Grow(VerticesPerRound); });
   }
-  for (Index done = 0; done < number; done += threads)
+  while (strips.front()->Done() < 1.0)
   {
-    Report(progress, 0.95 * done / number);
-    ForEachPiece(std::min(threads, number - done), threads,
-      [&](Index i) { GrowStrip(grid, order, options, Progress(), pool, strips[done + i]); });
+    ForEachPiece(number, threads, [&](Index i) { strips[i]->Grow(VerticesPerRound); });
   }
   std::vector<std::size_t> ends;
   std::size_t end = 0;
-  for (const Strip& strip : strips)
+  for (const auto& strip : strips)
   {
-    ends.push_back(end += strip.Triangles.size());
+    ends.push_back(end += strip->Triangles.size());
   }
-  triangles = std::move(strips.front().Triangles);
+  triangles = std::move(strips.front()->Triangles);
   triangles.Resize(end);
   ForEachPiece(number - 1, threads, [&](Index i) {
-    Strip& strip = strips[i + 1];
-    std::copy(strip.Triangles.begin(), strip.Triangles.end(), triangles.begin() + ends[i]);
-    strip.Triangles = Buffer<Index>();
+    Buffer<Index>& part = strips[i + 1]->Triangles;
+    std::copy(part.begin(), part.end(), triangles.begin() + ends[i]);
+    part = Buffer<Index>();
   });
 }
 } // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #ifdef ELEVATION_HAS_AVX2
 #include <immintrin.h>
@@ -15,17 +16,45 @@ namespace elevation
 {
 #ifdef ELEVATION_HAS_AVX2
 
+/** A function for processors with AVX2. */
+#define ELEVATION_WIDE __attribute__((target("avx2,fma")))
+#define ELEVATION_WIDE_INLINE __attribute__((target("avx2,fma"), always_inline)) inline
+
 namespace
 {
 constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
 constexpr float Infinity = std::numeric_limits<float>::infinity();
+constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
+constexpr double Roundoff = 0x1p-24; // of single precision
 
-__attribute__((target("avx2,fma"), always_inline)) inline __m256 EightRelative(
-  const double* values, __m256d from)
+/** Columns and rows of the windows of bins, the larger first. */
+struct Shape
 {
-  const __m128 low = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(values), from));
-  const __m128 high = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(values + 4), from));
-  return _mm256_set_m128(high, low);
+  Index Columns, Rows;
+};
+constexpr Shape Shapes[] = { { 6, 4 }, { 3, 3 }, { 3, 2 } };
+
+ELEVATION_WIDE inline __m256i EightUnits(const double* values, __m256d from, __m256d perUnit)
+{
+  const __m128i low =
+    _mm256_cvtpd_epi32(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(values), from), perUnit));
+  const __m128i high =
+    _mm256_cvtpd_epi32(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(values + 4), from), perUnit));
+  return _mm256_set_m128i(high, low);
+}
+
+ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUnit)
+{
+  return _mm_cvtsd_si32(_mm_set_sd((value - from) * perUnit)); // to the nearest, as above
+}
+
+/** The least of eight. */
+ELEVATION_WIDE inline float Least(__m256 values)
+{
+  __m128 half = _mm_min_ps(_mm256_castps256_ps128(values), _mm256_extractf128_ps(values, 1));
+  half = _mm_min_ps(half, _mm_movehl_ps(half, half));
+  half = _mm_min_ss(half, _mm_movehdup_ps(half));
+  return _mm_cvtss_f32(half);
 }
 } // namespace
 
@@ -35,79 +64,314 @@ bool Surroundings::IsSupported()
   return isSupported;
 }
 
-bool Surroundings::Gather(Index origin)
+Surroundings::Surroundings(const BinGrid& grid)
+  : Grid(grid)
 {
-  this->Count = 0;
-  this->Origin = origin;
-  this->Path.clear();
-  const BinGrid::Layout& bins = this->Grid.Bins;
-  if (bins.HasPlainBins)
+  const BinGrid::Layout& bins = grid.Bins;
+  this->OfBox.Set(1.1, 2.0 * Roundoff, 0.002);
+  if (!IsSupported() || !bins.HasPlainBins)
   {
-    const Index row = bins.Row(this->Grid.Y[origin]), column = bins.Column(this->Grid.X[origin]);
-    if (this->GatherBins(column, row, 2, 3) || this->GatherBins(column, row, 1, 2) ||
-      this->GatherBins(column, row, 1, 1))
-    {
-      return true;
-    }
+    return;
   }
-  return this->GatherBox();
+  // Products of four coordinates stay within single precision, differences within 32 bits.
+  const double width = bins.BinWidth, height = bins.BinHeight;
+  const double extent = std::max(bins.Columns * width, bins.Rows * height);
+  const double perUnit = std::min(0x1p30 / extent, 0x1p22 / std::max(width, height));
+  if (perUnit * std::min(width, height) < 0x1p12)
+  {
+    return;
+  }
+  this->PerUnit = perUnit;
+  for (int shape = 0; shape < 3; ++shape)
+  {
+    // From a vertex in the middle columns or at their border, and in the lowest row.
+    const double across = (Shapes[shape].Columns / 2 + 1) * width * perUnit;
+    const double up = Shapes[shape].Rows * height * perUnit;
+    const double reach = std::sqrt(across * across + up * up);
+    // Two coordinates are rounded to whole units, their difference to single precision; bounds of
+    // bins are known to a thousandth of a bin.
+    this->OfShapes[shape].Set(
+      reach, 1.1 + Roundoff * reach, 0.01 * std::max(width, height) * perUnit);
+  }
+  // Beyond the grid's border there is nothing.
+  constexpr std::int32_t far = (1 << 30) - 1;
+  this->ColumnBounds.resize(static_cast<std::size_t>(bins.Columns) + 1);
+  for (Index column = 1; column < bins.Columns; ++column)
+  {
+    this->ColumnBounds[column] = static_cast<std::int32_t>(column * width * perUnit);
+  }
+  this->ColumnBounds[0] = -far;
+  this->ColumnBounds[bins.Columns] = 2 * (far - 1);
+  this->Nothing.assign(static_cast<std::size_t>(bins.Columns) + 1, 0);
 }
 
-__attribute__((target("avx2,fma"))) bool Surroundings::GatherBins(
-  Index column, Index row, Index columnsToEachSide, Index rowsAbove)
+void Surroundings::Bounds::Set(double reach, double error, double margin)
+{
+  const double square = reach * reach;
+  const double slack = 1.001; // for the roundings here
+  this->ReachSquared = static_cast<float>(square);
+  this->CoordinateError = static_cast<float>(slack * error);
+  this->CrossError = static_cast<float>(slack * 3.0 * (reach * error + Roundoff * square));
+  this->DotError = 2.0f * this->CrossError;
+  this->ComparisonError =
+    static_cast<float>(slack * square * (24.0 * reach * error + 32.0 * Roundoff * square));
+  this->Margin = static_cast<float>(margin);
+}
+
+bool Surroundings::Gather(Index origin, Index next)
+{
+  Window* other = this->Windows + (this->Current == this->Windows);
+  if (other->Origin == origin)
+  {
+    std::swap(this->Current, other);
+  }
+  else
+  {
+    this->Current->Origin = origin;
+    this->GatherInto(*this->Current);
+  }
+  other->Origin = next;
+  if (next != None)
+  {
+    this->GatherInto(*other);
+  }
+  return this->Current->Vectors > 0;
+}
+
+void Surroundings::GatherInto(Window& window)
+{
+  if (this->PerUnit > 0.0)
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    const Point2 p = this->Grid.PointAt(window.Origin);
+    const Index row = bins.Row(p.Y);
+    if (row != this->CurrentRow)
+    {
+      this->EnterRow(row);
+    }
+    if (this->GatherEven(
+          window, static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3))
+    {
+      return;
+    }
+    const Index column = bins.Column(p.X);
+    if (this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2))
+    {
+      return;
+    }
+  }
+  if (!this->GatherBox(window))
+  {
+    window.Vectors = 0;
+  }
+}
+
+/** Reads the rows of the windows of a row's vertices. */
+ELEVATION_WIDE void Surroundings::EnterRow(Index number)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
-  const double originX = this->Grid.X[this->Origin], originY = this->Grid.Y[this->Origin];
-  const Index firstColumn = std::max(column - columnsToEachSide, 0);
-  const Index lastColumn = std::min(column + columnsToEachSide, bins.Columns - 1);
-  const Index lastRow = std::min(row + rowsAbove, bins.Rows - 1);
-
-  const __m256d x0 = _mm256_set1_pd(originX), y0 = _mm256_set1_pd(originY);
-  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-  int count = 0;
-  for (Index r = row; r <= lastRow; ++r)
+  this->CurrentRow = number;
+  for (Index r = number; r < number + MostRows; ++r)
   {
-    const auto slots = this->Grid.Slots(r, firstColumn, lastColumn);
-    if (count + (slots.second - slots.first) > Capacity)
+    Row& row = this->Rows[r % MostRows];
+    if (r >= bins.Rows)
+    {
+      row.Starts = this->Nothing.data();
+      row.FirstSlot = 0;
+      row.Number = None;
+    }
+    else if (row.Number != r)
+    {
+      row.Number = r;
+      this->ReadRow(row);
+    }
+    this->Near[r - number] = &row;
+  }
+  const Index above = std::min(number + MostRows, bins.Rows);
+  this->TopBound = above == bins.Rows
+    ? std::numeric_limits<std::int32_t>::max()
+    : static_cast<std::int32_t>(above * bins.BinHeight * this->PerUnit);
+}
+
+ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
+{
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  const auto slots = this->Grid.Slots(row.Number, 0, bins.Columns - 1);
+  const std::size_t count = slots.second - slots.first;
+  row.FirstSlot = slots.first;
+  row.Starts =
+    this->Grid.Starts.data() + static_cast<std::size_t>(row.Number) * bins.Columns;
+  if (row.X.size() < count + 16)
+  {
+    row.X.resize(count + count / 4 + 16);
+    row.Y.resize(count + count / 4 + 16);
+  }
+  const __m256d perUnit = _mm256_set1_pd(this->PerUnit);
+  const __m256d fromX = _mm256_set1_pd(bins.OriginX), fromY = _mm256_set1_pd(bins.OriginY);
+  for (std::size_t i = 0; i < count; i += 8)
+  {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(row.X.data() + i),
+      EightUnits(this->Grid.X.data() + slots.first + i, fromX, perUnit));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(row.Y.data() + i),
+      EightUnits(this->Grid.Y.data() + slots.first + i, fromY, perUnit));
+  }
+}
+
+/**
+ * The first eight points of each row have a vector of their own; what some rows have beyond
+ * eight shares the fifth.
+ */
+ELEVATION_WIDE bool Surroundings::GatherEven(Window& window, Index firstColumn)
+{
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  const Index endColumn = std::min(firstColumn + Shapes[0].Columns, bins.Columns);
+  firstColumn = std::max(firstColumn, 0);
+
+  const Row& own = *this->Near[0];
+  const Index place = window.Origin - own.FirstSlot;
+  const std::int32_t originX = own.X[place], originY = own.Y[place];
+  const __m256i x0 = _mm256_set1_epi32(originX), y0 = _mm256_set1_epi32(originY);
+  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  int over = 0;
+  Index counts[MostRows];
+  for (int k = 0; k < MostRows; ++k)
+  {
+    const Row& row = *this->Near[k];
+    const Index first = row.Starts[firstColumn];
+    const Index count = row.Starts[endColumn] - first;
+    counts[k] = count;
+    over += count > 8 ? count - 8 : 0;
+    const Index at = first - row.FirstSlot;
+    const __m256i isBeyond = _mm256_cmpgt_epi32(lanes, _mm256_set1_epi32(count - 1));
+    const __m256i unitsX =
+      _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + at));
+    const __m256i unitsY =
+      _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.Y.data() + at));
+    // All bits set is not a number.
+    const __m256 x = _mm256_or_ps(_mm256_castsi256_ps(isBeyond),
+      _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
+    const __m256 y = _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsY, y0));
+    _mm256_store_ps(window.X + 8 * k, x);
+    _mm256_store_ps(window.Y + 8 * k, y);
+    _mm256_store_ps(window.Square + 8 * k, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
+    _mm256_store_si256(reinterpret_cast<__m256i*>(window.Slots + 8 * k),
+      _mm256_add_epi32(_mm256_set1_epi32(first), lanes));
+    if (k == 0)
+    {
+      window.OriginLane = window.Origin - first;
+    }
+  }
+  const __m256 nothing = _mm256_set1_ps(NotANumber);
+  _mm256_store_ps(window.X + 32, nothing);
+  if (over > 0)
+  {
+    if (over > 8)
     {
       return false;
     }
-    // Whole vectors: what is too much is overwritten by the next row, or made not a number below.
-    for (Index slot = slots.first; slot < slots.second; slot += 8)
+    int lane = 32;
+    for (int k = 0; k < MostRows; ++k)
     {
-      const int at = count + (slot - slots.first);
-      _mm256_storeu_ps(this->X + at, EightRelative(this->Grid.X.data() + slot, x0));
-      _mm256_storeu_ps(this->Y + at, EightRelative(this->Grid.Y.data() + slot, y0));
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(this->Slots + at),
-        _mm256_add_epi32(_mm256_set1_epi32(slot), lanes));
+      for (Index i = 8; i < counts[k]; ++i, ++lane)
+      {
+        const Row& row = *this->Near[k];
+        const Index slot = row.Starts[firstColumn] + i;
+        window.X[lane] = static_cast<float>(row.X[slot - row.FirstSlot] - originX);
+        window.Y[lane] = static_cast<float>(row.Y[slot - row.FirstSlot] - originY);
+        window.Slots[lane] = slot;
+        window.OriginLane = slot == window.Origin ? lane : window.OriginLane;
+      }
     }
-    count += slots.second - slots.first;
+    const __m256 x = _mm256_load_ps(window.X + 32), y = _mm256_load_ps(window.Y + 32);
+    _mm256_store_ps(window.Square + 32, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
   }
-  const __m256 nothing = _mm256_set1_ps(std::numeric_limits<float>::quiet_NaN());
-  _mm256_storeu_ps(this->X + count, nothing);
-  _mm256_storeu_ps(this->Y + count, nothing);
-  this->Count = count;
-
-  // The bounds of the bins as BinGrid finds them are those below but for rounding, which
-  // BinGrid::Layout::HasPlainBins bounds by a thousandth of a bin.
-  const double width = bins.BinWidth, height = bins.BinHeight;
-  const double margin = 0.002;
-  const double left = originX - (bins.OriginX + (firstColumn + margin) * width);
-  const double right = (bins.OriginX + (lastColumn + 1 - margin) * width) - originX;
-  const double top = (bins.OriginY + (lastRow + 1 - margin) * height) - originY;
-  this->Left = firstColumn == 0 ? Infinity : static_cast<float>(left);
-  this->Right = lastColumn == bins.Columns - 1 ? Infinity : static_cast<float>(right);
-  this->Top = lastRow == bins.Rows - 1 ? Infinity : static_cast<float>(top);
-  const double across = (2 * columnsToEachSide + 1) * width, up = (rowsAbove + 1) * height;
-  this->ReachSquared = static_cast<float>(across * across + up * up);
-  this->Margin = static_cast<float>(0.01 * std::min(width, height));
+  window.Vectors = EvenVectors;
+  window.IsBox = false;
+  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
+  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
+  window.Top = static_cast<float>(this->TopBound - originY);
+  window.Errors = &this->OfShapes[0];
   return true;
 }
 
-/** As BinGrid::FindPath(), four boxes at a time. */
-__attribute__((target("avx2,fma"))) void Surroundings::FindPath()
+/** A smaller window, packed. */
+ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int shape)
 {
-  const Point2 p = this->Grid.PointAt(this->Origin);
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  const Index firstColumn = std::max(column - Shapes[shape].Columns / 2, 0);
+  const Index endColumn = std::min(column + Shapes[shape].Columns / 2 + 1, bins.Columns);
+  const Row& own = *this->Near[0];
+  const Index place = window.Origin - own.FirstSlot;
+  const std::int32_t originX = own.X[place], originY = own.Y[place];
+  const __m256i x0 = _mm256_set1_epi32(originX), y0 = _mm256_set1_epi32(originY);
+  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  int count = 0;
+  for (int k = 0; k < Shapes[shape].Rows; ++k)
+  {
+    const Row& row = *this->Near[k];
+    const Index first = row.Starts[firstColumn], end = row.Starts[endColumn];
+    if (count + (end - first) > Capacity)
+    {
+      return false;
+    }
+    for (Index slot = first; slot < end; slot += 8)
+    {
+      // Whole vectors: what is too much is overwritten by the next row, or made not a number.
+      const int at = count + (slot - first);
+      const __m256i unitsX = _mm256_loadu_si256(
+        reinterpret_cast<const __m256i*>(row.X.data() + (slot - row.FirstSlot)));
+      const __m256i unitsY = _mm256_loadu_si256(
+        reinterpret_cast<const __m256i*>(row.Y.data() + (slot - row.FirstSlot)));
+      _mm256_storeu_ps(window.X + at, _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
+      _mm256_storeu_ps(window.Y + at, _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsY, y0)));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(window.Slots + at),
+        _mm256_add_epi32(_mm256_set1_epi32(slot), lanes));
+    }
+    if (k == 0)
+    {
+      window.OriginLane = window.Origin - first;
+    }
+    count += end - first;
+  }
+  window.Close(count);
+  window.IsBox = false;
+  const Index above = std::min(this->CurrentRow + Shapes[shape].Rows, bins.Rows);
+  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
+  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
+  window.Top = above == bins.Rows
+    ? std::numeric_limits<float>::max()
+    : static_cast<float>(above * bins.BinHeight * this->PerUnit - originY);
+  window.Errors = &this->OfShapes[shape];
+  return true;
+}
+
+/** Ends the lists of the window's points. */
+ELEVATION_WIDE void Surroundings::Window::Close(int count)
+{
+  this->Vectors = MostVectors;
+  const __m256 nothing = _mm256_set1_ps(NotANumber);
+  for (int at = count; at < 8 * MostVectors; at += 8)
+  {
+    _mm256_storeu_ps(this->X + at, nothing);
+    _mm256_storeu_ps(this->Y + at, nothing);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(this->Slots + at), _mm256_set1_epi32(None));
+  }
+  for (int i = 0; i < MostVectors; ++i)
+  {
+    const __m256 x = _mm256_load_ps(this->X + 8 * i), y = _mm256_load_ps(this->Y + 8 * i);
+    _mm256_store_ps(this->Square + 8 * i, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
+  }
+}
+
+/** As BinGrid::FindPath(), four boxes at a time. */
+ELEVATION_WIDE void Surroundings::FindPath(Index origin)
+{
+  if (this->PathOrigin == origin)
+  {
+    return;
+  }
+  this->PathOrigin = origin;
+  const Point2 p = this->Grid.PointAt(origin);
   const __m256d x = _mm256_set1_pd(p.X), y = _mm256_set1_pd(p.Y);
   const double infinity = std::numeric_limits<double>::infinity();
   const BinGrid::Node* node = &this->Grid.Nodes[this->Grid.Nodes.size() - 1];
@@ -137,10 +401,10 @@ __attribute__((target("avx2,fma"))) void Surroundings::FindPath()
   }
 }
 
-bool Surroundings::GatherBox()
+bool Surroundings::GatherBox(Window& window)
 {
-  const Point2 p = this->Grid.PointAt(this->Origin);
-  this->FindPath();
+  const Point2 p = this->Grid.PointAt(window.Origin);
+  this->FindPath(window.Origin);
   const BinGrid::Step& last = this->Path.back();
   const double size = last.Node->Size, width = last.HighX - last.LowX,
                height = last.HighY - last.LowY;
@@ -153,7 +417,8 @@ bool Surroundings::GatherBox()
     {
       side = points / size * std::max(width, height);
     }
-    if (!(side > 1e-14 && side < 1e14)) // single precision holds squares
+    const double perSide = 1.0 / side;
+    if (!(perSide > 1e-150 && perSide < 1e150))
     {
       return false;
     }
@@ -164,13 +429,14 @@ bool Surroundings::GatherBox()
     {
       --top;
     }
-    if (this->GatherBox(*top->Node, lowX, highX, highY))
+    window.PerSide = perSide;
+    if (this->GatherBox(window, *top->Node, lowX, highX, highY))
     {
-      this->Left = static_cast<float>(0.999999 * (p.X - lowX));
-      this->Right = static_cast<float>(0.999999 * (highX - p.X));
-      this->Top = static_cast<float>(0.999999 * (highY - p.Y));
-      this->ReachSquared = static_cast<float>(3.0 * side * side);
-      this->Margin = static_cast<float>(0.002 * side);
+      window.Left = static_cast<float>(0.999999 * (p.X - lowX) * perSide);
+      window.Right = static_cast<float>(0.999999 * (highX - p.X) * perSide);
+      window.Top = static_cast<float>(0.999999 * (highY - p.Y) * perSide);
+      window.IsBox = true;
+      window.Errors = &this->OfBox;
       return true;
     }
   }
@@ -178,10 +444,11 @@ bool Surroundings::GatherBox()
 }
 
 /** All points of the box below a node, not below the origin; false when they are too many. */
-__attribute__((target("avx2,fma"))) bool Surroundings::GatherBox(
-  const BinGrid::Node& top, double lowX, double highX, double highY)
+ELEVATION_WIDE bool Surroundings::GatherBox(
+  Window& window, const BinGrid::Node& top, double lowX, double highX, double highY)
 {
-  const Point2 p = this->Grid.PointAt(this->Origin);
+  const Point2 p = this->Grid.PointAt(window.Origin);
+  const double perSide = window.PerSide;
   const __m256d boxLowX = _mm256_set1_pd(lowX), boxHighX = _mm256_set1_pd(highX);
   const __m256d boxLowY = _mm256_set1_pd(p.Y), boxHighY = _mm256_set1_pd(highY);
   const BinGrid::Node* stack[64];
@@ -217,9 +484,10 @@ __attribute__((target("avx2,fma"))) bool Surroundings::GatherBox(
         {
           // Written wherever it is, and kept when within; there is room for one too many.
           const double x = this->Grid.X[slot], y = this->Grid.Y[slot];
-          this->X[count] = static_cast<float>(x - p.X);
-          this->Y[count] = static_cast<float>(y - p.Y);
-          this->Slots[count] = slot;
+          window.X[count] = static_cast<float>((x - p.X) * perSide);
+          window.Y[count] = static_cast<float>((y - p.Y) * perSide);
+          window.Slots[count] = slot;
+          window.OriginLane = slot == window.Origin ? count : window.OriginLane;
           count += (x >= lowX) & (x <= highX) & (y >= p.Y) & (y <= highY);
           if (count > Capacity)
           {
@@ -229,87 +497,190 @@ __attribute__((target("avx2,fma"))) bool Surroundings::GatherBox(
       }
     }
   }
-  const __m256 nothing = _mm256_set1_ps(std::numeric_limits<float>::quiet_NaN());
-  _mm256_storeu_ps(this->X + count, nothing);
-  _mm256_storeu_ps(this->Y + count, nothing);
-  this->Count = count;
+  window.Close(count);
   return true;
 }
 
-__attribute__((target("avx2,fma"))) Surroundings::Candidates Surroundings::FindCandidates(
-  Index b) const
+/** The places of a slot in the lists, as bits. */
+template <int Count>
+ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) const
 {
-  const Point2 a = this->Grid.PointAt(this->Origin);
-  const Point2 end = this->Grid.PointAt(b);
-  const float bx = static_cast<float>(end.X - a.X), by = static_cast<float>(end.Y - a.Y);
-  const float lengthSquared = bx * bx + by * by;
-  if (!(lengthSquared <= this->ReachSquared))
+  std::uint64_t lanes = 0;
+  for (int i = 0; i < Count; ++i)
   {
-    return {};
+    const __m256i isSlot = _mm256_cmpeq_epi32(_mm256_set1_epi32(slot),
+      _mm256_load_si256(reinterpret_cast<const __m256i*>(this->Slots + 8 * i)));
+    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot)))
+      << (8 * i);
   }
-  // Points and edge are shorter than the reach D. With u = 2^-24, cross is then wrong by at most
-  // 4 u D^2, and dot by at most 12 u D^2.
-  const float error = 24.0f * 0x1p-24f * this->ReachSquared;
-  const __m256 edgeX = _mm256_set1_ps(bx), edgeY = _mm256_set1_ps(by);
-  const __m256 errors = _mm256_set1_ps(error), one = _mm256_set1_ps(1.0f);
-  const __m256 clear = _mm256_set1_ps(16.0f * error), minusError = _mm256_set1_ps(-error);
-  const __m256 infinity = _mm256_set1_ps(Infinity);
-  const __m256 signBit = _mm256_set1_ps(-0.0f);
+  return lanes;
+}
 
-  __m256 lower[(Capacity + 8) / 8];
-  __m256 least = infinity;
-  const int vectors = (this->Count + 7) / 8;
-  for (int i = 0; i < vectors; ++i)
+/**
+ * The end of an edge from the vertex, in the window's units.
+ * @return false when it is too far away
+ */
+ELEVATION_WIDE_INLINE bool Surroundings::PlaceEnd(Index b, float& x, float& y) const
+{
+  const Point2 a = this->Grid.PointAt(this->Current->Origin), end = this->Grid.PointAt(b);
+  if (this->Current->IsBox)
   {
-    const __m256 x = _mm256_load_ps(this->X + 8 * i), y = _mm256_load_ps(this->Y + 8 * i);
-    const __m256 cross = _mm256_fmsub_ps(edgeX, y, _mm256_mul_ps(edgeY, x));
-    const __m256 dot =
-      _mm256_fmadd_ps(x, _mm256_sub_ps(x, edgeX), _mm256_mul_ps(y, _mm256_sub_ps(y, edgeY)));
+    x = static_cast<float>((end.X - a.X) * this->Current->PerSide);
+    y = static_cast<float>((end.Y - a.Y) * this->Current->PerSide);
+  }
+  else
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    const double perUnit = this->PerUnit;
+    x = static_cast<float>(
+      Units(end.X, bins.OriginX, perUnit) - Units(a.X, bins.OriginX, perUnit));
+    y = static_cast<float>(
+      Units(end.Y, bins.OriginY, perUnit) - Units(a.Y, bins.OriginY, perUnit));
+  }
+  return x * x + y * y <= this->Current->Errors->ReachSquared;
+}
+
+/** @param[out] guess  the candidate that is probably the apex */
+template <int Vectors>
+ELEVATION_WIDE_INLINE Surroundings::Candidates Surroundings::Search(
+  float bx, float by, int& guess) const
+{
+  const __m256 endX = _mm256_set1_ps(bx), endY = _mm256_set1_ps(by);
+  const __m256 clear = _mm256_set1_ps(4.0f * this->Current->Errors->CrossError);
+  const __m256 most = _mm256_set1_ps(std::numeric_limits<float>::max());
+  const __m256 laneBits = _mm256_castsi256_ps(_mm256_set1_epi32(63));
+  const __m256i eight = _mm256_set1_epi32(8);
+  __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+  __m256 crosses[Vectors], dots[Vectors];
+  __m256 least = most;
+  for (int i = 0; i < Vectors; ++i)
+  {
+    const __m256 x = _mm256_load_ps(this->Current->X + 8 * i), y = _mm256_load_ps(this->Current->Y + 8 * i);
+    const __m256 square = _mm256_load_ps(this->Current->Square + 8 * i);
+    const __m256 cross = _mm256_fmsub_ps(endX, y, _mm256_mul_ps(endY, x));
+    const __m256 dot = _mm256_fnmadd_ps(x, endX, _mm256_fnmadd_ps(y, endY, square));
+    crosses[i] = cross;
+    dots[i] = dot;
+    // The lowest bits of a quotient tell whose it is: so the least of all tells where it is.
+    const __m256 quotient = _mm256_or_ps(
+      _mm256_andnot_ps(laneBits, _mm256_mul_ps(dot, _mm256_rcp_ps(cross))),
+      _mm256_castsi256_ps(lanes));
+    lanes = _mm256_add_epi32(lanes, eight);
     const __m256 isLeft = _mm256_cmp_ps(cross, clear, _CMP_GT_OQ);
-    // Near the edge's line: neither clearly left nor clearly right. Not the ends themselves.
-    const __m256 isNear = _mm256_andnot_ps(isLeft, _mm256_cmp_ps(cross, minusError, _CMP_GE_OQ));
-    for (int near = _mm256_movemask_ps(isNear); near; near &= near - 1)
-    {
-      const Index slot = this->Slots[8 * i + __builtin_ctz(near)];
-      if (slot != b && slot != this->Origin &&
-        Orientation(a, end, this->Grid.PointAt(slot)) == Positive)
-      {
-        return {};
-      }
-    }
-    // quotient +- error / cross (1 + |quotient|): cross is wrong by less than a sixteenth here,
-    // which the bounds' being twice as wide as needed covers.
-    const __m256 perCross = _mm256_div_ps(one, cross);
-    const __m256 quotient = _mm256_mul_ps(dot, perCross);
-    const __m256 spread = _mm256_mul_ps(
-      _mm256_mul_ps(errors, perCross), _mm256_add_ps(one, _mm256_andnot_ps(signBit, quotient)));
-    lower[i] = _mm256_blendv_ps(infinity, _mm256_sub_ps(quotient, spread), isLeft);
-    least =
-      _mm256_min_ps(least, _mm256_blendv_ps(infinity, _mm256_add_ps(quotient, spread), isLeft));
+    least = _mm256_min_ps(least, _mm256_blendv_ps(most, quotient, isLeft));
   }
-  __m128 half = _mm_min_ps(_mm256_castps256_ps128(least), _mm256_extractf128_ps(least, 1));
-  half = _mm_min_ps(half, _mm_movehl_ps(half, half));
-  half = _mm_min_ss(half, _mm_shuffle_ps(half, half, 1));
-  const float upper = _mm_cvtss_f32(half);
-  if (!(upper < Infinity))
+  const float best = Least(least);
+  if (!(best < std::numeric_limits<float>::max()))
+  {
+    guess = 0;
+    return {};
+  }
+  std::uint32_t bits;
+  std::memcpy(&bits, &best, sizeof bits);
+  guess = static_cast<int>(bits & 63u);
+  const float x = this->Current->X[guess], y = this->Current->Y[guess];
+  const float cross = bx * y - by * x;
+  const float dot = this->Current->Square[guess] - (x * bx + y * by);
+
+  Candidates found;
+  const __m256 bestCross = _mm256_set1_ps(cross), bestDot = _mm256_set1_ps(dot);
+  const __m256 error = _mm256_set1_ps(this->Current->Errors->ComparisonError);
+  const __m256 right = _mm256_set1_ps(-this->Current->Errors->CrossError);
+  for (int i = 0; i < Vectors; ++i)
+  {
+    const __m256 difference =
+      _mm256_fmsub_ps(dots[i], bestCross, _mm256_mul_ps(bestDot, crosses[i]));
+    const __m256 isCandidate = _mm256_and_ps(_mm256_cmp_ps(difference, error, _CMP_LE_OQ),
+      _mm256_cmp_ps(crosses[i], right, _CMP_GE_OQ));
+    found.Bits |= static_cast<std::uint64_t>(_mm256_movemask_ps(isCandidate)) << (8 * i);
+  }
+  found.Bits &= ~(std::uint64_t(1) << this->Current->OriginLane);
+
+  // The disc of the guess's quotient or a little more, within the window? Its position s is in edge
+  // lengths along the edge's left normal; on the left, a disc of larger s contains those of smaller.
+  const float above = dot + this->Current->Errors->DotError;
+  const float s = 0.5f * above /
+    (above > 0.0f ? cross - this->Current->Errors->CrossError : cross + this->Current->Errors->CrossError);
+  const float radiusSquared = (bx * bx + by * by) * (0.25f + s * s);
+  const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
+  const float keep =
+    this->Current->Errors->Margin + 4.0f * this->Current->Errors->CoordinateError * (std::fabs(s) + 1.0f);
+  const float room =
+    std::min(std::min(this->Current->Left + centerX, this->Current->Right - centerX), this->Current->Top - centerY) - keep;
+  found.IsProved = room > 0.0f && radiusSquared * 1.0002f < room * room;
+  return found;
+}
+
+/** Leaves out the end of the edge and, told exactly, what is not on the edge's left. */
+void Surroundings::Sift(Index b, Candidates& candidates) const
+{
+  for (std::uint64_t left = candidates.Bits; left; left &= left - 1)
+  {
+    const Index slot = this->Current->Slots[__builtin_ctzll(left)];
+    if (slot == b ||
+      Orientation(this->Grid.PointAt(this->Current->Origin), this->Grid.PointAt(b),
+        this->Grid.PointAt(slot)) != Positive)
+    {
+      candidates.Bits &= ~(left & (~left + 1));
+    }
+  }
+  candidates.IsProved = candidates.IsProved && candidates.Bits != 0;
+}
+
+ELEVATION_WIDE Surroundings::Candidates Surroundings::FindCandidates(Index b) const
+{
+  int guess;
+  float x, y;
+  if (!this->PlaceEnd(b, x, y))
   {
     return {};
   }
-
-  // The disc of that quotient, within the window?
-  const float s = 0.5f * upper;
-  const float radius = std::sqrt(lengthSquared * (0.25f + s * s)) * 1.0001f + this->Margin;
-  const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
-  Candidates found;
-  found.IsProved = centerX - radius > -this->Left && centerX + radius < this->Right &&
-    centerY + radius < this->Top;
-  const __m256 uppers = _mm256_set1_ps(upper);
-  for (int i = 0; i < vectors; ++i)
-  {
-    const int within = _mm256_movemask_ps(_mm256_cmp_ps(lower[i], uppers, _CMP_LE_OQ));
-    found.Bits |= static_cast<std::uint64_t>(within) << (8 * i);
-  }
+  Candidates found = this->Current->Vectors == EvenVectors ? this->Search<EvenVectors>(x, y, guess)
+                                                  : this->Search<MostVectors>(x, y, guess);
+  this->Sift(b, found);
   return found;
+}
+
+template <int Vectors>
+ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
+  Index b, Index last, Index* neighbors, Candidates& open) const
+{
+  int guess;
+  float x, y;
+  if (!this->PlaceEnd(b, x, y))
+  {
+    open = Candidates();
+    return 0;
+  }
+  std::uint64_t end = this->Current->LanesOf<Vectors>(b);
+  for (int count = 0;;)
+  {
+    open = this->Search<Vectors>(x, y, guess);
+    open.Bits &= ~end;
+    const std::uint64_t expected = std::uint64_t(1) << guess;
+    if (!open.IsProved || open.Bits != expected)
+    {
+      this->Sift(b, open);
+      return count;
+    }
+    b = neighbors[count++] = this->Current->Slots[guess];
+    if (b == last || count == Capacity)
+    {
+      open = Candidates();
+      return count;
+    }
+    end = expected;
+    x = this->Current->X[guess];
+    y = this->Current->Y[guess];
+  }
+}
+
+ELEVATION_WIDE int Surroundings::Follow(
+  Index b, Index last, Index* neighbors, Candidates& open) const
+{
+  return this->Current->Vectors == EvenVectors
+    ? this->FollowVectors<EvenVectors>(b, last, neighbors, open)
+    : this->FollowVectors<MostVectors>(b, last, neighbors, open);
 }
 
 #else
@@ -319,16 +690,26 @@ bool Surroundings::IsSupported()
   return false;
 }
 
-bool Surroundings::Gather(Index)
+Surroundings::Surroundings(const BinGrid& grid)
+  : Grid(grid)
+{
+}
+
+bool Surroundings::Gather(Index, Index)
 {
   return false;
 }
 
-void Surroundings::FindPath() {}
+void Surroundings::FindPath(Index) {}
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {
   return {};
+}
+
+int Surroundings::Follow(Index, Index, Index*, Candidates&) const
+{
+  return 0;
 }
 
 #endif

@@ -8,15 +8,23 @@
  * In: a grid and a vertex. Out: for an edge that leaves the vertex, the few points one of which is
  * the apex, together with the proof that no other point is; or the answer that it cannot tell. The
  * caller compares the few exactly, or looks elsewhere, so single precision decides nothing that
- * matters.
+ * matters. As long as there is but one such point, the whole fan is followed at once.
  *
- * The proof. Around the vertex all points of five columns and four rows of bins are gathered: the
- * window. Where these are too many, it is three columns and less rows; in full bins, a box in which
- * the density thereabouts promises about fifteen points. For each point, an interval is computed that holds the quotient by which apexes are
- * compared (see ApexSearch in Delaunay.cxx), with the rounding of single precision bounded by the
- * size of the window. Points whose interval begins above the least upper end are not the apex. The
- * disc that belongs to that end holds the apex's empty circle; if it lies within the window above
- * the vertex, no point outside needs to be looked at.
+ * Around the vertex all points of five columns and four rows of bins are gathered: the window. Where
+ * these are too many, it is three columns and less rows; in full bins, a box in which the density
+ * thereabouts promises about fifteen points. For bins, the coordinates of the four rows are kept as
+ * whole multiples of a unit that is small against the bins, so that differences are exact.
+ *
+ * The proof. Let R be the diagonal of the window, e the error of a coordinate relative to the vertex
+ * and u = 2^-24. With cross = b x p and dot = p . (p - b) for the edge's end b and a point p, the
+ * apex is the point with the least dot / cross among those on the left (see ApexSearch in
+ * Delaunay.cxx). Both are computed as sums of products of coordinates of at most R, and are wrong by
+ *   cross: 3 R e + 3 u R^2,   dot: 6 R e + 6 u R^2.
+ * A first pass guesses the apex with rounded quotients. The second compares every point with it, by
+ *   dot cross' - dot' cross, which is wrong by 24 R^3 e + 32 u R^4 at most:
+ * points for which it is clearly positive, or which are clearly on the right, are not the apex. The
+ * disc of the guess, made larger by what its quotient may be wrong, holds the apex's empty circle;
+ * if it lies within the window above the vertex, no point outside needs to be looked at.
  *
  * Needs a processor with AVX2 and a compiler that can be told so for one function (GCC, Clang on
  * x86-64); elsewhere IsSupported() is false and nothing else may be called.
@@ -40,62 +48,127 @@ public:
   /** Whether this processor has what it takes; asked once. */
   static bool IsSupported();
 
-  explicit Surroundings(const BinGrid& grid)
-    : Grid(grid)
-  {
-  }
+  explicit Surroundings(const BinGrid& grid);
 
   /**
-   * Gathers the window of a vertex.
+   * Gathers the window of a vertex. Cheapest when vertices come row by row.
+   * @param[in] next  the vertex of the next call, or None. What is needed for it is begun, while the
+   *                  processor waits for results that the first one's fan depends on.
    * @return false when there is none: too many points in each that was tried
    */
-  bool Gather(Index origin);
+  bool Gather(Index origin, Index next = None);
 
   struct Candidates
   {
     std::uint64_t Bits = 0; ///< numbers that SlotOf takes
-    /** Whether one of them is the apex; otherwise one is the best point of the window, if any. */
+    /** Whether one of them is the apex; otherwise one may be near it. */
     bool IsProved = false;
   };
 
   /**
-   * The points that may be the apex over the edge from the vertex to b. Points all but on the
-   * edge's line are told apart exactly.
+   * The points that may be the apex over the edge from the vertex to b, all on its left.
    * @return none when it cannot tell
    */
   Candidates FindCandidates(Index b) const;
 
+  static constexpr int Capacity = 56;
+
+  /**
+   * The neighbours of the vertex counter-clockwise after b, apex after apex, as far as each is
+   * proved to be the only candidate, and not beyond the last.
+   * @param[out] neighbors  room for Capacity slots
+   * @param[out] open  the candidates over the edge to the last neighbour that was found, unless that
+   * is the last
+   * @return how many were found
+   */
+  int Follow(Index b, Index last, Index* neighbors, Candidates& open) const;
+
   /** The path through the tree to the vertex, as BinGrid::FindPath() finds it. */
   const std::vector<BinGrid::Step>& PathToOrigin()
   {
-    if (this->Path.empty())
-    {
-      this->FindPath();
-    }
+    this->FindPath(this->Current->Origin);
     return this->Path;
   }
 
-  Index SlotOf(int candidate) const { return this->Slots[candidate]; }
+  Index SlotOf(int candidate) const { return this->Current->Slots[candidate]; }
 
 private:
-  static constexpr int Capacity = 56; // and one more vector may be written beyond
+  static constexpr int EvenVectors = 5, MostVectors = Capacity / 8;
+  static constexpr int Room = Capacity + 8; // whole vectors are written
+  static constexpr Index MostRows = 4;
 
-  bool GatherBins(Index column, Index row, Index columnsToEachSide, Index rowsAbove);
-  void FindPath();
-  bool GatherBox();
-  bool GatherBox(const BinGrid::Node& top, double lowX, double highX, double highY);
+  /** The points of a row of bins in units from the grid's corner. */
+  struct Row
+  {
+    Index Number = None;
+    Index FirstSlot = 0;
+    const Index* Starts = nullptr; ///< the first slot of each bin, and one more
+    std::vector<std::int32_t> X, Y; ///< and a vector more
+  };
+
+  /** What the size of a window tells of rounding; lengths in the window's unit. */
+  struct Bounds
+  {
+    float ReachSquared = 0.0f;    ///< R^2
+    float CoordinateError = 0.0f; ///< e
+    float CrossError = 0.0f, DotError = 0.0f, ComparisonError = 0.0f;
+    float Margin = 0.0f; ///< what a disc must keep from the window's border
+
+    void Set(double reach, double error, double margin);
+  };
+
+  /** The points around a vertex, relative to it; what is not a number is none. */
+  struct Window
+  {
+    alignas(32) float X[Room];
+    alignas(32) float Y[Room];
+    alignas(32) float Square[Room]; ///< x^2 + y^2
+    alignas(32) Index Slots[Room];
+    Index Origin = None;
+    int Vectors = 0; ///< of the lists that are in use; 0 where there is no window
+    int OriginLane = 0;
+    // How far the window certainly reaches from the vertex, but for the margin.
+    float Left = 0.0f, Right = 0.0f, Top = 0.0f;
+    const Bounds* Errors = nullptr;
+    bool IsBox = false;
+    double PerSide = 0.0; ///< units of the box a unit of the grid
+
+    void Close(int count);
+    template <int Count>
+    std::uint64_t LanesOf(Index slot) const;
+  };
+
+  void EnterRow(Index number);
+  void ReadRow(Row& row);
+  void GatherInto(Window& window);
+  bool GatherEven(Window& window, Index firstColumn);
+  bool GatherBins(Window& window, Index column, int shape);
+  void FindPath(Index origin);
+  bool GatherBox(Window& window);
+  bool GatherBox(Window& window, const BinGrid::Node& top, double lowX, double highX, double highY);
+  bool PlaceEnd(Index b, float& x, float& y) const;
+  template <int Vectors>
+  Candidates Search(float bx, float by, int& guess) const;
+  template <int Vectors>
+  int FollowVectors(Index b, Index last, Index* neighbors, Candidates& open) const;
+  void Sift(Index b, Candidates& candidates) const;
 
   const BinGrid& Grid;
-  alignas(32) float X[Capacity + 8];
-  alignas(32) float Y[Capacity + 8];
-  Index Slots[Capacity + 8];
-  int Count = 0;
-  Index Origin = None;
-  std::vector<BinGrid::Step> Path; ///< of the origin; empty when it was not needed
-  // How far the window certainly reaches from the vertex; infinite at the border of the grid.
-  float Left = 0.0f, Right = 0.0f, Top = 0.0f;
-  float ReachSquared = 0.0f; ///< squared diagonal of the window
-  float Margin = 0.0f;       ///< what a disc must keep from the window's border
+  Window Windows[2];
+  Window* Current = Windows; ///< and the other one is for the next vertex
+  std::vector<BinGrid::Step> Path; ///< of PathOrigin
+  Index PathOrigin = None;
+
+  // Windows of bins; none when PerUnit is 0.
+  double PerUnit = 0.0; ///< units a unit of the grid
+  Bounds OfShapes[3];
+  std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
+  std::vector<Index> Nothing;             ///< the starts of a row beyond the last
+  Row Rows[MostRows];                     ///< by their number modulo MostRows
+  Row* Near[MostRows];                    ///< from the current row upwards
+  Index CurrentRow = None;
+  std::int32_t TopBound = 0;
+  Bounds OfBox; ///< of all boxes, whose unit is their side
 };
 
 } // namespace elevation
