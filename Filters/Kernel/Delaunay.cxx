@@ -1071,10 +1071,10 @@ private:
           this->IsShort(apexPoint, lowestPoint));
       out += isWanted ? 3 : 0;
       const bool isRising = IsLower(currentPoint, apexPoint);
-      const Index told = isRising ? current : apex;
+      const Index ends[2] = { apex, current };
       if (isLastStrip || IsLower(isRising ? currentPoint : apexPoint, above))
       {
-        this->Pool.Tell(told, isRising, isRising ? apex : current);
+        this->Pool.Tell(ends[isRising], isRising, ends[!isRising]);
       }
       current = apex;
       currentPoint = apexPoint;

@@ -19,6 +19,8 @@ namespace elevation
 /** A function for processors with AVX2. */
 #define ELEVATION_WIDE __attribute__((target("avx2,fma")))
 #define ELEVATION_WIDE_INLINE __attribute__((target("avx2,fma"), always_inline)) inline
+/** A function for processors with AVX-512. */
+#define ELEVATION_WIDEST __attribute__((target("avx512f,avx2,fma,bmi,bmi2,popcnt")))
 
 namespace
 {
@@ -48,6 +50,12 @@ ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUn
   return _mm_cvtsd_si32(_mm_set_sd((value - from) * perUnit)); // to the nearest, as above
 }
 
+bool HasAVX512()
+{
+  static const bool hasIt = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("bmi2");
+  return hasIt;
+}
+
 /** The least of eight. */
 ELEVATION_WIDE inline float Least(__m256 values)
 {
@@ -66,6 +74,7 @@ bool Surroundings::IsSupported()
 
 Surroundings::Surroundings(const BinGrid& grid)
   : Grid(grid)
+  , IsWidest(HasAVX512())
 {
   const BinGrid::Layout& bins = grid.Bins;
   this->OfBox.Set(1.1, 2.0 * Roundoff, 0.002);
@@ -149,8 +158,8 @@ void Surroundings::GatherInto(Window& window)
     {
       this->EnterRow(row);
     }
-    if (this->GatherEven(
-          window, static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3))
+    const Index first = static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3;
+    if ((this->IsWidest && this->GatherWidest(window, first)) || this->GatherEven(window, first))
     {
       return;
     }
@@ -215,6 +224,75 @@ ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(row.Y.data() + i),
       EightUnits(this->Grid.Y.data() + slots.first + i, fromY, perUnit));
   }
+}
+
+/** At most 32 points, packed into two vectors. */
+ELEVATION_WIDEST bool Surroundings::GatherWidest(Window& window, Index firstColumn)
+{
+  const BinGrid::Layout& bins = this->Grid.Bins;
+  const Index endColumn = std::min(firstColumn + Shapes[0].Columns, bins.Columns);
+  firstColumn = std::max(firstColumn, 0);
+
+  // Each row's points overwrite what the vectors hold beyond the end of the row before.
+  const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  __m512i lowX = lanes, highX = lanes, lowY = lanes, highY = lanes, lowSlot = lanes,
+          highSlot = lanes;
+  unsigned int count = 0;
+  for (int k = 0; k < MostRows; ++k)
+  {
+    const Row& row = *this->Near[k];
+    const Index first = row.Starts[firstColumn];
+    const unsigned int size = row.Starts[endColumn] - first;
+    if (count + size > 32)
+    {
+      return false;
+    }
+    const std::uint32_t places = static_cast<std::uint32_t>(~std::uint64_t(0) << count);
+    const __mmask16 low = static_cast<__mmask16>(places);
+    const __mmask16 high = static_cast<__mmask16>(places >> 16);
+    const int inLow = count < 16 ? 16 - count : 0;
+    const std::int32_t* const x = row.X.data() + (first - row.FirstSlot);
+    const std::int32_t* const y = row.Y.data() + (first - row.FirstSlot);
+    lowX = _mm512_mask_expandloadu_epi32(lowX, low, x);
+    highX = _mm512_mask_expandloadu_epi32(highX, high, x + inLow);
+    lowY = _mm512_mask_expandloadu_epi32(lowY, low, y);
+    highY = _mm512_mask_expandloadu_epi32(highY, high, y + inLow);
+    const __m512i offset = _mm512_set1_epi32(first - static_cast<Index>(count));
+    lowSlot = _mm512_mask_add_epi32(lowSlot, low, lanes, offset);
+    highSlot = _mm512_mask_add_epi32(
+      highSlot, high, lanes, _mm512_add_epi32(offset, _mm512_set1_epi32(16)));
+    count += size;
+  }
+  const Row& own = *this->Near[0];
+  const Index place = window.Origin - own.FirstSlot;
+  const std::int32_t originX = own.X[place], originY = own.Y[place];
+  const __m512i x0 = _mm512_set1_epi32(originX), y0 = _mm512_set1_epi32(originY);
+  const std::uint32_t rest = static_cast<std::uint32_t>(~std::uint64_t(0) << count);
+  const __m512 nothing = _mm512_set1_ps(NotANumber);
+  const __m512 x = _mm512_mask_mov_ps(_mm512_cvtepi32_ps(_mm512_sub_epi32(lowX, x0)),
+    static_cast<__mmask16>(rest), nothing);
+  const __m512 otherX = _mm512_mask_mov_ps(_mm512_cvtepi32_ps(_mm512_sub_epi32(highX, x0)),
+    static_cast<__mmask16>(rest >> 16), nothing);
+  const __m512 y = _mm512_cvtepi32_ps(_mm512_sub_epi32(lowY, y0));
+  const __m512 otherY = _mm512_cvtepi32_ps(_mm512_sub_epi32(highY, y0));
+  _mm512_store_ps(window.X, x);
+  _mm512_store_ps(window.X + 16, otherX);
+  _mm512_store_ps(window.Y, y);
+  _mm512_store_ps(window.Y + 16, otherY);
+  _mm512_store_ps(window.Square, _mm512_fmadd_ps(x, x, _mm512_mul_ps(y, y)));
+  _mm512_store_ps(
+    window.Square + 16, _mm512_fmadd_ps(otherX, otherX, _mm512_mul_ps(otherY, otherY)));
+  _mm512_store_si512(window.Slots, lowSlot);
+  _mm512_store_si512(window.Slots + 16, highSlot);
+
+  window.OriginLane = window.Origin - own.Starts[firstColumn];
+  window.Vectors = WidestVectors;
+  window.IsBox = false;
+  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
+  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
+  window.Top = static_cast<float>(this->TopBound - originY);
+  window.Errors = &this->OfShapes[0];
+  return true;
 }
 
 /**
@@ -540,6 +618,26 @@ ELEVATION_WIDE_INLINE bool Surroundings::PlaceEnd(Index b, float& x, float& y) c
   return x * x + y * y <= this->Current->Errors->ReachSquared;
 }
 
+/**
+ * Whether the disc of a quotient, or a little more, is within the window. Its position s is in edge
+ * lengths along the edge's left normal; on the left, a disc of larger s contains those of smaller.
+ */
+ELEVATION_WIDE_INLINE bool Surroundings::IsInWindow(
+  float bx, float by, float dot, float cross) const
+{
+  const Window& window = *this->Current;
+  const Bounds& errors = *window.Errors;
+  const float above = dot + errors.DotError;
+  const float s = 0.5f * above / (cross - std::copysign(errors.CrossError, above));
+  const float radiusSquared = (bx * bx + by * by) * (0.25f + s * s);
+  const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
+  const float keep = errors.Margin + 4.0f * errors.CoordinateError * (std::fabs(s) + 1.0f);
+  const float room =
+    std::min(std::min(window.Left + centerX, window.Right - centerX), window.Top - centerY) -
+    keep;
+  return room > 0.0f && radiusSquared * 1.0002f < room * room;
+}
+
 /** @param[out] guess  the candidate that is probably the apex */
 template <int Vectors>
 ELEVATION_WIDE_INLINE Surroundings::Candidates Surroundings::Search(
@@ -585,29 +683,16 @@ ELEVATION_WIDE_INLINE Surroundings::Candidates Surroundings::Search(
   Candidates found;
   const __m256 bestCross = _mm256_set1_ps(cross), bestDot = _mm256_set1_ps(dot);
   const __m256 error = _mm256_set1_ps(this->Current->Errors->ComparisonError);
-  const __m256 right = _mm256_set1_ps(-this->Current->Errors->CrossError);
   for (int i = 0; i < Vectors; ++i)
   {
     const __m256 difference =
       _mm256_fmsub_ps(dots[i], bestCross, _mm256_mul_ps(bestDot, crosses[i]));
-    const __m256 isCandidate = _mm256_and_ps(_mm256_cmp_ps(difference, error, _CMP_LE_OQ),
-      _mm256_cmp_ps(crosses[i], right, _CMP_GE_OQ));
+    const __m256 isCandidate = _mm256_cmp_ps(difference, error, _CMP_LE_OQ);
     found.Bits |= static_cast<std::uint64_t>(_mm256_movemask_ps(isCandidate)) << (8 * i);
   }
   found.Bits &= ~(std::uint64_t(1) << this->Current->OriginLane);
 
-  // The disc of the guess's quotient or a little more, within the window? Its position s is in edge
-  // lengths along the edge's left normal; on the left, a disc of larger s contains those of smaller.
-  const float above = dot + this->Current->Errors->DotError;
-  const float s = 0.5f * above /
-    (above > 0.0f ? cross - this->Current->Errors->CrossError : cross + this->Current->Errors->CrossError);
-  const float radiusSquared = (bx * bx + by * by) * (0.25f + s * s);
-  const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
-  const float keep =
-    this->Current->Errors->Margin + 4.0f * this->Current->Errors->CoordinateError * (std::fabs(s) + 1.0f);
-  const float room =
-    std::min(std::min(this->Current->Left + centerX, this->Current->Right - centerX), this->Current->Top - centerY) - keep;
-  found.IsProved = room > 0.0f && radiusSquared * 1.0002f < room * room;
+  found.IsProved = this->IsInWindow(bx, by, dot, cross);
   return found;
 }
 
@@ -647,12 +732,17 @@ ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
 {
   int guess;
   float x, y;
-  if (!this->PlaceEnd(b, x, y))
+  std::uint64_t end = this->Current->LanesOf<Vectors>(b);
+  if (end != 0)
+  {
+    x = this->Current->X[__builtin_ctzll(end)];
+    y = this->Current->Y[__builtin_ctzll(end)];
+  }
+  else if (!this->PlaceEnd(b, x, y))
   {
     open = Candidates();
     return 0;
   }
-  std::uint64_t end = this->Current->LanesOf<Vectors>(b);
   for (int count = 0;;)
   {
     open = this->Search<Vectors>(x, y, guess);
@@ -675,10 +765,113 @@ ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
   }
 }
 
+/** As FollowVectors(), for windows of two vectors of sixteen. */
+ELEVATION_WIDEST int Surroundings::FollowWidest(
+  Index b, Index last, Index* neighbors, Candidates& open) const
+{
+  const Window& window = *this->Current;
+  const __m512 x0 = _mm512_load_ps(window.X), x1 = _mm512_load_ps(window.X + 16);
+  const __m512 y0 = _mm512_load_ps(window.Y), y1 = _mm512_load_ps(window.Y + 16);
+  const __m512 square0 = _mm512_load_ps(window.Square);
+  const __m512 square1 = _mm512_load_ps(window.Square + 16);
+  const __m512i slot = _mm512_set1_epi32(b);
+  std::uint32_t ends = std::uint32_t(1) << window.OriginLane;
+  std::uint32_t end = _mm512_cmpeq_epi32_mask(slot, _mm512_load_si512(window.Slots)) |
+    static_cast<std::uint32_t>(
+      _mm512_cmpeq_epi32_mask(slot, _mm512_load_si512(window.Slots + 16)))
+      << 16;
+  float bx, by;
+  if (end != 0)
+  {
+    bx = window.X[__builtin_ctz(end)];
+    by = window.Y[__builtin_ctz(end)];
+  }
+  else if (!this->PlaceEnd(b, bx, by))
+  {
+    open = Candidates();
+    return 0;
+  }
+
+  const __m512 clear = _mm512_set1_ps(4.0f * window.Errors->CrossError);
+  const __m512 error = _mm512_set1_ps(window.Errors->ComparisonError);
+  const __m512 most = _mm512_set1_ps(std::numeric_limits<float>::max());
+  const __m512i laneBits = _mm512_set1_epi32(63);
+  const __m512i lanes0 = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const __m512i lanes1 = _mm512_add_epi32(lanes0, _mm512_set1_epi32(16));
+  __m512 endX = _mm512_set1_ps(bx), endY = _mm512_set1_ps(by);
+  for (int count = 0;;)
+  {
+    const __m512 cross0 = _mm512_fmsub_ps(endX, y0, _mm512_mul_ps(endY, x0));
+    const __m512 cross1 = _mm512_fmsub_ps(endX, y1, _mm512_mul_ps(endY, x1));
+    const __m512 dot0 = _mm512_fnmadd_ps(x0, endX, _mm512_fnmadd_ps(y0, endY, square0));
+    const __m512 dot1 = _mm512_fnmadd_ps(x1, endX, _mm512_fnmadd_ps(y1, endY, square1));
+    const __m512 quotient0 = _mm512_mul_ps(dot0, _mm512_rcp14_ps(cross0));
+    const __m512 quotient1 = _mm512_mul_ps(dot1, _mm512_rcp14_ps(cross1));
+    // Bit by bit: lane where laneBits is set, quotient elsewhere.
+    const __m512 marked0 = _mm512_castsi512_ps(_mm512_ternarylogic_epi32(
+      laneBits, lanes0, _mm512_castps_si512(quotient0), 0xca));
+    const __m512 marked1 = _mm512_castsi512_ps(_mm512_ternarylogic_epi32(
+      laneBits, lanes1, _mm512_castps_si512(quotient1), 0xca));
+    __m512 least =
+      _mm512_mask_mov_ps(most, _mm512_cmp_ps_mask(cross0, clear, _CMP_GT_OQ), marked0);
+    least = _mm512_mask_min_ps(
+      least, _mm512_cmp_ps_mask(cross1, clear, _CMP_GT_OQ), least, marked1);
+    // The least in all places.
+    least = _mm512_min_ps(least, _mm512_shuffle_f32x4(least, least, 0x4e));
+    least = _mm512_min_ps(least, _mm512_shuffle_f32x4(least, least, 0xb1));
+    least = _mm512_min_ps(least, _mm512_permute_ps(least, 0x4e));
+    least = _mm512_min_ps(least, _mm512_permute_ps(least, 0xb1));
+    const __m512i which = _mm512_castps_si512(least);
+    const __m512 nextX = _mm512_permutex2var_ps(x0, which, x1);
+    const __m512 nextY = _mm512_permutex2var_ps(y0, which, y1);
+    const float best = _mm512_cvtss_f32(least);
+    if (!(best < std::numeric_limits<float>::max()))
+    {
+      open = Candidates();
+      return count;
+    }
+    std::uint32_t bits;
+    std::memcpy(&bits, &best, sizeof bits);
+    const int guess = static_cast<int>(bits & 31u);
+    const float x = _mm512_cvtss_f32(nextX), y = _mm512_cvtss_f32(nextY);
+    const float cross = bx * y - by * x;
+    const float dot = (x * x + y * y) - (x * bx + y * by);
+    const __m512 bestCross = _mm512_set1_ps(cross), bestDot = _mm512_set1_ps(dot);
+    const __m512 difference0 =
+      _mm512_fmsub_ps(dot0, bestCross, _mm512_mul_ps(bestDot, cross0));
+    const __m512 difference1 =
+      _mm512_fmsub_ps(dot1, bestCross, _mm512_mul_ps(bestDot, cross1));
+    const std::uint32_t low = _mm512_cmp_ps_mask(difference0, error, _CMP_LE_OQ);
+    const std::uint32_t high = _mm512_cmp_ps_mask(difference1, error, _CMP_LE_OQ);
+    const std::uint32_t candidates = (low | high << 16) & ~(ends | end);
+    const bool isProved = this->IsInWindow(bx, by, dot, cross);
+    const std::uint32_t expected = std::uint32_t(1) << guess;
+    if (!isProved || candidates != expected)
+    {
+      open.Bits = candidates;
+      open.IsProved = isProved;
+      this->Sift(b, open);
+      return count;
+    }
+    b = neighbors[count++] = window.Slots[guess];
+    if (b == last || count == Capacity)
+    {
+      open = Candidates();
+      return count;
+    }
+    end = expected;
+    bx = x;
+    by = y;
+    endX = nextX;
+    endY = nextY;
+  }
+}
+
 ELEVATION_WIDE int Surroundings::Follow(
   Index b, Index last, Index* neighbors, Candidates& open) const
 {
-  return this->Current->Vectors == EvenVectors
+  return this->Current->Vectors == WidestVectors ? this->FollowWidest(b, last, neighbors, open)
+    : this->Current->Vectors == EvenVectors
     ? this->FollowVectors<EvenVectors>(b, last, neighbors, open)
     : this->FollowVectors<MostVectors>(b, last, neighbors, open);
 }
@@ -692,6 +885,7 @@ bool Surroundings::IsSupported()
 
 Surroundings::Surroundings(const BinGrid& grid)
   : Grid(grid)
+  , IsWidest(HasAVX512())
 {
 }
 

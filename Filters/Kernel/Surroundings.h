@@ -93,7 +93,7 @@ public:
   Index SlotOf(int candidate) const { return this->Current->Slots[candidate]; }
 
 private:
-  static constexpr int EvenVectors = 5, MostVectors = Capacity / 8;
+  static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
   static constexpr int Room = Capacity + 8; // whole vectors are written
   static constexpr Index MostRows = 4;
 
@@ -120,10 +120,10 @@ private:
   /** The points around a vertex, relative to it; what is not a number is none. */
   struct Window
   {
-    alignas(32) float X[Room];
-    alignas(32) float Y[Room];
-    alignas(32) float Square[Room]; ///< x^2 + y^2
-    alignas(32) Index Slots[Room];
+    alignas(64) float X[Room];
+    alignas(64) float Y[Room];
+    alignas(64) float Square[Room]; ///< x^2 + y^2
+    alignas(64) Index Slots[Room];
     Index Origin = None;
     int Vectors = 0; ///< of the lists that are in use; 0 where there is no window
     int OriginLane = 0;
@@ -141,6 +141,7 @@ private:
   void EnterRow(Index number);
   void ReadRow(Row& row);
   void GatherInto(Window& window);
+  bool GatherWidest(Window& window, Index firstColumn);
   bool GatherEven(Window& window, Index firstColumn);
   bool GatherBins(Window& window, Index column, int shape);
   void FindPath(Index origin);
@@ -151,9 +152,12 @@ private:
   Candidates Search(float bx, float by, int& guess) const;
   template <int Vectors>
   int FollowVectors(Index b, Index last, Index* neighbors, Candidates& open) const;
+  int FollowWidest(Index b, Index last, Index* neighbors, Candidates& open) const;
+  bool IsInWindow(float bx, float by, float dot, float cross) const;
   void Sift(Index b, Candidates& candidates) const;
 
   const BinGrid& Grid;
+  const bool IsWidest; ///< sixteen points at a time
   Window Windows[2];
   Window* Current = Windows; ///< and the other one is for the next vertex
   std::vector<BinGrid::Step> Path; ///< of PathOrigin

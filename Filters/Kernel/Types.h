@@ -57,7 +57,8 @@ inline bool operator!=(const Point2& p, const Point2& q)
  */
 inline bool IsLower(const Point2& p, const Point2& q)
 {
-  return p.Y < q.Y || (p.Y == q.Y && p.X < q.X);
+  // Without branches: which of two neighbours is lower cannot be predicted.
+  return (p.Y < q.Y) | ((p.Y == q.Y) & (p.X < q.X));
 }
 
 /**
