@@ -248,16 +248,20 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
   return candidates;
 }
 
-/** Looks for the apex of the triangle over an edge: the voxel traversal search. */
+/** Looks for the apex of the triangle over an edge, by either strategy. */
 class ApexSearch
 {
 public:
-  ApexSearch(const BinGrid& grid, bool useWideInstructions)
+  ApexSearch(const BinGrid& grid, const DelaunayOptions& options)
     : Grid(grid)
     , Around(grid)
-    , IsWide(useWideInstructions && Surroundings::IsSupported())
+    , IsByAngle(options.Strategy == SearchStrategy::Compactness)
+    , IsWide(options.UseWideInstructions && Surroundings::IsSupported())
   {
   }
+
+  /** How many points and boxes were looked at, but for those of windows. */
+  std::int64_t Work() const { return this->Looks; }
 
   /**
    * The vertex from which edges are grown from now on.
@@ -268,7 +272,8 @@ public:
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
     this->Path.clear();
-    this->HasAround = this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow();
+    this->HasAround = !this->IsByAngle &&
+      (this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow());
     this->OpenEnd = None;
   }
 
@@ -295,13 +300,19 @@ public:
    * vertex of the triangle. The points around the origin come first. Where they do not tell, the
    * tree of boxes is entered, nearest box first; what the disc through the best point so far does
    * not reach is passed over.
+   * @param[in] end  the last neighbour of the fan, which is on the left of the edge: a first guess
    * @return None when no point lies on the left of the edge
    */
-  Index Find(Index b)
+  Index Find(Index b, Index end)
   {
+    if (this->IsByAngle)
+    {
+      this->SetEdge(this->Origin, b);
+      return this->FindByAngle();
+    }
+    Index best = None;
     this->Target = b;
     this->B = this->Grid.PointAt(b);
-    Index best = None;
     if (this->HasAround && this->IsWide)
     {
       const Surroundings::Candidates found =
@@ -312,18 +323,10 @@ public:
         return best;
       }
     }
-
-    // A disc through both ends is told by the position s of its centre, in edge lengths along the
-    // edge's left normal. On the left of the edge a disc of larger s contains every disc of smaller
-    // s.
-    this->EdgeX = this->B.X - this->A.X;
-    this->EdgeY = this->B.Y - this->A.Y;
-    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
-    this->Best = None;
-    this->SetDisc(Infinity);
-    if (best != None)
+    this->SetEdge(this->Origin, b);
+    if (best != None || end != None)
     {
-      this->Compare(best, 1);
+      this->Compare(best != None ? best : end, 1);
     }
     if (this->HasAround && !this->IsWide && this->LookIntoWindow())
     {
@@ -350,15 +353,8 @@ public:
   Index FindAnywhere(Index a, Index b)
   {
     this->Origin = a;
-    this->A = this->Grid.PointAt(a);
-    this->Target = b;
-    this->B = this->Grid.PointAt(b);
-    this->EdgeX = this->B.X - this->A.X;
-    this->EdgeY = this->B.Y - this->A.Y;
-    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
-    this->Best = None;
+    this->SetEdge(a, b);
     this->Floor = -std::numeric_limits<double>::max(); // the empty box is lower still
-    this->SetDisc(Infinity);
     this->LookInto(this->Grid.Nodes[this->Grid.Nodes.size() - 1], ~0u);
     this->Floor = 0.0;
     return this->Best;
@@ -366,6 +362,95 @@ public:
 
 private:
   using Node = BinGrid::Node;
+
+  /** A box around an edge, relative to its origin. */
+  struct Box
+  {
+    double LowX, HighX, LowY, HighY;
+  };
+
+  /**
+   * Begins a search. A disc through both ends is told by the position s of its centre, in edge
+   * lengths along the edge's left normal. On the left of the edge a disc of larger s contains every
+   * disc of smaller s.
+   */
+  void SetEdge(Index a, Index b)
+  {
+    this->A = this->Grid.PointAt(a);
+    this->Target = b;
+    this->B = this->Grid.PointAt(b);
+    this->EdgeX = this->B.X - this->A.X;
+    this->EdgeY = this->B.Y - this->A.Y;
+    this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
+    this->Best = None;
+    this->SetDisc(Infinity);
+  }
+
+  /**
+   * The compactness strategy. A box of twice the edge's length around its middle is looked through,
+   * then, as long as it holds no point, ever larger ones; then the box of the best point's disc.
+   */
+  Index FindByAngle()
+  {
+    double reach = std::fabs(this->EdgeX) + std::fabs(this->EdgeY);
+    Box box{ -Infinity, Infinity, -Infinity, Infinity };
+    for (; this->Best == None && reach < Infinity; reach *= 2.0)
+    {
+      box = { 0.5 * this->EdgeX - reach, 0.5 * this->EdgeX + reach, 0.5 * this->EdgeY - reach,
+        0.5 * this->EdgeY + reach };
+      this->LookIntoBox(this->NodeAround(box), box);
+    }
+    const double radius = std::sqrt(this->RadiusSquared);
+    const Box discs{ this->CenterX - radius, this->CenterX + radius, this->CenterY - radius,
+      this->CenterY + radius };
+    if (!(reach < Infinity) || !Holds(box, discs))
+    {
+      this->LookIntoBox(this->NodeAround(discs), discs);
+    }
+    return this->Best;
+  }
+
+  static bool Holds(const Box& box, const Box& other)
+  {
+    return box.LowX < other.LowX && other.HighX < box.HighX && box.LowY < other.LowY &&
+      other.HighY < box.HighY;
+  }
+
+  /** The lowest node above the origin that has all points of a box, as far as they exist. */
+  const Node& NodeAround(const Box& box)
+  {
+    const std::vector<BinGrid::Step>& path = this->PathToOrigin();
+    const BinGrid::Step* step = &path.back();
+    while (step != path.data() &&
+      !Holds({ step->LowX - this->A.X, step->HighX - this->A.X, step->LowY - this->A.Y,
+               step->HighY - this->A.Y },
+        box))
+    {
+      --step;
+    }
+    return *step->Node;
+  }
+
+  void LookIntoBox(const Node& node, const Box& box)
+  {
+    this->Looks += Node::Places;
+    for (int place = 0; place < Node::Places; ++place)
+    {
+      // Differences round monotonically: relative to the origin, a box still holds its points.
+      if (node.LowX[place] - this->A.X <= box.HighX && node.HighX[place] - this->A.X >= box.LowX &&
+        node.LowY[place] - this->A.Y <= box.HighY && node.HighY[place] - this->A.Y >= box.LowY)
+      {
+        if (node.Count[place] > 0)
+        {
+          this->Compare(node.First[place], node.Count[place]);
+        }
+        else
+        {
+          this->LookIntoBox(this->Grid.Nodes[node.First[place]], box);
+        }
+      }
+    }
+  }
 
   /**
    * Without wide instructions: the bins around the origin that are looked at first, fewer where
@@ -466,7 +551,7 @@ private:
   {
     if (this->IsWide)
     {
-      return this->Around.PathToOrigin();
+      return this->Around.PathTo(this->Origin);
     }
     if (this->Path.empty())
     {
@@ -491,6 +576,7 @@ private:
    */
   void LookInto(const Node& node, unsigned int places)
   {
+    this->Looks += Node::Places;
     double distances[Node::Places];
     unsigned int left = this->Reached(node, distances) & places;
     while (left != 0)
@@ -663,6 +749,7 @@ private:
   /** Compares a stretch of slots with the best so far; the disc shrinks when one is better. */
   void Compare(Index first, Index count)
   {
+    this->Looks += count;
     bool isChanged = false;
 #ifdef ELEVATION_HAS_AVX2
     if (this->IsWide)
@@ -769,7 +856,9 @@ private:
 
   const BinGrid& Grid;
   Surroundings Around;
+  const bool IsByAngle;
   const bool IsWide;
+  std::int64_t Looks = 0;
   bool HasAround = false;
   Surroundings::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
@@ -977,7 +1066,7 @@ public:
     : Grid(grid)
     , Order(order)
     , Pool(pool)
-    , Search(grid, options.UseWideInstructions)
+    , Search(grid, options)
     , Around(grid, this->Search)
     , Begin(begin)
     , End(end)
@@ -1031,7 +1120,7 @@ private:
         this->Search.Follow(this->Fan, end);
         if (this->Fan.size() == count)
         {
-          this->Fan.Append(this->Search.Find(current));
+          this->Fan.Append(this->Search.Find(current, end));
         }
         current = this->Fan[this->Fan.size() - 1];
       }
@@ -1114,7 +1203,7 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
   EdgePool pool(count, rightChain, leftChain, threads);
 
   constexpr Index fewestPerStrip = 5000;
-  const Index number = options.PointsPerStrip > 0
+  const Index number = threads > 1 && options.PointsPerStrip > 0
     ? (count - 1) / options.PointsPerStrip + 1
     : std::max(std::min(threads, count / fewestPerStrip), 1);
   std::vector<std::unique_ptr<Strip>> strips;

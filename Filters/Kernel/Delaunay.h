@@ -61,8 +61,19 @@ enum class LatticeMode
   Off        ///< never: by the coordinates as they are
 };
 
+/** How the apex of an edge is looked for. Both find the same one. */
+enum class SearchStrategy
+{
+  /** Bins from the edge outwards, only as far as the best apex's circle reaches. */
+  VoxelTraversal,
+  /** Of all points in a box around the edge the one that sees it under the largest angle; the box
+     grows until it holds the circle. */
+  Compactness
+};
+
 struct DelaunayOptions
 {
+  SearchStrategy Strategy = SearchStrategy::VoxelTraversal;
   /** Triangles with an edge longer than this (in x,y) are left out; 0: no limit. */
   double MaximumEdgeLength = 0.0;
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;

@@ -12,6 +12,11 @@
 #include <immintrin.h>
 #endif
 
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 takes its own intrinsics' undefined values for a mistake.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 namespace elevation
 {
 #ifdef ELEVATION_HAS_AVX2
@@ -101,6 +106,11 @@ Surroundings::Surroundings(const BinGrid& grid)
     // bins are known to a thousandth of a bin.
     this->OfShapes[shape].Set(
       reach, 1.1 + Roundoff * reach, 0.01 * std::max(width, height) * perUnit);
+  }
+  for (Row& row : this->Rows)
+  {
+    row.X.resize(RowRoom);
+    row.Y.resize(RowRoom);
   }
   // Beyond the grid's border there is nothing.
   constexpr std::int32_t far = (1 << 30) - 1;
@@ -210,10 +220,10 @@ ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
   row.FirstSlot = slots.first;
   row.Starts =
     this->Grid.Starts.data() + static_cast<std::size_t>(row.Number) * bins.Columns;
-  if (row.X.size() < count + 16)
+  if (row.X.size() < count + RowRoom)
   {
-    row.X.resize(count + count / 4 + 16);
-    row.Y.resize(count + count / 4 + 16);
+    row.X.resize(count + count / 4 + RowRoom);
+    row.Y.resize(count + count / 4 + RowRoom);
   }
   const __m256d perUnit = _mm256_set1_pd(this->PerUnit);
   const __m256d fromX = _mm256_set1_pd(bins.OriginX), fromY = _mm256_set1_pd(bins.OriginY);

@@ -83,10 +83,10 @@ public:
    */
   int Follow(Index b, Index last, Index* neighbors, Candidates& open) const;
 
-  /** The path through the tree to the vertex, as BinGrid::FindPath() finds it. */
-  const std::vector<BinGrid::Step>& PathToOrigin()
+  /** The path through the tree to a vertex, as BinGrid::FindPath() finds it. */
+  const std::vector<BinGrid::Step>& PathTo(Index vertex)
   {
-    this->FindPath(this->Current->Origin);
+    this->FindPath(vertex);
     return this->Path;
   }
 
@@ -96,6 +96,7 @@ private:
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
   static constexpr int Room = Capacity + 8; // whole vectors are written
   static constexpr Index MostRows = 4;
+  static constexpr int RowRoom = 40; // whole vectors are read
 
   /** The points of a row of bins in units from the grid's corner. */
   struct Row
@@ -103,7 +104,7 @@ private:
     Index Number = None;
     Index FirstSlot = 0;
     const Index* Starts = nullptr; ///< the first slot of each bin, and one more
-    std::vector<std::int32_t> X, Y; ///< and a vector more
+    std::vector<std::int32_t> X, Y; ///< and RowRoom more
   };
 
   /** What the size of a window tells of rounding; lengths in the window's unit. */
