@@ -84,7 +84,8 @@ public:
    * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
    * that squares of distances neither over- nor underflow; this is exact, or not done.
    */
-  BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress);
+  BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
+    int threads = 1);
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
   Point2 PointAt(Index slot) const { return { this->X[slot], this->Y[slot] }; }
@@ -106,6 +107,7 @@ public:
   Buffer<Index> Ids;   ///< the input's point id by slot
   double Scale = 1.0;  ///< what the input's coordinates were multiplied by
   Layout Bins;
+  Buffer<Index> Order;  ///< all slots by increasing (y, x): row after row
   Buffer<Index> Starts; ///< first slot of each bin, row by row, and the number of slots
   std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row
   Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
@@ -114,10 +116,14 @@ public:
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite
 
 private:
-  void Fill(const PointView& points, const Progress& progress);
-  void BuildTree(const PointView& points, DuplicatePolicy policy, const Progress& progress);
-  void SetAside(const std::vector<bool>& isAside);
-  void FindRanges();
+  struct Block;
+
+  bool Lay(const PointView& points, const Progress& progress, int threads);
+  std::vector<Block> Fill(
+    const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads);
+  void FillBlock(
+    Block& block, const PointView& points, DuplicatePolicy policy, const Progress& progress);
+  void Join(std::vector<Block>& blocks, const Progress& progress, int threads);
 };
 
 } // namespace elevation
