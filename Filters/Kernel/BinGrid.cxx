@@ -202,6 +202,12 @@ private:
     return this->Grid.Slots(part.FirstRow, part.FirstColumn, part.EndColumn - 1);
   }
 
+  /** Whole leaves or nodes where there are several, so that they are full. */
+  static Index HalfOf(Index count, Index unit)
+  {
+    return count > unit ? (count / 2 + unit - 1) / unit * unit : count / 2;
+  }
+
   Child BuildBins(const Part& whole)
   {
     if (this->IsUndivided(whole))
@@ -233,11 +239,12 @@ private:
       other = part;
       if (part.Rows() == 1 || (part.Columns() > part.Rows() && part.Columns() > LeafColumns))
       {
-        part.EndColumn = other.FirstColumn = part.FirstColumn + part.Columns() / 2;
+        part.EndColumn = other.FirstColumn =
+          part.FirstColumn + HalfOf(part.Columns(), LeafColumns);
       }
       else
       {
-        part.EndRow = other.FirstRow = part.FirstRow + part.Rows() / 2;
+        part.EndRow = other.FirstRow = part.FirstRow + HalfOf(part.Rows(), BinGrid::Node::Places);
       }
       areas[widest] = areaOf(part);
       areas[count - 1] = areaOf(other);
@@ -695,7 +702,7 @@ std::vector<BinGrid::Block> BinGrid::Fill(
   const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
 
   // How many points of each piece are in each group of rows.
-  int shift = 0;
+  int shift = 3; // the tree's lowest nodes are of eight rows
   while (bins.Rows >> shift > MaximumGroups)
   {
     ++shift;
