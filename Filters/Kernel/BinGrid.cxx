@@ -19,7 +19,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 // in vain.
 constexpr double PointsPerBin = 1.3;
 // A bin with more points is halved until no part has more; evenly spread points hardly fill one so.
-constexpr Index FullBin = 8;
+constexpr Index FullBin = 24;
 // A leaf of the tree is at most so many bins of a row, with at most so many points.
 constexpr Index LeafColumns = 16;
 constexpr Index LeafPoints = 32;
@@ -135,8 +135,10 @@ struct Rows
 class TreeBuilder
 {
 public:
-  TreeBuilder(Rows& rows, Buffer<BinGrid::Node>& nodes, const Progress& progress)
+  /** @param room  for as many points as the rows hold */
+  TreeBuilder(Rows& rows, Placed* room, Buffer<BinGrid::Node>& nodes, const Progress& progress)
     : Grid(rows)
+    , Points(room)
     , Nodes(nodes)
     , Monitor(progress)
   {
@@ -284,12 +286,10 @@ private:
 
   Child BuildFullBin(std::pair<Index, Index> slots)
   {
-    this->FirstSlot = slots.first;
-    this->Points.clear();
     Heap heap{ slots.first, slots.second, Box() };
     for (Index slot = slots.first; slot < slots.second; ++slot)
     {
-      this->Points.push_back({ this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot], 0 });
+      this->Points[slot] = { this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot], 0 };
       heap.Bounds.Add(this->Grid.X[slot], this->Grid.Y[slot]);
     }
     return this->BuildHeap(heap);
@@ -301,7 +301,7 @@ private:
     {
       for (Index slot = whole.Begin; slot < whole.End; ++slot)
       {
-        const Placed& p = this->Points[slot - this->FirstSlot];
+        const Placed& p = this->Points[slot];
         this->Grid.X[slot] = p.X;
         this->Grid.Y[slot] = p.Y;
         this->Grid.Ids[slot] = p.Id;
@@ -347,8 +347,8 @@ private:
   {
     const bool isWide = heap.Bounds.HighX - heap.Bounds.LowX > heap.Bounds.HighY - heap.Bounds.LowY;
     const auto key = [isWide](const Placed& p) { return isWide ? p.X : p.Y; };
-    Placed* const begin = this->Points.data() + (heap.Begin - this->FirstSlot);
-    Placed* const end = this->Points.data() + (heap.End - this->FirstSlot);
+    Placed* const begin = this->Points + heap.Begin;
+    Placed* const end = this->Points + heap.End;
 
     // The median of a sample nearly always divides well; else that of all.
     constexpr Index sampleSize = 31;
@@ -412,11 +412,10 @@ private:
   }
 
   Rows& Grid;
+  Placed* const Points; ///< by slot, of the full bin at hand
   Buffer<BinGrid::Node>& Nodes;
   const Progress& Monitor;
   std::int64_t Visited = 0, NextReport = 0;
-  Index FirstSlot = 0;        ///< of the full bin at hand
-  std::vector<Placed> Points; ///< of the full bin at hand
 };
 /**
  * Orders the slots of a row by (y, x). Spread over the row's height first, they are nearly ordered,
@@ -426,23 +425,25 @@ private:
 class RowSorter
 {
 public:
-  RowSorter(const Rows& rows, const Progress& progress)
+  /** @param room  for as many points as the rows hold */
+  RowSorter(const Rows& rows, Placed* room, const Progress& progress)
     : Grid(rows)
+    , Entries(static_cast<Entry*>(static_cast<void*>(room)))
     , Monitor(progress)
   {
+    static_assert(sizeof(Entry) <= sizeof(Placed), "there is room");
   }
 
-  /** @param[out] order  room for the slots of the row */
+  /**
+   * @param[in] low,high  about where the row's points are
+   * @param[out] order    room for the slots of the row
+   */
   void Sort(std::pair<Index, Index> slots, double low, double high, Index* order)
   {
-    const Index count = slots.second - slots.first;
-    this->Entries.resize(count);
-    this->Spreads.resize(count);
-    for (Index i = 0; i < count; ++i)
-    {
-      this->Entries[i] = { this->Grid.Y[slots.first + i], slots.first + i };
-    }
-    this->Sort(this->Entries.data(), this->Spreads.data(), count, low, high, 0);
+    const double* const y = this->Grid.Y + slots.first;
+    const Index count = slots.second - slots.first, first = slots.first;
+    this->Sort([=](Index i) { return Entry{ y[i], first + i }; }, this->Entries, nullptr, count,
+      low, high, 0);
     for (Index i = 0; i < count; ++i)
     {
       order[i] = this->Entries[i].Slot;
@@ -457,6 +458,14 @@ private:
   {
     double Y;
     Index Slot;
+  };
+
+  /** Not a lambda, which would be another type, and another Sort(), at every depth. */
+  struct Copies
+  {
+    const Entry* From;
+
+    Entry operator()(Index i) const { return this->From[i]; }
   };
 
   bool IsBefore(const Entry& p, const Entry& q) const
@@ -478,23 +487,38 @@ private:
     }
   }
 
-  void Sort(Entry* entries, Entry* room, Index count, double low, double high, int depth)
+  /**
+   * Sorts the entries that get(0) to get(count - 1) return.
+   * @param[out] sorted  room for them, where they are not yet
+   * @param[in]  room    where they are, of no use afterwards; null when that is not among entries
+   */
+  template <typename Get>
+  void Sort(const Get& get, Entry* sorted, Entry* room, Index count, double low, double high, int depth)
   {
-    const double perHeight = high > low ? (count - 1) / (high - low) : 0.0;
-    if (!(perHeight > 0.0 && perHeight <= DBL_MAX) || depth > MaximumDepth)
+    const double last = count - 1;
+    const double perHeight = last / (high - low);
+    if (count <= Few || depth > MaximumDepth || !(perHeight > 0.0 && perHeight <= DBL_MAX))
     {
+      for (Index i = 0; i < count; ++i)
+      {
+        sorted[i] = get(i);
+      }
+      if (count <= Few)
+      {
+        return this->Insert(sorted, count);
+      }
       return elevation::Sort(
-        entries, entries + count,
+        sorted, sorted + count,
         [this](const Entry& p, const Entry& q) { return this->IsBefore(p, q); }, this->Monitor);
     }
     const auto bucketOf = [=](const Entry& p) {
-      return static_cast<Index>((p.Y - low) * perHeight);
+      return static_cast<Index>(std::max(0.0, std::min(last, (p.Y - low) * perHeight)));
     };
     std::vector<Index>& ends = this->Ends[depth];
     ends.assign(static_cast<std::size_t>(count) + 1, 0);
     for (Index i = 0; i < count; ++i)
     {
-      ++ends[bucketOf(entries[i]) + 1];
+      ++ends[bucketOf(get(i)) + 1];
     }
     Index fullest = 0;
     for (Index bucket = 0; bucket < count; ++bucket)
@@ -504,27 +528,34 @@ private:
     }
     for (Index i = 0; i < count; ++i)
     {
-      room[ends[bucketOf(entries[i])]++] = entries[i];
+      const Entry entry = get(i);
+      sorted[ends[bucketOf(entry)]++] = entry;
     }
     for (Index begin = 0, bucket = 0; fullest > Few && begin < count; begin = ends[bucket++])
     {
       const Index size = ends[bucket] - begin;
       if (size > Few)
       {
-        const auto range = std::minmax_element(room + begin, room + ends[bucket],
+        const auto range = std::minmax_element(sorted + begin, sorted + begin + size,
           [](const Entry& p, const Entry& q) { return p.Y < q.Y; });
         const double lowest = range.first->Y, highest = range.second->Y;
-        this->Sort(room + begin, entries + begin, size, lowest, highest, depth + 1);
+        if (!room)
+        {
+          this->Spreads.resize(std::max<std::size_t>(fullest, this->Spreads.size()));
+        }
+        Entry* const from = room ? room + begin : this->Spreads.data();
+        std::copy_n(sorted + begin, size, from);
+        this->Sort(Copies{ from }, sorted + begin, from, size, lowest, highest, depth + 1);
       }
     }
-    this->Insert(room, count);
-    std::copy(room, room + count, entries);
+    this->Insert(sorted, count);
   }
 
   const Rows& Grid;
+  Entry* const Entries;
   const Progress& Monitor;
   std::vector<Index> Ends[MaximumDepth + 1];
-  std::vector<Entry> Entries, Spreads;
+  std::vector<Entry> Spreads; ///< of the fullest bucket
 };
 
 bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other)
@@ -584,7 +615,7 @@ struct BinGrid::Block
 {
   Index FirstRow, EndRow;
   Index Begin, Count; ///< slots
-  const Placed* Points;
+  Placed* Points; ///< first its points, then room for as many
   Child Root;
   Buffer<Node> Nodes; ///< children and slots counted from the block's first
   std::vector<Index> Duplicates;
@@ -846,20 +877,20 @@ void BinGrid::FillBlock(
     local.Ids[slot] = p->Id;
   }
 
-  block.Root = TreeBuilder(local, block.Nodes, Part(progress, 0.0, 0.6)).Build(rows);
+  block.Root = TreeBuilder(local, block.Points, block.Nodes, Part(progress, 0.0, 0.6)).Build(rows);
 
   Index* const order = this->Order.data() + block.Begin;
   const Progress inSort = Part(progress, 0.6, 0.9);
-  RowSorter sorter(local, inSort);
+  RowSorter sorter(local, block.Points, inSort);
   for (Index row = 0; row < rows; ++row)
   {
     const auto slots = local.Slots(row, 0, this->Bins.Columns - 1);
     if (slots.first < slots.second)
     {
-      const auto range = std::minmax_element(local.Y + slots.first, local.Y + slots.second);
-      this->RowLow[block.FirstRow + row] = *range.first;
-      this->RowHigh[block.FirstRow + row] = *range.second;
-      sorter.Sort(slots, *range.first, *range.second, order + slots.first);
+      const double low = this->Bins.OriginY + (block.FirstRow + row) * this->Bins.BinHeight;
+      sorter.Sort(slots, low, low + this->Bins.BinHeight, order + slots.first);
+      this->RowLow[block.FirstRow + row] = local.Y[order[slots.first]];
+      this->RowHigh[block.FirstRow + row] = local.Y[order[slots.second - 1]];
     }
   }
 
