@@ -147,7 +147,6 @@ public:
   Child Build(Index rows) { return this->BuildBins({ 0, rows, 0, this->Grid.Columns }); }
 
 private:
-
   /** Bins of some rows and columns, ends excluded. */
   struct Part
   {
@@ -241,8 +240,7 @@ private:
       other = part;
       if (part.Rows() == 1 || (part.Columns() > part.Rows() && part.Columns() > LeafColumns))
       {
-        part.EndColumn = other.FirstColumn =
-          part.FirstColumn + HalfOf(part.Columns(), LeafColumns);
+        part.EndColumn = other.FirstColumn = part.FirstColumn + HalfOf(part.Columns(), LeafColumns);
       }
       else
       {
@@ -442,8 +440,11 @@ public:
   {
     const double* const y = this->Grid.Y + slots.first;
     const Index count = slots.second - slots.first, first = slots.first;
-    this->Sort([=](Index i) { return Entry{ y[i], first + i }; }, this->Entries, nullptr, count,
-      low, high, 0);
+    this->Sort(
+      [=](Index i) {
+        return Entry{ y[i], first + i };
+      },
+      this->Entries, nullptr, count, low, high, 0);
     for (Index i = 0; i < count; ++i)
     {
       order[i] = this->Entries[i].Slot;
@@ -493,7 +494,8 @@ private:
    * @param[in]  room    where they are, of no use afterwards; null when that is not among entries
    */
   template <typename Get>
-  void Sort(const Get& get, Entry* sorted, Entry* room, Index count, double low, double high, int depth)
+  void Sort(
+    const Get& get, Entry* sorted, Entry* room, Index count, double low, double high, int depth)
   {
     const double last = count - 1;
     const double perHeight = last / (high - low);
@@ -615,7 +617,7 @@ struct BinGrid::Block
 {
   Index FirstRow, EndRow;
   Index Begin, Count; ///< slots
-  Placed* Points; ///< first its points, then room for as many
+  Placed* Points;     ///< first its points, then room for as many
   Child Root;
   Buffer<Node> Nodes; ///< children and slots counted from the block's first
   std::vector<Index> Duplicates;
@@ -686,8 +688,7 @@ bool BinGrid::Lay(const PointView& points, const Progress& progress, int threads
   for (const Piece& piece : pieces)
   {
     bounds.Add(piece.Bounds);
-    this->NotFinite.insert(
-      this->NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());
+    this->NotFinite.insert(this->NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());
   }
   const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
   if (count == 0)
@@ -739,7 +740,8 @@ std::vector<BinGrid::Block> BinGrid::Fill(
     ++shift;
   }
   const Index groups = ((bins.Rows - 1) >> shift) + 1;
-  const std::size_t pieces = (static_cast<std::size_t>(points.Count) + PiecePoints - 1) / PiecePoints;
+  const std::size_t pieces =
+    (static_cast<std::size_t>(points.Count) + PiecePoints - 1) / PiecePoints;
   std::vector<Index> inGroup(pieces * groups, 0);
   ForEachPieceOf(
     points, threads, Part(progress, 0.0, 0.1), [&](Index piece, Index begin, Index end) {
@@ -824,13 +826,12 @@ std::vector<BinGrid::Block> BinGrid::Fill(
   const double large = std::accumulate(blocks.begin(), blocks.end(), 0.0,
     [&](double points, const Block& block) { return points + isLarge(block) * block.Count; });
   double done = 1.0 - large / count;
-  ForEachPiece(
-    static_cast<Index>(blocks.size()), threads, Part(inBlocks, 0.0, done), [&](Index i) {
-      if (!isLarge(blocks[i]))
-      {
-        this->FillBlock(blocks[i], points, policy, Progress());
-      }
-    });
+  ForEachPiece(static_cast<Index>(blocks.size()), threads, Part(inBlocks, 0.0, done), [&](Index i) {
+    if (!isLarge(blocks[i]))
+    {
+      this->FillBlock(blocks[i], points, policy, Progress());
+    }
+  });
   for (Block& block : blocks)
   {
     if (isLarge(block))

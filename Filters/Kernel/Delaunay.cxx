@@ -63,7 +63,8 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
       // In the outermost bins that hold points.
       const Index* bounds = &grid.Starts[static_cast<std::size_t>(row) * bins.Columns];
       const Index* firstEnd = std::upper_bound(bounds, bounds + bins.Columns + 1, slots.first);
-      const Index* lastBegin = std::lower_bound(bounds, bounds + bins.Columns + 1, slots.second) - 1;
+      const Index* lastBegin =
+        std::lower_bound(bounds, bounds + bins.Columns + 1, slots.second) - 1;
       Index left = static_cast<Index>(
         std::min_element(grid.X.begin() + slots.first, grid.X.begin() + *firstEnd) -
         grid.X.begin());
