@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BinGrid.h"
 
+#include "Parallel.h"
+
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <numeric>
 
 namespace elevation
 {
@@ -17,10 +19,16 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 // in vain.
 constexpr double PointsPerBin = 1.0;
 // A bin with more points is halved until no part has more; evenly spread points hardly fill one so.
-constexpr Index FullBin = 8;
+constexpr Index FullBin = 24;
 // A leaf of the tree is at most so many bins of a row, with at most so many points.
 constexpr Index LeafColumns = 16;
 constexpr Index LeafPoints = 32;
+// The input is read in pieces of so many points, each by one thread.
+constexpr Index PiecePoints = 1 << 17;
+// A block of rows holds so many points or a few more, such that the cache of a core does.
+constexpr Index BlockPoints = 1 << 14;
+// Blocks are made of at most so many groups of rows.
+constexpr Index MaximumGroups = 4096;
 
 /** Bins along both sides of a box for so many points, as square as its proportions allow. */
 void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
@@ -43,11 +51,12 @@ void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
     isPlain(bins.BinWidth, bins.OriginX, width) && isPlain(bins.BinHeight, bins.OriginY, height);
 }
 
-/** A point of a full bin while it is halved. */
+/** A point on its way to its slot. */
 struct Placed
 {
   double X, Y;
   Index Id;
+  Index Bin; ///< among those of its block
 };
 
 struct Box
@@ -69,44 +78,75 @@ struct Box
   bool IsOnePlace() const { return this->LowX == this->HighX && this->LowY == this->HighY; }
 };
 
-/**
- * Builds the tree from the top down; orders the slots of full bins; tells each group of points
- * among which all duplicates of its points are.
- */
+/** What a place of a node of the tree holds; no points at all when Size is 0. */
+struct Child
+{
+  Box Bounds;
+  Index First = None;
+  Index Count = 0;
+  Index Size = 0;
+};
+
+/** Appends a node and returns the child that it is. */
+Child AddNode(const Child* children, int count, Buffer<BinGrid::Node>& nodes)
+{
+  BinGrid::Node node;
+  Child joined;
+  node.Size = 0;
+  for (int place = 0; place < BinGrid::Node::Places; ++place)
+  {
+    const Child child = place < count ? children[place] : Child();
+    node.LowX[place] = child.Size > 0 ? child.Bounds.LowX : Infinity;
+    node.HighX[place] = child.Size > 0 ? child.Bounds.HighX : -Infinity;
+    node.LowY[place] = child.Size > 0 ? child.Bounds.LowY : Infinity;
+    node.HighY[place] = child.Size > 0 ? child.Bounds.HighY : -Infinity;
+    node.First[place] = child.First;
+    node.Count[place] = child.Count;
+    node.Size += child.Size;
+    if (child.Size > 0)
+    {
+      joined.Bounds.Add(child.Bounds);
+    }
+  }
+  joined.Size = node.Size;
+  joined.First = static_cast<Index>(nodes.size());
+  nodes.Append(node);
+  return joined;
+}
+
+/** Some rows of the grid: bins, slots and points are counted from the first of them. */
+struct Rows
+{
+  double* X;
+  double* Y;
+  Index* Ids;
+  std::vector<Index> Starts;
+  Index Columns;
+
+  Index Count() const { return this->Starts.back(); }
+  std::pair<Index, Index> Slots(Index row, Index firstColumn, Index lastColumn) const
+  {
+    const Index* starts = this->Starts.data() + static_cast<std::size_t>(row) * this->Columns;
+    return { starts[firstColumn], starts[lastColumn + 1] };
+  }
+};
+
+/** Builds the tree over some rows from the top down, and orders the slots of full bins. */
 class TreeBuilder
 {
 public:
-  /** Told slots [begin, end); the last argument, whether all of them are equal. */
-  using Visitor = std::function<void(Index, Index, bool)>;
-
-  TreeBuilder(BinGrid& grid, Visitor visitDuplicates, const Progress& progress)
-    : Grid(grid)
-    , VisitDuplicates(std::move(visitDuplicates))
+  /** @param room  for as many points as the rows hold */
+  TreeBuilder(Rows& rows, Placed* room, Buffer<BinGrid::Node>& nodes, const Progress& progress)
+    : Grid(rows)
+    , Points(room)
+    , Nodes(nodes)
     , Monitor(progress)
   {
   }
 
-  void Build()
-  {
-    const Part all{ 0, this->Grid.Bins.Rows, 0, this->Grid.Bins.Columns };
-    const Child root = this->BuildBins(all);
-    if (root.Count > 0)
-    {
-      const Child* only = &root;
-      this->AddNode(only, 1);
-    }
-  }
+  Child Build(Index rows) { return this->BuildBins({ 0, rows, 0, this->Grid.Columns }); }
 
 private:
-  /** What a place of a node holds; no points at all when Size is 0. */
-  struct Child
-  {
-    Box Bounds;
-    Index First = None;
-    Index Count = 0;
-    Index Size = 0;
-  };
-
   /** Bins of some rows and columns, ends excluded. */
   struct Part
   {
@@ -130,33 +170,7 @@ private:
   /** A single child needs no node of its own. */
   Child Join(const Child* children, int count)
   {
-    return count == 0 ? Child() : count == 1 ? children[0] : this->AddNode(children, count);
-  }
-
-  Child AddNode(const Child* children, int count)
-  {
-    BinGrid::Node node;
-    Child joined;
-    node.Size = 0;
-    for (int place = 0; place < BinGrid::Node::Places; ++place)
-    {
-      const Child child = place < count ? children[place] : Child();
-      node.LowX[place] = child.Size > 0 ? child.Bounds.LowX : Infinity;
-      node.HighX[place] = child.Size > 0 ? child.Bounds.HighX : -Infinity;
-      node.LowY[place] = child.Size > 0 ? child.Bounds.LowY : Infinity;
-      node.HighY[place] = child.Size > 0 ? child.Bounds.HighY : -Infinity;
-      node.First[place] = child.First;
-      node.Count[place] = child.Count;
-      node.Size += child.Size;
-      if (child.Size > 0)
-      {
-        joined.Bounds.Add(child.Bounds);
-      }
-    }
-    joined.Size = node.Size;
-    joined.First = static_cast<Index>(this->Grid.Nodes.size());
-    this->Grid.Nodes.Append(node);
-    return joined;
+    return count == 0 ? Child() : count == 1 ? children[0] : AddNode(children, count, this->Nodes);
   }
 
   /** Whether the part is a leaf, nothing, or one bin: not to be divided by rows and columns. */
@@ -187,6 +201,12 @@ private:
   std::pair<Index, Index> SlotsOf(const Part& part) const
   {
     return this->Grid.Slots(part.FirstRow, part.FirstColumn, part.EndColumn - 1);
+  }
+
+  /** Whole leaves or nodes where there are several, so that they are full. */
+  static Index HalfOf(Index count, Index unit)
+  {
+    return count > unit ? (count / 2 + unit - 1) / unit * unit : count / 2;
   }
 
   Child BuildBins(const Part& whole)
@@ -220,11 +240,11 @@ private:
       other = part;
       if (part.Rows() == 1 || (part.Columns() > part.Rows() && part.Columns() > LeafColumns))
       {
-        part.EndColumn = other.FirstColumn = part.FirstColumn + part.Columns() / 2;
+        part.EndColumn = other.FirstColumn = part.FirstColumn + HalfOf(part.Columns(), LeafColumns);
       }
       else
       {
-        part.EndRow = other.FirstRow = part.FirstRow + part.Rows() / 2;
+        part.EndRow = other.FirstRow = part.FirstRow + HalfOf(part.Rows(), BinGrid::Node::Places);
       }
       areas[widest] = areaOf(part);
       areas[count - 1] = areaOf(other);
@@ -259,25 +279,15 @@ private:
     }
     child.First = slots.first;
     child.Count = child.Size = count;
-    for (Index column = part.FirstColumn; column < part.EndColumn && count > 1; ++column)
-    {
-      const auto bin = this->Grid.Slots(part.FirstRow, column, column);
-      if (bin.second - bin.first > 1)
-      {
-        this->VisitDuplicates(bin.first, bin.second, false);
-      }
-    }
     return child;
   }
 
   Child BuildFullBin(std::pair<Index, Index> slots)
   {
-    this->FirstSlot = slots.first;
-    this->Points.clear();
     Heap heap{ slots.first, slots.second, Box() };
     for (Index slot = slots.first; slot < slots.second; ++slot)
     {
-      this->Points.push_back({ this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot] });
+      this->Points[slot] = { this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot], 0 };
       heap.Bounds.Add(this->Grid.X[slot], this->Grid.Y[slot]);
     }
     return this->BuildHeap(heap);
@@ -289,12 +299,11 @@ private:
     {
       for (Index slot = whole.Begin; slot < whole.End; ++slot)
       {
-        const Placed& p = this->Points[slot - this->FirstSlot];
+        const Placed& p = this->Points[slot];
         this->Grid.X[slot] = p.X;
         this->Grid.Y[slot] = p.Y;
         this->Grid.Ids[slot] = p.Id;
       }
-      this->VisitDuplicates(whole.Begin, whole.End, whole.Bounds.IsOnePlace());
       return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
     }
     if (whole.Size() > 65536)
@@ -325,7 +334,7 @@ private:
     {
       children[i] = this->BuildHeap(heaps[i]);
     }
-    return this->AddNode(children, count);
+    return AddNode(children, count, this->Nodes);
   }
 
   /**
@@ -336,8 +345,8 @@ private:
   {
     const bool isWide = heap.Bounds.HighX - heap.Bounds.LowX > heap.Bounds.HighY - heap.Bounds.LowY;
     const auto key = [isWide](const Placed& p) { return isWide ? p.X : p.Y; };
-    Placed* const begin = this->Points.data() + (heap.Begin - this->FirstSlot);
-    Placed* const end = this->Points.data() + (heap.End - this->FirstSlot);
+    Placed* const begin = this->Points + heap.Begin;
+    Placed* const end = this->Points + heap.End;
 
     // The median of a sample nearly always divides well; else that of all.
     constexpr Index sampleSize = 31;
@@ -395,25 +404,235 @@ private:
     this->Visited += visited;
     if (visited == 0 || this->Visited >= this->NextReport)
     {
-      Report(this->Monitor, double(this->Visited) / this->Grid.NumberOfPoints());
+      Report(this->Monitor, double(this->Visited) / this->Grid.Count());
       this->NextReport = this->Visited + 65536;
     }
   }
 
-  BinGrid& Grid;
-  const Visitor VisitDuplicates;
+  Rows& Grid;
+  Placed* const Points; ///< by slot, of the full bin at hand
+  Buffer<BinGrid::Node>& Nodes;
   const Progress& Monitor;
   std::int64_t Visited = 0, NextReport = 0;
-  Index FirstSlot = 0;        ///< of the full bin at hand
-  std::vector<Placed> Points; ///< of the full bin at hand
 };
+/**
+ * Orders the slots of a row by (y, x). Spread over the row's height first, they are nearly ordered,
+ * which insertion finishes in linear time. Where many are close to each other, these are spread
+ * again, and after a few times compared.
+ */
+class RowSorter
+{
+public:
+  /** @param room  for as many points as the rows hold */
+  RowSorter(const Rows& rows, Placed* room, const Progress& progress)
+    : Grid(rows)
+    , Entries(static_cast<Entry*>(static_cast<void*>(room)))
+    , Monitor(progress)
+  {
+    static_assert(sizeof(Entry) <= sizeof(Placed), "there is room");
+  }
+
+  /**
+   * @param[in] low,high  about where the row's points are
+   * @param[out] order    room for the slots of the row
+   */
+  void Sort(std::pair<Index, Index> slots, double low, double high, Index* order)
+  {
+    const double* const y = this->Grid.Y + slots.first;
+    const Index count = slots.second - slots.first, first = slots.first;
+    this->Sort(
+      [=](Index i) {
+        return Entry{ y[i], first + i };
+      },
+      this->Entries, nullptr, count, low, high, 0);
+    for (Index i = 0; i < count; ++i)
+    {
+      order[i] = this->Entries[i].Slot;
+    }
+  }
+
+private:
+  static constexpr Index Few = 16;
+  static constexpr int MaximumDepth = 3;
+
+  struct Entry
+  {
+    double Y;
+    Index Slot;
+  };
+
+  /** Not a lambda, which would be another type, and another Sort(), at every depth. */
+  struct Copies
+  {
+    const Entry* From;
+
+    Entry operator()(Index i) const { return this->From[i]; }
+  };
+
+  bool IsBefore(const Entry& p, const Entry& q) const
+  {
+    return p.Y < q.Y || (p.Y == q.Y && this->Grid.X[p.Slot] < this->Grid.X[q.Slot]);
+  }
+
+  void Insert(Entry* entries, Index count) const
+  {
+    for (Index i = 1; i < count; ++i)
+    {
+      const Entry entry = entries[i];
+      Index at = i;
+      for (; at > 0 && this->IsBefore(entry, entries[at - 1]); --at)
+      {
+        entries[at] = entries[at - 1];
+      }
+      entries[at] = entry;
+    }
+  }
+
+  /**
+   * Sorts the entries that get(0) to get(count - 1) return.
+   * @param[out] sorted  room for them, where they are not yet
+   * @param[in]  room    where they are, of no use afterwards; null when that is not among entries
+   */
+  template <typename Get>
+  void Sort(
+    const Get& get, Entry* sorted, Entry* room, Index count, double low, double high, int depth)
+  {
+    const double last = count - 1;
+    const double perHeight = last / (high - low);
+    if (count <= Few || depth > MaximumDepth || !(perHeight > 0.0 && perHeight <= DBL_MAX))
+    {
+      for (Index i = 0; i < count; ++i)
+      {
+        sorted[i] = get(i);
+      }
+      if (count <= Few)
+      {
+        return this->Insert(sorted, count);
+      }
+      return elevation::Sort(
+        sorted, sorted + count,
+        [this](const Entry& p, const Entry& q) { return this->IsBefore(p, q); }, this->Monitor);
+    }
+    const auto bucketOf = [=](const Entry& p) {
+      return static_cast<Index>(std::max(0.0, std::min(last, (p.Y - low) * perHeight)));
+    };
+    std::vector<Index>& ends = this->Ends[depth];
+    ends.assign(static_cast<std::size_t>(count) + 1, 0);
+    for (Index i = 0; i < count; ++i)
+    {
+      ++ends[bucketOf(get(i)) + 1];
+    }
+    Index fullest = 0;
+    for (Index bucket = 0; bucket < count; ++bucket)
+    {
+      fullest = std::max(fullest, ends[bucket + 1]);
+      ends[bucket + 1] += ends[bucket];
+    }
+    for (Index i = 0; i < count; ++i)
+    {
+      const Entry entry = get(i);
+      sorted[ends[bucketOf(entry)]++] = entry;
+    }
+    for (Index begin = 0, bucket = 0; fullest > Few && begin < count; begin = ends[bucket++])
+    {
+      const Index size = ends[bucket] - begin;
+      if (size > Few)
+      {
+        const auto range = std::minmax_element(sorted + begin, sorted + begin + size,
+          [](const Entry& p, const Entry& q) { return p.Y < q.Y; });
+        const double lowest = range.first->Y, highest = range.second->Y;
+        if (!room)
+        {
+          this->Spreads.resize(std::max<std::size_t>(fullest, this->Spreads.size()));
+        }
+        Entry* const from = room ? room + begin : this->Spreads.data();
+        std::copy_n(sorted + begin, size, from);
+        this->Sort(Copies{ from }, sorted + begin, from, size, lowest, highest, depth + 1);
+      }
+    }
+    this->Insert(sorted, count);
+  }
+
+  const Rows& Grid;
+  Entry* const Entries;
+  const Progress& Monitor;
+  std::vector<Index> Ends[MaximumDepth + 1];
+  std::vector<Entry> Spreads; ///< of the fullest bucket
+};
+
+bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other)
+{
+  if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)
+  {
+    const double z = points.Elevation(id), otherZ = points.Elevation(other);
+    if (z != otherZ)
+    {
+      return policy == DuplicatePolicy::KeepLowest ? z < otherZ : z > otherZ;
+    }
+  }
+  return policy == DuplicatePolicy::KeepLast ? id > other : id < other;
+}
+
+/** Visits the finite ones of the points [begin, end): their id and position. */
+template <typename Value, typename Visit>
+void VisitFinite(const Value* coordinates, Index begin, Index end, double scale, Visit&& visit)
+{
+  for (Index i = begin; i < end; ++i)
+  {
+    const Value* p = coordinates + 3 * static_cast<std::size_t>(i);
+    const double x = p[0], y = p[1], z = p[2];
+    if (x - x + (y - y) + (z - z) == 0.0)
+    {
+      visit(i, x * scale, y * scale);
+    }
+  }
+}
+template <typename Visit>
+void VisitFinite(const PointView& points, Index begin, Index end, double scale, Visit&& visit)
+{
+  if (points.Double)
+  {
+    VisitFinite(points.Double, begin, end, scale, visit);
+  }
+  else
+  {
+    VisitFinite(points.Float, begin, end, scale, visit);
+  }
+}
+
+/** Calls work(piece, begin, end) for pieces of the points. */
+template <typename Work>
+void ForEachPieceOf(const PointView& points, int threads, const Progress& progress, Work&& work)
+{
+  const Index pieces = (points.Count + PiecePoints - 1) / PiecePoints;
+  ForEachPiece(pieces, threads, progress, [&](Index piece) {
+    const Index begin = piece * PiecePoints;
+    work(piece, begin, begin + std::min(PiecePoints, points.Count - begin));
+  });
+}
 } // namespace
 
-BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress)
+/** Rows of bins that are filled by one thread, while its cache holds their points. */
+struct BinGrid::Block
 {
-  this->Fill(points, Part(progress, 0.0, 0.7));
-  this->BuildTree(points, policy, Part(progress, 0.7, 1.0));
-  this->FindRanges();
+  Index FirstRow, EndRow;
+  Index Begin, Count; ///< slots
+  Placed* Points;     ///< first its points, then room for as many
+  Child Root;
+  Buffer<Node> Nodes; ///< children and slots counted from the block's first
+  std::vector<Index> Duplicates;
+};
+
+BinGrid::BinGrid(
+  const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads)
+{
+  if (!this->Lay(points, Part(progress, 0.0, 0.2), threads))
+  {
+    this->Starts.Append(0);
+    return;
+  }
+  std::vector<Block> blocks = this->Fill(points, policy, Part(progress, 0.2, 0.9), threads);
+  this->Join(blocks, Part(progress, 0.9, 1.0), threads);
 }
 
 void BinGrid::FindPath(const Point2& p, std::vector<Step>& path) const
@@ -440,43 +659,54 @@ void BinGrid::FindPath(const Point2& p, std::vector<Step>& path) const
   }
 }
 
-void BinGrid::Fill(const PointView& points, const Progress& progress)
+bool BinGrid::Lay(const PointView& points, const Progress& progress, int threads)
 {
-  constexpr Index stride = 1 << 20; // points between two reports
-
-  double lowX = DBL_MAX, highX = -DBL_MAX, lowY = DBL_MAX, highY = -DBL_MAX;
-  double greatest = 0.0, least = DBL_MAX; // magnitudes other than zero
-  for (Index i = 0; i < points.Count; ++i)
+  struct Piece
   {
-    if (i % stride == 0)
+    Box Bounds;
+    std::vector<Index> NotFinite;
+  };
+  std::vector<Piece> pieces(points.Count / PiecePoints + 1);
+  ForEachPieceOf(points, threads, progress, [&](Index number, Index begin, Index end) {
+    Box bounds;
+    Index finite = 0;
+    VisitFinite(points, begin, end, 1.0, [&](Index, double x, double y) {
+      bounds.Add(x, y);
+      ++finite;
+    });
+    pieces[number].Bounds = bounds;
+    for (Index i = begin, next = begin; finite < end - begin && i < end; next = ++i)
     {
-      Report(progress, 0.25 * i / points.Count);
+      VisitFinite(points, i, i + 1, 1.0, [&](Index, double, double) { ++next; });
+      if (next == i)
+      {
+        pieces[number].NotFinite.push_back(i);
+      }
     }
-    const Point2 p = points.At(i);
-    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(i)))
-    {
-      this->NotFinite.push_back(i);
-      continue;
-    }
-    lowX = std::min(lowX, p.X);
-    highX = std::max(highX, p.X);
-    lowY = std::min(lowY, p.Y);
-    highY = std::max(highY, p.Y);
-    for (double magnitude : { std::fabs(p.X), std::fabs(p.Y) })
-    {
-      greatest = std::max(greatest, magnitude);
-      least = magnitude > 0.0 ? std::min(least, magnitude) : least;
-    }
+  });
+  Box bounds;
+  for (const Piece& piece : pieces)
+  {
+    bounds.Add(piece.Bounds);
+    this->NotFinite.insert(this->NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());
   }
   const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
   if (count == 0)
   {
-    this->Starts.Append(0);
-    return;
+    return false;
   }
 
+  const double greatest = std::max(std::max(std::fabs(bounds.LowX), std::fabs(bounds.HighX)),
+    std::max(std::fabs(bounds.LowY), std::fabs(bounds.HighY)));
   if (greatest > 1e60 || (greatest > 0.0 && greatest < 1e-60))
   {
+    double least = DBL_MAX; // magnitude other than zero
+    VisitFinite(points, 0, points.Count, 1.0, [&](Index, double x, double y) {
+      for (double magnitude : { std::fabs(x), std::fabs(y) })
+      {
+        least = magnitude > 0.0 ? std::min(least, magnitude) : least;
+      }
+    });
     int exponent;
     std::frexp(greatest, &exponent);
     // Two steps, because the factor itself may leave the range; only when no small coordinate loses
@@ -485,48 +715,153 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
     if (least * scale > DBL_MIN / DBL_EPSILON)
     {
       this->Scale = scale;
-      for (double* bound : { &lowX, &highX, &lowY, &highY })
+      for (double* bound : { &bounds.LowX, &bounds.HighX, &bounds.LowY, &bounds.HighY })
       {
         *bound *= scale;
       }
     }
   }
+  this->Bins.OriginX = bounds.LowX;
+  this->Bins.OriginY = bounds.LowY;
+  ChooseBins(this->Bins, bounds.HighX - bounds.LowX, bounds.HighY - bounds.LowY, count);
+  return true;
+}
 
-  this->Bins.OriginX = lowX;
-  this->Bins.OriginY = lowY;
-  ChooseBins(this->Bins, highX - lowX, highY - lowY, count);
-  const std::size_t bins = static_cast<std::size_t>(this->Bins.Columns) * this->Bins.Rows;
-  this->Starts.Resize(bins + 1);
-  std::fill(this->Starts.begin(), this->Starts.end(), 0);
-  Index* starts = this->Starts.data();
-  const auto binOf = [&](const Point2& p) {
-    return static_cast<std::size_t>(this->Bins.Row(p.Y)) * this->Bins.Columns +
-      this->Bins.Column(p.X);
-  };
-  const double scale = this->Scale;
-  const auto forEachPoint = [&](double begin, double end, auto&& visit) {
-    std::size_t nextNotFinite = 0;
-    for (Index i = 0; i < points.Count; ++i)
+std::vector<BinGrid::Block> BinGrid::Fill(
+  const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads)
+{
+  const Layout& bins = this->Bins;
+  const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
+
+  // How many points of each piece are in each group of rows.
+  int shift = 3; // the tree's lowest nodes are of eight rows
+  while (bins.Rows >> shift > MaximumGroups)
+  {
+    ++shift;
+  }
+  const Index groups = ((bins.Rows - 1) >> shift) + 1;
+  const std::size_t pieces =
+    (static_cast<std::size_t>(points.Count) + PiecePoints - 1) / PiecePoints;
+  std::vector<Index> inGroup(pieces * groups, 0);
+  ForEachPieceOf(
+    points, threads, Part(progress, 0.0, 0.1), [&](Index piece, Index begin, Index end) {
+      Index* const counts = inGroup.data() + static_cast<std::size_t>(piece) * groups;
+      VisitFinite(points, begin, end, this->Scale,
+        [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
+    });
+
+  // Blocks of groups, about as many points in each; where each piece's points of a block begin.
+  std::vector<Block> blocks;
+  std::vector<Index> blockOf(groups);
+  Index sum = 0;
+  for (Index group = 0; group < groups; ++group)
+  {
+    const Index row = group << shift, endRow = std::min((group + 1) << shift, bins.Rows);
+    if (blocks.empty() || blocks.back().Count >= BlockPoints ||
+      (row - blocks.back().FirstRow) * static_cast<double>(bins.Columns) >= BlockPoints)
     {
-      if (i % stride == 0)
-      {
-        Report(progress, begin + (end - begin) * i / points.Count);
-      }
-      if (nextNotFinite < this->NotFinite.size() && this->NotFinite[nextNotFinite] == i)
-      {
-        ++nextNotFinite;
-        continue;
-      }
-      Point2 p = points.At(i);
-      p.X *= scale;
-      p.Y *= scale;
-      visit(i, p);
+      blocks.emplace_back();
+      blocks.back().FirstRow = row;
+      blocks.back().Begin = sum;
+      blocks.back().Count = 0;
     }
-  };
+    blocks.back().EndRow = endRow;
+    for (std::size_t piece = 0; piece < pieces; ++piece)
+    {
+      blocks.back().Count += inGroup[piece * groups + group];
+    }
+    sum = blocks.back().Begin + blocks.back().Count;
+    blockOf[group] = static_cast<Index>(blocks.size()) - 1;
+  }
+  std::vector<Index> next(pieces * blocks.size(), 0);
+  for (std::size_t piece = 0; piece < pieces; ++piece)
+  {
+    for (Index group = 0; group < groups; ++group)
+    {
+      next[piece * blocks.size() + blockOf[group]] += inGroup[piece * groups + group];
+    }
+  }
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+  {
+    Index at = blocks[i].Begin;
+    for (std::size_t k = i; k < next.size(); k += blocks.size())
+    {
+      const Index inPiece = next[k];
+      next[k] = at;
+      at += inPiece;
+    }
+  }
 
-  // Count, prefix sum, fill: while filling, Starts[b + 1] runs from the first slot of bin b to its
+  Buffer<Placed> placed;
+  placed.Resize(count);
+  for (Block& block : blocks)
+  {
+    block.Points = placed.data() + block.Begin;
+  }
+  ForEachPieceOf(
+    points, threads, Part(progress, 0.1, 0.3), [&](Index piece, Index begin, Index end) {
+      Index* const to = next.data() + static_cast<std::size_t>(piece) * blocks.size();
+      VisitFinite(points, begin, end, this->Scale, [&](Index id, double x, double y) {
+        const Index row = bins.Row(y);
+        const Index block = blockOf[row >> shift];
+        const Index bin = (row - blocks[block].FirstRow) * bins.Columns + bins.Column(x);
+        placed[to[block]++] = { x, y, id, bin };
+      });
+    });
+
+  this->X.Reserve(static_cast<std::size_t>(count) + 8);
+  this->Y.Reserve(static_cast<std::size_t>(count) + 8);
+  this->X.Resize(count);
+  this->Y.Resize(count);
+  this->Ids.Resize(count);
+  this->Order.Resize(count);
+  this->Starts.Resize(static_cast<std::size_t>(bins.Columns) * bins.Rows + 1);
+  this->Starts[this->Starts.size() - 1] = count;
+  this->RowLow.assign(bins.Rows, DBL_MAX);
+  this->RowHigh.assign(bins.Rows, -DBL_MAX);
+
+  // The few blocks that are too large to wait for come last, and tell themselves what is done.
+  const auto isLarge = [](const Block& block) { return block.Count > 16 * BlockPoints; };
+  const Progress inBlocks = Part(progress, 0.3, 1.0);
+  const double large = std::accumulate(blocks.begin(), blocks.end(), 0.0,
+    [&](double points, const Block& block) { return points + isLarge(block) * block.Count; });
+  double done = 1.0 - large / count;
+  ForEachPiece(static_cast<Index>(blocks.size()), threads, Part(inBlocks, 0.0, done), [&](Index i) {
+    if (!isLarge(blocks[i]))
+    {
+      this->FillBlock(blocks[i], points, policy, Progress());
+    }
+  });
+  for (Block& block : blocks)
+  {
+    if (isLarge(block))
+    {
+      const double begin = done;
+      done = std::min(1.0, done + static_cast<double>(block.Count) / count);
+      this->FillBlock(block, points, policy, Part(inBlocks, begin, done));
+    }
+  }
+  return blocks;
+}
+
+void BinGrid::FillBlock(
+  Block& block, const PointView& points, DuplicatePolicy policy, const Progress& progress)
+{
+  const Index rows = block.EndRow - block.FirstRow;
+  const std::size_t firstBin = static_cast<std::size_t>(block.FirstRow) * this->Bins.Columns;
+  const std::size_t bins = static_cast<std::size_t>(rows) * this->Bins.Columns;
+  Rows local{ this->X.data() + block.Begin, this->Y.data() + block.Begin,
+    this->Ids.data() + block.Begin, std::vector<Index>(bins + 1, 0), this->Bins.Columns };
+
+  // Count, prefix sum, fill: while filling, starts[b + 1] runs from the first slot of bin b to its
   // end, which is the first slot of the next.
-  forEachPoint(0.25, 0.5, [&](Index, const Point2& p) { ++starts[binOf(p) + 1]; });
+  Index* const starts = local.Starts.data();
+  const Placed* const begin = block.Points;
+  const Placed* const end = begin + block.Count;
+  for (const Placed* p = begin; p < end; ++p)
+  {
+    ++starts[p->Bin + 1];
+  }
   Index sum = 0;
   for (std::size_t bin = 1; bin <= bins; ++bin)
   {
@@ -534,127 +869,174 @@ void BinGrid::Fill(const PointView& points, const Progress& progress)
     starts[bin] = sum;
     sum += inBin;
   }
-  this->X.Reserve(static_cast<std::size_t>(count) + 8);
-  this->Y.Reserve(static_cast<std::size_t>(count) + 8);
-  this->X.Resize(count);
-  this->Y.Resize(count);
-  this->Ids.Resize(count);
-  forEachPoint(0.5, 1.0, [&](Index id, const Point2& p) {
-    const Index slot = starts[binOf(p) + 1]++;
-    this->X[slot] = p.X;
-    this->Y[slot] = p.Y;
-    this->Ids[slot] = id;
-  });
-}
+  Report(progress, 0.0);
+  for (const Placed* p = begin; p < end; ++p)
+  {
+    const Index slot = starts[p->Bin + 1]++;
+    local.X[slot] = p->X;
+    local.Y[slot] = p->Y;
+    local.Ids[slot] = p->Id;
+  }
 
-void BinGrid::BuildTree(const PointView& points, DuplicatePolicy policy, const Progress& progress)
-{
-  const auto isPreferred = [&](Index id, Index other) {
-    if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)
+  block.Root = TreeBuilder(local, block.Points, block.Nodes, Part(progress, 0.0, 0.6)).Build(rows);
+
+  Index* const order = this->Order.data() + block.Begin;
+  const Progress inSort = Part(progress, 0.6, 0.9);
+  RowSorter sorter(local, block.Points, inSort);
+  for (Index row = 0; row < rows; ++row)
+  {
+    const auto slots = local.Slots(row, 0, this->Bins.Columns - 1);
+    if (slots.first < slots.second)
     {
-      const double z = points.Elevation(id), otherZ = points.Elevation(other);
-      if (z != otherZ)
+      const double low = this->Bins.OriginY + (block.FirstRow + row) * this->Bins.BinHeight;
+      sorter.Sort(slots, low, low + this->Bins.BinHeight, order + slots.first);
+      this->RowLow[block.FirstRow + row] = local.Y[order[slots.first]];
+      this->RowHigh[block.FirstRow + row] = local.Y[order[slots.second - 1]];
+    }
+  }
+
+  // Equal points follow each other.
+  std::vector<bool> isAside;
+  for (Index i = 1, kept = 0; i < block.Count; ++i)
+  {
+    const Index first = order[kept], slot = order[i];
+    if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
+    {
+      kept = i;
+      continue;
+    }
+    if (IsPreferred(points, policy, local.Ids[slot], local.Ids[first]))
+    {
+      std::swap(local.Ids[slot], local.Ids[first]);
+    }
+    isAside.resize(block.Count, false);
+    isAside[slot] = true;
+    block.Duplicates.push_back(local.Ids[slot]);
+  }
+  if (!block.Duplicates.empty())
+  {
+    // Close the gaps: moved[s] is the number of slots kept before s.
+    std::vector<Index> moved(static_cast<std::size_t>(block.Count) + 1);
+    Index kept = 0;
+    for (Index slot = 0; slot < block.Count; ++slot)
+    {
+      moved[slot] = kept;
+      if (!isAside[slot])
       {
-        return policy == DuplicatePolicy::KeepLowest ? z < otherZ : z > otherZ;
+        local.X[kept] = local.X[slot];
+        local.Y[kept] = local.Y[slot];
+        local.Ids[kept] = local.Ids[slot];
+        ++kept;
       }
     }
-    return policy == DuplicatePolicy::KeepLast ? id > other : id < other;
-  };
-
-  std::vector<bool> isAside;
-  const auto setAside = [&](Index kept, Index slot) {
-    if (isAside.empty())
+    moved[block.Count] = kept;
+    Index ordered = 0;
+    for (Index i = 0; i < block.Count; ++i)
     {
-      isAside.resize(this->Ids.size(), false);
-    }
-    if (isPreferred(this->Ids[slot], this->Ids[kept]))
-    {
-      std::swap(this->Ids[slot], this->Ids[kept]);
-    }
-    isAside[slot] = true;
-    this->Duplicates.push_back(this->Ids[slot]);
-  };
-  const auto visit = [&](Index begin, Index end, bool areEqual) {
-    for (Index slot = begin + 1; slot < end; ++slot)
-    {
-      for (Index kept = begin; kept < (areEqual ? begin + 1 : slot); ++kept)
+      if (!isAside[order[i]])
       {
-        if (this->X[kept] == this->X[slot] && this->Y[kept] == this->Y[slot] &&
-          (isAside.empty() || !isAside[kept]))
+        order[ordered++] = moved[order[i]];
+      }
+    }
+    for (Index& start : local.Starts)
+    {
+      start = moved[start];
+    }
+    const auto move = [&](Index& first, Index& count) {
+      if (count > 0)
+      {
+        count = moved[first + count] - moved[first];
+        first = moved[first];
+      }
+    };
+    for (Node& node : block.Nodes)
+    {
+      for (int place = 0; place < Node::Places; ++place)
+      {
+        move(node.First[place], node.Count[place]);
+      }
+    }
+    move(block.Root.First, block.Root.Count);
+    block.Count = kept;
+  }
+  std::copy(starts, starts + bins, this->Starts.begin() + firstBin);
+}
+
+void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int threads)
+{
+  // Where the blocks' slots and nodes go.
+  std::vector<Index> firstNodes;
+  std::vector<Child> roots;
+  Index slots = 0, nodes = 0;
+  for (Block& block : blocks)
+  {
+    const std::size_t from = block.Begin, to = slots, count = block.Count;
+    if (from != to)
+    {
+      std::copy_n(this->X.begin() + from, count, this->X.begin() + to);
+      std::copy_n(this->Y.begin() + from, count, this->Y.begin() + to);
+      std::copy_n(this->Ids.begin() + from, count, this->Ids.begin() + to);
+      std::copy_n(this->Order.begin() + from, count, this->Order.begin() + to);
+    }
+    firstNodes.push_back(nodes);
+    if (block.Count > 0)
+    {
+      roots.push_back(block.Root);
+      roots.back().First += block.Root.Count > 0 ? slots : nodes;
+    }
+    block.Begin = slots;
+    slots += block.Count;
+    nodes += static_cast<Index>(block.Nodes.size());
+    this->Duplicates.insert(
+      this->Duplicates.end(), block.Duplicates.begin(), block.Duplicates.end());
+  }
+  std::sort(this->Duplicates.begin(), this->Duplicates.end());
+  this->X.Resize(slots);
+  this->Y.Resize(slots);
+  this->Ids.Resize(slots);
+  this->Order.Resize(slots);
+  this->Starts[this->Starts.size() - 1] = slots;
+
+  this->Nodes.Reserve(nodes + blocks.size());
+  this->Nodes.Resize(nodes);
+  ForEachPiece(static_cast<Index>(blocks.size()), threads, progress, [&](Index i) {
+    Block& block = blocks[i];
+    Index* const starts = this->Starts.data();
+    const std::size_t columns = this->Bins.Columns;
+    for (std::size_t bin = block.FirstRow * columns; bin < block.EndRow * columns; ++bin)
+    {
+      starts[bin] += block.Begin;
+    }
+    for (Index slot = block.Begin; slot < block.Begin + block.Count; ++slot)
+    {
+      this->Order[slot] += block.Begin;
+    }
+    for (std::size_t k = 0; k < block.Nodes.size(); ++k)
+    {
+      Node& node = this->Nodes[firstNodes[i] + k] = block.Nodes[k];
+      for (int place = 0; place < Node::Places; ++place)
+      {
+        if (node.First[place] != None)
         {
-          setAside(kept, slot);
-          break;
+          node.First[place] += node.Count[place] > 0 ? block.Begin : firstNodes[i];
         }
       }
     }
-  };
-  if (this->NumberOfPoints() > 0)
+    block.Nodes = Buffer<Node>();
+  });
+  // Eight blocks after eight, and so on up, until all hang from one root.
+  while (roots.size() > 1 || roots.front().Count > 0)
   {
-    TreeBuilder(*this, visit, progress).Build();
-    this->Nodes.Shrink();
-  }
-  if (!this->Duplicates.empty())
-  {
-    std::sort(this->Duplicates.begin(), this->Duplicates.end());
-    this->SetAside(isAside);
-  }
-}
-
-void BinGrid::SetAside(const std::vector<bool>& isAside)
-{
-  // Close the gaps: moved[s] is the number of slots kept before s.
-  const Index count = this->NumberOfPoints();
-  Buffer<Index> moved;
-  moved.Resize(static_cast<std::size_t>(count) + 1);
-  Index kept = 0;
-  for (Index slot = 0; slot < count; ++slot)
-  {
-    moved[slot] = kept;
-    if (!isAside[slot])
+    std::vector<Child> above;
+    for (std::size_t i = 0; i < roots.size(); i += Node::Places)
     {
-      this->X[kept] = this->X[slot];
-      this->Y[kept] = this->Y[slot];
-      this->Ids[kept] = this->Ids[slot];
-      ++kept;
+      const auto count = std::min<std::size_t>(Node::Places, roots.size() - i);
+      above.push_back(
+        count == 1 && i > 0 ? roots[i] : AddNode(&roots[i], static_cast<int>(count), this->Nodes));
     }
+    roots = std::move(above);
   }
-  moved[count] = kept;
-  this->X.Resize(kept);
-  this->Y.Resize(kept);
-  this->Ids.Resize(kept);
-  for (Index& start : this->Starts)
-  {
-    start = moved[start];
-  }
-  for (Node& node : this->Nodes)
-  {
-    for (int place = 0; place < Node::Places; ++place)
-    {
-      if (node.Count[place] > 0)
-      {
-        const Index first = moved[node.First[place]];
-        node.Count[place] = moved[node.First[place] + node.Count[place]] - first;
-        node.First[place] = first;
-      }
-    }
-  }
-}
-
-void BinGrid::FindRanges()
-{
-  this->RowLow.assign(this->Bins.Rows, DBL_MAX);
-  this->RowHigh.assign(this->Bins.Rows, -DBL_MAX);
-  for (Index row = 0; row < this->Bins.Rows; ++row)
-  {
-    const auto slots = this->Slots(row, 0, this->Bins.Columns - 1);
-    if (slots.first < slots.second)
-    {
-      const auto range =
-        std::minmax_element(this->Y.begin() + slots.first, this->Y.begin() + slots.second);
-      this->RowLow[row] = *range.first;
-      this->RowHigh[row] = *range.second;
-    }
-  }
+  this->Nodes.Shrink();
 }
 
 } // namespace elevation

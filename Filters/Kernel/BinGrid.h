@@ -12,14 +12,17 @@
  * The tree joins both: a leaf is a stretch of slots, the bins of part of a row or a few points of a
  * full bin; a node knows the bounding boxes of its eight children. So voids are passed over, and
  * clusters are entered, in a number of steps that is logarithmic in the number of points.
- * The passes: count, prefix sum, fill, halve full bins and set duplicates aside, build the tree.
+ * The passes: find the bounds and lay the bins; sort the points into blocks of rows, each of which
+ * fits into a core's cache; in each block sort the points into bins, build its part of the tree,
+ * order its rows by (y, x), set duplicates aside, which are neighbours then; join the blocks. The
+ * blocks depend on the points alone, so the result is the same for any number of threads.
  *
  * The bin of a coordinate is a monotone function of it, also in floating point: all points with x
  * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
  * The boxes of a node's children have no point in common.
  *
- * Cost: linear, and n log n where density is uneven; 16 + 4 bytes a point, about 3 for the bins and
- * 2 for the tree (6 to 9 in full bins).
+ * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 3 for the bins and
+ * 3 for the tree (7 in full bins). While it is built, 24 more, and a few more in full bins.
  */
 #ifndef elevation_BinGrid_h
 #define elevation_BinGrid_h
@@ -83,8 +86,10 @@ public:
    * Bins the finite points and sets duplicates aside.
    * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
    * that squares of distances neither over- nor underflow; this is exact, or not done.
+   * @param threads  how many to use
    */
-  BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress);
+  BinGrid(
+    const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads = 1);
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
   Point2 PointAt(Index slot) const { return { this->X[slot], this->Y[slot] }; }
@@ -106,6 +111,7 @@ public:
   Buffer<Index> Ids;   ///< the input's point id by slot
   double Scale = 1.0;  ///< what the input's coordinates were multiplied by
   Layout Bins;
+  Buffer<Index> Order;  ///< all slots by increasing (y, x): row after row
   Buffer<Index> Starts; ///< first slot of each bin, row by row, and the number of slots
   std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row
   Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
@@ -114,10 +120,14 @@ public:
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite
 
 private:
-  void Fill(const PointView& points, const Progress& progress);
-  void BuildTree(const PointView& points, DuplicatePolicy policy, const Progress& progress);
-  void SetAside(const std::vector<bool>& isAside);
-  void FindRanges();
+  struct Block;
+
+  bool Lay(const PointView& points, const Progress& progress, int threads);
+  std::vector<Block> Fill(
+    const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads);
+  void FillBlock(
+    Block& block, const PointView& points, DuplicatePolicy policy, const Progress& progress);
+  void Join(std::vector<Block>& blocks, const Progress& progress, int threads);
 };
 
 } // namespace elevation

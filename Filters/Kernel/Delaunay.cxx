@@ -28,129 +28,6 @@ constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 constexpr Index VerticesPerRound = 50000;
 
 /**
- * Sorts the slots of a row of the grid by (y, x). Spread over the row's height first, they are
- * nearly sorted, which insertion finishes in linear time; where it does not, because the heights
- * are uneven, the row is sorted by comparisons.
- */
-class RowSorter
-{
-public:
-  explicit RowSorter(const BinGrid& grid)
-    : Grid(grid)
-  {
-  }
-
-  /** @param[out] order  room for the slots of the row */
-  void Sort(std::pair<Index, Index> slots, double low, double high, Index* order)
-  {
-    const Index count = slots.second - slots.first;
-    const double* y = this->Grid.Y.data();
-    const double perHeight = high > low ? (count - 1) / (high - low) : 0.0;
-    if (!(perHeight < std::numeric_limits<double>::max()))
-    {
-      return this->SortByComparisons(slots, order);
-    }
-    const auto bucketOf = [&](
-                            Index slot) { return static_cast<Index>((y[slot] - low) * perHeight); };
-    this->Ends.assign(static_cast<std::size_t>(count) + 1, 0);
-    for (Index slot = slots.first; slot < slots.second; ++slot)
-    {
-      ++this->Ends[bucketOf(slot) + 1];
-    }
-    for (Index bucket = 0; bucket < count; ++bucket)
-    {
-      this->Ends[bucket + 1] += this->Ends[bucket];
-    }
-    this->Entries.resize(count);
-    for (Index slot = slots.first; slot < slots.second; ++slot)
-    {
-      this->Entries[this->Ends[bucketOf(slot)]++] = { y[slot], slot };
-    }
-    Index budget = 8 * count;
-    for (Index i = 1; i < count; ++i)
-    {
-      const Entry entry = this->Entries[i];
-      Index at = i;
-      for (; at > 0 && this->IsBefore(entry, this->Entries[at - 1]); --at)
-      {
-        this->Entries[at] = this->Entries[at - 1];
-      }
-      this->Entries[at] = entry;
-      budget -= i - at;
-      if (budget < 0)
-      {
-        return this->SortByComparisons(slots, order);
-      }
-    }
-    for (Index i = 0; i < count; ++i)
-    {
-      order[i] = this->Entries[i].Slot;
-    }
-  }
-
-private:
-  struct Entry
-  {
-    double Y;
-    Index Slot;
-  };
-
-  bool IsBefore(const Entry& p, const Entry& q) const
-  {
-    return p.Y < q.Y || (p.Y == q.Y && this->Grid.X[p.Slot] < this->Grid.X[q.Slot]);
-  }
-
-  void SortByComparisons(std::pair<Index, Index> slots, Index* order)
-  {
-    this->Entries.clear();
-    for (Index slot = slots.first; slot < slots.second; ++slot)
-    {
-      this->Entries.push_back({ this->Grid.Y[slot], slot });
-    }
-    std::sort(this->Entries.begin(), this->Entries.end(),
-      [this](const Entry& p, const Entry& q) { return this->IsBefore(p, q); });
-    for (const Entry& entry : this->Entries)
-    {
-      *order++ = entry.Slot;
-    }
-  }
-
-  const BinGrid& Grid;
-  std::vector<Index> Ends;
-  std::vector<Entry> Entries;
-};
-
-/**
- * All slots by increasing (y, x). A row of the grid is wholly below the next, so only the points of
- * each row are sorted.
- */
-Buffer<Index> OrderFromLowest(const BinGrid& grid, int threads, const Progress& progress)
-{
-  Buffer<Index> order;
-  order.Resize(grid.NumberOfPoints());
-  const BinGrid::Layout& bins = grid.Bins;
-  constexpr Index rowsAtOnce = 64;
-  const Index blocks = (bins.Rows + rowsAtOnce - 1) / rowsAtOnce;
-  for (Index done = 0; done < blocks; done += 8 * threads)
-  {
-    Report(progress, double(done) / blocks);
-    ForEachPiece(std::min(8 * threads, blocks - done), threads, [&](Index block) {
-      RowSorter sorter(grid);
-      const Index first = (done + block) * rowsAtOnce;
-      for (Index row = first; row < std::min(first + rowsAtOnce, bins.Rows); ++row)
-      {
-        const auto slots = grid.Slots(row, 0, bins.Columns - 1);
-        if (slots.first < slots.second)
-        {
-          sorter.Sort(slots, grid.RowLow[row], grid.RowHigh[row], order.data() + slots.first);
-        }
-      }
-    });
-  }
-  return order;
-}
-
-/**
  * One side of the convex hull as a chain from the lowest to the highest point, collinear points
  * included [Andrew 1979, Another efficient algorithm for convex hulls in two dimensions].
  * @param outside  the side of the chain that must stay empty: Negative for the right chain
@@ -184,10 +61,17 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
     const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first < slots.second)
     {
-      const auto range =
-        std::minmax_element(grid.X.begin() + slots.first, grid.X.begin() + slots.second);
-      Index left = static_cast<Index>(range.first - grid.X.begin());
-      Index right = static_cast<Index>(range.second - grid.X.begin());
+      // In the outermost bins that hold points.
+      const Index* bounds = &grid.Starts[static_cast<std::size_t>(row) * bins.Columns];
+      const Index* firstEnd = std::upper_bound(bounds, bounds + bins.Columns + 1, slots.first);
+      const Index* lastBegin =
+        std::lower_bound(bounds, bounds + bins.Columns + 1, slots.second) - 1;
+      Index left = static_cast<Index>(
+        std::min_element(grid.X.begin() + slots.first, grid.X.begin() + *firstEnd) -
+        grid.X.begin());
+      Index right = static_cast<Index>(
+        std::max_element(grid.X.begin() + *lastBegin, grid.X.begin() + slots.second) -
+        grid.X.begin());
       if (IsLower(grid.PointAt(right), grid.PointAt(left)))
       {
         std::swap(left, right);
@@ -236,12 +120,34 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
       left += margin;
       right -= margin;
     }
-    for (Index i = slots.first; i < slots.second; ++i)
-    {
-      const double x = grid.X[order[i]];
-      if (!(x > left && x < right)) // also where a chain is not a number
+    const std::size_t before = candidates.size();
+    const auto look = [&](Index firstColumn, Index lastColumn) {
+      const auto part = grid.Slots(row, firstColumn, lastColumn);
+      for (Index slot = part.first; slot < part.second; ++slot)
       {
-        candidates.Append(order[i]);
+        if (!(grid.X[slot] > left && grid.X[slot] < right)) // also where a chain is not a number
+        {
+          candidates.Append(slot);
+        }
+      }
+    };
+    const Index leftColumn = bins.Column(left), rightColumn = bins.Column(right);
+    if (left < right && leftColumn < rightColumn)
+    {
+      look(0, leftColumn);
+      look(rightColumn, bins.Columns - 1);
+      std::sort(candidates.begin() + before, candidates.end(),
+        [&grid](Index p, Index q) { return IsLower(grid.PointAt(p), grid.PointAt(q)); });
+    }
+    else
+    {
+      for (Index i = slots.first; i < slots.second; ++i)
+      {
+        const double x = grid.X[order[i]];
+        if (!(x > left && x < right))
+        {
+          candidates.Append(order[i]);
+        }
       }
     }
   }
@@ -1292,15 +1198,15 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
       return result;
     }
   }
-  const BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.1));
+  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+  const BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.2), threads);
   SetUnusedPoints(grid.Duplicates, grid.NotFinite, result);
   if (grid.NumberOfPoints() < 3)
   {
     return result;
   }
 
-  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
-  const Buffer<Index> order = OrderFromLowest(grid, threads, Part(options.Monitor, 0.1, 0.2));
+  const Buffer<Index>& order = grid.Order;
   const Buffer<Index> outermost = HullCandidates(grid, order);
   const std::vector<Index> rightChain = HullChain(grid, outermost, Negative);
   const std::vector<Index> leftChain = HullChain(grid, outermost, Positive);

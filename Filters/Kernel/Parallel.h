@@ -74,6 +74,21 @@ void ForEachPiece(Index count, int threads, Work&& work)
   }
 }
 
+/**
+ * ForEachPiece() for pieces of about a millisecond, of which each thread does a few between two
+ * reports of progress, which the calling thread makes.
+ */
+template <typename Work>
+void ForEachPiece(Index count, int threads, const Progress& progress, Work&& work)
+{
+  const Index atOnce = 16 * std::max(1, threads);
+  for (Index done = 0; done < count; done += atOnce)
+  {
+    Report(progress, static_cast<double>(done) / count);
+    ForEachPiece(std::min(atOnce, count - done), threads, [&](Index i) { work(done + i); });
+  }
+}
+
 } // namespace elevation
 
 #endif

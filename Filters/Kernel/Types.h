@@ -23,6 +23,10 @@
 #include <type_traits>
 #include <utility>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace elevation
 {
 
@@ -163,6 +167,24 @@ void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
 }
 
 /**
+ * Memory as from malloc, in large pages where it is large and the system leaves that to programs:
+ * to take it in small ones costs about as much as to fill it. Null when there is none.
+ */
+inline void* Allocate(std::size_t size)
+{
+#ifdef MADV_HUGEPAGE
+  constexpr std::size_t page = 4096, largePage = std::size_t(1) << 21;
+  void* memory = nullptr;
+  if (size >= largePage && posix_memalign(&memory, largePage, size) == 0)
+  {
+    madvise(memory, size / page * page, MADV_HUGEPAGE); // a wish: no harm where it fails
+    return memory;
+  }
+#endif
+  return std::malloc(size);
+}
+
+/**
  * A growable array of plain values that are not initialised, in memory from malloc, so that
  * it can be handed over to a VTK array without a copy, and grows without one where the
  * system can move pages.
@@ -247,7 +269,8 @@ private:
     {
       throw std::bad_alloc();
     }
-    void* memory = std::realloc(this->Begin, capacity * sizeof(T));
+    const std::size_t size = capacity * sizeof(T);
+    void* memory = this->Begin ? std::realloc(this->Begin, size) : Allocate(size);
     if (!memory)
     {
       throw std::bad_alloc();

@@ -218,3 +218,32 @@ TEST(BinGrid, LeavesAsideWhatIsNotFinite)
   EXPECT_EQ(grid.NotFinite, (std::vector<Index>{ 1, 2, 3 }));
   EXPECT_EQ(grid.NumberOfPoints(), 2);
 }
+
+TEST(BinGrid, IsTheSameForAnyNumberOfThreads)
+{
+  std::mt19937_64 random(5);
+  Cloud cloud = RandomCloud(random, 150000); // several blocks, more than one piece of the input
+  for (int i = 0; i < 20000; ++i)
+  {
+    cloud.Add(0.5, 0.25 + 1e-3 * Uniform(random)); // part of a row is crowded
+    const Index other = static_cast<Index>(random() % 150000);
+    cloud.Add(cloud.View().At(other).X, cloud.View().At(other).Y);
+  }
+  cloud.Add(NAN, 0.0);
+  const BinGrid one(cloud.View(), DuplicatePolicy::KeepLast, Progress());
+  EXPECT_GE(one.Duplicates.size(), 20000u);
+  ExpectAllFound(cloud, one);
+  for (Index i = 1; i < one.NumberOfPoints(); ++i)
+  {
+    ASSERT_TRUE(IsLower(one.PointAt(one.Order[i - 1]), one.PointAt(one.Order[i])));
+  }
+  const BinGrid three(cloud.View(), DuplicatePolicy::KeepLast, Progress(), 3);
+  const auto isSame = [](const auto& p, const auto& q) {
+    return p.size() == q.size() && std::equal(p.begin(), p.end(), q.begin());
+  };
+  EXPECT_TRUE(isSame(one.X, three.X) && isSame(one.Y, three.Y) && isSame(one.Ids, three.Ids));
+  EXPECT_TRUE(isSame(one.Order, three.Order) && isSame(one.Starts, three.Starts));
+  EXPECT_EQ(one.Duplicates, three.Duplicates);
+  EXPECT_EQ(one.RowLow, three.RowLow);
+  EXPECT_EQ(one.Nodes.size(), three.Nodes.size());
+}
