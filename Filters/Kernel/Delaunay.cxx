@@ -3,6 +3,7 @@
 #include "Delaunay.h"
 
 #include "BinGrid.h"
+#include "DivideAndConquer.h"
 #include "LatticeDelaunay.h"
 #include "Parallel.h"
 #include "Predicates.h"
@@ -955,6 +956,38 @@ std::vector<Strip> MakeStrips(const BinGrid& grid, Index pointsPerStrip)
   return strips;
 }
 
+/** Which triangles DelaunayOptions::MaximumEdgeLength leaves in. */
+class EdgeLimit
+{
+public:
+  EdgeLimit(const BinGrid& grid, const DelaunayOptions& options)
+    : Grid(grid)
+    , IsLimited(options.MaximumEdgeLength > 0.0)
+    , Limit(options.MaximumEdgeLength * grid.Scale)
+    , IsPlain(this->Limit > 1e-150 && this->Limit < 1e150)
+  {
+  }
+
+  /** @param p,q,r  slots */
+  bool Admits(Index p, Index q, Index r) const
+  {
+    return !this->IsLimited || (this->IsShort(p, q) && this->IsShort(q, r) && this->IsShort(r, p));
+  }
+
+private:
+  bool IsShort(Index p, Index q) const
+  {
+    const double dx = this->Grid.X[p] - this->Grid.X[q], dy = this->Grid.Y[p] - this->Grid.Y[q];
+    return this->IsPlain ? dx * dx + dy * dy <= this->Limit * this->Limit
+                         : std::hypot(dx, dy) <= this->Limit;
+  }
+
+  const BinGrid& Grid;
+  const bool IsLimited;
+  const double Limit;
+  const bool IsPlain; ///< squares neither over- nor underflow
+};
+
 /**
  * Grows the triangles whose lowest vertices are in a strip. The pool is read and written only
  * within the strip, so that strips may be grown at the same time.
@@ -962,14 +995,7 @@ std::vector<Strip> MakeStrips(const BinGrid& grid, Index pointsPerStrip)
 void GrowStrip(const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options,
   const Progress& progress, EdgePool& pool, Strip& strip)
 {
-  const bool isLimited = options.MaximumEdgeLength > 0.0;
-  const double limit = isLimited ? options.MaximumEdgeLength * grid.Scale : Infinity;
-  const bool isPlain = limit > 1e-150 && limit < 1e150;
-  const auto isShort = [&](Index p, Index q) {
-    const double dx = grid.X[p] - grid.X[q], dy = grid.Y[p] - grid.Y[q];
-    return isPlain ? dx * dx + dy * dy <= limit * limit : std::hypot(dx, dy) <= limit;
-  };
-
+  const EdgeLimit limit(grid, options);
   Buffer<Index>& triangles = strip.Triangles;
   ApexSearch search(grid, options.UseWideInstructions);
   Turn turn(grid, search);
@@ -1007,8 +1033,7 @@ void GrowStrip(const BinGrid& grid, const Buffer<Index>& order, const DelaunayOp
         throw std::logic_error("the fan of point " + std::to_string(grid.Ids[lowest]) +
           " does not close; this is a fault of the triangulation, please report it");
       }
-      if (!isLimited ||
-        (isShort(lowest, current) && isShort(current, apex) && isShort(apex, lowest)))
+      if (limit.Admits(lowest, current, apex))
       {
         triangles.Append(grid.Ids[lowest]);
         triangles.Append(grid.Ids[current]);
@@ -1079,6 +1104,39 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
     strip.Triangles = Buffer<Index>();
   });
 }
+
+/** The same triangles in the same order, in n log n whatever the points. */
+Buffer<Index> Divide(
+  const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options)
+{
+  const Progress progress = Part(options.Monitor, 0.2, 1.0);
+  Buffer<Index> triangles;
+  {
+    Buffer<Point2> points;
+    points.Resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      points[i] = grid.PointAt(order[i]);
+    }
+    triangles = DivideAndConquer(points, Part(progress, 0.0, 0.95));
+  }
+  const Progress naming = Part(progress, 0.95, 1.0);
+  const EdgeLimit limit(grid, options);
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); t += 3)
+  {
+    ReportStep(naming, t, triangles.size(), 3 * ReportStride);
+    const Index p = order[triangles[t]], q = order[triangles[t + 1]], r = order[triangles[t + 2]];
+    if (limit.Admits(p, q, r))
+    {
+      triangles[kept++] = grid.Ids[p];
+      triangles[kept++] = grid.Ids[q];
+      triangles[kept++] = grid.Ids[r];
+    }
+  }
+  triangles.Resize(kept);
+  return triangles;
+}
 } // namespace
 
 void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
@@ -1107,20 +1165,18 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   Triangulation result;
   DelaunayOptions options = asked;
   double done = 0.0;
-  if (options.UseLattice == LatticeMode::Automatic)
+  if (options.Monitor)
   {
-    if (options.Monitor)
-    {
-      // Where there is no lattice the work begins anew; what is reported never falls.
-      options.Monitor = [&done, &asked](double fraction) {
-        done = std::max(done, fraction);
-        return asked.Monitor(done);
-      };
-    }
-    if (TriangulateLattice(points, options, result))
-    {
-      return result;
-    }
+    // Where there is no lattice, or growing is given up, work begins anew; what is reported never
+    // falls.
+    options.Monitor = [&done, &asked](double fraction) {
+      done = std::max(done, fraction);
+      return asked.Monitor(done);
+    };
+  }
+  if (options.UseLattice == LatticeMode::Automatic && TriangulateLattice(points, options, result))
+  {
+    return result;
   }
   const BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.1));
   SetUnusedPoints(grid.Duplicates, grid.NotFinite, result);
@@ -1139,13 +1195,21 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result; // all points on one line
   }
   result.NumberOfHullPoints = static_cast<Index>(rightChain.size() + leftChain.size() - 2);
-  try
+  bool isGrown = !options.DivideAtOnce;
+  if (isGrown)
   {
-    Grow(grid, order, rightChain, leftChain, options, threads, result.Triangles);
+    try
+    {
+      Grow(grid, order, rightChain, leftChain, options, threads, result.Triangles);
+    }
+    catch (const CannotTurn&)
+    {
+      isGrown = false;
+    }
   }
-  catch (const CannotTurn&)
+  if (!isGrown)
   {
-    Grow(grid, order, rightChain, leftChain, options, 1, result.Triangles);
+    result.Triangles = Divide(grid, order, options);
   }
   Report(options.Monitor, 1.0);
   return result;
