@@ -9,6 +9,7 @@ set(es_kernel_concepts
   BinGrid
   Surroundings
   Mesh
+  DivideAndConquer
   Delaunay
   LatticeNodes
   LatticeDelaunay

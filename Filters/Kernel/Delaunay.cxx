@@ -3,6 +3,7 @@
 #include "Delaunay.h"
 
 #include "BinGrid.h"
+#include "DivideAndConquer.h"
 #include "LatticeDelaunay.h"
 #include "Parallel.h"
 #include "Predicates.h"
@@ -26,6 +27,11 @@ constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 
 /** Vertices that a strip grows between two reports of progress: some tens of milliseconds. */
 constexpr Index VerticesPerRound = 50000;
+
+/** Points and boxes that searches may look at for each vertex before growing is given up. */
+constexpr std::int64_t WorkPerVertex = 300;
+/** What an exact comparison counts for: its cost in looks. */
+constexpr std::int64_t WorkOfExact = 10;
 
 /**
  * One side of the convex hull as a chain from the lowest to the highest point, collinear points
@@ -722,10 +728,13 @@ private:
       {
         return false;
       }
-      if (!(isClear && difference < -error) &&
-        (slot == this->Best || !this->IsBetter(slot, this->Best)))
+      if (!(isClear && difference < -error))
       {
-        return false;
+        this->Looks += WorkOfExact;
+        if (slot == this->Best || !this->IsBetter(slot, this->Best))
+        {
+          return false;
+        }
       }
     }
     this->Best = slot;
@@ -789,6 +798,38 @@ private:
   double BestCross = 0.0, BestCrossMagnitude = 0.0, BestDot = 0.0, BestDotMagnitude = 0.0;
 };
 
+/** Which triangles DelaunayOptions::MaximumEdgeLength leaves in. */
+class EdgeLimit
+{
+public:
+  EdgeLimit(const BinGrid& grid, const DelaunayOptions& options)
+    : Grid(grid)
+    , IsLimited(options.MaximumEdgeLength > 0.0)
+    , Limit(options.MaximumEdgeLength * grid.Scale)
+    , IsPlain(this->Limit > 1e-150 && this->Limit < 1e150)
+  {
+  }
+
+  /** Whether it leaves in a triangle of these slots. */
+  bool Admits(Index p, Index q, Index r) const
+  {
+    return !this->IsLimited || (this->IsShort(p, q) && this->IsShort(q, r) && this->IsShort(r, p));
+  }
+
+private:
+  bool IsShort(Index p, Index q) const
+  {
+    const double dx = this->Grid.X[p] - this->Grid.X[q], dy = this->Grid.Y[p] - this->Grid.Y[q];
+    return this->IsPlain ? dx * dx + dy * dy <= this->Limit * this->Limit
+                         : std::hypot(dx, dy) <= this->Limit;
+  }
+
+  const BinGrid& Grid;
+  const bool IsLimited;
+  const double Limit;
+  const bool IsPlain; ///< squares neither over- nor underflow
+};
+
 /**
  * The edge pool: the first and the last edge, counter-clockwise, of the fan of triangles above each
  * vertex, as their other ends. None where it is not known yet.
@@ -826,8 +867,11 @@ private:
   Buffer<Index> Ends;
 };
 
-/** Thrown where distances leave the range of double, so that no neighbour is found to turn from. */
-struct CannotTurn
+/**
+ * Thrown where growing is given up: distances leave the range of double, so that no neighbour is
+ * found to turn from; or the searches look at too many points.
+ */
+struct CannotGrow
 {
 };
 
@@ -882,7 +926,7 @@ private:
       neighbor = inwards(neighbor);
       if (neighbor == None)
       {
-        throw CannotTurn();
+        throw CannotGrow();
       }
     }
     return neighbor;
@@ -911,7 +955,7 @@ private:
       }
       nearest = attempts % 2 == 0 ? left : right;
     }
-    throw CannotTurn();
+    throw CannotGrow();
   }
 
   double SquaredDistance(Index p, Index q) const
@@ -977,8 +1021,8 @@ public:
     , Begin(begin)
     , End(end)
     , Next(begin)
-    , Limit(options.MaximumEdgeLength > 0.0 ? options.MaximumEdgeLength * grid.Scale : Infinity)
-    , IsLimitPlain(this->Limit > 1e-150 && this->Limit < 1e150)
+    , MostWork(WorkPerVertex * (std::int64_t(end) - begin + 1000))
+    , Limit(grid, options)
   {
   }
 
@@ -993,6 +1037,10 @@ public:
     for (; this->Next < last; ++this->Next)
     {
       this->GrowFan(this->Order[this->Next]);
+      if (this->Search.Work() > this->MostWork)
+      {
+        throw CannotGrow();
+      }
     }
   }
 
@@ -1042,9 +1090,7 @@ private:
   /** Writes the triangles of a fan and tells their upper vertices. */
   void Emit(Index lowest)
   {
-    const Point2 lowestPoint = this->Grid.PointAt(lowest);
     const Index lowestId = this->Grid.Ids[lowest];
-    const bool isLimited = this->Limit < Infinity;
     const bool isLastStrip = this->End == this->Grid.NumberOfPoints();
     const Point2 above =
       this->Grid.PointAt(this->Order[isLastStrip ? this->End - 1 : this->End]);
@@ -1061,10 +1107,7 @@ private:
       out[0] = lowestId;
       out[1] = this->Grid.Ids[current];
       out[2] = this->Grid.Ids[apex];
-      const bool isWanted = !isLimited ||
-        (this->IsShort(lowestPoint, currentPoint) && this->IsShort(currentPoint, apexPoint) &&
-          this->IsShort(apexPoint, lowestPoint));
-      out += isWanted ? 3 : 0;
+      out += this->Limit.Admits(lowest, current, apex) ? 3 : 0;
       const bool isRising = IsLower(currentPoint, apexPoint);
       const Index ends[2] = { apex, current };
       if (isLastStrip || IsLower(isRising ? currentPoint : apexPoint, above))
@@ -1077,13 +1120,6 @@ private:
     this->Triangles.Resize(out - this->Triangles.data());
   }
 
-  bool IsShort(const Point2& p, const Point2& q) const
-  {
-    const double dx = p.X - q.X, dy = p.Y - q.Y;
-    return this->IsLimitPlain ? dx * dx + dy * dy <= this->Limit * this->Limit
-                              : std::hypot(dx, dy) <= this->Limit;
-  }
-
   const BinGrid& Grid;
   const Buffer<Index>& Order;
   EdgePool& Pool;
@@ -1091,8 +1127,8 @@ private:
   Turn Around;
   const Index Begin, End;
   Index Next;
-  const double Limit;
-  const bool IsLimitPlain;
+  const std::int64_t MostWork;
+  const EdgeLimit Limit;
   Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours, counter-clockwise
 };
 
@@ -1155,6 +1191,39 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
     part = Buffer<Index>();
   });
 }
+
+/** The same triangles in the same order, in n log n whatever the points. */
+Buffer<Index> Divide(
+  const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options)
+{
+  const Progress progress = Part(options.Monitor, 0.2, 1.0);
+  Buffer<Index> triangles;
+  {
+    Buffer<Point2> points;
+    points.Resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      points[i] = grid.PointAt(order[i]);
+    }
+    triangles = DivideAndConquer(points, Part(progress, 0.0, 0.95));
+  }
+  const Progress naming = Part(progress, 0.95, 1.0);
+  const EdgeLimit limit(grid, options);
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); t += 3)
+  {
+    ReportStep(naming, t, triangles.size(), 49152);
+    const Index p = order[triangles[t]], q = order[triangles[t + 1]], r = order[triangles[t + 2]];
+    if (limit.Admits(p, q, r))
+    {
+      triangles[kept++] = grid.Ids[p];
+      triangles[kept++] = grid.Ids[q];
+      triangles[kept++] = grid.Ids[r];
+    }
+  }
+  triangles.Resize(kept);
+  return triangles;
+}
 } // namespace
 
 void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
@@ -1183,20 +1252,18 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   Triangulation result;
   DelaunayOptions options = asked;
   double done = 0.0;
-  if (options.UseLattice == LatticeMode::Automatic)
+  if (options.Monitor)
   {
-    if (options.Monitor)
-    {
-      // Where there is no lattice the work begins anew; what is reported never falls.
-      options.Monitor = [&done, &asked](double fraction) {
-        done = std::max(done, fraction);
-        return asked.Monitor(done);
-      };
-    }
-    if (TriangulateLattice(points, options, result))
-    {
-      return result;
-    }
+    // Where there is no lattice, or growing is given up, work begins anew; what is reported never
+    // falls.
+    options.Monitor = [&done, &asked](double fraction) {
+      done = std::max(done, fraction);
+      return asked.Monitor(done);
+    };
+  }
+  if (options.UseLattice == LatticeMode::Automatic && TriangulateLattice(points, options, result))
+  {
+    return result;
   }
   const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
   const BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.2), threads);
@@ -1215,13 +1282,21 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result; // all points on one line
   }
   result.NumberOfHullPoints = static_cast<Index>(rightChain.size() + leftChain.size() - 2);
-  try
+  bool isGrown = !options.DivideAtOnce;
+  if (isGrown)
   {
-    Grow(grid, order, rightChain, leftChain, options, threads, result.Triangles);
+    try
+    {
+      Grow(grid, order, rightChain, leftChain, options, threads, result.Triangles);
+    }
+    catch (const CannotGrow&)
+    {
+      isGrown = false;
+    }
   }
-  catch (const CannotTurn&)
+  if (!isGrown)
   {
-    Grow(grid, order, rightChain, leftChain, options, 1, result.Triangles);
+    result.Triangles = Divide(grid, order, options);
   }
   Report(options.Monitor, 1.0);
   return result;

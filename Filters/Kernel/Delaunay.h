@@ -89,6 +89,8 @@ struct DelaunayOptions
   /** Off: the search without wide instructions, as on processors without them. The result is the
    * same. */
   bool UseWideInstructions = true;
+  /** For tests: by divide and conquer from the start, without growing. The result is the same. */
+  bool DivideAtOnce = false;
 };
 
 struct Triangulation

@@ -760,6 +760,7 @@ ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
     const std::uint64_t expected = std::uint64_t(1) << guess;
     if (!open.IsProved || open.Bits != expected)
     {
+      open.Bits = open.IsProved ? open.Bits : expected;
       this->Sift(b, open);
       return count;
     }
@@ -858,7 +859,7 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
     const std::uint32_t expected = std::uint32_t(1) << guess;
     if (!isProved || candidates != expected)
     {
-      open.Bits = candidates;
+      open.Bits = isProved ? candidates : expected;
       open.IsProved = isProved;
       this->Sift(b, open);
       return count;
