@@ -706,14 +706,39 @@ ELEVATION_WIDE_INLINE Surroundings::Candidates Surroundings::Search(
   return found;
 }
 
-/** Leaves out the end of the edge and, told exactly, what is not on the edge's left. */
-void Surroundings::Sift(Index b, Candidates& candidates) const
+/**
+ * Leaves out the end of the edge to b = (bx, by); what is not a candidate by the errors that its own
+ * size allows, rather than the window's; and, told exactly, what is not on the edge's left.
+ */
+void Surroundings::Sift(Index b, float bx, float by, int guess, Candidates& candidates) const
 {
+  const Window& window = *this->Current;
+  const float bestX = window.X[guess], bestY = window.Y[guess];
+  const float bestCross = bx * bestY - by * bestX;
+  const float bestDot = bestX * (bestX - bx) + bestY * (bestY - by);
+  const float e = 2.0f * window.Errors->CoordinateError;
+  const float u = 8.0f * static_cast<float>(Roundoff);
+  const float length = std::fabs(bx) + std::fabs(by);
+  const auto crossError = [&](float x, float y) {
+    const float size = std::fabs(x) + std::fabs(y);
+    return e * (length + size) + u * length * size;
+  };
+  const auto dotError = [&](float x, float y) {
+    const float size = std::fabs(x) + std::fabs(y);
+    return (e + u * size) * (2.0f * size + length);
+  };
   for (std::uint64_t left = candidates.Bits; left; left &= left - 1)
   {
-    const Index slot = this->Current->Slots[__builtin_ctzll(left)];
-    if (slot == b ||
-      Orientation(this->Grid.PointAt(this->Current->Origin), this->Grid.PointAt(b),
+    const int lane = __builtin_ctzll(left);
+    const Index slot = window.Slots[lane];
+    const float x = window.X[lane], y = window.Y[lane];
+    const float cross = bx * y - by * x, dot = x * (x - bx) + y * (y - by);
+    const float error = std::fabs(dot) * crossError(bestX, bestY) +
+      std::fabs(bestCross) * dotError(x, y) +
+      (std::fabs(cross) + crossError(x, y)) * dotError(bestX, bestY) +
+      std::fabs(bestDot) * crossError(x, y);
+    if (slot == b || dot * bestCross - bestDot * cross > 2.0f * error ||
+      Orientation(this->Grid.PointAt(window.Origin), this->Grid.PointAt(b),
         this->Grid.PointAt(slot)) != Positive)
     {
       candidates.Bits &= ~(left & (~left + 1));
@@ -732,7 +757,7 @@ ELEVATION_WIDE Surroundings::Candidates Surroundings::FindCandidates(Index b) co
   }
   Candidates found = this->Current->Vectors == EvenVectors ? this->Search<EvenVectors>(x, y, guess)
                                                   : this->Search<MostVectors>(x, y, guess);
-  this->Sift(b, found);
+  this->Sift(b, x, y, guess, found);
   return found;
 }
 
@@ -761,7 +786,7 @@ ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
     if (!open.IsProved || open.Bits != expected)
     {
       open.Bits = open.IsProved ? open.Bits : expected;
-      this->Sift(b, open);
+      this->Sift(b, x, y, guess, open);
       return count;
     }
     b = neighbors[count++] = this->Current->Slots[guess];
@@ -861,7 +886,7 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
     {
       open.Bits = isProved ? candidates : expected;
       open.IsProved = isProved;
-      this->Sift(b, open);
+      this->Sift(b, bx, by, guess, open);
       return count;
     }
     b = neighbors[count++] = window.Slots[guess];

@@ -155,7 +155,7 @@ private:
   int FollowVectors(Index b, Index last, Index* neighbors, Candidates& open) const;
   int FollowWidest(Index b, Index last, Index* neighbors, Candidates& open) const;
   bool IsInWindow(float bx, float by, float dot, float cross) const;
-  void Sift(Index b, Candidates& candidates) const;
+  void Sift(Index b, float bx, float by, int guess, Candidates& candidates) const;
 
   const BinGrid& Grid;
   const bool IsWidest; ///< sixteen points at a time
