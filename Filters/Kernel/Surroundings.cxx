@@ -606,10 +606,22 @@ ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) co
 
 /**
  * The end of an edge from the vertex, in the window's units.
+ * @param[in] lanes  where it is in the lists, as bits, if it is there
  * @return false when it is too far away
  */
-ELEVATION_WIDE_INLINE bool Surroundings::PlaceEnd(Index b, float& x, float& y) const
+ELEVATION_WIDE_INLINE bool Surroundings::PlaceEnd(
+  Index b, std::uint64_t lanes, float& x, float& y) const
 {
+  if (lanes != 0)
+  {
+    const int lane = __builtin_ctzll(lanes);
+    x = this->Current->X[lane];
+    y = this->Current->Y[lane];
+    if (x == x) // else it is beyond the end of a list
+    {
+      return true;
+    }
+  }
   const Point2 a = this->Grid.PointAt(this->Current->Origin), end = this->Grid.PointAt(b);
   if (this->Current->IsBox)
   {
@@ -747,11 +759,27 @@ void Surroundings::Sift(Index b, float bx, float by, int guess, Candidates& cand
   candidates.IsProved = candidates.IsProved && candidates.Bits != 0;
 }
 
+/** Looks closer: whether there is but one candidate, the guess, after all. */
+bool Surroundings::IsDecided(Index b, float bx, float by, int& guess, Candidates& candidates) const
+{
+  if (!candidates.IsProved)
+  {
+    candidates.Bits = std::uint64_t(1) << guess; // a start for the search elsewhere
+  }
+  this->Sift(b, bx, by, guess, candidates);
+  if (!candidates.IsProved || (candidates.Bits & (candidates.Bits - 1)) != 0)
+  {
+    return false;
+  }
+  guess = __builtin_ctzll(candidates.Bits);
+  return true;
+}
+
 ELEVATION_WIDE Surroundings::Candidates Surroundings::FindCandidates(Index b) const
 {
   int guess;
   float x, y;
-  if (!this->PlaceEnd(b, x, y))
+  if (!this->PlaceEnd(b, 0, x, y))
   {
     return {};
   }
@@ -768,12 +796,7 @@ ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
   int guess;
   float x, y;
   std::uint64_t end = this->Current->LanesOf<Vectors>(b);
-  if (end != 0)
-  {
-    x = this->Current->X[__builtin_ctzll(end)];
-    y = this->Current->Y[__builtin_ctzll(end)];
-  }
-  else if (!this->PlaceEnd(b, x, y))
+  if (!this->PlaceEnd(b, end, x, y))
   {
     open = Candidates();
     return 0;
@@ -782,12 +805,12 @@ ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
   {
     open = this->Search<Vectors>(x, y, guess);
     open.Bits &= ~end;
-    const std::uint64_t expected = std::uint64_t(1) << guess;
-    if (!open.IsProved || open.Bits != expected)
+    if (!open.IsProved || open.Bits != std::uint64_t(1) << guess)
     {
-      open.Bits = open.IsProved ? open.Bits : expected;
-      this->Sift(b, x, y, guess, open);
-      return count;
+      if (!this->IsDecided(b, x, y, guess, open))
+      {
+        return count;
+      }
     }
     b = neighbors[count++] = this->Current->Slots[guess];
     if (b == last || count == Capacity)
@@ -795,7 +818,7 @@ ELEVATION_WIDE_INLINE int Surroundings::FollowVectors(
       open = Candidates();
       return count;
     }
-    end = expected;
+    end = std::uint64_t(1) << guess;
     x = this->Current->X[guess];
     y = this->Current->Y[guess];
   }
@@ -817,12 +840,7 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
       _mm512_cmpeq_epi32_mask(slot, _mm512_load_si512(window.Slots + 16)))
       << 16;
   float bx, by;
-  if (end != 0)
-  {
-    bx = window.X[__builtin_ctz(end)];
-    by = window.Y[__builtin_ctz(end)];
-  }
-  else if (!this->PlaceEnd(b, bx, by))
+  if (!this->PlaceEnd(b, end, bx, by))
   {
     open = Candidates();
     return 0;
@@ -858,8 +876,8 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
     least = _mm512_min_ps(least, _mm512_permute_ps(least, 0x4e));
     least = _mm512_min_ps(least, _mm512_permute_ps(least, 0xb1));
     const __m512i which = _mm512_castps_si512(least);
-    const __m512 nextX = _mm512_permutex2var_ps(x0, which, x1);
-    const __m512 nextY = _mm512_permutex2var_ps(y0, which, y1);
+    __m512 nextX = _mm512_permutex2var_ps(x0, which, x1);
+    __m512 nextY = _mm512_permutex2var_ps(y0, which, y1);
     const float best = _mm512_cvtss_f32(least);
     if (!(best < std::numeric_limits<float>::max()))
     {
@@ -868,8 +886,8 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
     }
     std::uint32_t bits;
     std::memcpy(&bits, &best, sizeof bits);
-    const int guess = static_cast<int>(bits & 31u);
-    const float x = _mm512_cvtss_f32(nextX), y = _mm512_cvtss_f32(nextY);
+    int guess = static_cast<int>(bits & 31u);
+    float x = _mm512_cvtss_f32(nextX), y = _mm512_cvtss_f32(nextY);
     const float cross = bx * y - by * x;
     const float dot = (x * x + y * y) - (x * bx + y * by);
     const __m512 bestCross = _mm512_set1_ps(cross), bestDot = _mm512_set1_ps(dot);
@@ -881,13 +899,18 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
     const std::uint32_t high = _mm512_cmp_ps_mask(difference1, error, _CMP_LE_OQ);
     const std::uint32_t candidates = (low | high << 16) & ~(ends | end);
     const bool isProved = this->IsInWindow(bx, by, dot, cross);
-    const std::uint32_t expected = std::uint32_t(1) << guess;
-    if (!isProved || candidates != expected)
+    if (!isProved || candidates != std::uint32_t(1) << guess)
     {
-      open.Bits = isProved ? candidates : expected;
+      open.Bits = candidates;
       open.IsProved = isProved;
-      this->Sift(b, bx, by, guess, open);
-      return count;
+      if (!this->IsDecided(b, bx, by, guess, open))
+      {
+        return count;
+      }
+      x = window.X[guess];
+      y = window.Y[guess];
+      nextX = _mm512_set1_ps(x);
+      nextY = _mm512_set1_ps(y);
     }
     b = neighbors[count++] = window.Slots[guess];
     if (b == last || count == Capacity)
@@ -895,7 +918,7 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
       open = Candidates();
       return count;
     }
-    end = expected;
+    end = std::uint32_t(1) << guess;
     bx = x;
     by = y;
     endX = nextX;

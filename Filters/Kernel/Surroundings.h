@@ -148,7 +148,7 @@ private:
   void FindPath(Index origin);
   bool GatherBox(Window& window);
   bool GatherBox(Window& window, const BinGrid::Node& top, double lowX, double highX, double highY);
-  bool PlaceEnd(Index b, float& x, float& y) const;
+  bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
   template <int Vectors>
   Candidates Search(float bx, float by, int& guess) const;
   template <int Vectors>
@@ -156,6 +156,7 @@ private:
   int FollowWidest(Index b, Index last, Index* neighbors, Candidates& open) const;
   bool IsInWindow(float bx, float by, float dot, float cross) const;
   void Sift(Index b, float bx, float by, int guess, Candidates& candidates) const;
+  bool IsDecided(Index b, float bx, float by, int& guess, Candidates& candidates) const;
 
   const BinGrid& Grid;
   const bool IsWidest; ///< sixteen points at a time
