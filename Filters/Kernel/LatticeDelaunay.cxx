@@ -552,7 +552,7 @@ private:
         apex = other;
       }
       const Offset place = this->Search(row, column, e, apex, strip.Work);
-      const Index node = this->NodeFrom(high, place);
+      const Index node = high + this->StepTo(place);
       if (node < border)
       {
         low = node;
@@ -632,33 +632,17 @@ private:
       chain.push_back(node);
     };
     const LatticeNodes& nodes = this->Nodes;
-    const auto wordsOf = [&](Index row) { return nodes.NodeAt(row, 0) / 64; };
     Index lowestRow = None, highestRow = None;
     this->Ends.resize(nodes.Rows);
     for (Index row = 0; row < nodes.Rows; ++row)
     {
-      const Index begin = wordsOf(row), end = begin + nodes.WordsPerRow - 1;
-      Index left = begin, right = end - 1;
-      while (left < end && nodes.Word(left) == 0)
-      {
-        ++left;
-      }
-      if (left == end)
+      if (this->FirstRankOf(row) ==
+        (row + 1 < nodes.Rows ? this->FirstRankOf(row + 1) : this->Count))
       {
         continue;
       }
-      while (nodes.Word(right) == 0)
-      {
-        --right;
-      }
-      const Index leftmost = 64 * left + LowestBit(nodes.Word(left));
-      std::uint64_t bits = nodes.Word(right);
-      Index highestBit = 63;
-      while (!(bits >> highestBit & 1))
-      {
-        --highestBit;
-      }
-      const Index rightmost = 64 * right + highestBit;
+      const Index leftmost = nodes.Following(nodes.NodeAt(row, -1));
+      const Index rightmost = nodes.Previous(nodes.NodeAt(row, nodes.Columns));
       this->Ends[row] = { nodes.ColumnOf(leftmost, row), nodes.ColumnOf(rightmost, row) };
       if (lowestRow == None)
       {
@@ -818,7 +802,7 @@ private:
     while (current != last)
     {
       const Offset p = this->Find(row, column, node, e, end, strip.Work);
-      const Index apex = this->NodeFrom(node, p);
+      const Index apex = node + this->StepTo(p);
       const Index rankOfApex = nodes.RankOf(apex);
       NeedRoom(strip, 1);
       const Index b = nodes.Ids[rankOfCurrent], c = nodes.Ids[rankOfApex];
@@ -868,9 +852,9 @@ private:
     return dx * dx + dy * dy <= this->LimitSquared;
   }
 
-  Index NodeFrom(Index node, const Offset& p) const
+  Index StepTo(const Offset& p) const
   {
-    return node + static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);
+    return static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);
   }
 
   /** The apex over the edge from a vertex to the node at e above it; @a end is the fan's last. */
@@ -887,16 +871,22 @@ private:
         }
       }
     }
-    // The last vertex of the fan is on the free side as well.
+    // The last vertex of the fan is on the free side.
     return this->Search(row, column, e, ApexAt(this->Metric, e, end), work);
   }
 
   /**
    * The first look goes into a disc about one spacing high over the edge, the next ones are four
-   * times as high. The disc of some apex that is known bounds them all.
+   * times as high. The disc of some node on the free side, of which one is known, bounds them all.
    */
   Offset Search(Index row, Index column, const Offset& e, Apex best, std::int64_t& work) const
   {
+    // So are the nodes beside both ends, in their rows.
+    this->CompareNeighborInRow(row, column, e, e, best);
+    if (e.Y < 0)
+    {
+      this->CompareNeighborInRow(row, column, { 0, 0 }, e, best);
+    }
     DiscOfEdge disc(this->Metric, e);
     for (double height = std::max(this->FirstHeight, disc.Length() / 8.0);; height *= 4.0)
     {
@@ -916,6 +906,29 @@ private:
       }
     }
     return best.Place;
+  }
+
+  /** Compares the node next to one end of an edge in its row, if there is one on the free side. */
+  void CompareNeighborInRow(
+    Index row, Index column, const Offset& end, const Offset& e, Apex& best) const
+  {
+    if (e.Y == 0)
+    {
+      return;
+    }
+    const LatticeNodes& nodes = this->Nodes;
+    const RowEnds& ends = this->Ends[row + end.Y];
+    const Index node = nodes.NodeAt(row, column) + this->StepTo(end);
+    if (e.Y > 0 ? column + end.X <= ends.Left : column + end.X >= ends.Right)
+    {
+      return;
+    }
+    const Index neighbor = e.Y > 0 ? nodes.Previous(node) : nodes.Following(node);
+    const Apex apex = ApexAt(this->Metric, e, { end.X + neighbor - node, end.Y });
+    if (IsBetter(apex, best, e))
+    {
+      best = apex;
+    }
   }
 
   /**

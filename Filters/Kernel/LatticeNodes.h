@@ -52,6 +52,20 @@ inline int LowestBit(std::uint64_t bits)
 #endif
 }
 
+/** Position of the highest bit that is set; there must be one. */
+inline int HighestBit(std::uint64_t bits)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  return 63 - __builtin_clzll(bits);
+#else
+  for (int shift : { 1, 2, 4, 8, 16, 32 })
+  {
+    bits |= bits >> shift;
+  }
+  return CountBits(bits) - 1;
+#endif
+}
+
 class LatticeNodes
 {
 public:
@@ -78,6 +92,27 @@ public:
   Index ColumnOf(Index node, Index row) const { return node - this->NodeAt(row, 0); }
   std::uint64_t Word(Index word) const { return this->Words[word].load(std::memory_order_relaxed); }
   bool IsOccupied(Index node) const { return (this->Word(node >> 6) >> (node & 63)) & 1; }
+  /** The next node that is occupied after or before this one; there must be one. */
+  Index Following(Index node) const
+  {
+    Index word = ++node >> 6;
+    std::uint64_t bits = this->Word(word) >> (node & 63) << (node & 63);
+    while (!bits)
+    {
+      bits = this->Word(++word);
+    }
+    return 64 * word + LowestBit(bits);
+  }
+  Index Previous(Index node) const
+  {
+    Index word = --node >> 6;
+    std::uint64_t bits = this->Word(word) << (63 - (node & 63)) >> (63 - (node & 63));
+    while (!bits)
+    {
+      bits = this->Word(--word);
+    }
+    return 64 * word + HighestBit(bits);
+  }
   /** How many occupied nodes come before this one. */
   Index RankOf(Index node) const
   {
