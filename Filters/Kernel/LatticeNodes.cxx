@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LatticeNodes.h"
 
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <functional>
@@ -113,10 +114,47 @@ bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Inde
 }
 } // namespace
 
+/** Asks for memory before it is needed: points in any order are spread over all of the bitmap. */
+template <typename T>
+inline void Prefetch(const T* memory)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  __builtin_prefetch(memory);
+#else
+  static_cast<void>(memory);
+#endif
+}
+
+/** A few dozen points and their nodes, between the steps that wait for memory. */
+struct Batch
+{
+  static constexpr int Capacity = 32;
+  int Size = 0;
+  std::array<Index, Capacity> Ids, Nodes;
+};
+
+/** Calls visit(batch) for all points of a range, by increasing id; nodeOf(p) is asked before. */
+template <typename Node, typename Visit>
+void ForEachBatch(const PointView& points, Index begin, Index end, const std::vector<Index>& but,
+  Node&& nodeOf, Visit&& visit)
+{
+  Batch batch;
+  ForEachPoint(points, begin, end, but, [&](Index id, const Point2& p) {
+    batch.Ids[batch.Size] = id;
+    batch.Nodes[batch.Size++] = nodeOf(p);
+    if (batch.Size == Batch::Capacity)
+    {
+      visit(batch);
+      batch.Size = 0;
+    }
+  });
+  visit(batch);
+}
+
 /** @return false when it is set already */
 bool LatticeNodes::SetBit(Index node, bool isShared)
 {
-  std::atomic<std::uint64_t>& word = this->Words[node >> 6];
+  AtomicWord& word = this->Words[node >> 6];
   const std::uint64_t bit = std::uint64_t(1) << (node & 63);
   if (isShared)
   {
@@ -129,8 +167,8 @@ bool LatticeNodes::SetBit(Index node, bool isShared)
 
 void LatticeNodes::CountBefore(int threads)
 {
-  const Index words = static_cast<Index>(this->Words.size());
-  this->Before.Resize(this->Words.size());
+  const Index words = static_cast<Index>(this->Memory.size());
+  this->Before.Resize(this->Memory.size());
   const Index pieces = std::min(threads, words);
   const auto beginOf = [&](Index piece) {
     return static_cast<Index>(std::int64_t(words) * piece / pieces);
@@ -206,7 +244,12 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   this->Columns = static_cast<Index>(columns);
   this->Rows = static_cast<Index>(rows);
   this->WordsPerRow = static_cast<Index>(wordsPerRow);
-  this->Words = std::vector<std::atomic<std::uint64_t>>(static_cast<std::size_t>(words));
+  this->Memory.Resize(static_cast<std::size_t>(words));
+  this->Words = reinterpret_cast<AtomicWord*>(this->Memory.data());
+  for (std::size_t i = 0; i < this->Memory.size(); ++i)
+  {
+    new (this->Words + i) AtomicWord(0);
+  }
 
   const auto largestOffset = [&]() {
     double largest = 0.0;
@@ -231,14 +274,24 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   {
     ForEachRange(points.Count, threads, check, [&](Index part, Index begin, Index end) {
       double largest = 0.0;
-      ForEachPoint(points, begin, end, search.NotFinite, [&](Index id, const Point2& p) {
-        Index column, row;
-        largest = std::max(largest, nodeOf(p, column, row));
-        if (!this->SetBit(this->NodeAt(row, column), threads > 1))
-        {
-          parts[part].Second.push_back(id);
-        }
-      });
+      ForEachBatch(
+        points, begin, end, search.NotFinite,
+        [&](const Point2& p) {
+          Index column, row;
+          largest = std::max(largest, nodeOf(p, column, row));
+          const Index node = this->NodeAt(row, column);
+          Prefetch(this->Words + (node >> 6));
+          return node;
+        },
+        [&](const Batch& batch) {
+          for (int i = 0; i < batch.Size; ++i)
+          {
+            if (!this->SetBit(batch.Nodes[i], threads > 1))
+            {
+              parts[part].Second.push_back(batch.Ids[i]);
+            }
+          }
+        });
       parts[part].Largest = std::max(parts[part].Largest, largest);
     });
     check(1.0);
@@ -255,16 +308,32 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
     points.Count, threads, Part(progress, 0.5, 0.95), [&](Index part, Index begin, Index end) {
       const std::vector<Index>& second = parts[part].Second;
       std::size_t next = parts[part].NextSecond;
-      ForEachPoint(points, begin, end, search.NotFinite, [&](Index id, const Point2& p) {
-        if (next < second.size() && second[next] == id)
-        {
-          ++next;
-          return;
-        }
-        Index column, row;
-        nodeOf(p, column, row);
-        ids[this->RankOf(this->NodeAt(row, column))] = id;
-      });
+      ForEachBatch(
+        points, begin, end, search.NotFinite,
+        [&](const Point2& p) {
+          Index column, row;
+          nodeOf(p, column, row);
+          const Index node = this->NodeAt(row, column);
+          Prefetch(this->Words + (node >> 6));
+          Prefetch(this->Before.data() + (node >> 6));
+          return node;
+        },
+        [&](Batch& batch) {
+          for (int i = 0; i < batch.Size; ++i)
+          {
+            batch.Nodes[i] = this->RankOf(batch.Nodes[i]);
+            Prefetch(ids + batch.Nodes[i]);
+          }
+          for (int i = 0; i < batch.Size; ++i)
+          {
+            if (next < second.size() && second[next] == batch.Ids[i])
+            {
+              ++next;
+              continue;
+            }
+            ids[batch.Nodes[i]] = batch.Ids[i];
+          }
+        });
       parts[part].NextSecond = next;
     });
   std::size_t steps = 0;

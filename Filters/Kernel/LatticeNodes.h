@@ -131,7 +131,12 @@ private:
   bool SetBit(Index node, bool isShared);
   void CountBefore(int threads);
 
-  std::vector<std::atomic<std::uint64_t>> Words; ///< set by several threads at once
+  using AtomicWord = std::atomic<std::uint64_t>; // several threads set bits
+  static_assert(sizeof(AtomicWord) == sizeof(std::uint64_t) &&
+      std::is_trivially_destructible<AtomicWord>::value,
+    "made in the memory of plain words");
+  Buffer<std::uint64_t> Memory;
+  AtomicWord* Words = nullptr;
 };
 
 } // namespace elevation
