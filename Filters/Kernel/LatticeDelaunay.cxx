@@ -1021,6 +1021,12 @@ private:
   ApexLists Lists;
 };
 
+/** No more than there are cores: what is done at once must be done soon, for the next report. */
+int NumberOfThreads(const DelaunayOptions& options)
+{
+  return std::min(ResolveNumberOfThreads(options.NumberOfThreads), ResolveNumberOfThreads(0));
+}
+
 /** Few points fit some lattice by chance, the more easily the larger the tolerance. */
 bool IsByChance(double count, double tolerance)
 {
@@ -1035,8 +1041,8 @@ bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
-  const LatticeSearch search = FindLattice(points, tolerance,
-    ResolveNumberOfThreads(options.NumberOfThreads), Part(options.Monitor, 0.0, 0.15));
+  const LatticeSearch search =
+    FindLattice(points, tolerance, NumberOfThreads(options), Part(options.Monitor, 0.0, 0.15));
   return search.Found && TriangulateOnLattice(points, search, options, result);
 }
 
@@ -1044,7 +1050,7 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   const DelaunayOptions& options, Triangulation& result)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
-  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+  const int threads = NumberOfThreads(options);
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!metric.Set(search.Steps) ||
