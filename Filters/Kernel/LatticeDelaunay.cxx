@@ -633,7 +633,10 @@ private:
     };
     const LatticeNodes& nodes = this->Nodes;
     Index lowestRow = None, highestRow = None;
-    this->Ends.resize(nodes.Rows);
+    for (int level = 0; level <= MostBands; ++level)
+    {
+      this->Ends[level].resize((nodes.Rows >> BandBits * level) + 1);
+    }
     for (Index row = 0; row < nodes.Rows; ++row)
     {
       if (this->FirstRankOf(row) ==
@@ -643,7 +646,12 @@ private:
       }
       const Index leftmost = nodes.Following(nodes.NodeAt(row, -1));
       const Index rightmost = nodes.Previous(nodes.NodeAt(row, nodes.Columns));
-      this->Ends[row] = { nodes.ColumnOf(leftmost, row), nodes.ColumnOf(rightmost, row) };
+      const Index left = nodes.ColumnOf(leftmost, row), right = nodes.ColumnOf(rightmost, row);
+      for (int level = 0; level <= MostBands; ++level)
+      {
+        RowEnds& ends = this->Ends[level][row >> BandBits * level];
+        ends = { std::min(ends.Left, left), std::max(ends.Right, right) };
+      }
       if (lowestRow == None)
       {
         // The whole of the lowest row is on the right side.
@@ -917,7 +925,7 @@ private:
       return;
     }
     const LatticeNodes& nodes = this->Nodes;
-    const RowEnds& ends = this->Ends[row + end.Y];
+    const RowEnds& ends = this->Ends[0][row + end.Y];
     const Index node = nodes.NodeAt(row, column) + this->StepTo(end);
     if (e.Y > 0 ? column + end.X <= ends.Left : column + end.X >= ends.Right)
     {
@@ -948,11 +956,33 @@ private:
     {
       y = static_cast<Index>(std::max(std::ceil(disc.Bottom - 1e-6), -double(row)));
     }
+    // Whether a band of rows has no node left of the edge's line within the columns of the disc.
+    const auto isMissed = [&](int level) {
+      const RowEnds& ends = this->Ends[level][(row + y) >> BandBits * level];
+      const double begin = y * slope, end = (y + (1 << BandBits * level) - 1.0) * slope;
+      double left = std::max(ends.Left - column - 0.0, disc.Left - 1e-6);
+      double right = std::min(ends.Right - column + 0.0, disc.Right + 1e-6);
+      right = e.Y > 0 ? std::min(right, std::max(begin, end)) : right;
+      left = e.Y < 0 ? std::max(left, std::min(begin, end)) : left;
+      return left > right;
+    };
     for (; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
+      int level = 0;
+      while (level < MostBands && ((row + y) & ((1 << BandBits * (level + 1)) - 1)) == 0 &&
+        isMissed(level + 1))
+      {
+        ++level;
+      }
+      if (level > 0)
+      {
+        work += 10;
+        y += (1 << BandBits * level) - 1;
+        continue;
+      }
       // Only occupied columns, and left of the edge's line; a node beside the line is at least 2^-20
       // from it.
-      const RowEnds& ends = this->Ends[row + y];
+      const RowEnds& ends = this->Ends[0][row + y];
       double left = ends.Left - column, right = ends.Right - column;
       right = e.Y > 0 ? std::min(right, y * slope - 4e-7) : right;
       left = e.Y < 0 ? std::max(left, y * slope + 4e-7) : left;
@@ -1013,10 +1043,12 @@ private:
   bool UseCells = true;
   struct RowEnds
   {
-    Index Left = 0, Right = -1; ///< first and last column that is occupied
+    Index Left = LatticeNodes::MaximumSide, Right = -1; ///< first and last occupied column
   };
-  std::vector<RowEnds> Ends;                ///< one a row
-  std::vector<Index> RightChain, LeftChain; ///< nodes
+  static constexpr int BandBits = 5; ///< a band is 32 rows, or 32 bands
+  static constexpr int MostBands = 3;
+  std::array<std::vector<RowEnds>, MostBands + 1> Ends; ///< of each row, band, band of bands ...
+  std::vector<Index> RightChain, LeftChain;             ///< nodes
   Buffer<Index> First, Last; ///< first and last neighbour of the fan above a vertex, by rank
   ApexLists Lists;
 };
