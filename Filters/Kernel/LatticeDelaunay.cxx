@@ -238,8 +238,48 @@ public:
    * @return false when no column is left */
   bool ClipRow(double y, double& left, double& right) const
   {
-    constexpr double slack = 1e-6;
-    double low = this->Left - slack, high = this->Right + slack;
+    double low, high;
+    if (!this->ColumnsOf(y, low, high))
+    {
+      return false;
+    }
+    left = std::max(left, low);
+    right = std::min(right, high);
+    return std::ceil(left) <= std::floor(right);
+  }
+
+  /** The same of the rows from @a begin to @a end. */
+  bool ClipRows(double begin, double end, double& left, double& right) const
+  {
+    double low = this->Left - Slack, high = this->Right + Slack;
+    if (!this->IsHalfPlane)
+    {
+      // The columns of the outermost two rows, unless the disc is at its widest between them.
+      double lows[2], highs[2];
+      const bool begins = this->ColumnsOf(begin, lows[0], highs[0]);
+      const bool ends = this->ColumnsOf(end, lows[1], highs[1]);
+      const double halfWidth = std::sqrt(this->RadiusSquared * this->C) / this->Root;
+      const double above = this->B / this->C * halfWidth; // the leftmost point over the center
+      if (begins && ends)
+      {
+        const auto isBetween = [&](double y) { return y > begin - 1.0 && y < end + 1.0; };
+        low = isBetween(this->CenterY + above) ? low : std::max(low, std::min(lows[0], lows[1]));
+        high =
+          isBetween(this->CenterY - above) ? high : std::min(high, std::max(highs[0], highs[1]));
+      }
+    }
+    left = std::max(left, low);
+    right = std::min(right, high);
+    return left <= right;
+  }
+
+private:
+  static constexpr double Slack = 1e-6; ///< in columns
+
+  bool ColumnsOf(double y, double& low, double& high) const
+  {
+    low = this->Left - Slack;
+    high = this->Right + Slack;
     if (!this->IsHalfPlane)
     {
       const double dy = y - this->CenterY;
@@ -250,17 +290,14 @@ public:
       {
         return false;
       }
-      const double half = std::sqrt(squared) + slack;
+      const double half = std::sqrt(squared) + Slack;
       const double middle = this->CenterX - this->B / this->A * dy;
       low = std::max(low, middle - half);
       high = std::min(high, middle + half);
     }
-    left = std::max(left, low);
-    right = std::min(right, high);
-    return std::ceil(left) <= std::floor(right);
+    return true;
   }
 
-private:
   double A, B, Determinant, Root, EdgeX, EdgeY, C;
   double LengthSquared, NormalX, NormalY;
   double RadiusSquared = 0.0, CenterX = 0.0, CenterY = 0.0, LengthOfStep = 0.0;
@@ -959,12 +996,11 @@ private:
     // Whether a band of rows has no node left of the edge's line within the columns of the disc.
     const auto isMissed = [&](int level) {
       const RowEnds& ends = this->Ends[level][(row + y) >> BandBits * level];
-      const double begin = y * slope, end = (y + (1 << BandBits * level) - 1.0) * slope;
-      double left = std::max(ends.Left - column - 0.0, disc.Left - 1e-6);
-      double right = std::min(ends.Right - column + 0.0, disc.Right + 1e-6);
-      right = e.Y > 0 ? std::min(right, std::max(begin, end)) : right;
-      left = e.Y < 0 ? std::max(left, std::min(begin, end)) : left;
-      return left > right;
+      const Index top = y + (1 << BandBits * level) - 1;
+      double left = ends.Left - column, right = ends.Right - column;
+      right = e.Y > 0 ? std::min(right, std::max(y * slope, top * slope)) : right;
+      left = e.Y < 0 ? std::max(left, std::min(y * slope, top * slope)) : left;
+      return left > right || !disc.ClipRows(y, top, left, right);
     };
     for (; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
