@@ -127,11 +127,6 @@ struct Offset
   std::int64_t X, Y;
 };
 
-bool IsLower(const Offset& p, const Offset& q)
-{
-  return p.Y < q.Y || (p.Y == q.Y && p.X < q.X);
-}
-
 std::int64_t Cross(const Offset& p, const Offset& q)
 {
   return p.X * q.Y - p.Y * q.X;
@@ -153,10 +148,10 @@ Apex ApexAt(const LatticeMetric& metric, const Offset& e, const Offset& p)
 }
 
 /**
- * Whether p is the apex rather than q over the edge from a vertex to e. A co-circular polygon is cut
- * into the fan of its lowest vertex. Where e is above the vertex, so are p and q: the vertex is the
- * lowest and asks for the first counter-clockwise. Where e is below, it is a lower apex, if there
- * is one; or else e is the lowest, and asks for the first clockwise.
+ * Whether p is the apex rather than q over the edge from a vertex to e. Of co-circular ones it is the
+ * first as seen from the lower end of the edge. Over an edge upwards this is the rule for ties: the
+ * vertex is the lowest, and the polygon is cut into its fan. Over an edge downwards it need not be:
+ * however the polygon is cut across a border, the vertices above are the same neighbours.
  */
 bool IsBetter(const Apex& p, const Apex& q, const Offset& e)
 {
@@ -165,16 +160,9 @@ bool IsBetter(const Apex& p, const Apex& q, const Offset& e)
   {
     return order < 0;
   }
-  if (e.Y >= 0)
-  {
-    return Cross(p.Place, q.Place) > 0;
-  }
-  const Offset& lowest = IsLower(p.Place, q.Place) ? p.Place : q.Place;
-  if (IsLower(lowest, e))
-  {
-    return &lowest == &p.Place;
-  }
-  return Cross({ q.Place.X - e.X, q.Place.Y - e.Y }, { p.Place.X - e.X, p.Place.Y - e.Y }) > 0;
+  return e.Y >= 0
+    ? Cross(p.Place, q.Place) > 0
+    : Cross({ q.Place.X - e.X, q.Place.Y - e.Y }, { p.Place.X - e.X, p.Place.Y - e.Y }) > 0;
 }
 
 /** The discs through both ends of an edge, in the metric, in coordinates relative to its origin. */
