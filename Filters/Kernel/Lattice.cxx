@@ -35,6 +35,35 @@ Point2 Minus(const Point2& p, const Point2& q, double times = 1.0)
   return { p.X - times * q.X, p.Y - times * q.Y };
 }
 
+/** The least rectangle around points. */
+struct Box
+{
+  Point2 Low{ DBL_MAX, DBL_MAX }, High{ -DBL_MAX, -DBL_MAX };
+
+  void Add(const Point2& p)
+  {
+    this->Low = { std::min(this->Low.X, p.X), std::min(this->Low.Y, p.Y) };
+    this->High = { std::max(this->High.X, p.X), std::max(this->High.Y, p.Y) };
+  }
+  void Add(const Box& box)
+  {
+    this->Low = { std::min(this->Low.X, box.Low.X), std::min(this->Low.Y, box.Low.Y) };
+    this->High = { std::max(this->High.X, box.High.X), std::max(this->High.Y, box.High.Y) };
+  }
+  double Width() const { return this->High.X - this->Low.X; }
+  double Height() const { return this->High.Y - this->Low.Y; }
+};
+
+Box BoxOf(const std::vector<Point2>& points)
+{
+  Box box;
+  for (const Point2& p : points)
+  {
+    box.Add(p);
+  }
+  return box;
+}
+
 /** Coordinates of a vector in steps. */
 Point2 InSteps(const Point2& d, const Point2& u, const Point2& v)
 {
@@ -230,10 +259,10 @@ void SortUnique(std::vector<Point2>& points)
 /** Cells over a box, to find where most points are. */
 struct Histogram
 {
-  Histogram(const Point2& low, const Point2& high, int cells)
-    : Low(low)
-    , PerX(cells / (high.X - low.X))
-    , PerY(cells / (high.Y - low.Y))
+  Histogram(const Box& box, int cells)
+    : Low(box.Low)
+    , PerX(box.Width() > 0.0 ? cells / box.Width() : 0.0)
+    , PerY(box.Height() > 0.0 ? cells / box.Height() : 0.0)
     , Side(cells)
     , Counts(static_cast<std::size_t>(cells) * cells, 0)
   {
@@ -243,6 +272,13 @@ struct Histogram
     const int column = std::min(static_cast<int>((p.X - this->Low.X) * this->PerX), this->Side - 1);
     const int row = std::min(static_cast<int>((p.Y - this->Low.Y) * this->PerY), this->Side - 1);
     return row * this->Side + column;
+  }
+  void Add(const Histogram& other)
+  {
+    for (std::size_t cell = 0; cell < this->Counts.size(); ++cell)
+    {
+      this->Counts[cell] += other.Counts[cell];
+    }
   }
   int Fullest() const
   {
@@ -256,19 +292,47 @@ struct Histogram
   std::vector<Index> Counts;
 };
 
+/**
+ * Keeps the points of the fullest cell of their box, again and again, until they are few enough to
+ * be sorted in no time, or all at one place.
+ */
+void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
+{
+  constexpr std::size_t few = 1 << 16;
+  while (points.size() > few)
+  {
+    const Box box = BoxOf(points);
+    if (box.Low == box.High)
+    {
+      points.resize(1);
+      return;
+    }
+    Histogram histogram(box, MostCells);
+    if (!std::isfinite(histogram.PerX) || !std::isfinite(histogram.PerY))
+    {
+      return;
+    }
+    for (const Point2& p : points)
+    {
+      ++histogram.Counts[histogram.CellOf(p)];
+    }
+    const int fullest = histogram.Fullest();
+    points.erase(std::remove_if(points.begin(), points.end(),
+                   [&](const Point2& p) { return histogram.CellOf(p) != fullest; }),
+      points.end());
+    Report(progress, 0.5);
+  }
+}
+
 /** Keeps the fullest part of a set of distinct points until few are left. */
 void KeepFullest(std::vector<Point2>& points)
 {
   while (points.size() > Neighbors)
   {
-    Point2 low = points.front(), high = points.front();
-    for (const Point2& p : points)
-    {
-      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-    }
+    const Box box = BoxOf(points);
+    const Point2 &low = box.Low, &high = box.High;
     // Halves of the longer side; a box without height has the longer one all the same.
-    const bool isWide = high.X - low.X > high.Y - low.Y;
+    const bool isWide = box.Width() > box.Height();
     const double middle = isWide ? 0.5 * (low.X + high.X) : 0.5 * (low.Y + high.Y);
     const auto isLow = [&](const Point2& p) { return (isWide ? p.X : p.Y) < middle; };
     const std::size_t lower =
@@ -288,13 +352,8 @@ void KeepFullest(std::vector<Point2>& points)
 /** Area a point in the fullest part; where that has no area, a thousandth of the mean of all. */
 double MeanAreaOf(const std::vector<Point2>& points, double ofAll)
 {
-  Point2 low = points.front(), high = points.front();
-  for (const Point2& p : points)
-  {
-    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-  }
-  return std::max((high.X - low.X) * (high.Y - low.Y) / points.size(), 1e-3 * ofAll);
+  const Box box = BoxOf(points);
+  return std::max(box.Width() * box.Height() / points.size(), 1e-3 * ofAll);
 }
 
 /** The shortest differences of the points, by increasing length. */
@@ -473,19 +532,18 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
   v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
   origin.X = std::fabs(origin.X) <= 1e-6 * length ? 0.0 : origin.X;
   origin.Y = std::fabs(origin.Y) <= 1e-6 * length ? 0.0 : origin.Y;
-  Point2 low{ DBL_MAX, DBL_MAX }, high{ -DBL_MAX, -DBL_MAX };
+  Box box; // in steps
   for (const Point2& p : sample)
   {
     const Point2 steps = InSteps(Minus(p, origin), u, v);
-    low = { std::min(low.X, steps.X), std::min(low.Y, steps.Y) };
-    high = { std::max(high.X, steps.X), std::max(high.Y, steps.Y) };
+    box.Add(steps);
     if (!(std::fabs(steps.X - std::round(steps.X)) <= 1.01 * tolerance + 1e-8) ||
       !(std::fabs(steps.Y - std::round(steps.Y)) <= 1.01 * tolerance + 1e-8))
     {
       return false;
     }
   }
-  if ((high.X - low.X) * (high.Y - low.Y) > mostNodes)
+  if (box.Width() * box.Height() > mostNodes)
   {
     return false; // coarser steps may do
   }
@@ -496,24 +554,42 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
 }
 } // namespace
 
-LatticeSearch FindLattice(const PointView& points, double tolerance, const Progress& progress)
+LatticeSearch FindLattice(
+  const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  Point2 low{ DBL_MAX, DBL_MAX }, high{ -DBL_MAX, -DBL_MAX };
-  ForEachPoint(points, {}, Part(progress, 0.0, 0.3), [&](Index id, const Point2& p) {
-    // The difference of a finite number with itself is 0, of any other not a number.
-    if (!((p.X - p.X) + (p.Y - p.Y) + (points.Elevation(id) - points.Elevation(id)) == 0.0))
-    {
-      search.NotFinite.push_back(id);
-      return;
-    }
-    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-  });
-  search.Low = low;
-  search.High = high;
+  struct Gathered
+  {
+    Box Around;
+    std::vector<Index> NotFinite;
+    std::vector<Point2> Near, Sample;
+  };
+  std::vector<Gathered> parts(NumberOfParts(threads));
+  ForEachRange(
+    points.Count, threads, Part(progress, 0.0, 0.3), [&](Index part, Index begin, Index end) {
+      Box box; // not in memory that other threads write next to
+      ForEachPoint(points, begin, end, {}, [&](Index id, const Point2& p) {
+        // The difference of a finite number with itself is 0, of any other not a number.
+        if (!((p.X - p.X) + (p.Y - p.Y) + (points.Elevation(id) - points.Elevation(id)) == 0.0))
+        {
+          parts[part].NotFinite.push_back(id);
+          return;
+        }
+        box.Add(p);
+      });
+      parts[part].Around.Add(box);
+    });
+  Box box;
+  for (const Gathered& part : parts)
+  {
+    box.Add(part.Around);
+    search.NotFinite.insert(search.NotFinite.end(), part.NotFinite.begin(), part.NotFinite.end());
+  }
+  std::sort(search.NotFinite.begin(), search.NotFinite.end());
+  search.Low = box.Low;
+  search.High = box.High;
   const Index count = points.Count - static_cast<Index>(search.NotFinite.size());
-  const double width = high.X - low.X, height = high.Y - low.Y;
+  const double width = box.Width(), height = box.Height();
   const double extent = width + height;
   // Where squares and quotients might leave the range of double there is no lattice.
   if (count < FewestPoints || !(width > 1e-60 && height > 1e-60 && extent < 1e60))
@@ -522,30 +598,50 @@ LatticeSearch FindLattice(const PointView& points, double tolerance, const Progr
   }
 
   const double cells = std::sqrt(count / static_cast<double>(Neighbors));
-  Histogram histogram(low, high, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
-  int fullest = 0;
-  if (count > static_cast<Index>(Neighbors))
-  {
-    ForEachPoint(points, search.NotFinite, Part(progress, 0.3, 0.6),
-      [&](Index, const Point2& p) { ++histogram.Counts[histogram.CellOf(p)]; });
-    fullest = histogram.Fullest();
-  }
-  std::vector<Point2> around, sample;
+  const Histogram empty(box, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
   const bool isFew = count <= static_cast<Index>(Neighbors);
+  int fullest = 0;
+  if (!isFew)
+  {
+    std::vector<Histogram> histograms(parts.size(), empty);
+    ForEachRange(
+      points.Count, threads, Part(progress, 0.3, 0.6), [&](Index part, Index begin, Index end) {
+        Histogram& histogram = histograms[part];
+        ForEachPoint(points, begin, end, search.NotFinite,
+          [&](Index, const Point2& p) { ++histogram.Counts[histogram.CellOf(p)]; });
+      });
+    for (std::size_t part = 1; part < histograms.size(); ++part)
+    {
+      histograms[0].Add(histograms[part]);
+    }
+    fullest = histograms[0].Fullest();
+  }
   const double share = SampleSize / count;
   const std::uint64_t threshold =
     share < 1.0 ? static_cast<std::uint64_t>(share * 0x1p32) : std::uint64_t(1) << 32;
-  ForEachPoint(points, search.NotFinite, Part(progress, 0.6, 1.0), [&](Index, const Point2& p) {
-    if (isFew || histogram.CellOf(p) == fullest)
-    {
-      around.push_back(p);
-    }
-    if ((HashOf(p) & 0xffffffffu) < threshold)
-    {
-      sample.push_back(p);
-    }
-  });
+  ForEachRange(
+    points.Count, threads, Part(progress, 0.6, 0.9), [&](Index part, Index begin, Index end) {
+      Gathered& gathered = parts[part];
+      ForEachPoint(points, begin, end, search.NotFinite, [&](Index, const Point2& p) {
+        if (isFew || empty.CellOf(p) == fullest)
+        {
+          gathered.Near.push_back(p);
+        }
+        if ((HashOf(p) & 0xffffffffu) < threshold)
+        {
+          gathered.Sample.push_back(p);
+        }
+      });
+    });
+  std::vector<Point2> around, sample;
+  for (const Gathered& part : parts)
+  {
+    around.insert(around.end(), part.Near.begin(), part.Near.end());
+    sample.insert(sample.end(), part.Sample.begin(), part.Sample.end());
+  }
+  parts.clear();
 
+  KeepFullestCells(around, Part(progress, 0.9, 1.0));
   SortUnique(around);
   KeepFullest(around);
   // Relative to a point in the middle of the fullest place, and from there outwards.

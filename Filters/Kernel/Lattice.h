@@ -19,11 +19,12 @@
  * Each step depends on the set of points alone, not on their order. What remains is to check every
  * point (LatticeNodes.h).
  *
- * Cost: three passes over the coordinates, and a fraction of a millisecond.
+ * Cost: three passes over the coordinates, on several threads, and a fraction of a millisecond.
  */
 #ifndef elevation_Lattice_h
 #define elevation_Lattice_h
 
+#include "Parallel.h"
 #include "Types.h"
 
 #include <algorithm>
@@ -65,48 +66,68 @@ struct LatticeSearch
  * @param tolerance  how far a point may lie from its node, along each step, in steps; 0 to 0.25
  * A negative answer comes early; a positive one holds for a sample of the points only.
  */
-LatticeSearch FindLattice(const PointView& points, double tolerance, const Progress& progress);
+LatticeSearch FindLattice(
+  const PointView& points, double tolerance, int threads, const Progress& progress);
 
-/** Visits (id, Point2) of all points but those listed, by increasing id, with progress. */
+/** Into how many parts ForEachRange divides points, for so many threads. */
+inline Index NumberOfParts(int threads)
+{
+  return threads > 1 ? 4 * threads : 1;
+}
+
+/**
+ * Calls work(part, begin, end) for ranges of ids that make up [0, count), on several threads, and
+ * reports between them. A part gets the same ranges each time, by increasing id, and is never with
+ * two threads at once, so what it gathers may be kept by part without locks.
+ */
+template <typename Work>
+void ForEachRange(Index count, int threads, const Progress& progress, Work&& work)
+{
+  constexpr Index least = 1 << 14, most = 1 << 18;
+  const Index parts = NumberOfParts(threads);
+  const Index length = std::min(std::max(count / parts + 1, least), most);
+  for (std::int64_t done = 0; done < count; done += std::int64_t(parts) * length)
+  {
+    Report(progress, double(done) / count);
+    const Index ranges =
+      static_cast<Index>(std::min<std::int64_t>(parts, (count - done + length - 1) / length));
+    ForEachPiece(ranges, threads, [&](Index part) {
+      const Index begin = static_cast<Index>(done) + part * length;
+      work(part, begin, begin + std::min(length, count - begin));
+    });
+  }
+}
+
+/** Visits (id, Point2) of the points of a range but those listed, by increasing id. */
 template <typename Visit>
 void ForEachPoint(
-  const PointView& points, const std::vector<Index>& but, const Progress& progress, Visit&& visit)
+  const PointView& points, Index begin, Index end, const std::vector<Index>& but, Visit&& visit)
 {
-  constexpr Index stride = 1 << 18;
-  std::size_t next = 0;
-  Index reported = -stride;
-  for (Index begin = 0; begin < points.Count;)
+  auto next = std::lower_bound(but.begin(), but.end(), begin);
+  while (begin < end)
   {
-    if (next < but.size() && but[next] == begin)
-    {
-      ++begin;
-      ++next;
-      continue;
-    }
-    if (begin - reported >= stride)
-    {
-      Report(progress, double(begin) / points.Count);
-      reported = begin;
-    }
-    Index end = points.Count - begin > stride ? begin + stride : points.Count;
-    end = next < but.size() ? std::min(end, but[next]) : end;
+    const Index stop = next != but.end() ? std::min(end, *next) : end;
     if (points.Double)
     {
       const double* p = points.Double + 3 * static_cast<std::size_t>(begin);
-      for (Index i = begin; i < end; ++i, p += 3)
+      for (; begin < stop; ++begin, p += 3)
       {
-        visit(i, Point2{ p[0], p[1] });
+        visit(begin, Point2{ p[0], p[1] });
       }
     }
     else
     {
       const float* p = points.Float + 3 * static_cast<std::size_t>(begin);
-      for (Index i = begin; i < end; ++i, p += 3)
+      for (; begin < stop; ++begin, p += 3)
       {
-        visit(i, Point2{ p[0], p[1] });
+        visit(begin, Point2{ p[0], p[1] });
       }
     }
-    begin = end;
+    if (next != but.end() && begin == *next)
+    {
+      ++begin;
+      ++next;
+    }
   }
 }
 

@@ -3,10 +3,12 @@
 #include "LatticeDelaunay.h"
 
 #include "LatticeNodes.h"
+#include "Parallel.h"
 #include "Predicates.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <memory>
 
@@ -145,12 +147,22 @@ Apex ApexAt(const LatticeMetric& metric, const Offset& e, const Offset& p)
   return { p, metric.Dot(p.X, p.Y, p.X - e.X, p.Y - e.Y), Cross(e, p) };
 }
 
-/** Of co-circular ones, the fan of the lowest vertex, which is the vertex itself, asks for the
- * first counter-clockwise. */
-bool IsBetter(const Apex& p, const Apex& q)
+/**
+ * Whether p is the apex rather than q over the edge from a vertex to e. Of co-circular ones it is the
+ * first as seen from the lower end of the edge. Over an edge upwards this is the rule for ties: the
+ * vertex is the lowest, and the polygon is cut into its fan. Over an edge downwards it need not be:
+ * however the polygon is cut across a border, the vertices above are the same neighbours.
+ */
+bool IsBetter(const Apex& p, const Apex& q, const Offset& e)
 {
   const int order = CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
-  return order < 0 || (order == 0 && Cross(p.Place, q.Place) > 0);
+  if (order != 0)
+  {
+    return order < 0;
+  }
+  return e.Y >= 0
+    ? Cross(p.Place, q.Place) > 0
+    : Cross({ q.Place.X - e.X, q.Place.Y - e.Y }, { p.Place.X - e.X, p.Place.Y - e.Y }) > 0;
 }
 
 /** The discs through both ends of an edge, in the metric, in coordinates relative to its origin. */
@@ -204,17 +216,58 @@ public:
     this->IsHalfPlane = !(this->RadiusSquared < 1e16 * this->LengthOfStep);
     this->Left = centerX - halfWidth * (1.0 + 1e-9);
     this->Right = centerX + halfWidth * (1.0 + 1e-9);
+    this->Bottom = centerY - halfHeight * (1.0 + 1e-9);
     this->Top = centerY + halfHeight * (1.0 + 1e-9);
   }
 
-  double Left = 0.0, Right = 0.0, Top = 0.0;
+  double Left = 0.0, Right = 0.0, Bottom = 0.0, Top = 0.0;
 
   /** Leaves of a range of columns what a row of the disc has, a little more rather than less.
    * @return false when no column is left */
   bool ClipRow(double y, double& left, double& right) const
   {
-    constexpr double slack = 1e-6;
-    double low = this->Left - slack, high = this->Right + slack;
+    double low, high;
+    if (!this->ColumnsOf(y, low, high))
+    {
+      return false;
+    }
+    left = std::max(left, low);
+    right = std::min(right, high);
+    return std::ceil(left) <= std::floor(right);
+  }
+
+  /** The same of the rows from @a begin to @a end. */
+  bool ClipRows(double begin, double end, double& left, double& right) const
+  {
+    double low = this->Left - Slack, high = this->Right + Slack;
+    if (!this->IsHalfPlane)
+    {
+      // The columns of the outermost two rows, unless the disc is at its widest between them.
+      double lows[2], highs[2];
+      const bool begins = this->ColumnsOf(begin, lows[0], highs[0]);
+      const bool ends = this->ColumnsOf(end, lows[1], highs[1]);
+      const double halfWidth = std::sqrt(this->RadiusSquared * this->C) / this->Root;
+      const double above = this->B / this->C * halfWidth; // the leftmost point over the center
+      if (begins && ends)
+      {
+        const auto isBetween = [&](double y) { return y > begin - 1.0 && y < end + 1.0; };
+        low = isBetween(this->CenterY + above) ? low : std::max(low, std::min(lows[0], lows[1]));
+        high =
+          isBetween(this->CenterY - above) ? high : std::min(high, std::max(highs[0], highs[1]));
+      }
+    }
+    left = std::max(left, low);
+    right = std::min(right, high);
+    return left <= right;
+  }
+
+private:
+  static constexpr double Slack = 1e-6; ///< in columns
+
+  bool ColumnsOf(double y, double& low, double& high) const
+  {
+    low = this->Left - Slack;
+    high = this->Right + Slack;
     if (!this->IsHalfPlane)
     {
       const double dy = y - this->CenterY;
@@ -225,17 +278,14 @@ public:
       {
         return false;
       }
-      const double half = std::sqrt(squared) + slack;
+      const double half = std::sqrt(squared) + Slack;
       const double middle = this->CenterX - this->B / this->A * dy;
       low = std::max(low, middle - half);
       high = std::min(high, middle + half);
     }
-    left = std::max(left, low);
-    right = std::min(right, high);
-    return std::ceil(left) <= std::floor(right);
+    return true;
   }
 
-private:
   double A, B, Determinant, Root, EdgeX, EdgeY, C;
   double LengthSquared, NormalX, NormalY;
   double RadiusSquared = 0.0, CenterX = 0.0, CenterY = 0.0, LengthOfStep = 0.0;
@@ -271,7 +321,8 @@ public:
       }
     }
     const std::size_t length = std::min(all.size(), Length);
-    std::partial_sort(all.begin(), all.begin() + length, all.end(), IsBetter);
+    std::partial_sort(all.begin(), all.begin() + length, all.end(),
+      [&](const Apex& p, const Apex& q) { return IsBetter(p, q, e); });
     DiscOfEdge disc(metric, e);
     for (std::size_t i = 0; i < length; ++i)
     {
@@ -294,6 +345,66 @@ public:
 static_assert(ApexList::Reach <= LatticeNodes::RowsBeyond, "rows beyond the last are looked at");
 static_assert(ApexList::Reach < LatticeNodes::ColumnsBeyond, "nodes beyond a row are looked at");
 
+/** The lists of all short edge vectors, each made when it has been asked for a few times. */
+class ApexLists
+{
+public:
+  ApexLists(const LatticeMetric& metric, const LatticeNodes& nodes)
+    : Metric(metric)
+    , Nodes(nodes)
+  {
+  }
+  ApexLists(const ApexLists&) = delete;
+  ApexLists& operator=(const ApexLists&) = delete;
+  ~ApexLists()
+  {
+    for (Slot& slot : this->Slots)
+    {
+      delete slot.List.load();
+    }
+  }
+
+  /** @return nullptr when there is none. Threads may ask at the same time. */
+  const ApexList* Of(const Offset& e)
+  {
+    if (std::abs(e.X) > Reach || e.Y > Reach)
+    {
+      return nullptr;
+    }
+    Slot& slot = this->Slots[static_cast<std::size_t>(e.Y * (2 * Reach + 1) + e.X + Reach)];
+    const ApexList* list = slot.List.load(std::memory_order_acquire);
+    if (!list && slot.Uses.fetch_add(1, std::memory_order_relaxed) >= UsesBeforeList)
+    {
+      auto made = std::make_unique<ApexList>(this->Metric, e, this->Nodes);
+      if (slot.List.compare_exchange_strong(list, made.get()))
+      {
+        list = made.release();
+      }
+    }
+    return list;
+  }
+
+private:
+  static constexpr Index Reach = 10;
+  static constexpr int UsesBeforeList = 16;
+
+  struct Slot
+  {
+    std::atomic<const ApexList*> List{ nullptr };
+    std::atomic<int> Uses{ 0 };
+  };
+
+  const LatticeMetric& Metric;
+  const LatticeNodes& Nodes;
+  std::array<Slot, (2 * Reach + 1) * (Reach + 1)> Slots;
+};
+
+/**
+ * Grows the triangulation in strips of rows, several at the same time. A strip writes to its own
+ * part of the triangles and of the fans' ends. What a triangle from below the strip would have told
+ * its vertices is found by a walk through the triangles across the strip's lower border, which also
+ * tells how many triangles are below it.
+ */
 class Grower
 {
 public:
@@ -304,6 +415,7 @@ public:
     , Metric(metric)
     , Options(options)
     , Count(nodes.NumberOfPoints())
+    , Lists(metric, nodes)
   {
     const double area = double(metric.A) * double(metric.C) - double(metric.B) * double(metric.B);
     const double perPoint = double(nodes.Columns) * nodes.Rows / this->Count;
@@ -320,7 +432,7 @@ public:
   }
 
   /** @return false when the lattice is of no use: all on one line, or a triangle would be flat */
-  bool Grow(Triangulation& result)
+  bool Grow(int threads, Triangulation& result)
   {
     this->FindHull();
     if (this->RightChain == this->LeftChain)
@@ -328,7 +440,7 @@ public:
       return false;
     }
     const std::size_t hull = this->RightChain.size() + this->LeftChain.size() - 2;
-    this->Total = 2 * static_cast<std::size_t>(this->Count) - 2 - hull;
+    const std::size_t total = 2 * static_cast<std::size_t>(this->Count) - 2 - hull;
     this->First.Resize(this->Count);
     this->Last.Resize(this->Count);
     const auto open = [&](const std::vector<Index>& chain, Buffer<Index>& ends) {
@@ -340,33 +452,191 @@ public:
     open(this->RightChain, this->First);
     open(this->LeftChain, this->Last);
 
-    Buffer<Index> triangles;
-    triangles.Resize(3 * this->Total);
-    this->Next = triangles.data();
-    this->End = this->Next + triangles.size();
     const Progress progress = Part(this->Options.Monitor, 0.4, 1.0);
-    const bool isAcute = this->Metric.B > 0;
-    for (Index row = 0; row < this->Nodes.Rows; ++row)
+    std::vector<Strip> strips = this->MakeStrips(threads);
+    const Index number = static_cast<Index>(strips.size());
+    for (Index done = 1; done < number; done += threads)
     {
-      this->GrowRow(row, isAcute);
-      if (this->IsFlat)
-      {
-        return false;
-      }
-      this->SinceReport += this->Nodes.Columns;
-      if (this->SinceReport > 65536)
-      {
-        Report(progress, double(row) / this->Nodes.Rows);
-        this->SinceReport = 0;
-      }
+      Report(progress, 0.0);
+      ForEachPiece(std::min(threads, number - done), threads,
+        [&](Index i) { this->WalkBelow(strips[done + i]); });
     }
-    triangles.Resize(static_cast<std::size_t>(this->Next - triangles.data()));
+
+    Buffer<Index> triangles;
+    triangles.Resize(3 * total);
+    for (Index i = 0; i < number; ++i)
+    {
+      const std::size_t end = i + 1 < number ? strips[i + 1].FirstTriangle : total;
+      strips[i].Begin = strips[i].Next = triangles.data() + 3 * strips[i].FirstTriangle;
+      strips[i].End = triangles.data() + 3 * end;
+    }
+    if (!this->GrowStrips(strips, threads, progress))
+    {
+      return false;
+    }
+    // Where an edge limit leaves some out, the strips close up.
+    Index* end = triangles.data();
+    for (const Strip& strip : strips)
+    {
+      if (this->LimitSquared == Infinity && strip.Next != strip.End)
+      {
+        ThrowOpenFan();
+      }
+      end = strip.Begin == end ? strip.Next : std::copy(strip.Begin, strip.Next, end);
+    }
+    triangles.Resize(static_cast<std::size_t>(end - triangles.data()));
     result.Triangles = std::move(triangles);
     result.NumberOfHullPoints = static_cast<Index>(hull);
     return true;
   }
 
 private:
+  /** Rows that one thread grows. */
+  struct Strip
+  {
+    Index FirstRow = 0, EndRow = 0;
+    Index FirstRank = 0, EndRank = 0;
+    std::size_t FirstTriangle = 0; ///< how many triangles start below the strip
+    Index* Begin = nullptr;        ///< of its triangles
+    Index* Next = nullptr;
+    Index* End = nullptr;
+    Index Row = 0;         ///< the next one to grow
+    std::int64_t Work = 0; ///< done so far, in nanoseconds or so
+    bool IsFlat = false;   ///< a triangle would be flat or inverted
+  };
+
+  Index FirstRankOf(Index row) const { return this->Nodes.Before[this->Nodes.NodeAt(row, 0) / 64]; }
+
+  /** Strips of about as many points each, all of them with points. */
+  std::vector<Strip> MakeStrips(int threads) const
+  {
+    constexpr Index fewest = 20000;
+    const Index perStrip = this->Options.PointsPerStrip > 0 ? this->Options.PointsPerStrip
+      : threads > 1 ? std::max(this->Count / (4 * threads) + 1, fewest)
+                    : this->Count;
+    std::vector<Strip> strips;
+    Strip strip;
+    for (Index row = 1; row <= this->Nodes.Rows; ++row)
+    {
+      const bool isLast = row == this->Nodes.Rows;
+      const Index rank = isLast ? this->Count : this->FirstRankOf(row);
+      if (rank - strip.FirstRank >= perStrip || isLast)
+      {
+        // No points for one more: these rows are empty.
+        if (rank == strip.FirstRank)
+        {
+          strips.back().EndRow = row;
+          break;
+        }
+        strip.EndRow = row;
+        strip.EndRank = rank;
+        strip.Row = strip.FirstRow;
+        strips.push_back(strip);
+        strip.FirstRow = row;
+        strip.FirstRank = rank;
+      }
+    }
+    return strips;
+  }
+
+  /**
+   * The triangles across the lower border of a strip, from the left end of the hull to the right:
+   * each edge across the border is that of two of them. Those with two vertices above tell them of
+   * each other, as in GrowFan; what vertices of full cells know of each other is not told.
+   */
+  void WalkBelow(Strip& strip)
+  {
+    const LatticeNodes& nodes = this->Nodes;
+    const Index border = nodes.NodeAt(strip.FirstRow, 0) - 64; // nodes above are not less
+    const auto isInStrip = [&](Index rank) {
+      return rank >= strip.FirstRank && rank < strip.EndRank;
+    };
+    const auto above = [&](const std::vector<Index>& chain) {
+      return std::lower_bound(chain.begin(), chain.end(), border);
+    };
+    const auto left = above(this->LeftChain), right = above(this->RightChain);
+    Index low = left[-1], high = left[0];
+    std::size_t pairs = 0; // triangles with two vertices above
+    while (low != right[-1] || high != right[0])
+    {
+      if (high - low == 64 * nodes.WordsPerRow && nodes.IsOccupied(low + 1) &&
+        nodes.IsOccupied(high + 1))
+      {
+        ++low;
+        ++high;
+        ++pairs;
+        continue;
+      }
+      const Index row = nodes.RowOf(high), column = nodes.ColumnOf(high, row);
+      const Offset e = this->Between(high, low);
+      // The hull's edge is on the right: one of its ends at least is an apex.
+      Apex apex = ApexAt(this->Metric, e, this->Between(high, right[0]));
+      const Apex other = ApexAt(this->Metric, e, this->Between(high, right[-1]));
+      if (apex.Cross <= 0 || (other.Cross > 0 && IsBetter(other, apex, e)))
+      {
+        apex = other;
+      }
+      const Offset place = this->Search(row, column, e, apex, strip.Work);
+      const Index node = high + this->StepTo(place);
+      if (node < border)
+      {
+        low = node;
+        continue;
+      }
+      ++pairs;
+      this->Tell(node, nodes.RankOf(node), high, nodes.RankOf(high), isInStrip);
+      high = node;
+    }
+    // By Euler, with those vertices as the inner ones that are below and not on the hull.
+    const std::size_t hull =
+      static_cast<std::size_t>(left - this->LeftChain.begin() + (right - this->RightChain.begin()));
+    strip.FirstTriangle = 2 * static_cast<std::size_t>(strip.FirstRank) - hull + pairs;
+  }
+
+  /**
+   * Grows all strips, as many at a time as there are threads, with a report between rounds.
+   * @return false when a triangle would be flat or inverted
+   */
+  bool GrowStrips(std::vector<Strip>& strips, int threads, const Progress& progress)
+  {
+    std::vector<Strip*> active;
+    std::size_t started = 0;
+    for (;;)
+    {
+      while (active.size() < static_cast<std::size_t>(threads) && started < strips.size())
+      {
+        active.push_back(&strips[started++]);
+      }
+      if (active.empty())
+      {
+        return true;
+      }
+      Index done = 0;
+      for (const Strip& strip : strips)
+      {
+        done += strip.Row - strip.FirstRow;
+      }
+      Report(progress, double(done) / this->Nodes.Rows);
+      ForEachPiece(static_cast<Index>(active.size()), threads, [&](Index i) {
+        constexpr std::int64_t workInARound = 20000000;
+        Strip strip = *active[i]; // not in memory that other threads write next to
+        const std::int64_t end = strip.Work + workInARound;
+        while (strip.Row < strip.EndRow && strip.Work < end && !strip.IsFlat)
+        {
+          this->GrowRow(strip, strip.Row++);
+        }
+        *active[i] = strip;
+      });
+      const auto isFlat = [](const Strip* strip) { return strip->IsFlat; };
+      if (std::any_of(active.begin(), active.end(), isFlat))
+      {
+        return false;
+      }
+      const auto isDone = [](const Strip* strip) { return strip->Row == strip->EndRow; };
+      active.erase(std::remove_if(active.begin(), active.end(), isDone), active.end());
+    }
+  }
+
   Offset Between(Index from, Index to) const
   {
     const Index fromRow = this->Nodes.RowOf(from), toRow = this->Nodes.RowOf(to);
@@ -387,34 +657,26 @@ private:
       chain.push_back(node);
     };
     const LatticeNodes& nodes = this->Nodes;
-    const auto wordsOf = [&](Index row) { return nodes.NodeAt(row, 0) / 64; };
     Index lowestRow = None, highestRow = None;
-    this->Ends.resize(nodes.Rows);
+    for (int level = 0; level <= MostBands; ++level)
+    {
+      this->Ends[level].resize((nodes.Rows >> BandBits * level) + 1);
+    }
     for (Index row = 0; row < nodes.Rows; ++row)
     {
-      const Index begin = wordsOf(row), end = begin + nodes.WordsPerRow - 1;
-      Index left = begin, right = end - 1;
-      while (left < end && nodes.Words[left] == 0)
-      {
-        ++left;
-      }
-      if (left == end)
+      if (this->FirstRankOf(row) ==
+        (row + 1 < nodes.Rows ? this->FirstRankOf(row + 1) : this->Count))
       {
         continue;
       }
-      while (nodes.Words[right] == 0)
+      const Index leftmost = nodes.Following(nodes.NodeAt(row, -1));
+      const Index rightmost = nodes.Previous(nodes.NodeAt(row, nodes.Columns));
+      const Index left = nodes.ColumnOf(leftmost, row), right = nodes.ColumnOf(rightmost, row);
+      for (int level = 0; level <= MostBands; ++level)
       {
-        --right;
+        RowEnds& ends = this->Ends[level][row >> BandBits * level];
+        ends = { std::min(ends.Left, left), std::max(ends.Right, right) };
       }
-      const Index leftmost = 64 * left + LowestBit(nodes.Words[left]);
-      std::uint64_t bits = nodes.Words[right];
-      Index highestBit = 63;
-      while (!(bits >> highestBit & 1))
-      {
-        --highestBit;
-      }
-      const Index rightmost = 64 * right + highestBit;
-      this->Ends[row] = { nodes.ColumnOf(leftmost, row), nodes.ColumnOf(rightmost, row) };
       if (lowestRow == None)
       {
         // The whole of the lowest row is on the right side.
@@ -467,25 +729,25 @@ private:
    * makes the fan of a vertex known when the nodes left, right, above and beside that are occupied,
    * and its first and last edge known when only some are.
    */
-  void GrowRow(Index row, bool isAcute)
+  void GrowRow(Strip& strip, Index row)
   {
     const LatticeNodes& nodes = this->Nodes;
-    const std::uint64_t* words = nodes.Words.data();
+    const bool isAcute = this->Metric.B > 0;
     const Index begin = nodes.NodeAt(row, 0) / 64;
     const Index end = begin + nodes.WordsPerRow - 1;
     for (Index w = begin; w < end; ++w)
     {
-      std::uint64_t rest = words[w];
+      std::uint64_t rest = nodes.Word(w);
       if (rest == 0)
       {
         continue;
       }
       const Index above = w + nodes.WordsPerRow;
-      const std::uint64_t up = words[above];
-      const std::uint64_t right = (rest >> 1) | (words[w + 1] << 63);
-      const std::uint64_t left = (rest << 1) | (words[w - 1] >> 63);
-      const std::uint64_t upRight = (up >> 1) | (words[above + 1] << 63);
-      const std::uint64_t upLeft = (up << 1) | (words[above - 1] >> 63);
+      const std::uint64_t up = nodes.Word(above);
+      const std::uint64_t right = (rest >> 1) | (nodes.Word(w + 1) << 63);
+      const std::uint64_t left = (rest << 1) | (nodes.Word(w - 1) >> 63);
+      const std::uint64_t upRight = (up >> 1) | (nodes.Word(above + 1) << 63);
+      const std::uint64_t upLeft = (up << 1) | (nodes.Word(above - 1) >> 63);
       const std::uint64_t cut = isAcute ? upLeft : upRight;
       const std::uint64_t full = this->UseCells ? rest & right & left & up & cut : 0;
       const std::uint64_t lastIsKnown = left & (isAcute ? upLeft : up);
@@ -499,14 +761,7 @@ private:
           const int length = ~run ? LowestBit(~run) : 64;
           const std::uint64_t before = (std::uint64_t(1) << bit) - 1;
           const Index rankUp = nodes.Before[above] + CountBits(up & before);
-          if (isAcute)
-          {
-            this->WriteAcuteCells(rank, rankUp, length);
-          }
-          else
-          {
-            this->WriteCells(rank, rankUp, length);
-          }
+          WriteCells(strip, nodes.Ids.data() + rank, nodes.Ids.data() + rankUp, length, isAcute);
           rank += length;
           rest = bit + length < 64 ? rest >> (bit + length) << (bit + length) : 0;
           continue;
@@ -520,8 +775,8 @@ private:
             : this->Last[rank];
           if (first != last)
           {
-            this->GrowFan(row, node, rank, first, last);
-            if (this->IsFlat)
+            this->GrowFan(strip, row, node, rank, first, last);
+            if (strip.IsFlat)
             {
               return;
             }
@@ -533,52 +788,39 @@ private:
     }
   }
 
-  void WriteCells(Index rank, Index rankUp, int length)
+  /** The two triangles of each cell; @a here and @a up are the ids from its left end on. */
+  static void WriteCells(Strip& strip, const Index* here, const Index* up, int length, bool isAcute)
   {
-    this->NeedRoom(2 * static_cast<std::size_t>(length));
-    const Index* here = this->Nodes.Ids.data() + rank;
-    const Index* up = this->Nodes.Ids.data() + rankUp;
-    Index* out = this->Next;
+    NeedRoom(strip, 2 * static_cast<std::size_t>(length));
+    const Index* middle = isAcute ? up : up + 1; // the diagonal's end
+    const Index* last = isAcute ? up - 1 : up;
+    Index* out = strip.Next;
     for (int i = 0; i < length; ++i, out += 6)
     {
-      out[0] = here[i];
+      out[0] = out[3] = here[i];
       out[1] = here[i + 1];
-      out[2] = up[i + 1];
-      out[3] = here[i];
-      out[4] = up[i + 1];
-      out[5] = up[i];
+      out[2] = out[4] = middle[i];
+      out[5] = last[i];
     }
-    this->Next = out;
+    strip.Next = out;
+    strip.Work += 10 * length;
   }
 
-  void WriteAcuteCells(Index rank, Index rankUp, int length)
+  static void NeedRoom(const Strip& strip, std::size_t triangles)
   {
-    this->NeedRoom(2 * static_cast<std::size_t>(length));
-    const Index* here = this->Nodes.Ids.data() + rank;
-    const Index* up = this->Nodes.Ids.data() + rankUp;
-    Index* out = this->Next;
-    for (int i = 0; i < length; ++i, out += 6)
+    if (static_cast<std::size_t>(strip.End - strip.Next) < 3 * triangles)
     {
-      out[0] = here[i];
-      out[1] = here[i + 1];
-      out[2] = up[i];
-      out[3] = here[i];
-      out[4] = up[i];
-      out[5] = up[i - 1];
+      ThrowOpenFan();
     }
-    this->Next = out;
   }
 
-  void NeedRoom(std::size_t triangles)
+  [[noreturn]] static void ThrowOpenFan()
   {
-    if (static_cast<std::size_t>(this->End - this->Next) < 3 * triangles)
-    {
-      throw std::logic_error("the fans of the lattice do not close; this is a fault of the "
-                             "triangulation, please report it");
-    }
+    throw std::logic_error("the fans of the lattice do not close; this is a fault of the "
+                           "triangulation, please report it");
   }
 
-  void GrowFan(Index row, Index node, Index rank, Index first, Index last)
+  void GrowFan(Strip& strip, Index row, Index node, Index rank, Index first, Index last)
   {
     const LatticeNodes& nodes = this->Nodes;
     const Index column = nodes.ColumnOf(node, row);
@@ -589,38 +831,50 @@ private:
     Index current = first;
     Index rankOfCurrent = nodes.RankOf(first);
     const Index id = nodes.Ids[rank];
+    const auto isInStrip = [&](Index other) { return other < strip.EndRank; };
     while (current != last)
     {
-      Offset p;
-      const Index apex = this->Find(row, column, node, e, end, p);
+      const Offset p = this->Find(row, column, node, e, end, strip.Work);
+      const Index apex = node + this->StepTo(p);
       const Index rankOfApex = nodes.RankOf(apex);
-      this->NeedRoom(1);
+      NeedRoom(strip, 1);
       const Index b = nodes.Ids[rankOfCurrent], c = nodes.Ids[rankOfApex];
       if (!this->IsProved(e, p) &&
         Orientation(this->Points.At(id), this->Points.At(b), this->Points.At(c)) != Positive)
       {
-        this->IsFlat = true;
+        strip.IsFlat = true;
         return;
       }
       if (this->LimitSquared == Infinity ||
         (this->IsShort(id, b) && this->IsShort(b, c) && this->IsShort(c, id)))
       {
-        this->Next[0] = id;
-        this->Next[1] = b;
-        this->Next[2] = c;
-        this->Next += 3;
+        strip.Next[0] = id;
+        strip.Next[1] = b;
+        strip.Next[2] = c;
+        strip.Next += 3;
       }
-      if (apex > current) // node numbers increase with row and column
-      {
-        this->Last[rankOfCurrent] = apex;
-      }
-      else
-      {
-        this->First[rankOfApex] = current;
-      }
+      this->Tell(current, rankOfCurrent, apex, rankOfApex, isInStrip);
       current = apex;
       rankOfCurrent = rankOfApex;
       e = p;
+      strip.Work += 30;
+    }
+  }
+
+  /** A triangle of a lower vertex, a and b tells one of these of the other. */
+  template <typename IsTold>
+  void Tell(Index a, Index rankOfA, Index b, Index rankOfB, IsTold&& isTold)
+  {
+    if (b > a) // node numbers increase with row and column
+    {
+      if (isTold(rankOfA))
+      {
+        this->Last[rankOfA] = b;
+      }
+    }
+    else if (isTold(rankOfB))
+    {
+      this->First[rankOfB] = a;
     }
   }
 
@@ -631,80 +885,132 @@ private:
     return dx * dx + dy * dy <= this->LimitSquared;
   }
 
-  /** The apex over the edge from a vertex to the node at e from it. */
-  Index Find(Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
+  Index StepTo(const Offset& p) const
   {
-    if (std::abs(e.X) <= ListedReach && e.Y <= ListedReach)
+    return static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);
+  }
+
+  /** The apex over the edge from a vertex to the node at e above it; @a end is the fan's last. */
+  Offset Find(
+    Index row, Index column, Index node, const Offset& e, const Offset& end, std::int64_t& work)
+  {
+    if (const ApexList* list = this->Lists.Of(e))
     {
-      const std::size_t key =
-        static_cast<std::size_t>(e.Y * (2 * ListedReach + 1) + e.X + ListedReach);
-      std::unique_ptr<ApexList>& list = this->Lists[key];
-      if (!list && ++this->Uses[key] > UsesBeforeList)
+      for (const ApexList::Entry& entry : list->Entries)
       {
-        list = std::make_unique<ApexList>(this->Metric, e, this->Nodes);
-      }
-      if (list)
-      {
-        for (const ApexList::Entry& entry : list->Entries)
+        if (this->Nodes.IsOccupied(node + entry.Step))
         {
-          if (this->Nodes.IsOccupied(node + entry.Step))
-          {
-            p = { entry.X, entry.Y };
-            return node + entry.Step;
-          }
+          return { entry.X, entry.Y };
         }
       }
     }
-    return this->Search(row, column, node, e, end, p);
+    // The last vertex of the fan is on the free side.
+    return this->Search(row, column, e, ApexAt(this->Metric, e, end), work);
   }
 
   /**
-   * The first look goes into a disc about one spacing high over the edge, the next ones are twice
-   * as high. The last vertex of the fan is on the free side as well: its disc bounds them all.
+   * The first look goes into a disc about one spacing high over the edge, the next ones are four
+   * times as high. The disc of some node on the free side, of which one is known, bounds them all.
    */
-  Index Search(Index row, Index column, Index node, const Offset& e, const Offset& end, Offset& p)
+  Offset Search(Index row, Index column, const Offset& e, Apex best, std::int64_t& work) const
   {
+    // So are the nodes beside both ends, in their rows.
+    this->CompareNeighborInRow(row, column, e, e, best);
+    if (e.Y < 0)
+    {
+      this->CompareNeighborInRow(row, column, { 0, 0 }, e, best);
+    }
     DiscOfEdge disc(this->Metric, e);
-    Apex best = ApexAt(this->Metric, e, end);
     for (double height = std::max(this->FirstHeight, disc.Length() / 8.0);; height *= 4.0)
     {
       const double seen = disc.PositionOfHeight(height), needed = disc.PositionOf(best);
       if (!(seen < needed))
       {
-        this->Look(disc, needed, row, column, e, best);
+        this->Look(disc, needed, row, column, e, best, work);
         break;
       }
-      if (this->Look(disc, seen, row, column, e, best))
+      if (this->Look(disc, seen, row, column, e, best, work))
       {
         if (!(disc.PositionOf(best) <= seen)) // found beside the disc, by rounding
         {
-          this->Look(disc, disc.PositionOf(best), row, column, e, best);
+          this->Look(disc, disc.PositionOf(best), row, column, e, best, work);
         }
         break;
       }
     }
-    p = best.Place;
-    return node + static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);
+    return best.Place;
+  }
+
+  /** Compares the node next to one end of an edge in its row, if there is one on the free side. */
+  void CompareNeighborInRow(
+    Index row, Index column, const Offset& end, const Offset& e, Apex& best) const
+  {
+    if (e.Y == 0)
+    {
+      return;
+    }
+    const LatticeNodes& nodes = this->Nodes;
+    const RowEnds& ends = this->Ends[0][row + end.Y];
+    const Index node = nodes.NodeAt(row, column) + this->StepTo(end);
+    if (e.Y > 0 ? column + end.X <= ends.Left : column + end.X >= ends.Right)
+    {
+      return;
+    }
+    const Index neighbor = e.Y > 0 ? nodes.Previous(node) : nodes.Following(node);
+    const Apex apex = ApexAt(this->Metric, e, { end.X + neighbor - node, end.Y });
+    if (IsBetter(apex, best, e))
+    {
+      best = apex;
+    }
   }
 
   /**
-   * Compares all nodes in a disc, which shrinks with the best that is found.
+   * Compares all nodes in a disc, which shrinks with the best that is found: over an edge upwards
+   * those above the vertex, over one downwards all of them.
    * @return whether a better one was found
    */
-  bool Look(DiscOfEdge& disc, double position, Index row, Index column, const Offset& e, Apex& best)
+  bool Look(DiscOfEdge& disc, double position, Index row, Index column, const Offset& e, Apex& best,
+    std::int64_t& work) const
   {
     const LatticeNodes& nodes = this->Nodes;
     disc.Set(position);
-    const double slope = e.Y > 0 ? double(e.X) / double(e.Y) : Infinity;
+    const double slope = e.Y != 0 ? double(e.X) / double(e.Y) : 0.0;
     bool isAnyBetter = false;
-    for (Index y = 0; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
+    Index y = 1; // no node of the vertex' row is on the left of an edge upwards
+    if (e.Y < 0)
     {
-      // Only occupied columns, above the vertex and left of the edge's line; a node beside the line
-      // is at least 2^-20 from it.
-      const RowEnds& ends = this->Ends[row + y];
-      double left = y == 0 ? 1.0 : ends.Left - column;
-      double right = ends.Right - column;
+      y = static_cast<Index>(std::max(std::ceil(disc.Bottom - 1e-6), -double(row)));
+    }
+    // Whether a band of rows has no node left of the edge's line within the columns of the disc.
+    const auto isMissed = [&](int level) {
+      const RowEnds& ends = this->Ends[level][(row + y) >> BandBits * level];
+      const Index top = y + (1 << BandBits * level) - 1;
+      double left = ends.Left - column, right = ends.Right - column;
+      right = e.Y > 0 ? std::min(right, std::max(y * slope, top * slope)) : right;
+      left = e.Y < 0 ? std::max(left, std::min(y * slope, top * slope)) : left;
+      return left > right || !disc.ClipRows(y, top, left, right);
+    };
+    for (; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
+    {
+      int level = 0;
+      while (level < MostBands && ((row + y) & ((1 << BandBits * (level + 1)) - 1)) == 0 &&
+        isMissed(level + 1))
+      {
+        ++level;
+      }
+      if (level > 0)
+      {
+        work += 10;
+        y += (1 << BandBits * level) - 1;
+        continue;
+      }
+      // Only occupied columns, and left of the edge's line; a node beside the line is at least 2^-20
+      // from it.
+      const RowEnds& ends = this->Ends[0][row + y];
+      double left = ends.Left - column, right = ends.Right - column;
       right = e.Y > 0 ? std::min(right, y * slope - 4e-7) : right;
+      left = e.Y < 0 ? std::max(left, y * slope + 4e-7) : left;
+      work += 5;
       if (!(left <= right) || !disc.ClipRow(y, left, right))
       {
         continue;
@@ -714,9 +1020,10 @@ private:
       const Index lastNode = origin + static_cast<Index>(std::floor(right));
       bool isBetter = false;
       const Index firstWord = firstNode >> 6, lastWord = lastNode >> 6;
+      work += lastWord - firstWord;
       for (Index w = firstWord; w <= lastWord; ++w)
       {
-        std::uint64_t bits = nodes.Words[w];
+        std::uint64_t bits = nodes.Word(w);
         if (w == firstWord)
         {
           bits = bits >> (firstNode & 63) << (firstNode & 63);
@@ -729,7 +1036,7 @@ private:
         {
           const Offset p{ 64 * w + LowestBit(bits) - origin, y };
           const Apex apex = ApexAt(this->Metric, e, p);
-          if (apex.Cross > 0 && IsBetter(apex, best))
+          if (apex.Cross > 0 && IsBetter(apex, best, e))
           {
             best = apex;
             isBetter = true;
@@ -750,10 +1057,6 @@ private:
     return isAnyBetter;
   }
 
-  static constexpr Index ListedReach = 10;
-  static constexpr int UsesBeforeList = 16;
-  static constexpr std::size_t NumberOfLists = (2 * ListedReach + 1) * (ListedReach + 1);
-
   const PointView& Points;
   const LatticeNodes& Nodes;
   const LatticeMetric& Metric;
@@ -762,21 +1065,23 @@ private:
   double FirstHeight = 0.0;
   double LimitSquared = Infinity;
   bool UseCells = true;
-  bool IsFlat = false;
-  std::size_t Total = 0;
-  Index* Next = nullptr;
-  Index* End = nullptr;
-  Index SinceReport = 0;
   struct RowEnds
   {
-    Index Left = 0, Right = -1; ///< first and last column that is occupied
+    Index Left = LatticeNodes::MaximumSide, Right = -1; ///< first and last occupied column
   };
-  std::vector<RowEnds> Ends;                ///< one a row
-  std::vector<Index> RightChain, LeftChain; ///< nodes
+  static constexpr int BandBits = 5; ///< a band is 32 rows, or 32 bands
+  static constexpr int MostBands = 3;
+  std::array<std::vector<RowEnds>, MostBands + 1> Ends; ///< of each row, band, band of bands ...
+  std::vector<Index> RightChain, LeftChain;             ///< nodes
   Buffer<Index> First, Last; ///< first and last neighbour of the fan above a vertex, by rank
-  std::array<std::unique_ptr<ApexList>, NumberOfLists> Lists;
-  std::array<int, NumberOfLists> Uses{};
+  ApexLists Lists;
 };
+
+/** No more than there are cores: what is done at once must be done soon, for the next report. */
+int NumberOfThreads(const DelaunayOptions& options)
+{
+  return std::min(ResolveNumberOfThreads(options.NumberOfThreads), ResolveNumberOfThreads(0));
+}
 
 /** Few points fit some lattice by chance, the more easily the larger the tolerance. */
 bool IsByChance(double count, double tolerance)
@@ -792,20 +1097,23 @@ bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
-  const LatticeSearch search = FindLattice(points, tolerance, Part(options.Monitor, 0.0, 0.15));
-  if (!search.Found)
-  {
-    return false;
-  }
+  const LatticeSearch search =
+    FindLattice(points, tolerance, NumberOfThreads(options), Part(options.Monitor, 0.0, 0.15));
+  return search.Found && TriangulateOnLattice(points, search, options, result);
+}
+
+bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
+  const DelaunayOptions& options, Triangulation& result)
+{
+  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  const int threads = NumberOfThreads(options);
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!metric.Set(search.Steps) ||
-    !nodes.Place(points, search, tolerance, options.Duplicates, Part(options.Monitor, 0.15, 0.4)) ||
-    IsByChance(nodes.NumberOfPoints(), tolerance))
-  {
-    return false;
-  }
-  if (!Grower(points, nodes, metric, options).Grow(result))
+    !nodes.Place(
+      points, search, tolerance, options.Duplicates, threads, Part(options.Monitor, 0.15, 0.4)) ||
+    IsByChance(nodes.NumberOfPoints(), tolerance) ||
+    !Grower(points, nodes, metric, options).Grow(threads, result))
   {
     return false;
   }

@@ -61,6 +61,10 @@ int CompareProducts(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t
 bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result);
 
+/** The same on a lattice that is found already. */
+bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
+  const DelaunayOptions& options, Triangulation& result);
+
 } // namespace elevation
 
 #endif

@@ -7,7 +7,7 @@
  * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
  * in the order of their nodes (by row, then column), which the number of bits before a node tells;
  * or the answer that a point does not fit. No sorting: two passes over the points, one that sets
- * the bits and one that writes each id to its place.
+ * the bits and one that writes each id to its place; both on several threads.
  *
  * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
  * the last row are rows of zeros, so that neighbours may be looked at without a check.
@@ -19,6 +19,8 @@
 
 #include "Delaunay.h"
 #include "Lattice.h"
+
+#include <atomic>
 
 #if defined(_MSC_VER)
 #include <intrin.h>
@@ -50,6 +52,20 @@ inline int LowestBit(std::uint64_t bits)
 #endif
 }
 
+/** Position of the highest bit that is set; there must be one. */
+inline int HighestBit(std::uint64_t bits)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  return 63 - __builtin_clzll(bits);
+#else
+  for (int shift : { 1, 2, 4, 8, 16, 32 })
+  {
+    bits |= bits >> shift;
+  }
+  return CountBits(bits) - 1;
+#endif
+}
+
 class LatticeNodes
 {
 public:
@@ -65,7 +81,7 @@ public:
    * not equal share one, or the lattice takes too much memory for so few points
    */
   bool Place(const PointView& points, const LatticeSearch& search, double tolerance,
-    DuplicatePolicy policy, const Progress& progress);
+    DuplicatePolicy policy, int threads, const Progress& progress);
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
   Index NodeAt(Index row, Index column) const
@@ -74,21 +90,53 @@ public:
   }
   Index RowOf(Index node) const { return (node >> 6) / this->WordsPerRow; }
   Index ColumnOf(Index node, Index row) const { return node - this->NodeAt(row, 0); }
-  bool IsOccupied(Index node) const { return (this->Words[node >> 6] >> (node & 63)) & 1; }
+  std::uint64_t Word(Index word) const { return this->Words[word].load(std::memory_order_relaxed); }
+  bool IsOccupied(Index node) const { return (this->Word(node >> 6) >> (node & 63)) & 1; }
+  /** The next node that is occupied after or before this one; there must be one. */
+  Index Following(Index node) const
+  {
+    Index word = ++node >> 6;
+    std::uint64_t bits = this->Word(word) >> (node & 63) << (node & 63);
+    while (!bits)
+    {
+      bits = this->Word(++word);
+    }
+    return 64 * word + LowestBit(bits);
+  }
+  Index Previous(Index node) const
+  {
+    Index word = --node >> 6;
+    std::uint64_t bits = this->Word(word) << (63 - (node & 63)) >> (63 - (node & 63));
+    while (!bits)
+    {
+      bits = this->Word(--word);
+    }
+    return 64 * word + HighestBit(bits);
+  }
   /** How many occupied nodes come before this one. */
   Index RankOf(Index node) const
   {
     const std::uint64_t before = (std::uint64_t(1) << (node & 63)) - 1;
-    return this->Before[node >> 6] + CountBits(this->Words[node >> 6] & before);
+    return this->Before[node >> 6] + CountBits(this->Word(node >> 6) & before);
   }
 
   Index Columns = 0, Rows = 0, WordsPerRow = 0;
-  Buffer<std::uint64_t> Words;
   Buffer<Index> Before;          ///< occupied nodes before each word
   Buffer<Index> Ids;             ///< point ids by rank
   double LargestOffset = 0.0;    ///< no point is farther from its node, in steps along each step
   Lattice Steps;                 ///< Origin is the lowest occupied node
   std::vector<Index> Duplicates; ///< ids, increasing
+
+private:
+  bool SetBit(Index node, bool isShared);
+  void CountBefore(int threads);
+
+  using AtomicWord = std::atomic<std::uint64_t>; // several threads set bits
+  static_assert(sizeof(AtomicWord) == sizeof(std::uint64_t) &&
+      std::is_trivially_destructible<AtomicWord>::value,
+    "made in the memory of plain words");
+  Buffer<std::uint64_t> Memory;
+  AtomicWord* Words = nullptr;
 };
 
 } // namespace elevation

@@ -272,6 +272,223 @@ std::vector<std::array<Node, 3>> NodeTriangles(
 }
 } // namespace
 
+/** Nodes of a few rows and columns: any, dense, nearly on a line, on a circle, or many twice. */
+void SmallNodes(std::mt19937_64& random, int kind, std::vector<Node>& nodes)
+{
+  static const std::array<Node, 12> circle{ { { 5, 0 }, { 0, 5 }, { -5, 0 }, { 0, -5 }, { 3, 4 },
+    { -3, 4 }, { 3, -4 }, { -3, -4 }, { 4, 3 }, { -4, 3 }, { 4, -3 }, { -4, -3 } } };
+  std::uint64_t bits = random();
+  const auto below = [&](int end) {
+    const auto value = static_cast<std::int64_t>((bits & 0xff) * end >> 8);
+    bits = bits >> 8 | bits << 56;
+    return value;
+  };
+  const int count = 5 + static_cast<int>(below(6));
+  const int size = kind == 1 ? 3 : 2 + static_cast<int>(below(7));
+  bits ^= random() << 8;
+  nodes.clear();
+  const Node step{ 1 + below(3), below(3) };
+  for (int k = 0; k < count; ++k)
+  {
+    if (k % 8 == 4)
+    {
+      bits = random();
+    }
+    if (kind == 2 && k > 1)
+    {
+      const std::int64_t times = below(6);
+      nodes.push_back({ times * step[0], times * step[1] });
+    }
+    else if (kind == 3 && k > 1)
+    {
+      nodes.push_back(circle[below(12)]);
+    }
+    else if (kind == 4 && k % 2 == 1)
+    {
+      nodes.push_back(nodes[below(k)]);
+    }
+    else
+    {
+      const std::int64_t column = below(size);
+      nodes.push_back({ column, below(size) });
+    }
+  }
+}
+
+/** Of at most 16 sorted nodes, the triangles by the definition, as numbers of their corners. */
+std::vector<int> SmallBruteForce(const std::vector<Node>& nodes, const LatticeMetric& metric)
+{
+  const int count = static_cast<int>(nodes.size());
+  std::vector<int> set;
+  for (int a = 0; a < count; ++a)
+  {
+    for (int i = a + 1; i < count; ++i)
+    {
+      for (int j = a + 1; j < count; ++j)
+      {
+        const Node &p = nodes[a], &q = nodes[i], &r = nodes[j];
+        if (CrossOf(p, q, r) <= 0)
+        {
+          continue;
+        }
+        bool isKept = true;
+        for (int k = 0; k < count && isKept; ++k)
+        {
+          const Node& d = nodes[k];
+          if (k == a || k == i || k == j)
+          {
+            continue;
+          }
+          const std::int64_t inside = DotOf(metric, d, p, p) * CrossOf(d, q, r) +
+            DotOf(metric, d, q, q) * CrossOf(d, r, p) + DotOf(metric, d, r, r) * CrossOf(d, p, q);
+          isKept = inside < 0 || (inside == 0 && k > a && CrossOf(q, r, d) > 0);
+        }
+        if (isKept)
+        {
+          set.push_back(a << 8 | i << 4 | j);
+        }
+      }
+    }
+  }
+  return set;
+}
+
+/** The same bytes for any number of threads and any strips. */
+void ExpectSameForAnyStrips(
+  const Cloud& cloud, DelaunayOptions options, const std::string& name, Index perStrip)
+{
+  SCOPED_TRACE(name);
+  const Triangulation one = Triangulate(cloud.View(), options);
+  ASSERT_TRUE(one.LatticeFound);
+  for (const int threads : { 1, 2, 3, 4 })
+  {
+    for (const Index points : { Index(0), perStrip })
+    {
+      options.NumberOfThreads = threads;
+      options.PointsPerStrip = points;
+      const Triangulation other = Triangulate(cloud.View(), options);
+      ASSERT_TRUE(other.LatticeFound);
+      EXPECT_TRUE(IsSame(one.Steps, other.Steps));
+      EXPECT_EQ(one.UnusedPoints, other.UnusedPoints);
+      EXPECT_EQ(one.NumberOfHullPoints, other.NumberOfHullPoints);
+      EXPECT_TRUE(std::equal(
+        one.Triangles.begin(), one.Triangles.end(), other.Triangles.begin(), other.Triangles.end()))
+        << threads << " threads, " << points << " points in a strip";
+    }
+  }
+}
+
+TEST(Lattice, IsTheDefinitionOnAMillionSmallClouds)
+{
+  // Reduced steps of small integers: square, rectangular, turned, sheared to both sides, the last
+  // two as far as can be.
+  const std::array<std::array<Point2, 2>, 10> frames{ { { { { 1.0, 0.0 }, { 0.0, 1.0 } } },
+    { { { 2.0, 0.0 }, { 0.0, 3.0 } } }, { { { 3.0, 0.0 }, { 1.0, 3.0 } } },
+    { { { 1.0, 0.0 }, { 0.0, 1.0 } } }, { { { 3.0, 0.0 }, { -1.0, 3.0 } } },
+    { { { 2.0, 1.0 }, { -1.0, 2.0 } } }, { { { 5.0, 0.0 }, { 0.0, 1.0 } } },
+    { { { 4.0, 1.0 }, { 0.0, 5.0 } } }, { { { 2.0, 0.0 }, { 1.0, 2.0 } } },
+    { { { 2.0, 0.0 }, { -1.0, 2.0 } } } } };
+  std::mt19937_64 random(30);
+  std::vector<Node> nodes, sorted;
+  std::vector<int> set;
+  Cloud cloud;
+  DelaunayOptions options = Automatic(0.0);
+  int triangulated = 0;
+  for (int i = 0; i < 1000000; ++i)
+  {
+    SmallNodes(random, i / 10 % 5, nodes);
+    sorted = nodes;
+    std::sort(sorted.begin(), sorted.end(), IsLowerNode);
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    const auto& frame = frames[i % 10];
+    LatticeSearch search;
+    search.Found = true;
+    search.Steps = { { 0.0, 0.0 }, frame[0], frame[1] };
+    search.Low = search.High = search.Steps.Node(double(nodes[0][0]), double(nodes[0][1]));
+    cloud.Coordinates.clear();
+    for (const Node& node : nodes)
+    {
+      const Point2 p = search.Steps.Node(double(node[0]), double(node[1]));
+      cloud.Add(p.X, p.Y);
+      search.Low = { std::min(search.Low.X, p.X), std::min(search.Low.Y, p.Y) };
+      search.High = { std::max(search.High.X, p.X), std::max(search.High.Y, p.Y) };
+    }
+    LatticeMetric metric;
+    ASSERT_TRUE(metric.Set(search.Steps));
+    const std::vector<int> expected = SmallBruteForce(sorted, metric);
+    for (const Index perStrip : { 0, 1 })
+    {
+      options.PointsPerStrip = perStrip;
+      Triangulation triangulation;
+      const bool isDone = TriangulateOnLattice(cloud.View(), search, options, triangulation);
+      ASSERT_EQ(isDone, sorted.size() > 3 && !expected.empty()) << "cloud " << i;
+      if (!isDone)
+      {
+        break;
+      }
+      ++triangulated;
+      const auto numberOf = [&](Index id) {
+        return static_cast<int>(
+          std::lower_bound(sorted.begin(), sorted.end(), nodes[id], IsLowerNode) - sorted.begin());
+      };
+      set.clear();
+      for (std::size_t t = 0; t < triangulation.Triangles.size(); t += 3)
+      {
+        const Index* ids = triangulation.Triangles.data() + t;
+        set.push_back(numberOf(ids[0]) << 8 | numberOf(ids[1]) << 4 | numberOf(ids[2]));
+      }
+      std::sort(set.begin(), set.end());
+      ASSERT_EQ(set, expected) << "cloud " << i << ", strips of " << perStrip;
+    }
+  }
+  EXPECT_GT(triangulated, 1500000);
+}
+
+TEST(Lattice, IsTheSameForAnyNumberOfThreads)
+{
+  std::mt19937_64 random(53);
+  const auto check = [&](const Frame& frame, const std::vector<Node>& nodes, const char* name) {
+    Cloud cloud = CloudOn(frame, nodes).Shuffled(random);
+    const Index count = cloud.Count();
+    for (Index id = 0; id < count; id += 97) // duplicates, and points that are not finite
+    {
+      cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1], double(id % 3));
+      cloud.Add(NAN, 0.0);
+    }
+    for (const Index perStrip : { 1, 100, 5000 })
+    {
+      ExpectSameForAnyStrips(cloud, Automatic(), name, perStrip);
+    }
+    DelaunayOptions options = Automatic();
+    options.Duplicates = DuplicatePolicy::KeepHighest;
+    options.MaximumEdgeLength = 100.0;
+    ExpectSameForAnyStrips(cloud, options, name, 300);
+  };
+  const Point2 map{ 612000.0, 6073000.0 };
+  const std::array<Frame, 5> frames{ MakeFrame(25.0, 25.0, 0.0),
+    MakeFrame(25.0, 12.5, 30.0, 90.0, map), MakeFrame(25.0, 30.0, 5.0, 72.0, map),
+    MakeFrame(25.0, 30.0, 10.0, 110.0, map), MakeFrame(1.0, 20.0, 20.0) };
+  for (const Frame& frame : frames)
+  {
+    check(frame, RandomNodes(random, 90, 70, 0.05), "sparse");
+    check(frame, RandomNodes(random, 90, 70, 0.4), "half");
+    check(frame, RandomNodes(random, 70, 90, 0.97), "dense");
+    check(frame, RandomNodes(random, 60, 60, 1.0), "full");
+    check(frame, RandomNodes(random, 500, 3, 0.5), "wide");
+    check(frame, RandomNodes(random, 8, 300, 0.5), "high");
+    check(frame, GridWithHoles(90), "holes");
+    std::vector<Node> parts = RandomNodes(random, 40, 40, 0.7);
+    for (Node& node : parts)
+    {
+      node[1] += node[1] > 20 ? 90 : 0; // empty rows between
+    }
+    check(frame, parts, "two parts");
+  }
+  // Large enough for several ranges of points and several rounds of strips.
+  check(frames[1], RandomNodes(random, 1200, 900, 0.12), "large and sparse");
+  check(frames[3], GridWithHoles(700), "large with holes");
+}
+
 TEST(Lattice, IsTheDefinitionOnSmallClouds)
 {
   std::mt19937_64 random(31);
@@ -490,7 +707,47 @@ TEST(Lattice, GivesTheTrianglesOfTheGeneralPathOnGrids)
       }
     }
     ExpectSameAsGeneral(CloudOn(frame, ring), name + ", ring");
+    for (const double fill : { 0.1, 0.5, 0.95 })
+    {
+      ExpectSameAsGeneral(CloudOn(frame, RandomNodes(random, 500, 400, fill)),
+        name + ", large, " + std::to_string(fill) + " filled");
+    }
+    ExpectSameAsGeneral(CloudOn(frame, GridWithHoles(500)), name + ", large, holes");
   }
+}
+
+TEST(Lattice, DoubtsTrianglesWhereStepsAreVeryUnequal)
+{
+  // A column is then the small difference of large numbers: it is less exact than one might think.
+  const Frame frame = MakeFrame(1.0, 1000.0, 33.0);
+  std::vector<Node> nodes;
+  for (std::int64_t j = 0; j < 100000; ++j)
+  {
+    nodes.push_back({ j % 2, j });
+  }
+  const Cloud cloud = CloudOn(frame, nodes);
+  LatticeSearch search;
+  search.Steps = { frame.Origin, frame.U, frame.V };
+  search.Low = { frame.At(0.0, 99999.0).X, 0.0 };
+  search.High = { 1.0, frame.At(1.0, 99999.0).Y };
+  LatticeNodes placed;
+  ASSERT_TRUE(placed.Place(cloud.View(), search, 0.01, DuplicatePolicy::KeepFirst, 1, Progress()));
+  EXPECT_GT(placed.LargestOffset, 1e-7);
+}
+
+TEST(Lattice, ReportsWhileItLooksIntoACrowd)
+{
+  // All but one point are in one cell of the histogram.
+  std::mt19937_64 random(54);
+  Cloud cloud = RandomCloud(random, 200000);
+  cloud.Coordinates[0] = cloud.Coordinates[1] = 1e9;
+  int calls = 0;
+  const Progress count = [&](double fraction) {
+    calls += fraction > 0.9 && fraction < 1.0;
+    return true;
+  };
+  EXPECT_FALSE(FindLattice(cloud.View(), 0.01, 1, count).Found);
+  EXPECT_GT(calls, 0);
 }
 
 TEST(Lattice, IsRefusedWhenAPointDoesNotFit)
