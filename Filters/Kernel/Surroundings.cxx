@@ -783,8 +783,10 @@ ELEVATION_WIDE Surroundings::Candidates Surroundings::FindCandidates(Index b) co
   {
     return {};
   }
-  Candidates found = this->Current->Vectors == EvenVectors ? this->Search<EvenVectors>(x, y, guess)
-                                                  : this->Search<MostVectors>(x, y, guess);
+  const int vectors = this->Current->Vectors;
+  Candidates found = vectors == WidestVectors ? this->Search<WidestVectors>(x, y, guess)
+    : vectors == EvenVectors                  ? this->Search<EvenVectors>(x, y, guess)
+                                              : this->Search<MostVectors>(x, y, guess);
   this->Sift(b, x, y, guess, found);
   return found;
 }

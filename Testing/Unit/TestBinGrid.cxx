@@ -104,7 +104,7 @@ TEST(BinGrid, FindsEveryPointInTheBinOfItsCoordinates)
   const Cloud cloud = RandomCloud(random, 5000);
   const BinGrid grid(cloud.View(), DuplicatePolicy::KeepFirst, Progress());
   ExpectAllFound(cloud, grid);
-  EXPECT_LT(grid.Nodes.size(), 5000u / 40) << "evenly spread points need few nodes";
+  EXPECT_LT(grid.Nodes.size(), 5000u / 25) << "evenly spread points need few nodes";
 }
 
 TEST(BinGrid, HalvesFullBinsWhereDensityIsUneven)
