@@ -184,8 +184,8 @@ public:
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
     this->Path.clear();
-    this->HasAround = !this->IsByAngle &&
-      (this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow());
+    this->HasAround =
+      !this->IsByAngle && (this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow());
     this->OpenEnd = None;
   }
 
@@ -199,8 +199,7 @@ public:
     {
       const std::size_t count = fan.size();
       fan.Resize(count + Surroundings::Capacity);
-      const int found =
-        this->Around.Follow(fan[count - 1], end, fan.data() + count, this->Open);
+      const int found = this->Around.Follow(fan[count - 1], end, fan.data() + count, this->Open);
       fan.Resize(count + found);
       this->OpenEnd = fan[count + found - 1];
     }
@@ -1063,8 +1062,7 @@ private:
     }
     this->Fan.Resize(1);
     this->Fan[0] = first;
-    this->Search.SetOrigin(
-      lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
+    this->Search.SetOrigin(lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
     Index current = first;
     while (current != end || current == None)
     {
@@ -1092,8 +1090,7 @@ private:
   {
     const Index lowestId = this->Grid.Ids[lowest];
     const bool isLastStrip = this->End == this->Grid.NumberOfPoints();
-    const Point2 above =
-      this->Grid.PointAt(this->Order[isLastStrip ? this->End - 1 : this->End]);
+    const Point2 above = this->Grid.PointAt(this->Order[isLastStrip ? this->End - 1 : this->End]);
     Index current = this->Fan[0];
     Point2 currentPoint = this->Grid.PointAt(current);
     const std::size_t triangles = this->Fan.size() - 1;

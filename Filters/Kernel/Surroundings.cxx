@@ -218,8 +218,7 @@ ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
   const auto slots = this->Grid.Slots(row.Number, 0, bins.Columns - 1);
   const std::size_t count = slots.second - slots.first;
   row.FirstSlot = slots.first;
-  row.Starts =
-    this->Grid.Starts.data() + static_cast<std::size_t>(row.Number) * bins.Columns;
+  row.Starts = this->Grid.Starts.data() + static_cast<std::size_t>(row.Number) * bins.Columns;
   if (row.X.size() < count + RowRoom)
   {
     row.X.resize(count + count / 4 + RowRoom);
@@ -269,8 +268,8 @@ ELEVATION_WIDEST bool Surroundings::GatherWidest(Window& window, Index firstColu
     highY = _mm512_mask_expandloadu_epi32(highY, high, y + inLow);
     const __m512i offset = _mm512_set1_epi32(first - static_cast<Index>(count));
     lowSlot = _mm512_mask_add_epi32(lowSlot, low, lanes, offset);
-    highSlot = _mm512_mask_add_epi32(
-      highSlot, high, lanes, _mm512_add_epi32(offset, _mm512_set1_epi32(16)));
+    highSlot =
+      _mm512_mask_add_epi32(highSlot, high, lanes, _mm512_add_epi32(offset, _mm512_set1_epi32(16)));
     count += size;
   }
   const Row& own = *this->Near[0];
@@ -279,10 +278,10 @@ ELEVATION_WIDEST bool Surroundings::GatherWidest(Window& window, Index firstColu
   const __m512i x0 = _mm512_set1_epi32(originX), y0 = _mm512_set1_epi32(originY);
   const std::uint32_t rest = static_cast<std::uint32_t>(~std::uint64_t(0) << count);
   const __m512 nothing = _mm512_set1_ps(NotANumber);
-  const __m512 x = _mm512_mask_mov_ps(_mm512_cvtepi32_ps(_mm512_sub_epi32(lowX, x0)),
-    static_cast<__mmask16>(rest), nothing);
-  const __m512 otherX = _mm512_mask_mov_ps(_mm512_cvtepi32_ps(_mm512_sub_epi32(highX, x0)),
-    static_cast<__mmask16>(rest >> 16), nothing);
+  const __m512 x = _mm512_mask_mov_ps(
+    _mm512_cvtepi32_ps(_mm512_sub_epi32(lowX, x0)), static_cast<__mmask16>(rest), nothing);
+  const __m512 otherX = _mm512_mask_mov_ps(
+    _mm512_cvtepi32_ps(_mm512_sub_epi32(highX, x0)), static_cast<__mmask16>(rest >> 16), nothing);
   const __m512 y = _mm512_cvtepi32_ps(_mm512_sub_epi32(lowY, y0));
   const __m512 otherY = _mm512_cvtepi32_ps(_mm512_sub_epi32(highY, y0));
   _mm512_store_ps(window.X, x);
@@ -331,13 +330,11 @@ ELEVATION_WIDE bool Surroundings::GatherEven(Window& window, Index firstColumn)
     over += count > 8 ? count - 8 : 0;
     const Index at = first - row.FirstSlot;
     const __m256i isBeyond = _mm256_cmpgt_epi32(lanes, _mm256_set1_epi32(count - 1));
-    const __m256i unitsX =
-      _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + at));
-    const __m256i unitsY =
-      _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.Y.data() + at));
+    const __m256i unitsX = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + at));
+    const __m256i unitsY = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.Y.data() + at));
     // All bits set is not a number.
-    const __m256 x = _mm256_or_ps(_mm256_castsi256_ps(isBeyond),
-      _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
+    const __m256 x =
+      _mm256_or_ps(_mm256_castsi256_ps(isBeyond), _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
     const __m256 y = _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsY, y0));
     _mm256_store_ps(window.X + 8 * k, x);
     _mm256_store_ps(window.Y + 8 * k, y);
@@ -406,10 +403,10 @@ ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int s
     {
       // Whole vectors: what is too much is overwritten by the next row, or made not a number.
       const int at = count + (slot - first);
-      const __m256i unitsX = _mm256_loadu_si256(
-        reinterpret_cast<const __m256i*>(row.X.data() + (slot - row.FirstSlot)));
-      const __m256i unitsY = _mm256_loadu_si256(
-        reinterpret_cast<const __m256i*>(row.Y.data() + (slot - row.FirstSlot)));
+      const __m256i unitsX =
+        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + (slot - row.FirstSlot)));
+      const __m256i unitsY =
+        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.Y.data() + (slot - row.FirstSlot)));
       _mm256_storeu_ps(window.X + at, _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
       _mm256_storeu_ps(window.Y + at, _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsY, y0)));
       _mm256_storeu_si256(reinterpret_cast<__m256i*>(window.Slots + at),
@@ -598,8 +595,7 @@ ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) co
   {
     const __m256i isSlot = _mm256_cmpeq_epi32(_mm256_set1_epi32(slot),
       _mm256_load_si256(reinterpret_cast<const __m256i*>(this->Slots + 8 * i)));
-    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot)))
-      << (8 * i);
+    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot))) << (8 * i);
   }
   return lanes;
 }
@@ -632,10 +628,8 @@ ELEVATION_WIDE_INLINE bool Surroundings::PlaceEnd(
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
     const double perUnit = this->PerUnit;
-    x = static_cast<float>(
-      Units(end.X, bins.OriginX, perUnit) - Units(a.X, bins.OriginX, perUnit));
-    y = static_cast<float>(
-      Units(end.Y, bins.OriginY, perUnit) - Units(a.Y, bins.OriginY, perUnit));
+    x = static_cast<float>(Units(end.X, bins.OriginX, perUnit) - Units(a.X, bins.OriginX, perUnit));
+    y = static_cast<float>(Units(end.Y, bins.OriginY, perUnit) - Units(a.Y, bins.OriginY, perUnit));
   }
   return x * x + y * y <= this->Current->Errors->ReachSquared;
 }
@@ -655,8 +649,7 @@ ELEVATION_WIDE_INLINE bool Surroundings::IsInWindow(
   const float centerX = 0.5f * bx - s * by, centerY = 0.5f * by + s * bx;
   const float keep = errors.Margin + 4.0f * errors.CoordinateError * (std::fabs(s) + 1.0f);
   const float room =
-    std::min(std::min(window.Left + centerX, window.Right - centerX), window.Top - centerY) -
-    keep;
+    std::min(std::min(window.Left + centerX, window.Right - centerX), window.Top - centerY) - keep;
   return room > 0.0f && radiusSquared * 1.0002f < room * room;
 }
 
@@ -675,16 +668,17 @@ ELEVATION_WIDE_INLINE Surroundings::Candidates Surroundings::Search(
   __m256 least = most;
   for (int i = 0; i < Vectors; ++i)
   {
-    const __m256 x = _mm256_load_ps(this->Current->X + 8 * i), y = _mm256_load_ps(this->Current->Y + 8 * i);
+    const __m256 x = _mm256_load_ps(this->Current->X + 8 * i),
+                 y = _mm256_load_ps(this->Current->Y + 8 * i);
     const __m256 square = _mm256_load_ps(this->Current->Square + 8 * i);
     const __m256 cross = _mm256_fmsub_ps(endX, y, _mm256_mul_ps(endY, x));
     const __m256 dot = _mm256_fnmadd_ps(x, endX, _mm256_fnmadd_ps(y, endY, square));
     crosses[i] = cross;
     dots[i] = dot;
     // The lowest bits of a quotient tell whose it is: so the least of all tells where it is.
-    const __m256 quotient = _mm256_or_ps(
-      _mm256_andnot_ps(laneBits, _mm256_mul_ps(dot, _mm256_rcp_ps(cross))),
-      _mm256_castsi256_ps(lanes));
+    const __m256 quotient =
+      _mm256_or_ps(_mm256_andnot_ps(laneBits, _mm256_mul_ps(dot, _mm256_rcp_ps(cross))),
+        _mm256_castsi256_ps(lanes));
     lanes = _mm256_add_epi32(lanes, eight);
     const __m256 isLeft = _mm256_cmp_ps(cross, clear, _CMP_GT_OQ);
     least = _mm256_min_ps(least, _mm256_blendv_ps(most, quotient, isLeft));
@@ -838,8 +832,7 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
   const __m512i slot = _mm512_set1_epi32(b);
   std::uint32_t ends = std::uint32_t(1) << window.OriginLane;
   std::uint32_t end = _mm512_cmpeq_epi32_mask(slot, _mm512_load_si512(window.Slots)) |
-    static_cast<std::uint32_t>(
-      _mm512_cmpeq_epi32_mask(slot, _mm512_load_si512(window.Slots + 16)))
+    static_cast<std::uint32_t>(_mm512_cmpeq_epi32_mask(slot, _mm512_load_si512(window.Slots + 16)))
       << 16;
   float bx, by;
   if (!this->PlaceEnd(b, end, bx, by))
@@ -864,14 +857,13 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
     const __m512 quotient0 = _mm512_mul_ps(dot0, _mm512_rcp14_ps(cross0));
     const __m512 quotient1 = _mm512_mul_ps(dot1, _mm512_rcp14_ps(cross1));
     // Bit by bit: lane where laneBits is set, quotient elsewhere.
-    const __m512 marked0 = _mm512_castsi512_ps(_mm512_ternarylogic_epi32(
-      laneBits, lanes0, _mm512_castps_si512(quotient0), 0xca));
-    const __m512 marked1 = _mm512_castsi512_ps(_mm512_ternarylogic_epi32(
-      laneBits, lanes1, _mm512_castps_si512(quotient1), 0xca));
-    __m512 least =
-      _mm512_mask_mov_ps(most, _mm512_cmp_ps_mask(cross0, clear, _CMP_GT_OQ), marked0);
-    least = _mm512_mask_min_ps(
-      least, _mm512_cmp_ps_mask(cross1, clear, _CMP_GT_OQ), least, marked1);
+    const __m512 marked0 = _mm512_castsi512_ps(
+      _mm512_ternarylogic_epi32(laneBits, lanes0, _mm512_castps_si512(quotient0), 0xca));
+    const __m512 marked1 = _mm512_castsi512_ps(
+      _mm512_ternarylogic_epi32(laneBits, lanes1, _mm512_castps_si512(quotient1), 0xca));
+    __m512 least = _mm512_mask_mov_ps(most, _mm512_cmp_ps_mask(cross0, clear, _CMP_GT_OQ), marked0);
+    least =
+      _mm512_mask_min_ps(least, _mm512_cmp_ps_mask(cross1, clear, _CMP_GT_OQ), least, marked1);
     // The least in all places.
     least = _mm512_min_ps(least, _mm512_shuffle_f32x4(least, least, 0x4e));
     least = _mm512_min_ps(least, _mm512_shuffle_f32x4(least, least, 0xb1));
@@ -893,10 +885,8 @@ ELEVATION_WIDEST int Surroundings::FollowWidest(
     const float cross = bx * y - by * x;
     const float dot = (x * x + y * y) - (x * bx + y * by);
     const __m512 bestCross = _mm512_set1_ps(cross), bestDot = _mm512_set1_ps(dot);
-    const __m512 difference0 =
-      _mm512_fmsub_ps(dot0, bestCross, _mm512_mul_ps(bestDot, cross0));
-    const __m512 difference1 =
-      _mm512_fmsub_ps(dot1, bestCross, _mm512_mul_ps(bestDot, cross1));
+    const __m512 difference0 = _mm512_fmsub_ps(dot0, bestCross, _mm512_mul_ps(bestDot, cross0));
+    const __m512 difference1 = _mm512_fmsub_ps(dot1, bestCross, _mm512_mul_ps(bestDot, cross1));
     const std::uint32_t low = _mm512_cmp_ps_mask(difference0, error, _CMP_LE_OQ);
     const std::uint32_t high = _mm512_cmp_ps_mask(difference1, error, _CMP_LE_OQ);
     const std::uint32_t candidates = (low | high << 16) & ~(ends | end);

@@ -103,7 +103,7 @@ private:
   {
     Index Number = None;
     Index FirstSlot = 0;
-    const Index* Starts = nullptr; ///< the first slot of each bin, and one more
+    const Index* Starts = nullptr;  ///< the first slot of each bin, and one more
     std::vector<std::int32_t> X, Y; ///< and RowRoom more
   };
 
@@ -161,7 +161,7 @@ private:
   const BinGrid& Grid;
   const bool IsWidest; ///< sixteen points at a time
   Window Windows[2];
-  Window* Current = Windows; ///< and the other one is for the next vertex
+  Window* Current = Windows;       ///< and the other one is for the next vertex
   std::vector<BinGrid::Step> Path; ///< of PathOrigin
   Index PathOrigin = None;
 
