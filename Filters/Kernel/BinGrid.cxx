@@ -93,6 +93,7 @@ Child AddNode(const Child* children, int count, Buffer<BinGrid::Node>& nodes)
   BinGrid::Node node;
   Child joined;
   node.Size = 0;
+  node.Parent = None;
   for (int place = 0; place < BinGrid::Node::Places; ++place)
   {
     const Child child = place < count ? children[place] : Child();
@@ -635,27 +636,62 @@ BinGrid::BinGrid(
   this->Join(blocks, Part(progress, 0.9, 1.0), threads);
 }
 
-void BinGrid::FindPath(const Point2& p, std::vector<Step>& path) const
+BinGrid::Step BinGrid::StepTo(Index node) const
 {
-  const Node* node = &this->Nodes[this->Nodes.size() - 1];
-  path.assign(1, { node, 0, -Infinity, Infinity, -Infinity, Infinity });
-  for (;;)
+  const Node& own = this->Nodes[node];
+  if (own.Parent == None)
+  {
+    return { &own, 0, -Infinity, Infinity, -Infinity, Infinity };
+  }
+  const Node& parent = this->Nodes[own.Parent];
+  int place = 0;
+  while (parent.First[place] != node || parent.Count[place] > 0)
+  {
+    ++place;
+  }
+  return { &own, place, parent.LowX[place], parent.HighX[place], parent.LowY[place],
+    parent.HighY[place] };
+}
+
+BinGrid::Step BinGrid::Lowest(Index slot) const
+{
+  const Index eight = slot / 8, last = static_cast<Index>(this->LeafNodes.size()) - 1;
+  for (Index at : { eight, std::max(eight - 1, 0), std::min(eight + 1, last) })
+  {
+    const Node& node = this->Nodes[this->LeafNodes[at]];
+    unsigned int isWithin = 0;
+    for (int place = 0; place < Node::Places; ++place)
+    {
+      const unsigned int after = static_cast<unsigned int>(slot - node.First[place]);
+      isWithin |= after < static_cast<unsigned int>(node.Count[place]);
+    }
+    if (isWithin)
+    {
+      return this->StepTo(this->LeafNodes[at]);
+    }
+  }
+  return this->StepTo(this->FindLowest(slot));
+}
+
+/** From the root downwards. */
+Index BinGrid::FindLowest(Index slot) const
+{
+  const Point2 p = this->PointAt(slot);
+  for (Index index = static_cast<Index>(this->Nodes.size()) - 1;;)
   {
     // Boxes of siblings have no point in common.
+    const Node& node = this->Nodes[index];
     int place = 0;
-    while (!(node->LowX[place] <= p.X && p.X <= node->HighX[place] && node->LowY[place] <= p.Y &&
-      p.Y <= node->HighY[place]))
+    while (!(node.LowX[place] <= p.X && p.X <= node.HighX[place] && node.LowY[place] <= p.Y &&
+      p.Y <= node.HighY[place]))
     {
       ++place;
     }
-    if (node->Count[place] > 0)
+    if (node.Count[place] > 0)
     {
-      return;
+      return index;
     }
-    const Node* const child = &this->Nodes[node->First[place]];
-    path.push_back({ child, place, node->LowX[place], node->HighX[place], node->LowY[place],
-      node->HighY[place] });
-    node = child;
+    index = node.First[place];
   }
 }
 
@@ -1037,6 +1073,26 @@ void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int thr
     roots = std::move(above);
   }
   this->Nodes.Shrink();
+
+  this->LeafNodes.Resize((static_cast<std::size_t>(slots) + 7) / 8);
+  this->Nodes[this->Nodes.size() - 1].Parent = None;
+  for (std::size_t i = this->Nodes.size(); i-- > 0;)
+  {
+    const Node& node = this->Nodes[i];
+    for (int place = 0; place < Node::Places; ++place)
+    {
+      if (node.Count[place] > 0)
+      {
+        const Index first = node.First[place], end = first + node.Count[place];
+        std::fill(this->LeafNodes.begin() + first / 8, this->LeafNodes.begin() + (end + 7) / 8,
+          static_cast<Index>(i));
+      }
+      else if (node.First[place] != None)
+      {
+        this->Nodes[node.First[place]].Parent = static_cast<Index>(i);
+      }
+    }
+  }
 }
 
 } // namespace elevation

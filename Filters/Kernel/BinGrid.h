@@ -72,14 +72,20 @@ public:
     Index First[Places]; ///< of a leaf the first slot, else the node
     Index Count[Places]; ///< of a leaf the number of slots, else 0
     Index Size;          ///< number of points below
+    Index Parent;        ///< None of the root
   };
 
-  /** A node on a way through the tree, with the box of its points and its place in its parent. */
+  /**
+   * A node on the way from a point up to the root, with the box of its points, which is the whole
+   * plane for the root, and its place in its parent. All points within the box are below the node.
+   */
   struct Step
   {
     const BinGrid::Node* Node;
     int Place;
     double LowX, HighX, LowY, HighY;
+
+    bool IsRoot() const { return this->Node->Parent == None; }
   };
 
   /**
@@ -101,11 +107,10 @@ public:
     return { starts[firstColumn], starts[lastColumn + 1] };
   }
 
-  /**
-   * The nodes from the root to the one above the leaf that holds a point of the grid. All points
-   * within the box of a step are below its node. The root's box is the whole plane.
-   */
-  void FindPath(const Point2& p, std::vector<Step>& path) const;
+  /** The node above the leaf that holds a slot. */
+  Step Lowest(Index slot) const;
+  /** The parent of a node that is not the root. */
+  Step Above(const Step& step) const { return this->StepTo(step.Node->Parent); }
 
   Buffer<double> X, Y; ///< coordinates by slot; eight more values may be read than there are
   Buffer<Index> Ids;   ///< the input's point id by slot
@@ -114,13 +119,17 @@ public:
   Buffer<Index> Order;  ///< all slots by increasing (y, x): row after row
   Buffer<Index> Starts; ///< first slot of each bin, row by row, and the number of slots
   std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row
-  Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
+  Buffer<Node> Nodes; ///< the tree, children before parents: the root is the last
+  Buffer<Index> LeafNodes; ///< for eight slots after eight, a node above one of their leaves
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite
 
 private:
   struct Block;
+
+  Step StepTo(Index node) const;
+  Index FindLowest(Index slot) const;
 
   bool Lay(const PointView& points, const Progress& progress, int threads);
   std::vector<Block> Fill(

@@ -183,7 +183,6 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
-    this->Path.clear();
     this->HasAround =
       !this->IsByAngle && (this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow());
     this->OpenEnd = None;
@@ -244,14 +243,13 @@ public:
       return this->Best;
     }
     // From the node around the origin upwards, until it holds the disc.
-    const std::vector<BinGrid::Step>& path = this->PathToOrigin();
-    const BinGrid::Step* step = &path.back();
-    this->LookInto(*step->Node, ~0u);
-    while (step != path.data() && !this->HoldsDisc(*step))
+    BinGrid::Step step = this->Grid.Lowest(this->Origin);
+    this->LookInto(*step.Node, ~0u);
+    while (!step.IsRoot() && !this->HoldsDisc(step))
     {
-      const unsigned int others = ~(1u << step->Place);
-      --step;
-      this->LookInto(*step->Node, others);
+      const unsigned int others = ~(1u << step.Place);
+      step = this->Grid.Above(step);
+      this->LookInto(*step.Node, others);
     }
     return this->Best;
   }
@@ -330,16 +328,15 @@ private:
   /** The lowest node above the origin that has all points of a box, as far as they exist. */
   const Node& NodeAround(const Box& box)
   {
-    const std::vector<BinGrid::Step>& path = this->PathToOrigin();
-    const BinGrid::Step* step = &path.back();
-    while (step != path.data() &&
-      !Holds({ step->LowX - this->A.X, step->HighX - this->A.X, step->LowY - this->A.Y,
-               step->HighY - this->A.Y },
+    BinGrid::Step step = this->Grid.Lowest(this->Origin);
+    while (!step.IsRoot() &&
+      !Holds({ step.LowX - this->A.X, step.HighX - this->A.X, step.LowY - this->A.Y,
+               step.HighY - this->A.Y },
         box))
     {
-      --step;
+      step = this->Grid.Above(step);
     }
-    return *step->Node;
+    return *step.Node;
   }
 
   void LookIntoBox(const Node& node, const Box& box)
@@ -458,19 +455,6 @@ private:
     this->CenterY = isDisc ? 0.5 * this->EdgeY + s * this->EdgeX : 0.0;
   }
 
-  const std::vector<BinGrid::Step>& PathToOrigin()
-  {
-    if (this->IsWide)
-    {
-      return this->Around.PathTo(this->Origin);
-    }
-    if (this->Path.empty())
-    {
-      this->Grid.FindPath(this->A, this->Path);
-    }
-    return this->Path;
-  }
-
   /** Whether the disc, as far as it is above the origin, lies within the box of a step. */
   bool HoldsDisc(const BinGrid::Step& step) const
   {
@@ -482,8 +466,8 @@ private:
   }
 
   /**
-   * The children of a node at the given places (as bits) in order of their distance from the edge,
-   * as long as any is reached.
+   * The children of a node at the given places (as bits) that are reached; as long as there is no
+   * disc, those nearest to the edge first.
    */
   void LookInto(const Node& node, unsigned int places)
   {
@@ -492,23 +476,24 @@ private:
     unsigned int left = this->Reached(node, distances) & places;
     while (left != 0)
     {
-      int nearest = -1;
-      for (int place = 0; left >> place; ++place)
+      int next = 0;
+      while (!(left >> next & 1))
       {
-        if ((left >> place & 1) && (nearest < 0 || distances[place] < distances[nearest]))
-        {
-          nearest = place;
-        }
+        ++next;
       }
-      left &= ~(1u << nearest);
-      const double radiusSquared = this->RadiusSquared;
-      if (node.Count[nearest] > 0)
+      for (int place = next + 1; this->RadiusSquared == Infinity && left >> place; ++place)
       {
-        this->Compare(node.First[nearest], node.Count[nearest]);
+        next = (left >> place & 1) && distances[place] < distances[next] ? place : next;
+      }
+      left &= ~(1u << next);
+      const double radiusSquared = this->RadiusSquared;
+      if (node.Count[next] > 0)
+      {
+        this->Compare(node.First[next], node.Count[next]);
       }
       else
       {
-        this->LookInto(this->Grid.Nodes[node.First[nearest]], ~0u);
+        this->LookInto(this->Grid.Nodes[node.First[next]], ~0u);
       }
       if (left != 0 && this->RadiusSquared < radiusSquared)
       {
@@ -776,8 +761,6 @@ private:
   bool HasAround = false;
   Surroundings::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
-
-  std::vector<BinGrid::Step> Path; ///< to A, where there are no wide instructions; or empty
 
   // The window where there are no wide instructions, its bounds relative to A.
   Index FirstRow = 0, LastRow = 0, FirstColumn = 0, LastColumn = 0;

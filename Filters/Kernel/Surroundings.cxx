@@ -448,49 +448,24 @@ ELEVATION_WIDE void Surroundings::Window::Close(int count)
   }
 }
 
-/** As BinGrid::FindPath(), four boxes at a time. */
-ELEVATION_WIDE void Surroundings::FindPath(Index origin)
+/** The places of a slot in the lists, as bits. */
+template <int Count>
+ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) const
 {
-  if (this->PathOrigin == origin)
+  std::uint64_t lanes = 0;
+  for (int i = 0; i < Count; ++i)
   {
-    return;
+    const __m256i isSlot = _mm256_cmpeq_epi32(_mm256_set1_epi32(slot),
+      _mm256_load_si256(reinterpret_cast<const __m256i*>(this->Slots + 8 * i)));
+    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot))) << (8 * i);
   }
-  this->PathOrigin = origin;
-  const Point2 p = this->Grid.PointAt(origin);
-  const __m256d x = _mm256_set1_pd(p.X), y = _mm256_set1_pd(p.Y);
-  const double infinity = std::numeric_limits<double>::infinity();
-  const BinGrid::Node* node = &this->Grid.Nodes[this->Grid.Nodes.size() - 1];
-  this->Path.assign(1, { node, 0, -infinity, infinity, -infinity, infinity });
-  for (;;)
-  {
-    int place = 0;
-    for (int half = 0; half < BinGrid::Node::Places; half += 4)
-    {
-      const __m256d holdsX =
-        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node->LowX + half), x, _CMP_LE_OQ),
-          _mm256_cmp_pd(_mm256_loadu_pd(node->HighX + half), x, _CMP_GE_OQ));
-      const __m256d holdsY =
-        _mm256_and_pd(_mm256_cmp_pd(_mm256_loadu_pd(node->LowY + half), y, _CMP_LE_OQ),
-          _mm256_cmp_pd(_mm256_loadu_pd(node->HighY + half), y, _CMP_GE_OQ));
-      place |= _mm256_movemask_pd(_mm256_and_pd(holdsX, holdsY)) << half;
-    }
-    place = __builtin_ctz(place);
-    if (node->Count[place] > 0)
-    {
-      return;
-    }
-    const BinGrid::Node* const child = &this->Grid.Nodes[node->First[place]];
-    this->Path.push_back({ child, place, node->LowX[place], node->HighX[place], node->LowY[place],
-      node->HighY[place] });
-    node = child;
-  }
+  return lanes;
 }
 
 bool Surroundings::GatherBox(Window& window)
 {
   const Point2 p = this->Grid.PointAt(window.Origin);
-  this->FindPath(window.Origin);
-  const BinGrid::Step& last = this->Path.back();
+  const BinGrid::Step last = this->Grid.Lowest(window.Origin);
   const double size = last.Node->Size, width = last.HighX - last.LowX,
                height = last.HighY - last.LowY;
   for (double points : { PointsInBox, 0.5 * PointsInBox })
@@ -508,14 +483,13 @@ bool Surroundings::GatherBox(Window& window)
       return false;
     }
     const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
-    const BinGrid::Step* top = &last;
-    while (
-      !(top->LowX < lowX && highX < top->HighX && highY < top->HighY) && top != this->Path.data())
+    BinGrid::Step top = last;
+    while (!(top.LowX < lowX && highX < top.HighX && highY < top.HighY) && !top.IsRoot())
     {
-      --top;
+      top = this->Grid.Above(top);
     }
     window.PerSide = perSide;
-    if (this->GatherBox(window, *top->Node, lowX, highX, highY))
+    if (this->GatherBox(window, *top.Node, lowX, highX, highY))
     {
       window.Left = static_cast<float>(0.999999 * (p.X - lowX) * perSide);
       window.Right = static_cast<float>(0.999999 * (highX - p.X) * perSide);
@@ -528,12 +502,18 @@ bool Surroundings::GatherBox(Window& window)
   return false;
 }
 
+/** For the bits of four places, which of them are set; then any. */
+alignas(16) constexpr std::int32_t Packing[16][4] = { { 0, 0, 0, 0 }, { 0, 0, 0, 0 },
+  { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 2, 0, 0, 0 }, { 0, 2, 0, 0 }, { 1, 2, 0, 0 }, { 0, 1, 2, 0 },
+  { 3, 0, 0, 0 }, { 0, 3, 0, 0 }, { 1, 3, 0, 0 }, { 0, 1, 3, 0 }, { 2, 3, 0, 0 }, { 0, 2, 3, 0 },
+  { 1, 2, 3, 0 }, { 0, 1, 2, 3 } };
+
 /** All points of the box below a node, not below the origin; false when they are too many. */
 ELEVATION_WIDE bool Surroundings::GatherBox(
   Window& window, const BinGrid::Node& top, double lowX, double highX, double highY)
 {
   const Point2 p = this->Grid.PointAt(window.Origin);
-  const double perSide = window.PerSide;
+  const __m256d originX = _mm256_set1_pd(p.X), scale = _mm256_set1_pd(window.PerSide);
   const __m256d boxLowX = _mm256_set1_pd(lowX), boxHighX = _mm256_set1_pd(highX);
   const __m256d boxLowY = _mm256_set1_pd(p.Y), boxHighY = _mm256_set1_pd(highY);
   const BinGrid::Node* stack[64];
@@ -565,15 +545,28 @@ ELEVATION_WIDE bool Surroundings::GatherBox(
           continue;
         }
         const Index end = node.First[place] + node.Count[place];
-        for (Index slot = node.First[place]; slot < end; ++slot)
+        for (Index slot = node.First[place]; slot < end; slot += 4)
         {
-          // Written wherever it is, and kept when within; there is room for one too many.
-          const double x = this->Grid.X[slot], y = this->Grid.Y[slot];
-          window.X[count] = static_cast<float>((x - p.X) * perSide);
-          window.Y[count] = static_cast<float>((y - p.Y) * perSide);
-          window.Slots[count] = slot;
-          window.OriginLane = slot == window.Origin ? count : window.OriginLane;
-          count += (x >= lowX) & (x <= highX) & (y >= p.Y) & (y <= highY);
+          const __m256d x = _mm256_loadu_pd(this->Grid.X.data() + slot);
+          const __m256d y = _mm256_loadu_pd(this->Grid.Y.data() + slot);
+          const __m256d isInX = _mm256_and_pd(
+            _mm256_cmp_pd(x, boxLowX, _CMP_GE_OQ), _mm256_cmp_pd(x, boxHighX, _CMP_LE_OQ));
+          const __m256d isInY = _mm256_and_pd(
+            _mm256_cmp_pd(y, boxLowY, _CMP_GE_OQ), _mm256_cmp_pd(y, boxHighY, _CMP_LE_OQ));
+          const int in = _mm256_movemask_pd(_mm256_and_pd(isInX, isInY)) &
+            (15 >> std::max(slot + 4 - end, 0));
+          // Those within come first, the others are overwritten.
+          const __m128i which =
+            _mm_load_si128(reinterpret_cast<const __m128i*>(Packing[in]));
+          const __m128 unitsX =
+            _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(x, originX), scale));
+          const __m128 unitsY =
+            _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(y, boxLowY), scale));
+          _mm_storeu_ps(window.X + count, _mm_permutevar_ps(unitsX, which));
+          _mm_storeu_ps(window.Y + count, _mm_permutevar_ps(unitsY, which));
+          _mm_storeu_si128(reinterpret_cast<__m128i*>(window.Slots + count),
+            _mm_add_epi32(_mm_set1_epi32(slot), which));
+          count += __builtin_popcount(in);
           if (count > Capacity)
           {
             return false;
@@ -583,21 +576,8 @@ ELEVATION_WIDE bool Surroundings::GatherBox(
     }
   }
   window.Close(count);
+  window.OriginLane = __builtin_ctzll(window.LanesOf<MostVectors>(window.Origin));
   return true;
-}
-
-/** The places of a slot in the lists, as bits. */
-template <int Count>
-ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) const
-{
-  std::uint64_t lanes = 0;
-  for (int i = 0; i < Count; ++i)
-  {
-    const __m256i isSlot = _mm256_cmpeq_epi32(_mm256_set1_epi32(slot),
-      _mm256_load_si256(reinterpret_cast<const __m256i*>(this->Slots + 8 * i)));
-    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot))) << (8 * i);
-  }
-  return lanes;
 }
 
 /**
@@ -944,8 +924,6 @@ bool Surroundings::Gather(Index, Index)
 {
   return false;
 }
-
-void Surroundings::FindPath(Index) {}
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {

@@ -83,13 +83,6 @@ public:
    */
   int Follow(Index b, Index last, Index* neighbors, Candidates& open) const;
 
-  /** The path through the tree to a vertex, as BinGrid::FindPath() finds it. */
-  const std::vector<BinGrid::Step>& PathTo(Index vertex)
-  {
-    this->FindPath(vertex);
-    return this->Path;
-  }
-
   Index SlotOf(int candidate) const { return this->Current->Slots[candidate]; }
 
 private:
@@ -145,7 +138,6 @@ private:
   bool GatherWidest(Window& window, Index firstColumn);
   bool GatherEven(Window& window, Index firstColumn);
   bool GatherBins(Window& window, Index column, int shape);
-  void FindPath(Index origin);
   bool GatherBox(Window& window);
   bool GatherBox(Window& window, const BinGrid::Node& top, double lowX, double highX, double highY);
   bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
@@ -162,8 +154,6 @@ private:
   const bool IsWidest; ///< sixteen points at a time
   Window Windows[2];
   Window* Current = Windows;       ///< and the other one is for the next vertex
-  std::vector<BinGrid::Step> Path; ///< of PathOrigin
-  Index PathOrigin = None;
 
   // Windows of bins; none when PerUnit is 0.
   double PerUnit = 0.0; ///< units a unit of the grid

@@ -72,7 +72,6 @@ void ExpectAllFound(const Cloud& cloud, const BinGrid& grid)
   EXPECT_EQ(static_cast<Index>(ids.size()), cloud.Count());
   std::vector<int> visits(grid.NumberOfPoints(), 0);
   ExpectTree(grid, static_cast<Index>(grid.Nodes.size()) - 1, visits);
-  std::vector<BinGrid::Step> path;
   for (Index slot = 0; slot < grid.NumberOfPoints(); ++slot)
   {
     ASSERT_EQ(visits[slot], 1) << "in one leaf";
@@ -84,16 +83,23 @@ void ExpectAllFound(const Cloud& cloud, const BinGrid& grid)
     ASSERT_TRUE(slots.first <= slot && slot < slots.second) << "point " << grid.Ids[slot];
     ASSERT_LE(grid.RowLow[row], p.Y);
     ASSERT_GE(grid.RowHigh[row], p.Y);
-    grid.FindPath(p, path);
-    const BinGrid::Node& last = *path.back().Node;
+    BinGrid::Step step = grid.Lowest(slot);
+    const BinGrid::Node& last = *step.Node;
     bool isInLeaf = false;
     for (int place = 0; place < BinGrid::Node::Places; ++place)
     {
       isInLeaf =
         isInLeaf || (last.First[place] <= slot && slot < last.First[place] + last.Count[place]);
     }
-    ASSERT_TRUE(isInLeaf) << "the path ends above the leaf";
-    ASSERT_LE(path.size(), 40u) << "the tree is not balanced";
+    ASSERT_TRUE(isInLeaf) << "the node above the leaf";
+    int height = 0;
+    for (; !step.IsRoot(); step = grid.Above(step))
+    {
+      ASSERT_TRUE(step.LowX <= p.X && p.X <= step.HighX && step.LowY <= p.Y && p.Y <= step.HighY);
+      ++height;
+    }
+    ASSERT_EQ(step.Node, grid.Nodes.end() - 1) << "the way leads to the root";
+    ASSERT_LE(height, 40) << "the tree is not balanced";
   }
 }
 } // namespace
