@@ -600,8 +600,23 @@ private:
     return reached;
   }
 
+  __attribute__((target("avx2"))) bool CompareWide(Index first, Index count)
+  {
+    bool isChanged = false;
+    const Index end = first + count;
+    for (Index slot = first; slot < end; slot += 4)
+    {
+      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0));
+      for (; left; left &= left - 1)
+      {
+        isChanged = this->CompareOne(slot + __builtin_ctz(left)) || isChanged;
+      }
+    }
+    return isChanged;
+  }
+
   /** Four slots from this one: which of them Compare() would not pass over at once, as bits. */
-  __attribute__((target("avx2"))) unsigned int MayBeBetter(Index slot) const
+  __attribute__((target("avx2"), always_inline)) inline unsigned int MayBeBetter(Index slot) const
   {
     const __m256d signBit = _mm256_set1_pd(-0.0), roundoffs = _mm256_set1_pd(UnitRoundoff);
     const __m256d edgeX = _mm256_set1_pd(this->EdgeX), edgeY = _mm256_set1_pd(this->EdgeY);
@@ -650,14 +665,7 @@ private:
 #ifdef ELEVATION_HAS_AVX2
     if (this->IsWide)
     {
-      for (Index slot = first; slot < first + count; slot += 4)
-      {
-        unsigned int left = this->MayBeBetter(slot);
-        for (int lane = 0; left >> lane && slot + lane < first + count; ++lane)
-        {
-          isChanged = (left >> lane & 1 && this->CompareOne(slot + lane)) || isChanged;
-        }
-      }
+      isChanged = this->CompareWide(first, count);
     }
     else
 #endif
