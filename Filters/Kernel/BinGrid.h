@@ -119,7 +119,7 @@ public:
   Buffer<Index> Order;  ///< all slots by increasing (y, x): row after row
   Buffer<Index> Starts; ///< first slot of each bin, row by row, and the number of slots
   std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row
-  Buffer<Node> Nodes; ///< the tree, children before parents: the root is the last
+  Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
   Buffer<Index> LeafNodes; ///< for eight slots after eight, a node above one of their leaves
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y

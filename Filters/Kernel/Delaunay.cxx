@@ -820,6 +820,12 @@ private:
   const bool IsPlain; ///< squares neither over- nor underflow
 };
 
+/** Both sides of the convex hull from its lowest to its highest point, collinear points included. */
+struct Hull
+{
+  std::vector<Index> RightChain, LeftChain;
+};
+
 /**
  * The edge pool: the first and the last edge, counter-clockwise, of the fan of triangles above each
  * vertex, as their other ends. None where it is not known yet.
@@ -827,8 +833,7 @@ private:
 class EdgePool
 {
 public:
-  EdgePool(Index count, const std::vector<Index>& rightChain, const std::vector<Index>& leftChain,
-    int threads)
+  EdgePool(Index count, const Hull& hull, int threads)
   {
     this->Ends.Resize(2 * static_cast<std::size_t>(count));
     ForEachPiece(threads, threads, [&](Index piece) {
@@ -836,13 +841,13 @@ public:
       const std::size_t size = this->Ends.size();
       std::fill(ends + size * piece / threads, ends + size * (piece + 1) / threads, None);
     });
-    for (std::size_t i = 0; i + 1 < rightChain.size(); ++i)
+    for (std::size_t i = 0; i + 1 < hull.RightChain.size(); ++i)
     {
-      this->Tell(rightChain[i], 0, rightChain[i + 1]);
+      this->Tell(hull.RightChain[i], 0, hull.RightChain[i + 1]);
     }
-    for (std::size_t i = 0; i + 1 < leftChain.size(); ++i)
+    for (std::size_t i = 0; i + 1 < hull.LeftChain.size(); ++i)
     {
-      this->Tell(leftChain[i], 1, leftChain[i + 1]);
+      this->Tell(hull.LeftChain[i], 1, hull.LeftChain[i + 1]);
     }
   }
 
@@ -857,157 +862,25 @@ private:
   Buffer<Index> Ends;
 };
 
-/**
- * Thrown where growing is given up: distances leave the range of double, so that no neighbour is
- * found to turn from; or the searches look at too many points.
- */
+/** Thrown where growing is given up, because the searches look at too many points. */
 struct CannotGrow
 {
 };
 
 /**
- * Finds the ends of the fan above a vertex by turning around it from neighbour to neighbour, for
- * vertices at the bottom of a strip, which no triangle of the strip has told.
- */
-class Turn
-{
-public:
-  Turn(const BinGrid& grid, ApexSearch& search)
-    : Grid(grid)
-    , Search(search)
-  {
-  }
-
-  /** The first neighbour above the vertex, counter-clockwise; it is not on the right hull chain. */
-  Index FirstAbove(Index vertex)
-  {
-    return this->EndAbove(
-      vertex, [&](Index b) { return this->Search.FindAnywhere(b, vertex); },
-      [&](Index b) { return this->Search.FindAnywhere(vertex, b); });
-  }
-
-  /** The last one; the vertex is not on the left hull chain. */
-  Index LastAbove(Index vertex)
-  {
-    return this->EndAbove(
-      vertex, [&](Index b) { return this->Search.FindAnywhere(vertex, b); },
-      [&](Index b) { return this->Search.FindAnywhere(b, vertex); });
-  }
-
-private:
-  /** Turns outwards from a neighbour above to the last one above, or inwards from one below. */
-  template <typename Outwards, typename Inwards>
-  Index EndAbove(Index vertex, Outwards&& outwards, Inwards&& inwards)
-  {
-    const auto isAbove = [&](Index other) {
-      return other != None && IsLower(this->Grid.PointAt(vertex), this->Grid.PointAt(other));
-    };
-    Index neighbor = this->AnyNeighbor(vertex);
-    if (isAbove(neighbor))
-    {
-      for (Index next = outwards(neighbor); isAbove(next); next = outwards(neighbor))
-      {
-        neighbor = next;
-      }
-      return neighbor;
-    }
-    while (!isAbove(neighbor))
-    {
-      neighbor = inwards(neighbor);
-      if (neighbor == None)
-      {
-        throw CannotGrow();
-      }
-    }
-    return neighbor;
-  }
-
-  /**
-   * A neighbour of the vertex. The nearest point is one, because no point lies in the disc that has
-   * the two as diameter. Nearest by rounded distances may be wrong, so the edge is proved: the
-   * points on its two sides whose discs are smallest must lie outside each other's. If not, one of
-   * them takes its place.
-   */
-  Index AnyNeighbor(Index vertex)
-  {
-    Index nearest = None;
-    double least = Infinity;
-    this->LookForNearest(this->Grid.Nodes[this->Grid.Nodes.size() - 1], vertex, nearest, least);
-    for (int attempts = 0; attempts < 64 && nearest != None; ++attempts)
-    {
-      const Index left = this->Search.FindAnywhere(vertex, nearest);
-      const Index right = this->Search.FindAnywhere(nearest, vertex);
-      if (left == None || right == None ||
-        InCircle(this->Grid.PointAt(vertex), this->Grid.PointAt(nearest), this->Grid.PointAt(left),
-          this->Grid.PointAt(right)) == Negative)
-      {
-        return nearest;
-      }
-      nearest = attempts % 2 == 0 ? left : right;
-    }
-    throw CannotGrow();
-  }
-
-  double SquaredDistance(Index p, Index q) const
-  {
-    const double dx = this->Grid.X[p] - this->Grid.X[q], dy = this->Grid.Y[p] - this->Grid.Y[q];
-    return dx * dx + dy * dy;
-  }
-
-  void LookForNearest(const BinGrid::Node& node, Index vertex, Index& nearest, double& least) const
-  {
-    const Point2 p = this->Grid.PointAt(vertex);
-    std::pair<double, int> places[BinGrid::Node::Places];
-    for (int place = 0; place < BinGrid::Node::Places; ++place)
-    {
-      const double dx = std::max(std::max(node.LowX[place] - p.X, p.X - node.HighX[place]), 0.0);
-      const double dy = std::max(std::max(node.LowY[place] - p.Y, p.Y - node.HighY[place]), 0.0);
-      places[place] = { dx * dx + dy * dy, place };
-    }
-    std::sort(places, places + BinGrid::Node::Places);
-    for (const auto& place : places)
-    {
-      if (!(place.first < least))
-      {
-        return;
-      }
-      const Index first = node.First[place.second], count = node.Count[place.second];
-      if (count == 0)
-      {
-        this->LookForNearest(this->Grid.Nodes[first], vertex, nearest, least);
-        continue;
-      }
-      for (Index slot = first; slot < first + count; ++slot)
-      {
-        const double distance = this->SquaredDistance(slot, vertex);
-        if (slot != vertex && distance < least)
-        {
-          least = distance;
-          nearest = slot;
-        }
-      }
-    }
-  }
-
-  const BinGrid& Grid;
-  ApexSearch& Search;
-};
-
-/**
  * Grows the triangles whose lowest vertices are in a strip: a stretch of the vertices from the
  * lowest up. It reads and writes the pool for these only, so that strips may be grown at the same
- * time; what triangles of the strips below would have told it finds out by turning.
+ * time. What triangles of the strips below would have told, and how many they are, it finds out by a
+ * walk through the triangles that cross its lower border.
  */
 class Strip
 {
 public:
-  Strip(const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options,
-    EdgePool& pool, Index begin, Index end)
+  Strip(const BinGrid& grid, const DelaunayOptions& options, EdgePool& pool, Index begin, Index end)
     : Grid(grid)
-    , Order(order)
+    , Order(grid.Order)
     , Pool(pool)
     , Search(grid, options)
-    , Around(grid, this->Search)
     , Begin(begin)
     , End(end)
     , Next(begin)
@@ -1016,7 +889,55 @@ public:
   {
   }
 
-  Buffer<Index> Triangles;
+  /**
+   * Walks through the triangles that cross the border below the strip, from the right of the hull to
+   * its left.
+   * @return how many triangles lie wholly above the border. By Euler's formula, n vertices joined by
+   * triangles and edges, with no hole, and an outline of b edges, those seen from both sides counted
+   * twice, have 2 n - 2 - b triangles.
+   */
+  std::size_t WalkBorder(const Hull& hull)
+  {
+    const Point2 border = this->Grid.PointAt(this->Order[this->Begin]);
+    const auto isBelow = [&](Index slot) { return IsLower(this->Grid.PointAt(slot), border); };
+    const auto firstAbove = [&](const std::vector<Index>& chain) {
+      return std::partition_point(chain.begin(), chain.end(), isBelow) - chain.begin();
+    };
+    const std::ptrdiff_t right = firstAbove(hull.RightChain), left = firstAbove(hull.LeftChain);
+    std::size_t outline = (hull.RightChain.size() - 1 - right) + (hull.LeftChain.size() - 1 - left);
+    Index lower = hull.RightChain[right - 1], upper = hull.RightChain[right];
+    const Index lastLower = hull.LeftChain[left - 1], lastUpper = hull.LeftChain[left];
+    while (lower != lastLower || upper != lastUpper)
+    {
+      const Index apex = this->Search.FindAnywhere(lower, upper);
+      this->CheckWork();
+      if (apex == None)
+      {
+        throw std::logic_error("there is no triangle over the edge of points " +
+          std::to_string(this->Grid.Ids[lower]) + " and " + std::to_string(this->Grid.Ids[upper]) +
+          "; this is a fault of the triangulation, please report it");
+      }
+      if (isBelow(apex))
+      {
+        lower = apex;
+        continue;
+      }
+      ++outline;
+      this->Tell(upper, apex);
+      upper = apex;
+    }
+    return 2 * static_cast<std::size_t>(this->Grid.NumberOfPoints() - this->Begin) - 2 - outline;
+  }
+
+  /** Where the triangles are to be written, and where the next strip's begin. */
+  void SetOutput(Index* begin, Index* end)
+  {
+    this->Out = this->OutBegin = begin;
+    this->OutEnd = end;
+  }
+
+  /** What has been written. */
+  std::pair<const Index*, const Index*> Triangles() const { return { this->OutBegin, this->Out }; }
 
   double Done() const { return double(this->Next - this->Begin) / (this->End - this->Begin); }
 
@@ -1027,10 +948,7 @@ public:
     for (; this->Next < last; ++this->Next)
     {
       this->GrowFan(this->Order[this->Next]);
-      if (this->Search.Work() > this->MostWork)
-      {
-        throw CannotGrow();
-      }
+      this->CheckWork();
     }
   }
 
@@ -1041,12 +959,7 @@ private:
     {
       return;
     }
-    Index first = this->Pool.First(lowest), end = this->Pool.Last(lowest);
-    if (this->Begin > 0)
-    {
-      first = first == None ? this->Around.FirstAbove(lowest) : first;
-      end = end == None ? this->Around.LastAbove(lowest) : end;
-    }
+    const Index first = this->Pool.First(lowest), end = this->Pool.Last(lowest);
     if (first == end && first != None)
     {
       return;
@@ -1079,58 +992,69 @@ private:
   /** Writes the triangles of a fan and tells their upper vertices. */
   void Emit(Index lowest)
   {
-    const Index lowestId = this->Grid.Ids[lowest];
-    const bool isLastStrip = this->End == this->Grid.NumberOfPoints();
-    const Point2 above = this->Grid.PointAt(this->Order[isLastStrip ? this->End - 1 : this->End]);
-    Index current = this->Fan[0];
-    Point2 currentPoint = this->Grid.PointAt(current);
     const std::size_t triangles = this->Fan.size() - 1;
-    const std::size_t made = this->Triangles.size();
-    this->Triangles.Resize(made + 3 * triangles);
-    Index* out = this->Triangles.data() + made;
+    if (static_cast<std::size_t>(this->OutEnd - this->Out) < 3 * triangles)
+    {
+      throw std::logic_error("the triangles above point " + std::to_string(this->Grid.Ids[lowest]) +
+        " are too many; this is a fault of the triangulation, please report it");
+    }
+    const Index lowestId = this->Grid.Ids[lowest];
+    Index current = this->Fan[0];
     for (std::size_t i = 1; i <= triangles; ++i)
     {
       const Index apex = this->Fan[i];
-      const Point2 apexPoint = this->Grid.PointAt(apex);
-      out[0] = lowestId;
-      out[1] = this->Grid.Ids[current];
-      out[2] = this->Grid.Ids[apex];
-      out += this->Limit.Admits(lowest, current, apex) ? 3 : 0;
-      const bool isRising = IsLower(currentPoint, apexPoint);
-      const Index ends[2] = { apex, current };
-      if (isLastStrip || IsLower(isRising ? currentPoint : apexPoint, above))
-      {
-        this->Pool.Tell(ends[isRising], isRising, ends[!isRising]);
-      }
+      this->Out[0] = lowestId;
+      this->Out[1] = this->Grid.Ids[current];
+      this->Out[2] = this->Grid.Ids[apex];
+      this->Out += this->Limit.Admits(lowest, current, apex) ? 3 : 0;
+      this->Tell(current, apex);
       current = apex;
-      currentPoint = apexPoint;
     }
-    this->Triangles.Resize(out - this->Triangles.data());
+  }
+
+  /** Tells the lower end of a triangle's upper edge, counter-clockwise from p to q, of the other. */
+  void Tell(Index p, Index q)
+  {
+    const Point2 pPoint = this->Grid.PointAt(p), qPoint = this->Grid.PointAt(q);
+    const bool isRising = IsLower(pPoint, qPoint);
+    const Index ends[2] = { q, p };
+    if (this->End == this->Grid.NumberOfPoints() ||
+      IsLower(isRising ? pPoint : qPoint, this->Grid.PointAt(this->Order[this->End])))
+    {
+      this->Pool.Tell(ends[isRising], isRising, ends[!isRising]);
+    }
+  }
+
+  void CheckWork() const
+  {
+    if (this->Search.Work() > this->MostWork)
+    {
+      throw CannotGrow();
+    }
   }
 
   const BinGrid& Grid;
   const Buffer<Index>& Order;
   EdgePool& Pool;
   ApexSearch Search;
-  Turn Around;
   const Index Begin, End;
   Index Next;
   const std::int64_t MostWork;
   const EdgeLimit Limit;
   Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours, counter-clockwise
+  Index *OutBegin = nullptr, *Out = nullptr, *OutEnd = nullptr;
 };
 
 /**
  * Grows all triangles, in a strip for each thread; in rounds, with a report between. A strip's
- * triangles do not depend on where strips begin; put together in their order they are the same, byte
- * for byte, for any number of strips.
+ * triangles do not depend on where strips begin, and each writes them where they belong: so they are
+ * the same, byte for byte, for any number of strips.
  */
-void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Index>& rightChain,
-  const std::vector<Index>& leftChain, const DelaunayOptions& options, int threads,
+void Grow(const BinGrid& grid, const Hull& hull, const DelaunayOptions& options, int threads,
   Buffer<Index>& triangles)
 {
   const Index count = grid.NumberOfPoints();
-  EdgePool pool(count, rightChain, leftChain, threads);
+  EdgePool pool(count, hull, threads);
 
   constexpr Index fewestPerStrip = 5000;
   const Index number = threads > 1 && options.PointsPerStrip > 0
@@ -1142,48 +1066,48 @@ void Grow(const BinGrid& grid, const Buffer<Index>& order, const std::vector<Ind
     const auto at = [&](Index k) {
       return static_cast<Index>(static_cast<std::int64_t>(count) * k / number);
     };
-    strips.emplace_back(new Strip(grid, order, options, pool, at(i), at(i + 1)));
+    strips.emplace_back(new Strip(grid, options, pool, at(i), at(i + 1)));
   }
 
-  // Euler: 2 n - 2 - h triangles. The first strip's memory becomes that of all.
-  const std::size_t hull = rightChain.size() + leftChain.size() - 2;
-  const std::size_t total = 2 * static_cast<std::size_t>(count) - 2 - hull;
-  if (!(options.MaximumEdgeLength > 0.0))
+  const Progress progress = Part(options.Monitor, 0.2, 1.0);
+  Report(progress, 0.0);
+  std::vector<std::size_t> above(number + 1, 0); // triangles from each strip upwards
+  above[0] =
+    2 * static_cast<std::size_t>(count) - 2 - (hull.RightChain.size() + hull.LeftChain.size() - 2);
+  ForEachPiece(
+    number - 1, threads, [&](Index i) { above[i + 1] = strips[i + 1]->WalkBorder(hull); });
+  triangles.Resize(3 * above[0]);
+  Index* const end = triangles.end();
+  for (Index i = 0; i < number; ++i)
   {
+    strips[i]->SetOutput(end - 3 * above[i], end - 3 * above[i + 1]);
+  }
+  for (double done = 0.0; done < 1.0;)
+  {
+    ForEachPiece(number, threads, [&](Index i) { strips[i]->Grow(VerticesPerRound); });
+    done = 1.0;
     for (const auto& strip : strips)
     {
-      strip->Triangles.Reserve(strip == strips.front() ? 3 * total : 3 * total / number);
+      done = std::min(done, strip->Done());
     }
+    Report(progress, done);
   }
-  const Progress progress = Part(options.Monitor, 0.2, 1.0);
-  while (strips.back()->Done() < 1.0)
-  {
-    Report(progress, 0.95 * strips.back()->Done());
-    ForEachPiece(number, threads, [&](Index i) { strips[i]->Grow(VerticesPerRound); });
-  }
-  while (strips.front()->Done() < 1.0)
-  {
-    ForEachPiece(number, threads, [&](Index i) { strips[i]->Grow(VerticesPerRound); });
-  }
-  std::vector<std::size_t> ends;
-  std::size_t end = 0;
+  // Without what the edge limit left out.
+  Index* written = triangles.begin();
   for (const auto& strip : strips)
   {
-    ends.push_back(end += strip->Triangles.size());
+    const auto part = strip->Triangles();
+    written = part.first == written ? written + (part.second - part.first)
+                                    : std::copy(part.first, part.second, written);
   }
-  triangles = std::move(strips.front()->Triangles);
-  triangles.Resize(end);
-  ForEachPiece(number - 1, threads, [&](Index i) {
-    Buffer<Index>& part = strips[i + 1]->Triangles;
-    std::copy(part.begin(), part.end(), triangles.begin() + ends[i]);
-    part = Buffer<Index>();
-  });
+  triangles.Resize(written - triangles.begin());
+  triangles.Shrink();
 }
 
 /** The same triangles in the same order, in n log n whatever the points. */
-Buffer<Index> Divide(
-  const BinGrid& grid, const Buffer<Index>& order, const DelaunayOptions& options)
+Buffer<Index> Divide(const BinGrid& grid, const DelaunayOptions& options)
 {
+  const Buffer<Index>& order = grid.Order;
   const Progress progress = Part(options.Monitor, 0.2, 1.0);
   Buffer<Index> triangles;
   {
@@ -1261,21 +1185,20 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result;
   }
 
-  const Buffer<Index>& order = grid.Order;
-  const Buffer<Index> outermost = HullCandidates(grid, order);
-  const std::vector<Index> rightChain = HullChain(grid, outermost, Negative);
-  const std::vector<Index> leftChain = HullChain(grid, outermost, Positive);
-  if (rightChain == leftChain)
+  const Buffer<Index> outermost = HullCandidates(grid, grid.Order);
+  const Hull hull{ HullChain(grid, outermost, Negative), HullChain(grid, outermost, Positive) };
+  if (hull.RightChain == hull.LeftChain)
   {
     return result; // all points on one line
   }
-  result.NumberOfHullPoints = static_cast<Index>(rightChain.size() + leftChain.size() - 2);
+  result.NumberOfHullPoints =
+    static_cast<Index>(hull.RightChain.size() + hull.LeftChain.size() - 2);
   bool isGrown = !options.DivideAtOnce;
   if (isGrown)
   {
     try
     {
-      Grow(grid, order, rightChain, leftChain, options, threads, result.Triangles);
+      Grow(grid, hull, options, threads, result.Triangles);
     }
     catch (const CannotGrow&)
     {
@@ -1284,7 +1207,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   }
   if (!isGrown)
   {
-    result.Triangles = Divide(grid, order, options);
+    result.Triangles = Divide(grid, options);
   }
   Report(options.Monitor, 1.0);
   return result;

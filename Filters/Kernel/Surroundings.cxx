@@ -553,15 +553,12 @@ ELEVATION_WIDE bool Surroundings::GatherBox(
             _mm256_cmp_pd(x, boxLowX, _CMP_GE_OQ), _mm256_cmp_pd(x, boxHighX, _CMP_LE_OQ));
           const __m256d isInY = _mm256_and_pd(
             _mm256_cmp_pd(y, boxLowY, _CMP_GE_OQ), _mm256_cmp_pd(y, boxHighY, _CMP_LE_OQ));
-          const int in = _mm256_movemask_pd(_mm256_and_pd(isInX, isInY)) &
-            (15 >> std::max(slot + 4 - end, 0));
+          const int in =
+            _mm256_movemask_pd(_mm256_and_pd(isInX, isInY)) & (15 >> std::max(slot + 4 - end, 0));
           // Those within come first, the others are overwritten.
-          const __m128i which =
-            _mm_load_si128(reinterpret_cast<const __m128i*>(Packing[in]));
-          const __m128 unitsX =
-            _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(x, originX), scale));
-          const __m128 unitsY =
-            _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(y, boxLowY), scale));
+          const __m128i which = _mm_load_si128(reinterpret_cast<const __m128i*>(Packing[in]));
+          const __m128 unitsX = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(x, originX), scale));
+          const __m128 unitsY = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(y, boxLowY), scale));
           _mm_storeu_ps(window.X + count, _mm_permutevar_ps(unitsX, which));
           _mm_storeu_ps(window.Y + count, _mm_permutevar_ps(unitsY, which));
           _mm_storeu_si128(reinterpret_cast<__m128i*>(window.Slots + count),

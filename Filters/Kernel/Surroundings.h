@@ -10,21 +10,26 @@
  * caller compares the few exactly, or looks elsewhere, so single precision decides nothing that
  * matters. As long as there is but one such point, the whole fan is followed at once.
  *
- * Around the vertex all points of five columns and four rows of bins are gathered: the window. Where
+ * Around the vertex all points of six columns and four rows of bins are gathered: the window. Where
  * these are too many, it is three columns and less rows; in full bins, a box in which the density
  * thereabouts promises about fifteen points. For bins, the coordinates of the four rows are kept as
  * whole multiples of a unit that is small against the bins, so that differences are exact.
  *
- * The proof. Let R be the diagonal of the window, e the error of a coordinate relative to the vertex
- * and u = 2^-24. With cross = b x p and dot = p . (p - b) for the edge's end b and a point p, the
- * apex is the point with the least dot / cross among those on the left (see ApexSearch in
- * Delaunay.cxx). Both are computed as sums of products of coordinates of at most R, and are wrong by
+ * The proof. Let R be the longest distance from the vertex within the window, e the error of a
+ * coordinate relative to the vertex and u = 2^-24. With cross = b x p and dot = p . (p - b) for the
+ * edge's end b and a point p, the apex is the point with the least dot / cross among those on the
+ * left (see ApexSearch in Delaunay.cxx). Both are sums of products of coordinates of at most R, and
+ * are wrong by
  *   cross: 3 R e + 3 u R^2,   dot: 6 R e + 6 u R^2.
  * A first pass guesses the apex with rounded quotients. The second compares every point with it, by
- *   dot cross' - dot' cross, which is wrong by 24 R^3 e + 32 u R^4 at most:
- * points for which it is clearly positive, or which are clearly on the right, are not the apex. The
- * disc of the guess, made larger by what its quotient may be wrong, holds the apex's empty circle;
- * if it lies within the window above the vertex, no point outside needs to be looked at.
+ *   dot cross' - dot' cross, which is wrong by 24 R^3 e + 32 u R^4 at most
+ * and not negative for points outside the circle of the edge and the guess, on whichever side. So
+ * points for which it is clearly positive are not the apex. Of others, the exact predicates tell
+ * which are on the left. The disc of the guess, made larger by what its quotient may be wrong, holds
+ * the apex's empty circle; if it lies within the window above the vertex, no point outside needs to
+ * be looked at.
+ *
+ * Where the processor has AVX-512, windows of at most 32 points are looked at in two vectors.
  *
  * Needs a processor with AVX2 and a compiler that can be told so for one function (GCC, Clang on
  * x86-64); elsewhere IsSupported() is false and nothing else may be called.
@@ -153,7 +158,7 @@ private:
   const BinGrid& Grid;
   const bool IsWidest; ///< sixteen points at a time
   Window Windows[2];
-  Window* Current = Windows;       ///< and the other one is for the next vertex
+  Window* Current = Windows; ///< and the other one is for the next vertex
 
   // Windows of bins; none when PerUnit is 0.
   double PerUnit = 0.0; ///< units a unit of the grid
