@@ -170,13 +170,16 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles)
   const vtkIdType size = static_cast<vtkIdType>(triangles.size());
   vtkNew<vtkTypeInt32Array> connectivity;
   connectivity->SetArray(triangles.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
-  vtkNew<vtkTypeInt32Array> offsets;
-  offsets->SetNumberOfValues(size / 3 + 1);
-  vtkTypeInt32* offset = offsets->GetPointer(0);
-  for (vtkIdType i = 0; i <= size / 3; ++i)
+  Buffer<Index> begins; // one cell's after another's, and the last one's end
+  begins.Resize(static_cast<std::size_t>(size) / 3 + 1);
+  Index begin = 0;
+  for (Index& entry : begins)
   {
-    offset[i] = static_cast<vtkTypeInt32>(3 * i);
+    entry = begin;
+    begin += 3;
   }
+  vtkNew<vtkTypeInt32Array> offsets;
+  offsets->SetArray(begins.Release(), size / 3 + 1, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, connectivity);
   return cells;
