@@ -72,6 +72,7 @@ int vtkGridDelaunay2D::RequestData(
 
   return elevation::CallKernel(this, outputVector, [&]() {
     elevation::DelaunayOptions options;
+    options.Strategy = static_cast<elevation::SearchStrategy>(this->SearchStrategy);
     options.MaximumEdgeLength = this->MaximumEdgeLength;
     options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
     options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
@@ -106,6 +107,11 @@ int vtkGridDelaunay2D::RequestData(
   });
 }
 
+const char* vtkGridDelaunay2D::GetSearchStrategyAsString() const
+{
+  return this->SearchStrategy == COMPACTNESS ? "Compactness" : "VoxelTraversal";
+}
+
 const char* vtkGridDelaunay2D::GetDuplicatePolicyAsString() const
 {
   static const char* const names[] = { "KeepFirst", "KeepLast", "KeepLowest", "KeepHighest" };
@@ -120,6 +126,7 @@ const char* vtkGridDelaunay2D::GetLatticeModeAsString() const
 void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "SearchStrategy: " << this->GetSearchStrategyAsString() << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
   os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";

@@ -48,6 +48,7 @@ class WrongOption(Failure):
     """A Failure of the command line: the exit code is 2."""
 
 
+SEARCH_STRATEGIES = ("voxel-traversal", "compactness")
 LATTICE_MODES = ("automatic", "off")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
@@ -96,6 +97,7 @@ TAKES = {
     "--no-data": "an elevation",
     "--maximum-edge-length": NUMBER,
     "--duplicates": "one of " + ", ".join(DUPLICATES),
+    "--search-strategy": "one of " + ", ".join(SEARCH_STRATEGIES),
     "--lattice-mode": "one of " + ", ".join(LATTICE_MODES),
     "--lattice-tolerance": "a number from 0 to 0.25",
     "--threads": "a whole number of 0 or more",
@@ -148,6 +150,7 @@ def make_parser():
     add("--no-data", type=float)
     add("--maximum-edge-length", type=number_at_least_zero, default=0.0)
     add("--duplicates", choices=DUPLICATES, default=DUPLICATES[0])
+    add("--search-strategy", choices=SEARCH_STRATEGIES, default=SEARCH_STRATEGIES[0])
     add("--lattice-mode", choices=LATTICE_MODES, default=LATTICE_MODES[0])
     add("--lattice-tolerance", type=number_up_to_a_quarter, default=0.01)
     add("--threads", type=count_at_least_zero, default=0)
@@ -293,6 +296,7 @@ def reconstruct(run, cloud, boundary):
     delaunay.SetInputData(cloud.points)
     delaunay.SetMaximumEdgeLength(options.maximum_edge_length)
     delaunay.SetDuplicatePolicy(DUPLICATES.index(options.duplicates))
+    delaunay.SetSearchStrategy(SEARCH_STRATEGIES.index(options.search_strategy))
     delaunay.SetLatticeMode(LATTICE_MODES.index(options.lattice_mode))
     delaunay.SetLatticeTolerance(options.lattice_tolerance)
     delaunay.SetNumberOfThreads(options.threads)

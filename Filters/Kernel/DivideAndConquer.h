@@ -15,7 +15,7 @@
  *   3. Cut every polygon into the fan of its lowest vertex, vertices from the lowest up.
  *
  * Cost: n log n questions to the predicates at most, whatever the points; the stack is as deep as
- * log n; 92 bytes a point beside the points and the triangles.
+ * log n; about 77 bytes a point beside the points and the triangles.
  *
  * [Guibas & Stolfi 1985] Primitives for the Manipulation of General Subdivisions and the
  * Computation of Voronoi Diagrams, ACM Transactions on Graphics 4(2):74-123.

@@ -26,6 +26,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -198,20 +199,73 @@ void TestTooFewPoints()
   }
 }
 
-void TestProgressAndAbort()
+vtkSmartPointer<vtkPolyData> RandomPoints(int count)
 {
   vtkNew<vtkMinimalStandardRandomSequence> random;
   random->SetSeed(5);
   vtkNew<vtkPoints> points;
-  for (int i = 0; i < 100000; ++i)
+  for (int i = 0; i < count; ++i)
   {
     const double x = random->GetValue();
     random->Next();
     points->InsertNextPoint(x, random->GetValue(), 0.0);
     random->Next();
   }
-  vtkNew<vtkPolyData> input;
+  auto input = vtkSmartPointer<vtkPolyData>::New();
   input->SetPoints(points);
+  return input;
+}
+
+std::vector<vtkIdType> Corners(vtkPolyData* surface)
+{
+  std::vector<vtkIdType> corners;
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfPolys(); ++cell)
+  {
+    surface->GetPolys()->GetCellAtId(cell, size, ids);
+    corners.insert(corners.end(), ids, ids + size);
+  }
+  return corners;
+}
+
+void TestSearchStrategy()
+{
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  Check(delaunay->GetSearchStrategy() == vtkGridDelaunay2D::VOXEL_TRAVERSAL &&
+      std::string(delaunay->GetSearchStrategyAsString()) == "VoxelTraversal",
+    "voxel traversal is the default");
+  const vtkMTimeType time = delaunay->GetMTime();
+  delaunay->SetSearchStrategyToCompactness();
+  Check(delaunay->GetMTime() > time, "another strategy modifies the filter");
+  Check(std::string(delaunay->GetSearchStrategyAsString()) == "Compactness", "it has a name");
+  delaunay->SetSearchStrategy(-3);
+  Check(delaunay->GetSearchStrategy() == vtkGridDelaunay2D::VOXEL_TRAVERSAL, "clamped from below");
+  delaunay->SetSearchStrategy(3);
+  Check(delaunay->GetSearchStrategy() == vtkGridDelaunay2D::COMPACTNESS, "clamped from above");
+
+  for (const bool isLattice : { false, true })
+  {
+    for (const double limit : { 0.0, isLattice ? 1.2 : 0.02 })
+    {
+      delaunay->SetInputData(isLattice ? MakeInput(VTK_DOUBLE) : RandomPoints(5000));
+      delaunay->SetMaximumEdgeLength(limit);
+      delaunay->SetSearchStrategyToVoxelTraversal();
+      delaunay->Update();
+      const std::vector<vtkIdType> corners = Corners(delaunay->GetOutput());
+      delaunay->SetSearchStrategyToCompactness();
+      delaunay->Update();
+      Check(delaunay->GetLatticeFound() == isLattice, "only the nodes are a lattice");
+      Check(Corners(delaunay->GetOutput()) == corners, "both searches give the same triangles");
+      Check(corners.empty() == (isLattice && limit > 0.0), "there are triangles");
+    }
+  }
+}
+
+void TestProgressAndAbort()
+{
+  vtkSmartPointer<vtkPolyData> input = RandomPoints(100000);
+  vtkPoints* points = input->GetPoints();
   vtkNew<vtkGridDelaunay2D> delaunay;
   delaunay->SetInputData(input);
 
@@ -259,8 +313,8 @@ void TestProgressAndAbort()
   state.AbortAt = 1.0;
   delaunay->Modified();
   delaunay->Update();
-  Check(delaunay->GetOutput()->GetNumberOfCells() == 0 &&
-      delaunay->GetNumberOfDuplicatePoints() == 0,
+  Check(
+    delaunay->GetOutput()->GetNumberOfCells() == 0 && delaunay->GetNumberOfDuplicatePoints() == 0,
     "an abort at the last report leaves no counts");
 }
 
@@ -294,6 +348,7 @@ int TestGridDelaunay2D(int, char*[])
   TestOutput(VTK_DOUBLE);
   TestOtherPointSets();
   TestTooFewPoints();
+  TestSearchStrategy();
   TestProgressAndAbort();
   TestArraysThatDoNotFit();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

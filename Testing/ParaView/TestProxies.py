@@ -12,6 +12,7 @@ from plugin_testing import check, check_equal, finish, start
 # For each property: a value other than the default.
 OTHER_VALUES = {
     "GridDelaunay2D": {
+        "SearchStrategy": "Compactness",
         "MaximumEdgeLength": 2.5,
         "DuplicatePolicy": "Keep Highest",
         "LatticeMode": "Off",

@@ -26,6 +26,8 @@ def triangles(data):
 class TestGridDelaunay2D(unittest.TestCase):
     def test_defaults(self):
         delaunay = vtkGridDelaunay2D()
+        self.assertEqual(delaunay.GetSearchStrategy(), vtkGridDelaunay2D.VOXEL_TRAVERSAL)
+        self.assertEqual(delaunay.GetSearchStrategyAsString(), "VoxelTraversal")
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)
         self.assertEqual(delaunay.GetDuplicatePolicyAsString(), "KeepFirst")
@@ -40,6 +42,11 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         delaunay.SetDuplicatePolicy(99)
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_HIGHEST)
+        delaunay.SetSearchStrategy(5)
+        self.assertEqual(delaunay.GetSearchStrategy(), vtkGridDelaunay2D.COMPACTNESS)
+        self.assertEqual(delaunay.GetSearchStrategyAsString(), "Compactness")
+        delaunay.SetSearchStrategy(-1)
+        self.assertEqual(delaunay.GetSearchStrategy(), vtkGridDelaunay2D.VOXEL_TRAVERSAL)
         delaunay.SetLatticeTolerance(3.0)
         self.assertEqual(delaunay.GetLatticeTolerance(), 0.25)
         delaunay.SetLatticeMode(7)
@@ -47,9 +54,9 @@ class TestGridDelaunay2D(unittest.TestCase):
 
     def test_every_property_is_printed(self):
         text = str(vtkGridDelaunay2D())
-        for name in ("MaximumEdgeLength", "DuplicatePolicy", "LatticeMode", "LatticeTolerance",
-                     "LatticeFound", "NumberOfThreads", "NumberOfDuplicatePoints",
-                     "NumberOfNonFinitePoints"):
+        for name in ("SearchStrategy", "MaximumEdgeLength", "DuplicatePolicy", "LatticeMode",
+                     "LatticeTolerance", "LatticeFound", "NumberOfThreads",
+                     "NumberOfDuplicatePoints", "NumberOfNonFinitePoints"):
             self.assertIn(name, text)
 
     def test_triangles_do_not_depend_on_the_order_of_points(self):
@@ -95,6 +102,21 @@ class TestGridDelaunay2D(unittest.TestCase):
         delaunay.SetLatticeModeToOff()
         delaunay.Update()
         self.assertFalse(delaunay.GetLatticeFound())
+
+    def test_both_searches_give_the_same_bytes(self):
+        data = cloud(numpy.random.RandomState(5).rand(20000, 3))
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(data)
+        delaunay.Update()
+        expected = triangles(delaunay.GetOutput()).tobytes()
+        time = delaunay.GetOutput().GetMTime()
+        delaunay.SetSearchStrategyToCompactness()
+        delaunay.Update()
+        self.assertGreater(delaunay.GetOutput().GetMTime(), time)  # it ran again
+        self.assertEqual(triangles(delaunay.GetOutput()).tobytes(), expected)
+        delaunay.SetSearchStrategyToVoxelTraversal()
+        self.assertEqual(delaunay.GetSearchStrategyAsString(), "VoxelTraversal")
+
     def test_the_number_of_threads_does_not_change_a_byte(self):
         data = cloud(numpy.random.RandomState(4).rand(60000, 3))
         results = []

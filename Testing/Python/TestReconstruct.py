@@ -118,6 +118,20 @@ class Report(Program):
         self.assertEqual(done.returncode, 2)
         self.assertIn("--lattice-tolerance takes a number from 0 to 0.25", done.stderr)
 
+    def test_both_searches_make_the_same_surface(self):
+        # Off the lattice, where the strategy plays a part.
+        name = self.file("moved.xyz", text_of((x + 0.1 * math.sin(y * y), y, z) for x, y, z in SHEET))
+        surfaces = []
+        for strategy in ("voxel-traversal", "compactness"):
+            report = self.report(name, "--search-strategy", strategy)
+            self.assertIsNone(report["lattice"])
+            with open(self.path("moved_surface.vtp"), "rb") as stream:
+                surfaces.append(stream.read())
+        self.assertEqual(surfaces[0], surfaces[1])
+        done = self.call(name, "--search-strategy", "guess")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--search-strategy takes one of voxel-traversal, compactness", done.stderr)
+
     def test_a_hole_is_filled_and_listed(self):
         name = self.file("holed.xyz", text_of(HOLED))
         report = self.report(name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")

@@ -64,18 +64,41 @@ std::vector<Corners> BruteForce(const Cloud& cloud)
   return set;
 }
 
-void ExpectValid(const Cloud& cloud, const std::string& name)
+bool AreSame(const Triangulation& one, const Triangulation& other)
+{
+  return std::equal(one.Triangles.begin(), one.Triangles.end(), other.Triangles.begin(),
+           other.Triangles.end()) &&
+    one.UnusedPoints == other.UnusedPoints && one.NumberOfHullPoints == other.NumberOfHullPoints;
+}
+
+const std::vector<SearchStrategy> BothStrategies{ SearchStrategy::VoxelTraversal,
+  SearchStrategy::Compactness };
+
+/** Each strategy, with wide instructions and without. */
+void ExpectSameFromEverySearch(const Cloud& cloud, const Triangulation& expected,
+  DelaunayOptions options, const std::vector<SearchStrategy>& strategies = BothStrategies)
+{
+  for (const SearchStrategy strategy : strategies)
+  {
+    for (const bool isWide : { false, true })
+    {
+      options.Strategy = strategy;
+      options.UseWideInstructions = isWide;
+      EXPECT_TRUE(AreSame(expected, elevation::Triangulate(cloud.View(), options)))
+        << (strategy == SearchStrategy::Compactness ? "compactness" : "voxel traversal") << ", "
+        << (isWide ? "wide" : "narrow") << ", changes the triangles";
+    }
+  }
+}
+
+void ExpectValid(const Cloud& cloud, const std::string& name,
+  const std::vector<SearchStrategy>& strategies = BothStrategies)
 {
   SCOPED_TRACE(name);
   const Triangulation triangulation = Triangulate(cloud);
   EXPECT_EQ(FindingsOf(cloud, triangulation), "");
   DelaunayOptions options;
-  options.UseWideInstructions = false;
-  const Triangulation narrow = elevation::Triangulate(cloud.View(), options);
-  EXPECT_TRUE(std::equal(triangulation.Triangles.begin(), triangulation.Triangles.end(),
-    narrow.Triangles.begin(), narrow.Triangles.end()))
-    << "wide instructions change the triangles";
-  options.UseWideInstructions = true;
+  ExpectSameFromEverySearch(cloud, triangulation, options, strategies);
   options.NumberOfThreads = 3;
   for (const Index pointsPerStrip : { 1, 30, 0 })
   {
@@ -110,6 +133,34 @@ TEST(Delaunay, IsTheDefinitionOnSmallLattices)
       cloud.Add(x, static_cast<double>(random() % size));
     }
     ASSERT_EQ(TriangleSet(cloud, Triangulate(cloud)), BruteForce(cloud)) << "cloud " << i;
+  }
+}
+
+TEST(Delaunay, IsTheSameFromEverySearchOnSmallLattices)
+{
+  // Ties, duplicates and limits on edges; also through the lattice, where no strategy plays a part.
+  std::mt19937_64 random(31);
+  for (int i = 0; i < 2000; ++i)
+  {
+    Cloud cloud;
+    const int size = 2 + static_cast<int>(random() % 12);
+    const int count = 3 + static_cast<int>(random() % 80);
+    for (int k = 0; k < count; ++k)
+    {
+      const double x = static_cast<double>(random() % size);
+      cloud.Add(x, static_cast<double>(random() % size));
+    }
+    SCOPED_TRACE(i);
+    DelaunayOptions options;
+    options.Duplicates = static_cast<DuplicatePolicy>(random() % 4);
+    options.MaximumEdgeLength = i % 2 ? 0.0 : 0.5 + 0.5 * static_cast<double>(random() % 8);
+    ExpectSameFromEverySearch(cloud, elevation::Triangulate(cloud.View(), options), options);
+    options.UseLattice = LatticeMode::Automatic;
+    ExpectSameFromEverySearch(cloud, elevation::Triangulate(cloud.View(), options), options);
+    if (HasFailure())
+    {
+      return;
+    }
   }
 }
 
@@ -228,7 +279,7 @@ TEST(Delaunay, KeepsEveryRuleOverTheRangeOfDouble)
       const double x = coordinate();
       cloud.Add(x, coordinate());
     }
-    ExpectValid(cloud, "exponents to " + std::to_string(range));
+    ExpectValid(cloud, "exponents to " + std::to_string(range), { SearchStrategy::VoxelTraversal });
   }
   for (const double size : { 1e-305, 1e-150, 1e150, 1.7e308 })
   {
@@ -237,7 +288,7 @@ TEST(Delaunay, KeepsEveryRuleOverTheRangeOfDouble)
     {
       value = (value - 0.5) * 2.0 * size;
     }
-    ExpectValid(cloud, "of size " + std::to_string(size));
+    ExpectValid(cloud, "of size " + std::to_string(size), { SearchStrategy::VoxelTraversal });
   }
 }
 
@@ -254,7 +305,7 @@ TEST(Delaunay, KeepsEveryRuleOnAClusterOfTheSmallestNumbers)
   cloud.Add(1.0, 1.0);
   cloud.Add(1.0, 0.0);
   cloud.Add(0.0, 1.0);
-  ExpectValid(cloud, "a cluster within 1e-310");
+  ExpectValid(cloud, "a cluster within 1e-310", { SearchStrategy::VoxelTraversal });
 }
 
 TEST(Delaunay, CutsACocircularPolygonFromItsLowestPoint)
@@ -351,7 +402,9 @@ TEST(Delaunay, LeavesOutExactlyTheTrianglesWithALongEdge)
     }
   }
   EXPECT_LT(expected.size(), 3900u);
-  EXPECT_EQ(TriangleSet(cloud, elevation::Triangulate(cloud.View(), options)), expected);
+  const Triangulation limited = elevation::Triangulate(cloud.View(), options);
+  EXPECT_EQ(TriangleSet(cloud, limited), expected);
+  ExpectSameFromEverySearch(cloud, limited, options);
 }
 
 TEST(Delaunay, ReadsFloatsAsTheyAre)

@@ -295,6 +295,38 @@ TEST(DivideAndConquer, TakesNoLongOnACircle)
   EXPECT_EQ(triangulation.Triangles.size(), 3 * (2 * used - 2 - triangulation.NumberOfHullPoints));
 }
 
+TEST(DivideAndConquer, TakesOverWhereGrowingTakesLong)
+{
+  // Points whose searches all look at all points: growing alone takes a minute and more.
+  std::mt19937_64 random(91);
+  const Cloud cloud = CircleCloud(random, 60000);
+  DelaunayOptions options;
+  options.DivideAtOnce = true;
+  const Ids expected = Triangulated(cloud, options);
+  options.DivideAtOnce = false;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_TRUE(Triangulated(cloud, options) == expected);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(seconds.count(), 20.0); // on a slow or busy machine; else a twentieth of it
+
+  const Cloud smaller = CircleCloud(random, 5000);
+  options.MaximumEdgeLength = 0.01;
+  options.DivideAtOnce = true;
+  const Ids limited = Triangulated(smaller, options);
+  EXPECT_GT(limited.size(), 0u);
+  options.DivideAtOnce = false;
+  for (const SearchStrategy strategy :
+    { SearchStrategy::VoxelTraversal, SearchStrategy::Compactness })
+  {
+    for (const int threads : { 1, 3 })
+    {
+      options.Strategy = strategy;
+      options.NumberOfThreads = threads;
+      EXPECT_TRUE(Triangulated(smaller, options) == limited) << threads << " threads";
+    }
+  }
+}
+
 TEST(DivideAndConquer, ReportsOftenAndStops)
 {
   std::mt19937_64 random(90);

@@ -38,7 +38,7 @@ namespace
 using namespace benchmark;
 
 constexpr int MaximumRepeats = 101;
-constexpr std::size_t MaximumCompetitors = 3;
+constexpr std::size_t MaximumCompetitors = 5;
 constexpr Index MostPointsOfVTK = 20000;
 
 // ---- options -----------------------------------------------------------------------------------
@@ -58,6 +58,7 @@ one process and in turn, measures peak memory, and checks the results against ea
   --repeats N       timed runs of each code; default 5
   --time-limit S    seconds a code may take for its trial, and for all its timed runs together (it
                     is then left out of further rounds); default 60, 0 is no limit
+  --searches        also times vtkGridDelaunay2D without lattices by each of its two searches
   --no-cgal         leaves CGAL out
   --vtk             runs vtkDelaunay2D on more than 20000 points too
   --no-vtk          leaves vtkDelaunay2D out
@@ -72,6 +73,7 @@ const char* const Examples = R"(
 Examples
   BenchmarkDelaunay --points 100000,886639
   BenchmarkDelaunay --sets U,clustered,tracks,voids --no-vtk
+  BenchmarkDelaunay --searches --no-cgal --no-vtk
   BenchmarkDelaunay --file Data/jacksboro_fault.vtp --json figures.json
 
 The exit code is 1 when a result of vtkGridDelaunay2D is wrong or missing, 2 for a wrong option.
@@ -86,6 +88,7 @@ struct Options
   int Threads = 1;
   int Repeats = 5;
   unsigned TimeLimit = 60;
+  bool UseSearches = false;
   bool UseCGAL = true;
   bool UseVTK = true;
   bool UseVTKAlways = false;
@@ -218,6 +221,10 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     {
       options.TimeLimit = static_cast<unsigned>(ToNumber(option, value(), 0, 1000000));
     }
+    else if (option == "--searches")
+    {
+      options.UseSearches = true;
+    }
     else if (option == "--no-cgal")
     {
       options.UseCGAL = false;
@@ -318,6 +325,11 @@ Competitors MakeCompetitors(const Options& options)
 {
   Competitors competitors;
   competitors.push_back(NewGridDelaunay(options.Threads));
+  if (options.UseSearches)
+  {
+    competitors.push_back(NewGridDelaunaySearch(options.Threads, false));
+    competitors.push_back(NewGridDelaunaySearch(options.Threads, true));
+  }
 #if defined(ES_BENCHMARK_CGAL)
   if (options.UseCGAL)
   {
@@ -759,7 +771,11 @@ int Run(const Options& options)
   {
     const Results results = Measure(sources[i], options, competitors);
     PrintRows(sources[i].Name, competitors, results, options.TimeLimit);
-    isRight = isRight && results[0].Runs > 0 && results[0].Checked != Verdict::Wrong;
+    isRight = isRight && results[0].Runs > 0;
+    for (std::size_t k = 0; k < (options.UseSearches ? 3 : 1); ++k)
+    {
+      isRight = isRight && results[k].Checked != Verdict::Wrong;
+    }
     if (json.is_open())
     {
       json << (i ? ",\n" : "");

@@ -63,6 +63,9 @@ public:
 /** vtkGridDelaunay2D: vtkPolyData in, vtkPolyData out, a fresh filter each time. 0 threads: all. */
 std::unique_ptr<Competitor> NewGridDelaunay(int threads);
 
+/** The same by the coordinates, without a lattice, with one of its search strategies. */
+std::unique_ptr<Competitor> NewGridDelaunaySearch(int threads, bool isCompactness);
+
 /** vtkDelaunay2D with its defaults, in the same way. */
 std::unique_ptr<Competitor> NewVTKDelaunay();
 

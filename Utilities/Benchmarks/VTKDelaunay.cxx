@@ -16,6 +16,8 @@
 #include "vtkSmartPointer.h"
 #include "vtkVersion.h"
 
+#include <functional>
+
 namespace
 {
 using benchmark::Index;
@@ -24,9 +26,10 @@ template <typename Filter>
 class VTKCompetitor : public benchmark::Competitor
 {
 public:
-  explicit VTKCompetitor(std::string name, int threads = 1)
+  /** @param setUp  sets the properties of each fresh filter */
+  VTKCompetitor(std::string name, std::function<void(Filter*)> setUp)
     : FilterName(std::move(name))
-    , Threads(threads)
+    , SetUp(std::move(setUp))
   {
   }
 
@@ -49,10 +52,7 @@ public:
   {
     this->Input->Modified();
     vtkNew<Filter> filter;
-    if constexpr (std::is_same<Filter, vtkGridDelaunay2D>::value)
-    {
-      filter->SetNumberOfThreads(this->Threads);
-    }
+    this->SetUp(filter);
     filter->SetInputData(this->Input);
     filter->Update();
     this->Output = filter->GetOutput();
@@ -122,7 +122,7 @@ public:
 
 private:
   std::string FilterName;
-  int Threads;
+  std::function<void(Filter*)> SetUp;
   vtkNew<vtkPolyData> Input;
   vtkSmartPointer<vtkPolyData> Output;
 };
@@ -132,12 +132,25 @@ namespace benchmark
 {
 std::unique_ptr<Competitor> NewGridDelaunay(int threads)
 {
-  return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>("vtkGridDelaunay2D", threads);
+  return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>("vtkGridDelaunay2D",
+    [threads](vtkGridDelaunay2D* filter) { filter->SetNumberOfThreads(threads); });
+}
+
+std::unique_ptr<Competitor> NewGridDelaunaySearch(int threads, bool isCompactness)
+{
+  return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>(
+    isCompactness ? "- Compactness" : "- VoxelTraversal",
+    [threads, isCompactness](vtkGridDelaunay2D* filter) {
+      filter->SetNumberOfThreads(threads);
+      filter->SetLatticeModeToOff();
+      filter->SetSearchStrategy(
+        isCompactness ? vtkGridDelaunay2D::COMPACTNESS : vtkGridDelaunay2D::VOXEL_TRAVERSAL);
+    });
 }
 
 std::unique_ptr<Competitor> NewVTKDelaunay()
 {
   return std::make_unique<VTKCompetitor<vtkDelaunay2D>>(
-    std::string("vtkDelaunay2D ") + vtkVersion::GetVTKVersion());
+    std::string("vtkDelaunay2D ") + vtkVersion::GetVTKVersion(), [](vtkDelaunay2D*) {});
 }
 } // namespace benchmark
