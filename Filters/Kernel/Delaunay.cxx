@@ -28,7 +28,10 @@ constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 /** Vertices that a strip grows between two reports of progress: some tens of milliseconds. */
 constexpr Index VerticesPerRound = 50000;
 
-/** Points and boxes that searches may look at for each vertex before growing is given up. */
+/**
+ * Points and boxes that searches may look at for each vertex before growing is given up; by
+ * compactness, which looks at more, ten times as many.
+ */
 constexpr std::int64_t WorkPerVertex = 300;
 /** What an exact comparison counts for: its cost in looks. */
 constexpr std::int64_t WorkOfExact = 10;
@@ -344,9 +347,11 @@ private:
     this->Looks += Node::Places;
     for (int place = 0; place < Node::Places; ++place)
     {
-      // Differences round monotonically: relative to the origin, a box still holds its points.
-      if (node.LowX[place] - this->A.X <= box.HighX && node.HighX[place] - this->A.X >= box.LowX &&
-        node.LowY[place] - this->A.Y <= box.HighY && node.HighY[place] - this->A.Y >= box.LowY)
+      // Differences round monotonically: relative to the origin, a box still holds its points. An
+      // infinite box meets the empty one, too.
+      if (node.LowX[place] < Infinity && node.LowX[place] - this->A.X <= box.HighX &&
+        node.HighX[place] - this->A.X >= box.LowX && node.LowY[place] - this->A.Y <= box.HighY &&
+        node.HighY[place] - this->A.Y >= box.LowY)
       {
         if (node.Count[place] > 0)
         {
@@ -884,7 +889,8 @@ public:
     , Begin(begin)
     , End(end)
     , Next(begin)
-    , MostWork(WorkPerVertex * (std::int64_t(end) - begin + 1000))
+    , MostWork(WorkPerVertex * (options.Strategy == SearchStrategy::Compactness ? 10 : 1) *
+        (std::int64_t(end) - begin + 1000))
     , Limit(grid, options)
   {
   }
