@@ -344,9 +344,11 @@ private:
     this->Looks += Node::Places;
     for (int place = 0; place < Node::Places; ++place)
     {
-      // Differences round monotonically: relative to the origin, a box still holds its points.
-      if (node.LowX[place] - this->A.X <= box.HighX && node.HighX[place] - this->A.X >= box.LowX &&
-        node.LowY[place] - this->A.Y <= box.HighY && node.HighY[place] - this->A.Y >= box.LowY)
+      // Differences round monotonically: relative to the origin, a box still holds its points. The
+      // box of an infinite disc reaches even the empty boxes.
+      if (node.First[place] != None && node.LowX[place] - this->A.X <= box.HighX &&
+        node.HighX[place] - this->A.X >= box.LowX && node.LowY[place] - this->A.Y <= box.HighY &&
+        node.HighY[place] - this->A.Y >= box.LowY)
       {
         if (node.Count[place] > 0)
         {

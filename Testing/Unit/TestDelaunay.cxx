@@ -76,6 +76,12 @@ void ExpectValid(const Cloud& cloud, const std::string& name)
     narrow.Triangles.begin(), narrow.Triangles.end()))
     << "wide instructions change the triangles";
   options.UseWideInstructions = true;
+  options.Strategy = SearchStrategy::Compactness;
+  const Triangulation byAngle = elevation::Triangulate(cloud.View(), options);
+  EXPECT_TRUE(std::equal(triangulation.Triangles.begin(), triangulation.Triangles.end(),
+    byAngle.Triangles.begin(), byAngle.Triangles.end()))
+    << "the compactness strategy changes the triangles";
+  options.Strategy = SearchStrategy::VoxelTraversal;
   options.NumberOfThreads = 3;
   for (const Index pointsPerStrip : { 1, 30, 0 })
   {
@@ -188,6 +194,23 @@ TEST(Delaunay, KeepsEveryRuleOnUnevenDensity)
   ExpectValid(voids, "voids");
   clustered.Add(1e12, 3.0);
   ExpectValid(clustered, "one far outlier");
+}
+
+TEST(Delaunay, KeepsEveryRuleOnPointsARoundoffApart)
+{
+  // Triangles whose circles have no bound in floating point; ties of rounded distances.
+  std::mt19937_64 random(29);
+  for (int i = 0; i < 200; ++i)
+  {
+    Cloud cloud;
+    for (int k = 0; k < 60; ++k)
+    {
+      const double x = 1.0 + static_cast<double>(random() % 5) / 4.0;
+      const double y = static_cast<double>(random() % 5) / 4.0;
+      cloud.Add(std::nextafter(x, random() % 2 ? 4.0 : 0.0), random() % 2 ? y : y + 0x1p-52);
+    }
+    ExpectValid(cloud, "cloud " + std::to_string(i));
+  }
 }
 
 TEST(Delaunay, KeepsEveryRuleOnAdversarialPoints)
