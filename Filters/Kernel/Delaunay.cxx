@@ -10,6 +10,7 @@
 #include "Surroundings.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -25,8 +26,8 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 
-/** Vertices that a strip grows between two reports of progress: some tens of milliseconds. */
-constexpr Index VerticesPerRound = 50000;
+/** For how long a strip is grown between two reports of progress. */
+constexpr std::chrono::milliseconds TimePerRound(50);
 
 /**
  * Points and boxes that searches may look at for each vertex before growing is given up; by
@@ -347,9 +348,9 @@ private:
     this->Looks += Node::Places;
     for (int place = 0; place < Node::Places; ++place)
     {
-      // Differences round monotonically: relative to the origin, a box still holds its points. An
-      // infinite box meets the empty one, too.
-      if (node.LowX[place] < Infinity && node.LowX[place] - this->A.X <= box.HighX &&
+      // Differences round monotonically: relative to the origin, a box still holds its points. The
+      // box of an infinite disc reaches even the empty boxes.
+      if (node.First[place] != None && node.LowX[place] - this->A.X <= box.HighX &&
         node.HighX[place] - this->A.X >= box.LowX && node.LowY[place] - this->A.Y <= box.HighY &&
         node.HighY[place] - this->A.Y >= box.LowY)
       {
@@ -423,6 +424,7 @@ private:
       if (candidates & 1)
       {
         const Index slot = this->Around.SlotOf(i);
+        this->Looks += best == None ? 0 : WorkOfExact;
         best = best == None || this->IsBetter(slot, best) ? slot : best;
       }
     }
@@ -702,8 +704,12 @@ private:
     const double crossError = 8.0 * UnitRoundoff * crossMagnitude + 1e-290;
     if (!(cross > crossError)) // also when it is not a number
     {
-      if (cross < -crossError || slot == this->Origin || slot == this->Target ||
-        Orientation(this->A, this->B, p) != Positive)
+      if (cross < -crossError || slot == this->Origin || slot == this->Target)
+      {
+        return false;
+      }
+      this->Looks += WorkOfExact;
+      if (Orientation(this->A, this->B, p) != Positive)
       {
         return false;
       }
@@ -895,44 +901,68 @@ public:
   {
   }
 
-  /**
-   * Walks through the triangles that cross the border below the strip, from the right of the hull to
-   * its left.
-   * @return how many triangles lie wholly above the border. By Euler's formula, n vertices joined by
-   * triangles and edges, with no hole, and an outline of b edges, those seen from both sides counted
-   * twice, have 2 n - 2 - b triangles.
-   */
-  std::size_t WalkBorder(const Hull& hull)
+  /** Begins the walk along the border, on the right of the hull. */
+  void SetBorder(const Hull& hull)
   {
-    const Point2 border = this->Grid.PointAt(this->Order[this->Begin]);
-    const auto isBelow = [&](Index slot) { return IsLower(this->Grid.PointAt(slot), border); };
     const auto firstAbove = [&](const std::vector<Index>& chain) {
-      return std::partition_point(chain.begin(), chain.end(), isBelow) - chain.begin();
+      return std::partition_point(
+               chain.begin(), chain.end(), [&](Index slot) { return this->IsBelow(slot); }) -
+        chain.begin();
     };
     const std::ptrdiff_t right = firstAbove(hull.RightChain), left = firstAbove(hull.LeftChain);
-    std::size_t outline = (hull.RightChain.size() - 1 - right) + (hull.LeftChain.size() - 1 - left);
-    Index lower = hull.RightChain[right - 1], upper = hull.RightChain[right];
-    const Index lastLower = hull.LeftChain[left - 1], lastUpper = hull.LeftChain[left];
-    while (lower != lastLower || upper != lastUpper)
+    this->Outline = (hull.RightChain.size() - 1 - right) + (hull.LeftChain.size() - 1 - left);
+    this->Lower = hull.RightChain[right - 1];
+    this->Upper = hull.RightChain[right];
+    this->LastLower = hull.LeftChain[left - 1];
+    this->LastUpper = hull.LeftChain[left];
+  }
+
+  bool HasWalked() const
+  {
+    return this->Lower == this->LastLower && this->Upper == this->LastUpper;
+  }
+
+  /** Goes on for a while through the triangles that cross the border below the strip. */
+  void Walk()
+  {
+    const auto end = std::chrono::steady_clock::now() + TimePerRound;
+    for (int steps = 1; !this->HasWalked(); ++steps)
     {
-      const Index apex = this->Search.FindAnywhere(lower, upper);
+      const Index apex = this->Search.FindAnywhere(this->Lower, this->Upper);
       this->CheckWork();
       if (apex == None)
       {
         throw std::logic_error("there is no triangle over the edge of points " +
-          std::to_string(this->Grid.Ids[lower]) + " and " + std::to_string(this->Grid.Ids[upper]) +
+          std::to_string(this->Grid.Ids[this->Lower]) + " and " +
+          std::to_string(this->Grid.Ids[this->Upper]) +
           "; this is a fault of the triangulation, please report it");
       }
-      if (isBelow(apex))
+      if (this->IsBelow(apex))
       {
-        lower = apex;
-        continue;
+        this->Lower = apex;
       }
-      ++outline;
-      this->Tell(upper, apex);
-      upper = apex;
+      else
+      {
+        ++this->Outline;
+        this->Tell(this->Upper, apex);
+        this->Upper = apex;
+      }
+      if (steps % 64 == 0 && std::chrono::steady_clock::now() > end)
+      {
+        return;
+      }
     }
-    return 2 * static_cast<std::size_t>(this->Grid.NumberOfPoints() - this->Begin) - 2 - outline;
+  }
+
+  /**
+   * How many triangles lie wholly above the border, when the walk is done. By Euler's formula, n
+   * vertices joined by triangles and edges, with no hole, and an outline of b edges, those seen from
+   * both sides counted twice, have 2 n - 2 - b triangles.
+   */
+  std::size_t TrianglesAbove() const
+  {
+    return 2 * static_cast<std::size_t>(this->Grid.NumberOfPoints() - this->Begin) - 2 -
+      this->Outline;
   }
 
   /** Where the triangles are to be written, and where the next strip's begin. */
@@ -947,18 +977,28 @@ public:
 
   double Done() const { return double(this->Next - this->Begin) / (this->End - this->Begin); }
 
-  /** Goes on for some vertices. */
-  void Grow(Index vertices)
+  /** Goes on for a while. */
+  void Grow()
   {
-    const Index last = vertices < this->End - this->Next ? this->Next + vertices : this->End;
-    for (; this->Next < last; ++this->Next)
+    const auto end = std::chrono::steady_clock::now() + TimePerRound;
+    for (int fans = 1; this->Next < this->End; ++fans)
     {
       this->GrowFan(this->Order[this->Next]);
+      ++this->Next;
       this->CheckWork();
+      if (fans % 256 == 0 && std::chrono::steady_clock::now() > end)
+      {
+        return;
+      }
     }
   }
 
 private:
+  bool IsBelow(Index slot) const
+  {
+    return IsLower(this->Grid.PointAt(slot), this->Grid.PointAt(this->Order[this->Begin]));
+  }
+
   void GrowFan(Index lowest)
   {
     if (lowest == this->Order[this->Grid.NumberOfPoints() - 1])
@@ -1048,6 +1088,9 @@ private:
   const std::int64_t MostWork;
   const EdgeLimit Limit;
   Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours, counter-clockwise
+  // The edge that the walk has come to, and the last one; edges of the outline above.
+  Index Lower = None, Upper = None, LastLower = None, LastUpper = None;
+  std::size_t Outline = 0;
   Index *OutBegin = nullptr, *Out = nullptr, *OutEnd = nullptr;
 };
 
@@ -1076,12 +1119,25 @@ void Grow(const BinGrid& grid, const Hull& hull, const DelaunayOptions& options,
   }
 
   const Progress progress = Part(options.Monitor, 0.2, 1.0);
-  Report(progress, 0.0);
   std::vector<std::size_t> above(number + 1, 0); // triangles from each strip upwards
   above[0] =
     2 * static_cast<std::size_t>(count) - 2 - (hull.RightChain.size() + hull.LeftChain.size() - 2);
-  ForEachPiece(
-    number - 1, threads, [&](Index i) { above[i + 1] = strips[i + 1]->WalkBorder(hull); });
+  bool haveWalked = false;
+  for (Index i = 1; i < number; ++i)
+  {
+    strips[i]->SetBorder(hull);
+  }
+  while (!haveWalked)
+  {
+    Report(progress, 0.0);
+    ForEachPiece(number - 1, threads, [&](Index i) { strips[i + 1]->Walk(); });
+    haveWalked = true;
+    for (Index i = 1; i < number; ++i)
+    {
+      haveWalked = haveWalked && strips[i]->HasWalked();
+      above[i] = strips[i]->TrianglesAbove();
+    }
+  }
   triangles.Resize(3 * above[0]);
   Index* const end = triangles.end();
   for (Index i = 0; i < number; ++i)
@@ -1090,7 +1146,7 @@ void Grow(const BinGrid& grid, const Hull& hull, const DelaunayOptions& options,
   }
   for (double done = 0.0; done < 1.0;)
   {
-    ForEachPiece(number, threads, [&](Index i) { strips[i]->Grow(VerticesPerRound); });
+    ForEachPiece(number, threads, [&](Index i) { strips[i]->Grow(); });
     done = 1.0;
     for (const auto& strip : strips)
     {

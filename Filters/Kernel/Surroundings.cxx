@@ -30,7 +30,6 @@ namespace elevation
 namespace
 {
 constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
-constexpr float Infinity = std::numeric_limits<float>::infinity();
 constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr double Roundoff = 0x1p-24; // of single precision
 
@@ -913,7 +912,7 @@ bool Surroundings::IsSupported()
 
 Surroundings::Surroundings(const BinGrid& grid)
   : Grid(grid)
-  , IsWidest(HasAVX512())
+  , IsWidest(false)
 {
 }
 

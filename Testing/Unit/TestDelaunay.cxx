@@ -241,6 +241,30 @@ TEST(Delaunay, KeepsEveryRuleOnUnevenDensity)
   ExpectValid(clustered, "one far outlier");
 }
 
+TEST(Delaunay, KeepsEveryRuleOnPointsARoundoffApart)
+{
+  std::mt19937_64 random(29);
+  for (int i = 0; i < 100; ++i)
+  {
+    Cloud cloud;
+    for (int k = 0; k < 60; ++k)
+    {
+      const double x = 1.0 + static_cast<double>(random() % 5) / 4.0;
+      const double y = static_cast<double>(random() % 5) / 4.0;
+      cloud.Add(std::nextafter(x, random() % 2 ? 4.0 : 0.0), random() % 2 ? y : y + 0x1p-52);
+    }
+    ExpectValid(cloud, "cloud " + std::to_string(i));
+    // Circles that have no bound in floating point.
+    Cloud slanted;
+    for (int k = 0; k < 60; ++k)
+    {
+      const double x = Uniform(random);
+      slanted.Add(x, 0.37 * x);
+    }
+    ExpectValid(slanted, "slanted line " + std::to_string(i));
+  }
+}
+
 TEST(Delaunay, KeepsEveryRuleOnAdversarialPoints)
 {
   std::mt19937_64 random(23);
