@@ -26,7 +26,8 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 
-/** For how long a strip is grown between two reports of progress. */
+/** How many fans of a strip are grown between two reports of progress, and for how long at most. */
+constexpr int FansPerRound = 32768;
 constexpr std::chrono::milliseconds TimePerRound(50);
 
 /**
@@ -986,7 +987,7 @@ public:
       this->GrowFan(this->Order[this->Next]);
       ++this->Next;
       this->CheckWork();
-      if (fans % 256 == 0 && std::chrono::steady_clock::now() > end)
+      if (fans % 256 == 0 && (fans == FansPerRound || std::chrono::steady_clock::now() > end))
       {
         return;
       }
