@@ -1206,12 +1206,15 @@ void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Ind
 {
   triangulation.NumberOfDuplicates = static_cast<Index>(duplicates.size());
   triangulation.NumberOfNotFinite = static_cast<Index>(notFinite.size());
-  triangulation.UnusedPoints.resize(duplicates.size() + notFinite.size());
-  std::merge(duplicates.begin(), duplicates.end(), notFinite.begin(), notFinite.end(),
-    triangulation.UnusedPoints.begin());
-  for (Index id : triangulation.UnusedPoints)
+  const std::size_t count = duplicates.size() + notFinite.size();
+  triangulation.UnusedPoints.reserve(count);
+  triangulation.UnusedReasons.reserve(count);
+  auto duplicate = duplicates.begin(), other = notFinite.begin();
+  while (duplicate != duplicates.end() || other != notFinite.end())
   {
-    const bool isDuplicate = std::binary_search(duplicates.begin(), duplicates.end(), id);
+    const bool isDuplicate =
+      other == notFinite.end() || (duplicate != duplicates.end() && *duplicate < *other);
+    triangulation.UnusedPoints.push_back(isDuplicate ? *duplicate++ : *other++);
     triangulation.UnusedReasons.push_back(
       isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
   }
