@@ -268,7 +268,7 @@ public:
   {
     this->Origin = a;
     this->SetEdge(a, b);
-    this->Floor = -std::numeric_limits<double>::max(); // the empty box is lower still
+    this->Floor = -Infinity;
     this->LookInto(this->Grid.Nodes[this->Grid.Nodes.size() - 1], ~0u);
     this->Floor = 0.0;
     return this->Best;
@@ -532,7 +532,7 @@ private:
     {
       // Differences round monotonically: relative to the origin, a box still holds its points.
       const double highY = node.HighY[place] - this->A.Y;
-      if (!(highY >= this->Floor))
+      if (node.First[place] == None || !(highY >= this->Floor))
       {
         continue;
       }
@@ -595,8 +595,10 @@ private:
         _mm256_add_pd(_mm256_mul_pd(offX, offX), _mm256_mul_pd(offY, offY));
       const __m256d isOutside = _mm256_or_pd(_mm256_cmp_pd(offSquared, radiusSquared, _CMP_GT_OQ),
         _mm256_cmp_pd(cross, right, _CMP_LT_OQ));
-      const __m256d isReached =
-        _mm256_andnot_pd(isOutside, _mm256_cmp_pd(highY, _mm256_set1_pd(this->Floor), _CMP_GE_OQ));
+      const __m256d isPlace =
+        _mm256_cmp_pd(_mm256_loadu_pd(node.LowX + place), _mm256_set1_pd(Infinity), _CMP_LT_OQ);
+      const __m256d isReached = _mm256_andnot_pd(isOutside,
+        _mm256_and_pd(isPlace, _mm256_cmp_pd(highY, _mm256_set1_pd(this->Floor), _CMP_GE_OQ)));
       reached |= static_cast<unsigned int>(_mm256_movemask_pd(isReached)) << place;
       const __m256d fromX = _mm256_max_pd(
         _mm256_max_pd(_mm256_sub_pd(lowX, middleX), _mm256_sub_pd(middleX, highX)), zero);
