@@ -406,41 +406,114 @@ constexpr std::size_t NeighborsOfHub = 64;
 // Smaller ones, whose squares leave the range of double, are taken as this, so that no spacing is 0.
 constexpr double LeastSpacing = 1e-150;
 
-/** Squared distances at a scale where they do not leave the range of double. */
-class Distances
+/**
+ * The mesh's vertices that are corners, numbered as the triangles name them, so that neighbours lie
+ * near in memory. Coordinates are at a scale where their squares do not leave the range of double.
+ */
+struct LocalMesh
 {
-public:
-  explicit Distances(const Mesh& mesh)
-    : Points(mesh.Points)
+  Buffer<Index> Corners; ///< three a triangle
+  Buffer<Point2> Points;
+
+  LocalMesh(const Mesh& mesh, const Progress& progress)
   {
+    this->Corners.Resize(mesh.Triangles.size());
+    this->Points.Reserve(mesh.Points.size());
+    Buffer<Index> numbers;
+    numbers.Resize(mesh.Points.size());
+    std::fill(numbers.begin(), numbers.end(), None);
     double largest = 0.0;
-    for (const Index vertex : mesh.Triangles)
+    InStretches(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      for (Index h = 3 * begin; h < 3 * end; ++h)
+      {
+        Index& number = numbers[mesh.Origin(h)];
+        if (number == None)
+        {
+          const Point2& p = mesh.PointOf(mesh.Origin(h));
+          largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+          number = static_cast<Index>(this->Points.size());
+          this->Points.Append(p);
+        }
+        this->Corners[h] = number;
+      }
+    });
+    if (largest > 1e100 || largest < 1e-100)
     {
-      largest =
-        std::max({ largest, std::fabs(this->Points[vertex].X), std::fabs(this->Points[vertex].Y) });
+      const double scale = std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))));
+      for (Point2& p : this->Points)
+      {
+        p = { p.X * scale, p.Y * scale };
+      }
     }
-    this->Scale = largest > 1e100 || largest < 1e-100
-      ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))))
-      : 1.0;
   }
-  Point2 Scaled(const Point2& p) const { return { p.X * this->Scale, p.Y * this->Scale }; }
-  double Squared(Index v, Index w) const
+
+  double SquaredDistance(Index v, Index w) const
   {
-    const Point2 p = this->Scaled(this->Points[v]);
-    const Point2 q = this->Scaled(this->Points[w]);
-    return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
+    const double x = this->Points[v].X - this->Points[w].X;
+    const double y = this->Points[v].Y - this->Points[w].Y;
+    return x * x + y * y;
   }
   double TwiceArea(Index u, Index v, Index w) const
   {
-    const double ux = this->Points[u].X * this->Scale;
-    const double uy = this->Points[u].Y * this->Scale;
-    return (this->Points[v].X * this->Scale - ux) * (this->Points[w].Y * this->Scale - uy) -
-      (this->Points[v].Y * this->Scale - uy) * (this->Points[w].X * this->Scale - ux);
+    const Point2& p = this->Points[u];
+    return (this->Points[v].X - p.X) * (this->Points[w].Y - p.Y) -
+      (this->Points[v].Y - p.Y) * (this->Points[w].X - p.X);
   }
+};
 
-private:
-  const std::vector<Point2>& Points;
-  double Scale;
+/** The neighbours of each vertex. */
+struct Neighbors
+{
+  Buffer<std::uint32_t> Offsets;
+  /** Of each vertex a multiple of Group, filled up with the vertex itself. */
+  Buffer<Index> Ids;
+  static constexpr std::uint32_t Group = 4; ///< at a time, for an end of loops that can be predicted
+
+  Neighbors(const Mesh& mesh, const LocalMesh& local, const Progress& progress)
+  {
+    const Index count = static_cast<Index>(local.Points.size());
+    this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
+    std::fill(this->Offsets.begin(), this->Offsets.end(), 0);
+    // At the border, an edge is known to both its ends by one half-edge.
+    const auto forEach = [&](Index begin, Index end, auto&& visit) {
+      for (Index h = 3 * begin; h < 3 * end; h += 3)
+      {
+        for (Index i = 0; i < 3; ++i)
+        {
+          const Index a = local.Corners[h + i];
+          const Index b = local.Corners[h + (i == 2 ? 0 : i + 1)];
+          visit(a, b);
+          if (mesh.IsBorder(h + i))
+          {
+            visit(b, a);
+          }
+        }
+      }
+    };
+    const Index triangles = mesh.NumberOfTriangles();
+    InStretches(triangles, Part(progress, 0.0, 0.4), [&](Index begin, Index end) {
+      forEach(begin, end, [&](Index a, Index) { ++this->Offsets[a]; });
+    });
+    std::uint32_t sum = 0; // stays below 9 for each point
+    for (std::uint32_t& offset : this->Offsets)
+    {
+      const std::uint32_t size = offset;
+      offset += sum;
+      sum += (size + Group - 1) / Group * Group;
+    }
+    this->Ids.Resize(sum);
+    for (Index v = 0; v < count; ++v)
+    {
+      // Where the next one's begin is not known yet: they are filled in from their end.
+      for (std::uint32_t i = this->Offsets[v]; i % Group != 0; ++i)
+      {
+        this->Ids[i] = v;
+      }
+    }
+    InStretches(triangles, Part(progress, 0.4, 1.0), [&](Index begin, Index end) {
+      forEach(begin, end, [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; });
+    });
+  }
 };
 
 /**
@@ -449,129 +522,87 @@ private:
  * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
  * with very many neighbours, which would make it quadratic.
  */
-std::vector<double> FindSpacings(
-  const Mesh& mesh, const Distances& distances, const Progress& progress)
+Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Progress& progress)
 {
-  // Vertices are renumbered as the triangles name them: neighbours come to lie near in memory.
-  const Index triangles = mesh.NumberOfTriangles();
-  Buffer<Index> corners;
-  corners.Resize(mesh.Triangles.size());
-  Buffer<Index> vertices;
-  {
-    Buffer<Index> rank;
-    rank.Resize(mesh.Points.size());
-    std::fill(rank.begin(), rank.end(), None);
-    vertices.Reserve(mesh.Points.size());
-    InStretches(triangles, Part(progress, 0.0, 0.1), [&](Index begin, Index end) {
-      for (Index h = 3 * begin; h < 3 * end; ++h)
-      {
-        const Index vertex = mesh.Triangles[h];
-        if (rank[vertex] == None)
-        {
-          rank[vertex] = static_cast<Index>(vertices.size());
-          vertices.Append(vertex);
-        }
-        corners[h] = rank[vertex];
-      }
-    });
-  }
-  const Index count = static_cast<Index>(vertices.size());
-  Buffer<Point2> points;
-  points.Resize(count);
-  for (Index i = 0; i < count; ++i)
-  {
-    points[i] = distances.Scaled(mesh.PointOf(vertices[i]));
-  }
+  const Neighbors neighbors(mesh, local, Part(progress, 0.0, 0.2));
+  const Index count = static_cast<Index>(local.Points.size());
+  const Point2* points = local.Points.data();
+  Buffer<double> spacings;
+  spacings.Resize(count);
+  Buffer<Index> knownTo; // the last vertex that has had each one among its nearest
+  knownTo.Resize(count);
+  std::fill(knownTo.begin(), knownTo.end(), None);
 
-  // The neighbours of each vertex: at the border an edge is known to its two ends by one half-edge.
-  Buffer<Index> offsets;
-  offsets.Resize(static_cast<std::size_t>(count) + 1);
-  std::fill(offsets.begin(), offsets.end(), 0);
-  const auto forEach = [&](Index begin, Index end, auto&& visit) {
-    for (Index h = 3 * begin; h < 3 * end; h += 3)
-    {
-      for (Index i = 0; i < 3; ++i)
-      {
-        const Index a = corners[h + i];
-        const Index b = corners[h + (i == 2 ? 0 : i + 1)];
-        visit(a, b);
-        if (mesh.IsBorder(h + i))
-        {
-          visit(b, a);
-        }
-      }
-    }
+  struct Candidate
+  {
+    double Squared;
+    Index Vertex;
   };
-  InStretches(triangles, Part(progress, 0.1, 0.2),
-    [&](Index begin, Index end) { forEach(begin, end, [&](Index a, Index) { ++offsets[a]; }); });
-  Index sum = 0;
-  for (Index& offset : offsets)
-  {
-    offset = sum += offset;
-  }
-  Buffer<Index> neighbors;
-  neighbors.Resize(sum);
-  InStretches(triangles, Part(progress, 0.2, 0.3), [&](Index begin, Index end) {
-    forEach(begin, end, [&](Index a, Index b) { neighbors[--offsets[a]] = b; });
-  });
-
-  std::vector<double> spacings(mesh.Points.size(), 0.0);
-  InStretches(count, Part(progress, 0.3, 1.0), [&](Index begin, Index end) {
+  std::vector<Candidate> found;
+  constexpr int last = NeighborOfSpacing - 1;
+  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None };
+  InStretches(count, Part(progress, 0.2, 1.0), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       // The nearest vertices found: those passed in the order in which they were, then the next
       // ones by distance. No more are needed than will be passed.
-      double nearest[NeighborOfSpacing];
-      Index nearestIds[NeighborOfSpacing];
-      std::fill_n(nearest, NeighborOfSpacing, std::numeric_limits<double>::infinity());
-      std::fill_n(nearestIds, NeighborOfSpacing, v);
+      Candidate nearest[NeighborOfSpacing];
+      std::fill_n(nearest, NeighborOfSpacing, nothing);
       const Point2 p = points[v];
-      const auto look = [&](Index from, int passed) {
-        const Index last = offsets[from + 1];
-        for (Index i = offsets[from]; i < last; ++i)
-        {
-          const Index w = neighbors[i];
-          const double x = p.X - points[w].X;
-          const double y = p.Y - points[w].Y;
-          const double squared = x * x + y * y;
-          if (!(squared < nearest[NeighborOfSpacing - 1]))
-          {
-            continue;
-          }
-          bool isKnown = w == v;
-          for (int k = 0; k < NeighborOfSpacing; ++k)
-          {
-            isKnown |= nearestIds[k] == w;
-          }
-          if (isKnown)
-          {
-            continue;
-          }
-          int k = NeighborOfSpacing - 1;
-          for (; k > passed && squared < nearest[k - 1]; --k)
-          {
-            nearest[k] = nearest[k - 1];
-            nearestIds[k] = nearestIds[k - 1];
-          }
-          nearest[k] = squared;
-          nearestIds[k] = w;
-        }
-      };
-      look(v, 0);
-      for (int k = 0; k + 1 < NeighborOfSpacing && nearestIds[k] != v; ++k)
+      knownTo[v] = v;
+      Index passed = v;
+      for (int k = 0;; ++k)
       {
-        const Index next = nearestIds[k];
-        if (static_cast<std::size_t>(offsets[next + 1] - offsets[next]) <= NeighborsOfHub)
+        const std::uint32_t first = neighbors.Offsets[passed];
+        const std::uint32_t size = neighbors.Offsets[passed + 1] - first;
+        if (k == 0 || size <= NeighborsOfHub)
         {
-          look(next, k + 1);
+          if (found.size() < size)
+          {
+            found.resize(size);
+          }
+          // Those that are near enough, without branches, for which they are cannot be predicted.
+          std::size_t numberFound = 0;
+          for (std::uint32_t i = first; i < first + size; i += Neighbors::Group)
+          {
+            for (std::uint32_t j = i; j < i + Neighbors::Group; ++j)
+            {
+              const Index w = neighbors.Ids[j];
+              const double x = p.X - points[w].X;
+              const double y = p.Y - points[w].Y;
+              const double squared = x * x + y * y;
+              found[numberFound] = { squared, w };
+              numberFound += (squared < nearest[last].Squared) & (knownTo[w] != v);
+            }
+          }
+          for (std::size_t i = 0; i < numberFound; ++i)
+          {
+            const Candidate candidate = found[i];
+            if (knownTo[candidate.Vertex] == v || !(candidate.Squared < nearest[last].Squared))
+            {
+              continue;
+            }
+            knownTo[candidate.Vertex] = v;
+            int place = last;
+            for (; place > k && candidate.Squared < nearest[place - 1].Squared; --place)
+            {
+              nearest[place] = nearest[place - 1];
+            }
+            nearest[place] = candidate;
+          }
         }
+        if (k == last || nearest[k].Vertex == None)
+        {
+          break;
+        }
+        passed = nearest[k].Vertex;
       }
-      int k = NeighborOfSpacing - 1;
-      while (k > 0 && nearestIds[k] == v)
+      int k = last;
+      while (k > 0 && nearest[k].Vertex == None)
       {
         --k; // there are no more
       }
-      spacings[vertices[v]] = SpacingPerNeighborDistance * std::sqrt(nearest[k]);
+      spacings[v] = SpacingPerNeighborDistance * std::sqrt(nearest[k].Squared);
     }
   });
   return spacings;
@@ -796,48 +827,52 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
   {
     return result;
   }
-  const Distances distances(mesh);
-  const std::vector<double> spacings =
-    FindSpacings(mesh, distances, Part(options.Monitor, 0.0, 0.6));
+  const LocalMesh local(mesh, Part(options.Monitor, 0.0, 0.1));
+  const Index* corners = local.Corners.data();
+  const Buffer<double> spacings = FindSpacings(mesh, local, Part(options.Monitor, 0.1, 0.6));
 
-  // The longest edge of each triangle and its spacing: the middle one of its corners' three, which
-  // the spacing of a point that lies alone is not, nor of two that lie alone.
-  const Progress measuring = Part(options.Monitor, 0.6, 0.7);
+  // The spacing of a triangle: the middle one of its corners' three, which the spacing of a point
+  // that lies alone is not, nor of two that lie alone.
+  const auto spacingOf = [&](Index t) {
+    const double a = spacings[corners[3 * t]];
+    const double b = spacings[corners[3 * t + 1]];
+    const double c = spacings[corners[3 * t + 2]];
+    const double least = std::min({ a, b, c });
+    const double middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+    return std::max(LeastSpacing, std::min(middle, LargestSpacingInTriangle * least));
+  };
+  // The longest edge of each triangle in spacings.
   Buffer<double> ratios;
-  Buffer<double> local;
   ratios.Resize(count);
-  local.Resize(count);
-  for (Index t = 0; t < count; ++t)
-  {
-    ReportStep(measuring, t, count);
-    const Index a = mesh.Origin(3 * t);
-    const Index b = mesh.Origin(3 * t + 1);
-    const Index c = mesh.Origin(3 * t + 2);
-    double s[3] = { spacings[a], spacings[b], spacings[c] };
-    std::sort(s, s + 3);
-    local[t] = std::max(LeastSpacing, std::min(s[1], LargestSpacingInTriangle * s[0]));
-    ratios[t] = std::sqrt(std::max(
-                  { distances.Squared(a, b), distances.Squared(b, c), distances.Squared(c, a) })) /
-      local[t];
-  }
+  InStretches(count, Part(options.Monitor, 0.6, 0.7), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      const Index a = corners[3 * t];
+      const Index b = corners[3 * t + 1];
+      const Index c = corners[3 * t + 2];
+      ratios[t] = std::sqrt(std::max({ local.SquaredDistance(a, b), local.SquaredDistance(b, c),
+                    local.SquaredDistance(c, a) })) /
+        spacingOf(t);
+    }
+  });
   if (!(result.GapTolerance > 0.0))
   {
     result.GapTolerance = ToleranceOfTypicalTriangle * MedianOf(ratios);
   }
 
-  const Progress deciding = Part(options.Monitor, 0.7, 0.75);
   std::vector<char> keep(count);
-  for (Index t = 0; t < count; ++t)
-  {
-    ReportStep(deciding, t, count);
-    keep[t] = ratios[t] <= result.GapTolerance;
-  }
+  InStretches(count, Part(options.Monitor, 0.7, 0.75), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      keep[t] = ratios[t] <= result.GapTolerance;
+    }
+  });
   // In parts of a square of the size that the tolerance bridges.
   const auto shareOf = [&](Index t) {
-    const double side = result.GapTolerance * local[t];
+    const double side = result.GapTolerance * spacingOf(t);
     const double square = side * side;
     const double area =
-      0.5 * distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
+      0.5 * local.TwiceArea(corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]);
     return square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
   };
   CloseSmallOpenings(mesh, shareOf, keep, Part(options.Monitor, 0.75, 0.82));
