@@ -423,9 +423,12 @@ struct LocalMesh
     numbers.Resize(mesh.Points.size());
     std::fill(numbers.begin(), numbers.end(), None);
     double largest = 0.0;
+    const std::size_t last = mesh.Triangles.size() - 1;
     InStretches(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       for (Index h = 3 * begin; h < 3 * end; ++h)
       {
+        Prefetch(&numbers[mesh.Triangles[std::min(h + HalfEdgesAhead, last)]]);
+        Prefetch(&mesh.Points[mesh.Triangles[std::min(h + HalfEdgesAhead, last)]]);
         Index& number = numbers[mesh.Origin(h)];
         if (number == None)
         {
@@ -538,7 +541,9 @@ Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Prog
     double Squared;
     Index Vertex;
   };
-  std::vector<Candidate> found;
+  std::vector<Index> found;
+  Index* known = knownTo.data();
+  const Index* ids = neighbors.Ids.data();
   constexpr int last = NeighborOfSpacing - 1;
   constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None };
   InStretches(count, Part(progress, 0.2, 1.0), [&](Index begin, Index end) {
@@ -549,7 +554,12 @@ Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Prog
       Candidate nearest[NeighborOfSpacing];
       std::fill_n(nearest, NeighborOfSpacing, nothing);
       const Point2 p = points[v];
-      knownTo[v] = v;
+      const auto squaredTo = [&](Index w) {
+        const double x = p.X - points[w].X;
+        const double y = p.Y - points[w].Y;
+        return x * x + y * y;
+      };
+      known[v] = v;
       Index passed = v;
       for (int k = 0;; ++k)
       {
@@ -562,27 +572,27 @@ Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Prog
             found.resize(size);
           }
           // Those that are near enough, without branches, for which they are cannot be predicted.
-          std::size_t numberFound = 0;
-          for (std::uint32_t i = first; i < first + size; i += Neighbors::Group)
+          const double limit = nearest[last].Squared;
+          Index* next = found.data();
+          const Index* end = ids + first + size;
+          for (const Index* group = ids + first; group != end; group += Neighbors::Group)
           {
-            for (std::uint32_t j = i; j < i + Neighbors::Group; ++j)
+            for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
             {
-              const Index w = neighbors.Ids[j];
-              const double x = p.X - points[w].X;
-              const double y = p.Y - points[w].Y;
-              const double squared = x * x + y * y;
-              found[numberFound] = { squared, w };
-              numberFound += (squared < nearest[last].Squared) & (knownTo[w] != v);
+              const Index w = group[j];
+              *next = w;
+              next += (squaredTo(w) < limit) & (known[w] != v);
             }
           }
+          const std::size_t numberFound = next - found.data();
           for (std::size_t i = 0; i < numberFound; ++i)
           {
-            const Candidate candidate = found[i];
-            if (knownTo[candidate.Vertex] == v || !(candidate.Squared < nearest[last].Squared))
+            const Candidate candidate{ squaredTo(found[i]), found[i] };
+            if (known[candidate.Vertex] == v || !(candidate.Squared < nearest[last].Squared))
             {
               continue;
             }
-            knownTo[candidate.Vertex] = v;
+            known[candidate.Vertex] = v;
             int place = last;
             for (; place > k && candidate.Squared < nearest[place - 1].Squared; --place)
             {
@@ -722,10 +732,10 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& 
  */
 Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
-  const Progress cutting = Part(progress, 0.8, 1.0);
+  const Progress cutting = Part(progress, 0.95, 1.0);
 
   // A walk that comes back to a vertex it has passed has closed a ring.
-  const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.8), keep);
+  const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.95), keep);
   std::vector<std::vector<Index>> rings;
   std::vector<Index> path;
   std::vector<char> isOnPath(mesh.Points.size(), 0);
@@ -743,7 +753,11 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
       const Index vertex = mesh.Origin(*h);
       if (isOnPath[vertex])
       {
-        const std::size_t first = std::find(path.begin(), path.end(), vertex) - path.begin();
+        std::size_t first = path.size() - 1; // most rings are small: back from the end
+        while (path[first] != vertex)
+        {
+          --first;
+        }
         for (std::size_t i = first; i < path.size(); ++i)
         {
           isOnPath[path[i]] = 0;

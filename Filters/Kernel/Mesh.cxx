@@ -82,9 +82,11 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
     Buffer<Index> numbers;
     numbers.Resize(this->Points.size());
     std::fill(numbers.begin(), numbers.end(), None);
+    const std::size_t last = this->Triangles.size() - 1;
     InStretches(count, Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
       for (Index h = 3 * begin; h < 3 * end; ++h)
       {
+        Prefetch(&numbers[this->Triangles[std::min(h + HalfEdgesAhead, last)]]);
         Index& number = numbers[this->Triangles[h]];
         if (number == None)
         {
@@ -124,7 +126,10 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
   }
   const Index total = ends[used];
   Buffer<Rising> rising;
-  rising.Resize(static_cast<std::size_t>(total) + 1); // the last for those that do not rise
+  // One more for those that do not rise, and as many as are looked at beyond the end.
+  constexpr Index atOnce = 4;
+  rising.Resize(static_cast<std::size_t>(total) + 1 + atOnce);
+  std::fill(rising.begin() + total, rising.end(), Rising{ None, None });
   InStretches(count, Part(progress, 0.3, 0.5), [&](Index begin, Index end) {
     forEach(begin, end, [&](Index h, Index a, Index b) {
       // Without branches: which way a half-edge runs cannot be predicted.
@@ -156,12 +161,21 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
       const Falling& edge = falling[i];
       Index twin = Border;
       Index matches = 0;
+      const Index first = edge.Destination == 0 ? 0 : ends[edge.Destination - 1];
       const Index last = ends[edge.Destination];
-      for (Index k = edge.Destination == 0 ? 0 : ends[edge.Destination - 1]; k < last; ++k)
-      {
-        const bool matching = rising[k].Destination == edge.Origin;
+      const auto look = [&](Index k) {
+        const bool matching = (rising[k].Destination == edge.Origin) & (k < last);
         twin = matching ? rising[k].HalfEdge : twin;
         matches += matching;
+      };
+      // There are rarely more than a few: an end of the loop that can be predicted.
+      for (Index k = first; k < first + atOnce; ++k)
+      {
+        look(k);
+      }
+      for (Index k = first + atOnce; k < last; ++k)
+      {
+        look(k);
       }
       if (matches > 0)
       {
@@ -220,7 +234,7 @@ bool TurnsToFirst(const Point2& b, const Point2& r, const Point2& u, const Point
 Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<char>& keep)
 {
   std::vector<Index> borders;
-  InStretches(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+  InStretches(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.95), [&](Index begin, Index end) {
     if (keep.empty())
     {
       for (Index h = 3 * begin; h < 3 * end; ++h)
@@ -281,7 +295,7 @@ Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<
   Rings walks;
   walks.Vertices.reserve(numberOfBorders);
   std::vector<char> seen(numberOfBorders, 0);
-  const Progress walking = Part(progress, 0.5, 1.0);
+  const Progress walking = Part(progress, 0.95, 1.0);
   for (Index start = 0; start < numberOfBorders; ++start)
   {
     if (seen[start])

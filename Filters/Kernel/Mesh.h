@@ -63,6 +63,9 @@ public:
   void ConnectTwins(Index firstCell = 0, const Progress& progress = Progress());
 };
 
+/** How many half-edges ahead loops over all of them ask for what belongs to their origins. */
+constexpr std::size_t HalfEdgesAhead = 64;
+
 /**
  * Calls work(begin, end) for one stretch of [0, count) after another, and reports between them.
  * Inside, a tight loop.
@@ -70,7 +73,7 @@ public:
 template <typename Work>
 void InStretches(Index count, const Progress& progress, Work&& work)
 {
-  constexpr Index stretch = 1 << 16;
+  constexpr Index stretch = 1 << 14;
   for (Index begin = 0; begin < count;)
   {
     Report(progress, static_cast<double>(begin) / count);

@@ -68,17 +68,17 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
   const std::vector<Segment> segments = SegmentsOf(boundary);
   TrimResult result;
   Report(options.Monitor, 0.0);
-  Fans fans(mesh, Part(options.Monitor, 0.0, 0.3));
+  Fans fans(mesh, Part(options.Monitor, 0.0, 0.4));
   std::vector<char> flags;
   if (options.RecoverBoundary)
   {
     result.NumberOfRecoveredEdges =
-      RecoverSegments(mesh, fans, segments, flags, Part(options.Monitor, 0.3, 0.6));
+      RecoverSegments(mesh, fans, segments, flags, Part(options.Monitor, 0.4, 0.5));
   }
-  MarkEdges(mesh, fans, segments, flags, Part(options.Monitor, 0.6, 0.7));
+  MarkEdges(mesh, fans, segments, flags, Part(options.Monitor, 0.5, 0.6));
 
   const RingLocator locator(mesh.Points, boundary);
-  const Parts parts = FindParts(mesh, Part(options.Monitor, 0.7, 0.95),
+  const Parts parts = FindParts(mesh, Part(options.Monitor, 0.6, 0.95),
     [&flags](Index h) { return static_cast<int>(flags[h]); });
   std::vector<char> isOutward; // one a label
   for (const Index t : parts.Lowest)
