@@ -159,13 +159,13 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
     for (std::size_t i = 0; i < size; ++i)
     {
       const Falling& edge = falling[i];
-      Index twin = Border;
+      Index twin = 0;
       Index matches = 0;
       const Index first = edge.Destination == 0 ? 0 : ends[edge.Destination - 1];
       const Index last = ends[edge.Destination];
       const auto look = [&](Index k) {
         const bool matching = (rising[k].Destination == edge.Origin) & (k < last);
-        twin = matching ? rising[k].HalfEdge : twin;
+        twin |= rising[k].HalfEdge & -static_cast<Index>(matching);
         matches += matching;
       };
       // There are rarely more than a few: an end of the loop that can be predicted.
@@ -177,9 +177,10 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
       {
         look(k);
       }
-      if (matches > 0)
+      isManifold = isManifold && matches <= 1;
+      if (matches == 1)
       {
-        isManifold = isManifold && matches == 1 && this->Twins[twin] == Border;
+        isManifold = isManifold && this->Twins[twin] == Border;
         this->Twins[edge.HalfEdge] = twin;
         this->Twins[twin] = edge.HalfEdge;
       }
