@@ -470,7 +470,8 @@ struct Neighbors
   Buffer<std::uint32_t> Offsets;
   /** Of each vertex a multiple of Group, filled up with the vertex itself. */
   Buffer<Index> Ids;
-  static constexpr std::uint32_t Group = 4; ///< at a time, for an end of loops that can be predicted
+  static constexpr std::uint32_t Group =
+    4; ///< at a time, for an end of loops that can be predicted
 
   Neighbors(const Mesh& mesh, const LocalMesh& local, const Progress& progress)
   {
@@ -549,6 +550,12 @@ Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Prog
   InStretches(count, Part(progress, 0.2, 1.0), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
+      // What lies ahead is soon reached, but not in order.
+      const Index ahead = v < count - 1 - 2048 ? v + 2048 : count - 1;
+      Prefetch(points + ahead);
+      Prefetch(known + ahead);
+      Prefetch(ids + neighbors.Offsets[ahead]);
+
       // The nearest vertices found: those passed in the order in which they were, then the next
       // ones by distance. No more are needed than will be passed.
       Candidate nearest[NeighborOfSpacing];
@@ -709,8 +716,8 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& 
       }
     }
   });
-  Sort(corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(),
-    Part(progress, 0.9, 1.0));
+  Sort(
+    corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(), Part(progress, 0.9, 1.0));
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<char> isSmall(parts.Count(), 0);
   for (auto first = corners.begin(); first != corners.end();)

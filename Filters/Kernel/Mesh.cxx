@@ -63,9 +63,8 @@ namespace
   throw Error("Cell " + cell(last[-1]) + " shares the edge of points " +
     std::to_string(first->Low) + " and " + std::to_string(first->High) + " with cell " +
     cell(first[0]) +
-    (last - first > 2
-        ? " and another one: an edge of a surface has at most two triangles."
-        : " on the same side: the triangles overlap or are oriented differently."));
+    (last - first > 2 ? " and another one: an edge of a surface has at most two triangles."
+                      : " on the same side: the triangles overlap or are oriented differently."));
 }
 } // namespace
 
@@ -148,12 +147,12 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
     Index Destination;
     Index HalfEdge;
   };
-  Buffer<Falling> falling; // of one stretch
-  InStretches(count, Part(progress, 0.5, 0.9), [&](Index begin, Index end) {
-    falling.Resize(3 * static_cast<std::size_t>(end - begin));
+  constexpr Index few = 128; // triangles at a time
+  Falling falling[3 * few];
+  const auto connect = [&](Index begin, Index end) {
     std::size_t size = 0;
     forEach(begin, end, [&](Index h, Index a, Index b) {
-      falling[size] = { a, b, h };
+      falling[size] = { a, b, h }; // without branches, again
       size += a > b;
     });
     for (std::size_t i = 0; i < size; ++i)
@@ -184,6 +183,21 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
         this->Twins[edge.HalfEdge] = twin;
         this->Twins[twin] = edge.HalfEdge;
       }
+    }
+  };
+  const Index last = this->NumberOfHalfEdges() - 1;
+  InStretches(count, Part(progress, 0.5, 0.9), [&](Index begin, Index end) {
+    for (; begin < end; begin += few)
+    {
+      // What lies ahead is soon reached, but not in order.
+      constexpr Index ahead = 1 << 13, line = 16;
+      for (Index h = 3 * begin; h < 3 * begin + 3 * few; h += line)
+      {
+        const Index place = h < last - ahead ? h + ahead : last;
+        Prefetch(&this->Twins[place]);
+        Prefetch(&rising[std::min(place / 2, total)]);
+      }
+      connect(begin, std::min(begin + few, end));
     }
   });
 

@@ -113,7 +113,8 @@ struct Parts
 
 /**
  * Finds the parts: one sweep over the triangles, each of which joins what its neighbours before it
- * belong to. Linear, but for an inverse Ackermann function; fast where neighbours lie near in memory.
+ * belong to. Linear, but for a logarithm of the parts that have been joined; fast where neighbours
+ * lie near in memory.
  * @param[in] relation  relation(h), for a half-edge h that is no border: 0 when the triangles on
  *                      either side of h are on the same side, 1 when they are not, below 0 when h
  *                      does not connect them. Asked for one half-edge of an edge.
@@ -214,7 +215,7 @@ Parts FindParts(const Mesh& mesh, const Progress& progress, Relation&& relation)
  * half-edge is in exactly one walk; a walk starts at its lowest half-edge id, and walks are in the
  * order of their first. The result's Vertices are half-edge ids; their origins are the vertices of
  * the walk. Linear, but for sorting the borders at shared vertices.
- * @param[in] keep  one flag a triangle: the border is that of the triangles that have it; empty: all
+ * @param[in] keep  one flag a triangle: the border is that of the triangles with it; empty: all
  * @throws Aborted
  */
 Rings TraceBorder(const Mesh& mesh, const Progress& progress = Progress(),
