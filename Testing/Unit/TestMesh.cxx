@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -123,6 +124,33 @@ TEST(FindParts, TellsPartsAndSides)
     return isRight(Mesh::Triangle(h)) != isRight(Mesh::Triangle(mesh.Twin(h))) ? -1 : 0;
   });
   EXPECT_EQ(halves.Count(), 4);
+}
+
+TEST(FindParts, DoesNotDependOnWhereTheSweepBegins)
+{
+  // In random order, parts begin in many places and on both sides before they are joined.
+  Mesh mesh = Draw({ "########", "########", "########", "########" });
+  std::mt19937 random(4);
+  for (int trial = 0; trial < 20; ++trial)
+  {
+    for (Index t = mesh.NumberOfTriangles() - 1; t > 0; --t)
+    {
+      const Index other = static_cast<Index>(random() % static_cast<std::uint32_t>(t + 1));
+      for (Index i = 0; i < 3; ++i)
+      {
+        std::swap(mesh.Triangles[3 * t + i], mesh.Triangles[3 * other + i]);
+      }
+    }
+    mesh.ConnectTwins();
+    const auto sideOf = [&](Index t) { return static_cast<int>(mesh.Origin(3 * t) % 2); };
+    const Parts parts = FindParts(mesh, Progress(),
+      [&](Index h) { return sideOf(Mesh::Triangle(h)) ^ sideOf(Mesh::Triangle(mesh.Twin(h))); });
+    ASSERT_EQ(parts.Count(), 1);
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      ASSERT_EQ(parts.Labels[t], sideOf(t) ^ sideOf(0));
+    }
+  }
 }
 
 TEST(TraceBorder, OfSomeTrianglesIsThatOfTheirMesh)
