@@ -118,29 +118,36 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const elevation::TrimRe
   const Progress choosing = Part(progress, 0.0, 0.5);
   const Progress copying = Part(progress, 0.5, 1.0);
   const vtkIdType first = elevation::FirstPolygon(input);
-  std::vector<vtkIdType> cells;
+  const bool hasCellData = input->GetCellData()->GetNumberOfArrays() > 0;
+  elevation::Buffer<vtkIdType> cells; // whose data to pass
   if (!flag)
   {
     output->SetVerts(input->GetVerts());
     output->SetLines(input->GetLines());
-    for (vtkIdType cell = 0; cell < first; ++cell)
+    for (vtkIdType cell = 0; cell < first && hasCellData; ++cell)
     {
-      cells.push_back(cell);
+      cells.Append(cell);
     }
   }
+  const Index outward = trimmed.NumberOfOutwardTriangles;
   elevation::Buffer<Index> triangles;
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    ReportStep(choosing, t, mesh.NumberOfTriangles());
-    if (trimmed.IsOutward[t] == flag)
+  triangles.Reserve(
+    3 * static_cast<std::size_t>(flag ? outward : mesh.NumberOfTriangles() - outward));
+  elevation::InStretches(mesh.NumberOfTriangles(), choosing, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
     {
-      cells.push_back(first + t);
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      if (trimmed.IsOutward[t] == flag)
       {
-        triangles.Append(mesh.Origin(h));
+        if (hasCellData)
+        {
+          cells.Append(first + t);
+        }
+        const std::size_t size = triangles.size();
+        triangles.Resize(size + 3);
+        std::copy_n(&mesh.Triangles[3 * static_cast<std::size_t>(t)], 3, &triangles[size]);
       }
     }
-  }
+  });
   output->SetPoints(input->GetPoints());
   output->SetPolys(elevation::ToCellArray(std::move(triangles)));
   output->GetPointData()->PassData(input->GetPointData());

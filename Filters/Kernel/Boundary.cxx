@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <unordered_map>
 
 namespace elevation
@@ -142,6 +143,38 @@ std::string NameOfLine(const BoundaryLines& lines, Index line)
     std::to_string(lines.Cells[line]) + ")";
 }
 
+/**
+ * The points that may be one of those added: all of these, and few others. For to look each up in a
+ * map is slow.
+ */
+class PointSieve
+{
+public:
+  explicit PointSieve(std::size_t capacity)
+  {
+    while (this->Shift > 32 && (std::size_t(1) << (64 - this->Shift)) < 16 * capacity)
+    {
+      --this->Shift;
+    }
+    this->Places.resize(std::size_t(1) << (64 - this->Shift));
+  }
+  void Add(const Point2& p) { this->Places[this->PlaceOf(p)] = 1; }
+  bool MayHold(const Point2& p) const { return this->Places[this->PlaceOf(p)]; }
+
+private:
+  std::size_t PlaceOf(const Point2& p) const
+  {
+    // 0.0 and -0.0 are equal, and go to the same place.
+    const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
+    std::uint64_t bits[2];
+    std::memcpy(bits, coordinates, sizeof(bits));
+    const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
+    return ((mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull) >> this->Shift;
+  }
+  int Shift = 58;
+  std::vector<char> Places;
+};
+
 /** The mesh vertex at each point of the lines that a line uses. */
 std::vector<Index> MatchPoints(
   const Mesh& mesh, const BoundaryLines& lines, const Progress& progress)
@@ -160,16 +193,28 @@ std::vector<Index> MatchPoints(
       vertexAt.emplace(p, None);
     }
   }
-  std::vector<char> seen(mesh.Points.size(), 0);
+  PointSieve sieve(vertexAt.size());
+  for (const auto& entry : vertexAt)
+  {
+    sieve.Add(entry.first);
+  }
+  std::vector<char> isToMatch(mesh.Points.size());
+  InStretches(mesh.NumberOfPoints(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+    {
+      isToMatch[v] = sieve.MayHold(mesh.PointOf(v));
+    }
+  });
+  const Progress matching = Part(progress, 0.3, 1.0);
   for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
-    ReportStep(progress, h, mesh.Triangles.size());
+    ReportStep(matching, h, mesh.Triangles.size());
     const Index vertex = mesh.Origin(h);
-    if (seen[vertex])
+    if (!isToMatch[vertex])
     {
       continue;
     }
-    seen[vertex] = 1;
+    isToMatch[vertex] = 0;
     const auto found = vertexAt.find(mesh.PointOf(vertex));
     if (found == vertexAt.end())
     {
@@ -361,41 +406,118 @@ constexpr std::size_t NeighborsOfHub = 64;
 // Smaller ones, whose squares leave the range of double, are taken as this, so that no spacing is 0.
 constexpr double LeastSpacing = 1e-150;
 
-/** Squared distances at a scale where they do not leave the range of double. */
-class Distances
+/**
+ * The mesh's vertices that are corners, numbered as the triangles name them, so that neighbours lie
+ * near in memory. Coordinates are at a scale where their squares do not leave the range of double.
+ */
+struct LocalMesh
 {
-public:
-  explicit Distances(const Mesh& mesh)
-    : Points(mesh.Points)
+  Buffer<Index> Corners; ///< three a triangle
+  Buffer<Point2> Points;
+
+  LocalMesh(const Mesh& mesh, const Progress& progress)
   {
+    this->Corners.Resize(mesh.Triangles.size());
+    this->Points.Reserve(mesh.Points.size());
+    Buffer<Index> numbers;
+    numbers.Resize(mesh.Points.size());
+    std::fill(numbers.begin(), numbers.end(), None);
     double largest = 0.0;
-    for (const Index vertex : mesh.Triangles)
+    const std::size_t last = mesh.Triangles.size() - 1;
+    InStretches(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      for (Index h = 3 * begin; h < 3 * end; ++h)
+      {
+        Prefetch(&numbers[mesh.Triangles[std::min(h + HalfEdgesAhead, last)]]);
+        Prefetch(&mesh.Points[mesh.Triangles[std::min(h + HalfEdgesAhead, last)]]);
+        Index& number = numbers[mesh.Origin(h)];
+        if (number == None)
+        {
+          const Point2& p = mesh.PointOf(mesh.Origin(h));
+          largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+          number = static_cast<Index>(this->Points.size());
+          this->Points.Append(p);
+        }
+        this->Corners[h] = number;
+      }
+    });
+    if (largest > 1e100 || largest < 1e-100)
     {
-      largest =
-        std::max({ largest, std::fabs(this->Points[vertex].X), std::fabs(this->Points[vertex].Y) });
+      const double scale = std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))));
+      for (Point2& p : this->Points)
+      {
+        p = { p.X * scale, p.Y * scale };
+      }
     }
-    this->Scale = largest > 1e100 || largest < 1e-100
-      ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))))
-      : 1.0;
-  }
-  double Squared(const Point2& p, const Point2& q) const
-  {
-    const double x = p.X * this->Scale - q.X * this->Scale;
-    const double y = p.Y * this->Scale - q.Y * this->Scale;
-    return x * x + y * y;
-  }
-  double Squared(Index v, Index w) const { return this->Squared(this->Points[v], this->Points[w]); }
-  double TwiceArea(Index u, Index v, Index w) const
-  {
-    const double ux = this->Points[u].X * this->Scale;
-    const double uy = this->Points[u].Y * this->Scale;
-    return (this->Points[v].X * this->Scale - ux) * (this->Points[w].Y * this->Scale - uy) -
-      (this->Points[v].Y * this->Scale - uy) * (this->Points[w].X * this->Scale - ux);
   }
 
-private:
-  const std::vector<Point2>& Points;
-  double Scale;
+  double SquaredDistance(Index v, Index w) const
+  {
+    const double x = this->Points[v].X - this->Points[w].X;
+    const double y = this->Points[v].Y - this->Points[w].Y;
+    return x * x + y * y;
+  }
+  double TwiceArea(Index u, Index v, Index w) const
+  {
+    const Point2& p = this->Points[u];
+    return (this->Points[v].X - p.X) * (this->Points[w].Y - p.Y) -
+      (this->Points[v].Y - p.Y) * (this->Points[w].X - p.X);
+  }
+};
+
+/** The neighbours of each vertex. */
+struct Neighbors
+{
+  Buffer<std::uint32_t> Offsets;
+  /** Of each vertex a multiple of Group, filled up with the vertex itself. */
+  Buffer<Index> Ids;
+  static constexpr std::uint32_t Group =
+    4; ///< at a time, for an end of loops that can be predicted
+
+  Neighbors(const Mesh& mesh, const LocalMesh& local, const Progress& progress)
+  {
+    const Index count = static_cast<Index>(local.Points.size());
+    this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
+    std::fill(this->Offsets.begin(), this->Offsets.end(), 0);
+    // At the border, an edge is known to both its ends by one half-edge.
+    const auto forEach = [&](Index begin, Index end, auto&& visit) {
+      for (Index h = 3 * begin; h < 3 * end; h += 3)
+      {
+        for (Index i = 0; i < 3; ++i)
+        {
+          const Index a = local.Corners[h + i];
+          const Index b = local.Corners[h + (i == 2 ? 0 : i + 1)];
+          visit(a, b);
+          if (mesh.IsBorder(h + i))
+          {
+            visit(b, a);
+          }
+        }
+      }
+    };
+    const Index triangles = mesh.NumberOfTriangles();
+    InStretches(triangles, Part(progress, 0.0, 0.4), [&](Index begin, Index end) {
+      forEach(begin, end, [&](Index a, Index) { ++this->Offsets[a]; });
+    });
+    std::uint32_t sum = 0; // stays below 9 for each point
+    for (std::uint32_t& offset : this->Offsets)
+    {
+      const std::uint32_t size = offset;
+      offset += sum;
+      sum += (size + Group - 1) / Group * Group;
+    }
+    this->Ids.Resize(sum);
+    for (Index v = 0; v < count; ++v)
+    {
+      // Where the next one's begin is not known yet: they are filled in from their end.
+      for (std::uint32_t i = this->Offsets[v]; i % Group != 0; ++i)
+      {
+        this->Ids[i] = v;
+      }
+    }
+    InStretches(triangles, Part(progress, 0.4, 1.0), [&](Index begin, Index end) {
+      forEach(begin, end, [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; });
+    });
+  }
 };
 
 /**
@@ -404,184 +526,167 @@ private:
  * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
  * with very many neighbours, which would make it quadratic.
  */
-std::vector<double> FindSpacings(
-  const Mesh& mesh, const Distances& distances, const Progress& progress)
+Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Progress& progress)
 {
-  // Vertices are renumbered as the triangles name them: neighbours come to lie near in memory.
-  std::vector<Index> rank(mesh.Points.size(), None);
-  std::vector<Index> vertices;
-  const Index halfEdges = mesh.NumberOfHalfEdges();
-  const Progress ranking = Part(progress, 0.0, 0.1);
-  for (Index h = 0; h < halfEdges; ++h)
-  {
-    ReportStep(ranking, h, halfEdges);
-    const Index vertex = mesh.Origin(h);
-    if (rank[vertex] == None)
-    {
-      rank[vertex] = static_cast<Index>(vertices.size());
-      vertices.push_back(vertex);
-    }
-  }
-  const std::size_t count = vertices.size();
-  std::vector<Point2> points(count);
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    points[i] = mesh.PointOf(vertices[i]);
-  }
-  const auto origin = [&](Index h) { return rank[mesh.Origin(h)]; };
-  const auto destination = [&](Index h) { return rank[mesh.Destination(h)]; };
-
-  std::vector<Index> offsets(count + 1, 0);
-  const Progress counting = Part(progress, 0.1, 0.2);
-  for (Index h = 0; h < halfEdges; ++h)
-  {
-    ReportStep(counting, h, halfEdges);
-    ++offsets[origin(h)];
-    if (mesh.IsBorder(h))
-    {
-      ++offsets[destination(h)];
-    }
-  }
-  Index sum = 0;
-  for (Index& offset : offsets)
-  {
-    offset = sum += offset;
-  }
-  std::vector<Index> neighbors(sum);
-  const Progress gathering = Part(progress, 0.2, 0.3);
-  for (Index h = 0; h < halfEdges; ++h)
-  {
-    ReportStep(gathering, h, halfEdges);
-    neighbors[--offsets[origin(h)]] = destination(h);
-    if (mesh.IsBorder(h))
-    {
-      neighbors[--offsets[destination(h)]] = origin(h);
-    }
-  }
+  const Neighbors neighbors(mesh, local, Part(progress, 0.0, 0.2));
+  const Index count = static_cast<Index>(local.Points.size());
+  const Point2* points = local.Points.data();
+  Buffer<double> spacings;
+  spacings.Resize(count);
+  Buffer<Index> knownTo; // the last vertex that has had each one among its nearest
+  knownTo.Resize(count);
+  std::fill(knownTo.begin(), knownTo.end(), None);
 
   struct Candidate
   {
     double Squared;
     Index Vertex;
   };
-  std::vector<double> spacings(mesh.Points.size(), 0.0);
-  std::vector<Index> seenFrom(count, None);
-  std::vector<Candidate> candidates;
-  const Progress searching = Part(progress, 0.3, 1.0);
-  for (Index v = 0; v < static_cast<Index>(count); ++v)
-  {
-    ReportStep(searching, v, count);
-    candidates.clear();
-    seenFrom[v] = v;
-    Index pass = v;
-    double squared = 0.0;
-    for (int k = 1; k <= NeighborOfSpacing; ++k)
+  std::vector<Index> found;
+  Index* known = knownTo.data();
+  const Index* ids = neighbors.Ids.data();
+  constexpr int last = NeighborOfSpacing - 1;
+  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None };
+  InStretches(count, Part(progress, 0.2, 1.0), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
     {
-      if (pass == v ||
-        static_cast<std::size_t>(offsets[pass + 1] - offsets[pass]) <= NeighborsOfHub)
+      // What lies ahead is soon reached, but not in order.
+      const Index ahead = v < count - 1 - 2048 ? v + 2048 : count - 1;
+      Prefetch(points + ahead);
+      Prefetch(known + ahead);
+      Prefetch(ids + neighbors.Offsets[ahead]);
+
+      // The nearest vertices found: those passed in the order in which they were, then the next
+      // ones by distance. No more are needed than will be passed.
+      Candidate nearest[NeighborOfSpacing];
+      std::fill_n(nearest, NeighborOfSpacing, nothing);
+      const Point2 p = points[v];
+      const auto squaredTo = [&](Index w) {
+        const double x = p.X - points[w].X;
+        const double y = p.Y - points[w].Y;
+        return x * x + y * y;
+      };
+      known[v] = v;
+      Index passed = v;
+      for (int k = 0;; ++k)
       {
-        for (Index i = offsets[pass]; i < offsets[pass + 1]; ++i)
+        const std::uint32_t first = neighbors.Offsets[passed];
+        const std::uint32_t size = neighbors.Offsets[passed + 1] - first;
+        if (k == 0 || size <= NeighborsOfHub)
         {
-          const Index w = neighbors[i];
-          if (seenFrom[w] != v)
+          if (found.size() < size)
           {
-            seenFrom[w] = v;
-            candidates.push_back({ distances.Squared(points[v], points[w]), w });
+            found.resize(size);
+          }
+          // Those that are near enough, without branches, for which they are cannot be predicted.
+          const double limit = nearest[last].Squared;
+          Index* next = found.data();
+          const Index* end = ids + first + size;
+          for (const Index* group = ids + first; group != end; group += Neighbors::Group)
+          {
+            for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
+            {
+              const Index w = group[j];
+              *next = w;
+              next += (squaredTo(w) < limit) & (known[w] != v);
+            }
+          }
+          const std::size_t numberFound = next - found.data();
+          for (std::size_t i = 0; i < numberFound; ++i)
+          {
+            const Candidate candidate{ squaredTo(found[i]), found[i] };
+            if (known[candidate.Vertex] == v || !(candidate.Squared < nearest[last].Squared))
+            {
+              continue;
+            }
+            known[candidate.Vertex] = v;
+            int place = last;
+            for (; place > k && candidate.Squared < nearest[place - 1].Squared; --place)
+            {
+              nearest[place] = nearest[place - 1];
+            }
+            nearest[place] = candidate;
           }
         }
+        if (k == last || nearest[k].Vertex == None)
+        {
+          break;
+        }
+        passed = nearest[k].Vertex;
       }
-      if (candidates.empty())
+      int k = last;
+      while (k > 0 && nearest[k].Vertex == None)
       {
-        break;
+        --k; // there are no more
       }
-      // Which of two equally near vertices is passed first does not matter in the end: the search
-      // also finds what lies behind the other one before anything farther.
-      const auto nearest = std::min_element(candidates.begin(), candidates.end(),
-        [](const Candidate& p, const Candidate& q) { return p.Squared < q.Squared; });
-      squared = nearest->Squared;
-      pass = nearest->Vertex;
-      *nearest = candidates.back();
-      candidates.pop_back();
+      spacings[v] = SpacingPerNeighborDistance * std::sqrt(nearest[k].Squared);
     }
-    spacings[vertices[v]] = SpacingPerNeighborDistance * std::sqrt(squared);
-  }
+  });
   return spacings;
 }
 
 /** The parts of triangles with the same flag that are connected by edges. */
-struct Parts
+Parts PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
 {
-  std::vector<Index> PartOf; ///< one a triangle
-  std::vector<Index> Offsets{ 0 };
-  std::vector<Index> Triangles; ///< part after part
+  return FindParts(mesh, progress, [&](Index h) {
+    return flags[Mesh::Triangle(h)] == flags[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
+  });
+}
 
-  Parts(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
-    : PartOf(flags.size(), None)
+/**
+ * Closes the openings that are smaller than what the tolerance bridges.
+ * @param[in] shareOf  shareOf(t): the area of a triangle in parts of what the tolerance bridges
+ */
+template <typename ShareOf>
+void CloseSmallOpenings(
+  const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
+{
+  const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
+  struct Piece
   {
-    this->Triangles.reserve(flags.size());
-    for (std::size_t seed = 0; seed < flags.size(); ++seed)
+    Index Part;
+    double Share;
+    Index Triangle;
+  };
+  std::vector<Piece> pieces;
+  std::vector<char> reachesBorder(parts.Count(), 0);
+  InStretches(mesh.NumberOfTriangles(), Part(progress, 0.5, 0.7), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
     {
-      if (this->PartOf[seed] != None)
+      if (!keep[t])
       {
-        continue;
+        const bool isAtBorder =
+          mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
+        pieces.push_back({ parts.PartOf(t), 0.0, t });
+        reachesBorder[parts.PartOf(t)] |= isAtBorder;
       }
-      const Index part = this->Count();
-      std::size_t next = this->Triangles.size();
-      this->PartOf[seed] = part;
-      this->Triangles.push_back(static_cast<Index>(seed));
-      for (; next < this->Triangles.size(); ++next)
-      {
-        ReportStep(progress, next, flags.size());
-        const Index t = this->Triangles[next];
-        for (Index h = 3 * t; h < 3 * t + 3; ++h)
-        {
-          const Index other = mesh.IsBorder(h) ? None : Mesh::Triangle(mesh.Twin(h));
-          if (other != None && this->PartOf[other] == None && flags[other] == flags[t])
-          {
-            this->PartOf[other] = part;
-            this->Triangles.push_back(other);
-          }
-        }
-      }
-      this->Offsets.push_back(static_cast<Index>(this->Triangles.size()));
     }
+  });
+  pieces.erase(std::remove_if(pieces.begin(), pieces.end(),
+                 [&](const Piece& piece) { return reachesBorder[piece.Part] != 0; }),
+    pieces.end());
+  for (Piece& piece : pieces)
+  {
+    piece.Share = shareOf(piece.Triangle);
   }
-  Index Count() const { return static_cast<Index>(this->Offsets.size()) - 1; }
-  const Index* Begin(Index part) const { return this->Triangles.data() + this->Offsets[part]; }
-  const Index* End(Index part) const { return this->Triangles.data() + this->Offsets[part + 1]; }
-};
-
-/** Closes the openings that are smaller than what the tolerance bridges. */
-void CloseSmallOpenings(const Mesh& mesh, const std::vector<double>& shares,
-  std::vector<char>& keep, const Progress& progress)
-{
-  const Parts parts(mesh, keep, Part(progress, 0.0, 0.5));
-  const Progress closing = Part(progress, 0.5, 1.0);
-  std::vector<double> ofPart;
-  for (Index part = 0; part < parts.Count(); ++part)
+  // In the order of size, so that the sum does not depend on the order of the triangles.
+  Sort(
+    pieces.begin(), pieces.end(),
+    [](const Piece& p, const Piece& q) {
+      return p.Part != q.Part ? p.Part < q.Part : p.Share < q.Share;
+    },
+    Part(progress, 0.7, 1.0));
+  for (auto first = pieces.begin(); first != pieces.end();)
   {
-    const Index* begin = parts.Begin(part);
-    const Index* end = parts.End(part);
-    ReportStep(closing, part, parts.Count(), 256);
-    const bool reachesBorder = std::any_of(begin, end, [&](Index t) {
-      return mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
-    });
-    if (keep[*begin] || reachesBorder)
-    {
-      continue;
-    }
-    // In the order of size, so that the sum does not depend on the order of the triangles.
-    ofPart.clear();
-    std::for_each(begin, end, [&](Index t) { ofPart.push_back(shares[t]); });
-    std::sort(ofPart.begin(), ofPart.end());
     double sum = 0.0;
-    for (const double share : ofPart)
+    auto last = first;
+    for (; last != pieces.end() && last->Part == first->Part; ++last)
     {
-      sum += share;
+      sum += last->Share;
     }
-    if (sum < 1.0)
+    for (; first != last; ++first)
     {
-      std::for_each(begin, end, [&](Index t) { keep[t] = 1; });
+      keep[first->Triangle] = sum < 1.0;
     }
   }
 }
@@ -589,37 +694,43 @@ void CloseSmallOpenings(const Mesh& mesh, const std::vector<double>& shares,
 /** Takes out pieces with too few vertices to have a spacing of their own, if others have more. */
 void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Parts parts(mesh, keep, Part(progress, 0.0, 0.5));
-  const Progress dropping = Part(progress, 0.5, 1.0);
+  const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
+  // More triangles than so few vertices can have.
+  constexpr Index many = 3 * NeighborOfSpacing + 1;
+  std::vector<Index> sizes(parts.Count(), 0);
+  const Index count = mesh.NumberOfTriangles();
+  InStretches(count, Part(progress, 0.5, 0.7), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      sizes[parts.PartOf(t)] += keep[t];
+    }
+  });
+  std::vector<std::pair<Index, Index>> corners; // (part, vertex)
+  bool anyLarge = std::any_of(sizes.begin(), sizes.end(), [](Index size) { return size >= many; });
+  InStretches(count, Part(progress, 0.7, 0.9), [&](Index begin, Index end) {
+    for (Index h = 3 * begin; h < 3 * end; ++h)
+    {
+      if (keep[Mesh::Triangle(h)] && sizes[parts.PartOf(Mesh::Triangle(h))] < many)
+      {
+        corners.emplace_back(parts.PartOf(Mesh::Triangle(h)), mesh.Origin(h));
+      }
+    }
+  });
+  Sort(
+    corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(), Part(progress, 0.9, 1.0));
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<char> isSmall(parts.Count(), 0);
-  bool anyLarge = false;
-  std::vector<Index> corners;
-  for (Index part = 0; part < parts.Count(); ++part)
+  for (auto first = corners.begin(); first != corners.end();)
   {
-    const Index* begin = parts.Begin(part);
-    const Index* end = parts.End(part);
-    ReportStep(dropping, part, parts.Count());
-    if (!keep[*begin])
-    {
-      continue;
-    }
-    bool large =
-      end - begin > 3 * NeighborOfSpacing; // more triangles than so few vertices can have
-    if (!large)
-    {
-      corners.clear();
-      std::for_each(begin, end, [&](Index t) {
-        corners.insert(corners.end(), &mesh.Triangles[3 * t], &mesh.Triangles[3 * t] + 3);
-      });
-      std::sort(corners.begin(), corners.end());
-      large = std::unique(corners.begin(), corners.end()) - corners.begin() > NeighborOfSpacing;
-    }
-    isSmall[part] = !large;
-    anyLarge = anyLarge || large;
+    const auto last = std::find_if(first, corners.end(),
+      [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
+    isSmall[first->first] = last - first <= NeighborOfSpacing;
+    anyLarge = anyLarge || last - first > NeighborOfSpacing;
+    first = last;
   }
-  for (std::size_t t = 0; anyLarge && t < keep.size(); ++t)
+  for (Index t = 0; anyLarge && t < count; ++t)
   {
-    keep[t] = keep[t] && !isSmall[parts.PartOf[t]];
+    keep[t] = keep[t] && !isSmall[parts.PartOf(t)];
   }
 }
 
@@ -628,32 +739,10 @@ void DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& 
  */
 Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
-  const Progress choosing = Part(progress, 0.0, 0.2);
-  const Progress linking = Part(progress, 0.2, 0.4);
-  const Progress tracing = Part(progress, 0.4, 0.8);
-  const Progress cutting = Part(progress, 0.8, 1.0);
-  Mesh kept;
-  kept.Points = mesh.Points;
-  std::vector<Index> before; // the half-edge of each kept one
-  std::vector<Index> after(mesh.Triangles.size(), Mesh::Border);
-  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
-  {
-    ReportStep(choosing, h, after.size());
-    if (keep[Mesh::Triangle(h)])
-    {
-      after[h] = static_cast<Index>(before.size());
-      before.push_back(h);
-      kept.Triangles.push_back(mesh.Origin(h));
-    }
-  }
-  for (const Index h : before)
-  {
-    ReportStep(linking, kept.Twins.size(), before.size());
-    kept.Twins.push_back(mesh.IsBorder(h) ? Mesh::Border : after[mesh.Twin(h)]);
-  }
+  const Progress cutting = Part(progress, 0.95, 1.0);
 
   // A walk that comes back to a vertex it has passed has closed a ring.
-  const Rings walks = TraceBorder(kept, tracing);
+  const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.95), keep);
   std::vector<std::vector<Index>> rings;
   std::vector<Index> path;
   std::vector<char> isOnPath(mesh.Points.size(), 0);
@@ -668,10 +757,14 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
     for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
     {
       ReportStep(cutting, h - walks.Vertices.data(), walks.Vertices.size());
-      const Index vertex = kept.Origin(*h);
+      const Index vertex = mesh.Origin(*h);
       if (isOnPath[vertex])
       {
-        const std::size_t first = std::find(path.begin(), path.end(), vertex) - path.begin();
+        std::size_t first = path.size() - 1; // most rings are small: back from the end
+        while (path[first] != vertex)
+        {
+          --first;
+        }
         for (std::size_t i = first; i < path.size(); ++i)
         {
           isOnPath[path[i]] = 0;
@@ -709,6 +802,41 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
   return result;
 }
 
+/** The middle one of values not below 0, the higher of two. */
+double MedianOf(const Buffer<double>& values)
+{
+  // Such values have the order of their bits, so that those with the leading bits of the median are
+  // found by counting.
+  const auto leading = [](double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return static_cast<std::size_t>(bits >> 47);
+  };
+  std::vector<Index> counts(std::size_t(1) << 17, 0);
+  for (const double value : values)
+  {
+    ++counts[leading(value)];
+  }
+  std::size_t before = 0;
+  const std::size_t half = values.size() / 2;
+  std::size_t place = 0;
+  while (before + counts[place] <= half)
+  {
+    before += counts[place++];
+  }
+  std::vector<double> near;
+  for (const double value : values)
+  {
+    if (leading(value) == place)
+    {
+      near.push_back(value);
+    }
+  }
+  const auto median = near.begin() + (half - before);
+  std::nth_element(near.begin(), median, near.end());
+  return *median;
+}
+
 } // namespace
 
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)
@@ -720,50 +848,55 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
   {
     return result;
   }
-  const Distances distances(mesh);
-  const std::vector<double> spacings =
-    FindSpacings(mesh, distances, Part(options.Monitor, 0.0, 0.6));
+  const LocalMesh local(mesh, Part(options.Monitor, 0.0, 0.1));
+  const Index* corners = local.Corners.data();
+  const Buffer<double> spacings = FindSpacings(mesh, local, Part(options.Monitor, 0.1, 0.6));
 
-  // The longest edge of each triangle and its spacing: the middle one of its corners' three, which
-  // the spacing of a point that lies alone is not, nor of two that lie alone.
-  const Progress measuring = Part(options.Monitor, 0.6, 0.7);
-  std::vector<double> ratios(count);
-  std::vector<double> local(count);
-  for (Index t = 0; t < count; ++t)
-  {
-    ReportStep(measuring, t, count);
-    const Index a = mesh.Origin(3 * t);
-    const Index b = mesh.Origin(3 * t + 1);
-    const Index c = mesh.Origin(3 * t + 2);
-    double s[3] = { spacings[a], spacings[b], spacings[c] };
-    std::sort(s, s + 3);
-    local[t] = std::max(LeastSpacing, std::min(s[1], LargestSpacingInTriangle * s[0]));
-    ratios[t] = std::sqrt(std::max(
-                  { distances.Squared(a, b), distances.Squared(b, c), distances.Squared(c, a) })) /
-      local[t];
-  }
+  // The spacing of a triangle: the middle one of its corners' three, which the spacing of a point
+  // that lies alone is not, nor of two that lie alone.
+  const auto spacingOf = [&](Index t) {
+    const double a = spacings[corners[3 * t]];
+    const double b = spacings[corners[3 * t + 1]];
+    const double c = spacings[corners[3 * t + 2]];
+    const double least = std::min({ a, b, c });
+    const double middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+    return std::max(LeastSpacing, std::min(middle, LargestSpacingInTriangle * least));
+  };
+  // The longest edge of each triangle in spacings.
+  Buffer<double> ratios;
+  ratios.Resize(count);
+  InStretches(count, Part(options.Monitor, 0.6, 0.7), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      const Index a = corners[3 * t];
+      const Index b = corners[3 * t + 1];
+      const Index c = corners[3 * t + 2];
+      ratios[t] = std::sqrt(std::max({ local.SquaredDistance(a, b), local.SquaredDistance(b, c),
+                    local.SquaredDistance(c, a) })) /
+        spacingOf(t);
+    }
+  });
   if (!(result.GapTolerance > 0.0))
   {
-    std::vector<double> sorted = ratios;
-    const auto median = sorted.begin() + count / 2;
-    std::nth_element(sorted.begin(), median, sorted.end());
-    result.GapTolerance = ToleranceOfTypicalTriangle * *median;
+    result.GapTolerance = ToleranceOfTypicalTriangle * MedianOf(ratios);
   }
 
-  const Progress deciding = Part(options.Monitor, 0.7, 0.75);
   std::vector<char> keep(count);
-  for (Index t = 0; t < count; ++t)
-  {
-    ReportStep(deciding, t, count);
-    keep[t] = ratios[t] <= result.GapTolerance;
-    // From here on the share of a square of the size that the tolerance bridges.
-    const double side = result.GapTolerance * local[t];
+  InStretches(count, Part(options.Monitor, 0.7, 0.75), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      keep[t] = ratios[t] <= result.GapTolerance;
+    }
+  });
+  // In parts of a square of the size that the tolerance bridges.
+  const auto shareOf = [&](Index t) {
+    const double side = result.GapTolerance * spacingOf(t);
     const double square = side * side;
     const double area =
-      0.5 * distances.TwiceArea(mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
-    ratios[t] = square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
-  }
-  CloseSmallOpenings(mesh, ratios, keep, Part(options.Monitor, 0.75, 0.82));
+      0.5 * local.TwiceArea(corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]);
+    return square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
+  };
+  CloseSmallOpenings(mesh, shareOf, keep, Part(options.Monitor, 0.75, 0.82));
   DropSmallPieces(mesh, keep, Part(options.Monitor, 0.82, 0.89));
   result.Vertices = BorderOf(mesh, keep, Part(options.Monitor, 0.89, 1.0));
   Report(options.Monitor, 1.0);

@@ -14,26 +14,30 @@ Fans::Fans(const Mesh& mesh, const Progress& progress)
   : First(mesh.Points.size(), None)
   , OnBorder(mesh.Points.size(), 0)
 {
+  // From the last half-edge to the first, so that the first one stays.
   const Index count = mesh.NumberOfHalfEdges();
-  for (Index h = 0; h < count; ++h)
-  {
-    ReportStep(progress, h, count);
-    const Index vertex = mesh.Origin(h);
-    if (!mesh.IsBorder(h))
+  std::vector<Index> borders;
+  InStretches(count, progress, [&](Index begin, Index end) {
+    for (Index h = count - 1 - begin; h > count - 1 - end; --h)
     {
-      if (this->First[vertex] == None)
+      this->First[mesh.Origin(h)] = h;
+      if (mesh.IsBorder(h))
       {
-        this->First[vertex] = h;
+        borders.push_back(h);
       }
     }
-    else if (!this->OnBorder[vertex])
+  });
+  for (auto h = borders.rbegin(); h != borders.rend(); ++h)
+  {
+    const Index vertex = mesh.Origin(*h);
+    if (!this->OnBorder[vertex])
     {
       this->OnBorder[vertex] = 1;
-      this->First[vertex] = h;
+      this->First[vertex] = *h;
     }
     else
     {
-      this->Others[vertex].push_back(h);
+      this->Others[vertex].push_back(*h);
     }
   }
 }
@@ -203,10 +207,10 @@ private:
 class Recovery
 {
 public:
-  Recovery(Mesh& mesh, std::vector<char>& constrained, const Progress& progress)
+  Recovery(Mesh& mesh, Fans& fans, std::vector<char>& constrained)
     : Surface(mesh)
     , Constrained(constrained)
-    , VertexFans(mesh, progress)
+    , VertexFans(fans)
   {
   }
 
@@ -454,7 +458,7 @@ private:
 
   Mesh& Surface;
   std::vector<char>& Constrained;
-  Fans VertexFans;
+  Fans& VertexFans;
   Cavity Left;
   Cavity Right;
   std::vector<Index> Slots;
@@ -492,13 +496,19 @@ SegmentStep StepAlong(const Mesh& mesh, const Fans& fans, Index from, Index to)
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress)
 {
+  Fans fans(mesh, Part(progress, 0.0, 0.5));
+  return RecoverSegments(mesh, fans, segments, constrained, Part(progress, 0.5, 1.0));
+}
+
+Index RecoverSegments(Mesh& mesh, Fans& fans, const std::vector<Segment>& segments,
+  std::vector<char>& constrained, const Progress& progress)
+{
   constrained.resize(mesh.Triangles.size(), 0);
-  Recovery recovery(mesh, constrained, Part(progress, 0.0, 0.5));
-  const Progress recovering = Part(progress, 0.5, 1.0);
+  Recovery recovery(mesh, fans, constrained);
   Index missing = 0;
   for (std::size_t i = 0; i < segments.size(); ++i)
   {
-    ReportStep(recovering, i, segments.size(), 256);
+    ReportStep(progress, i, segments.size(), 256);
     missing += recovery.Recover(segments[i]) ? 1 : 0;
   }
   return missing;

@@ -153,6 +153,10 @@ SegmentStep StepAlong(const Mesh& mesh, const Fans& fans, Index from, Index to);
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress = Progress());
 
+/** The same with the fans of the mesh, which afterwards are those of the mesh as it has become. */
+Index RecoverSegments(Mesh& mesh, Fans& fans, const std::vector<Segment>& segments,
+  std::vector<char>& constrained, const Progress& progress = Progress());
+
 } // namespace elevation
 
 #endif

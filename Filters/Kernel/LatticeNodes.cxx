@@ -114,17 +114,6 @@ bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Inde
 }
 } // namespace
 
-/** Asks for memory before it is needed: points in any order are spread over all of the bitmap. */
-template <typename T>
-inline void Prefetch(const T* memory)
-{
-#if defined(__GNUC__) || defined(__clang__)
-  __builtin_prefetch(memory);
-#else
-  static_cast<void>(memory);
-#endif
-}
-
 /** A few dozen points and their nodes, between the steps that wait for memory. */
 struct Batch
 {

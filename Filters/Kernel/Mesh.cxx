@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 namespace elevation
 {
@@ -18,71 +19,203 @@ std::string NameOf(const std::vector<Point2>& points, Index id)
   return text;
 }
 
+namespace
+{
+/** Names the first edge, by its lower and its higher vertex, that is not one of a manifold. */
+[[noreturn]] void ThrowNotManifold(const Mesh& mesh, Index firstCell, const Progress& progress)
+{
+  struct Edge
+  {
+    Index Low;
+    Index High;
+    Index HalfEdge;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(mesh.Triangles.size());
+  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+  {
+    const Index a = mesh.Origin(h);
+    const Index b = mesh.Destination(h);
+    edges.push_back({ std::min(a, b), std::max(a, b), h });
+  }
+  Sort(
+    edges.begin(), edges.end(),
+    [](const Edge& p, const Edge& q) {
+      return p.Low != q.Low ? p.Low < q.Low
+                            : (p.High != q.High ? p.High < q.High : p.HalfEdge < q.HalfEdge);
+    },
+    progress);
+  auto first = edges.begin();
+  auto last = first;
+  for (;; first = last)
+  {
+    last = std::find_if(first, edges.end(),
+      [&](const Edge& p) { return p.Low != first->Low || p.High != first->High; });
+    if (last - first > 2 ||
+      (last - first == 2 && mesh.Origin(first[0].HalfEdge) == mesh.Origin(first[1].HalfEdge)))
+    {
+      break;
+    }
+  }
+  const auto cell = [firstCell](const Edge& edge) {
+    return std::to_string(static_cast<std::int64_t>(firstCell) + Mesh::Triangle(edge.HalfEdge));
+  };
+  throw Error("Cell " + cell(last[-1]) + " shares the edge of points " +
+    std::to_string(first->Low) + " and " + std::to_string(first->High) + " with cell " +
+    cell(first[0]) +
+    (last - first > 2 ? " and another one: an edge of a surface has at most two triangles."
+                      : " on the same side: the triangles overlap or are oriented differently."));
+}
+} // namespace
+
 void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
 {
-  const Index count = this->NumberOfHalfEdges();
-  this->Twins.assign(count, Border);
+  const Index count = this->NumberOfTriangles();
+  this->Twins.assign(this->Triangles.size(), Border);
 
-  // Half-edges by the lower id of their two vertices: both half-edges of an
-  // edge meet in one bucket.
-  std::vector<Index> bucket(this->Points.size() + 1, 0);
-  const auto low = [this](Index h) { return std::min(this->Origin(h), this->Destination(h)); };
-  const auto high = [this](Index h) { return std::max(this->Origin(h), this->Destination(h)); };
-  const Progress counting = Part(progress, 0.0, 0.2);
-  for (Index h = 0; h < count; ++h)
+  // Vertices are numbered as the triangles name them, so that neighbours lie near in memory.
+  Buffer<Index> corners;
+  corners.Resize(this->Triangles.size());
+  Index used = 0;
   {
-    ReportStep(counting, h, count);
-    ++bucket[low(h) + 1];
-  }
-  for (std::size_t v = 1; v < bucket.size(); ++v)
-  {
-    bucket[v] += bucket[v - 1];
-  }
-  std::vector<Index> halfEdges(count);
-  {
-    std::vector<Index> fill(bucket.begin(), bucket.end() - 1);
-    const Progress filling = Part(progress, 0.2, 0.5);
-    for (Index h = 0; h < count; ++h)
-    {
-      ReportStep(filling, h, count);
-      halfEdges[fill[low(h)]++] = h;
-    }
+    Buffer<Index> numbers;
+    numbers.Resize(this->Points.size());
+    std::fill(numbers.begin(), numbers.end(), None);
+    const std::size_t last = this->Triangles.size() - 1;
+    InStretches(count, Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
+      for (Index h = 3 * begin; h < 3 * end; ++h)
+      {
+        Prefetch(&numbers[this->Triangles[std::min(h + HalfEdgesAhead, last)]]);
+        Index& number = numbers[this->Triangles[h]];
+        if (number == None)
+        {
+          number = used++;
+        }
+        corners[h] = number;
+      }
+    });
   }
 
-  const Progress pairing = Part(progress, 0.5, 1.0);
-  for (Index v = 0; v < this->NumberOfPoints(); ++v)
+  // The half-edges that lead to a vertex of a higher number, by their origins.
+  struct Rising
   {
-    ReportStep(pairing, v, this->Points.size());
-    const auto begin = halfEdges.begin() + bucket[v];
-    const auto end = halfEdges.begin() + bucket[v + 1];
-    std::sort(
-      begin, end, [&](Index g, Index h) { return high(g) != high(h) ? high(g) < high(h) : g < h; });
-    for (auto first = begin; first != end;)
+    Index Destination;
+    Index HalfEdge;
+  };
+  const auto forEach = [&corners](Index begin, Index end, auto&& visit) {
+    for (Index h = 3 * begin; h < 3 * end; h += 3)
     {
-      auto last = first + 1;
-      while (last != end && high(*last) == high(*first))
-      {
-        ++last;
-      }
-      const bool isPair = last - first == 2;
-      if (last - first > 2 || (isPair && this->Origin(first[0]) == this->Origin(first[1])))
-      {
-        const auto cell = [firstCell](Index h) {
-          return std::to_string(static_cast<std::int64_t>(firstCell) + Triangle(h));
-        };
-        throw Error("Cell " + cell(last[-1]) + " shares the edge of points " + std::to_string(v) +
-          " and " + std::to_string(high(*first)) + " with cell " + cell(first[0]) +
-          (last - first > 2
-              ? " and another one: an edge of a surface has at most two triangles."
-              : " on the same side: the triangles overlap or are oriented differently."));
-      }
-      if (isPair)
-      {
-        this->Twins[first[0]] = first[1];
-        this->Twins[first[1]] = first[0];
-      }
-      first = last;
+      const Index a = corners[h];
+      const Index b = corners[h + 1];
+      const Index c = corners[h + 2];
+      visit(h, a, b);
+      visit(h + 1, b, c);
+      visit(h + 2, c, a);
     }
+  };
+  Buffer<Index> ends; // of each vertex's, one further on, once they are in
+  ends.Resize(static_cast<std::size_t>(used) + 1);
+  std::fill(ends.begin(), ends.end(), 0);
+  InStretches(count, Part(progress, 0.2, 0.3), [&](Index begin, Index end) {
+    forEach(begin, end, [&](Index, Index a, Index b) { ends[a + 1] += a < b; });
+  });
+  for (std::size_t v = 1; v < ends.size(); ++v)
+  {
+    ends[v] += ends[v - 1];
+  }
+  const Index total = ends[used];
+  Buffer<Rising> rising;
+  // One more for those that do not rise, and as many as are looked at beyond the end.
+  constexpr Index atOnce = 4;
+  rising.Resize(static_cast<std::size_t>(total) + 1 + atOnce);
+  std::fill(rising.begin() + total, rising.end(), Rising{ None, None });
+  InStretches(count, Part(progress, 0.3, 0.5), [&](Index begin, Index end) {
+    forEach(begin, end, [&](Index h, Index a, Index b) {
+      // Without branches: which way a half-edge runs cannot be predicted.
+      const bool rises = a < b;
+      rising[rises ? ends[a] : total] = { b, h };
+      ends[a] += rises;
+    });
+  });
+
+  // Every other half-edge looks for the one that rises the other way. Two of them in one place are
+  // found here, but for those without a twin.
+  bool isManifold = true;
+  struct Falling
+  {
+    Index Origin;
+    Index Destination;
+    Index HalfEdge;
+  };
+  constexpr Index few = 128; // triangles at a time
+  Falling falling[3 * few];
+  const auto connect = [&](Index begin, Index end) {
+    std::size_t size = 0;
+    forEach(begin, end, [&](Index h, Index a, Index b) {
+      falling[size] = { a, b, h }; // without branches, again
+      size += a > b;
+    });
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      const Falling& edge = falling[i];
+      Index twin = 0;
+      Index matches = 0;
+      const Index first = edge.Destination == 0 ? 0 : ends[edge.Destination - 1];
+      const Index last = ends[edge.Destination];
+      const auto look = [&](Index k) {
+        const bool matching = (rising[k].Destination == edge.Origin) & (k < last);
+        twin |= rising[k].HalfEdge & -static_cast<Index>(matching);
+        matches += matching;
+      };
+      // There are rarely more than a few: an end of the loop that can be predicted.
+      for (Index k = first; k < first + atOnce; ++k)
+      {
+        look(k);
+      }
+      for (Index k = first + atOnce; k < last; ++k)
+      {
+        look(k);
+      }
+      isManifold = isManifold && matches <= 1;
+      if (matches == 1)
+      {
+        isManifold = isManifold && this->Twins[twin] == Border;
+        this->Twins[edge.HalfEdge] = twin;
+        this->Twins[twin] = edge.HalfEdge;
+      }
+    }
+  };
+  const Index last = this->NumberOfHalfEdges() - 1;
+  InStretches(count, Part(progress, 0.5, 0.9), [&](Index begin, Index end) {
+    for (; begin < end; begin += few)
+    {
+      // What lies ahead is soon reached, but not in order.
+      constexpr Index ahead = 1 << 13, line = 16;
+      for (Index h = 3 * begin; h < 3 * begin + 3 * few; h += line)
+      {
+        const Index place = h < last - ahead ? h + ahead : last;
+        Prefetch(&this->Twins[place]);
+        Prefetch(&rising[std::min(place / 2, total)]);
+      }
+      connect(begin, std::min(begin + few, end));
+    }
+  });
+
+  std::vector<std::pair<Index, Index>> borders;
+  InStretches(count, Part(progress, 0.9, 0.95), [&](Index begin, Index end) {
+    for (Index h = 3 * begin; h < 3 * end; ++h)
+    {
+      if (this->IsBorder(h))
+      {
+        borders.emplace_back(this->Origin(h), this->Destination(h));
+      }
+    }
+  });
+  Sort(borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(),
+    Part(progress, 0.95, 1.0));
+  if (!isManifold || std::adjacent_find(borders.begin(), borders.end()) != borders.end())
+  {
+    ThrowNotManifold(*this, firstCell, Part(progress, 1.0, 1.0));
   }
 }
 
@@ -113,33 +246,51 @@ bool TurnsToFirst(const Point2& b, const Point2& r, const Point2& u, const Point
 }
 } // namespace
 
-Rings TraceBorder(const Mesh& mesh, const Progress& progress)
+Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<char>& keep)
 {
-  // The border half-edges that leave each vertex: one nearly always, several where borders meet.
-  std::vector<Index> leaving(mesh.NumberOfPoints(), None);
-  std::vector<std::pair<Index, Index>> further; // (vertex, half-edge), sorted
-  Index numberOfBorders = 0;
-  const Progress collecting = Part(progress, 0.0, 0.5);
-  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
-  {
-    ReportStep(collecting, h, mesh.Triangles.size());
-    if (mesh.IsBorder(h))
+  std::vector<Index> borders;
+  InStretches(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.95), [&](Index begin, Index end) {
+    if (keep.empty())
     {
-      ++numberOfBorders;
-      if (leaving[mesh.Origin(h)] == None)
+      for (Index h = 3 * begin; h < 3 * end; ++h)
       {
-        leaving[mesh.Origin(h)] = h;
+        if (mesh.IsBorder(h))
+        {
+          borders.push_back(h);
+        }
       }
-      else
+      return;
+    }
+    for (Index h = 3 * begin; h < 3 * end; ++h)
+    {
+      if (keep[Mesh::Triangle(h)] && (mesh.IsBorder(h) || !keep[Mesh::Triangle(mesh.Twin(h))]))
       {
-        further.emplace_back(mesh.Origin(h), h);
+        borders.push_back(h);
       }
+    }
+  });
+
+  // The borders that leave each vertex, by their places among all: one nearly always, several where
+  // borders meet.
+  std::vector<Index> leaving(mesh.NumberOfPoints(), None);
+  std::vector<std::pair<Index, Index>> further; // (vertex, place), sorted
+  const Index numberOfBorders = static_cast<Index>(borders.size());
+  for (Index i = 0; i < numberOfBorders; ++i)
+  {
+    const Index vertex = mesh.Origin(borders[i]);
+    if (leaving[vertex] == None)
+    {
+      leaving[vertex] = i;
+    }
+    else
+    {
+      further.emplace_back(vertex, i);
     }
   }
   std::sort(further.begin(), further.end());
 
-  // Behind a border half-edge a->b the empty wedge at b opens counter-clockwise from b->a; the walk
-  // goes on with the border that closes this wedge.
+  // Behind a border a->b the empty wedge at b opens counter-clockwise from b->a; the walk goes on
+  // with the border that closes this wedge.
   const auto follow = [&](Index h) {
     const Index b = mesh.Destination(h);
     Index best = leaving[b];
@@ -147,7 +298,8 @@ Rings TraceBorder(const Mesh& mesh, const Progress& progress)
          other != further.end() && other->first == b; ++other)
     {
       if (TurnsToFirst(mesh.PointOf(b), mesh.PointOf(mesh.Origin(h)),
-            mesh.PointOf(mesh.Destination(other->second)), mesh.PointOf(mesh.Destination(best))))
+            mesh.PointOf(mesh.Destination(borders[other->second])),
+            mesh.PointOf(mesh.Destination(borders[best]))))
       {
         best = other->second;
       }
@@ -157,25 +309,22 @@ Rings TraceBorder(const Mesh& mesh, const Progress& progress)
 
   Rings walks;
   walks.Vertices.reserve(numberOfBorders);
-  std::vector<bool> seen(mesh.NumberOfHalfEdges(), false);
-  const Progress walking = Part(progress, 0.5, 1.0);
-  const std::size_t steps = mesh.Triangles.size() + numberOfBorders;
-  std::size_t done = 0;
-  for (Index start = 0; start < mesh.NumberOfHalfEdges(); ++start)
+  std::vector<char> seen(numberOfBorders, 0);
+  const Progress walking = Part(progress, 0.95, 1.0);
+  for (Index start = 0; start < numberOfBorders; ++start)
   {
-    ReportStep(walking, done++, steps);
-    if (!mesh.IsBorder(start) || seen[start])
+    if (seen[start])
     {
       continue;
     }
-    Index h = start;
+    Index i = start;
     do
     {
-      ReportStep(walking, done++, steps);
-      seen[h] = true;
-      walks.Vertices.push_back(h);
-      h = follow(h);
-    } while (!seen[h]);
+      ReportStep(walking, walks.Vertices.size(), numberOfBorders);
+      seen[i] = 1;
+      walks.Vertices.push_back(borders[i]);
+      i = follow(borders[i]);
+    } while (!seen[i]);
     walks.Offsets.push_back(static_cast<Index>(walks.Vertices.size()));
   }
   return walks;

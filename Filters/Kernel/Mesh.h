@@ -55,13 +55,33 @@ public:
   const Point2& PointOf(Index vertex) const { return this->Points[vertex]; }
 
   /**
-   * Fills Twins from Triangles. Linear in time and memory.
+   * Fills Twins from Triangles. Linear in time and memory, but for sorting the borders.
    * @param[in] firstCell  what messages add to the id of a triangle to name it as the user's cell
    * @throws Error naming the triangle and its edge when an edge has more than two triangles or two
    *         that run the same way (the mesh is not a consistently oriented manifold). Aborted.
    */
   void ConnectTwins(Index firstCell = 0, const Progress& progress = Progress());
 };
+
+/** How many half-edges ahead loops over all of them ask for what belongs to their origins. */
+constexpr std::size_t HalfEdgesAhead = 64;
+
+/**
+ * Calls work(begin, end) for one stretch of [0, count) after another, and reports between them.
+ * Inside, a tight loop.
+ */
+template <typename Work>
+void InStretches(Index count, const Progress& progress, Work&& work)
+{
+  constexpr Index stretch = 1 << 14;
+  for (Index begin = 0; begin < count;)
+  {
+    Report(progress, static_cast<double>(begin) / count);
+    const Index end = count - begin < stretch ? count : begin + stretch;
+    work(begin, end);
+    begin = end;
+  }
+}
 
 /**
  * Rings of vertices: ring r is Vertices[Offsets[r]] ... Vertices[Offsets[r + 1] - 1], and closes
@@ -79,6 +99,115 @@ struct Rings
 };
 
 /**
+ * The parts of a mesh (with Twins) that are connected by edges.
+ * The triangles of a part may lie on two sides, as edges that lead to the other side tell.
+ */
+struct Parts
+{
+  Buffer<Index> Labels;      ///< one a triangle: 2 part + side
+  std::vector<Index> Lowest; ///< one a part: its lowest triangle, which is on side 0; increasing
+
+  Index Count() const { return static_cast<Index>(this->Lowest.size()); }
+  Index PartOf(Index triangle) const { return this->Labels[triangle] / 2; }
+};
+
+/**
+ * Finds the parts: one sweep over the triangles, each of which joins what its neighbours before it
+ * belong to. Linear, but for a logarithm of the parts that have been joined; fast where neighbours
+ * lie near in memory.
+ * @param[in] relation  relation(h), for a half-edge h that is no border: 0 when the triangles on
+ *                      either side of h are on the same side, 1 when they are not, below 0 when h
+ *                      does not connect them. Asked for one half-edge of an edge.
+ * @throws Aborted, std::bad_alloc
+ */
+template <typename Relation>
+Parts FindParts(const Mesh& mesh, const Progress& progress, Relation&& relation)
+{
+  const Index count = mesh.NumberOfTriangles();
+  Parts parts;
+  parts.Labels.Resize(count);
+  // One a part: where it has been joined to, as a label; to itself while it has not.
+  std::vector<Index> joined;
+  const auto find = [&joined](Index label) {
+    while (joined[label / 2] != (label & ~1))
+    {
+      const Index next = joined[label / 2];
+      joined[label / 2] = joined[next / 2] ^ (next & 1); // halves the way
+      label = joined[label / 2] ^ (label & 1);
+    }
+    return label;
+  };
+  InStretches(count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      Index label = None;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        // Border, which is below 0, is not among those before.
+        const Index twin = mesh.Twins[h];
+        if (static_cast<std::uint32_t>(twin) >= static_cast<std::uint32_t>(3 * t))
+        {
+          continue;
+        }
+        const int step = relation(h);
+        if (step < 0)
+        {
+          continue;
+        }
+        const Index other = parts.Labels[Mesh::Triangle(twin)] ^ step;
+        if (label == None)
+        {
+          label = other;
+        }
+        else if (label != other)
+        {
+          label = find(label);
+          const Index root = find(other);
+          const Index low = std::min(label, root);
+          const Index high = std::max(label, root);
+          if (low / 2 != high / 2)
+          {
+            joined[high / 2] = low ^ (high & 1);
+            label = low;
+          }
+        }
+      }
+      if (label == None)
+      {
+        label = static_cast<Index>(2 * joined.size());
+        joined.push_back(label);
+        parts.Lowest.push_back(t);
+      }
+      parts.Labels[t] = label;
+    }
+  });
+
+  // Only parts that have not been joined to others remain; lower ones are numbered before.
+  Index remaining = 0;
+  for (std::size_t i = 0; i < joined.size(); ++i)
+  {
+    const Index root = joined[i];
+    if (root == static_cast<Index>(2 * i))
+    {
+      parts.Lowest[remaining] = parts.Lowest[i];
+      joined[i] = 2 * remaining++;
+    }
+    else
+    {
+      joined[i] = joined[root / 2] ^ (root & 1);
+    }
+  }
+  parts.Lowest.resize(remaining);
+  InStretches(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      parts.Labels[t] = joined[parts.Labels[t] / 2] ^ (parts.Labels[t] & 1);
+    }
+  });
+  return parts;
+}
+
+/**
  * The border of a mesh (with Twins) as closed walks of half-edges, in the half-edges' own
  * direction, so that the mesh lies on the left: counter-clockwise around the outside of a
  * component, clockwise around a hole. At a vertex where several borders meet, a walk stays with the
@@ -86,9 +215,11 @@ struct Rings
  * half-edge is in exactly one walk; a walk starts at its lowest half-edge id, and walks are in the
  * order of their first. The result's Vertices are half-edge ids; their origins are the vertices of
  * the walk. Linear, but for sorting the borders at shared vertices.
+ * @param[in] keep  one flag a triangle: the border is that of the triangles with it; empty: all
  * @throws Aborted
  */
-Rings TraceBorder(const Mesh& mesh, const Progress& progress = Progress());
+Rings TraceBorder(const Mesh& mesh, const Progress& progress = Progress(),
+  const std::vector<char>& keep = std::vector<char>());
 
 } // namespace elevation
 

@@ -29,17 +29,17 @@ std::vector<Segment> SegmentsOf(const Rings& rings)
   return segments;
 }
 
-/** One flag a half-edge: whether the segments run along its edge an odd number of times. */
-std::vector<char> MarkEdges(
-  const Mesh& mesh, const std::vector<Segment>& segments, const Progress& progress)
+/**
+ * Sets one flag a half-edge: whether the segments run along its edge an odd number of times.
+ */
+void MarkEdges(const Mesh& mesh, const Fans& fans, const std::vector<Segment>& segments,
+  std::vector<char>& isOdd, const Progress& progress)
 {
-  const Fans fans(mesh, Part(progress, 0.0, 0.5));
-  const Progress marking = Part(progress, 0.5, 1.0);
-  std::vector<char> isOdd(mesh.Triangles.size(), 0);
+  isOdd.assign(mesh.Triangles.size(), 0);
   std::size_t done = 0;
   for (const Segment& segment : segments)
   {
-    ReportStep(marking, done++, segments.size());
+    ReportStep(progress, done++, segments.size());
     Index vertex = segment.A;
     while (vertex != segment.B)
     {
@@ -58,7 +58,6 @@ std::vector<char> MarkEdges(
       vertex = step.Vertex;
     }
   }
-  return isOdd;
 }
 
 } // namespace
@@ -69,47 +68,34 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
   const std::vector<Segment> segments = SegmentsOf(boundary);
   TrimResult result;
   Report(options.Monitor, 0.0);
+  Fans fans(mesh, Part(options.Monitor, 0.0, 0.4));
+  std::vector<char> flags;
   if (options.RecoverBoundary)
   {
-    std::vector<char> constrained;
     result.NumberOfRecoveredEdges =
-      RecoverSegments(mesh, segments, constrained, Part(options.Monitor, 0.0, 0.4));
+      RecoverSegments(mesh, fans, segments, flags, Part(options.Monitor, 0.4, 0.5));
   }
-  const std::vector<char> isOdd = MarkEdges(mesh, segments, Part(options.Monitor, 0.4, 0.6));
+  MarkEdges(mesh, fans, segments, flags, Part(options.Monitor, 0.5, 0.6));
 
   const RingLocator locator(mesh.Points, boundary);
-  constexpr char unknown = 2;
-  result.IsOutward.assign(count, unknown);
-  const Progress walking = Part(options.Monitor, 0.6, 1.0);
-  std::vector<Index> next;
-  Index done = 0;
-  for (Index seed = 0; seed < count; ++seed)
+  const Parts parts = FindParts(mesh, Part(options.Monitor, 0.6, 0.95),
+    [&flags](Index h) { return static_cast<int>(flags[h]); });
+  std::vector<char> isOutward; // one a label
+  for (const Index t : parts.Lowest)
   {
-    if (result.IsOutward[seed] != unknown)
-    {
-      continue;
-    }
-    const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * seed)),
-      mesh.PointOf(mesh.Origin(3 * seed + 1)), mesh.PointOf(mesh.Origin(3 * seed + 2)));
-    result.IsOutward[seed] = !isInside;
-    next.assign(1, seed);
-    while (!next.empty())
-    {
-      const Index t = next.back();
-      next.pop_back();
-      result.NumberOfOutwardTriangles += result.IsOutward[t];
-      ReportStep(walking, ++done, count);
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        const Index other = mesh.IsBorder(h) ? None : Mesh::Triangle(mesh.Twin(h));
-        if (other != None && result.IsOutward[other] == unknown)
-        {
-          result.IsOutward[other] = result.IsOutward[t] ^ isOdd[h];
-          next.push_back(other);
-        }
-      }
-    }
+    const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)),
+      mesh.PointOf(mesh.Origin(3 * t + 1)), mesh.PointOf(mesh.Origin(3 * t + 2)));
+    isOutward.push_back(!isInside);
+    isOutward.push_back(isInside);
   }
+  result.IsOutward.resize(count);
+  InStretches(count, Part(options.Monitor, 0.95, 1.0), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      result.IsOutward[t] = isOutward[parts.Labels[t]];
+      result.NumberOfOutwardTriangles += result.IsOutward[t];
+    }
+  });
   if (count > 0 && result.NumberOfOutwardTriangles == count)
   {
     throw Error("The boundary encloses no triangle of the mesh.");

@@ -184,6 +184,17 @@ inline void* Allocate(std::size_t size)
   return std::malloc(size);
 }
 
+/** Asks for memory before it is needed: points in any order are spread over all of the bitmap. */
+template <typename T>
+inline void Prefetch(const T* memory)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  __builtin_prefetch(memory);
+#else
+  static_cast<void>(memory);
+#endif
+}
+
 /**
  * A growable array of plain values that are not initialised, in memory from malloc, so that
  * it can be handed over to a VTK array without a copy, and grows without one where the
