@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 WAIT = 30.0  # seconds; a busy machine may take long
+STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP) if os.name == "posix" else ()
 
 
 class VirtualDisplay:
@@ -46,6 +47,8 @@ class VirtualDisplay:
         key = os.path.join(self.folder, "key")
         write_key(key)
         reading, writing = os.pipe()
+        # A signal that stops this program waits until the server is known, so that it can be ended.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)
         try:
             # A session of its own: Ctrl-C on the terminal is for this program to handle.
             self.server = subprocess.Popen(
@@ -55,12 +58,14 @@ class VirtualDisplay:
                 ],
                 pass_fds=(writing,),
                 start_new_session=True,
+                preexec_fn=lambda: signal.pthread_sigmask(signal.SIG_SETMASK, mask),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
             )
         finally:
             os.close(writing)
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         number = read_line(reading)
         os.close(reading)
         if not number:
