@@ -561,19 +561,6 @@ private:
   std::vector<Entry> Spreads; ///< of the fullest bucket
 };
 
-bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other)
-{
-  if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)
-  {
-    const double z = points.Elevation(id), otherZ = points.Elevation(other);
-    if (z != otherZ)
-    {
-      return policy == DuplicatePolicy::KeepLowest ? z < otherZ : z > otherZ;
-    }
-  }
-  return policy == DuplicatePolicy::KeepLast ? id > other : id < other;
-}
-
 /** Visits the finite ones of the points [begin, end): their id and position. */
 template <typename Value, typename Visit>
 void VisitFinite(const Value* coordinates, Index begin, Index end, double scale, Visit&& visit)

@@ -1203,6 +1203,19 @@ Buffer<Index> Divide(const BinGrid& grid, const DelaunayOptions& options)
 }
 } // namespace
 
+bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other)
+{
+  if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)
+  {
+    const double z = points.Elevation(id), otherZ = points.Elevation(other);
+    if (z != otherZ)
+    {
+      return policy == DuplicatePolicy::KeepLowest ? z < otherZ : z > otherZ;
+    }
+  }
+  return policy == DuplicatePolicy::KeepLast ? id > other : id < other;
+}
+
 void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
   Triangulation& triangulation)
 {

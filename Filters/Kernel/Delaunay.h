@@ -112,6 +112,9 @@ struct Triangulation
   Lattice Steps;             ///< where found; Origin is the lowest node that is occupied
 };
 
+/** Whether the policy keeps a point rather than another one with the same x,y. */
+bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other);
+
 /** Lists the unused points of a triangulation from the two kinds of them, each increasing. */
 void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
   Triangulation& triangulation);

@@ -99,19 +99,6 @@ private:
   Point2 Origin;
   double IX, IY, JX, JY;
 };
-
-bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other)
-{
-  if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)
-  {
-    const double z = points.Elevation(id), otherZ = points.Elevation(other);
-    if (z != otherZ)
-    {
-      return policy == DuplicatePolicy::KeepLowest ? z < otherZ : z > otherZ;
-    }
-  }
-  return policy == DuplicatePolicy::KeepLast ? id > other : id < other;
-}
 } // namespace
 
 /** A few dozen points and their nodes, between the steps that wait for memory. */
