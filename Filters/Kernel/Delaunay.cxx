@@ -1254,12 +1254,15 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
       return asked.Monitor(done);
     };
   }
-  if (options.UseLattice == LatticeMode::Automatic && TriangulateLattice(points, options, result))
+  Extent extent;
+  const bool isLatticeAsked = options.UseLattice == LatticeMode::Automatic;
+  if (isLatticeAsked && TriangulateLattice(points, options, result, extent))
   {
     return result;
   }
   const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
-  const BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.2), threads);
+  BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.2), threads,
+    isLatticeAsked ? &extent : nullptr);
   SetUnusedPoints(grid.Duplicates, grid.NotFinite, result);
   if (grid.NumberOfPoints() < 3)
   {
@@ -1279,6 +1282,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   {
     try
     {
+      result.Triangles.Recycle(std::move(grid.Room));
       Grow(grid, hull, options, threads, result.Triangles);
     }
     catch (const CannotGrow&)
@@ -1288,6 +1292,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   }
   if (!isGrown)
   {
+    result.Triangles = Buffer<Index>();
     result.Triangles = Divide(grid, options);
   }
   Report(options.Monitor, 1.0);

@@ -1094,11 +1094,12 @@ bool IsByChance(double count, double tolerance)
 } // namespace
 
 bool TriangulateLattice(
-  const PointView& points, const DelaunayOptions& options, Triangulation& result)
+  const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
   const LatticeSearch search =
     FindLattice(points, tolerance, NumberOfThreads(options), Part(options.Monitor, 0.0, 0.15));
+  extent = search;
   return search.Found && TriangulateOnLattice(points, search, options, result);
 }
 

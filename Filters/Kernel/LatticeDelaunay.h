@@ -56,10 +56,11 @@ int CompareProducts(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t
  * Triangulates points on a lattice.
  * @param[in] options  LatticeTolerance is how far a point may lie from its node
  * @param[out] result  as of Triangulate, with LatticeFound; not touched when there is none
+ * @param[out] extent  of the points, in any case
  * @return false when the points are on no lattice, all on one line, or too few to tell
  */
 bool TriangulateLattice(
-  const PointView& points, const DelaunayOptions& options, Triangulation& result);
+  const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent);
 
 /** The same on a lattice that is found already. */
 bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
