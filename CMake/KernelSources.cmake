@@ -17,11 +17,14 @@ set(es_kernel_concepts
   Boundary
   Trim
   Holes
+  Membrane
+  Spline
+  Heights
   Fill
   Validate)
 
 # Kernel headers without a source file.
-set(es_kernel_headers Kernel/Types.h Kernel/Parallel.h Kernel/Extent.h)
+set(es_kernel_headers Kernel/Types.h Kernel/Parallel.h Kernel/Extent.h Kernel/Dot.h)
 set(es_kernel_sources)
 foreach (es_concept IN LISTS es_kernel_concepts)
   list(APPEND es_kernel_headers "Kernel/${es_concept}.h")
@@ -34,8 +37,9 @@ function (es_kernel_compile_options target)
   target_compile_features("${target}" PRIVATE cxx_std_17)
   # The error bounds of the predicates hold for IEEE arithmetic, one rounding per operation. A fused
   # multiply-add or reordered sums would make the signs wrong, so a global -ffast-math is undone here.
+  # Nothing reads errno: without it a square root is one instruction, also in loops.
   if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-    target_compile_options("${target}" PRIVATE -fno-fast-math -ffp-contract=off)
+    target_compile_options("${target}" PRIVATE -fno-fast-math -ffp-contract=off -fno-math-errno)
   elseif (MSVC AND MSVC_VERSION LESS 1930)
     # Before Visual Studio 2022, /fp:precise still allows contraction.
     target_compile_options("${target}" PRIVATE /fp:strict)

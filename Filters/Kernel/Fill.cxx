@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Fill.h"
 
-#include "Constraints.h"
 #include "Delaunay.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <sstream>
 
 namespace elevation
@@ -30,28 +30,10 @@ constexpr double LargestLength = 1e150;
 /** Patches of fewer points report no progress of their own. */
 constexpr double PointsPerReport = 20000.0;
 
-/** A hole with its vertices numbered from 0: first those of the boundary, then new ones. */
-struct Patch
+/** A hole that is being filled. */
+struct Patch : PatchMesh
 {
-  std::vector<Index> BoundaryIds;   ///< vertex -> id in the surface, increasing
-  std::vector<Segment> Edges;       ///< of the boundary; the hole lies on their right
-  std::vector<double> Points;       ///< x, y, z of all vertices
-  std::vector<Index> Triangles;     ///< inside the hole
-  std::vector<Index> Order;         ///< new vertices, from the boundary inwards
-  std::vector<std::size_t> Offsets; ///< of each of Order in Stencil, and the end
-  std::vector<Index> Stencil;       ///< vertices that an elevation is the mean of
-  std::vector<Index> Nearest;       ///< boundary vertex, one for each of Order
-
-  Index NumberOfBoundaryVertices() const { return static_cast<Index>(this->BoundaryIds.size()); }
-  Index NumberOfVertices() const { return static_cast<Index>(this->Points.size() / 3); }
-  Index NumberOfNewVertices() const
-  {
-    return this->NumberOfVertices() - this->NumberOfBoundaryVertices();
-  }
-  Point2 At(Index vertex) const
-  {
-    return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
-  }
+  std::vector<Segment> Edges; ///< of the boundary; the hole lies on their right
 };
 
 /** Distance between neighbouring numbers at the size of @a x, as the points are stored. */
@@ -420,97 +402,6 @@ void Connect(const Progress& progress, Patch& patch)
   }
 }
 
-/** The layers of new vertices from the boundary inwards, and the mean of eq. 2 for each. */
-void Elevate(const Progress& progress, Patch& patch)
-{
-  const Progress counting = Part(progress, 0.0, 0.2);
-  const Progress gathering = Part(progress, 0.2, 0.5);
-  const Progress layering = Part(progress, 0.5, 0.8);
-  const Progress averaging = Part(progress, 0.8, 1.0);
-  const Index boundary = patch.NumberOfBoundaryVertices();
-  const Index count = patch.NumberOfNewVertices();
-  // A new vertex is inside, so the half-edges that leave it lead to all its neighbours.
-  std::vector<std::size_t> offsets(static_cast<std::size_t>(count) + 1, 0);
-  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
-  {
-    ReportStep(counting, h, patch.Triangles.size());
-    const Index vertex = patch.Triangles[h];
-    if (vertex >= boundary)
-    {
-      ++offsets[vertex - boundary + 1];
-    }
-  }
-  for (Index i = 0; i < count; ++i)
-  {
-    offsets[i + 1] += offsets[i];
-  }
-  std::vector<Index> neighbours(offsets[count]);
-  {
-    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-    for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
-    {
-      ReportStep(gathering, h, patch.Triangles.size());
-      const Index vertex = patch.Triangles[h];
-      if (vertex >= boundary)
-      {
-        neighbours[next[vertex - boundary]++] =
-          patch.Triangles[static_cast<std::size_t>(Mesh::Next(static_cast<Index>(h)))];
-      }
-    }
-  }
-
-  constexpr Index unknown = std::numeric_limits<Index>::max();
-  std::vector<Index> layer(count, unknown);
-  patch.Order.reserve(count);
-  for (Index i = 0; i < count; ++i)
-  {
-    for (std::size_t k = offsets[i]; k < offsets[i + 1]; ++k)
-    {
-      if (neighbours[k] < boundary)
-      {
-        layer[i] = 1;
-        patch.Order.push_back(boundary + i);
-        break;
-      }
-    }
-  }
-  for (std::size_t k = 0; k < patch.Order.size(); ++k)
-  {
-    ReportStep(layering, k, count);
-    const Index i = patch.Order[k] - boundary;
-    for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
-    {
-      const Index other = neighbours[j] - boundary;
-      if (other >= 0 && layer[other] == unknown)
-      {
-        layer[other] = layer[i] + 1;
-        patch.Order.push_back(neighbours[j]);
-      }
-    }
-  }
-
-  patch.Offsets.reserve(static_cast<std::size_t>(count) + 1);
-  patch.Offsets.push_back(0);
-  for (Index vertex : patch.Order)
-  {
-    ReportStep(averaging, patch.Offsets.size(), static_cast<std::size_t>(count) + 1);
-    const Index i = vertex - boundary;
-    double sum = 0.0;
-    for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
-    {
-      const Index other = neighbours[j];
-      if (other < boundary || layer[other - boundary] < layer[i])
-      {
-        patch.Stencil.push_back(other);
-        sum += patch.Points[3 * std::size_t(other) + 2];
-      }
-    }
-    patch.Points[3 * std::size_t(vertex) + 2] =
-      sum / static_cast<double>(patch.Stencil.size() - patch.Offsets.back());
-    patch.Offsets.push_back(patch.Stencil.size());
-  }
-}
-
 /** The boundary vertices as a balanced k-d tree in place: the middle of a range is its root. */
 class NearestBoundary
 {
@@ -599,23 +490,50 @@ void FindNearest(const Progress& progress, Patch& patch)
     return;
   }
   NearestBoundary boundary(patch);
-  std::vector<Index> nearest(patch.NumberOfNewVertices());
-  patch.Nearest.reserve(patch.Order.size());
+  const Index first = patch.NumberOfBoundaryVertices();
+  patch.Nearest.resize(patch.NumberOfNewVertices());
   for (std::size_t k = 0; k < patch.Order.size(); ++k)
   {
     ReportStep(progress, k, patch.Order.size());
-    // What is nearest to a point of the stencil is not far.
-    const Index known = patch.Stencil[patch.Offsets[k]];
-    const Index first = patch.NumberOfBoundaryVertices();
-    const Index found =
-      boundary.Find(patch.At(patch.Order[k]), known < first ? known : nearest[known - first]);
-    nearest[patch.Order[k] - first] = found;
-    patch.Nearest.push_back(found);
+    // What is nearest to a neighbour is not far.
+    const Index vertex = patch.Order[k];
+    const Index outward = patch.Outward[vertex - first];
+    patch.Nearest[vertex - first] =
+      boundary.Find(patch.At(vertex), outward < first ? outward : patch.Nearest[outward - first]);
   }
 }
 
+/** Elevations and attributes; of the latter one vector each, in the order of vertices. */
+void Elevate(const Mesh& mesh, const Fans* fans, const PointView& points,
+  const FillOptions& options, const Progress& progress, Patch& patch, HoleReport& report,
+  std::vector<std::vector<double>>& attributes)
+{
+  const Values elevation = [&points](Index id) { return points.Elevation(id); };
+  const Heights heights(mesh, fans, patch, options.Method, elevation, Part(progress, 0.0, 0.5));
+  const std::size_t count = options.Attributes.size() + 1;
+  const Progress applying = Part(progress, 0.5, 1.0);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Progress one = Part(applying, double(i) / double(count), double(i + 1) / double(count));
+    std::vector<double> values = heights.Apply(i == 0 ? elevation : options.Attributes[i - 1], one);
+    if (i > 0)
+    {
+      attributes.push_back(std::move(values));
+      continue;
+    }
+    double* z = patch.Points.data() + 3 * patch.BoundaryIds.size() + 2;
+    for (const double value : values)
+    {
+      *z = value;
+      z += 3;
+    }
+  }
+  report.Method = heights.Used();
+}
+
 /** All or nothing: when memory runs out, the result is as before. */
-void Append(const Patch& patch, Index firstNewId, FillResult& result)
+void Append(const Patch& patch, const std::vector<std::vector<double>>& attributes,
+  Index firstNewId, FillResult& result)
 {
   const std::size_t points = patch.Order.size();
   const std::size_t before = static_cast<std::size_t>(result.NumberOfPoints());
@@ -629,9 +547,11 @@ void Append(const Patch& patch, Index firstNewId, FillResult& result)
   };
   room(result.Points, 3 * points);
   room(result.Triangles, patch.Triangles.size());
-  room(result.Stencil, patch.Stencil.size());
-  room(result.StencilOffsets, points);
   room(result.NearestBoundaryPoints, points);
+  for (std::vector<double>& values : result.Attributes)
+  {
+    room(values, points);
+  }
   std::vector<Index> ids(patch.NumberOfVertices());
 
   std::copy(patch.BoundaryIds.begin(), patch.BoundaryIds.end(), ids.begin());
@@ -639,17 +559,16 @@ void Append(const Patch& patch, Index firstNewId, FillResult& result)
   {
     ids[patch.Order[k]] = firstNewId + static_cast<Index>(before + k);
   }
-  const std::size_t stencilBefore = result.Stencil.size();
+  const Index first = patch.NumberOfBoundaryVertices();
   for (std::size_t k = 0; k < points; ++k)
   {
     const auto point = patch.Points.begin() + 3 * std::ptrdiff_t(patch.Order[k]);
     result.Points.insert(result.Points.end(), point, point + 3);
-    result.StencilOffsets.push_back(stencilBefore + patch.Offsets[k + 1]);
-    result.NearestBoundaryPoints.push_back(ids[patch.Nearest[k]]);
-  }
-  for (Index vertex : patch.Stencil)
-  {
-    result.Stencil.push_back(ids[vertex]);
+    result.NearestBoundaryPoints.push_back(ids[patch.Nearest[patch.Order[k] - first]]);
+    for (std::size_t i = 0; i < attributes.size(); ++i)
+    {
+      result.Attributes[i].push_back(attributes[i][patch.Order[k] - first]);
+    }
   }
   for (Index vertex : patch.Triangles)
   {
@@ -689,6 +608,13 @@ FillResult FillHoles(
     result.Reports.push_back(report);
   }
 
+  std::unique_ptr<Fans> fans;
+  if (work > 0.0 && Heights::NeedsSurroundings(options.Method))
+  {
+    fans = std::make_unique<Fans>(mesh, Part(options.Monitor, 0.0, 0.05));
+  }
+  const Progress filling = Part(options.Monitor, fans ? 0.05 : 0.0, 1.0);
+  result.Attributes.resize(options.Attributes.size());
   double done = 0.0;
   double told = 0.0;
   for (Index hole = 0; hole < holes.Count(); ++hole)
@@ -702,13 +628,17 @@ FillResult FillHoles(
         Patch patch;
         const Progress ofHole = share < PointsPerReport
           ? Progress()
-          : Part(options.Monitor, done / work, std::min(1.0, (done + share) / work));
+          : Part(filling, done / work, std::min(1.0, (done + share) / work));
+        patch.Spacing = report.Spacing;
+        std::vector<std::vector<double>> attributes;
         CollectBoundary(mesh, points, holes, hole, patch);
-        PlacePoints(options, report, Part(ofHole, 0.0, 0.1), patch);
-        Connect(Part(ofHole, 0.1, 0.8), patch);
-        Elevate(Part(ofHole, 0.8, 0.9), patch);
-        FindNearest(Part(ofHole, 0.9, 1.0), patch);
-        Append(patch, mesh.NumberOfPoints(), result);
+        PlacePoints(options, report, Part(ofHole, 0.0, 0.05), patch);
+        Connect(Part(ofHole, 0.05, 0.4), patch);
+        Arrange(patch, Part(ofHole, 0.4, 0.45));
+        FindNearest(Part(ofHole, 0.45, 0.5), patch);
+        Elevate(
+          mesh, fans.get(), points, options, Part(ofHole, 0.5, 1.0), patch, report, attributes);
+        Append(patch, attributes, mesh.NumberOfPoints(), result);
         report.NumberOfInsertedPoints = patch.NumberOfNewVertices();
       }
       catch (const std::bad_alloc&)
@@ -727,7 +657,7 @@ FillResult FillHoles(
     done += share;
     if (done >= told)
     {
-      Report(options.Monitor, work > 0.0 ? std::min(1.0, done / work) : 1.0);
+      Report(filling, work > 0.0 ? std::min(1.0, done / work) : 1.0);
       told = done + PointsPerReport;
     }
   }

@@ -4,15 +4,13 @@
  * @file
  * Patches for the holes of an elevation surface.
  *
- * In: a surface, its elevations and its holes (Holes.h). Out: points and triangles to append, a
- * report for every hole, and for every new point the points its elevation comes from, so that the
- * caller can give it other attributes in the same way. For each hole on its own:
+ * In: a surface, its elevations, other values of its points, and its holes (Holes.h). Out: points
+ * and triangles to append, their values, and a report for every hole. For each hole on its own:
  *   1. Measure, and compare with the limits.
  *   2. Place points: an even arrangement, one spacing apart, kept clear of the boundary.
  *   3. Triangulate boundary and new points, make the boundary's edges edges of the triangulation
  *      (constrained Delaunay), and keep what lies inside.
- *   4. Elevations: the mean of the known neighbours, layer by layer from the boundary inwards
- *      [Nguyen, eq. 2].
+ *   4. Elevations, and other attributes in the same way (Heights.h).
  *
  * The spacing of a hole is by default the mean length of its boundary edges [Nguyen, eq. 1].
  * New points form rows one spacing apart, of which every second is moved by half a step, so that
@@ -29,11 +27,11 @@
 #ifndef elevation_Fill_h
 #define elevation_Fill_h
 
+#include "Heights.h"
 #include "Holes.h"
 #include "Mesh.h"
 #include "Types.h"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -61,6 +59,10 @@ struct FillOptions
    * New x,y are rounded to float (before they are triangulated, so that the result stays exact).
    */
   bool SinglePrecision = false;
+  /** How elevations and attributes are found. */
+  Interpolation Method = Interpolation::Adaptive;
+  /** Further values of the surface's points, each to be found at new points as elevations are. */
+  std::vector<Values> Attributes;
   /** A hole that would take more new points than are left of this number fails. */
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
   Progress Monitor;
@@ -76,12 +78,13 @@ struct HoleReport
   double Area = 0.0;
   double Spacing = 0.0; ///< the one used
   Index NumberOfInsertedPoints = 0;
+  Interpolation Method = Interpolation::NeighborMean; ///< the one used; never Adaptive
   std::string Reason; ///< of Failed, a sentence without the hole's name
 };
 
 /**
  * What to append. New points have the ids after those of the surface's points, in the order of
- * their holes, within a hole from the boundary inwards: the points of a stencil come before it.
+ * their holes, within a hole from the boundary inwards.
  */
 struct FillResult
 {
@@ -90,11 +93,10 @@ struct FillResult
   /** The new points of hole i are PointOffsets[i] to PointOffsets[i+1] - 1; likewise triangles. */
   std::vector<Index> PointOffsets{ 0 };
   std::vector<Index> TriangleOffsets{ 0 };
-  /** Point ids of which new point i is the mean: Stencil[StencilOffsets[i]], ... */
-  std::vector<Index> Stencil;
-  std::vector<std::size_t> StencilOffsets{ 0 }; ///< one more than there are new points
-  std::vector<Index>
-    NearestBoundaryPoints; ///< of each new point; among equally near ones the least id
+  /** One a new point: the nearest point of its hole's boundary; of equally near ones the least id.
+   */
+  std::vector<Index> NearestBoundaryPoints;
+  std::vector<std::vector<double>> Attributes; ///< as in the options, one value a new point
   std::vector<HoleReport> Reports;
 
   Index NumberOfPoints() const { return this->PointOffsets.back(); }

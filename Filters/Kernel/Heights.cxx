@@ -1,0 +1,635 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Heights.h"
+
+#include "Dot.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace elevation
+{
+
+namespace
+{
+/** Rings of the surface around a hole that splines go through, besides its boundary. */
+constexpr int NumberOfRings = 3;
+
+/** Centres of a spline: for small holes, and how many more for a new point, and at most. */
+constexpr double LeastCentres = 40.0;
+constexpr double CentresPerPoint = 0.5;
+constexpr double MostCentres = 160.0;
+
+/** Centres nearer to each other than that many spacings add nothing but rounding. */
+constexpr double LeastDistance = 0.02;
+
+/** Places where Adaptive tries the methods, new points it compares there, places that suffice. */
+constexpr int NumberOfPlaces = 8;
+constexpr Index NumberOfProbes = 32;
+constexpr int EnoughPlaces = 2;
+
+/** Of the membrane, where methods are only compared. */
+constexpr double RoughAccuracy = 1e-3;
+
+/** Points a spline is evaluated at between two reports. */
+constexpr std::size_t PointsPerReport = 4096;
+
+/** How far beyond the range values may go: slopes of the surface times distance. */
+constexpr double SlopeLimit = 2.0;
+
+/** Finds the triangle of a mesh that a point lies in, by a walk from a triangle near it. */
+class Walk
+{
+public:
+  Walk(const Mesh& mesh, Index start)
+    : Surface(mesh)
+    , Triangle(start)
+  {
+  }
+
+  /** @return false when the straight way leaves the surface, or nearly so */
+  bool To(const Point2& p)
+  {
+    constexpr int mostSteps = 1 << 16;
+    Index t = this->Triangle;
+    for (int step = 0; step < mostSteps; ++step)
+    {
+      const Point2& a = this->Surface.PointOf(this->Surface.Triangles[3 * t]);
+      const Point2& b = this->Surface.PointOf(this->Surface.Triangles[3 * t + 1]);
+      const Point2& c = this->Surface.PointOf(this->Surface.Triangles[3 * t + 2]);
+      // Twice the areas that p makes with the three edges.
+      const double area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
+      const double tolerance = -1e-9 * area;
+      const double w[3] = { (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X),
+        (b.X - p.X) * (c.Y - p.Y) - (b.Y - p.Y) * (c.X - p.X),
+        (c.X - p.X) * (a.Y - p.Y) - (c.Y - p.Y) * (a.X - p.X) };
+      // The first edge to look at changes, so that no walk goes round and round.
+      int across = -1;
+      for (int k = 0; k < 3 && across < 0; ++k)
+      {
+        const int edge = (k + step) % 3;
+        across = w[edge] < tolerance ? edge : -1;
+      }
+      if (across < 0)
+      {
+        const double sum = w[0] + w[1] + w[2];
+        for (int k = 0; k < 3; ++k)
+        {
+          this->Shares[k] = sum > 0.0 ? std::max(0.0, w[(k + 1) % 3] / sum) : 1.0 / 3.0;
+        }
+        this->Triangle = t;
+        return true;
+      }
+      const Index twin = this->Surface.Twin(3 * t + across);
+      if (twin == Mesh::Border)
+      {
+        return false;
+      }
+      t = Mesh::Triangle(twin);
+    }
+    return false;
+  }
+
+  /** Where To() has led: values by linear interpolation. */
+  double ValueOf(const Values& values) const
+  {
+    double value = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      value += this->Shares[k] * values(this->Surface.Triangles[3 * this->Triangle + k]);
+    }
+    return value;
+  }
+
+  /** The corner that counts the most there. */
+  Index Corner() const
+  {
+    int k = this->Shares[1] > this->Shares[0] ? 1 : 0;
+    k = this->Shares[2] > this->Shares[k] ? 2 : k;
+    return this->Surface.Triangles[3 * this->Triangle + k];
+  }
+
+private:
+  const Mesh& Surface;
+  Index Triangle;
+  double Shares[3] = { 1.0, 0.0, 0.0 };
+};
+
+bool AllFinite(const std::vector<double>& values)
+{
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+} // namespace
+
+void Arrange(PatchMesh& patch, const Progress& progress)
+{
+  const Progress counting = Part(progress, 0.0, 0.3);
+  const Progress gathering = Part(progress, 0.3, 0.7);
+  const Progress layering = Part(progress, 0.7, 1.0);
+  const Index boundary = patch.NumberOfBoundaryVertices();
+  const Index count = patch.NumberOfNewVertices();
+  // A new vertex is inside, so the half-edges that leave it lead to all its neighbours.
+  std::vector<std::size_t>& offsets = patch.Neighbours.Offsets;
+  offsets.assign(static_cast<std::size_t>(count) + 1, 0);
+  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+  {
+    ReportStep(counting, h, patch.Triangles.size());
+    const Index vertex = patch.Triangles[h];
+    if (vertex >= boundary)
+    {
+      ++offsets[vertex - boundary + 1];
+    }
+  }
+  for (Index i = 0; i < count; ++i)
+  {
+    offsets[i + 1] += offsets[i];
+  }
+  std::vector<Index>& neighbours = patch.Neighbours.Neighbours;
+  neighbours.resize(offsets[count]);
+  patch.Neighbours.NumberOfKnown = boundary;
+  {
+    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+    for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+    {
+      ReportStep(gathering, h, patch.Triangles.size());
+      const Index vertex = patch.Triangles[h];
+      if (vertex >= boundary)
+      {
+        neighbours[next[vertex - boundary]++] =
+          patch.Triangles[static_cast<std::size_t>(Mesh::Next(static_cast<Index>(h)))];
+      }
+    }
+  }
+
+  constexpr Index unknown = std::numeric_limits<Index>::max();
+  std::vector<Index>& layers = patch.Layers;
+  layers.assign(count, unknown);
+  patch.Outward.assign(count, None);
+  patch.Order.reserve(count);
+  for (Index i = 0; i < count; ++i)
+  {
+    for (std::size_t k = offsets[i]; k < offsets[i + 1]; ++k)
+    {
+      if (neighbours[k] < boundary)
+      {
+        layers[i] = 1;
+        patch.Outward[i] = neighbours[k];
+        patch.Order.push_back(boundary + i);
+        break;
+      }
+    }
+  }
+  for (std::size_t k = 0; k < patch.Order.size(); ++k)
+  {
+    ReportStep(layering, k, count);
+    const Index i = patch.Order[k] - boundary;
+    for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
+    {
+      const Index other = neighbours[j] - boundary;
+      if (other >= 0 && layers[other] == unknown)
+      {
+        layers[other] = layers[i] + 1;
+        patch.Outward[other] = patch.Order[k];
+        patch.Order.push_back(neighbours[j]);
+      }
+    }
+  }
+}
+
+Heights::Heights(const Mesh& surface, const Fans* fans, const PatchMesh& patch,
+  Interpolation wanted, const Values& values, const Progress& progress)
+  : Surface(surface)
+  , Patch(patch)
+  , Method(wanted)
+  , Known(patch.BoundaryIds)
+{
+  if (wanted == Interpolation::NeighborMean || patch.Order.empty())
+  {
+    this->Method = Interpolation::NeighborMean;
+    return;
+  }
+  if (NeedsSurroundings(wanted))
+  {
+    Point2 low = patch.At(0);
+    Point2 high = low;
+    for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
+    {
+      const Point2 p = patch.At(v);
+      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+    }
+    this->Centre = { low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
+    this->Scale = 2.0 / std::max(high.X - low.X, high.Y - low.Y);
+    this->CollectRings(*fans);
+  }
+  for (const Index id : this->Known)
+  {
+    if (!std::isfinite(values(id)))
+    {
+      this->Method = Interpolation::NeighborMean;
+      return;
+    }
+  }
+  if (NeedsSurroundings(wanted))
+  {
+    this->ChooseCentres();
+    if (wanted == Interpolation::Adaptive)
+    {
+      this->Flat = std::make_unique<Membrane>(patch.Neighbours, Part(progress, 0.0, 0.3));
+      this->Choose(*fans, values, Part(progress, 0.3, 1.0));
+    }
+    else
+    {
+      this->Smooth = this->MakeSpline(
+        wanted == Interpolation::Cubic ? Spline::Kernel::Cubic : Spline::Kernel::ThinPlate);
+      this->Method = this->Smooth ? wanted : Interpolation::Membrane;
+    }
+  }
+  if (!this->Flat && (!this->Smooth || !this->AllBoundaryIsCentre))
+  {
+    this->Flat = std::make_unique<Membrane>(patch.Neighbours, progress);
+  }
+}
+
+void Heights::CollectRings(const Fans& fans)
+{
+  // A ring is what lies next to the ring before, but in neither of the two before.
+  std::vector<Index> before;
+  std::vector<Index> last = this->Known;
+  std::vector<Index> next;
+  for (int ring = 0; ring < NumberOfRings; ++ring)
+  {
+    next.clear();
+    for (const Index vertex : last)
+    {
+      fans.Visit(this->Surface, vertex, [&](Index h) {
+        next.push_back(this->Surface.Destination(h));
+        next.push_back(this->Surface.Apex(h));
+        if (ring < 2)
+        {
+          this->Edges.push_back({ vertex, this->Surface.Destination(h) });
+        }
+        return true;
+      });
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    const auto isOld = [&](Index id) {
+      return std::binary_search(last.begin(), last.end(), id) ||
+        std::binary_search(before.begin(), before.end(), id);
+    };
+    next.erase(std::remove_if(next.begin(), next.end(), isOld), next.end());
+    this->Known.insert(this->Known.end(), next.begin(), next.end());
+    before.swap(last);
+    last.swap(next);
+  }
+}
+
+/** Always the point that is farthest from those chosen; first on the boundary, then anywhere. */
+void Heights::ChooseCentres()
+{
+  const std::size_t boundary = this->Patch.BoundaryIds.size();
+  const std::size_t count = this->Known.size();
+  const std::size_t wanted = static_cast<std::size_t>(
+    std::min(MostCentres, LeastCentres + CentresPerPoint * this->Patch.NumberOfNewVertices()));
+  std::vector<double> x(count);
+  std::vector<double> y(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Point2 p = this->Normalized(this->Surface.PointOf(this->Known[i]));
+    x[i] = p.X;
+    y[i] = p.Y;
+  }
+  const double least = LeastDistance * this->Patch.Spacing * this->Scale;
+  std::vector<double> squares(count, std::numeric_limits<double>::infinity());
+  const auto choose = [&](std::size_t end, std::size_t most) {
+    while (this->Centres.size() < most)
+    {
+      const std::size_t best = static_cast<std::size_t>(
+        std::max_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(end)) -
+        squares.begin());
+      if (!(squares[best] > least * least))
+      {
+        return;
+      }
+      this->Centres.push_back(static_cast<Index>(best));
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        const double square =
+          (x[i] - x[best]) * (x[i] - x[best]) + (y[i] - y[best]) * (y[i] - y[best]);
+        squares[i] = square < squares[i] ? square : squares[i];
+      }
+    }
+  };
+  choose(boundary, wanted / 2);
+  choose(count, wanted);
+  std::sort(this->Centres.begin(), this->Centres.end());
+  this->AllBoundaryIsCentre = this->Centres.size() >= boundary &&
+    this->Centres[boundary - 1] == static_cast<Index>(boundary) - 1;
+}
+
+std::unique_ptr<Spline> Heights::MakeSpline(Spline::Kernel kernel) const
+{
+  std::vector<Point2> centres;
+  centres.reserve(this->Centres.size());
+  for (const Index place : this->Centres)
+  {
+    centres.push_back(this->Normalized(this->Surface.PointOf(this->Known[place])));
+  }
+  auto spline = std::make_unique<Spline>();
+  return spline->Prepare(centres, kernel) ? std::move(spline) : nullptr;
+}
+
+void Heights::Choose(const Fans& fans, const Values& values, const Progress& progress)
+{
+  const Index boundary = this->Patch.NumberOfBoundaryVertices();
+  const Index count = this->Patch.NumberOfNewVertices();
+  this->Method = Interpolation::Membrane;
+  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(Spline::Kernel::ThinPlate),
+    this->MakeSpline(Spline::Kernel::Cubic) };
+  if (!splines[0])
+  {
+    return;
+  }
+
+  // What is moved: the boundary, the other centres, and the probes.
+  std::vector<Point2> points;
+  for (const Index id : this->Patch.BoundaryIds)
+  {
+    points.push_back(this->Surface.PointOf(id));
+  }
+  std::vector<Index> valueOfCentre;
+  for (const Index place : this->Centres)
+  {
+    valueOfCentre.push_back(place < boundary ? place : static_cast<Index>(points.size()));
+    if (place >= boundary)
+    {
+      points.push_back(this->Surface.PointOf(this->Known[place]));
+    }
+  }
+  const std::size_t firstProbe = points.size();
+  std::vector<Index> probes;
+  const Index numberOfProbes = std::min(count, NumberOfProbes);
+  for (Index k = 0; k < numberOfProbes; ++k)
+  {
+    probes.push_back(static_cast<Index>((2 * std::int64_t(k) + 1) * count / (2 * numberOfProbes)));
+    points.push_back(this->Patch.At(boundary + probes.back()));
+  }
+  std::vector<Point2> normalized;
+  for (const Point2& p : points)
+  {
+    normalized.push_back(this->Normalized(p));
+  }
+
+  double squares[3] = { 0.0, 0.0, 0.0 };
+  std::vector<double> moved(points.size());
+  const auto tryAt = [&](double angle, double size, const Progress& here) {
+    const Point2 direction{ std::cos(angle), std::sin(angle) };
+    const auto along = [&](const Point2& p) { return p.X * direction.X + p.Y * direction.Y; };
+    double near = std::numeric_limits<double>::infinity();
+    double far = -near;
+    Index end = 0;
+    for (std::size_t i = 0; i < firstProbe; ++i)
+    {
+      near = std::min(near, along(normalized[i]));
+      far = std::max(far, along(normalized[i]));
+      end = i < static_cast<std::size_t>(boundary) && along(normalized[i]) > along(normalized[end])
+        ? static_cast<Index>(i)
+        : end;
+    }
+    // Just beyond the rings; by a step from point to point, as lattices repeat themselves.
+    const double distance = size * (far - near) / this->Scale + this->Patch.Spacing;
+    const Point2 origin = points[end];
+    Index start = None;
+    fans.Visit(this->Surface, this->Patch.BoundaryIds[end], [&start](Index h) {
+      start = Mesh::Triangle(h);
+      return false;
+    });
+    Walk walk(this->Surface, start);
+    if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
+    {
+      return false;
+    }
+    const Point2 target = this->Surface.PointOf(walk.Corner());
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      if (!walk.To({ target.X + size * (points[i].X - origin.X),
+            target.Y + size * (points[i].Y - origin.Y) }))
+      {
+        return false;
+      }
+      moved[i] = walk.ValueOf(values);
+    }
+    if (!AllFinite(moved))
+    {
+      return false;
+    }
+
+    const double shift = moved[0];
+    for (double& value : moved)
+    {
+      value -= shift;
+    }
+    const std::vector<double> rim(moved.begin(), moved.begin() + boundary);
+    const std::vector<double> flat = this->Flat->Solve(rim, RoughAccuracy, here);
+    for (Index k = 0; k < numberOfProbes; ++k)
+    {
+      const double error = flat[probes[k]] - moved[firstProbe + k];
+      squares[0] += error * error;
+    }
+    std::vector<double> atCentres;
+    for (const Index i : valueOfCentre)
+    {
+      atCentres.push_back(moved[i]);
+    }
+    for (int s = 0; s < 2 && splines[s]; ++s)
+    {
+      const Spline::Weights weights = splines[s]->Interpolate(atCentres);
+      std::vector<double> predicted(numberOfProbes, 0.0);
+      splines[s]->Add(weights, &normalized[firstProbe], predicted.size(), predicted.data());
+      if (!this->AllBoundaryIsCentre)
+      {
+        std::vector<double> rest(boundary, 0.0);
+        splines[s]->Add(weights, normalized.data(), rest.size(), rest.data());
+        for (Index i = 0; i < boundary; ++i)
+        {
+          rest[i] = rim[i] - rest[i];
+        }
+        const std::vector<double> correction = this->Flat->Solve(rest, RoughAccuracy, here);
+        for (Index k = 0; k < numberOfProbes; ++k)
+        {
+          predicted[k] += correction[probes[k]];
+        }
+      }
+      for (Index k = 0; k < numberOfProbes; ++k)
+      {
+        const double error = predicted[k] - moved[firstProbe + k];
+        squares[1 + s] += error * error;
+      }
+    }
+    return true;
+  };
+  int places = 0;
+  for (const double size : { 1.0, 0.5 })
+  {
+    for (int k = 0; k < NumberOfPlaces && (size == 1.0 || places < EnoughPlaces); ++k)
+    {
+      const double done = size == 1.0 ? k / 16.0 : 0.5 + k / 16.0;
+      Report(progress, done);
+      const double angle = 2.0 * 3.14159265358979323846 * k / NumberOfPlaces;
+      places += tryAt(angle, size, Part(progress, done, done)) ? 1 : 0;
+    }
+  }
+  const double best = std::min(squares[1], splines[1] ? squares[2] : squares[1]);
+  if (places > 0 && squares[0] < best)
+  {
+    return;
+  }
+  const int s = places > 0 && splines[1] && squares[2] < squares[1] ? 1 : 0;
+  this->Method = s == 0 ? Interpolation::ThinPlate : Interpolation::Cubic;
+  this->Smooth = std::move(splines[s]);
+}
+
+std::vector<double> Heights::Mean(const Values& values, const Progress& progress) const
+{
+  const Index boundary = this->Patch.NumberOfBoundaryVertices();
+  const Adjacency& neighbours = this->Patch.Neighbours;
+  std::vector<double> result(this->Patch.NumberOfNewVertices());
+  for (std::size_t k = 0; k < this->Patch.Order.size(); ++k)
+  {
+    ReportStep(progress, k, this->Patch.Order.size());
+    const Index i = this->Patch.Order[k] - boundary;
+    double sum = 0.0;
+    int known = 0;
+    for (std::size_t j = neighbours.Offsets[i]; j < neighbours.Offsets[i + 1]; ++j)
+    {
+      const Index other = neighbours.Neighbours[j];
+      if (other < boundary || this->Patch.Layers[other - boundary] < this->Patch.Layers[i])
+      {
+        const double value =
+          other < boundary ? values(this->Patch.BoundaryIds[other]) : result[other - boundary];
+        if (!std::isnan(value))
+        {
+          sum += value;
+          ++known;
+        }
+      }
+    }
+    result[i] = known > 0 ? sum / known : std::numeric_limits<double>::quiet_NaN();
+  }
+  return result;
+}
+
+std::vector<double> Heights::Apply(const Values& values, const Progress& progress) const
+{
+  if (this->Method == Interpolation::NeighborMean)
+  {
+    return this->Mean(values, progress);
+  }
+  const std::size_t boundary = this->Patch.BoundaryIds.size();
+  const std::size_t count = static_cast<std::size_t>(this->Patch.NumberOfNewVertices());
+  std::vector<double> known(this->Smooth ? this->Known.size() : boundary);
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (std::size_t i = 0; i < known.size(); ++i)
+  {
+    known[i] = values(this->Known[i]);
+    low = std::min(low, known[i]);
+    high = std::max(high, known[i]);
+  }
+  if (!AllFinite(known))
+  {
+    return this->Mean(values, progress);
+  }
+  // Within [-1, 1] nothing overflows, and offsets cost no digits.
+  const double middle = 0.5 * low + 0.5 * high;
+  const double unit = std::max(high - middle, middle - low);
+  if (unit == 0.0)
+  {
+    return std::vector<double>(count, low);
+  }
+  for (double& value : known)
+  {
+    value = (value - middle) / unit;
+  }
+
+  std::vector<double> result;
+  std::vector<double> rim(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(boundary));
+  double slope = 0.0;
+  if (this->Smooth)
+  {
+    std::vector<double> atCentres;
+    for (const Index place : this->Centres)
+    {
+      atCentres.push_back(known[place]);
+    }
+    const Spline::Weights weights = this->Smooth->Interpolate(atCentres);
+    const Progress adding = Part(progress, 0.0, 0.5);
+    std::vector<Point2> points(PointsPerReport);
+    result.assign(count, 0.0);
+    for (std::size_t begin = 0; begin < count; begin += PointsPerReport)
+    {
+      Report(adding, static_cast<double>(begin) / static_cast<double>(count));
+      const std::size_t size = std::min(PointsPerReport, count - begin);
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        points[i] = this->Normalized(this->Patch.At(static_cast<Index>(boundary + begin + i)));
+      }
+      this->Smooth->Add(weights, points.data(), size, &result[begin]);
+    }
+    if (!this->AllBoundaryIsCentre)
+    {
+      std::vector<Point2> ends;
+      for (const Index id : this->Patch.BoundaryIds)
+      {
+        ends.push_back(this->Normalized(this->Surface.PointOf(id)));
+      }
+      std::vector<double> there(boundary, 0.0);
+      this->Smooth->Add(weights, ends.data(), boundary, there.data());
+      for (std::size_t i = 0; i < boundary; ++i)
+      {
+        rim[i] -= there[i];
+      }
+    }
+    double squares = 0.0;
+    for (const Edge& edge : this->Edges)
+    {
+      const Point2& a = this->Surface.PointOf(edge.A);
+      const Point2& b = this->Surface.PointOf(edge.B);
+      const double rise =
+        (values(edge.B) - values(edge.A)) / unit / (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
+      squares += rise * rise;
+    }
+    slope = SlopeLimit * this->Scale *
+      std::sqrt(squares / std::max<double>(1.0, static_cast<double>(this->Edges.size())));
+  }
+  if (!this->Smooth || !this->AllBoundaryIsCentre)
+  {
+    const std::vector<double> flat = this->Flat->Solve(rim, 1e-10, Part(progress, 0.5, 1.0));
+    if (this->Smooth)
+    {
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        result[i] += flat[i];
+      }
+    }
+    else
+    {
+      result = flat;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    double room = 0.0;
+    if (slope > 0.0)
+    {
+      const Point2 p = this->Patch.At(static_cast<Index>(boundary + i));
+      const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
+      room = slope * std::hypot(p.X - q.X, p.Y - q.Y) * unit;
+    }
+    result[i] = std::max(low - room, std::min(high + room, middle + unit * result[i]));
+  }
+  return result;
+}
+
+} // namespace elevation

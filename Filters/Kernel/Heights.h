@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Values at the new points of a patch, from those of the surface around the hole.
+ *
+ * In: a patch, the surface, the values of its points. Out: one value for each new point. What gives
+ * the elevations gives any other attribute in the same way.
+ *
+ *   NeighborMean  the mean of the known neighbours, layer by layer from the boundary inwards
+ *                 [Nguyen, eq. 2];
+ *   Membrane      the mean of all neighbours: eq. 2 repeated until nothing changes (Membrane.h);
+ *   ThinPlate     continues slope and curvature of the surface: a spline (Spline.h) through the
+ *                 hole's boundary and three rings of points around it;
+ *   Cubic         the same with the smoother spline of r^3;
+ *   Adaptive      for each hole the one of the last three that predicts the surface around it best.
+ *
+ * Splines. Of many points around a hole, some hundred are chosen evenly. Where the spline so misses
+ * the boundary, the difference is continued by the membrane and added: patches always meet
+ * their boundary.
+ *
+ * Adaptive leaves out what is like the hole: its boundary, its rings and some of its new points are
+ * moved to eight places around it, where the surface is known, and each method predicts there the
+ * points inside from those around. Splines and membrane depend on where points lie to each other
+ * alone, so the factors of the hole serve at all places. A place counts when surface is at each of
+ * the moved points; where a hole has less than two such places, points at half the size are tried;
+ * without any, the thin plate is taken. The least sum of squares wins.
+ *
+ * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
+ * Splines may leave the range of boundary and rings, as a summit that was lost rises above all that
+ * is left of it; but by no more than the distance from the nearest boundary point times twice
+ * the slope of the surface, its root mean square over the edges at the boundary and the first ring.
+ *
+ * What a method cannot do, a simpler one does, and Used() tells: splines that points do not
+ * determine (all nearly in one line) become the membrane; values that are not finite at the
+ * boundary or the rings are left to NeighborMean, which leaves NaN out.
+ *
+ * Guarantees: only points of the surface are used, never those of other patches, so that nothing
+ * depends on the order of holes. Splines and Adaptive continue planes exactly, to rounding.
+ *
+ * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
+ */
+#ifndef elevation_Heights_h
+#define elevation_Heights_h
+
+#include "Constraints.h"
+#include "Membrane.h"
+#include "Mesh.h"
+#include "Spline.h"
+#include "Types.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace elevation
+{
+
+/** How values are found. The numbers are what users read in the output. */
+enum class Interpolation : unsigned char
+{
+  NeighborMean = 0,
+  Membrane = 1,
+  ThinPlate = 2,
+  Adaptive = 3,
+  Cubic = 4
+};
+
+/** The value of a point of the surface, by its id. */
+using Values = std::function<double(Index)>;
+
+/** A hole with its vertices numbered from 0: first those of the boundary, then new ones. */
+struct PatchMesh
+{
+  std::vector<Index> BoundaryIds; ///< vertex -> id in the surface, increasing
+  std::vector<double> Points;     ///< x, y and room for z of all vertices
+  std::vector<Index> Triangles;   ///< inside the hole
+  double Spacing = 0.0;
+
+  // What Arrange() finds; one for each new vertex.
+  Adjacency Neighbours;
+  std::vector<Index> Layers;  ///< edges from the boundary
+  std::vector<Index> Outward; ///< a neighbour one layer further out
+  std::vector<Index> Nearest; ///< boundary vertex; set by the caller
+  std::vector<Index> Order;   ///< new vertices, from the boundary inwards
+
+  Index NumberOfBoundaryVertices() const { return static_cast<Index>(this->BoundaryIds.size()); }
+  Index NumberOfVertices() const { return static_cast<Index>(this->Points.size() / 3); }
+  Index NumberOfNewVertices() const
+  {
+    return this->NumberOfVertices() - this->NumberOfBoundaryVertices();
+  }
+  Point2 At(Index vertex) const
+  {
+    return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
+  }
+};
+
+/** Neighbours and layers of the new vertices. Linear. */
+void Arrange(PatchMesh& patch, const Progress& progress = Progress());
+
+class Heights
+{
+public:
+  /** Whether a method asks for the surface around holes. */
+  static bool NeedsSurroundings(Interpolation wanted)
+  {
+    return wanted != Interpolation::NeighborMean && wanted != Interpolation::Membrane;
+  }
+
+  /**
+   * Chooses and prepares. Surface, fans and patch must stay; the patch is arranged, its Nearest is
+   * set.
+   * @param[in] fans    of the surface; may be null for methods that need no surroundings
+   * @param[in] values  what Adaptive judges by: the elevations
+   * @throws Aborted, std::bad_alloc
+   */
+  Heights(const Mesh& surface, const Fans* fans, const PatchMesh& patch, Interpolation wanted,
+    const Values& values, const Progress& progress = Progress());
+
+  /** The method; never Adaptive. */
+  Interpolation Used() const { return this->Method; }
+
+  /**
+   * One value for each new vertex. Values that are not finite at points that it needs: see above.
+   */
+  std::vector<double> Apply(const Values& values, const Progress& progress = Progress()) const;
+
+private:
+  /** Places of points as splines want them: around 0, of size about 1. */
+  Point2 Normalized(const Point2& p) const
+  {
+    return { (p.X - this->Centre.X) * this->Scale, (p.Y - this->Centre.Y) * this->Scale };
+  }
+
+  void CollectRings(const Fans& fans);
+  void ChooseCentres();
+  std::unique_ptr<Spline> MakeSpline(Spline::Kernel kernel) const;
+  void Choose(const Fans& fans, const Values& values, const Progress& progress);
+  std::vector<double> Mean(const Values& values, const Progress& progress) const;
+
+  const Mesh& Surface;
+  const PatchMesh& Patch;
+  Interpolation Method;
+  Point2 Centre{ 0.0, 0.0 };
+  double Scale = 1.0;
+
+  std::vector<Index> Known; ///< ids: boundary, then the rings
+  struct Edge
+  {
+    Index A;
+    Index B;
+  };
+  std::vector<Edge> Edges;    ///< of the surface, at the boundary and the first ring
+  std::vector<Index> Centres; ///< of the splines, places in Known
+  bool AllBoundaryIsCentre = true;
+  std::unique_ptr<Membrane> Flat;
+  std::unique_ptr<Spline> Smooth;
+};
+
+} // namespace elevation
+
+#endif
