@@ -33,6 +33,13 @@
 
 vtkStandardNewMacro(vtkFillElevationHoles);
 
+static_assert(vtkFillElevationHoles::NEIGHBOR_MEAN == int(elevation::Interpolation::NeighborMean) &&
+    vtkFillElevationHoles::MEMBRANE == int(elevation::Interpolation::Membrane) &&
+    vtkFillElevationHoles::THIN_PLATE == int(elevation::Interpolation::ThinPlate) &&
+    vtkFillElevationHoles::ADAPTIVE == int(elevation::Interpolation::Adaptive) &&
+    vtkFillElevationHoles::CUBIC_SPLINE == int(elevation::Interpolation::Cubic),
+  "the kernel's names are those of the filter");
+
 namespace
 {
 using elevation::FillResult;
@@ -116,37 +123,46 @@ vtkSmartPointer<vtkAbstractArray> Extend(
   return output;
 }
 
-/** The values of new points, as their z was found. */
-void Average(
-  const FillResult& patches, bool unitLength, vtkDataArray* values, const Progress& progress)
+/** Whether new points get values of an array as they get their z. */
+bool IsInterpolated(vtkAbstractArray* array)
 {
-  const vtkIdType first = values->GetNumberOfTuples() - patches.NumberOfPoints();
+  return IsFloatingPoint(array) && !IsGhostArray(array);
+}
+
+/** The components of all such arrays, one after another. */
+std::vector<elevation::Values> AttributesOf(vtkPointData* pointData)
+{
+  std::vector<elevation::Values> attributes;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* numbers = pointData->GetArray(i);
+    for (int c = 0; numbers && IsInterpolated(numbers) && c < numbers->GetNumberOfComponents(); ++c)
+    {
+      attributes.push_back([numbers, c](Index id) { return numbers->GetComponent(id, c); });
+    }
+  }
+  return attributes;
+}
+
+/** The tuples of new points, whose components begin with the attribute @a first. */
+void SetInterpolated(const FillResult& patches, std::size_t first, bool unitLength,
+  vtkDataArray* values, const Progress& progress)
+{
+  const vtkIdType before = values->GetNumberOfTuples() - patches.NumberOfPoints();
   const int components = values->GetNumberOfComponents();
-  std::vector<double> mean(components);
   for (Index i = 0; i < patches.NumberOfPoints(); ++i)
   {
     ReportStep(progress, i, patches.NumberOfPoints());
     double squares = 0.0;
     for (int c = 0; c < components; ++c)
     {
-      double sum = 0.0;
-      int known = 0;
-      for (std::size_t k = patches.StencilOffsets[i]; k < patches.StencilOffsets[i + 1]; ++k)
-      {
-        const double value = values->GetComponent(patches.Stencil[k], c);
-        if (!std::isnan(value))
-        {
-          sum += value;
-          ++known;
-        }
-      }
-      mean[c] = known > 0 ? sum / known : vtkMath::Nan();
-      squares += mean[c] * mean[c];
+      const double value = patches.Attributes[first + c][i];
+      squares += value * value;
     }
     const double scale = unitLength && squares > 0.0 ? 1.0 / std::sqrt(squares) : 1.0;
     for (int c = 0; c < components; ++c)
     {
-      values->SetComponent(first + i, c, scale * mean[c]);
+      values->SetComponent(before + i, c, scale * patches.Attributes[first + c][i]);
     }
   }
 }
@@ -186,16 +202,18 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttribu
 void PassPointData(vtkPointData* input, const FillResult& patches, bool interpolate,
   vtkPointData* output, const Progress& progress)
 {
+  std::size_t attribute = 0;
   PassExtended(input, patches.NumberOfPoints(), output, progress,
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
       if (!interpolate || IsGhostArray(before))
       {
         return;
       }
-      if (IsFloatingPoint(before))
+      if (IsInterpolated(before))
       {
-        Average(
-          patches, before == input->GetNormals(), vtkArrayDownCast<vtkDataArray>(after), ofArray);
+        SetInterpolated(patches, attribute, before == input->GetNormals(),
+          vtkArrayDownCast<vtkDataArray>(after), ofArray);
+        attribute += before->GetNumberOfComponents();
         return;
       }
       const vtkIdType first = before->GetNumberOfTuples();
@@ -299,7 +317,8 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
   add("Area", vtkNew<vtkDoubleArray>().Get(), [](const HoleReport& report) { return report.Area; });
   add("NumberOfInsertedPoints", vtkNew<vtkIdTypeArray>().Get(),
     [](const HoleReport& report) { return report.NumberOfInsertedPoints; });
-  add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(), [](const HoleReport&) { return 0; });
+  add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(),
+    [](const HoleReport& report) { return static_cast<unsigned char>(report.Method); });
 
   vtkNew<vtkPoints> points;
   points->SetDataType(input->GetPoints() ? input->GetPoints()->GetDataType() : VTK_FLOAT);
@@ -397,6 +416,11 @@ int vtkFillElevationHoles::RequestData(
     options.MaximumHoleEdges =
       static_cast<Index>(std::min<vtkIdType>(this->MaximumHoleEdges, VTK_INT_MAX));
     options.Spacing = this->Spacing;
+    options.Method = static_cast<elevation::Interpolation>(this->Interpolation);
+    if (this->InterpolatePointData)
+    {
+      options.Attributes = AttributesOf(input->GetPointData());
+    }
     options.SinglePrecision = HasFloatPoints(input);
     options.MaximumInsertedPoints = PointsThatFit();
     options.Monitor = Part(progress, 0.3, 0.8);
@@ -428,12 +452,20 @@ int vtkFillElevationHoles::RequestData(
   });
 }
 
+const char* vtkFillElevationHoles::GetInterpolationAsString() const
+{
+  static const char* const names[] = { "NeighborMean", "Membrane", "ThinPlate", "Adaptive",
+    "CubicSpline" };
+  return names[this->Interpolation];
+}
+
 void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
+  os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
   os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";
   os << indent << "NumberOfFilledHoles: " << this->NumberOfFilledHoles << "\n";

@@ -32,7 +32,8 @@
  * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
  *   the hole is above 1e150 or below 1e-150.
  * - NumberOfInsertedPoints (vtkIdTypeArray).
- * - Interpolation (vtkUnsignedCharArray): how z was found; 0 is the mean of the neighbours.
+ * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType; never ADAPTIVE, but
+ *   what it chose. 0 also where there are no new points.
  *
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
@@ -42,8 +43,7 @@
  *    by half a spacing. Points nearer to the boundary than 0.6 spacings are left out; a
  *    small hole may get none.
  * 3. They are joined with the boundary by a constrained Delaunay triangulation.
- * 4. The z of a new point is the mean over its known neighbours, layer by layer from the boundary
- *    inwards. z thus stays between the least and the greatest z of the hole's boundary.
+ * 4. The z of new points is found from the surface around the hole, see Interpolation.
  *
  * What can be relied on: a patch covers its hole exactly and overlaps nothing; every boundary edge
  * gets its second triangle and no edge a third one; patches are constrained Delaunay.
@@ -70,7 +70,7 @@
  * each), with sorting of the border.
  *
  * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation
- * Surface of 3D Point Clouds": spacing by its eq. 1, z by its eq. 2.
+ * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation NEIGHBOR_MEAN.
  *
  * @sa vtkGridDelaunay2D vtkTrimOutwardTriangles vtkFillHolesFilter
  */
@@ -95,6 +95,47 @@ public:
     TOO_MANY_EDGES = 2, ///< left open because of MaximumHoleEdges
     FAILED = 3,         ///< could not be filled; a warning says why
   };
+
+  /** How z of new points is found: the values of Interpolation, and of the array of output 1. */
+  enum InterpolationType
+  {
+    NEIGHBOR_MEAN = 0,
+    MEMBRANE = 1,
+    THIN_PLATE = 2,
+    ADAPTIVE = 3,
+    CUBIC_SPLINE = 4
+  };
+
+  ///@{
+  /**
+   * How z of new points is found, and the values of floating-point arrays with it. An
+   * InterpolationType, to which other numbers are clamped; ADAPTIVE (default).
+   * - NEIGHBOR_MEAN: the mean over the known neighbours, layer by layer from the boundary inwards.
+   *   Fast and rough: it flattens what was lost.
+   * - MEMBRANE: each new point is the mean of all its neighbours, as if a membrane were stretched over
+   *   the hole. Both stay between the least and the greatest z of the hole's boundary.
+   * - THIN_PLATE: continues slope and curvature from the boundary and three rings of points around
+   *   it, like a plate that bends as little as it can. Continues planes exactly.
+   * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
+   * - ADAPTIVE: the best of the last three for each hole. Its boundary is moved to
+   *   eight places around it, where the surface is known, and the methods predict there what is inside;
+   *   the least sum of squared errors decides. Where there is no room for it, THIN_PLATE.
+   *
+   * The splines may leave the range of z around the hole, as a lost summit rises above
+   * what is left of it, by at most the distance from the nearest boundary point times
+   * twice the slope of the surface around the hole (root mean square). Points that determine no
+   * spline, because they are nearly in one line, give MEMBRANE; z that are not finite around the hole
+   * give NEIGHBOR_MEAN.
+   */
+  vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
+  vtkGetMacro(Interpolation, int);
+  void SetInterpolationToNeighborMean() { this->SetInterpolation(NEIGHBOR_MEAN); }
+  void SetInterpolationToMembrane() { this->SetInterpolation(MEMBRANE); }
+  void SetInterpolationToThinPlate() { this->SetInterpolation(THIN_PLATE); }
+  void SetInterpolationToAdaptive() { this->SetInterpolation(ADAPTIVE); }
+  void SetInterpolationToCubicSpline() { this->SetInterpolation(CUBIC_SPLINE); }
+  const char* GetInterpolationAsString() const;
+  ///@}
 
   ///@{
   /**
@@ -125,9 +166,9 @@ public:
 
   ///@{
   /**
-   * Values of the point arrays at new points. On (default): floating-point arrays get the mean over
-   * the same points as z does (values that are NaN left out; normals are brought to unit length);
-   * integers, strings and other arrays get the value of the nearest point of the hole's boundary.
+   * Values of the point arrays at new points. On (default): floating-point arrays are interpolated as
+   * z is, by the method that was chosen for z (where values around the hole are not finite, by
+   * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and other arrays get the value of the nearest point of the hole's boundary.
    * Off: NaN, 0, or nothing. New points are never marked as ghosts.
    */
   vtkSetMacro(InterpolatePointData, bool);
@@ -150,6 +191,7 @@ protected:
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
   double Spacing = 0.0;
+  int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;
 
   vtkIdType NumberOfHoles = 0;
