@@ -1,0 +1,770 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Cuts holes out of surfaces that are known, fills them with vtkFillElevationHoles and with what
+// else there is, and compares with what was cut out. See README.md.
+#include "Arguments.h"
+#ifdef ES_BENCHMARK_CGAL
+#include "CGALFill.h"
+#endif
+
+#include "Kernel/Mesh.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkFillElevationHoles.h"
+#include "vtkFillHolesFilter.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <random>
+
+namespace
+{
+using namespace benchmark;
+using elevation::Mesh;
+using elevation::Point2;
+
+const char* const Usage = R"(Usage: BenchmarkFillAccuracy [options]
+
+Cuts holes out of surfaces, fills them, and compares with what was cut out: root mean square and
+greatest error at the lost points.
+
+  --file FILE       a surface's points, .vtp or .f64; may be given several times
+  --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA
+  --made            surfaces that are made: dome, ridges, noise
+  --shapes LIST     of disc,strip,blob,island; default disc,strip,blob
+  --points LIST     lost points of a hole; default 10,50,200,1000,5000
+  --holes N         holes of each shape and size; default 6
+  --seed N          of their places; default 1
+  --details         also a table for each shape and size
+  --help            shows this text
+
+Without --file, --extra and --made: --made. The exit code is 1 when a hole was left open by
+vtkFillElevationHoles.
+)";
+
+struct Options
+{
+  std::vector<std::string> Files;
+  bool Made = false;
+  bool Details = false;
+  std::vector<std::string> Shapes{ "disc", "strip", "blob" };
+  std::vector<Index> Points{ 10, 50, 200, 1000, 5000 };
+  int Holes = 6;
+  std::uint64_t Seed = 1;
+};
+
+bool ReadOptions(int argc, char* argv[], Options& options)
+{
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string option = argv[i];
+    if (option == "--help" || option == "-h")
+    {
+      return false;
+    }
+    if (option == "--made")
+    {
+      options.Made = true;
+      continue;
+    }
+    if (option == "--details")
+    {
+      options.Details = true;
+      continue;
+    }
+    if (option == "--extra")
+    {
+      const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
+      if (!folder || !*folder)
+      {
+        throw UsageError("--extra: ELEVATION_SURFACE_EXTRA_DATA is not set");
+      }
+      for (const std::string& file : FilesOf(folder))
+      {
+        options.Files.push_back(file);
+      }
+      continue;
+    }
+    if (i + 1 >= argc)
+    {
+      throw UsageError(option + " is no option, or needs a value; --help lists them");
+    }
+    const std::string value = argv[++i];
+    if (option == "--file")
+    {
+      options.Files.push_back(value);
+    }
+    else if (option == "--shapes")
+    {
+      options.Shapes = Split(value);
+      for (const std::string& shape : options.Shapes)
+      {
+        if (shape != "disc" && shape != "strip" && shape != "blob" && shape != "island")
+        {
+          throw UsageError(
+            "there is no shape \"" + shape + "\"; there are: disc strip blob island");
+        }
+      }
+    }
+    else if (option == "--points")
+    {
+      options.Points.clear();
+      for (const std::string& count : Split(value))
+      {
+        options.Points.push_back(static_cast<Index>(ToNumber(option, count, 1, 1000000)));
+      }
+    }
+    else if (option == "--holes")
+    {
+      options.Holes = static_cast<int>(ToNumber(option, value, 1, 10000));
+    }
+    else if (option == "--seed")
+    {
+      options.Seed = ToNumber(option, value, 0, 1000000000);
+    }
+    else
+    {
+      throw UsageError("there is no option \"" + option + "\"; --help lists them");
+    }
+  }
+  options.Made = options.Made || options.Files.empty();
+  return true;
+}
+
+/** Numbers in [0, 1), the same with every library. */
+class Random
+{
+public:
+  explicit Random(std::uint64_t seed)
+    : Engine(seed)
+  {
+  }
+  double operator()() { return static_cast<double>(this->Engine() >> 11) * 0x1p-53; }
+
+private:
+  std::mt19937_64 Engine;
+};
+
+// ---- surfaces -----------------------------------------------------------------------------------
+
+/** A grid of 160 x 160 points with the elevation of a function. */
+Coordinates MakeGrid(const std::function<double(double, double)>& elevation)
+{
+  Coordinates points;
+  for (int y = 0; y < 160; ++y)
+  {
+    for (int x = 0; x < 160; ++x)
+    {
+      points.insert(points.end(), { double(x), double(y), elevation(x, y) });
+    }
+  }
+  return points;
+}
+
+std::vector<PointSource> MadeSurfaces()
+{
+  return {
+    { "dome",
+      [] {
+        return MakeGrid([](double x, double y) {
+          const double square = (x - 80.0) * (x - 80.0) + (y - 80.0) * (y - 80.0);
+          return 40.0 * std::exp(-square / 5000.0);
+        });
+      } },
+    { "ridges",
+      [] {
+        return MakeGrid([](double x, double y) {
+          return 3.0 * std::sin(0.2 * x + 0.05 * y) + 2.0 * std::cos(0.11 * y - 0.07 * x);
+        });
+      } },
+    { "noise",
+      [] {
+        Random random(7);
+        return MakeGrid([&random](double x, double y) {
+          return 0.02 * x + 0.01 * y + random() + random() + random() + random() - 2.0;
+        });
+      } },
+  };
+}
+
+struct Surface
+{
+  Coordinates Points;
+  Mesh Triangles;       ///< without those that bridge gaps
+  double Spacing = 0.0; ///< side of the square that a point has to itself
+  std::vector<char> OnBorder;
+};
+
+Surface MakeSurface(Coordinates points)
+{
+  Surface surface;
+  surface.Points = std::move(points);
+  vtkNew<vtkPoints> vtkpoints;
+  vtkpoints->SetDataTypeToDouble();
+  for (std::size_t i = 0; i < surface.Points.size(); i += 3)
+  {
+    vtkpoints->InsertNextPoint(&surface.Points[i]);
+    surface.Triangles.Points.push_back({ surface.Points[i], surface.Points[i + 1] });
+  }
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(vtkpoints);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  delaunay->Update();
+  vtkDataArray* ids = delaunay->GetOutput()->GetPolys()->GetConnectivityArray();
+  const auto lengthOf = [&](vtkIdType i) {
+    const vtkIdType next = i % 3 == 2 ? i - 2 : i + 1;
+    const Point2& a = surface.Triangles.Points[vtkIdType(ids->GetComponent(i, 0))];
+    const Point2& b = surface.Triangles.Points[vtkIdType(ids->GetComponent(next, 0))];
+    return std::hypot(b.X - a.X, b.Y - a.Y);
+  };
+  std::vector<double> lengths;
+  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+  {
+    lengths.push_back(lengthOf(i));
+  }
+  const double longest = 3.0 * Median(lengths);
+  double area = 0.0;
+  for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); i += 3)
+  {
+    if (lengths[i] > longest || lengths[i + 1] > longest || lengths[i + 2] > longest)
+    {
+      continue;
+    }
+    Point2 p[3];
+    for (int k = 0; k < 3; ++k)
+    {
+      surface.Triangles.Triangles.push_back(static_cast<Index>(ids->GetComponent(i + k, 0)));
+      p[k] = surface.Triangles.Points[surface.Triangles.Triangles.back()];
+    }
+    area += 0.5 * ((p[1].X - p[0].X) * (p[2].Y - p[0].Y) - (p[1].Y - p[0].Y) * (p[2].X - p[0].X));
+  }
+  surface.Triangles.ConnectTwins();
+  surface.Spacing = std::sqrt(area / (0.5 * surface.Triangles.NumberOfTriangles()));
+  surface.OnBorder.assign(surface.Triangles.NumberOfPoints(), 1);
+  for (const Index v : surface.Triangles.Triangles)
+  {
+    surface.OnBorder[v] = 0;
+  }
+  for (Index h = 0; h < surface.Triangles.NumberOfHalfEdges(); ++h)
+  {
+    if (surface.Triangles.IsBorder(h))
+    {
+      surface.OnBorder[surface.Triangles.Origin(h)] = 1;
+      surface.OnBorder[surface.Triangles.Destination(h)] = 1;
+    }
+  }
+  return surface;
+}
+
+// ---- holes --------------------------------------------------------------------------------------
+
+/** Whether a place is lost; in spacings around the hole's middle. */
+using Shape = std::function<bool(double, double)>;
+
+/** @param[out] reach  no place farther away is lost */
+Shape MakeShape(const std::string& name, double points, Random& random, double& reach)
+{
+  const double angle = 6.283185307179586 * random();
+  const double phase = 6.283185307179586 * random();
+  const double radius = std::sqrt(points / 3.14159265358979);
+  if (name == "strip")
+  {
+    const double width = std::sqrt(points / 5.0);
+    reach = 2.6 * width;
+    return [=](double x, double y) {
+      const double u = std::cos(angle) * x + std::sin(angle) * y;
+      const double v = std::cos(angle) * y - std::sin(angle) * x;
+      return std::fabs(u) < 2.5 * width && std::fabs(v) < 0.5 * width;
+    };
+  }
+  if (name == "blob")
+  {
+    reach = 1.6 * radius;
+    return [=](double x, double y) {
+      const double a = std::atan2(y, x) + angle;
+      return std::hypot(x, y) <
+        0.95 * radius * (1.0 + 0.3 * std::sin(2.0 * a + phase) + 0.2 * std::sin(3.0 * a));
+    };
+  }
+  if (name == "island")
+  {
+    reach = 1.2 * radius;
+    return [=](double x, double y) {
+      const double r = std::hypot(x, y);
+      return r < 1.1 * radius && r > 0.45 * radius;
+    };
+  }
+  reach = radius;
+  return [=](double x, double y) { return std::hypot(x, y) < radius; };
+}
+
+struct Hole
+{
+  Coordinates Points;           ///< around the hole
+  std::vector<Index> Triangles; ///< around the hole
+  Coordinates Lost;
+};
+
+/** A piece of the surface around a place, without what is lost. @return whether it is one */
+bool CutHole(
+  const Surface& surface, const Point2& middle, const Shape& isLost, double reach, Hole& hole)
+{
+  const double window = 3.2 * reach + 6.0;
+  const Mesh& mesh = surface.Triangles;
+  std::vector<Index> place(mesh.NumberOfPoints(), elevation::None);
+  hole = Hole();
+  for (Index v = 0; v < mesh.NumberOfPoints(); ++v)
+  {
+    const double x = (mesh.Points[v].X - middle.X) / surface.Spacing;
+    const double y = (mesh.Points[v].Y - middle.Y) / surface.Spacing;
+    if (std::fabs(x) > window || std::fabs(y) > window)
+    {
+      continue;
+    }
+    if (std::hypot(x, y) < reach + 4.0 && surface.OnBorder[v])
+    {
+      return false;
+    }
+    const double* p = &surface.Points[3 * std::size_t(v)];
+    Coordinates& into = isLost(x, y) ? hole.Lost : hole.Points;
+    place[v] = isLost(x, y) ? elevation::None : static_cast<Index>(hole.Points.size() / 3);
+    into.insert(into.end(), p, p + 3);
+  }
+  for (std::size_t i = 0; i < mesh.Triangles.size(); i += 3)
+  {
+    const Index a = place[mesh.Triangles[i]];
+    const Index b = place[mesh.Triangles[i + 1]];
+    const Index c = place[mesh.Triangles[i + 2]];
+    if (a >= 0 && b >= 0 && c >= 0)
+    {
+      hole.Triangles.insert(hole.Triangles.end(), { a, b, c });
+    }
+  }
+  return !hole.Lost.empty();
+}
+
+// ---- errors -------------------------------------------------------------------------------------
+
+struct Errors
+{
+  double Squares = 0.0;
+  double Greatest = 0.0;
+  std::size_t Count = 0;
+  std::size_t Uncovered = 0;
+
+  void Add(const Errors& other)
+  {
+    this->Squares += other.Squares;
+    this->Greatest = std::max(this->Greatest, other.Greatest);
+    this->Count += other.Count;
+    this->Uncovered += other.Uncovered;
+  }
+  double RootMeanSquare() const
+  {
+    return this->Count > 0 ? std::sqrt(this->Squares / static_cast<double>(this->Count)) : 0.0;
+  }
+};
+
+/** The lost points beside the triangles that lie over them; bins make it fast. */
+Errors Compare(
+  const Coordinates& points, const std::vector<Index>& triangles, const Coordinates& lost)
+{
+  Errors errors;
+  const std::size_t count = lost.size() / 3;
+  double low[2] = { lost[0], lost[1] };
+  double high[2] = { lost[0], lost[1] };
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    for (int k = 0; k < 2; ++k)
+    {
+      low[k] = std::min(low[k], lost[3 * i + k]);
+      high[k] = std::max(high[k], lost[3 * i + k]);
+    }
+  }
+  const int bins = 1 + static_cast<int>(std::sqrt(count / 2.0));
+  const auto binOf = [&](double value, int k) {
+    const double share = high[k] > low[k] ? (value - low[k]) / (high[k] - low[k]) : 0.0;
+    return static_cast<int>(std::max(0.0, std::min(bins - 1.0, std::floor(share * bins))));
+  };
+  std::vector<std::vector<std::size_t>> byBin(std::size_t(bins) * bins);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    byBin[binOf(lost[3 * i + 1], 1) * bins + binOf(lost[3 * i], 0)].push_back(i);
+  }
+  // Where patches overlap, the triangle that is farther off counts.
+  std::vector<double> error(count, -1.0);
+  for (std::size_t t = 0; t < triangles.size(); t += 3)
+  {
+    const double* a = &points[3 * std::size_t(triangles[t])];
+    const double* b = &points[3 * std::size_t(triangles[t + 1])];
+    const double* c = &points[3 * std::size_t(triangles[t + 2])];
+    const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    const auto x = std::minmax({ a[0], b[0], c[0] });
+    const auto y = std::minmax({ a[1], b[1], c[1] });
+    if (area == 0.0 || x.second < low[0] || x.first > high[0] || y.second < low[1] ||
+      y.first > high[1])
+    {
+      continue;
+    }
+    for (int j = binOf(y.first, 1); j <= binOf(y.second, 1); ++j)
+    {
+      for (int i = binOf(x.first, 0); i <= binOf(x.second, 0); ++i)
+      {
+        for (const std::size_t k : byBin[j * bins + i])
+        {
+          const double* p = &lost[3 * k];
+          const double u = ((b[0] - p[0]) * (c[1] - p[1]) - (b[1] - p[1]) * (c[0] - p[0])) / area;
+          const double v = ((c[0] - p[0]) * (a[1] - p[1]) - (c[1] - p[1]) * (a[0] - p[0])) / area;
+          const double w = 1.0 - u - v;
+          if (u > -1e-9 && v > -1e-9 && w > -1e-9)
+          {
+            error[k] = std::max(error[k], std::fabs(u * a[2] + v * b[2] + w * c[2] - p[2]));
+          }
+        }
+      }
+    }
+  }
+  for (const double e : error)
+  {
+    if (e < 0.0)
+    {
+      ++errors.Uncovered;
+      continue;
+    }
+    ++errors.Count;
+    errors.Squares += e * e;
+    errors.Greatest = std::max(errors.Greatest, e);
+  }
+  return errors;
+}
+
+// ---- methods ------------------------------------------------------------------------------------
+
+vtkSmartPointer<vtkPolyData> ToPolyData(const Hole& hole)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (std::size_t i = 0; i < hole.Points.size(); i += 3)
+  {
+    points->InsertNextPoint(&hole.Points[i]);
+  }
+  vtkNew<vtkCellArray> cells;
+  for (std::size_t i = 0; i < hole.Triangles.size(); i += 3)
+  {
+    const vtkIdType ids[3] = { hole.Triangles[i], hole.Triangles[i + 1], hole.Triangles[i + 2] };
+    cells->InsertNextCell(3, ids);
+  }
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  mesh->SetPoints(points);
+  mesh->SetPolys(cells);
+  return mesh;
+}
+
+Coordinates PointsOf(vtkPolyData* mesh)
+{
+  Coordinates points(3 * static_cast<std::size_t>(mesh->GetNumberOfPoints()));
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    mesh->GetPoint(i, &points[3 * std::size_t(i)]);
+  }
+  return points;
+}
+
+/** The triangles of a mesh from one on. */
+std::vector<Index> TrianglesOf(vtkPolyData* mesh, vtkIdType first)
+{
+  std::vector<Index> triangles;
+  vtkDataArray* ids = mesh->GetPolys()->GetConnectivityArray();
+  for (vtkIdType i = 3 * first; i < ids->GetNumberOfTuples(); ++i)
+  {
+    triangles.push_back(static_cast<Index>(ids->GetComponent(i, 0)));
+  }
+  return triangles;
+}
+
+struct Filled
+{
+  Coordinates Points;
+  std::vector<Index> Patch;
+  int Used = -1; ///< Interpolation of the largest hole
+};
+
+/** @param interpolation  below 0: the linear patch, without new points */
+Filled FillWithUs(const Hole& hole, int interpolation)
+{
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(ToPolyData(hole));
+  if (interpolation < 0)
+  {
+    fill->SetSpacing(1e300);
+  }
+  else
+  {
+    fill->SetInterpolation(interpolation);
+  }
+  fill->Update();
+  vtkPolyData* mesh = fill->GetOutput();
+  Filled filled;
+  filled.Points = PointsOf(mesh);
+  filled.Patch = TrianglesOf(mesh, static_cast<vtkIdType>(hole.Triangles.size() / 3));
+  vtkCellData* report = vtkPolyData::SafeDownCast(fill->GetOutputDataObject(1))->GetCellData();
+  double most = -1.0;
+  for (vtkIdType i = 0; i < fill->GetNumberOfHoles(); ++i)
+  {
+    const double points = report->GetArray("NumberOfInsertedPoints")->GetComponent(i, 0);
+    if (points > most)
+    {
+      most = points;
+      filled.Used = static_cast<int>(report->GetArray("Interpolation")->GetComponent(i, 0));
+    }
+  }
+  return filled;
+}
+
+/** vtkFillHolesFilter up to a size that leaves the outer border open. */
+Filled FillWithVTK(const Hole& hole, double size)
+{
+  vtkNew<vtkFillHolesFilter> fill;
+  fill->SetInputData(ToPolyData(hole));
+  fill->SetHoleSize(size);
+  fill->Update();
+  Filled filled;
+  filled.Points = PointsOf(fill->GetOutput());
+  filled.Patch = TrianglesOf(fill->GetOutput(), static_cast<vtkIdType>(hole.Triangles.size() / 3));
+  return filled;
+}
+
+#ifdef ES_BENCHMARK_CGAL
+Filled FillByCGAL(const Hole& hole, double left, double right, double low, double high)
+{
+  Mesh mesh;
+  for (std::size_t i = 0; i < hole.Points.size(); i += 3)
+  {
+    mesh.Points.push_back({ hole.Points[i], hole.Points[i + 1] });
+  }
+  mesh.Triangles = hole.Triangles;
+  mesh.ConnectTwins();
+  Filled filled;
+  filled.Points = hole.Points;
+  // A vertex that two triangles' fans share cannot be in CGAL's mesh; such holes count as failed.
+  const elevation::Rings walks = elevation::TraceBorder(mesh);
+  for (Index walk = 0; walk < walks.Count(); ++walk)
+  {
+    bool isAround = true;
+    for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
+    {
+      const Point2& p = mesh.PointOf(mesh.Origin(*h));
+      isAround = isAround && p.X > left && p.X < right && p.Y > low && p.Y < high;
+    }
+    if (isAround)
+    {
+      const Index h = *walks.Begin(walk);
+      const std::vector<Index> patch =
+        FillWithCGAL(filled.Points, hole.Triangles, mesh.Origin(h), mesh.Destination(h));
+      filled.Patch.insert(filled.Patch.end(), patch.begin(), patch.end());
+    }
+  }
+  return filled;
+}
+#endif
+
+// ---- tables -------------------------------------------------------------------------------------
+
+const std::vector<std::string>& Methods()
+{
+  static const std::vector<std::string> methods = {
+#ifdef ES_BENCHMARK_CGAL
+    "CGAL",
+#endif
+    "vtkFillHoles", "linear", "NeighborMean", "Membrane", "ThinPlate", "CubicSpline", "Adaptive"
+  };
+  return methods;
+}
+
+using Row = std::map<std::string, Errors>;
+
+void PrintHeader(const char* first)
+{
+  std::printf("%-28s %6s", first, "lost");
+  for (const std::string& method : Methods())
+  {
+    std::printf(" %12s", method.c_str());
+  }
+  std::printf("  chosen M/T/C  ratio\n");
+}
+
+void PrintRow(const std::string& name, Row& row, const std::array<int, 5>& used)
+{
+  std::printf("%-28s %6zu", name.c_str(), row["linear"].Count + row["linear"].Uncovered);
+  for (const std::string& method : Methods())
+  {
+    std::printf(" %12.5g", row[method].RootMeanSquare());
+  }
+  std::printf("  %4d/%3d/%3d", used[1], used[2], used[4]);
+  if (row.count("CGAL"))
+  {
+    std::printf("  %.3f", row["Adaptive"].RootMeanSquare() / row["CGAL"].RootMeanSquare());
+  }
+  std::printf("\n");
+}
+
+bool Run(const PointSource& source, const Options& options, std::vector<double>& ratios)
+{
+  const Surface surface = MakeSurface(source.Make());
+  Row all;
+  std::array<int, 5> allUsed{};
+  bool isWhole = true;
+  Random random(options.Seed);
+  std::size_t lost = 0;
+  for (const std::string& shapeName : options.Shapes)
+  {
+    for (const Index size : options.Points)
+    {
+      Row row;
+      std::array<int, 5> used{};
+      int done = 0;
+      for (int attempt = 0; attempt < 40 * options.Holes && done < options.Holes; ++attempt)
+      {
+        double reach = 0.0;
+        const Shape shape = MakeShape(shapeName, size, random, reach);
+        const Index middle =
+          static_cast<Index>(random() * static_cast<double>(surface.Triangles.NumberOfPoints()));
+        const Point2 at = surface.Triangles.Points[middle];
+        Hole hole;
+        if (!CutHole(surface, at, shape, reach, hole))
+        {
+          continue;
+        }
+        ++done;
+        lost += hole.Lost.size() / 3;
+        const double around = (reach + 4.0) * surface.Spacing;
+        row["linear"].Add([&] {
+          const Filled filled = FillWithUs(hole, -1);
+          return Compare(filled.Points, filled.Patch, hole.Lost);
+        }());
+        const char* const names[] = { "NeighborMean", "Membrane", "ThinPlate", "Adaptive",
+          "CubicSpline" };
+        for (int i = 0; i < 5; ++i)
+        {
+          const Filled filled = FillWithUs(hole, i);
+          const Errors errors = Compare(filled.Points, filled.Patch, hole.Lost);
+          isWhole = isWhole && errors.Uncovered == 0;
+          row[names[i]].Add(errors);
+          if (i == vtkFillElevationHoles::ADAPTIVE && filled.Used >= 0)
+          {
+            ++used[filled.Used];
+          }
+        }
+        const Filled byVTK = FillWithVTK(hole, 2.0 * around);
+        row["vtkFillHoles"].Add(Compare(byVTK.Points, byVTK.Patch, hole.Lost));
+#ifdef ES_BENCHMARK_CGAL
+        const Filled byCGAL =
+          FillByCGAL(hole, at.X - around, at.X + around, at.Y - around, at.Y + around);
+        row["CGAL"].Add(Compare(byCGAL.Points, byCGAL.Patch, hole.Lost));
+#endif
+      }
+      if (done > 0 && options.Details)
+      {
+        PrintRow(source.Name + " " + shapeName + " " + std::to_string(size), row, used);
+      }
+      for (auto& entry : row)
+      {
+        all[entry.first].Add(entry.second);
+      }
+      for (int i = 0; i < 5; ++i)
+      {
+        allUsed[i] += used[i];
+      }
+    }
+  }
+  if (lost == 0)
+  {
+    std::printf("%-28s no place for a hole\n", source.Name.c_str());
+    return true;
+  }
+  PrintRow(source.Name, all, allUsed);
+  std::printf("%-28s %6s", "  greatest error", "");
+  for (const std::string& method : Methods())
+  {
+    std::printf(" %12.5g", all[method].Greatest);
+  }
+  std::printf("\n%-28s %6s", "  not covered", "");
+  for (const std::string& method : Methods())
+  {
+    std::printf(" %12zu", all[method].Uncovered);
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+  if (all.count("CGAL"))
+  {
+    ratios.push_back(all["Adaptive"].RootMeanSquare() / all["CGAL"].RootMeanSquare());
+  }
+  return isWhole;
+}
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  try
+  {
+    Options options;
+    if (!ReadOptions(argc, argv, options))
+    {
+      std::printf("%s", Usage);
+      return 0;
+    }
+    std::vector<PointSource> sources;
+    for (const std::string& file : options.Files)
+    {
+      sources.push_back(FileSource(file));
+    }
+    if (options.Made)
+    {
+      for (const PointSource& made : MadeSurfaces())
+      {
+        sources.push_back(made);
+      }
+    }
+    PrintHeader("surface");
+    bool isWhole = true;
+    std::vector<double> ratios;
+    for (const PointSource& source : sources)
+    {
+      isWhole = Run(source, options, ratios) && isWhole;
+    }
+    if (!ratios.empty())
+    {
+      double sum = 0.0;
+      for (const double ratio : ratios)
+      {
+        sum += ratio;
+      }
+      std::printf("Adaptive in parts of CGAL: mean %.3f, most %.3f\n",
+        sum / static_cast<double>(ratios.size()), *std::max_element(ratios.begin(), ratios.end()));
+    }
+    return isWhole ? 0 : 1;
+  }
+  catch (const UsageError& error)
+  {
+    std::fprintf(stderr, "BenchmarkFillAccuracy: %s\n", error.what());
+    return 2;
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "BenchmarkFillAccuracy: %s\n", error.what());
+    return 1;
+  }
+}
