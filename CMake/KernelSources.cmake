@@ -20,6 +20,7 @@ set(es_kernel_concepts
   Membrane
   Spline
   Heights
+  Patch
   Fill
   Validate)
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Fill.h"
 
-#include "Delaunay.h"
+#include "Parallel.h"
+#include "Patch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,27 +15,15 @@ namespace elevation
 
 namespace
 {
-/** Least distance of a new point from the boundary, in spacings. */
-constexpr double Clearance = 0.6;
-
-/** Height of an equilateral triangle: the distance of rows, in spacings. */
-constexpr double RowHeight = 0.86602540378443864676;
-
-/** Below this many steps of the coordinates, rounding would push points onto each other. */
-constexpr double LeastStepsPerSpacing = 4.0;
-
 /** Beyond these, squares of lengths leave the range of double. */
 constexpr double LeastLength = 1e-150;
 constexpr double LargestLength = 1e150;
 
-/** Patches of fewer points report no progress of their own. */
+/** Patches of more points are made one by one and report progress; others several at a time. */
 constexpr double PointsPerReport = 20000.0;
 
-/** A hole that is being filled. */
-struct Patch : PatchMesh
-{
-  std::vector<Segment> Edges; ///< of the boundary; the hole lies on their right
-};
+/** Patches are made together until they have so many points, on one thread. */
+constexpr double PointsPerPiece = 1000.0;
 
 /** Distance between neighbouring numbers at the size of @a x, as the points are stored. */
 double StepAt(double x, bool singlePrecision)
@@ -59,14 +48,8 @@ HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole, double spac
   HoleReport report;
   report.NumberOfEdges = holes.NumberOfEdges(hole);
   const auto visitEdges = [&](auto&& visit) {
-    for (Index i = holes.Offsets[hole]; i < holes.Offsets[hole + 1]; ++i)
-    {
-      const Index walk = holes.Loops[i];
-      for (const Index* h = holes.Walks.Begin(walk); h != holes.Walks.End(walk); ++h)
-      {
-        visit(mesh.PointOf(mesh.Origin(*h)), mesh.PointOf(mesh.Destination(*h)));
-      }
-    }
+    holes.VisitEdges(hole,
+      [&](Index h) { visit(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h))); });
   };
   const Point2 origin = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
   Point2 low = origin;
@@ -91,20 +74,6 @@ HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole, double spac
   return report;
 }
 
-/** How many points an even arrangement puts into the hole, boundary effects aside. */
-double EstimatedPoints(const HoleReport& report)
-{
-  return report.Area / report.Spacing / report.Spacing / RowHeight;
-}
-
-/** Whether rounding new points to the numbers there are could push them out of place. */
-bool IsBelowPrecision(const HoleReport& report, const Point2& where, const FillOptions& options)
-{
-  const double step = std::max(StepAt(std::fabs(where.X) + report.Size, options.SinglePrecision),
-    StepAt(std::fabs(where.Y) + report.Size, options.SinglePrecision));
-  return report.Spacing < LeastStepsPerSpacing * step;
-}
-
 std::string ToText(double value)
 {
   std::ostringstream text;
@@ -113,7 +82,8 @@ std::string ToText(double value)
 }
 
 /** The limits, and what cannot be filled. All that could make a hole run away is stopped here. */
-void Judge(HoleReport& report, bool isTouched, double room, const FillOptions& options)
+void Judge(
+  HoleReport& report, bool isTouched, double points, double room, const FillOptions& options)
 {
   if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
   {
@@ -142,263 +112,13 @@ void Judge(HoleReport& report, bool isTouched, double room, const FillOptions& o
       ToText(LargestLength) + "; scale x and y.");
     return;
   }
-  const double points = EstimatedPoints(report);
   // Rows of points count as points: a long thin hole has many rows, though few points.
   const double rows = report.Perimeter / report.Spacing - report.NumberOfEdges;
   if (!(points <= room && rows <= room))
   {
-    fail("It would take about " + ToText(points) + " new points at a spacing of " +
+    fail("It would take up to " + ToText(points) + " new points at a spacing of " +
       ToText(report.Spacing) + ", but there is room for " + ToText(room) +
       "; a larger spacing helps.");
-  }
-}
-
-/** Vertices and edges of the boundary. */
-void CollectBoundary(
-  const Mesh& mesh, const PointView& points, const Holes& holes, Index hole, Patch& patch)
-{
-  const Index edges = holes.NumberOfEdges(hole);
-  patch.BoundaryIds.reserve(edges);
-  patch.Edges.reserve(edges);
-  for (Index i = holes.Offsets[hole]; i < holes.Offsets[hole + 1]; ++i)
-  {
-    const Index walk = holes.Loops[i];
-    for (const Index* h = holes.Walks.Begin(walk); h != holes.Walks.End(walk); ++h)
-    {
-      patch.BoundaryIds.push_back(mesh.Origin(*h));
-      patch.Edges.push_back({ mesh.Origin(*h), mesh.Destination(*h) });
-    }
-  }
-  std::vector<Index>& ids = patch.BoundaryIds;
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  const auto vertexOf = [&ids](Index id) {
-    return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-  };
-  for (Segment& edge : patch.Edges)
-  {
-    edge = { vertexOf(edge.A), vertexOf(edge.B) };
-  }
-  patch.Points.reserve(3 * ids.size());
-  for (Index id : ids)
-  {
-    patch.Points.push_back(mesh.PointOf(id).X);
-    patch.Points.push_back(mesh.PointOf(id).Y);
-    patch.Points.push_back(points.Elevation(id));
-  }
-}
-
-/** A stretch of a row that is too near to a boundary edge; the edge crosses the row within it or
- * not. */
-struct Blocked
-{
-  Index Row;
-  double Begin;
-  double End;
-  bool Crosses;
-};
-
-/**
- * New points in rows. Each boundary edge blocks, in every row it comes near to, the stretch that is
- * nearer than the clearance. Between blocked stretches a row is wholly inside the hole or wholly
- * outside, which the number of crossings on its left tells.
- */
-void PlacePoints(
-  const FillOptions& options, const HoleReport& report, const Progress& progress, Patch& patch)
-{
-  Point2 low = patch.At(0);
-  Point2 high = low;
-  for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
-  {
-    const Point2 p = patch.At(v);
-    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-  }
-  // Coordinates from here on are relative to the centre, where there is a point.
-  const Point2 centre{ low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
-  const double d = report.Spacing;
-  const double rowHeight = RowHeight * d;
-  const double clearance = Clearance * d;
-  const Index lastRow = static_cast<Index>((high.Y - centre.Y) / rowHeight);
-  const Index firstRow = -lastRow;
-
-  const Progress blocking = Part(progress, 0.0, 0.4);
-  const Progress sorting = Part(progress, 0.4, 0.6);
-  const Progress placing = Part(progress, 0.6, 1.0);
-  std::vector<Blocked> blocked;
-  std::size_t done = 0;
-  std::size_t rows = 0;
-  for (const Segment& edge : patch.Edges)
-  {
-    // A long edge at a small spacing comes near to many rows.
-    const double share = static_cast<double>(done++) / static_cast<double>(patch.Edges.size());
-    Point2 a = patch.At(edge.A);
-    Point2 b = patch.At(edge.B);
-    if (b.Y < a.Y)
-    {
-      std::swap(a, b);
-    }
-    a = { a.X - centre.X, a.Y - centre.Y };
-    b = { b.X - centre.X, b.Y - centre.Y };
-    const double length = std::hypot(b.X - a.X, b.Y - a.Y);
-    const double ux = (b.X - a.X) / length;
-    const double uy = (b.Y - a.Y) / length; // >= 0
-    const double from = std::max<double>(firstRow, std::ceil((a.Y - clearance) / rowHeight));
-    const double to = std::min<double>(lastRow, std::floor((b.Y + clearance) / rowHeight));
-    for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
-    {
-      if (++rows % 16384 == 0)
-      {
-        Report(blocking, share);
-      }
-      const double y = row * rowHeight;
-      Blocked stretch{ row, std::numeric_limits<double>::infinity(),
-        -std::numeric_limits<double>::infinity(), (a.Y <= y) != (b.Y <= y) };
-      const auto include = [&stretch](double begin, double end) {
-        stretch.Begin = std::min(stretch.Begin, begin);
-        stretch.End = std::max(stretch.End, end);
-      };
-      // The discs around both ends ...
-      for (const Point2& p : { a, b })
-      {
-        const double square = clearance * clearance - (y - p.Y) * (y - p.Y);
-        if (square >= 0.0)
-        {
-          include(p.X - std::sqrt(square), p.X + std::sqrt(square));
-        }
-      }
-      // ... and the strip between them: its two sides, where the row cuts them.
-      for (double side : { -clearance, clearance })
-      {
-        const double ay = a.Y + side * ux;
-        const double by = b.Y + side * ux;
-        if (ay < by && ay <= y && y <= by)
-        {
-          const double x = a.X - side * uy + (y - ay) / (by - ay) * (b.X - a.X);
-          include(x, x);
-        }
-      }
-      if (stretch.Begin <= stretch.End)
-      {
-        blocked.push_back(stretch);
-      }
-    }
-  }
-  Sort(
-    blocked.begin(), blocked.end(),
-    [](const Blocked& s, const Blocked& t) {
-      return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
-    },
-    sorting);
-
-  bool isInside = false;
-  for (std::size_t i = 0; i < blocked.size(); ++i)
-  {
-    if (i == 0 || blocked[i].Row != blocked[i - 1].Row)
-    {
-      isInside = false;
-    }
-    isInside = isInside != blocked[i].Crosses;
-    if (i + 1 == blocked.size() || blocked[i + 1].Row != blocked[i].Row)
-    {
-      continue;
-    }
-    blocked[i + 1].End = std::max(blocked[i].End, blocked[i + 1].End);
-    if (!isInside)
-    {
-      continue;
-    }
-    const Index row = blocked[i].Row;
-    const double shift = row % 2 == 0 ? 0.0 : 0.5;
-    const double last = std::floor(blocked[i + 1].Begin / d - shift);
-    for (double k = std::ceil(blocked[i].End / d - shift); k <= last; ++k)
-    {
-      if (patch.Points.size() % (3 * 16384) == 0)
-      {
-        Report(placing, static_cast<double>(i) / static_cast<double>(blocked.size()));
-      }
-      if (IsBelowPrecision(report, centre, options))
-      {
-        throw Error("The spacing of " + ToText(d) +
-          " is below what the coordinates can tell apart; a larger spacing helps.");
-      }
-      double x = centre.X + (k + shift) * d;
-      double y = centre.Y + row * rowHeight;
-      if (options.SinglePrecision)
-      {
-        x = static_cast<double>(static_cast<float>(x));
-        y = static_cast<double>(static_cast<float>(y));
-      }
-      patch.Points.push_back(x);
-      patch.Points.push_back(y);
-      patch.Points.push_back(0.0);
-    }
-  }
-}
-
-/** Triangles between boundary and new points, inside the hole. */
-void Connect(const Progress& progress, Patch& patch)
-{
-  PointView view;
-  view.Double = patch.Points.data();
-  view.Count = patch.NumberOfVertices();
-  DelaunayOptions options;
-  options.Monitor = Part(progress, 0.0, 0.6);
-  const Triangulation triangulation = Triangulate(view, options);
-  if (!triangulation.UnusedPoints.empty())
-  {
-    throw Error("New points fall together; a larger spacing helps.");
-  }
-  Mesh mesh;
-  mesh.Points.resize(patch.NumberOfVertices());
-  for (Index v = 0; v < patch.NumberOfVertices(); ++v)
-  {
-    mesh.Points[v] = patch.At(v);
-  }
-  mesh.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
-  mesh.ConnectTwins(0, Part(progress, 0.6, 0.8));
-  std::vector<char> constrained;
-  RecoverSegments(mesh, patch.Edges, constrained, Part(progress, 0.8, 0.9));
-
-  // The triangulation covers the convex hull. Across an edge of the boundary, and nowhere else,
-  // one goes from the hole to outside it or back.
-  constexpr char unknown = 2;
-  std::vector<char> isInside(mesh.NumberOfTriangles(), unknown);
-  std::vector<Index> stack;
-  for (Index h = 0; h < mesh.NumberOfHalfEdges() && stack.empty(); ++h)
-  {
-    if (mesh.IsBorder(h))
-    {
-      isInside[Mesh::Triangle(h)] = constrained[h] ? 1 : 0;
-      stack.push_back(Mesh::Triangle(h));
-    }
-  }
-  const Progress walking = Part(progress, 0.9, 1.0);
-  std::size_t done = 0;
-  Index count = 0;
-  while (!stack.empty())
-  {
-    ReportStep(walking, done++, isInside.size());
-    const Index t = stack.back();
-    stack.pop_back();
-    count += isInside[t];
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      if (!mesh.IsBorder(h) && isInside[Mesh::Triangle(mesh.Twin(h))] == unknown)
-      {
-        isInside[Mesh::Triangle(mesh.Twin(h))] = constrained[h] ? 1 - isInside[t] : isInside[t];
-        stack.push_back(Mesh::Triangle(mesh.Twin(h)));
-      }
-    }
-  }
-  patch.Triangles.reserve(3 * static_cast<std::size_t>(count));
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    if (isInside[t] == 1)
-    {
-      patch.Triangles.insert(
-        patch.Triangles.end(), mesh.Triangles.begin() + 3 * t, mesh.Triangles.begin() + 3 * t + 3);
-    }
   }
 }
 
@@ -531,10 +251,18 @@ void Elevate(const Mesh& mesh, const Fans* fans, const PointView& points,
   report.Method = heights.Used();
 }
 
-/** All or nothing: when memory runs out, the result is as before. */
-void Append(const Patch& patch, const std::vector<std::vector<double>>& attributes,
-  Index firstNewId, FillResult& result)
+/** What has become of a hole, before it is appended. */
+struct FilledHole
 {
+  Patch Triangles;
+  std::vector<std::vector<double>> Attributes;
+};
+
+/** All or nothing: when memory runs out, the result is as before. */
+void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
+{
+  const Patch& patch = filled.Triangles;
+  const std::vector<std::vector<double>>& attributes = filled.Attributes;
   const std::size_t points = patch.Order.size();
   const std::size_t before = static_cast<std::size_t>(result.NumberOfPoints());
   // Half as much again, so that many small holes do not copy everything each time.
@@ -575,6 +303,26 @@ void Append(const Patch& patch, const std::vector<std::vector<double>>& attribut
     result.Triangles.push_back(ids[vertex]);
   }
 }
+
+/** Runs a step of filling a hole; what goes wrong in it is the hole's failure, and no other's. */
+template <typename Step>
+void Attempt(HoleReport& report, Step&& step)
+{
+  try
+  {
+    step();
+  }
+  catch (const std::bad_alloc&)
+  {
+    report.Status = FillStatus::Failed;
+    report.Reason = "There is not enough memory for it; a larger spacing helps.";
+  }
+  catch (const Error& error)
+  {
+    report.Status = FillStatus::Failed;
+    report.Reason = error.what();
+  }
+}
 } // namespace
 
 FillResult FillHoles(
@@ -582,86 +330,128 @@ FillResult FillHoles(
 {
   FillResult result;
   result.Reports.reserve(holes.Count());
+  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+
+  // Nodes are only for spacings that the user has not set.
+  LatticeSearch lattice;
+  const Progress& monitor = options.Monitor;
+  if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) && holes.Count() > 0)
+  {
+    lattice = FindLattice(points, LatticeTolerance, threads, Part(monitor, 0.0, 0.02));
+  }
 
   // All holes are judged before the first is filled: what one may take does not depend on how the
   // others turn out.
   double room =
     std::min(options.MaximumInsertedPoints, MaximumNumberOfPoints - mesh.NumberOfPoints());
   double work = 0.0;
-  const auto workOf = [](const HoleReport& report) {
-    return report.Status == FillStatus::Filled ? EstimatedPoints(report) + report.NumberOfEdges
-                                               : 0.0;
+  std::vector<PatchPlan> plans(holes.Count());
+  const auto workOf = [&](Index hole) {
+    return result.Reports[hole].Status == FillStatus::Filled
+      ? plans[hole].MostPoints + result.Reports[hole].NumberOfEdges
+      : 0.0;
   };
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
     if (hole % 4096 == 0)
     {
-      Report(options.Monitor, 0.0);
+      Report(monitor, 0.02);
     }
-    HoleReport report = Measure(mesh, holes, hole, options.Spacing);
-    Judge(report, holes.Touched[hole] != 0, room, options);
+    result.Reports.push_back(Measure(mesh, holes, hole, options.Spacing));
+    HoleReport& report = result.Reports.back();
+    PatchPlan& plan = plans[hole];
+    plan = PlanPatch(
+      mesh, holes, hole, report.Area, options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
+    const Point2& first = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
+    plan.Precision = StepAt(
+      std::max(std::fabs(first.X), std::fabs(first.Y)) + report.Size, options.SinglePrecision);
+    plan.SinglePrecision = options.SinglePrecision;
+    Judge(report, holes.Touched[hole] != 0, plan.MostPoints, room, options);
     if (report.Status == FillStatus::Filled)
     {
-      room = std::max(0.0, room - EstimatedPoints(report));
-      work += workOf(report);
+      room = std::max(0.0, room - plan.MostPoints);
+      work += workOf(hole);
     }
-    result.Reports.push_back(report);
   }
 
   std::unique_ptr<Fans> fans;
   if (work > 0.0 && Heights::NeedsSurroundings(options.Method))
   {
-    fans = std::make_unique<Fans>(mesh, Part(options.Monitor, 0.0, 0.05));
+    fans = std::make_unique<Fans>(mesh, Part(monitor, 0.02, 0.06));
   }
-  const Progress filling = Part(options.Monitor, fans ? 0.05 : 0.0, 1.0);
+  const Progress filling = Part(monitor, fans ? 0.06 : 0.02, 1.0);
+  const auto fill = [&](Index hole, const Progress& progress, FilledHole& filled) {
+    HoleReport& report = result.Reports[hole];
+    Attempt(report, [&]() {
+      filled.Triangles = CollectBoundary(mesh, points, holes, hole);
+      Patch& patch = filled.Triangles;
+      MakePatch(plans[hole], Part(progress, 0.0, 0.4), patch);
+      Arrange(patch, Part(progress, 0.4, 0.45));
+      FindNearest(Part(progress, 0.45, 0.5), patch);
+      Elevate(mesh, fans.get(), points, options, Part(progress, 0.5, 1.0), patch, report,
+        filled.Attributes);
+    });
+  };
+
+  // Patches are made several at a time, which must not take long, as only between them progress is
+  // reported. A large one is made alone. They are appended in the order of holes.
   result.Attributes.resize(options.Attributes.size());
   double done = 0.0;
-  double told = 0.0;
-  for (Index hole = 0; hole < holes.Count(); ++hole)
+  for (Index begin = 0; begin < holes.Count();)
   {
-    HoleReport& report = result.Reports[hole];
-    const double share = workOf(report);
-    if (report.Status == FillStatus::Filled)
+    const double before = done;
+    Index end = begin;
+    std::vector<Index> pieces{ begin };
+    double ofPiece = 0.0;
+    do
     {
-      try
+      const double share = workOf(end++);
+      done += share;
+      ofPiece += share;
+      if (ofPiece > PointsPerPiece)
       {
-        Patch patch;
-        const Progress ofHole = share < PointsPerReport
-          ? Progress()
-          : Part(filling, done / work, std::min(1.0, (done + share) / work));
-        patch.Spacing = report.Spacing;
-        std::vector<std::vector<double>> attributes;
-        CollectBoundary(mesh, points, holes, hole, patch);
-        PlacePoints(options, report, Part(ofHole, 0.0, 0.05), patch);
-        Connect(Part(ofHole, 0.05, 0.4), patch);
-        Arrange(patch, Part(ofHole, 0.4, 0.45));
-        FindNearest(Part(ofHole, 0.45, 0.5), patch);
-        Elevate(
-          mesh, fans.get(), points, options, Part(ofHole, 0.5, 1.0), patch, report, attributes);
-        Append(patch, attributes, mesh.NumberOfPoints(), result);
-        report.NumberOfInsertedPoints = patch.NumberOfNewVertices();
+        pieces.push_back(end);
+        ofPiece = 0.0;
       }
-      catch (const std::bad_alloc&)
-      {
-        report.Status = FillStatus::Failed;
-        report.Reason = "There is not enough memory for it; a larger spacing helps.";
-      }
-      catch (const Error& error)
-      {
-        report.Status = FillStatus::Failed;
-        report.Reason = error.what();
-      }
-    }
-    result.PointOffsets.push_back(static_cast<Index>(result.Points.size() / 3));
-    result.TriangleOffsets.push_back(static_cast<Index>(result.Triangles.size() / 3));
-    done += share;
-    if (done >= told)
+    } while (end < holes.Count() && end - begin < 4096 &&
+      done - before + workOf(end) <= PointsPerReport * threads && workOf(end) <= PointsPerReport);
+    if (pieces.back() < end)
     {
-      Report(filling, work > 0.0 ? std::min(1.0, done / work) : 1.0);
-      told = done + PointsPerReport;
+      pieces.push_back(end);
     }
+    std::vector<FilledHole> filled(end - begin);
+    const double all = work > 0.0 ? work : 1.0;
+    const Progress ofBatch = Part(filling, std::min(1.0, before / all), std::min(1.0, done / all));
+    Report(ofBatch, 0.0);
+    if (end - begin == 1)
+    {
+      plans[begin].NumberOfThreads = threads;
+    }
+    ForEachPiece(static_cast<Index>(pieces.size()) - 1, threads, [&](Index piece) {
+      for (Index hole = pieces[piece]; hole < pieces[piece + 1]; ++hole)
+      {
+        if (result.Reports[hole].Status == FillStatus::Filled)
+        {
+          fill(hole, end - begin == 1 ? ofBatch : Progress(), filled[hole - begin]);
+        }
+      }
+    });
+    for (Index hole = begin; hole < end; ++hole)
+    {
+      HoleReport& report = result.Reports[hole];
+      if (report.Status == FillStatus::Filled)
+      {
+        Attempt(report, [&]() {
+          Append(filled[hole - begin], mesh.NumberOfPoints(), result);
+          report.NumberOfInsertedPoints = filled[hole - begin].Triangles.NumberOfNewVertices();
+        });
+      }
+      result.PointOffsets.push_back(static_cast<Index>(result.Points.size() / 3));
+      result.TriangleOffsets.push_back(static_cast<Index>(result.Triangles.size() / 3));
+    }
+    begin = end;
   }
-  Report(options.Monitor, 1.0);
+  Report(monitor, 1.0);
   return result;
 }
 

@@ -7,26 +7,21 @@
  * In: a surface, its elevations, other values of its points, and its holes (Holes.h). Out: points
  * and triangles to append, their values, and a report for every hole. For each hole on its own:
  *   1. Measure, and compare with the limits.
- *   2. Place points: an even arrangement, one spacing apart, kept clear of the boundary.
- *   3. Triangulate boundary and new points, make the boundary's edges edges of the triangulation
- *      (constrained Delaunay), and keep what lies inside.
- *   4. Elevations, and other attributes in the same way (Heights.h).
- *
- * The spacing of a hole is by default the mean length of its boundary edges [Nguyen, eq. 1].
- * New points form rows one spacing apart, of which every second is moved by half a step, so that
- * their triangles are nearly equilateral; the arrangement has a point in the centre of the hole's
- * bounding box. A point nearer to the boundary than Clearance spacings is left out.
+ *   2. Place points and join them to triangles (Patch.h).
+ *   3. Elevations, and other attributes in the same way (Heights.h).
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole, none is split. Nothing else of the surface is touched.
  *
- * Cost: expected linear in the points of a hole (n log n in its boundary), holes are independent.
+ * Cost: expected linear in the points of a hole (n log n in its boundary), holes are
+ * independent, and filled on several threads.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  */
 #ifndef elevation_Fill_h
 #define elevation_Fill_h
 
+#include "Delaunay.h"
 #include "Heights.h"
 #include "Holes.h"
 #include "Mesh.h"
@@ -53,7 +48,7 @@ struct FillOptions
   double MaximumHoleSize = 0.0;
   /** Holes are filled that have at most this many edges, of rim and islands; 0: all. */
   Index MaximumHoleEdges = 0;
-  /** Distance of new points; 0: the mean length of the hole's edges. */
+  /** Distance of new points; 0: chosen for each hole, by the lengths of its edges. */
   double Spacing = 0.0;
   /**
    * New x,y are rounded to float (before they are triangulated, so that the result stays exact).
@@ -65,6 +60,10 @@ struct FillOptions
   std::vector<Values> Attributes;
   /** A hole that would take more new points than are left of this number fails. */
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
+  /** Whether new points lie on the nodes of a lattice, where the points of the surface do. */
+  LatticeMode UseLattice = LatticeMode::Automatic;
+  /** Threads to use; 0: one a core. The result is the same, byte for byte. */
+  int NumberOfThreads = 1;
   Progress Monitor;
 };
 
@@ -76,7 +75,7 @@ struct HoleReport
   double Perimeter = 0.0;  ///< length of all edges
   /** Inside the rim, outside the islands; NaN when Size is above 1e150 or below 1e-150. */
   double Area = 0.0;
-  double Spacing = 0.0; ///< the one used
+  double Spacing = 0.0; ///< the one asked for, or the mean length of the edges
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< the one used; never Adaptive
   std::string Reason; ///< of Failed, a sentence without the hole's name

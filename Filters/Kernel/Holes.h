@@ -63,6 +63,19 @@ struct Holes
     }
     return edges;
   }
+  /** Calls visit(h) for the half-edges of rim and islands of a hole, which lies on their right. */
+  template <typename Visitor>
+  void VisitEdges(Index hole, Visitor&& visit) const
+  {
+    for (Index i = this->Offsets[hole]; i < this->Offsets[hole + 1]; ++i)
+    {
+      const Index walk = this->Loops[i];
+      for (const Index* h = this->Walks.Begin(walk); h != this->Walks.End(walk); ++h)
+      {
+        visit(*h);
+      }
+    }
+  }
 };
 
 /**

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The triangles of a patch: where its new points lie in x,y, and how they are joined.
+ *
+ * In: the boundary of a hole. Out: new points inside, and triangles over boundary and new points.
+ *
+ * Points are arranged in one of three ways:
+ *   Nodes   Where the hole's boundary lies on the surface's lattice, and its edges measure less
+ *           than two steps on average, new points are the nodes inside. (A surface of which most
+ *           nodes are missing has longer edges: all nodes would be many more points than it has.)
+ *   Graded  Where the longest edge of the boundary is more than four times the shortest, new
+ *           points are as far from each other as the edges nearby are long: the spacing at a
+ *           place is the least of all edges' lengths, each plus 0.35 times the way to the edge.
+ *   Even    Else, and always where the user has set a spacing: rows one spacing apart, of which
+ *           every second is moved by half a step, so that triangles are nearly equilateral. The
+ *           spacing is by default the mean length of the boundary's edges [Nguyen, eq. 1].
+ *
+ * The passes:
+ *   1. Place the points of Nodes and Even, clear of the boundary by 0.6 spacings, or 0.4 steps.
+ *   2. Triangulate boundary and new points, make the boundary's edges edges of the triangulation,
+ *      and keep what lies inside: a constrained Delaunay triangulation.
+ *   3. Refine (not on Nodes): a triangle whose circle has a radius of more than 0.8 spacings, or
+ *      that has an angle below 20 degrees, gets a point in the centre of its circle [Chew 1989,
+ *      Ruppert 1995]. With Graded this places all the points.
+ *
+ * What the boundary forces: its edges are not split, and no point comes nearer to it than half a
+ * spacing. So a triangle stays as it is when the centre of its circle lies behind a boundary edge
+ * or nearer than that to one. All other triangles of Even have edges of at most 1.6 spacings
+ * and angles of at least 20 degrees; so an edge that is longer, but no boundary edge, has such a
+ * forced triangle on both sides. With Graded the same holds for the spacing around the triangle.
+ *
+ * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
+ * boundary edges are those of the hole. Unlimited by its number of points, refinement ends: a new
+ * point keeps half a spacing from all others that it sees. Discs of a quarter spacing around new
+ * points are disjoint and inside the hole, which bounds their number.
+ *
+ * Cost: expected linear in the number of points.
+ *
+ * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
+ * [Chew 1989] Guaranteed-quality triangular meshes.
+ * [Ruppert 1995] A Delaunay refinement algorithm for quality 2-dimensional mesh generation.
+ */
+#ifndef elevation_Patch_h
+#define elevation_Patch_h
+
+#include "Constraints.h"
+#include "Heights.h"
+#include "Holes.h"
+#include "Lattice.h"
+#include "Mesh.h"
+#include "Types.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/** How far a point of the boundary may lie from its node of a lattice, along each step, in steps. */
+constexpr double LatticeTolerance = 0.01;
+
+/** How new points lie. */
+enum class Arrangement : unsigned char
+{
+  Even,
+  Graded,
+  Nodes
+};
+
+/** What is known of a patch before any work is done for it. */
+struct PatchPlan
+{
+  Arrangement Kind = Arrangement::Even;
+  double Spacing = 0.0; ///< of Even; else the mean length of the boundary's edges
+  double Longest = 0.0; ///< edge of the boundary
+  /** No more points than that are inserted; above 0, not a whole number. */
+  double MostPoints = 0.0;
+  Lattice Steps; ///< of Nodes
+  /** Where the coordinates of the hole are largest, neighbouring numbers differ by so much. */
+  double Precision = 0.0;
+  /** New x,y are rounded to float, before they are triangulated. */
+  bool SinglePrecision = false;
+  Point2 Rounded(const Point2& p) const
+  {
+    return this->SinglePrecision ? Point2{ static_cast<float>(p.X), static_cast<float>(p.Y) } : p;
+  }
+  /** Threads for one patch. The result does not depend on it. */
+  int NumberOfThreads = 1;
+};
+
+/**
+ * Chooses the arrangement for a hole.
+ * @param[in] mesh     the surface
+ * @param[in] holes    its holes
+ * @param[in] hole     number of the hole
+ * @param[in] area     of the hole
+ * @param[in] spacing  the one asked for; 0: none
+ * @param[in] lattice  of the surface; null: none
+ * @return a plan of which Precision and what follows it are still to be set
+ */
+PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double area, double spacing,
+  const Lattice* lattice);
+
+/** A hole that is being filled. */
+struct Patch : PatchMesh
+{
+  std::vector<Segment> Edges; ///< of the boundary; the hole lies on their right
+};
+
+/** Vertices and edges of the boundary. n log n. */
+Patch CollectBoundary(const Mesh& mesh, const PointView& points, const Holes& holes, Index hole);
+
+/**
+ * New points and triangles for a patch that has its boundary.
+ * @throws Error, a sentence without the hole's name; Aborted; std::bad_alloc
+ */
+void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch);
+
+} // namespace elevation
+
+#endif

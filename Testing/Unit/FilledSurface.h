@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Surfaces with holes, filled, for tests: before and after, and what is promised of every patch.
+ */
+#ifndef FilledSurface_h
+#define FilledSurface_h
+
+#include "Kernel/Fill.h"
+#include "Kernel/Validate.h"
+#include "LatticeSurface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace testing_surfaces
+{
+using namespace elevation;
+
+using Elevation = std::function<double(const Point2&)>;
+
+/** A surface before and after. */
+struct Outcome
+{
+  Mesh Surface;
+  std::vector<double> Coordinates;
+  Holes Found;
+  FillResult Patches;
+
+  PointView Points() const
+  {
+    PointView view;
+    view.Double = this->Coordinates.data();
+    view.Count = this->Surface.NumberOfPoints();
+    return view;
+  }
+  double ElevationOf(Index id) const
+  {
+    const Index count = this->Surface.NumberOfPoints();
+    return id < count ? this->Coordinates[3 * id + 2] : this->Patches.Points[3 * (id - count) + 2];
+  }
+  /** The surface with its patches; Twins are not filled. */
+  Mesh Filled() const
+  {
+    Mesh mesh;
+    mesh.Points = this->Surface.Points;
+    for (std::size_t i = 0; i < this->Patches.Points.size(); i += 3)
+    {
+      mesh.Points.push_back({ this->Patches.Points[i], this->Patches.Points[i + 1] });
+    }
+    mesh.Triangles = this->Surface.Triangles;
+    mesh.Triangles.insert(
+      mesh.Triangles.end(), this->Patches.Triangles.begin(), this->Patches.Triangles.end());
+    return mesh;
+  }
+  /** The patches alone, over all points. */
+  Mesh Patch() const
+  {
+    Mesh mesh = this->Filled();
+    mesh.Triangles.assign(this->Patches.Triangles.begin(), this->Patches.Triangles.end());
+    return mesh;
+  }
+};
+
+inline double Slope(const Point2& p)
+{
+  return 2.0 * p.X - 3.0 * p.Y;
+}
+
+inline Outcome Fill(
+  Mesh mesh, const FillOptions& options = FillOptions(), const Elevation& elevation = Slope)
+{
+  Outcome run;
+  run.Surface = std::move(mesh);
+  for (const Point2& p : run.Surface.Points)
+  {
+    run.Coordinates.insert(run.Coordinates.end(), { p.X, p.Y, elevation(p) });
+  }
+  run.Found = FindHoles(run.Surface);
+  run.Patches = FillHoles(run.Surface, run.Points(), run.Found, options);
+  return run;
+}
+
+/**
+ * Everything that is promised of patches, whatever the hole: valid with the surface, nothing
+ * covered twice, area conserved, no border but the outer one, Delaunay but for the hole's edges.
+ */
+inline void ExpectPatchesFit(const Outcome& run, double relativeAreaError = 0.0)
+{
+  const Mesh filled = run.Filled();
+  ValidateOptions rules;
+  rules.Delaunay = false;
+  rules.ConvexHull = false;
+  rules.AllPoints = false;
+  const auto findings = Validate(filled, rules);
+  EXPECT_TRUE(findings.empty()) << ToString(findings);
+
+  double twiceHoles = 0.0;
+  Index holeEdges = 0;
+  Index triangles = 0;
+  for (Index hole = 0; hole < run.Found.Count(); ++hole)
+  {
+    const HoleReport& report = run.Patches.Reports[hole];
+    if (report.Status != FillStatus::Filled)
+    {
+      EXPECT_EQ(run.Patches.TriangleOffsets[hole], run.Patches.TriangleOffsets[hole + 1]);
+      EXPECT_EQ(run.Patches.PointOffsets[hole], run.Patches.PointOffsets[hole + 1]);
+      EXPECT_EQ(report.NumberOfInsertedPoints, 0);
+      continue;
+    }
+    EXPECT_EQ(report.NumberOfInsertedPoints,
+      run.Patches.PointOffsets[hole + 1] - run.Patches.PointOffsets[hole]);
+    twiceHoles += 2.0 * report.Area;
+    holeEdges += report.NumberOfEdges;
+    // Euler: a polygon of n edges with k islands takes n - 2 + 2 k triangles, and two a point.
+    const Index islands = run.Found.Offsets[hole + 1] - run.Found.Offsets[hole] - 1;
+    triangles += report.NumberOfEdges - 2 + 2 * islands + 2 * report.NumberOfInsertedPoints;
+  }
+  EXPECT_EQ(run.Patches.NumberOfTriangles(), triangles);
+  EXPECT_NEAR(TwiceArea(run.Patch()), twiceHoles, relativeAreaError * twiceHoles);
+  EXPECT_NEAR(
+    TwiceArea(filled), TwiceArea(run.Surface) + twiceHoles, relativeAreaError * TwiceArea(filled));
+
+  const auto borders = [](const Mesh& mesh) {
+    return std::count(mesh.Twins.begin(), mesh.Twins.end(), Mesh::Border);
+  };
+  Mesh connected = filled;
+  connected.ConnectTwins();
+  EXPECT_EQ(borders(connected), borders(run.Surface) - holeEdges);
+
+  // The patches' own border edges are those of the holes: the empty circle is asked of the others.
+  Mesh patch = run.Patch();
+  ValidateOptions delaunay = rules;
+  delaunay.Delaunay = true;
+  delaunay.Overlap = false;
+  const auto circles = Validate(patch, delaunay);
+  EXPECT_TRUE(circles.empty()) << ToString(circles);
+}
+
+/** A disc of a lattice turned by an angle, with a hole of the given radius in it. */
+inline Mesh TurnedSheet(int size, double radius, double angle)
+{
+  Mesh mesh;
+  const auto id = [size](int x, int y) { return static_cast<Index>(y * (size + 1) + x); };
+  for (int y = 0; y <= size; ++y)
+  {
+    for (int x = 0; x <= size; ++x)
+    {
+      mesh.Points.push_back(
+        { std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y });
+    }
+  }
+  for (int y = 0; y < size; ++y)
+  {
+    for (int x = 0; x < size; ++x)
+    {
+      if (std::hypot(x + 0.5 - 0.5 * size, y + 0.5 - 0.5 * size) > radius)
+      {
+        mesh.Triangles.insert(mesh.Triangles.end(), { id(x, y), id(x + 1, y), id(x + 1, y + 1) });
+        mesh.Triangles.insert(mesh.Triangles.end(), { id(x, y), id(x + 1, y + 1), id(x, y + 1) });
+      }
+    }
+  }
+  mesh.ConnectTwins();
+  return mesh;
+}
+
+} // namespace testing_surfaces
+
+#endif
