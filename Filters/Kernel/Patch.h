@@ -83,7 +83,14 @@ struct PatchPlan
   bool SinglePrecision = false;
   Point2 Rounded(const Point2& p) const
   {
-    return this->SinglePrecision ? Point2{ static_cast<float>(p.X), static_cast<float>(p.Y) } : p;
+    if (!this->SinglePrecision)
+    {
+      return p;
+    }
+    // Volatile, as the vectorizer of gcc 12 leaves out two such conversions side by side.
+    const volatile float x = static_cast<float>(p.X);
+    const volatile float y = static_cast<float>(p.Y);
+    return { x, y };
   }
   /** Threads for one patch. The result does not depend on it. */
   int NumberOfThreads = 1;

@@ -453,6 +453,7 @@ TEST(Fill, StaysExactInSinglePrecision)
   }
   FillOptions options;
   options.SinglePrecision = true;
+  options.UseLattice = LatticeMode::Off;
   const Outcome run = Fill(mesh, options);
   ASSERT_GT(run.Patches.NumberOfPoints(), 100);
   for (std::size_t i = 0; i < run.Patches.Points.size(); i += 3)

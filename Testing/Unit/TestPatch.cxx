@@ -12,8 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
+#include <memory>
 #include <random>
 
 using namespace elevation;
@@ -26,6 +26,8 @@ using testing_surfaces::TurnedSheet;
 
 namespace
 {
+constexpr double RowHeight = 0.8660254037844386;
+
 /** The Delaunay triangulation of points without the triangles whose centre is to be lost. */
 Mesh Cut(const std::vector<Point2>& points, const std::function<bool(const Point2&)>& isLost)
 {
@@ -78,7 +80,7 @@ double SquareToEdge(const Point2& a, const Point2& b, const Point2& p)
   return std::pow(ap.X - along * ab.X, 2) + std::pow(ap.Y - along * ab.Y, 2);
 }
 
-/** What a patch is like that was arranged evenly. */
+/** What patches are like that were arranged evenly. */
 struct Quality
 {
   Index Triangles = 0;
@@ -86,7 +88,6 @@ struct Quality
   Index BadInside = 0; ///< of them those with at most one corner on the boundary
   Index Unforced = 0;  ///< of them those that the boundary does not force
   double LongestEdge = 0.0; ///< in spacings, boundary edges not counted
-  double MostFilled = 0.0;  ///< share of the most points that were allowed
 };
 
 Quality Judge(const Outcome& run)
@@ -100,22 +101,10 @@ Quality Judge(const Outcome& run)
     const double d = patches.Reports[hole].Spacing;
     std::vector<Index> rim;
     run.Found.VisitEdges(hole, [&rim](Index h) { rim.push_back(h); });
-    double least=1e300, most=0;
-    for (Index h : rim)
-    {
-      const Point2& a = run.Surface.PointOf(run.Surface.Origin(h));
-      const Point2& b = run.Surface.PointOf(run.Surface.Destination(h));
-      least = std::min(least, std::hypot(b.X - a.X, b.Y - a.Y));
-      most = std::max(most, std::hypot(b.X - a.X, b.Y - a.Y));
-    }
-    const bool isGraded = most > 4 * least && !getenv("SP");
     const auto isBoundary = [&](Index a, Index b) {
       return std::any_of(rim.begin(), rim.end(),
         [&](Index h) { return run.Surface.Origin(h) == b && run.Surface.Destination(h) == a; });
     };
-    quality.MostFilled = std::max(quality.MostFilled,
-      (patches.Reports[hole].NumberOfInsertedPoints -
-        (patches.Reports[hole].Area / (0.8660254 * d * d))) / rim.size());
     for (Index t = patches.TriangleOffsets[hole]; t < patches.TriangleOffsets[hole + 1]; ++t)
     {
       ++quality.Triangles;
@@ -153,7 +142,6 @@ Quality Judge(const Outcome& run)
       {
         continue;
       }
-      if (getenv("GR") ? !isGraded : isGraded) continue;
       ++quality.Bad;
       quality.BadInside += known < 2;
       const double uu = u.X * u.X + u.Y * u.Y, ww = w.X * w.X + w.Y * w.Y;
@@ -167,7 +155,6 @@ Quality Judge(const Outcome& run)
             Orientation(q, centre, from) * Orientation(q, centre, to) <= 0);
       });
       quality.Unforced += !isForced;
-      if (!isForced && getenv("DBG")) std::printf("hole %d tri %d known %d long %d sine %g R %g shortest %g d %g q %g %g a %g %g b %g %g centre %g %g edges %zu pts %d\n", hole, t, known, isLong, sine, radius, shortest, d, q.X,q.Y,a.X,a.Y,b.X,b.Y,centre.X,centre.Y,rim.size(), patches.Reports[hole].NumberOfInsertedPoints);
     }
   }
   return quality;
@@ -181,58 +168,329 @@ FillOptions Evenly(double spacing = 0.0)
   options.Method = Interpolation::NeighborMean;
   return options;
 }
+/** Kinds of holes, in a square of a given size whose outer rows stay. */
+enum Shape
+{
+  Star,
+  Slit,
+  Ring,
+  Necks,
+  Waves,
+  Spiral,
+  NumberOfShapes
+};
+
+std::function<bool(const Point2&)> RandomShape(std::mt19937_64& random, int shape, int size)
+{
+  const double phase = 6.28 * Uniform(random), lobes = 2.0 + std::floor(4.0 * Uniform(random)),
+               depth = Uniform(random), scale = (0.05 + 0.35 * Uniform(random)) * size;
+  const double step = 0.025 * size;
+  auto noise = std::make_shared<std::mt19937_64>(random());
+  return [=](const Point2& p) {
+    const double x = p.X - 0.5 * size, y = p.Y - 0.5 * size;
+    const double r = std::hypot(x, y), angle = std::atan2(y, x);
+    if (std::max(std::fabs(x), std::fabs(y)) > 0.5 * size - 2.0)
+    {
+      return false;
+    }
+    switch (shape)
+    {
+      case Star:
+        return r < scale * (1.0 - depth * 0.5 * (1.0 + std::cos(lobes * angle + phase)));
+      case Slit:
+        return std::fabs(x * std::cos(phase) + y * std::sin(phase)) < 0.2 * depth + 0.1 * lobes;
+      case Ring:
+        return r < scale && r > scale * depth;
+      case Necks:
+        return Uniform(*noise) < 0.2 + 0.5 * depth;
+      case Waves:
+        return std::sin(x * lobes / 5.0 / step + phase) + std::sin(0.5 * y / step) >
+          2.0 * depth - 1.0;
+      default:
+        return std::fmod(r * 0.3 / step + angle / 6.2832 + 2.0, 1.0) < 0.3 + 0.5 * depth;
+    }
+  };
+}
+
+/** The points without a triangle. */
+std::vector<Point2> LostPoints(const Mesh& mesh)
+{
+  std::vector<char> isUsed(mesh.Points.size(), 0);
+  for (const Index v : mesh.Triangles)
+  {
+    isUsed[v] = 1;
+  }
+  std::vector<Point2> lost;
+  for (Index v = 0; v < mesh.NumberOfPoints(); ++v)
+  {
+    if (!isUsed[v])
+    {
+      lost.push_back(mesh.PointOf(v));
+    }
+  }
+  return lost;
+}
+
+std::vector<Point2> NewPoints(const Outcome& run)
+{
+  std::vector<Point2> points;
+  for (std::size_t i = 0; i < run.Patches.Points.size(); i += 3)
+  {
+    points.push_back({ run.Patches.Points[i], run.Patches.Points[i + 1] });
+  }
+  return points;
+}
+
+/** The largest distance of a point from the nearest of others. */
+double LargestDistance(const std::vector<Point2>& points, const std::vector<Point2>& others)
+{
+  double largest = 0.0;
+  for (const Point2& p : points)
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Point2& q : others)
+    {
+      least = std::min(least, std::hypot(q.X - p.X, q.Y - p.Y));
+    }
+    largest = std::max(largest, least);
+  }
+  return largest;
+}
+
+/** Points of [0, size] x [0, size] that come denser towards the left. */
+std::vector<Point2> Graded(int size)
+{
+  std::vector<Point2> points;
+  for (double x = 0.0, step = 0.05; x < size; x += step, step *= 1.15)
+  {
+    const int rows = static_cast<int>(std::ceil(size / step));
+    for (int row = 0; row <= rows; ++row)
+    {
+      points.push_back({ x, row * (static_cast<double>(size) / rows) });
+    }
+  }
+  return points;
+}
 } // namespace
 
-TEST(Patch, Explore)
+TEST(Patch, GivesBackTheNodesThatWereLost)
+{
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  const Lattice lattices[] = {
+    { { 0, 0 }, { 1, 0 }, { 0, 1 } },
+    { { 100, -50 }, { 25, 0 }, { 0, 12.5 } },
+    { { 596700, 9120000 }, { 25 * c, 25 * s }, { -12.5 * s, 12.5 * c } },
+    { { 596700, 9120000 }, { 10 * c, 10 * s }, { 4 * c - 12 * s, 4 * s + 12 * c } },
+    { { -1, 2 }, { 0.001, 0 }, { 0.0004, 0.001 } },
+  };
+  const int size = 40;
+  std::mt19937_64 random(7);
+  for (const Lattice& lattice : lattices)
+  {
+    for (int shape = 0; shape < NumberOfShapes; ++shape)
+    {
+      SCOPED_TRACE(std::to_string(lattice.StepU.X) + " shape " + std::to_string(shape));
+      // Holes are cut in the square of numbers of nodes.
+      const auto isLost = RandomShape(random, shape, size);
+      Mesh mesh = Cut(Jittered(random, size, 0.0), isLost);
+      for (Point2& p : mesh.Points)
+      {
+        p = lattice.Node(p.X, p.Y);
+      }
+      const std::vector<Point2> lost = LostPoints(mesh);
+      const Outcome run = Fill(std::move(mesh), FillOptions());
+      ExpectPatchesFit(run, 1e-7);
+      EXPECT_EQ(run.Patches.NumberOfPoints(), static_cast<Index>(lost.size()));
+      // Steps that are round are found as they are, others to about a millionth.
+      const double step = std::hypot(lattice.StepU.X, lattice.StepU.Y);
+      EXPECT_LE(LargestDistance(lost, NewPoints(run)),
+        lattice.StepU.Y == 0.0 && step >= 1.0 ? 0.0 : 1e-6 * step);
+    }
+  }
+}
+
+TEST(Patch, GivesBackNodesRoundedToFloat)
+{
+  const double c = std::cos(0.4), s = std::sin(0.4);
+  const Lattice lattice{ { 596700, 120000 }, { 25 * c, 25 * s }, { -12.5 * s, 12.5 * c } };
+  std::mt19937_64 random(8);
+  Mesh mesh = Cut(Jittered(random, 40, 0.0), RandomShape(random, Ring, 40));
+  for (Point2& p : mesh.Points)
+  {
+    const Point2 node = lattice.Node(p.X, p.Y);
+    const volatile float x = static_cast<float>(node.X);
+    const volatile float y = static_cast<float>(node.Y);
+    p = { x, y };
+  }
+  const std::vector<Point2> lost = LostPoints(mesh);
+  ASSERT_GT(lost.size(), 20u);
+  FillOptions options;
+  options.SinglePrecision = true;
+  const Outcome run = Fill(std::move(mesh), options);
+  ExpectPatchesFit(run, 1e-6);
+  EXPECT_EQ(run.Patches.NumberOfPoints(), static_cast<Index>(lost.size()));
+  EXPECT_LE(LargestDistance(lost, NewPoints(run)), 0.0625 * 1.5) << "one step of float";
+  for (const Point2& p : NewPoints(run))
+  {
+    EXPECT_EQ(std::fmod(p.X, 0.0625), 0.0) << "or it is no float";
+  }
+}
+
+TEST(Patch, DoesNotFillEveryNodeOfAThinnedLattice)
+{
+  std::mt19937_64 random(9);
+  std::vector<Point2> points;
+  const int size = 120;
+  for (const Point2& p : Jittered(random, size, 0.0))
+  {
+    if (Uniform(random) < 0.1)
+    {
+      points.push_back(p);
+    }
+  }
+  const auto isLost = [](const Point2& p) { return std::hypot(p.X - 60.0, p.Y - 60.0) < 30.0; };
+  const Outcome run = Fill(Cut(points, isLost), FillOptions());
+  ExpectPatchesFit(run, 1e-9);
+  const double area = run.Patches.Reports[0].Area;
+  EXPECT_LT(run.Patches.NumberOfPoints(), 0.3 * area);
+  EXPECT_GT(run.Patches.NumberOfPoints(), 0.05 * area);
+}
+
+TEST(Patch, KeepsToTheSpacingThatIsAskedForOnALattice)
+{
+  FillOptions options;
+  options.Spacing = 0.5;
+  options.Method = Interpolation::NeighborMean;
+  const Outcome run = Fill(TurnedSheet(30, 10.0, 0.0), options);
+  const Outcome even = Fill(TurnedSheet(30, 10.0, 0.0), Evenly(0.5));
+  EXPECT_EQ(run.Patches.Points, even.Patches.Points);
+  EXPECT_NEAR(
+    run.Patches.NumberOfPoints(), run.Patches.Reports[0].Area / (0.866 * 0.25), 0.1 * 1400);
+}
+
+TEST(Patch, RefinesWhatTheBoundaryDoesNotForce)
 {
   std::mt19937_64 random(5);
-  for (int kind = 0; kind < 6; ++kind)
+  Index triangles = 0;
+  Index bad = 0;
+  for (int shape = 0; shape < NumberOfShapes; ++shape)
   {
-    for (double jitter : { 0.0, 0.6, 1.2 })
+    for (const double jitter : { 0.0, 0.6, 1.2 })
     {
-      Quality sum;
-      for (int run = 0; run < 20; ++run)
+      for (const double spacing : { 0.5, 0.8, 1.0, 1.5, 3.0 })
       {
-        const int size = 40;
-        const double phase = 6.28 * Uniform(random), lobes = 2 + int(4 * Uniform(random)),
-                     depth = Uniform(random), scale = 2.0 + 14.0 * Uniform(random);
-        std::mt19937_64 noise(run);
-        const auto isLost = [&](const Point2& p) {
-          const double x = p.X - 0.5 * size, y = p.Y - 0.5 * size;
-          const double r = std::hypot(x, y), angle = std::atan2(y, x);
-          const bool isIn = std::max(std::fabs(x), std::fabs(y)) < 0.5 * size - 2.0;
-          switch (kind)
-          {
-            case 0: // a star
-              return isIn &&
-                r < scale * (1.0 - depth * 0.5 * (1.0 + std::cos(lobes * angle + phase)));
-            case 1: // a slit
-              return isIn &&
-                std::fabs(x * std::cos(phase) + y * std::sin(phase)) <
-                0.2 * depth + 0.1 * lobes - 0.1;
-            case 2: // an island
-              return isIn && r < scale && r > scale * depth;
-            case 3: // many holes with necks
-              return isIn && Uniform(noise) < 0.2 + 0.5 * depth;
-            case 4: // waves
-              return isIn && std::sin(x * lobes / 5 + phase) + std::sin(y * 0.5) > 2 * depth - 1;
-            default: // spiral
-              return isIn && std::fmod(r * 0.3 + angle / 6.2832 + 2.0, 1.0) < 0.3 + 0.5 * depth;
-          }
-        };
-        const Outcome outcome =
-          Fill(Cut(Jittered(random, size, jitter), isLost), Evenly(getenv("SP") ? atof(getenv("SP")) : 0.0));
-        ExpectPatchesFit(outcome, 1e-9);
-        const Quality quality = Judge(outcome);
-        EXPECT_EQ(quality.Unforced, 0) << kind << " " << jitter << " " << run;
-        sum.Triangles += quality.Triangles;
-        sum.Bad += quality.Bad;
-        sum.BadInside += quality.BadInside;
-        sum.LongestEdge = std::max(sum.LongestEdge, quality.LongestEdge);
-        sum.MostFilled = std::max(sum.MostFilled, quality.MostFilled);
+        SCOPED_TRACE(
+          std::to_string(shape) + " " + std::to_string(jitter) + " " + std::to_string(spacing));
+        const int size = 30;
+        const auto isLost = RandomShape(random, shape, size);
+        const Outcome run = Fill(Cut(Jittered(random, size, jitter), isLost), Evenly(spacing));
+        ExpectPatchesFit(run, 1e-9);
+        const Quality quality = Judge(run);
+        EXPECT_EQ(quality.Unforced, 0);
+        triangles += quality.Triangles;
+        bad += quality.Bad;
+        for (const HoleReport& report : run.Patches.Reports)
+        {
+          EXPECT_LE(report.NumberOfInsertedPoints,
+            std::max(1.0, report.Area / (RowHeight * spacing * spacing)));
+        }
       }
-      std::printf("%d %g: %d triangles, %d bad, %d of them inside, longest %g, filled %g\n", kind,
-        jitter, sum.Triangles, sum.Bad, sum.BadInside, sum.LongestEdge, sum.MostFilled);
+    }
+  }
+  EXPECT_GT(triangles, 60000);
+  EXPECT_GT(bad, 1000) << "or nothing is forced";
+}
+
+TEST(Patch, HasNoBadTriangleWhereTheBoundaryIsEven)
+{
+  std::mt19937_64 random(6);
+  Index triangles = 0;
+  for (int run = 0; run < 60; ++run)
+  {
+    const int shape = run % NumberOfShapes;
+    const auto isLost = RandomShape(random, shape, 40);
+    const Outcome outcome = Fill(Cut(Jittered(random, 40, 0.0), isLost), Evenly());
+    ExpectPatchesFit(outcome, 1e-9);
+    const Quality quality = Judge(outcome);
+    EXPECT_EQ(quality.Bad, 0) << shape;
+    EXPECT_LE(quality.LongestEdge, 1.6);
+    triangles += quality.Triangles;
+  }
+  EXPECT_GT(triangles, 40000);
+}
+
+TEST(Patch, IsGradedWhereEdgesDiffer)
+{
+  const int size = 30;
+  const auto isLost = [](const Point2& p) { return std::hypot(p.X - 10.0, p.Y - 15.0) < 9.3; };
+  const Outcome run = Fill(Cut(Graded(size), isLost), Evenly());
+  ASSERT_EQ(run.Found.Count(), 1);
+  ExpectPatchesFit(run, 1e-9);
+  const HoleReport& report = run.Patches.Reports[0];
+  const PatchPlan plan = PlanPatch(run.Surface, run.Found, 0, report.Area, 0.0, nullptr);
+  ASSERT_EQ(plan.Kind, Arrangement::Graded);
+  EXPECT_LT(report.NumberOfInsertedPoints, 0.5 * plan.MostPoints);
+  // Less than with the mean spacing everywhere.
+  EXPECT_LT(report.NumberOfInsertedPoints,
+    0.5 * Fill(Cut(Graded(size), isLost), Evenly(plan.Spacing)).Patches.NumberOfPoints());
+
+  const Mesh all = run.Filled();
+  for (Index t = 0; t < run.Patches.NumberOfTriangles(); ++t)
+  {
+    const Index* v = run.Patches.Triangles.data() + 3 * t;
+    const int known = static_cast<int>(
+      std::count_if(v, v + 3, [&](Index id) { return id < run.Surface.NumberOfPoints(); }));
+    double lengths[3];
+    for (int i = 0; i < 3; ++i)
+    {
+      const Point2& a = all.PointOf(v[i]);
+      const Point2& b = all.PointOf(v[(i + 1) % 3]);
+      lengths[i] = std::hypot(b.X - a.X, b.Y - a.Y);
+      // No edge is much longer than those of the boundary nearby.
+      double spacing = std::numeric_limits<double>::infinity();
+      run.Found.VisitEdges(0, [&](Index h) {
+        const Point2& from = run.Surface.PointOf(run.Surface.Origin(h));
+        const Point2& to = run.Surface.PointOf(run.Surface.Destination(h));
+        spacing = std::min(spacing,
+          std::hypot(to.X - from.X, to.Y - from.Y) +
+            0.35 * std::sqrt(SquareToEdge(from, to, { 0.5 * (a.X + b.X), 0.5 * (a.Y + b.Y) })));
+      });
+      if (known < 2)
+      {
+        EXPECT_LT(lengths[i], 2.2 * spacing);
+        EXPECT_GT(lengths[i], 0.3 * spacing);
+      }
+    }
+    std::sort(lengths, lengths + 3);
+    const double cosine =
+      (lengths[1] * lengths[1] + lengths[2] * lengths[2] - lengths[0] * lengths[0]) /
+      (2.0 * lengths[1] * lengths[2]);
+    if (known < 2)
+    {
+      EXPECT_LE(cosine, std::cos(20.0 * 3.14159265358979 / 180.0) + 1e-9);
+    }
+  }
+}
+
+TEST(Patch, IsTheSameForAnyNumberOfThreads)
+{
+  std::mt19937_64 random(10);
+  for (const int shape : { Necks, Waves })
+  {
+    const Mesh mesh = Cut(Jittered(random, 100, 0.8), RandomShape(random, shape, 100));
+    FillOptions options;
+    options.UseLattice = LatticeMode::Off;
+    const Outcome one = Fill(mesh, options);
+    EXPECT_GT(one.Found.Count(), 1);
+    for (const int threads : { 2, 4 })
+    {
+      options.NumberOfThreads = threads;
+      const Outcome run = Fill(mesh, options);
+      EXPECT_EQ(run.Patches.Points, one.Patches.Points);
+      EXPECT_EQ(run.Patches.Triangles, one.Patches.Triangles);
+      EXPECT_EQ(run.Patches.PointOffsets, one.Patches.PointOffsets);
+      EXPECT_EQ(run.Patches.TriangleOffsets, one.Patches.TriangleOffsets);
+      EXPECT_EQ(run.Patches.NearestBoundaryPoints, one.Patches.NearestBoundaryPoints);
     }
   }
 }
