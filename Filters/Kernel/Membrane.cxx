@@ -32,7 +32,7 @@ double Dot(const std::vector<double>& a, const std::vector<double>& b)
 } // namespace
 
 /** Breadth first, from an end of the graph: neighbours get places that are not far apart. */
-void Membrane::Arrange(const Matrix& matrix, Factor& factor)
+void Membrane::Arrange(const Matrix& matrix, Factor& factor, const Progress& progress)
 {
   const Index size = matrix.Size();
   std::vector<Index> place(size, None);
@@ -44,6 +44,7 @@ void Membrane::Arrange(const Matrix& matrix, Factor& factor)
     place[start] = static_cast<Index>(begin);
     for (std::size_t k = begin; k < order.size(); ++k)
     {
+      ReportStep(progress, k, matrix.Diagonal.size());
       const Index row = order[k];
       for (std::size_t j = matrix.Offsets[row]; j < matrix.Offsets[row + 1]; ++j)
       {
@@ -174,7 +175,7 @@ void Membrane::SolveFactor(
 }
 
 /** @return false when the coarser matrix is hardly smaller */
-bool Membrane::Coarsen(Level& fine, Matrix& coarse)
+bool Membrane::Coarsen(Level& fine, Matrix& coarse, const Progress& progress)
 {
   const Matrix& a = fine.A;
   const Index size = a.Size();
@@ -201,6 +202,7 @@ bool Membrane::Coarsen(Level& fine, Matrix& coarse)
   };
   for (Index i = 0; i < size; ++i)
   {
+    ReportStep(progress, i, size);
     if (piece[i] == None)
     {
       take(i, true);
@@ -251,6 +253,7 @@ bool Membrane::Coarsen(Level& fine, Matrix& coarse)
   std::vector<std::size_t> where(count, 0); // one more than the entry of the present row
   for (Index c = 0; c < count; ++c)
   {
+    ReportStep(progress, c, count);
     const std::size_t first = coarse.Columns.size();
     for (Index k = begin[c]; k < begin[c + 1]; ++k)
     {
@@ -303,12 +306,13 @@ Membrane::Membrane(const Adjacency& graph, const Progress& progress)
   a.Values.assign(a.Columns.size(), -1.0);
   for (;;)
   {
-    Report(progress, 0.0);
+    // How many levels there will be is not known; that the work goes on is told.
+    const Progress here = Part(progress, 0.0, 0.0);
     Level& level = this->Levels.back();
     this->Coarsest = Factor();
-    Arrange(level.A, this->Coarsest);
+    Arrange(level.A, this->Coarsest, here);
     Matrix coarse;
-    if (WorkOf(this->Coarsest) <= LargestWork * size || !Coarsen(level, coarse))
+    if (WorkOf(this->Coarsest) <= LargestWork * size || !Coarsen(level, coarse, here))
     {
       break;
     }

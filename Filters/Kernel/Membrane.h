@@ -90,12 +90,12 @@ private:
     std::vector<Index> Coarse;
   };
 
-  static void Arrange(const Matrix& matrix, Factor& factor);
+  static void Arrange(const Matrix& matrix, Factor& factor, const Progress& progress);
   static double WorkOf(const Factor& factor);
   static void Factorize(const Matrix& matrix, Factor& factor, const Progress& progress);
   static void SolveFactor(
     const Factor& factor, const std::vector<double>& right, std::vector<double>& x);
-  static bool Coarsen(Level& fine, Matrix& coarse);
+  static bool Coarsen(Level& fine, Matrix& coarse, const Progress& progress);
   void Cycle(std::size_t level, const std::vector<double>& right, std::vector<double>& x,
     const Progress& progress) const;
 
