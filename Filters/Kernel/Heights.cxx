@@ -25,6 +25,7 @@ constexpr double LeastDistance = 0.02;
 
 /** Places where Adaptive tries the methods, new points it compares there, places that suffice. */
 constexpr int NumberOfPlaces = 8;
+constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr Index NumberOfProbes = 32;
 constexpr int EnoughPlaces = 2;
 
@@ -39,7 +40,7 @@ constexpr double LeastError = 1e-9;
 constexpr double LeastSquare = 1e-300;
 
 /** Of the membrane, where methods are only compared. */
-constexpr double RoughAccuracy = 1e-3;
+constexpr double RoughAccuracy = 1e-2;
 
 /** Points a spline is evaluated at between two reports. */
 constexpr std::size_t PointsPerReport = 4096;
@@ -470,14 +471,15 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
     }
     return true;
   };
+  const int number = this->Flat->IsLarge() ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
   int places = 0;
   for (const double size : { 1.0, 0.5 })
   {
-    for (int k = 0; k < NumberOfPlaces && (size == 1.0 || places < EnoughPlaces); ++k)
+    for (int k = 0; k < number && (size == 1.0 || places < EnoughPlaces); ++k)
     {
-      const double done = size == 1.0 ? k / 16.0 : 0.5 + k / 16.0;
+      const double done = size == 1.0 ? 0.9 * k / number : 0.9 + 0.1 * k / number;
       Report(progress, done);
-      const double angle = 2.0 * 3.14159265358979323846 * k / NumberOfPlaces;
+      const double angle = 2.0 * 3.14159265358979323846 * k / number;
       places += tryAt(angle, size, Part(progress, done, done)) ? 1 : 0;
     }
   }
@@ -568,7 +570,7 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
       atCentres.push_back(known[place]);
     }
     const Spline::Weights weights = this->Smooth->Interpolate(atCentres);
-    const Progress adding = Part(progress, 0.0, 0.5);
+    const Progress adding = Part(progress, 0.0, this->AllBoundaryIsCentre ? 1.0 : 0.3);
     std::vector<Point2> points(PointsPerReport);
     result.assign(count, 0.0);
     for (std::size_t begin = 0; begin < count; begin += PointsPerReport)
@@ -609,7 +611,7 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   }
   if (!this->Smooth || !this->AllBoundaryIsCentre)
   {
-    const std::vector<double> flat = this->Flat->Solve(rim, 1e-10, Part(progress, 0.5, 1.0));
+    const std::vector<double> flat = this->Flat->Solve(rim, 1e-10, Part(progress, this->Smooth ? 0.3 : 0.0, 1.0));
     if (this->Smooth)
     {
       for (std::size_t i = 0; i < count; ++i)

@@ -20,7 +20,7 @@
  * their boundary.
  *
  * Adaptive leaves out what is like the hole: its boundary, its ring and some of its new points are
- * moved to eight places around it, where the surface is known, and each method predicts there the
+ * moved to eight places (four for very large holes) around it, where the surface is known, and each method predicts there the
  * points inside from those around. Splines and membrane depend on where points lie to each other
  * alone, so the factors of the hole serve at all places. A place counts when surface is at each of
  * the moved points; where a hole has less than two such places, points at half the size are tried;

@@ -418,23 +418,21 @@ std::vector<double> Membrane::Solve(
   std::vector<double> image(size);
   // What a residual means for the values, the cycle tells; this is the square of that measure.
   double before = 1.0;
-  double target = 0.0;
+  double first = 0.0;
+  double done = 0.0;
   for (int step = 0; step < LargestNumberOfSteps; ++step)
   {
-    // How many steps it takes is not known.
-    const double done = step / (step + 20.0);
     Report(progress, done);
     const Progress within = Part(progress, done, done);
     this->Cycle(0, right, preconditioned, within);
     const double now = Dot(right, preconditioned);
-    if (step == 0)
-    {
-      target = accuracy * accuracy * now;
-    }
-    if (!(now > target))
+    first = step == 0 ? now : first;
+    if (!(now > accuracy * accuracy * first))
     {
       break;
     }
+    // Errors fall by about the same factor with each step.
+    done = std::max(done, 0.5 * std::log(now / first) / std::log(accuracy));
     const double share = step == 0 ? 0.0 : now / before;
     before = now;
     for (Index i = 0; i < size; ++i)

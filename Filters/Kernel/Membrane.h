@@ -62,6 +62,9 @@ public:
   std::vector<double> Solve(const std::vector<double>& known, double accuracy = 1e-10,
     const Progress& progress = Progress()) const;
 
+  /** Whether the graph is so large that it is not factorised, and a solution takes a while. */
+  bool IsLarge() const { return this->Levels.size() > 1; }
+
 private:
   /** A symmetric matrix: the diagonal, and the other entries row by row. */
   struct Matrix
