@@ -117,9 +117,10 @@ public:
    * - THIN_PLATE: continues slope and curvature from the boundary and three rings of points around
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
-   * - ADAPTIVE: the best of the last three for each hole. Its boundary is moved to
+   * - ADAPTIVE: the best of MEMBRANE, THIN_PLATE and CUBIC_SPLINE for each hole. Its boundary is moved to
    *   eight places around it, where the surface is known, and the methods predict there what is inside;
-   *   the least sum of squared errors decides. Where there is no room for it, THIN_PLATE.
+   *   the least error decides, THIN_PLATE where another is not better by a tenth or where there is no
+   *   room to try.
    *
    * The splines may leave the range of z around the hole, as a lost summit rises above
    * what is left of it, by at most the distance from the nearest boundary point times
@@ -168,7 +169,8 @@ public:
   /**
    * Values of the point arrays at new points. On (default): floating-point arrays are interpolated as
    * z is, by the method that was chosen for z (where values around the hole are not finite, by
-   * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and other arrays get the value of the nearest point of the hole's boundary.
+   * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and
+   * other arrays get the value of the nearest point of the hole's boundary.
    * Off: NaN, 0, or nothing. New points are never marked as ghosts.
    */
   vtkSetMacro(InterpolatePointData, bool);

@@ -214,7 +214,8 @@ void FindNearest(const Progress& progress, Patch& patch)
   patch.Nearest.resize(patch.NumberOfNewVertices());
   for (std::size_t k = 0; k < patch.Order.size(); ++k)
   {
-    ReportStep(progress, k, patch.Order.size());
+    // In the middle of a round hole much of the boundary is about equally near.
+    ReportStep(progress, k, patch.Order.size(), 1024);
     // What is nearest to a neighbour is not far.
     const Index vertex = patch.Order[k];
     const Index outward = patch.Outward[vertex - first];

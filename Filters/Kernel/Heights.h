@@ -11,29 +11,30 @@
  *                 [Nguyen, eq. 2];
  *   Membrane      the mean of all neighbours: eq. 2 repeated until nothing changes (Membrane.h);
  *   ThinPlate     continues slope and curvature of the surface: a spline (Spline.h) through the
- *                 hole's boundary and three rings of points around it;
+ *                 hole's boundary and the ring of points around it;
  *   Cubic         the same with the smoother spline of r^3;
  *   Adaptive      for each hole the one of the last three that predicts the surface around it best.
  *
- * Splines. Of many points around a hole, some hundred are chosen evenly. Where the spline so misses
+ * Splines. Of many points around a hole, 300 are chosen evenly. Where the spline so misses
  * the boundary, the difference is continued by the membrane and added: patches always meet
  * their boundary.
  *
- * Adaptive leaves out what is like the hole: its boundary, its rings and some of its new points are
- * moved to eight places around it, where the surface is known, and each method predicts there the
+ * Adaptive leaves out what is like the hole: its boundary, its ring and some of its new points are
+ * moved to eight places (four for very large holes) around it, where the surface is known, and each method predicts there the
  * points inside from those around. Splines and membrane depend on where points lie to each other
  * alone, so the factors of the hole serve at all places. A place counts when surface is at each of
  * the moved points; where a hole has less than two such places, points at half the size are tried;
- * without any, the thin plate is taken. The least sum of squares wins.
+ * without any, the thin plate is taken. The least error wins (the geometric mean over the places of root
+ * mean squares); but the thin plate stays where another is not better by a tenth.
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
- * Splines may leave the range of boundary and rings, as a summit that was lost rises above all that
+ * Splines may leave the range of boundary and ring, as a summit that was lost rises above all that
  * is left of it; but by no more than the distance from the nearest boundary point times twice
- * the slope of the surface, its root mean square over the edges at the boundary and the first ring.
+ * the slope of the surface, its root mean square over the surface's edges at the boundary.
  *
  * What a method cannot do, a simpler one does, and Used() tells: splines that points do not
  * determine (all nearly in one line) become the membrane; values that are not finite at the
- * boundary or the rings are left to NeighborMean, which leaves NaN out.
+ * boundary or the ring are left to NeighborMean, which leaves NaN out.
  *
  * Guarantees: only points of the surface are used, never those of other patches, so that nothing
  * depends on the order of holes. Splines and Adaptive continue planes exactly, to rounding.
@@ -133,7 +134,7 @@ private:
     return { (p.X - this->Centre.X) * this->Scale, (p.Y - this->Centre.Y) * this->Scale };
   }
 
-  void CollectRings(const Fans& fans);
+  void CollectRing(const Fans& fans);
   void ChooseCentres();
   std::unique_ptr<Spline> MakeSpline(Spline::Kernel kernel) const;
   void Choose(const Fans& fans, const Values& values, const Progress& progress);
@@ -145,13 +146,13 @@ private:
   Point2 Centre{ 0.0, 0.0 };
   double Scale = 1.0;
 
-  std::vector<Index> Known; ///< ids: boundary, then the rings
+  std::vector<Index> Known; ///< ids: boundary, then the ring around it
   struct Edge
   {
     Index A;
     Index B;
   };
-  std::vector<Edge> Edges;    ///< of the surface, at the boundary and the first ring
+  std::vector<Edge> Edges;    ///< of the surface, from boundary points
   std::vector<Index> Centres; ///< of the splines, places in Known
   bool AllBoundaryIsCentre = true;
   std::unique_ptr<Membrane> Flat;

@@ -32,7 +32,7 @@ double Dot(const std::vector<double>& a, const std::vector<double>& b)
 } // namespace
 
 /** Breadth first, from an end of the graph: neighbours get places that are not far apart. */
-void Membrane::Arrange(const Matrix& matrix, Factor& factor)
+void Membrane::Arrange(const Matrix& matrix, Factor& factor, const Progress& progress)
 {
   const Index size = matrix.Size();
   std::vector<Index> place(size, None);
@@ -44,6 +44,7 @@ void Membrane::Arrange(const Matrix& matrix, Factor& factor)
     place[start] = static_cast<Index>(begin);
     for (std::size_t k = begin; k < order.size(); ++k)
     {
+      ReportStep(progress, k, matrix.Diagonal.size());
       const Index row = order[k];
       for (std::size_t j = matrix.Offsets[row]; j < matrix.Offsets[row + 1]; ++j)
       {
@@ -174,7 +175,7 @@ void Membrane::SolveFactor(
 }
 
 /** @return false when the coarser matrix is hardly smaller */
-bool Membrane::Coarsen(Level& fine, Matrix& coarse)
+bool Membrane::Coarsen(Level& fine, Matrix& coarse, const Progress& progress)
 {
   const Matrix& a = fine.A;
   const Index size = a.Size();
@@ -201,6 +202,7 @@ bool Membrane::Coarsen(Level& fine, Matrix& coarse)
   };
   for (Index i = 0; i < size; ++i)
   {
+    ReportStep(progress, i, size);
     if (piece[i] == None)
     {
       take(i, true);
@@ -251,6 +253,7 @@ bool Membrane::Coarsen(Level& fine, Matrix& coarse)
   std::vector<std::size_t> where(count, 0); // one more than the entry of the present row
   for (Index c = 0; c < count; ++c)
   {
+    ReportStep(progress, c, count);
     const std::size_t first = coarse.Columns.size();
     for (Index k = begin[c]; k < begin[c + 1]; ++k)
     {
@@ -303,12 +306,13 @@ Membrane::Membrane(const Adjacency& graph, const Progress& progress)
   a.Values.assign(a.Columns.size(), -1.0);
   for (;;)
   {
-    Report(progress, 0.0);
+    // How many levels there will be is not known; that the work goes on is told.
+    const Progress here = Part(progress, 0.0, 0.0);
     Level& level = this->Levels.back();
     this->Coarsest = Factor();
-    Arrange(level.A, this->Coarsest);
+    Arrange(level.A, this->Coarsest, here);
     Matrix coarse;
-    if (WorkOf(this->Coarsest) <= LargestWork * size || !Coarsen(level, coarse))
+    if (WorkOf(this->Coarsest) <= LargestWork * size || !Coarsen(level, coarse, here))
     {
       break;
     }
@@ -414,23 +418,21 @@ std::vector<double> Membrane::Solve(
   std::vector<double> image(size);
   // What a residual means for the values, the cycle tells; this is the square of that measure.
   double before = 1.0;
-  double target = 0.0;
+  double first = 0.0;
+  double done = 0.0;
   for (int step = 0; step < LargestNumberOfSteps; ++step)
   {
-    // How many steps it takes is not known.
-    const double done = step / (step + 20.0);
     Report(progress, done);
     const Progress within = Part(progress, done, done);
     this->Cycle(0, right, preconditioned, within);
     const double now = Dot(right, preconditioned);
-    if (step == 0)
-    {
-      target = accuracy * accuracy * now;
-    }
-    if (!(now > target))
+    first = step == 0 ? now : first;
+    if (!(now > accuracy * accuracy * first))
     {
       break;
     }
+    // Errors fall by about the same factor with each step.
+    done = std::max(done, 0.5 * std::log(now / first) / std::log(accuracy));
     const double share = step == 0 ? 0.0 : now / before;
     before = now;
     for (Index i = 0; i < size; ++i)

@@ -62,6 +62,9 @@ public:
   std::vector<double> Solve(const std::vector<double>& known, double accuracy = 1e-10,
     const Progress& progress = Progress()) const;
 
+  /** Whether the graph is so large that it is not factorised, and a solution takes a while. */
+  bool IsLarge() const { return this->Levels.size() > 1; }
+
 private:
   /** A symmetric matrix: the diagonal, and the other entries row by row. */
   struct Matrix
@@ -90,12 +93,12 @@ private:
     std::vector<Index> Coarse;
   };
 
-  static void Arrange(const Matrix& matrix, Factor& factor);
+  static void Arrange(const Matrix& matrix, Factor& factor, const Progress& progress);
   static double WorkOf(const Factor& factor);
   static void Factorize(const Matrix& matrix, Factor& factor, const Progress& progress);
   static void SolveFactor(
     const Factor& factor, const std::vector<double>& right, std::vector<double>& x);
-  static bool Coarsen(Level& fine, Matrix& coarse);
+  static bool Coarsen(Level& fine, Matrix& coarse, const Progress& progress);
   void Cycle(std::size_t level, const std::vector<double>& right, std::vector<double>& x,
     const Progress& progress) const;
 

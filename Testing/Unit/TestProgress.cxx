@@ -142,7 +142,7 @@ TEST(Progress, OfFillingOneLargeHoleIsNotSilent)
     std::vector<double> coordinates;
     for (const Point2& p : mesh.Points)
     {
-      coordinates.insert(coordinates.end(), { p.X, p.Y, 0.0 });
+      coordinates.insert(coordinates.end(), { p.X, p.Y, 0.1 * p.X * p.Y });
     }
     PointView points;
     points.Double = coordinates.data();
