@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 namespace elevation
@@ -21,8 +22,8 @@ constexpr double ClearanceOfNodes = 0.4;
 /** Least distance of points from the boundary when they refine, in spacings. */
 constexpr double ClearanceWhenRefining = 0.5;
 
-/** Largest radius of a triangle's circle, in spacings; an edge is at most twice as long. */
-constexpr double LargestRadius = 0.8;
+/** Longest edge, in spacings. */
+constexpr double LongestEdge = 1.6;
 
 /** The square of twice the sine of 20 degrees: of the shortest edge to the radius, at least. */
 constexpr double LeastEdgeToRadius = 0.46791111376204392;
@@ -30,11 +31,14 @@ constexpr double LeastEdgeToRadius = 0.46791111376204392;
 /** Height of an equilateral triangle: the distance of rows, in spacings. */
 constexpr double RowHeight = 0.86602540378443864676;
 
-/** Where edges differ more than that, points are graded. */
-constexpr double LargestRatioOfEdges = 4.0;
+/** Edges of the boundary of which the mean length is the spacing there. */
+constexpr Index EdgesAround = 8;
+
+/** Where such spacings differ more than that, points are graded. */
+constexpr double LargestRatioOfSpacings = 3.0;
 
 /** How much the spacing grows with the distance. */
-constexpr double Growth = 0.35;
+constexpr double Growth = 0.2;
 
 /** Mean length of edges on a lattice, in steps, from which on its nodes are too many. */
 constexpr double LargestStepsPerEdge = 2.0;
@@ -342,18 +346,12 @@ public:
     {
       return;
     }
-    this->Spacings.resize(mesh.NumberOfPoints(), plan.Longest);
-    for (const Segment& edge : patch.Edges)
+    this->Spacings.resize(mesh.NumberOfPoints(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < patch.Edges.size(); ++i)
     {
-      const double length = std::sqrt(this->Square(mesh.PointOf(edge.A), mesh.PointOf(edge.B)));
-      for (const Index v : { edge.A, edge.B })
-      {
-        this->Spacings[v] = std::min(this->Spacings[v], length * plan.Spacing);
-      }
-    }
-    for (double& spacing : this->Spacings)
-    {
-      spacing *= this->Unit;
+      double& spacing = this->Spacings[patch.Edges[i].A];
+      spacing = std::min(spacing, plan.Spacings[i] * this->Unit);
+      this->Largest = std::max(this->Largest, plan.Spacings[i] * this->Unit);
     }
   }
 
@@ -408,6 +406,7 @@ private:
     // From the apex over the longest edge, where the centre is always seen from.
     Index base = 3 * t;
     double longest = -1.0;
+    double longestInside = 0.0;
     double shortest = std::numeric_limits<double>::infinity();
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
@@ -419,6 +418,7 @@ private:
         base = h;
       }
       shortest = std::min(shortest, square);
+      longestInside = mesh.IsBorder(h) ? longestInside : std::max(longestInside, square);
     }
     const Index corners[3] = { mesh.Apex(base), mesh.Origin(base), mesh.Destination(base) };
     const Point2& q = mesh.PointOf(corners[0]);
@@ -442,11 +442,11 @@ private:
       const double s[3] = { this->Spacings[corners[0]], this->Spacings[corners[1]],
         this->Spacings[corners[2]] };
       mean = (s[0] + s[1] + s[2]) / 3.0;
-      spacing = std::min(this->Plan.Longest * this->Unit,
-        std::min(s[0], std::min(s[1], s[2])) + Growth * std::sqrt(square));
+      spacing =
+        std::min(this->Largest, std::min(s[0], std::min(s[1], s[2])) + Growth * std::sqrt(square));
     }
-    const double largest = LargestRadius * mean;
-    if (square <= largest * largest && shortest >= LeastEdgeToRadius * square)
+    if (longestInside <= LongestEdge * LongestEdge * mean * mean &&
+      shortest >= LeastEdgeToRadius * square)
     {
       return false;
     }
@@ -676,6 +676,7 @@ private:
   const Index BoundaryVertices;
   const double Unit;
   std::vector<double> Spacings; ///< at the vertices, in units; empty: 1
+  double Largest = 0.0;         ///< of them
   std::vector<Index> Stack;
   std::vector<Index> Star; ///< triangles around the last point that was inserted
 };
@@ -685,17 +686,14 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   const Lattice* lattice)
 {
   PatchPlan plan;
-  double perimeter = 0.0;
-  double shortest = std::numeric_limits<double>::infinity();
-  double onLattice = 0.0; // the perimeter, in steps
   const double edges = holes.NumberOfEdges(hole);
+  double onLattice = 0.0; // the perimeter, in steps
+  std::vector<double> lengths;
+  lengths.reserve(holes.NumberOfEdges(hole));
   holes.VisitEdges(hole, [&](Index h) {
     const Point2& a = mesh.PointOf(mesh.Origin(h));
     const Point2& b = mesh.PointOf(mesh.Destination(h));
-    const double length = std::hypot(b.X - a.X, b.Y - a.Y);
-    perimeter += length;
-    shortest = std::min(shortest, length);
-    plan.Longest = std::max(plan.Longest, length);
+    lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
     if (lattice && !(onLattice > LargestStepsPerEdge * edges))
     {
       Point2 i, j;
@@ -704,7 +702,8 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
         : std::numeric_limits<double>::infinity();
     }
   });
-  plan.Spacing = spacing > 0.0 ? spacing : perimeter / edges;
+  plan.Spacing =
+    spacing > 0.0 ? spacing : std::accumulate(lengths.begin(), lengths.end(), 0.0) / edges;
   plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
   if (spacing > 0.0)
   {
@@ -715,20 +714,38 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
     plan.Kind = Arrangement::Nodes;
     plan.Steps = *lattice;
     plan.MostPoints = area / lattice->Area();
+    return plan;
   }
-  else if (plan.Longest > LargestRatioOfEdges * shortest)
+
+  // At the origin of each edge, the mean of the edges before and behind it on its walk.
+  plan.Spacings.reserve(lengths.size());
+  const double* length = lengths.data();
+  for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
   {
-    // Far from the boundary spacings are the longest edge; each edge adds the points that it
-    // has near it more than that.
+    const Index count = holes.Walks.Size(holes.Loops[loop]);
+    const Index around = std::min(count, EdgesAround);
+    for (Index i = 0; i < count; ++i)
+    {
+      double sum = 0.0;
+      for (Index k = 0; k < around; ++k)
+      {
+        sum += length[(i + k + count - around / 2) % count];
+      }
+      plan.Spacings.push_back(sum / around);
+    }
+    length += count;
+  }
+  const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
+  if (*range.second > LargestRatioOfSpacings * *range.first)
+  {
+    // Where the boundary is finer than on average there are more points near it.
+    constexpr double morePerEdge = 8.0;
     plan.Kind = Arrangement::Graded;
-    double near = 0.0;
-    holes.VisitEdges(hole, [&](Index h) {
-      const Point2& a = mesh.PointOf(mesh.Origin(h));
-      const Point2& b = mesh.PointOf(mesh.Destination(h));
-      near += 1.0 + std::log(plan.Longest / std::hypot(b.X - a.X, b.Y - a.Y));
-    });
-    constexpr double pointsPerEdge = 6.0;
-    plan.MostPoints = area / plan.Longest / plan.Longest / RowHeight + pointsPerEdge * near;
+    plan.MostPoints += morePerEdge * edges;
+  }
+  else
+  {
+    plan.Spacings = std::vector<double>();
   }
   return plan;
 }

@@ -10,9 +10,9 @@
  *   Nodes   Where the hole's boundary lies on the surface's lattice, and its edges measure less
  *           than two steps on average, new points are the nodes inside. (A surface of which most
  *           nodes are missing has longer edges: all nodes would be many more points than it has.)
- *   Graded  Where the longest edge of the boundary is more than four times the shortest, new
- *           points are as far from each other as the edges nearby are long: the spacing at a
- *           place is the least of all edges' lengths, each plus 0.35 times the way to the edge.
+ *   Graded  Where the mean length of eight edges in a row of the boundary is at one place more than
+ *           three times that at another: this mean is the spacing at the boundary. It grows
+ *           inwards by 0.2 times the way, up to the largest of the boundary.
  *   Even    Else, and always where the user has set a spacing: rows one spacing apart, of which
  *           every second is moved by half a step, so that triangles are nearly equilateral. The
  *           spacing is by default the mean length of the boundary's edges [Nguyen, eq. 1].
@@ -21,15 +21,17 @@
  *   1. Place the points of Nodes and Even, clear of the boundary by 0.6 spacings, or 0.4 steps.
  *   2. Triangulate boundary and new points, make the boundary's edges edges of the triangulation,
  *      and keep what lies inside: a constrained Delaunay triangulation.
- *   3. Refine (not on Nodes): a triangle whose circle has a radius of more than 0.8 spacings, or
- *      that has an angle below 20 degrees, gets a point in the centre of its circle [Chew 1989,
- *      Ruppert 1995]. With Graded this places all the points.
+ *   3. Refine (not on Nodes): a triangle with an edge of more than 1.6 spacings that is no edge of
+ *      the boundary, or with an angle below 20 degrees, gets a point in the centre of its circle
+ *      [Chew 1989, Ruppert 1995]. With Graded this places all the points.
  *
  * What the boundary forces: its edges are not split, and no point comes nearer to it than half a
- * spacing. So a triangle stays as it is when the centre of its circle lies behind a boundary edge
- * or nearer than that to one. All other triangles of Even have edges of at most 1.6 spacings
- * and angles of at least 20 degrees; so an edge that is longer, but no boundary edge, has such a
- * forced triangle on both sides. With Graded the same holds for the spacing around the triangle.
+ * spacing. So a triangle stays as it is when the centre of its circle lies behind an edge of the
+ * boundary or nearer than that to one. All other triangles of Even and Graded have angles of at
+ * least 20 degrees, and edges of at most 1.6 spacings but for those of the boundary: an edge inside
+ * that is longer has such a forced triangle on both sides. The spacing of Graded is the mean of
+ * those at the triangle's corners. Where the boundary's edges are about as long as the spacing,
+ * and no corner of it is very sharp, nothing is forced.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole. Unlimited by its number of points, refinement ends: a new
@@ -72,8 +74,8 @@ enum class Arrangement : unsigned char
 struct PatchPlan
 {
   Arrangement Kind = Arrangement::Even;
-  double Spacing = 0.0; ///< of Even; else the mean length of the boundary's edges
-  double Longest = 0.0; ///< edge of the boundary
+  double Spacing = 0.0;         ///< of Even; else the mean length of the boundary's edges
+  std::vector<double> Spacings; ///< of Graded: at the origin of each edge, as VisitEdges gives them
   /** No more points than that are inserted; above 0, not a whole number. */
   double MostPoints = 0.0;
   Lattice Steps; ///< of Nodes
