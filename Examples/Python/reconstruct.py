@@ -49,6 +49,7 @@ class WrongOption(Failure):
 
 
 SEARCH_STRATEGIES = ("voxel-traversal", "compactness")
+INTERPOLATIONS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-spline")
 LATTICE_MODES = ("automatic", "off")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
@@ -106,6 +107,7 @@ TAKES = {
     "--maximum-hole-size": NUMBER,
     "--maximum-hole-edges": "a whole number of 0 or more",
     "--spacing": NUMBER,
+    "--interpolation": "one of " + ", ".join(INTERPOLATIONS),
     "--output": "a file",
     "--picture": "a file, or nothing",
     "--view": "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35",
@@ -161,6 +163,7 @@ def make_parser():
     add("--maximum-hole-size", type=number_at_least_zero, default=0.0)
     add("--maximum-hole-edges", type=count_at_least_zero, default=0)
     add("--spacing", type=number_at_least_zero, default=0.0)
+    add("--interpolation", choices=INTERPOLATIONS)
     add("--no-interpolate-point-data", action="store_true")
     add("--no-fill", action="store_true")
     add("-o", "--output")
@@ -185,6 +188,7 @@ def parse_arguments(arguments):
         options.maximum_hole_size
         or options.maximum_hole_edges
         or options.spacing
+        or options.interpolation
         or options.no_interpolate_point_data
     ):
         parser.error("--no-fill leaves nothing for the filling options to do")
@@ -325,6 +329,8 @@ def reconstruct(run, cloud, boundary):
         fill.SetMaximumHoleSize(options.maximum_hole_size)
         fill.SetMaximumHoleEdges(options.maximum_hole_edges)
         fill.SetSpacing(options.spacing)
+        if options.interpolation:
+            fill.SetInterpolation(INTERPOLATIONS.index(options.interpolation))
         fill.SetInterpolatePointData(not options.no_interpolate_point_data)
         run.update("fill", "filling holes", fill)
     return delaunay, trim, fill
@@ -442,7 +448,8 @@ def make_report(run, cloud, delaunay, trim, fill):
         report["triangles"]["trimmed"] = trim.GetOutput().GetNumberOfPolys()
     if fill:
         cells = fill.GetOutput(1).GetCellData()
-        names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints")
+        names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
+                 "Interpolation")
         columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
         columns.append(hole_sizes(fill.GetOutput(1)))
         holes = [
@@ -454,8 +461,9 @@ def make_report(run, cloud, delaunay, trim, fill):
                 "area": area,
                 "size": size,
                 "inserted_points": inserted,
+                "interpolation": INTERPOLATIONS[method] if inserted else None,
             }
-            for hole, status, edges, perimeter, area, inserted, size in zip(*columns)
+            for hole, status, edges, perimeter, area, inserted, method, size in zip(*columns)
         ]
         by_status = {}
         for hole in holes:

@@ -173,7 +173,7 @@ void TestArrays(int precision)
     }
     const double tolerance = precision == VTK_FLOAT ? 1e-4 : 1e-10;
     Check(std::fabs(amplitude->GetValue(i) - 100.0 - 2.0 * p[2]) < tolerance,
-      "floating-point values get the same mean as z");
+      "floating-point values are found as z is");
     double normal[3];
     normals->GetTuple(i, normal);
     Check(std::fabs(std::hypot(normal[0], normal[2]) - 1.0) < 1e-6, "normals have unit length");
@@ -651,7 +651,7 @@ void TestPrint()
   std::ostringstream text;
   fill->Print(text);
   for (const char* name : { "MaximumHoleSize", "MaximumHoleEdges", "Spacing: 0",
-         "InterpolatePointData: On", "NumberOfHoles", "NumberOfFilledHoles" })
+         "Interpolation: Adaptive", "InterpolatePointData: On", "NumberOfHoles", "NumberOfFilledHoles" })
   {
     Check(text.str().find(name) != std::string::npos, std::string("Print shows ") + name);
   }

@@ -24,6 +24,7 @@ OTHER_VALUES = {
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
         "Spacing": 0.25,
+        "Interpolation": "Thin Plate",
         "InterpolatePointData": 0,
     },
 }

@@ -53,13 +53,15 @@ class TestFillElevationHoles(unittest.TestCase):
         self.assertEqual(fill.GetMaximumHoleSize(), 0.0)
         self.assertEqual(fill.GetMaximumHoleEdges(), 0)
         self.assertEqual(fill.GetSpacing(), 0.0)
+        self.assertEqual(fill.GetInterpolation(), fill.ADAPTIVE)
+        self.assertEqual(fill.GetInterpolationAsString(), "Adaptive")
         self.assertTrue(fill.GetInterpolatePointData())
         self.assertEqual(
             (fill.FILLED, fill.TOO_LARGE, fill.TOO_MANY_EDGES, fill.FAILED), (0, 1, 2, 3))
 
     def test_every_property_is_printed(self):
         text = str(vtkFillElevationHoles())
-        for name in ("MaximumHoleSize", "MaximumHoleEdges", "Spacing", "InterpolatePointData",
+        for name in ("MaximumHoleSize", "MaximumHoleEdges", "Spacing", "Interpolation", "InterpolatePointData",
                      "NumberOfHoles", "NumberOfFilledHoles"):
             self.assertIn(name + ":", text)
 
@@ -95,6 +97,33 @@ class TestFillElevationHoles(unittest.TestCase):
             self.assertEqual(
                 (holes == hole).sum(),
                 table["NumberOfEdges"][hole] - 2 + 2 * table["NumberOfInsertedPoints"][hole])
+
+    def test_interpolation_is_reported(self):
+        names = ("NeighborMean", "Membrane", "ThinPlate", "Adaptive", "CubicSpline")
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(self.surface)
+        for number, name in enumerate(names):
+            getattr(fill, "SetInterpolationTo" + name)()
+            self.assertEqual(fill.GetInterpolation(), number)
+            self.assertEqual(fill.GetInterpolationAsString(), name)
+            fill.Update()
+            used = vtk_to_numpy(fill.GetOutput(1).GetCellData().GetArray("Interpolation"))
+            if number == fill.ADAPTIVE:
+                self.assertTrue(set(used) <= {fill.MEMBRANE, fill.THIN_PLATE, fill.CUBIC_SPLINE})
+            else:
+                self.assertEqual(set(used), {number})
+        fill.SetInterpolation(-1)
+        self.assertEqual(fill.GetInterpolation(), fill.NEIGHBOR_MEAN)
+        fill.SetInterpolation(9)
+        self.assertEqual(fill.GetInterpolation(), fill.CUBIC_SPLINE)
+
+    def test_splines_continue_a_slope(self):
+        tilted = sheet(10, lambda i, j: 3 <= i < 7 and 3 <= j < 7, lambda x, y: 2.0 * x - y)
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(tilted)
+        fill.Update()
+        points = vtk_to_numpy(fill.GetOutput().GetPoints().GetData())
+        numpy.testing.assert_allclose(points[:, 2], 2.0 * points[:, 0] - points[:, 1], atol=1e-5)
 
     def test_limits_leave_holes_open(self):
         fill = vtkFillElevationHoles()

@@ -159,6 +159,14 @@ class Report(Program):
                     report["holes"]["list"][0]["size"], math.sqrt(32), msg="a box of 4 x 4"
                 )
 
+    def test_interpolation_is_handed_on_and_reported(self):
+        name = self.file("holed.xyz", text_of(HOLED))
+        common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6")
+        for method in ("neighbor-mean", "membrane", "thin-plate", "cubic-spline"):
+            with self.subTest(method=method):
+                report = self.report(*common, "--interpolation", method)
+                self.assertEqual(report["holes"]["list"][0]["interpolation"], method)
+
     def test_spacing_decides_how_many_points_are_inserted(self):
         name = self.file("holed.xyz", text_of(HOLED))
         common = (name, "--maximum-edge-length", "1.5", "--gap-tolerance", "6", "--spacing")
@@ -642,6 +650,7 @@ class BadInput(Program):
             ("--spacing takes a number of 0 or more", (name, "--spacing")),
             ("a whole number of 0 or more", (name, "--maximum-hole-edges", "1.5")),
             ("--output takes a file", (name, "-o")),
+            ("--interpolation takes one of neighbor-mean,", (name, "--interpolation", "flat")),
             ("one of keep-first,", (name, "--duplicates", "keep-some")),
             ("as x,y,z or 1,2,3, not 'x,y'", (name, "--columns", "x,y")),
             ("--view takes top, or", (name, "--view", "up")),
@@ -650,6 +659,7 @@ class BadInput(Program):
             ("unknown option", (name, "--fast")),
             ("--no-trim leaves nothing", (name, "--no-trim", "--boundary", name)),
             ("--no-fill leaves nothing", (name, "--no-fill", "--spacing", "3")),
+            ("--no-fill leaves nothing", (name, "--no-fill", "--interpolation", "membrane")),
             ("--no-picture leaves nothing", (name, "--no-picture", "--view", "top")),
         ):
             with self.subTest(arguments=arguments):

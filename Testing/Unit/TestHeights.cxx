@@ -1,0 +1,453 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Heights.h"
+
+#include "Kernel/Fill.h"
+#include "LatticeSurface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+using namespace elevation;
+using testing_surfaces::Draw;
+
+namespace
+{
+using Elevation = std::function<double(const Point2&)>;
+using IsLost = std::function<bool(double, double)>;
+
+const Interpolation Smooth[] = { Interpolation::ThinPlate, Interpolation::Cubic,
+  Interpolation::Adaptive };
+
+/** A sheet of size x size squares without those whose middle is lost. */
+Mesh Sheet(int size, const IsLost& isLost)
+{
+  std::vector<std::string> picture(size, std::string(size, '#'));
+  for (int y = 0; y < size; ++y)
+  {
+    for (int x = 0; x < size; ++x)
+    {
+      picture[size - 1 - y][x] = isLost(x + 0.5, y + 0.5) ? ' ' : '#';
+    }
+  }
+  return Draw(picture);
+}
+
+IsLost Disc(double x, double y, double radius)
+{
+  return [=](double u, double v) { return std::hypot(u - x, v - y) < radius; };
+}
+
+struct Outcome
+{
+  Mesh Surface;
+  std::vector<double> Coordinates;
+  FillResult Patches;
+
+  Point2 At(Index i) const
+  {
+    return { this->Patches.Points[3 * i], this->Patches.Points[3 * i + 1] };
+  }
+  double Value(Index i) const { return this->Patches.Points[3 * i + 2]; }
+  double ElevationOf(Index id) const
+  {
+    const Index count = this->Surface.NumberOfPoints();
+    return id < count ? this->Coordinates[3 * id + 2] : this->Value(id - count);
+  }
+};
+
+Outcome Fill(Mesh mesh, const Elevation& elevation, FillOptions options)
+{
+  Outcome run;
+  run.Surface = std::move(mesh);
+  for (const Point2& p : run.Surface.Points)
+  {
+    run.Coordinates.insert(run.Coordinates.end(), { p.X, p.Y, elevation(p) });
+  }
+  PointView view;
+  view.Double = run.Coordinates.data();
+  view.Count = run.Surface.NumberOfPoints();
+  run.Patches = FillHoles(run.Surface, view, FindHoles(run.Surface), options);
+  return run;
+}
+
+Outcome Fill(const Mesh& mesh, const Elevation& elevation, Interpolation method)
+{
+  FillOptions options;
+  options.Method = method;
+  return Fill(mesh, elevation, options);
+}
+
+double LargestError(const Outcome& run, const Elevation& elevation)
+{
+  double largest = 0.0;
+  for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+  {
+    largest = std::max(largest, std::fabs(run.Value(i) - elevation(run.At(i))));
+  }
+  return largest;
+}
+
+/** How far new points are from the mean of their neighbours. */
+double LargestImbalance(const Outcome& run)
+{
+  const Index first = run.Surface.NumberOfPoints();
+  std::vector<double> sums(run.Patches.NumberOfPoints(), 0.0);
+  std::vector<int> counts(run.Patches.NumberOfPoints(), 0);
+  const std::vector<Index>& ids = run.Patches.Triangles;
+  for (Index h = 0; h < static_cast<Index>(ids.size()); ++h)
+  {
+    if (ids[h] >= first)
+    {
+      sums[ids[h] - first] += run.ElevationOf(ids[Mesh::Next(h)]);
+      ++counts[ids[h] - first];
+    }
+  }
+  double largest = 0.0;
+  for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+  {
+    largest = std::max(largest, std::fabs(run.Value(i) - sums[i] / counts[i]));
+  }
+  return largest;
+}
+
+/** A seeded value for each place. */
+double Noise(const Point2& p)
+{
+  std::mt19937 engine(static_cast<unsigned int>(1000.0 * p.X + p.Y));
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i)
+  {
+    sum += static_cast<double>(engine()) / 4294967296.0 - 0.5;
+  }
+  return sum;
+}
+} // namespace
+
+TEST(Heights, OfSplinesContinuePlanes)
+{
+  const Elevation plane = [](const Point2& p) { return 1000.0 + 2.0 * p.X - 3.0 * p.Y; };
+  const Mesh disc = Sheet(40, Disc(20, 20, 8));
+  const Mesh ring =
+    Sheet(40, [](double x, double y) { return std::fabs(std::hypot(x - 20, y - 20) - 6.0) < 3.0; });
+  // So many boundary points that not all are centres.
+  const Mesh large = Sheet(130, Disc(65, 65, 50));
+  for (const Interpolation method : Smooth)
+  {
+    for (const Mesh& mesh : { disc, ring, large })
+    {
+      const Outcome run = Fill(mesh, plane, method);
+      EXPECT_GT(run.Patches.NumberOfPoints(), 100);
+      EXPECT_LT(LargestError(run, plane), 1e-9) << int(method);
+    }
+  }
+}
+
+TEST(Heights, DoNotDependOnWhereTheOriginIs)
+{
+  const Elevation far = [](const Point2& p) {
+    return std::sin(0.2 * (p.X - 4e6)) + 0.1 * (p.Y - 5e6);
+  };
+  const Elevation near = [](const Point2& p) { return std::sin(0.2 * p.X) + 0.1 * p.Y; };
+  Mesh mesh = Sheet(40, Disc(20, 20, 8));
+  for (const Interpolation method : Smooth)
+  {
+    const Outcome here = Fill(mesh, near, method);
+    Mesh moved = mesh;
+    for (Point2& p : moved.Points)
+    {
+      p = { p.X + 4e6, p.Y + 5e6 };
+    }
+    const Outcome there = Fill(moved, far, method);
+    ASSERT_EQ(here.Patches.NumberOfPoints(), there.Patches.NumberOfPoints());
+    EXPECT_EQ(here.Patches.Reports[0].Method, there.Patches.Reports[0].Method);
+    for (Index i = 0; i < here.Patches.NumberOfPoints(); ++i)
+    {
+      ASSERT_NEAR(here.Value(i), there.Value(i), 1e-7);
+    }
+  }
+}
+
+TEST(Heights, OfTheMembraneAreMeansOfTheirNeighbours)
+{
+  const Elevation hills = [](const Point2& p) { return std::sin(0.3 * p.X) * std::cos(0.2 * p.Y); };
+  for (const double radius : { 2.0, 9.0, 30.0, 110.0 }) // the last one by multigrid
+  {
+    const int size = static_cast<int>(2.5 * radius) + 4;
+    const Outcome run =
+      Fill(Sheet(size, Disc(0.5 * size, 0.5 * size, radius)), hills, Interpolation::Membrane);
+    EXPECT_GT(run.Patches.NumberOfPoints(), 3.0 * radius * radius - 10.0);
+    EXPECT_LT(LargestImbalance(run), 1e-8) << radius;
+    EXPECT_EQ(run.Patches.Reports[0].Method, Interpolation::Membrane);
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      EXPECT_LE(std::fabs(run.Value(i)), 1.0) << "within the range of the boundary";
+    }
+  }
+}
+
+TEST(Heights, OfTheMembraneStayInRange)
+{
+  const Mesh mesh = Sheet(30, Disc(15, 15, 9));
+  // A peak beside the hole is no business of the membrane.
+  const Outcome run = Fill(
+    mesh, [](const Point2& p) { return std::hypot(p.X - 15, p.Y - 15) < 10.5 ? Noise(p) : 1000.0; },
+    Interpolation::Membrane);
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  const Index count = run.Surface.NumberOfPoints();
+  for (const Index id : run.Patches.Triangles)
+  {
+    if (id < count)
+    {
+      low = std::min(low, run.ElevationOf(id));
+      high = std::max(high, run.ElevationOf(id));
+    }
+  }
+  for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+  {
+    EXPECT_GE(run.Value(i), low);
+    EXPECT_LE(run.Value(i), high);
+  }
+}
+
+TEST(Heights, OfSplinesKeepARidge)
+{
+  // A ridge 2 high across a hole of radius 8: the membrane loses half of it.
+  const Elevation ridge = [](const Point2& p) {
+    return 2.0 * std::exp(-0.01 * (p.Y - 20.0) * (p.Y - 20.0));
+  };
+  const Mesh mesh = Sheet(40, Disc(20, 20, 8));
+  EXPECT_GT(LargestError(Fill(mesh, ridge, Interpolation::NeighborMean), ridge), 0.5);
+  EXPECT_GT(LargestError(Fill(mesh, ridge, Interpolation::Membrane), ridge), 0.25);
+  EXPECT_LT(LargestError(Fill(mesh, ridge, Interpolation::ThinPlate), ridge), 0.15);
+  EXPECT_LT(LargestError(Fill(mesh, ridge, Interpolation::Cubic), ridge), 0.1);
+  EXPECT_LT(LargestError(Fill(mesh, ridge, Interpolation::Adaptive), ridge), 0.15);
+}
+
+TEST(Heights, OfSplinesRiseToALostSummit)
+{
+  // A bowl upside down: 0.64 above the rim, though nothing around is as high.
+  const Elevation dome = [](const Point2& p) {
+    return -0.01 * ((p.X - 20.0) * (p.X - 20.0) + (p.Y - 20.0) * (p.Y - 20.0));
+  };
+  const Mesh mesh = Sheet(40, Disc(20, 20, 8));
+  EXPECT_LT(LargestError(Fill(mesh, dome, Interpolation::ThinPlate), dome), 0.06);
+  EXPECT_LT(LargestError(Fill(mesh, dome, Interpolation::Cubic), dome), 0.06);
+}
+
+TEST(Heights, AdaptiveChooses)
+{
+  const Mesh mesh = Sheet(60, Disc(30, 30, 8));
+  const auto used = [&](const Elevation& elevation) {
+    return Fill(mesh, elevation, Interpolation::Adaptive).Patches.Reports[0].Method;
+  };
+  EXPECT_EQ(used(Noise), Interpolation::Membrane);
+  EXPECT_EQ(used([](const Point2& p) { return std::sin(0.2 * p.X) * std::cos(0.15 * p.Y); }),
+    Interpolation::Cubic);
+  EXPECT_EQ(used([](const Point2& p) { return std::sin(0.2 * p.X) + 0.05 * Noise(p); }),
+    Interpolation::ThinPlate);
+}
+
+TEST(Heights, AdaptiveTakesTheThinPlateWhereItCannotTry)
+{
+  // As much surface as there is does not hold another hole of even half the size.
+  const Outcome run = Fill(Sheet(20, Disc(10, 10, 9.4)), Noise, Interpolation::Adaptive);
+  EXPECT_EQ(run.Patches.Reports[0].Method, Interpolation::ThinPlate);
+  // A frame one square wide, with no ring of points besides the two borders.
+  const Elevation plane = [](const Point2& p) { return p.X + p.Y; };
+  const Outcome frame =
+    Fill(Sheet(8, [](double x, double y) { return x > 1 && x < 7 && y > 1 && y < 7; }), plane,
+      Interpolation::Adaptive);
+  EXPECT_GT(frame.Patches.NumberOfPoints(), 10);
+  EXPECT_LT(LargestError(frame, plane), 1e-10);
+}
+
+TEST(Heights, DoNotOvershootSteepRims)
+{
+  // The hole lies in a plain, and walls as steep as they can be stand around it.
+  const Mesh mesh = Sheet(40, Disc(20, 20, 8));
+  for (const double height : { 100.0, -100.0 })
+  {
+    const Elevation walls = [height](const Point2& p) {
+      return std::hypot(p.X - 20, p.Y - 20) < 8.6 ? 0.0 : height;
+    };
+    for (const Interpolation method : Smooth)
+    {
+      const Outcome run = Fill(mesh, walls, method);
+      const Index count = run.Surface.NumberOfPoints();
+      // Of the surface's edges at the boundary, no more than 100 per spacing.
+      for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+      {
+        const Index nearest = run.Patches.NearestBoundaryPoints[i];
+        ASSERT_LT(nearest, count);
+        const Point2& q = run.Surface.Points[nearest];
+        const double room = 200.0 * std::hypot(run.At(i).X - q.X, run.At(i).Y - q.Y);
+        EXPECT_GE(run.Value(i), std::min(0.0, height) - room);
+        EXPECT_LE(run.Value(i), std::max(0.0, height) + room);
+      }
+    }
+  }
+  // The same for a bound that is met: one wall, so that the root mean square is known to be small.
+  const Elevation spike = [](const Point2& p) { return p.X == 11.0 && p.Y == 20.0 ? 1000.0 : 0.0; };
+  for (const Interpolation method : Smooth)
+  {
+    const Outcome run = Fill(mesh, spike, method);
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      EXPECT_GE(run.Value(i), -1200.0);
+      EXPECT_LE(run.Value(i), 1000.0 + 1200.0);
+    }
+  }
+}
+
+TEST(Heights, DoNotDependOnOtherHoles)
+{
+  // A large and a small hole, three squares apart; then the small one alone is filled.
+  const Mesh mesh = Sheet(50, [](double x, double y) {
+    return std::hypot(x - 20, y - 25) < 9.0 || std::hypot(x - 36, y - 25) < 4.0;
+  });
+  const Elevation hills = [](const Point2& p) {
+    return std::sin(0.3 * p.X) + std::cos(0.2 * p.Y) + 0.1 * Noise(p);
+  };
+  for (const Interpolation method : Smooth)
+  {
+    FillOptions options;
+    options.Method = method;
+    const Outcome both = Fill(mesh, hills, options);
+    options.MaximumHoleSize = 14.0;
+    const Outcome one = Fill(mesh, hills, options);
+    ASSERT_EQ(one.Patches.Reports.size(), 2u);
+    const int small = one.Patches.Reports[0].Status == FillStatus::Filled ? 0 : 1;
+    ASSERT_GT(one.Patches.NumberOfPoints(), 30);
+    ASSERT_EQ(both.Patches.Reports[small].NumberOfInsertedPoints, one.Patches.NumberOfPoints());
+    for (Index i = 0; i < one.Patches.NumberOfPoints(); ++i)
+    {
+      EXPECT_EQ(one.Value(i), both.Value(both.Patches.PointOffsets[small] + i));
+    }
+  }
+}
+
+TEST(Heights, FallBackToTheMembraneInALine)
+{
+  Mesh surface;
+  surface.Points = { { 0.0, 0.0 }, { 1.0, 0.0 }, { 0.5, 1e-9 } };
+  const Fans fans(surface);
+  PatchMesh patch;
+  patch.BoundaryIds = { 0, 1, 2 };
+  patch.Points = { 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1e-9, 0.0, 0.5, 4e-10, 0.0 };
+  patch.Triangles = { 0, 1, 3, 1, 2, 3, 2, 0, 3 };
+  patch.Spacing = 0.5;
+  Arrange(patch);
+  patch.Nearest = { 2 };
+  const Values values = [](Index id) { return 3.0 * id; };
+  for (const Interpolation method : Smooth)
+  {
+    const Heights heights(surface, &fans, patch, method, values);
+    EXPECT_EQ(heights.Used(), Interpolation::Membrane);
+    const std::vector<double> found = heights.Apply(values);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0], 3.0, 1e-12);
+  }
+}
+
+TEST(Heights, LeaveOutWhatIsNotFinite)
+{
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  for (const Interpolation method :
+    { Interpolation::Membrane, Interpolation::ThinPlate, Interpolation::Adaptive })
+  {
+    const Outcome run = Fill(
+      Sheet(30, Disc(15, 15, 6)), [=](const Point2& p) { return p.X == 10.0 ? nothing : 7.0; },
+      method);
+    EXPECT_EQ(run.Patches.Reports[0].Method, Interpolation::NeighborMean);
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      EXPECT_NEAR(run.Value(i), 7.0, 1e-12);
+    }
+  }
+}
+
+TEST(Heights, OfAttributesAreFoundInTheSameWay)
+{
+  const Elevation hills = [](const Point2& p) { return std::sin(0.3 * p.X) + 0.2 * Noise(p); };
+  const Mesh mesh = Sheet(40, Disc(20, 20, 8));
+  for (const int method : { 0, 1, 2, 3, 4 })
+  {
+    FillOptions options;
+    options.Method = static_cast<Interpolation>(method);
+    options.Attributes = { [&](Index id) { return 100.0 - 3.0 * hills(mesh.Points[id]); },
+      [](Index) { return 5.0; },
+      [](Index id) { return id % 7 ? 4.0 : std::numeric_limits<double>::quiet_NaN(); } };
+    const Outcome run = Fill(mesh, hills, options);
+    ASSERT_EQ(run.Patches.Attributes.size(), 3u);
+    for (const std::vector<double>& values : run.Patches.Attributes)
+    {
+      ASSERT_EQ(values.size(), static_cast<std::size_t>(run.Patches.NumberOfPoints()));
+    }
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      ASSERT_NEAR(run.Patches.Attributes[0][i], 100.0 - 3.0 * run.Value(i), 1e-9) << method;
+      ASSERT_EQ(run.Patches.Attributes[1][i], 5.0);
+      ASSERT_NEAR(run.Patches.Attributes[2][i], 4.0, 1e-12);
+    }
+  }
+}
+
+TEST(Heights, TakeValuesOfAnySize)
+{
+  const Mesh mesh = Sheet(40, Disc(20, 20, 8));
+  const Outcome one = Fill(
+    mesh, [](const Point2& p) { return Noise(p); }, Interpolation::ThinPlate);
+  for (const double scale : { 1e-300, 1e-100, 1e100, 1e300 })
+  {
+    const Outcome run = Fill(
+      mesh, [=](const Point2& p) { return scale * Noise(p); }, Interpolation::ThinPlate);
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      ASSERT_NEAR(run.Value(i) / scale, one.Value(i), 1e-9) << scale;
+    }
+  }
+}
+
+TEST(Spline, GoesThroughItsCentres)
+{
+  std::mt19937 engine(5);
+  const auto random = [&] { return static_cast<double>(engine()) / 2147483648.0 - 1.0; };
+  for (const Spline::Kernel kernel : { Spline::Kernel::ThinPlate, Spline::Kernel::Cubic })
+  {
+    for (const int count : { 3, 4, 5, 7, 50, 201 })
+    {
+      std::vector<Point2> centres;
+      std::vector<double> values;
+      for (int i = 0; i < count; ++i)
+      {
+        centres.push_back({ random(), random() });
+        values.push_back(random());
+      }
+      Spline spline;
+      ASSERT_TRUE(spline.Prepare(centres, kernel));
+      std::vector<double> found(centres.size(), 0.0);
+      spline.Add(spline.Interpolate(values), centres.data(), centres.size(), found.data());
+      for (int i = 0; i < count; ++i)
+      {
+        ASSERT_NEAR(found[i], values[i], 1e-8);
+      }
+    }
+  }
+}
+
+TEST(Spline, RefusesPointsInALine)
+{
+  Spline spline;
+  EXPECT_FALSE(spline.Prepare({}, Spline::Kernel::ThinPlate));
+  EXPECT_FALSE(spline.Prepare({ { 0, 0 }, { 1, 1 } }, Spline::Kernel::ThinPlate));
+  EXPECT_FALSE(
+    spline.Prepare({ { -1, -0.5 }, { 0, 0 }, { 1, 0.5 }, { 2, 1 } }, Spline::Kernel::Cubic));
+  EXPECT_FALSE(
+    spline.Prepare({ { 0.5, -1 }, { 0.5, 0 }, { 0.5, 1 }, { 0.5, 2 } }, Spline::Kernel::Cubic));
+}
