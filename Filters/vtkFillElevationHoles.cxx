@@ -423,6 +423,7 @@ int vtkFillElevationHoles::RequestData(
     }
     options.SinglePrecision = HasFloatPoints(input);
     options.MaximumInsertedPoints = PointsThatFit();
+    options.NumberOfThreads = this->NumberOfThreads;
     options.Monitor = Part(progress, 0.3, 0.8);
     const FillResult patches = elevation::FillHoles(mesh, points.View, holes, options);
 
@@ -467,6 +468,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";
   os << indent << "NumberOfFilledHoles: " << this->NumberOfFilledHoles << "\n";
 }

@@ -38,11 +38,19 @@
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
  * The method, for each hole on its own:
- * 1. The spacing of new points is the mean length of the hole's boundary edges, unless given.
- * 2. New points are put into the hole in rows, one spacing apart, every second row moved
- *    by half a spacing. Points nearer to the boundary than 0.6 spacings are left out; a
- *    small hole may get none.
- * 3. They are joined with the boundary by a constrained Delaunay triangulation.
+ * 1. New points lie on the nodes of the lattice of the surface's points, where it has one and the
+ *    boundary's edges measure less than two steps on average, unless a spacing is given. Else they
+ *    are put into the hole in rows, one spacing apart, every second row moved by half a spacing;
+ *    points nearer to the boundary than 0.6 spacings are left out. The spacing is, unless given, the
+ *    mean length of the hole's boundary edges. Where this mean over eight edges in a row is at one
+ *    place of the boundary more than three times that at another, points are graded from the one to
+ *    the other. A small hole may get none.
+ * 2. They are joined with the boundary by a constrained Delaunay triangulation.
+ * 3. Where points are not on a lattice, a triangle with an edge of more than 1.6 spacings that is no
+ *    edge of the boundary, or with an angle below 20 degrees, gets a point in the centre of its
+ *    circle. Edges of the boundary are not split, and no point comes nearer to them than half a
+ *    spacing; so such triangles remain where the centre of the circle lies nearer to the boundary
+ *    than that, or behind it.
  * 4. The z of new points is found from the surface around the hole, see Interpolation.
  *
  * What can be relied on: a patch covers its hole exactly and overlaps nothing; every boundary edge
@@ -158,8 +166,8 @@ public:
 
   ///@{
   /**
-   * Distance of new points in x,y, in input units. 0 (default): for each hole the mean length of
-   * its boundary edges; negative values are taken as 0.
+   * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
+   * hole the mean length of its boundary edges, see above; negative values are taken as 0.
    */
   vtkSetClampMacro(Spacing, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Spacing, double);
@@ -176,6 +184,18 @@ public:
   vtkSetMacro(InterpolatePointData, bool);
   vtkGetMacro(InterpolatePointData, bool);
   vtkBooleanMacro(InterpolatePointData, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
+   * without threads by default, as in ParaView. The output is the same, byte for byte, for any
+   * number. Small holes are filled several at a time; of holes that take more than some ten
+   * thousand points, one after the other, the points are triangulated on several threads.
+   * Range: 0 to 1024.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
   ///@}
 
   /** After Update(): holes found. */
@@ -195,6 +215,7 @@ protected:
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;
+  int NumberOfThreads = 0;
 
   vtkIdType NumberOfHoles = 0;
   vtkIdType NumberOfFilledHoles = 0;

@@ -332,6 +332,7 @@ def reconstruct(run, cloud, boundary):
         if options.interpolation:
             fill.SetInterpolation(INTERPOLATIONS.index(options.interpolation))
         fill.SetInterpolatePointData(not options.no_interpolate_point_data)
+        fill.SetNumberOfThreads(options.threads)
         run.update("fill", "filling holes", fill)
     return delaunay, trim, fill
 

@@ -26,6 +26,7 @@ OTHER_VALUES = {
         "Spacing": 0.25,
         "Interpolation": "Thin Plate",
         "InterpolatePointData": 0,
+        "NumberOfThreads": 2,
     },
 }
 OUTPUT_NAMES = {

@@ -56,14 +56,41 @@ class TestFillElevationHoles(unittest.TestCase):
         self.assertEqual(fill.GetInterpolation(), fill.ADAPTIVE)
         self.assertEqual(fill.GetInterpolationAsString(), "Adaptive")
         self.assertTrue(fill.GetInterpolatePointData())
+        self.assertEqual(fill.GetNumberOfThreads(), 0)
         self.assertEqual(
             (fill.FILLED, fill.TOO_LARGE, fill.TOO_MANY_EDGES, fill.FAILED), (0, 1, 2, 3))
 
     def test_every_property_is_printed(self):
         text = str(vtkFillElevationHoles())
         for name in ("MaximumHoleSize", "MaximumHoleEdges", "Spacing", "Interpolation", "InterpolatePointData",
-                     "NumberOfHoles", "NumberOfFilledHoles"):
+                     "NumberOfThreads", "NumberOfHoles", "NumberOfFilledHoles"):
             self.assertIn(name + ":", text)
+
+    def test_the_number_of_threads_does_not_change_a_byte(self):
+        surface = sheet(
+            120, lambda i, j: (i % 12) in range(2, 9) and (j % 15) in range(3, 11) and i < 117 and j < 117,
+            lambda x, y: 0.01 * x * y)
+        results = []
+        for threads in (1, 2, 4):
+            fill = vtkFillElevationHoles()
+            fill.SetInputData(surface)
+            fill.SetNumberOfThreads(threads)
+            fill.Update()
+            self.assertGreater(fill.GetNumberOfFilledHoles(), 50)
+            output = fill.GetOutput()
+            results.append(vtk_to_numpy(output.GetPoints().GetData()).tobytes() +
+                           vtk_to_numpy(output.GetPolys().GetConnectivityArray()).tobytes())
+        self.assertEqual(results[0], results[1])
+        self.assertEqual(results[0], results[2])
+
+    def test_new_points_are_the_nodes_that_were_lost(self):
+        fill = vtkFillElevationHoles()
+        fill.SetInputData(self.surface)
+        fill.Update()
+        before = self.surface.GetNumberOfPoints()
+        points = vtk_to_numpy(fill.GetOutput().GetPoints().GetData())[before:]
+        lost = {(x, y) for x in range(2, 5) for y in range(3, 5)} | {(8, 7)}
+        self.assertEqual({(x, y) for x, y in points[:, :2]}, lost)
 
     def test_fills_holes_and_reports_them(self):
         fill = vtkFillElevationHoles()
