@@ -312,7 +312,13 @@ void TestReport()
         (edges == 22 ? vtkFillElevationHoles::TOO_MANY_EDGES : vtkFillElevationHoles::FILLED),
       "Status");
     Check(data->GetArray("Perimeter")->GetTuple1(i) == edges, "Perimeter counts islands");
-    Check(data->GetArray("Interpolation")->GetTuple1(i) == 0, "Interpolation");
+    const double method = data->GetArray("Interpolation")->GetTuple1(i);
+    const bool hasPoints = data->GetArray("NumberOfInsertedPoints")->GetTuple1(i) > 0.0;
+    Check(hasPoints ? method == vtkFillElevationHoles::MEMBRANE ||
+          method == vtkFillElevationHoles::THIN_PLATE ||
+          method == vtkFillElevationHoles::CUBIC_SPLINE
+                    : method == 0,
+      "Interpolation is what Adaptive has chosen");
     vtkIdType inserted = 0;
     vtkIdType triangles = 0;
     auto* hole = Named<vtkIdTypeArray>(fill->GetOutput()->GetCellData(), "HoleId");
@@ -356,12 +362,16 @@ void TestRange()
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputData(input);
   fill->SetSpacing(0.1);
-  fill->Update();
-  double before[6];
-  double after[6];
-  input->GetBounds(before);
-  fill->GetOutput()->GetBounds(after);
-  Check(after[4] >= before[4] && after[5] <= before[5], "z stays within that of the boundary");
+  for (const int method : { vtkFillElevationHoles::NEIGHBOR_MEAN, vtkFillElevationHoles::MEMBRANE })
+  {
+    fill->SetInterpolation(method);
+    fill->Update();
+    double before[6];
+    double after[6];
+    input->GetBounds(before);
+    fill->GetOutput()->GetBounds(after);
+    Check(after[4] >= before[4] && after[5] <= before[5], "z stays within that of the boundary");
+  }
 }
 
 /** Float points that do not lie x, y, z one after the other in memory, where steps are coarse. */
@@ -645,13 +655,18 @@ void TestPrint()
   fill->SetMaximumHoleSize(-1.0);
   fill->SetMaximumHoleEdges(-1);
   fill->SetSpacing(-1.0);
+  Check(fill->GetInterpolation() == vtkFillElevationHoles::ADAPTIVE, "Adaptive is the default");
+  fill->SetInterpolation(-1);
+  Check(fill->GetInterpolation() == vtkFillElevationHoles::NEIGHBOR_MEAN, "numbers are clamped");
+  fill->SetInterpolationToAdaptive();
   Check(fill->GetMaximumHoleSize() == 0.0 && fill->GetMaximumHoleEdges() == 0 &&
       fill->GetSpacing() == 0.0,
     "negative values are taken as 0");
   std::ostringstream text;
   fill->Print(text);
-  for (const char* name : { "MaximumHoleSize", "MaximumHoleEdges", "Spacing: 0",
-         "Interpolation: Adaptive", "InterpolatePointData: On", "NumberOfHoles", "NumberOfFilledHoles" })
+  for (const char* name :
+    { "MaximumHoleSize", "MaximumHoleEdges", "Spacing: 0", "Interpolation: Adaptive",
+      "InterpolatePointData: On", "NumberOfHoles", "NumberOfFilledHoles" })
   {
     Check(text.str().find(name) != std::string::npos, std::string("Print shows ") + name);
   }
