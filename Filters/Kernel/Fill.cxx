@@ -20,7 +20,11 @@ constexpr double LeastLength = 1e-150;
 constexpr double LargestLength = 1e150;
 
 /** Patches of more points are made one by one and report progress; others several at a time. */
-constexpr double PointsPerReport = 20000.0;
+constexpr double PointsPerReport = 10000.0;
+
+/** What a patch costs that has no points, as many points: trying methods takes about a millisecond. */
+constexpr double PointsPerPatch = 10.0;
+constexpr double PointsPerTrial = 150.0;
 
 /** Patches are made together until they have so many points, on one thread. */
 constexpr double PointsPerPiece = 1000.0;
@@ -347,9 +351,10 @@ FillResult FillHoles(
     std::min(options.MaximumInsertedPoints, MaximumNumberOfPoints - mesh.NumberOfPoints());
   double work = 0.0;
   std::vector<PatchPlan> plans(holes.Count());
+  const double least = Heights::NeedsSurroundings(options.Method) ? PointsPerTrial : PointsPerPatch;
   const auto workOf = [&](Index hole) {
     return result.Reports[hole].Status == FillStatus::Filled
-      ? plans[hole].MostPoints + result.Reports[hole].NumberOfEdges
+      ? plans[hole].MostPoints + result.Reports[hole].NumberOfEdges + least
       : 0.0;
   };
   for (Index hole = 0; hole < holes.Count(); ++hole)
