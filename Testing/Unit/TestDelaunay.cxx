@@ -332,6 +332,22 @@ TEST(Delaunay, KeepsEveryRuleOnAClusterOfTheSmallestNumbers)
   ExpectValid(cloud, "a cluster within 1e-310");
 }
 
+TEST(Delaunay, KeepsEveryRuleWhereUnderflowMeetsHugeNumbers)
+{
+  // Products so small that they are wrong by much of themselves, times others so large that this
+  // counts.
+  const double x = 0x1.7a93a2954f3b8p+903, y = 0x1.b2c189ad56408p-704;
+  Cloud cloud;
+  cloud.Add(x, 0x1.d9b71552621efp-366);
+  cloud.Add(0.0, 0x1.0311f32db42dap-373);
+  cloud.Add(x, -y);
+  cloud.Add(0.0, -y);
+  cloud.Add(0x1.a7f0182268621p+898, 0x1.d9b71552621efp-366);
+  cloud.Add(-x, 0.0);
+  cloud.Add(0.0, 0x1.49a1f6788dcbep-705);
+  ExpectValid(cloud, "thin");
+}
+
 TEST(Delaunay, CutsACocircularPolygonFromItsLowestPoint)
 {
   // Twelve lattice points on the circle of radius 5; the lowest, by y and then x, is (0, -5).
