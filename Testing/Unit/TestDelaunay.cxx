@@ -124,14 +124,7 @@ TEST(Delaunay, IsTheDefinitionOnSmallLattices)
   std::mt19937_64 random(17);
   for (int i = 0; i < 20000; ++i)
   {
-    Cloud cloud;
-    const int size = 2 + static_cast<int>(random() % 5);
-    const int count = 3 + static_cast<int>(random() % 12);
-    for (int k = 0; k < count; ++k)
-    {
-      const double x = static_cast<double>(random() % size);
-      cloud.Add(x, static_cast<double>(random() % size));
-    }
+    const Cloud cloud = SmallLatticeCloud(random, 5, 12);
     ASSERT_EQ(TriangleSet(cloud, Triangulate(cloud)), BruteForce(cloud)) << "cloud " << i;
   }
 }
@@ -142,14 +135,7 @@ TEST(Delaunay, IsTheSameFromEverySearchOnSmallLattices)
   std::mt19937_64 random(31);
   for (int i = 0; i < 2000; ++i)
   {
-    Cloud cloud;
-    const int size = 2 + static_cast<int>(random() % 12);
-    const int count = 3 + static_cast<int>(random() % 80);
-    for (int k = 0; k < count; ++k)
-    {
-      const double x = static_cast<double>(random() % size);
-      cloud.Add(x, static_cast<double>(random() % size));
-    }
+    const Cloud cloud = SmallLatticeCloud(random, 12, 80);
     SCOPED_TRACE(i);
     DelaunayOptions options;
     options.Duplicates = static_cast<DuplicatePolicy>(random() % 4);
