@@ -37,17 +37,29 @@ constexpr std::chrono::milliseconds TimePerRound(50);
 constexpr std::int64_t WorkPerVertex = 300;
 /** What an exact comparison counts for: its cost in looks. */
 constexpr std::int64_t WorkOfExact = 10;
+/** So many in one search, points are on one circle or line: growing is given up at once. */
+constexpr int MostExacts = 2000;
+/** After so many looks, the time is looked at. */
+constexpr std::int64_t LooksPerClock = 10000;
+
+/** Thrown where growing is given up, because the searches look at too many points. */
+struct CannotGrow
+{
+};
 
 /**
  * One side of the convex hull as a chain from the lowest to the highest point, collinear points
  * included [Andrew 1979, Another efficient algorithm for convex hulls in two dimensions].
  * @param outside  the side of the chain that must stay empty: Negative for the right chain
  */
-std::vector<Index> HullChain(const BinGrid& grid, const Buffer<Index>& order, Sign outside)
+std::vector<Index> HullChain(
+  const BinGrid& grid, const Buffer<Index>& order, Sign outside, const Progress& progress)
 {
   std::vector<Index> chain;
-  for (Index slot : order)
+  for (std::size_t i = 0; i < order.size(); ++i)
   {
+    ReportStep(progress, i, order.size());
+    const Index slot = order[i];
     while (chain.size() > 1 &&
       Orientation(grid.PointAt(chain[chain.size() - 2]), grid.PointAt(chain.back()),
         grid.PointAt(slot)) == outside)
@@ -63,7 +75,8 @@ std::vector<Index> HullChain(const BinGrid& grid, const Buffer<Index>& order, Si
  * The points that may be on the convex hull, by increasing (y, x): those not well within the hull
  * of the leftmost and rightmost points of the rows. Nearly all points are.
  */
-Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
+Buffer<Index> HullCandidates(
+  const BinGrid& grid, const Buffer<Index>& order, const Progress& progress)
 {
   const BinGrid::Layout& bins = grid.Bins;
   Buffer<Index> extremes;
@@ -94,8 +107,8 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
       }
     }
   }
-  const std::vector<Index> rightChain = HullChain(grid, extremes, Negative);
-  const std::vector<Index> leftChain = HullChain(grid, extremes, Positive);
+  const std::vector<Index> rightChain = HullChain(grid, extremes, Negative, progress);
+  const std::vector<Index> leftChain = HullChain(grid, extremes, Positive, progress);
 
   // Where a chain is at a height; wrong by a few roundoffs of the greatest coordinate.
   const auto at = [&grid](const std::vector<Index>& chain, std::size_t& edge, double y) {
@@ -297,6 +310,7 @@ private:
     this->EdgeY = this->B.Y - this->A.Y;
     this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
     this->Best = None;
+    this->Exacts = 0;
     this->SetDisc(Infinity);
   }
 
@@ -658,7 +672,7 @@ private:
         _mm256_mul_pd(_mm256_set1_pd(this->BestDotMagnitude), crossMagnitude));
     const __m256d error =
       _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(16.0), roundoffs), magnitude),
-        _mm256_set1_pd(1e-170));
+        _mm256_set1_pd(this->LeastError));
     // Worse only counts where cross is certain; else Compare() asks for the side first.
     const __m256d isWorse = _mm256_and_pd(_mm256_cmp_pd(cross, crossError, _CMP_GT_OQ),
       _mm256_and_pd(_mm256_cmp_pd(error, _mm256_set1_pd(1e140), _CMP_LT_OQ),
@@ -711,7 +725,7 @@ private:
       {
         return false;
       }
-      this->Looks += WorkOfExact;
+      this->CountExact();
       if (Orientation(this->A, this->B, p) != Positive)
       {
         return false;
@@ -723,12 +737,12 @@ private:
     if (this->Best != None)
     {
       const double difference = dot * this->BestCross - this->BestDot * cross;
-      // 10 roundoffs cover the rounding, 1e-170 what underflow may lose as long as no factor is
-      // above 1e150; when one is, the product is too large or not a number, and the sign is left
-      // to the exact predicate.
+      // 10 roundoffs cover the rounding, LeastError and what the best's magnitudes have on top
+      // underflow. Where products are too large or not a number, the sign is left to the exact
+      // predicate.
       const double error = 16.0 * UnitRoundoff *
           (dotMagnitude * this->BestCrossMagnitude + this->BestDotMagnitude * crossMagnitude) +
-        1e-170;
+        this->LeastError;
       const bool isClear = error < 1e140;
       if (isClear && difference > error)
       {
@@ -736,19 +750,32 @@ private:
       }
       if (!(isClear && difference < -error))
       {
-        this->Looks += WorkOfExact;
+        this->CountExact();
         if (slot == this->Best || !this->IsBetter(slot, this->Best))
         {
           return false;
         }
       }
     }
+    // Underflow may take 1e-323 from a cross or a dot product, and either is multiplied by one of
+    // another point, which may be huge.
+    constexpr double least = 1e-300;
     this->Best = slot;
     this->BestCross = cross;
-    this->BestCrossMagnitude = crossMagnitude;
+    this->BestCrossMagnitude = crossMagnitude + least;
     this->BestDot = dot;
-    this->BestDotMagnitude = dotMagnitude;
+    this->BestDotMagnitude = dotMagnitude + least;
+    this->LeastError = least * (crossMagnitude + dotMagnitude) + 1e-170;
     return true;
+  }
+
+  void CountExact()
+  {
+    this->Looks += WorkOfExact;
+    if (++this->Exacts > MostExacts)
+    {
+      throw CannotGrow();
+    }
   }
 
   /**
@@ -780,6 +807,7 @@ private:
   const bool IsByAngle;
   const bool IsWide;
   std::int64_t Looks = 0;
+  int Exacts = 0; ///< in the search at hand
   bool HasAround = false;
   Surroundings::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
@@ -800,6 +828,7 @@ private:
   // The best point so far.
   Index Best = None;
   double BestCross = 0.0, BestCrossMagnitude = 0.0, BestDot = 0.0, BestDotMagnitude = 0.0;
+  double LeastError = 0.0; ///< of a comparison with it
 };
 
 /** Which triangles DelaunayOptions::MaximumEdgeLength leaves in. */
@@ -877,11 +906,6 @@ private:
   Buffer<Index> Ends;
 };
 
-/** Thrown where growing is given up, because the searches look at too many points. */
-struct CannotGrow
-{
-};
-
 /**
  * Grows the triangles whose lowest vertices are in a strip: a stretch of the vertices from the
  * lowest up. It reads and writes the pool for these only, so that strips may be grown at the same
@@ -951,7 +975,7 @@ public:
         this->Tell(this->Upper, apex);
         this->Upper = apex;
       }
-      if (steps % 64 == 0 && std::chrono::steady_clock::now() > end)
+      if ((steps % 64 == 0 || this->HasLooked()) && std::chrono::steady_clock::now() > end)
       {
         return;
       }
@@ -988,9 +1012,11 @@ public:
     for (int fans = 1; this->Next < this->End; ++fans)
     {
       this->AskForRowsAbove();
-      this->GrowFan(this->Order[this->Next]);
+      if (!this->GrowFan(this->Order[this->Next], end))
+      {
+        return;
+      }
       ++this->Next;
-      this->CheckWork();
       if (fans % 256 == 0 && (fans == FansPerRound || std::chrono::steady_clock::now() > end))
       {
         return;
@@ -1022,21 +1048,28 @@ private:
     }
   }
 
-  void GrowFan(Index lowest)
+  /**
+   * Grows the fan of the next vertex, or goes on with it.
+   * @return false when it is not complete at the given time
+   */
+  bool GrowFan(Index lowest, std::chrono::steady_clock::time_point until)
   {
     if (lowest == this->Order[this->Grid.NumberOfPoints() - 1])
     {
-      return;
+      return true;
     }
     const Index first = this->Pool.First(lowest), end = this->Pool.Last(lowest);
     if (first == end && first != None)
     {
-      return;
+      return true;
     }
-    this->Fan.Resize(1);
-    this->Fan[0] = first;
-    this->Search.SetOrigin(lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
-    Index current = first;
+    if (this->Fan.empty())
+    {
+      this->Fan.Append(first);
+      this->Search.SetOrigin(
+        lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
+    }
+    Index current = this->Fan[this->Fan.size() - 1];
     while (current != end || current == None)
     {
       const std::size_t count = this->Fan.size();
@@ -1046,6 +1079,7 @@ private:
         if (this->Fan.size() == count)
         {
           this->Fan.Append(this->Search.Find(current, end));
+          this->CheckWork();
         }
         current = this->Fan[this->Fan.size() - 1];
       }
@@ -1054,8 +1088,25 @@ private:
         throw std::logic_error("the fan of point " + std::to_string(this->Grid.Ids[lowest]) +
           " does not close; this is a fault of the triangulation, please report it");
       }
+      if (current != end && this->HasLooked() && std::chrono::steady_clock::now() > until)
+      {
+        return false;
+      }
     }
     this->Emit(lowest);
+    this->Fan.Resize(0);
+    return true;
+  }
+
+  /** Whether searches have looked at many points since it was so the last time. */
+  bool HasLooked()
+  {
+    if (this->Search.Work() < this->NextClock)
+    {
+      return false;
+    }
+    this->NextClock = this->Search.Work() + LooksPerClock;
+    return true;
   }
 
   /** Writes the triangles of a fan and tells their upper vertices. */
@@ -1109,8 +1160,9 @@ private:
   const Index Begin, End;
   Index Next;
   const std::int64_t MostWork;
+  std::int64_t NextClock = LooksPerClock;
   const EdgeLimit Limit;
-  Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours, counter-clockwise
+  Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours so far, counter-clockwise
   // The edge that the walk has come to, and the last one; edges of the outline above.
   Index Lower = None, Upper = None, LastLower = None, LastUpper = None;
   std::size_t Outline = 0;
@@ -1289,8 +1341,10 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result;
   }
 
-  const Buffer<Index> outermost = HullCandidates(grid, grid.Order);
-  const Hull hull{ HullChain(grid, outermost, Negative), HullChain(grid, outermost, Positive) };
+  const Progress inHull = Part(options.Monitor, 0.2, 0.2);
+  const Buffer<Index> outermost = HullCandidates(grid, grid.Order, inHull);
+  const Hull hull{ HullChain(grid, outermost, Negative, inHull),
+    HullChain(grid, outermost, Positive, inHull) };
   if (hull.RightChain == hull.LeftChain)
   {
     return result; // all points on one line

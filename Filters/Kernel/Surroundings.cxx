@@ -482,6 +482,13 @@ bool Surroundings::GatherBox(Window& window)
       return false;
     }
     const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
+    // Of a box of a few roundoffs of the coordinates, rounding makes a larger one.
+    const double across = std::max(p.X - lowX, highX - p.X) * perSide;
+    const double up = (highY - p.Y) * perSide;
+    if (!(across * across + up * up < 1.2))
+    {
+      return false; // R is 1.1
+    }
     BinGrid::Step top = last;
     while (!(top.LowX < lowX && highX < top.HighX && highY < top.HighY) && !top.IsRoot())
     {
