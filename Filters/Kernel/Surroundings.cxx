@@ -417,7 +417,7 @@ ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int s
     }
     count += end - first;
   }
-  window.Close(count);
+  window.Close(count, this->IsWidest);
   window.IsBox = false;
   const Index above = std::min(this->CurrentRow + Shapes[shape].Rows, bins.Rows);
   window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
@@ -430,17 +430,19 @@ ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int s
 }
 
 /** Ends the lists of the window's points. */
-ELEVATION_WIDE void Surroundings::Window::Close(int count)
+ELEVATION_WIDE void Surroundings::Window::Close(int count, bool isWidest)
 {
-  this->Vectors = MostVectors;
+  this->Vectors = isWidest && count <= 8 * WidestVectors ? WidestVectors
+    : count <= 8 * EvenVectors                           ? EvenVectors
+                                                         : MostVectors;
   const __m256 nothing = _mm256_set1_ps(NotANumber);
-  for (int at = count; at < 8 * MostVectors; at += 8)
+  for (int at = count; at < 8 * this->Vectors; at += 8)
   {
     _mm256_storeu_ps(this->X + at, nothing);
     _mm256_storeu_ps(this->Y + at, nothing);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(this->Slots + at), _mm256_set1_epi32(None));
   }
-  for (int i = 0; i < MostVectors; ++i)
+  for (int i = 0; i < this->Vectors; ++i)
   {
     const __m256 x = _mm256_load_ps(this->X + 8 * i), y = _mm256_load_ps(this->Y + 8 * i);
     _mm256_store_ps(this->Square + 8 * i, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
@@ -571,7 +573,7 @@ ELEVATION_WIDE bool Surroundings::GatherBox(
       }
     }
   }
-  window.Close(count);
+  window.Close(count, this->IsWidest);
   window.OriginLane = __builtin_ctzll(window.LanesOf<MostVectors>(window.Origin));
   return true;
 }

@@ -132,7 +132,7 @@ private:
     bool IsBox = false;
     double PerSide = 0.0; ///< units of the box a unit of the grid
 
-    void Close(int count);
+    void Close(int count, bool isWidest);
     template <int Count>
     std::uint64_t LanesOf(Index slot) const;
   };
