@@ -193,6 +193,9 @@ public:
     this->OpenEnd = None;
   }
 
+  /** Asks for the memory that SetOrigin() will need, some calls ahead. */
+  void Foresee(Index slot) const { if (this->IsWide) this->Around.Foresee(slot); }
+
   /**
    * Appends the origin's neighbours counter-clockwise after the last one in the list, as far as
    * they are easily told, and not beyond the end of the fan.
@@ -1015,6 +1018,7 @@ private:
     }
     this->Fan.Resize(1);
     this->Fan[0] = first;
+    this->Search.Foresee(this->Order[std::min(this->Next + 8, this->End - 1)]);
     this->Search.SetOrigin(lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
     Index current = first;
     while (current != end || current == None)

@@ -136,6 +136,22 @@ void Surroundings::Bounds::Set(double reach, double error, double margin)
   this->Margin = static_cast<float>(margin);
 }
 
+void Surroundings::Foresee(Index slot) const
+{
+  if (this->Current->IsBox)
+  {
+    const BinGrid& grid = this->Grid;
+    const char* const node =
+      reinterpret_cast<const char*>(&grid.Nodes[grid.LeafNodes[slot / 8]]);
+    for (std::size_t line = 0; line < sizeof(BinGrid::Node); line += 64)
+    {
+      __builtin_prefetch(node + line);
+    }
+    __builtin_prefetch(&grid.X[slot]);
+    __builtin_prefetch(&grid.Y[slot]);
+  }
+}
+
 bool Surroundings::Gather(Index origin, Index next)
 {
   Window* other = this->Windows + (this->Current == this->Windows);
@@ -168,12 +184,11 @@ void Surroundings::GatherInto(Window& window)
       this->EnterRow(row);
     }
     const Index first = static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3;
-    if ((this->IsWidest && this->GatherWidest(window, first)) || this->GatherEven(window, first))
-    {
-      return;
-    }
     const Index column = bins.Column(p.X);
-    if (this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2))
+    const Index* const own = this->Near[0]->Starts + column;
+    if (own[1] - own[0] <= Capacity &&
+      ((this->IsWidest && this->GatherWidest(window, first)) || this->GatherEven(window, first) ||
+        this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2)))
     {
       return;
     }

@@ -63,6 +63,9 @@ public:
    */
   bool Gather(Index origin, Index next = None);
 
+  /** Asks for the memory that gathering the window of a vertex will need, some calls ahead. */
+  void Foresee(Index slot) const;
+
   struct Candidates
   {
     std::uint64_t Bits = 0; ///< numbers that SlotOf takes
