@@ -709,7 +709,8 @@ ELEVATION_WIDE_INLINE Surroundings::Candidates Surroundings::Search(
  * Leaves out the end of the edge to b = (bx, by); what is not a candidate by the errors that its own
  * size allows, rather than the window's; and, told exactly, what is not on the edge's left.
  */
-void Surroundings::Sift(Index b, float bx, float by, int guess, Candidates& candidates) const
+ELEVATION_WIDE void Surroundings::Sift(
+  Index b, float bx, float by, int guess, Candidates& candidates) const
 {
   const Window& window = *this->Current;
   const float bestX = window.X[guess], bestY = window.Y[guess];
@@ -718,25 +719,45 @@ void Surroundings::Sift(Index b, float bx, float by, int guess, Candidates& cand
   const float e = 2.0f * window.Errors->CoordinateError;
   const float u = 8.0f * static_cast<float>(Roundoff);
   const float length = std::fabs(bx) + std::fabs(by);
-  const auto crossError = [&](float x, float y) {
-    const float size = std::fabs(x) + std::fabs(y);
-    return e * (length + size) + u * length * size;
-  };
-  const auto dotError = [&](float x, float y) {
-    const float size = std::fabs(x) + std::fabs(y);
-    return (e + u * size) * (2.0f * size + length);
-  };
-  for (std::uint64_t left = candidates.Bits; left; left &= left - 1)
+  const float bestSize = std::fabs(bestX) + std::fabs(bestY);
+  const float bestCrossError = e * (length + bestSize) + u * length * bestSize;
+  const float bestDotError = (e + u * bestSize) * (2.0f * bestSize + length);
+
+  const __m256 signBit = _mm256_set1_ps(-0.0f);
+  const __m256 endX = _mm256_set1_ps(bx), endY = _mm256_set1_ps(by);
+  const __m256 lengths = _mm256_set1_ps(length), es = _mm256_set1_ps(e), us = _mm256_set1_ps(u);
+  std::uint64_t isWorse = 0, isLeft = 0;
+  for (int i = 0; i < window.Vectors; ++i)
   {
-    const int lane = __builtin_ctzll(left);
-    const Index slot = window.Slots[lane];
-    const float x = window.X[lane], y = window.Y[lane];
-    const float cross = bx * y - by * x, dot = x * (x - bx) + y * (y - by);
-    const float error = std::fabs(dot) * crossError(bestX, bestY) +
-      std::fabs(bestCross) * dotError(x, y) +
-      (std::fabs(cross) + crossError(x, y)) * dotError(bestX, bestY) +
-      std::fabs(bestDot) * crossError(x, y);
-    if (slot == b || dot * bestCross - bestDot * cross > 2.0f * error ||
+    const __m256 x = _mm256_load_ps(window.X + 8 * i), y = _mm256_load_ps(window.Y + 8 * i);
+    const __m256 cross = _mm256_fmsub_ps(endX, y, _mm256_mul_ps(endY, x));
+    const __m256 dot = _mm256_fmadd_ps(
+      x, _mm256_sub_ps(x, endX), _mm256_mul_ps(y, _mm256_sub_ps(y, endY)));
+    const __m256 size =
+      _mm256_add_ps(_mm256_andnot_ps(signBit, x), _mm256_andnot_ps(signBit, y));
+    const __m256 ofSize = _mm256_fmadd_ps(us, size, es);
+    const __m256 crossError = _mm256_fmadd_ps(ofSize, lengths, _mm256_mul_ps(es, size));
+    const __m256 dotError =
+      _mm256_mul_ps(ofSize, _mm256_add_ps(_mm256_add_ps(size, size), lengths));
+    const __m256 absoluteCross = _mm256_andnot_ps(signBit, cross);
+    __m256 error =
+      _mm256_mul_ps(_mm256_andnot_ps(signBit, dot), _mm256_set1_ps(2.0f * bestCrossError));
+    error = _mm256_fmadd_ps(_mm256_set1_ps(2.0f * std::fabs(bestCross)), dotError, error);
+    error = _mm256_fmadd_ps(
+      _mm256_set1_ps(2.0f * bestDotError), _mm256_add_ps(absoluteCross, crossError), error);
+    error = _mm256_fmadd_ps(_mm256_set1_ps(2.0f * std::fabs(bestDot)), crossError, error);
+    const __m256 difference = _mm256_fmsub_ps(
+      dot, _mm256_set1_ps(bestCross), _mm256_mul_ps(_mm256_set1_ps(bestDot), cross));
+    const int worse = _mm256_movemask_ps(_mm256_cmp_ps(difference, error, _CMP_GT_OQ));
+    const int left = _mm256_movemask_ps(_mm256_cmp_ps(cross, crossError, _CMP_GT_OQ));
+    isWorse |= static_cast<std::uint64_t>(worse) << (8 * i);
+    isLeft |= static_cast<std::uint64_t>(left) << (8 * i);
+  }
+  candidates.Bits &= ~isWorse;
+  for (std::uint64_t left = candidates.Bits & ~isLeft; left; left &= left - 1)
+  {
+    const Index slot = window.Slots[__builtin_ctzll(left)];
+    if (slot == b ||
       Orientation(this->Grid.PointAt(window.Origin), this->Grid.PointAt(b),
         this->Grid.PointAt(slot)) != Positive)
     {
@@ -752,6 +773,7 @@ bool Surroundings::IsDecided(Index b, float bx, float by, int& guess, Candidates
   if (!candidates.IsProved)
   {
     candidates.Bits = std::uint64_t(1) << guess; // a start for the search elsewhere
+    return false;
   }
   this->Sift(b, bx, by, guess, candidates);
   if (!candidates.IsProved || (candidates.Bits & (candidates.Bits - 1)) != 0)
