@@ -630,13 +630,20 @@ private:
     return reached;
   }
 
+  /** None where the number is not below 32. */
+  static unsigned int BitOf(Index number)
+  {
+    return number >= 0 && number < 32 ? 1u << number : 0u;
+  }
+
   __attribute__((target("avx2"))) bool CompareWide(Index first, Index count)
   {
     bool isChanged = false;
     const Index end = first + count;
     for (Index slot = first; slot < end; slot += 4)
     {
-      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0));
+      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0)) &
+        ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
       for (; left; left &= left - 1)
       {
         isChanged = this->CompareOne(slot + __builtin_ctz(left)) || isChanged;
