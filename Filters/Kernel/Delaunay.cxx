@@ -401,13 +401,9 @@ private:
       {
         const double off = OffInterval(this->CenterY, low, high);
         const double halfSquared = this->RadiusSquared - off * off;
-        if (halfSquared < 0.0)
+        if (halfSquared < 0.0) // the origin is on the circle: so it is above
         {
-          if (low > this->CenterY)
-          {
-            break;
-          }
-          continue;
+          break;
         }
         const double half = std::sqrt(halfSquared);
         left = this->CenterX - half;

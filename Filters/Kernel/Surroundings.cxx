@@ -187,7 +187,7 @@ void Surroundings::GatherInto(Window& window)
     const Index column = bins.Column(p.X);
     const Index* const own = this->Near[0]->Starts + column;
     if (own[1] - own[0] <= Capacity &&
-      ((this->IsWidest && this->GatherWidest(window, first)) || this->GatherEven(window, first) ||
+      ((this->IsWidest ? this->GatherWidest(window, first) : this->GatherEven(window, first)) ||
         this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2)))
     {
       return;
