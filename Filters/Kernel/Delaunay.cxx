@@ -195,8 +195,14 @@ public:
     this->OpenEnd = None;
   }
 
-  /** Asks for the memory that SetOrigin() will need, some calls ahead. */
-  void Foresee(Index slot) const { if (this->IsWide) this->Around.Foresee(slot); }
+  /** Asks for the memory that SetOrigin() will need for a vertex some calls later. */
+  void Foresee(Index slot) const
+  {
+    if (this->IsWide)
+    {
+      this->Around.Foresee(slot);
+    }
+  }
 
   /**
    * Appends the origin's neighbours counter-clockwise after the last one in the list, as far as
@@ -217,9 +223,9 @@ public:
   /**
    * The apex of the Delaunay triangle on the left of the edge from the origin to b.
    * Only points above the origin are looked for: the caller knows that the origin is the lowest
-   * vertex of the triangle. The points around the origin come first. Where they do not tell, the
-   * tree of boxes is entered, nearest box first; what the disc through the best point so far does
-   * not reach is passed over.
+   * vertex of the triangle. The points around the origin come first; where they do not tell, the
+   * bins around it; then the tree of boxes is entered, nearest box first. What the disc through the
+   * best point so far does not reach is passed over.
    * @param[in] end  the last neighbour of the fan, which is on the left of the edge: a first guess
    * @return None when no point lies on the left of the edge
    */
@@ -376,7 +382,8 @@ private:
   }
 
   /**
-   * The bins around the origin, as far as the disc and the free side reach.
+   * The bins around the origin, as far as the disc and the free side reach; fewer when these hold
+   * too many points.
    * @return whether the best point is known, because its disc lies within these bins
    */
   bool LookIntoBins()
@@ -626,7 +633,7 @@ private:
     return reached;
   }
 
-  /** None where the number is not below 32. */
+  /** Of lanes, the one with this number, if it is one. */
   static unsigned int BitOf(Index number)
   {
     return number >= 0 && number < 32 ? 1u << number : 0u;
@@ -1034,7 +1041,8 @@ private:
     }
     this->Fan.Resize(1);
     this->Fan[0] = first;
-    this->Search.Foresee(this->Order[std::min(this->Next + 8, this->End - 1)]);
+    constexpr Index ahead = 8;
+    this->Search.Foresee(this->Order[std::min(this->Next + ahead, this->End - 1)]);
     this->Search.SetOrigin(lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
     Index current = first;
     while (current != end || current == None)

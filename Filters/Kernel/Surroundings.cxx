@@ -138,6 +138,7 @@ void Surroundings::Bounds::Set(double reach, double error, double margin)
 
 void Surroundings::Foresee(Index slot) const
 {
+  // In full bins, the points of a row are far apart in memory.
   if (this->Current->IsBox)
   {
     const BinGrid& grid = this->Grid;
@@ -959,6 +960,8 @@ bool Surroundings::Gather(Index, Index)
 {
   return false;
 }
+
+void Surroundings::Foresee(Index) const {}
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {
