@@ -397,7 +397,8 @@ private:
     // what follows as long as radii are less than a million bins.
     const double slackX = 0.002 * bins.BinWidth, slackY = 0.002 * bins.BinHeight;
     const double slope = this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity;
-    const double most = 1e12 * std::min(bins.BinWidth * bins.BinWidth, bins.BinHeight * bins.BinHeight);
+    const double most =
+      1e12 * std::min(bins.BinWidth * bins.BinWidth, bins.BinHeight * bins.BinHeight);
     Index count = 0;
     for (Index r = row; r <= lastRow; ++r)
     {

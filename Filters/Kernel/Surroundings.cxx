@@ -142,8 +142,7 @@ void Surroundings::Foresee(Index slot) const
   if (this->Current->IsBox)
   {
     const BinGrid& grid = this->Grid;
-    const char* const node =
-      reinterpret_cast<const char*>(&grid.Nodes[grid.LeafNodes[slot / 8]]);
+    const char* const node = reinterpret_cast<const char*>(&grid.Nodes[grid.LeafNodes[slot / 8]]);
     for (std::size_t line = 0; line < sizeof(BinGrid::Node); line += 64)
     {
       __builtin_prefetch(node + line);
@@ -732,10 +731,9 @@ ELEVATION_WIDE void Surroundings::Sift(
   {
     const __m256 x = _mm256_load_ps(window.X + 8 * i), y = _mm256_load_ps(window.Y + 8 * i);
     const __m256 cross = _mm256_fmsub_ps(endX, y, _mm256_mul_ps(endY, x));
-    const __m256 dot = _mm256_fmadd_ps(
-      x, _mm256_sub_ps(x, endX), _mm256_mul_ps(y, _mm256_sub_ps(y, endY)));
-    const __m256 size =
-      _mm256_add_ps(_mm256_andnot_ps(signBit, x), _mm256_andnot_ps(signBit, y));
+    const __m256 dot =
+      _mm256_fmadd_ps(x, _mm256_sub_ps(x, endX), _mm256_mul_ps(y, _mm256_sub_ps(y, endY)));
+    const __m256 size = _mm256_add_ps(_mm256_andnot_ps(signBit, x), _mm256_andnot_ps(signBit, y));
     const __m256 ofSize = _mm256_fmadd_ps(us, size, es);
     const __m256 crossError = _mm256_fmadd_ps(ofSize, lengths, _mm256_mul_ps(es, size));
     const __m256 dotError =
