@@ -47,6 +47,9 @@ struct CannotGrow
 {
 };
 
+/** How far around a vertex bins are looked at before the tree is, and at most how many points. */
+constexpr Index NearColumns = 8, NearRows = 12, MostNear = 256;
+
 /**
  * One side of the convex hull as a chain from the lowest to the highest point, collinear points
  * included [Andrew 1979, Another efficient algorithm for convex hulls in two dimensions].
@@ -201,9 +204,17 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
-    this->HasAround =
-      !this->IsByAngle && (this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow());
+    this->HasAround = !this->IsByAngle && this->IsWide && this->Around.Gather(slot, next);
     this->OpenEnd = None;
+  }
+
+  /** Asks for the memory that SetOrigin() will need for a vertex some calls later. */
+  void Foresee(Index slot) const
+  {
+    if (this->IsWide)
+    {
+      this->Around.Foresee(slot);
+    }
   }
 
   /**
@@ -212,7 +223,7 @@ public:
    */
   void Follow(Buffer<Index>& fan, Index end)
   {
-    if (this->HasAround && this->IsWide)
+    if (this->HasAround)
     {
       const std::size_t count = fan.size();
       fan.Resize(count + Surroundings::Capacity);
@@ -225,9 +236,9 @@ public:
   /**
    * The apex of the Delaunay triangle on the left of the edge from the origin to b.
    * Only points above the origin are looked for: the caller knows that the origin is the lowest
-   * vertex of the triangle. The points around the origin come first. Where they do not tell, the
-   * tree of boxes is entered, nearest box first; what the disc through the best point so far does
-   * not reach is passed over.
+   * vertex of the triangle. The points around the origin come first; where they do not tell, the
+   * bins around it; then the tree of boxes is entered, nearest box first. What the disc through the
+   * best point so far does not reach is passed over.
    * @param[in] end  the last neighbour of the fan, which is on the left of the edge: a first guess
    * @return None when no point lies on the left of the edge
    */
@@ -241,7 +252,7 @@ public:
     Index best = None;
     this->Target = b;
     this->B = this->Grid.PointAt(b);
-    if (this->HasAround && this->IsWide)
+    if (this->HasAround)
     {
       const Surroundings::Candidates found =
         b == this->OpenEnd ? this->Open : this->Around.FindCandidates(b);
@@ -252,11 +263,14 @@ public:
       }
     }
     this->SetEdge(this->Origin, b);
-    if (best != None || end != None)
+    for (Index known : { best, end })
     {
-      this->Compare(best != None ? best : end, 1);
+      if (known != None)
+      {
+        this->Compare(known, 1);
+      }
     }
-    if (this->HasAround && !this->IsWide && this->LookIntoWindow())
+    if (this->Grid.Bins.HasPlainBins && this->LookIntoBins())
     {
       return this->Best;
     }
@@ -382,52 +396,62 @@ private:
   }
 
   /**
-   * Without wide instructions: the bins around the origin that are looked at first, fewer where
-   * there are many points in them. False when there are too many in any case.
+   * The bins around the origin, as far as the disc and the free side reach; fewer when these hold
+   * too many points.
+   * @return whether the best point is known, because its disc lies within these bins
    */
-  bool ChooseWindow()
+  bool LookIntoBins()
   {
-    constexpr Index tooMany = 56;
     const BinGrid::Layout& bins = this->Grid.Bins;
-    const Index column = bins.Column(this->A.X);
-    this->FirstRow = bins.Row(this->A.Y);
-    for (Index reach = 2; reach > 0 && bins.HasPlainBins; --reach)
+    const Index column = bins.Column(this->A.X), row = bins.Row(this->A.Y);
+    const Index firstColumn = std::max(column - NearColumns, 0);
+    const Index lastColumn = std::min(column + NearColumns, bins.Columns - 1);
+    const Index lastRow = std::min(row + NearRows, bins.Rows - 1);
+    // Bounds of bins are known to a thousandth of a bin, which also is more than the rounding of
+    // what follows as long as radii are less than a million bins.
+    const double slackX = 0.002 * bins.BinWidth, slackY = 0.002 * bins.BinHeight;
+    const double slope = this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity;
+    const double most =
+      1e12 * std::min(bins.BinWidth * bins.BinWidth, bins.BinHeight * bins.BinHeight);
+    Index count = 0;
+    for (Index r = row; r <= lastRow; ++r)
     {
-      this->FirstColumn = std::max(column - reach, 0);
-      this->LastColumn = std::min(column + reach, bins.Columns - 1);
-      this->LastRow = std::min(this->FirstRow + reach + 1, bins.Rows - 1);
-      Index count = 0;
-      for (Index row = this->FirstRow; row <= this->LastRow; ++row)
+      const double low = bins.OriginY + r * bins.BinHeight - slackY - this->A.Y;
+      const double high = low + bins.BinHeight + 2.0 * slackY;
+      double left = -Infinity, right = Infinity;
+      if (this->RadiusSquared < most)
       {
-        const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
+        const double off = OffInterval(this->CenterY, low, high);
+        const double halfSquared = this->RadiusSquared - off * off;
+        if (halfSquared < 0.0) // the origin is on the circle: so it is above
+        {
+          break;
+        }
+        const double half = std::sqrt(halfSquared);
+        left = this->CenterX - half;
+        right = this->CenterX + half;
+      }
+      right = std::min(right, std::max(slope * low, slope * high));
+      const Index first = std::max(bins.Column(this->A.X + left - slackX), firstColumn);
+      const Index last = std::min(bins.Column(this->A.X + right + slackX), lastColumn);
+      if (first <= last)
+      {
+        const auto slots = this->Grid.Slots(r, first, last);
         count += slots.second - slots.first;
+        if (count > MostNear)
+        {
+          return false;
+        }
+        this->Compare(slots.first, slots.second - slots.first);
       }
-      if (count <= tooMany)
-      {
-        // Bounds of bins are known to a thousandth of a bin.
-        const double low = bins.OriginX + (this->FirstColumn + 0.002) * bins.BinWidth;
-        const double high = bins.OriginX + (this->LastColumn + 0.998) * bins.BinWidth;
-        const double top = bins.OriginY + (this->LastRow + 0.998) * bins.BinHeight;
-        this->Left = this->FirstColumn == 0 ? -Infinity : low - this->A.X;
-        this->Right = this->LastColumn == bins.Columns - 1 ? Infinity : high - this->A.X;
-        this->Top = this->LastRow == bins.Rows - 1 ? Infinity : top - this->A.Y;
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /** Whether the best point is known, because its disc lies within the window. */
-  bool LookIntoWindow()
-  {
-    for (Index row = this->FirstRow; row <= this->LastRow; ++row)
-    {
-      const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
-      this->Compare(slots.first, slots.second - slots.first);
     }
     const double radius = std::sqrt(this->RadiusSquared);
-    return this->Best != None && this->CenterX - radius > this->Left &&
-      this->CenterX + radius < this->Right && this->CenterY + radius < this->Top;
+    const double low = bins.OriginX + firstColumn * bins.BinWidth + slackX - this->A.X;
+    const double high = bins.OriginX + (lastColumn + 1) * bins.BinWidth - slackX - this->A.X;
+    const double top = bins.OriginY + (lastRow + 1) * bins.BinHeight - slackY - this->A.Y;
+    return this->Best != None && (firstColumn == 0 || this->CenterX - radius > low) &&
+      (lastColumn == bins.Columns - 1 || this->CenterX + radius < high) &&
+      (lastRow == bins.Rows - 1 || this->CenterY + radius < top);
   }
 
   /** Nearly always there is one candidate; else exact comparisons decide. */
@@ -624,13 +648,20 @@ private:
     return reached;
   }
 
+  /** Of lanes, the one with this number, if it is one. */
+  static unsigned int BitOf(Index number)
+  {
+    return number >= 0 && number < 32 ? 1u << number : 0u;
+  }
+
   __attribute__((target("avx2"))) bool CompareWide(Index first, Index count)
   {
     bool isChanged = false;
     const Index end = first + count;
     for (Index slot = first; slot < end; slot += 4)
     {
-      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0));
+      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0)) &
+        ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
       for (; left; left &= left - 1)
       {
         isChanged = this->CompareOne(slot + __builtin_ctz(left)) || isChanged;
@@ -811,10 +842,6 @@ private:
   bool HasAround = false;
   Surroundings::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
-
-  // The window where there are no wide instructions, its bounds relative to A.
-  Index FirstRow = 0, LastRow = 0, FirstColumn = 0, LastColumn = 0;
-  double Left = 0.0, Right = 0.0, Top = 0.0;
 
   // The edge.
   double Floor = 0.0; ///< relative to the origin; what is below is passed over
@@ -1065,7 +1092,9 @@ private:
     }
     if (this->Fan.empty())
     {
+      constexpr Index ahead = 8;
       this->Fan.Append(first);
+      this->Search.Foresee(this->Order[std::min(this->Next + ahead, this->End - 1)]);
       this->Search.SetOrigin(
         lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
     }
