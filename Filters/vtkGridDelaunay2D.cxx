@@ -143,9 +143,16 @@ void PassPointData(vtkPointData* input, vtkPointData* source, const std::vector<
         const vtkIdType id = count + static_cast<vtkIdType>(i);
         if (point.Source != elevation::None)
         {
-          if (given)
+          if (given && given->GetDataType() == after->GetDataType())
           {
             after->SetTuple(id, point.Source, given);
+          }
+          else if (given)
+          {
+            for (int c = 0; c < numbers->GetNumberOfComponents(); ++c)
+            {
+              numbers->SetComponent(id, c, givenNumbers->GetComponent(point.Source, c));
+            }
           }
         }
         else if (numbers)
@@ -294,6 +301,7 @@ int vtkGridDelaunay2D::RequestData(
       AddLattice(triangulation.Steps, output->GetFieldData());
     }
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles)));
+    elevation::Report(progress, 1.0);
     // Only now, as an abort or an error leaves no counts.
     this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
     this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;

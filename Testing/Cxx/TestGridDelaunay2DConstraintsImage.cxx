@@ -45,6 +45,9 @@ int TestGridDelaunay2DConstraintsImage(int argc, char* argv[])
   const auto west = [](double y) { return 7.3 + 0.02 * (y - 3.0) * (13.0 - y) * (y / 16.0 - 1.0); };
   const auto east = [](double y) { return 7.3 + 0.05 * (y - 3.0) * (13.0 - y) * (y / 40.0 + 0.5); };
   const auto throwAt = [](double y) { return std::max(0.0, 0.25 * (y - 3.0) * (13.0 - y)); };
+  const auto depthAt = [&](double x, double y) {
+    return x > 7.3 ? throwAt(y) * std::exp(-0.15 * (x - 7.3)) : 0.0;
+  };
 
   auto input = MakeData();
   for (int y = 0; y <= 16; ++y)
@@ -54,7 +57,7 @@ int TestGridDelaunay2DConstraintsImage(int argc, char* argv[])
       const bool isGap = throwAt(y) > 0.0 && x > west(y) && x < east(y);
       if (!isGap)
       {
-        Insert(input, x, y, x > 7.3 ? throwAt(y) * std::exp(-0.15 * (x - 7.3)) : 0.0);
+        Insert(input, x, y, depthAt(x, y));
       }
     }
   }
@@ -70,8 +73,8 @@ int TestGridDelaunay2DConstraintsImage(int argc, char* argv[])
     }
   }
   lines->InsertNextCell(2);
-  lines->InsertCellPoint(Insert(faults, 1.6, 10.4, 0.0));
-  lines->InsertCellPoint(Insert(faults, 14.4, 5.7, 0.0));
+  lines->InsertCellPoint(Insert(faults, 1.6, 10.4, depthAt(1.6, 10.4)));
+  lines->InsertCellPoint(Insert(faults, 14.4, 5.7, depthAt(14.4, 5.7)));
   faults->SetLines(lines);
 
   vtkNew<vtkGridDelaunay2D> delaunay;

@@ -9,6 +9,10 @@
 #include "Kernel/Predicates.h"
 #include "PointSets.h"
 
+#ifdef ES_TEST_CGAL
+#include "CGALConstrained.h"
+#endif
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -578,3 +582,139 @@ TEST(ConstrainedDelaunay, CrossingsAreThoseOfAllPairs)
     EXPECT_EQ(Triangulate(cloud, lines).NumberOfCrossings, expected);
   }
 }
+
+TEST(ConstrainedDelaunay, ThousandsOfLinesKeepAllRules)
+{
+  Random random(31);
+  std::mt19937_64 engine(32);
+  for (const bool isLattice : { false, true })
+  {
+    Cloud cloud;
+    if (isLattice)
+    {
+      cloud = testing_points::LatticeCloud(engine, 150, 0.8);
+    }
+    else
+    {
+      for (int i = 0; i < 20000; ++i)
+      {
+        const double x = 150 * random.Unit();
+        cloud.Add(x, 150 * random.Unit());
+      }
+    }
+    Lines lines = RandomLines(random, cloud, 150, 3000, 15);
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+    EXPECT_GT(constrained.NumberOfCrossings, 10000);
+    ExpectRules(cloud, constrained);
+  }
+}
+
+TEST(ConstrainedDelaunay, InFewBitsSettles)
+{
+  // Crossings are rounded to the doubles around 2^52, which are whole numbers: pieces move by up to
+  // half their distance from others, and cross anew.
+  Random random(41);
+  for (int round = 0; round < 30; ++round)
+  {
+    const double base = std::ldexp(1.0, 52);
+    Cloud cloud;
+    Lines lines;
+    for (int i = 0; i < 30; ++i)
+    {
+      cloud.Add(base + random.Below(60), base + random.Below(60));
+      lines.AddPoints({ { base + random.Below(60), base + random.Below(60), 0 },
+        { base + random.Below(60), base + random.Below(60), 0 } });
+    }
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+    ExpectRules(cloud, constrained);
+  }
+}
+
+TEST(ConstrainedDelaunay, OfExtremeCoordinatesKeepsAllRules)
+{
+  Random random(51);
+  std::mt19937_64 engine(52);
+  for (const int exponent : { -1000, -300, 300, 1000 })
+  {
+    for (const bool isThin : { false, true })
+    {
+      const double x = std::ldexp(1.0, exponent), y = isThin ? std::ldexp(x, -45) : x;
+      Cloud cloud;
+      Lines lines;
+      for (int i = 0; i < 200; ++i)
+      {
+        const double along = random.Unit() - 0.5;
+        cloud.Add(x * along, y * (random.Unit() - 0.5));
+      }
+      for (int i = 0; i < 20; ++i)
+      {
+        const double a = random.Unit() - 0.5, b = random.Unit() - 0.5, c = random.Unit() - 0.5;
+        lines.AddPoints({ { x * a, y * b, 0 }, { x * c, y * (random.Unit() - 0.5), 0 } });
+      }
+      const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+      EXPECT_GT(constrained.NumberOfCrossings, 10);
+      ExpectRules(cloud, constrained);
+    }
+  }
+}
+
+TEST(ConstrainedDelaunay, StopsWhenAsked)
+{
+  Random random(61);
+  std::mt19937_64 engine(62);
+  const Cloud cloud = testing_points::LatticeCloud(engine, 150, 0.8);
+  Lines lines = RandomLines(random, cloud, 150, 1000, 15);
+  DelaunayOptions options;
+  double last = 0.0, largest = 0.0;
+  options.Monitor = [&](double fraction) {
+    EXPECT_GE(fraction, last);
+    EXPECT_LE(fraction, 1.0);
+    largest = std::max(largest, fraction - last);
+    last = fraction;
+    return true;
+  };
+  Triangulate(cloud, lines, options);
+  EXPECT_EQ(last, 1.0);
+  EXPECT_LT(largest, 0.2);
+  for (const double at : { 0.0, 0.03, 0.1, 0.19, 0.3, 0.7, 0.9, 0.96, 1.0 })
+  {
+    options.Monitor = [at](double fraction) { return fraction < at; };
+    EXPECT_THROW(Triangulate(cloud, lines, options), Aborted) << at;
+  }
+}
+
+#ifdef ES_TEST_CGAL
+TEST(ConstrainedDelaunay, InGeneralPositionIsThatOfCGAL)
+{
+  Random random(71);
+  for (const int count : { 30, 300, 5000 })
+  {
+    Cloud cloud;
+    for (int i = 0; i < count; ++i)
+    {
+      const double x = 100 * random.Unit();
+      cloud.Add(x, 100 * random.Unit());
+    }
+    // Lines of points anywhere, which cross: CGAL gets what they have been split to.
+    Lines lines;
+    for (int i = 0; i < count / 5; ++i)
+    {
+      double x = 10 + 80 * random.Unit(), y = 10 + 80 * random.Unit();
+      std::vector<std::array<double, 3>> points;
+      for (int k = 2 + random.Below(4); k > 0; --k)
+      {
+        points.push_back({ x, y, 0 });
+        x += 20 * random.Unit() - 10;
+        y += 20 * random.Unit() - 10;
+      }
+      lines.AddPoints(points, random.Below(3) == 0);
+    }
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+    const Cloud all = AllPoints(cloud, constrained);
+    Mesh mesh = MeshOf(all, constrained.Result);
+    const std::multiset<Positions> ours = PositionsOf(mesh);
+    mesh.Triangles = CGALTriangles(mesh.Points, constrained.Pieces);
+    EXPECT_EQ(ours, PositionsOf(mesh));
+  }
+}
+#endif
