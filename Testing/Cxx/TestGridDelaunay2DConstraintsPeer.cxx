@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Constraints with which vtkDelaunay2D fails, and what vtkGridDelaunay2D makes of them: an outline
-// with two holes, and lines that run through points that they do not name. How much of the lines
-// are edges of the result tells who is right; and no triangle may cover what another one covers.
+// with two holes, and lines that run through points that they do not name. The length of all edges
+// that lie on the lines, as a part of that of the lines, tells who is right: 1 is right, less are
+// missing edges, more are edges that lie on each other. And no triangle of ours may cover what
+// another one covers.
 #include "MeshRules.h"
 #include "vtkCellArray.h"
 #include "vtkDelaunay2D.h"
@@ -74,7 +76,7 @@ vtkSmartPointer<vtkPolyData> MakeLines(
   return data;
 }
 
-/** The part of the lines' length that edges of the triangles cover. */
+/** The length of all edges on the lines, as a part of the lines'. */
 double CoveredPart(vtkPolyData* surface, const std::vector<Ids>& lines, bool areClosed)
 {
   std::set<std::pair<vtkIdType, vtkIdType>> edges;
@@ -133,8 +135,8 @@ void Compare(const char* name, vtkPolyData* input, const std::vector<Ids>& lines
   peer->SetSourceData(constraints);
   peer->Update();
   peer->GlobalWarningDisplayOn();
-  std::cout << name << ": of the lines are edges in ours " << part << ", in vtkDelaunay2D "
-            << CoveredPart(peer->GetOutput(), lines, arePolygons) << "\n";
+  std::cout << name << ": edges on the lines, as a part of them: ours " << part
+            << ", vtkDelaunay2D " << CoveredPart(peer->GetOutput(), lines, arePolygons) << "\n";
 }
 } // namespace
 

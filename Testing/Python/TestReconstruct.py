@@ -440,6 +440,23 @@ class ShortExample(Program):
         self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
 
 
+class FaultedHorizon(Program):
+    def test_the_example_adds_the_fault_and_draws_it(self):
+        script = os.path.join(os.path.dirname(PROGRAM), "faulted_horizon.py")
+        done = subprocess.run(
+            [sys.executable, script, "fault.png", "fault.vtp"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=True,
+        )
+        self.assertEqual(done.stdout, "290 points added, 0 crossings\n")
+        self.assertGreater(os.path.getsize(self.path("fault.png")), 100000)
+        surface = files.run_vtk_reader(self.path("fault.vtp"))
+        self.assertGreater(surface.GetNumberOfPolys(), 4000)
+
+
 class Pictures(Program):
     def picture(self, *arguments):
         from vtkmodules.util.numpy_support import vtk_to_numpy

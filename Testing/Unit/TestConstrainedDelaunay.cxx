@@ -675,7 +675,7 @@ TEST(ConstrainedDelaunay, StopsWhenAsked)
   };
   Triangulate(cloud, lines, options);
   EXPECT_EQ(last, 1.0);
-  EXPECT_LT(largest, 0.2);
+  EXPECT_LT(largest, 0.4) << "so few points are triangulated at once; nothing else is";
   for (const double at : { 0.0, 0.03, 0.1, 0.19, 0.3, 0.7, 0.9, 0.96, 1.0 })
   {
     options.Monitor = [at](double fraction) { return fraction < at; };
