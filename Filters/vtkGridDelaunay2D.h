@@ -75,7 +75,7 @@
  * Memory during the run, above input and output: about 35 bytes a point with one thread, 45 with
  * several; less than 10 on a lattice that is well filled. Points on which growing would take
  * longer, such as thousands on one circle, are divided and conquered instead, which takes some 90
- * bytes more. Constraints take another one and a half times as long as triangulating and some 120
+ * bytes more. Constraints take about as long again as triangulating, one thread, and some 120
  * bytes a point, and what their segments cross.
  *
  * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an

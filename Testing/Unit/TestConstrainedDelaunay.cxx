@@ -280,7 +280,9 @@ TEST(ConstrainedDelaunay, LinesOfInputPointsAddNothing)
   const Cloud cloud = Square(10);
   Lines lines;
   lines.AddPoints({ { 1, 1, -5 }, { 8, 4, -5 }, { 3, 9, -5 } });
-  const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+  DelaunayOptions options;
+  options.UseLattice = LatticeMode::Automatic;
+  const ConstrainedTriangulation constrained = Triangulate(cloud, lines, options);
   EXPECT_TRUE(constrained.Added.empty());
   EXPECT_EQ(constrained.NumberOfCrossings, 0);
   EXPECT_FALSE(constrained.Result.LatticeFound);
@@ -308,23 +310,29 @@ TEST(ConstrainedDelaunay, OtherPointsOfLinesAreAddedWithTheirElevation)
 TEST(ConstrainedDelaunay, DuplicatesAreMetInTheirVertex)
 {
   Cloud cloud = Square(4);
-  cloud.Add(1, 1, 500.0);   // the highest there
+  cloud.Add(1, 1, 500.0);   // 25, of which 6 is the first
   cloud.Add(2.5, 2.5, NAN); // no vertex: the line's point is
   Lines lines;
   lines.AddPoints({ { 1, 1, 0 }, { 2.5, 2.5, 0 } });
-  DelaunayOptions options;
-  options.Duplicates = DuplicatePolicy::KeepHighest;
-  const ConstrainedTriangulation constrained = Triangulate(cloud, lines, options);
-  ASSERT_EQ(constrained.Added.size(), 1u);
-  ASSERT_EQ(constrained.Pieces.size(), 2u) << "through (2, 2)";
-  bool isThere = false;
-  for (const Segment& piece : constrained.Pieces)
+  for (const DuplicatePolicy policy : { DuplicatePolicy::KeepFirst, DuplicatePolicy::KeepLast,
+         DuplicatePolicy::KeepLowest, DuplicatePolicy::KeepHighest })
   {
-    isThere = isThere || piece.A == 25 || piece.B == 25;
+    const bool isLater =
+      policy == DuplicatePolicy::KeepLast || policy == DuplicatePolicy::KeepHighest;
+    DelaunayOptions options;
+    options.Duplicates = policy;
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines, options);
+    ASSERT_EQ(constrained.Added.size(), 1u);
+    ASSERT_EQ(constrained.Pieces.size(), 2u) << "through (2, 2)";
+    std::set<Index> ends;
+    for (const Segment& piece : constrained.Pieces)
+    {
+      ends.insert({ piece.A, piece.B });
+    }
+    EXPECT_EQ(ends, (std::set<Index>{ isLater ? 25 : 6, 12, 27 }));
+    EXPECT_EQ(constrained.Result.UnusedPoints, (std::vector<Index>{ isLater ? 6 : 25, 26 }));
+    ExpectRules(cloud, constrained);
   }
-  EXPECT_TRUE(isThere);
-  EXPECT_EQ(constrained.Result.UnusedPoints, (std::vector<Index>{ 6, 26 }));
-  ExpectRules(cloud, constrained);
 }
 
 TEST(ConstrainedDelaunay, CrossingsAreSplitAndTakeTheElevationOfTheFirstLine)
@@ -382,6 +390,67 @@ TEST(ConstrainedDelaunay, MeetingAndOverlappingIsNoCrossing)
   EXPECT_EQ(Triangulate(cloud, lines).NumberOfCrossings, 2);
 }
 
+TEST(ConstrainedDelaunay, WhatMeetsASegmentStaysOnIt)
+{
+  // Lines end, and an input point lies, exactly on the first segment, which others cross in places
+  // that are no doubles: rounding must not move it off its guests.
+  Cloud cloud = Square(1);
+  cloud.Add(39, 13);
+  Lines lines;
+  lines.AddPoints({ { 0, 0, 0 }, { 60, 20, 0 } });
+  for (int i = 0; i < 10; ++i)
+  {
+    lines.AddPoints({ { 6.0 * i + 3, 2.0 * i + 1, 0 }, { 6.0 * i + 4, 40, 0 } }); // from it
+    lines.AddPoints({ { 6.0 * i + 1, -30, 0 }, { 6.0 * i + 2.25, 40, 0 } });      // across
+  }
+  const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+  ExpectRules(cloud, constrained);
+  const std::multiset<std::array<double, 4>> pieces = PiecePositions(cloud, constrained);
+  // Of every guest one piece to each side on the segment, and of those that end the line itself.
+  for (int i = 0; i < 10; ++i)
+  {
+    int below = 0, above = 0;
+    for (const auto& piece : pieces)
+    {
+      const Point2 guest{ 6.0 * i + 3, 2.0 * i + 1 };
+      above += guest == Point2{ piece[0], piece[1] };
+      below += guest == Point2{ piece[2], piece[3] };
+    }
+    EXPECT_EQ(below, 1);
+    EXPECT_EQ(above, 2);
+  }
+  int atInput = 0;
+  for (const Segment& piece : constrained.Pieces)
+  {
+    atInput += piece.A == 4 || piece.B == 4;
+  }
+  EXPECT_EQ(atInput, 3);
+}
+
+TEST(ConstrainedDelaunay, CrossingsOnASegmentKeepTheirOrder)
+{
+  // Doubles around 2^52 are whole numbers: both crossings are rounded to one y.
+  const double base = std::ldexp(1.0, 52);
+  Cloud cloud = Square(1);
+  Lines lines;
+  lines.AddPoints({ { base + 10, base, 0 }, { base, base + 2, 0 } });
+  lines.AddPoints({ { base + 6, base - 5, 0 }, { base + 6, base + 9, 0 } });
+  lines.AddPoints({ { base + 4, base - 5, 0 }, { base + 4, base + 9, 0 } });
+  const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+  const std::multiset<std::array<double, 4>> expected = {
+    { base + 10, base, base + 6, base + 1 },
+    { base + 4, base + 1, base + 6, base + 1 },
+    { base + 4, base + 1, base, base + 2 },
+    { base + 6, base - 5, base + 6, base + 1 },
+    { base + 6, base + 1, base + 6, base + 9 },
+    { base + 4, base - 5, base + 4, base + 1 },
+    { base + 4, base + 1, base + 4, base + 9 },
+  };
+  EXPECT_EQ(PiecePositions(cloud, constrained), expected);
+  EXPECT_EQ(constrained.NumberOfCrossings, 2);
+  ExpectRules(cloud, constrained);
+}
+
 TEST(ConstrainedDelaunay, AStarOfCrossingsIsOneVertex)
 {
   // All through (1/3, 1/3), which is no double.
@@ -419,9 +488,18 @@ TEST(ConstrainedDelaunay, PolygonsWithTwoHolesAreKept)
 
 TEST(ConstrainedDelaunay, EdgesOverTheLimitAreLeftOutAfterRecovery)
 {
-  const Cloud cloud = Square(6);
+  Cloud cloud;
+  for (int i = 0; i < 49; ++i)
+  {
+    const int x = i % 7, y = i / 7;
+    if (x < 2 || x > 4 || y < 3 || y > 5) // a gap
+    {
+      cloud.Add(x, y);
+    }
+  }
   Lines lines;
-  lines.AddPoints({ { 0, 1, 0 }, { 6, 2, 0 } }); // no triangle on it has only short edges
+  lines.AddPoints({ { 0, 1, 0 }, { 6, 2, 0 } });
+  lines.AddPoints({ { 1, 3, 0 }, { 5, 5, 0 } }); // across the gap
   lines.AddPoints({ { 1.25, 4.5, 0 }, { 2.25, 4.5, 0 } });
   DelaunayOptions options;
   const ConstrainedTriangulation all = Triangulate(cloud, lines, options);
@@ -634,22 +712,24 @@ TEST(ConstrainedDelaunay, OfExtremeCoordinatesKeepsAllRules)
 {
   Random random(51);
   std::mt19937_64 engine(52);
-  for (const int exponent : { -1000, -300, 300, 1000 })
+  for (const int exponent : { -1000, -300, 300, 1000, 1023 })
   {
     for (const bool isThin : { false, true })
     {
-      const double x = std::ldexp(1.0, exponent), y = isThin ? std::ldexp(x, -45) : x;
+      // The largest differences are beyond the doubles.
+      const double x = std::ldexp(1.9, exponent), y = isThin ? std::ldexp(x, -45) : x;
       Cloud cloud;
       Lines lines;
       for (int i = 0; i < 200; ++i)
       {
-        const double along = random.Unit() - 0.5;
-        cloud.Add(x * along, y * (random.Unit() - 0.5));
+        const double along = 2 * random.Unit() - 1;
+        cloud.Add(x * along, y * (2 * random.Unit() - 1));
       }
       for (int i = 0; i < 20; ++i)
       {
-        const double a = random.Unit() - 0.5, b = random.Unit() - 0.5, c = random.Unit() - 0.5;
-        lines.AddPoints({ { x * a, y * b, 0 }, { x * c, y * (random.Unit() - 0.5), 0 } });
+        const double a = random.Unit(), b = random.Unit(), c = random.Unit(), d = random.Unit();
+        lines.AddPoints(
+          { { x * (2 * a - 1), y * (2 * b - 1), 0 }, { x * (2 * c - 1), y * (2 * d - 1), 0 } });
       }
       const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
       EXPECT_GT(constrained.NumberOfCrossings, 10);
