@@ -243,7 +243,8 @@ public:
   std::int64_t NumberOfCrossings() const { return this->Crossings; }
 
   /** The points that are added, and the pieces by final ids. */
-  void GetResult(std::vector<AddedPoint>& added, std::vector<Segment>& pieces) const
+  void GetResult(
+    std::vector<AddedPoint>& added, std::vector<Segment>& pieces, const Progress& progress) const
   {
     std::vector<Index> ids(this->Vertices.size());
     const auto elevationOf = [&](Index id) {
@@ -252,6 +253,7 @@ public:
     };
     for (std::size_t v = 0; v < this->Vertices.size(); ++v)
     {
+      ReportStep(progress, v, this->Vertices.size());
       const Vertex& vertex = this->Vertices[v];
       if (vertex.Input != None)
       {
@@ -406,7 +408,7 @@ private:
   /** Pass 2. */
   void Split(const Progress& progress)
   {
-    constexpr int mostRounds = 64; // three to five are usual
+    constexpr int mostRounds = 64; // two or three are usual
     bool haveCounted = false;
     for (int round = 0; round < mostRounds; ++round)
     {
@@ -612,6 +614,7 @@ private:
       Point2 Position;
       Crossing Of;
     };
+    const Progress naming = Part(progress, 0.8, 1.0);
     std::vector<Place> places;
     for (const Crossing& crossing : crossings)
     {
@@ -631,10 +634,12 @@ private:
     const auto isLower = [&](Index v, const Point2& p) { return IsLower(this->At(v), p); };
     Sort(
       known.begin(), known.end(), [&](Index v, Index w) { return isLower(v, this->At(w)); },
-      Part(progress, 0.7, 1.0));
+      Part(progress, 0.7, 0.8));
 
+    std::size_t done = 0;
     for (std::size_t i = 0; i < places.size();)
     {
+      ReportStep(naming, done++, places.size());
       const Point2 position = places[i].Position;
       const auto found = std::lower_bound(known.begin(), known.end(), position, isLower);
       Index vertex = static_cast<Index>(this->Vertices.size());
@@ -907,9 +912,9 @@ ConstrainedTriangulation TriangulateConstrained(
       return constrained;
     }
     constrained.NumberOfCrossings = splitting.NumberOfCrossings();
-    splitting.GetResult(constrained.Added, constrained.Pieces);
+    splitting.GetResult(constrained.Added, constrained.Pieces, Part(progress, 0.15, 0.17));
   }
-  const Buffer<double> joined = JoinPoints(points, constrained.Added, Part(progress, 0.15, 0.2));
+  const Buffer<double> joined = JoinPoints(points, constrained.Added, Part(progress, 0.17, 0.2));
   PointView all = points;
   if (!joined.empty())
   {
