@@ -305,6 +305,10 @@ public:
     std::uint64_t quotient = 0;
     for (const int digitShift : { 28, 0 })
     {
+      if (rest.Limbs.empty())
+      {
+        break; // what follows is zero
+      }
       const BigInteger unit = d * BigInteger(1.0, -digitShift);
       double digit = std::floor(
         std::ldexp(rest.Leading() / unit.Leading(), rest.NumberOfBits() - unit.NumberOfBits()));
