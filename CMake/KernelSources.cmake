@@ -14,6 +14,7 @@ set(es_kernel_concepts
   LatticeNodes
   LatticeDelaunay
   Constraints
+  ConstrainedDelaunay
   Boundary
   Trim
   Holes

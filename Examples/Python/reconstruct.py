@@ -101,6 +101,7 @@ TAKES = {
     "--lattice-mode": "one of " + ", ".join(LATTICE_MODES),
     "--lattice-tolerance": "a number from 0 to 0.25",
     "--threads": "a whole number of 0 or more",
+    "--breaklines": "a file",
     "--boundary": "a file",
     "--gap-tolerance": NUMBER,
     "--maximum-hole-size": NUMBER,
@@ -154,6 +155,7 @@ def make_parser():
     add("--lattice-mode", choices=LATTICE_MODES, default=LATTICE_MODES[0])
     add("--lattice-tolerance", type=number_up_to_a_quarter, default=0.01)
     add("--threads", type=count_at_least_zero, default=0)
+    add("--breaklines")
     add("--boundary")
     add("--gap-tolerance", type=number_at_least_zero, default=0.0)
     add("--no-recover-boundary", action="store_true")
@@ -281,6 +283,8 @@ class Run:
         if messages.errors:
             # With a boundary of the user's, what trimming refuses is that boundary.
             culprit = self.options.boundary if name == "trim" else None
+            if name == "triangulate" and "constraints" in messages.errors[0]:
+                culprit = self.options.breaklines
             raise Failure(f"{culprit or self.options.file}: {text}: {messages.errors[0]}")
         for warning in messages.warnings:
             # A filter may tell of several holes in one message.
@@ -289,11 +293,13 @@ class Run:
         return algorithm
 
 
-def reconstruct(run, cloud, boundary):
+def reconstruct(run, cloud, breaklines, boundary):
     """The chain. Returns the three filters, None for those that are switched off."""
     options = run.options
     delaunay = vtkGridDelaunay2D()
     delaunay.SetInputData(cloud.points)
+    if breaklines is not None:
+        delaunay.SetSourceData(breaklines)
     delaunay.SetMaximumEdgeLength(options.maximum_edge_length)
     delaunay.SetDuplicatePolicy(DUPLICATES.index(options.duplicates))
     delaunay.SetSearchStrategy(SEARCH_STRATEGIES.index(options.search_strategy))
@@ -430,6 +436,12 @@ def make_report(run, cloud, delaunay, trim, fill):
         "lattice": lattice_of(fields),
         "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
     }
+    if options.breaklines:
+        report["breaklines"] = {
+            "file": options.breaklines,
+            "added_points": delaunay.GetNumberOfAddedPoints(),
+            "crossings": delaunay.GetNumberOfConstraintCrossings(),
+        }
     if trim:
         report["trim"] = {
             "outward_triangles": trim.GetNumberOfOutwardTriangles(),
@@ -572,9 +584,18 @@ def print_report(report, options):
             )
         ]
         line("lattice", f"steps of {' and '.join(steps)}")
+    elif "breaklines" in report:
+        line("lattice", "not looked for, because of the breaklines")
     elif options.lattice_mode == "automatic":
         line("lattice", "none: the points are not on the nodes of a grid")
     line("triangles", f"{report['triangles']['delaunay']:,} in the triangulation")
+    if "breaklines" in report:
+        lines = report["breaklines"]
+        line(
+            "breaklines",
+            f"{lines['file']}: {counted(lines['added_points'], 'point')} added, "
+            f"{counted(lines['crossings'], 'crossing')}",
+        )
     if "trim" in report:
         trim = report["trim"]
         rings = trim["boundary_rings"]
@@ -690,7 +711,7 @@ def work(options, results):
     except files.FileError as error:
         raise WrongOption(str(error)) from None
     wanted = [p for p in (options.output, options.picture, options.report) if p]
-    inputs = [p for p in (options.file, options.boundary) if p]
+    inputs = [p for p in (options.file, options.breaklines, options.boundary) if p]
     for i, path in enumerate(wanted):
         files.check_writable(path)
         for other in inputs + wanted[:i]:
@@ -716,8 +737,9 @@ def work(options, results):
             "reading",
             lambda: files.read_points(options.file, options.columns, options.no_data),
         )
+        breaklines = files.read_breaklines(options.breaklines) if options.breaklines else None
         boundary = files.read_boundary(options.boundary) if options.boundary else None
-        delaunay, trim, fill = reconstruct(run, cloud, boundary)
+        delaunay, trim, fill = reconstruct(run, cloud, breaklines, boundary)
         report = make_report(run, cloud, delaunay, trim, fill)
         surface = (fill or trim or delaunay).GetOutput()
 

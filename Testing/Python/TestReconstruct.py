@@ -225,6 +225,33 @@ class Report(Program):
                 }
                 self.assertEqual([p[2] for p in used if p[:2] == (3.0, 3.0)], [z])
 
+    def test_breaklines_become_edges_and_are_told(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        lines = self.file("faults.txt", "x y z\n2 2.5 9\n8 2.5 9\n\n4.5 1 7\n4.5 6 7\n")
+        report = self.report(name, "--breaklines", lines, "--no-trim", "--no-fill", "-o", "s.vtp")
+        self.assertEqual(
+            report["breaklines"], {"file": lines, "added_points": 5, "crossings": 1}
+        )
+        self.assertIsNone(report["lattice"])
+        surface = files.run_vtk_reader(self.path("s.vtp"))
+        self.assertEqual(surface.GetNumberOfPoints(), len(SHEET) + 5)
+        self.assertEqual(surface.GetPoint(surface.GetNumberOfPoints() - 1), (4.5, 2.5, 9.0))
+        self.assertIn("5 points added, 1 crossing", self.output)
+
+    def test_breaklines_that_cannot_be_used_are_named(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        self.assert_refused("no.vtp: no such file", name, "--breaklines", "no.vtp")
+        bad = self.file("bad.txt", "1 1 0\n2 inf 0\n")
+        self.assert_refused("bad.txt, line 2: a breakline", name, "--breaklines", bad)
+        from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+        data = files.make_points([(2, 2, 0), (8, 2, float("nan"))])
+        lines = vtkCellArray()
+        lines.InsertNextCell(2, [0, 1])
+        data.SetLines(lines)
+        files.write_surface(data, self.path("nan.vtp"), ".vtp")
+        self.assert_refused(["nan.vtp: ", "Point 1"], name, "--breaklines", "nan.vtp")
+
     def test_a_boundary_file_cuts_the_surface(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         ring = self.file("ring.txt", "x y\n2 2\n8 2\n8 8\n2 8\n2 2\n")
@@ -411,6 +438,23 @@ class ShortExample(Program):
         report = self.report(data, "--maximum-edge-length", "2")
         surface = files.run_vtk_reader(self.path("short.vtp"))
         self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
+
+
+class FaultedHorizon(Program):
+    def test_the_example_adds_the_fault_and_draws_it(self):
+        script = os.path.join(os.path.dirname(PROGRAM), "faulted_horizon.py")
+        done = subprocess.run(
+            [sys.executable, script, "fault.png", "fault.vtp"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=True,
+        )
+        self.assertEqual(done.stdout, "290 points added, 0 crossings\n")
+        self.assertGreater(os.path.getsize(self.path("fault.png")), 100000)
+        surface = files.run_vtk_reader(self.path("fault.vtp"))
+        self.assertGreater(surface.GetNumberOfPolys(), 4000)
 
 
 class Pictures(Program):
