@@ -15,6 +15,7 @@ set(es_kernel_concepts
   LatticeDelaunay
   Constraints
   Boundary
+  Insertion
   Trim
   Holes
   Fill
