@@ -235,6 +235,24 @@ class Report(Program):
         self.assertEqual(report["unused_reasons"], {"outside the boundary": 12 * 12 - 7 * 7})
         self.assertNotIn("effective_gap_tolerance", report["trim"])
 
+    def test_a_boundary_on_the_map_needs_no_points_of_the_file(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("lease.txt", "2.25 2.5\n20 2.5\n20 8\n2.25 8\n2.25 2.5\n")
+        report = self.report(name, "--boundary", ring)
+        # Two corners, and where the boundary leaves the sheet at (11, 2.5).
+        self.assertEqual(report["trim"]["inserted_points"], 3)
+        refused = self.call(name, "--boundary", ring, "--no-recover-boundary")
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("point 0 (2.25, 2.5)", refused.stderr)
+
+    def test_the_published_test_can_be_chosen(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("ring.txt", "x y\n2 2\n8 2\n8 8\n2 8\n2 2\n")
+        report = self.report(name, "--boundary", ring, "--outward-test", "inward-normal")
+        self.assertEqual(report["trim"]["outward_triangles"], 0)
+        done = self.call(name, "--outward-test", "outward")
+        self.assertIn("--outward-test takes one of exact, inward-normal", done.stderr)
+
     def test_rows_without_data_are_left_out_and_counted(self):
         name = self.file("sheet.xyz", text_of(SHEET) + "5.5 5.5 -999\n")
         report = self.report(name, "--no-data", "-999")
