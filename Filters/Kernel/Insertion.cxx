@@ -265,36 +265,46 @@ struct IsBeforeAlong
 
 // ---------------------------------------------------------------------------------------- matching
 
+/** A hash of a place that is well mixed in all bits. */
+std::uint64_t Mix(const Point2& p)
+{
+  // 0.0 and -0.0 are equal, and go to the same place.
+  const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
+  std::uint64_t bits[2];
+  std::memcpy(bits, coordinates, sizeof(bits));
+  const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
+  return (mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull;
+}
+
 /**
- * The points that may be one of those added: all of these, and few others. For to look each up in a
- * map is slow.
+ * The points that may be one of those added: all of these, and one in a hundred others. For to look
+ * each up in a map is slow.
  */
 class PointSieve
 {
 public:
   explicit PointSieve(std::size_t capacity)
   {
-    while (this->Shift > 32 && (std::size_t(1) << (64 - this->Shift)) < 16 * capacity)
+    while (this->Shift > 32 && (std::size_t(1) << (64 - this->Shift)) < 128 * capacity)
     {
       --this->Shift;
     }
-    this->Places.resize(std::size_t(1) << (64 - this->Shift));
+    this->Words.resize((std::size_t(1) << (64 - this->Shift)) / 64);
   }
-  static std::uint64_t Mix(const Point2& p)
+  void Add(const Point2& p)
   {
-    // 0.0 and -0.0 are equal, and go to the same place.
-    const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
-    std::uint64_t bits[2];
-    std::memcpy(bits, coordinates, sizeof(bits));
-    const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
-    return (mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull;
+    const std::uint64_t place = Mix(p) >> this->Shift;
+    this->Words[place / 64] |= std::uint64_t(1) << place % 64;
   }
-  void Add(const Point2& p) { this->Places[Mix(p) >> this->Shift] = 1; }
-  bool MayHold(const Point2& p) const { return this->Places[Mix(p) >> this->Shift]; }
+  bool MayHold(const Point2& p) const
+  {
+    const std::uint64_t place = Mix(p) >> this->Shift;
+    return this->Words[place / 64] >> place % 64 & 1;
+  }
 
 private:
   int Shift = 58;
-  std::vector<char> Places;
+  std::vector<std::uint64_t> Words;
 };
 
 // --------------------------------------------------------------------------------------- insertion
@@ -436,6 +446,13 @@ private:
     InStretches(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
+        const std::size_t ahead = 3 * static_cast<std::size_t>(t) + HalfEdgesAhead;
+        if (ahead + 2 < mesh.Triangles.size())
+        {
+          Prefetch(&mesh.Points[mesh.Triangles[ahead]]);
+          Prefetch(&mesh.Points[mesh.Triangles[ahead + 1]]);
+          Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
+        }
         const std::array<Point2, 3> corners = this->CornersOf(t);
         bins.Visit(corners, [&](Index i) {
           if (triangles[i] == None && this->Holds(t, pointOf(i)))
@@ -458,11 +475,11 @@ private:
         " is not a corner of the mesh: no triangle has a point with exactly the same x,y. Turn "
         "RecoverBoundary on, or add the boundary's points to the points before triangulating them.");
     }
-    this->CheckRoom(this->Located.size());
+    this->Reserve(this->Located.size());
   }
 
-  /** @throws Error when so many more vertices are too many */
-  void CheckRoom(std::size_t vertices) const
+  /** Room for so many more vertices. @throws Error when these are too many */
+  void Reserve(std::size_t vertices)
   {
     constexpr std::size_t most = MaximumNumberOfPoints;
     if (this->Surface.Points.size() + this->VertexAt.size() + vertices > most ||
@@ -471,6 +488,14 @@ private:
       throw Error("The mesh has no room for " + std::to_string(vertices) +
         " points of the boundary: at most " + std::to_string(most) +
         " points can be handled at once. Cut it into parts.");
+    }
+    if (vertices > 0)
+    {
+      // Not more than that, as growing by halves would; the points outside come last.
+      this->Surface.Points.reserve(
+        this->Surface.Points.size() + this->VertexAt.size() + vertices);
+      this->Surface.Triangles.reserve(this->Surface.Triangles.size() + 6 * vertices);
+      this->Surface.Twins.reserve(this->Surface.Twins.size() + 6 * vertices);
     }
   }
 
@@ -481,8 +506,8 @@ private:
     std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
       const Point2& p = this->Points[a.Point];
       const Point2& q = this->Points[b.Point];
-      const std::uint64_t mixedP = PointSieve::Mix(p);
-      const std::uint64_t mixedQ = PointSieve::Mix(q);
+      const std::uint64_t mixedP = Mix(p);
+      const std::uint64_t mixedQ = Mix(q);
       return std::tie(a.Triangle, mixedP, p.X, p.Y) < std::tie(b.Triangle, mixedQ, q.X, q.Y);
     });
     // Weights in the triangles as they are now.
@@ -626,7 +651,7 @@ private:
       throw Error("The boundary's edge " + this->NameOfEdge(crossings.front().Edge) +
         " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
     }
-    this->CheckRoom(crossings.size());
+    this->Reserve(crossings.size());
 
     // Along each border from its first end, so that its last part is the one to cut next.
     std::sort(
