@@ -431,6 +431,31 @@ class ShortExample(Program):
         self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
 
 
+class BoundaryExamples(Program):
+    def lines_of(self, name, *arguments):
+        script = os.path.join(os.path.dirname(PROGRAM), name)
+        done = subprocess.run(
+            [sys.executable, script, *arguments],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=True,
+        )
+        return done.stdout.splitlines()
+
+    def test_the_lake_is_cut_along_lines_that_are_no_points(self):
+        lines = self.lines_of("lake.py", "lake.png")
+        # All corners of the shores, one of the lease; and where the lease leaves the survey.
+        self.assertEqual(lines[1], "335 points inserted along the boundary")
+        self.assertGreater(os.path.getsize(self.path("lake.png")), 50000)
+
+    def test_the_swath_has_an_outline_and_the_inside_of_its_loop(self):
+        lines = self.lines_of("survey_swath.py", "swath.png")
+        self.assertTrue(lines[1].startswith("2 rings at a gap tolerance of "), lines[1])
+        self.assertGreater(os.path.getsize(self.path("swath.png")), 50000)
+
+
 class Pictures(Program):
     def picture(self, *arguments):
         from vtkmodules.util.numpy_support import vtk_to_numpy
