@@ -680,17 +680,16 @@ private:
       }
       else if (crossing.Place != mesh.PointOf(vertex))
       {
-        const Point2& apex = mesh.PointOf(mesh.Apex(h));
-        if (Orientation(mesh.PointOf(vertex), crossing.Place, apex) != Positive ||
-          Orientation(crossing.Place, mesh.PointOf(mesh.Destination(h)), apex) != Positive)
+        const Index end = mesh.Destination(h);
+        Point2 place = crossing.Place;
+        if (!this->MoveToCut(h, place))
         {
           throw Error("The boundary's edge " + this->NameOfEdge(crossing.Edge) +
             " leaves the mesh across a triangle too thin to be cut there, between " +
-            NameOf(mesh.Points, vertex) + " and " + NameOf(mesh.Points, mesh.Destination(h)) +
+            NameOf(mesh.Points, vertex) + " and " + NameOf(mesh.Points, end) +
             " of the mesh. Let the boundary pass through one of them.");
         }
-        vertex = this->AddVertex(
-          crossing.Place, this->WeightsBetween(vertex, mesh.Destination(h), crossing.Place));
+        vertex = this->AddVertex(place, this->WeightsBetween(vertex, end, place));
         h = this->CutEdge(h, vertex);
       }
       this->OnTheWay.push_back({ crossing.Edge, vertex });
@@ -815,6 +814,31 @@ private:
     return Orientation(corners[0], corners[1], p) != Negative &&
       Orientation(corners[1], corners[2], p) != Negative &&
       Orientation(corners[2], corners[0], p) != Negative;
+  }
+
+  /**
+   * Moves a place on the border, within rounding, to where the triangle of h can be cut: rounded, it
+   * may be beyond a thin triangle. Outwards is always room. @return whether one was found
+   */
+  bool MoveToCut(Index h, Point2& place) const
+  {
+    const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
+    const Point2& to = this->Surface.PointOf(this->Surface.Destination(h));
+    const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
+    const double length = std::hypot(to.X - from.X, to.Y - from.Y);
+    const double step = std::numeric_limits<double>::epsilon() *
+      std::max(std::fabs(place.X), std::fabs(place.Y));
+    const Point2 outwards{ step * ((to.Y - from.Y) / length), step * ((from.X - to.X) / length) };
+    const Point2 first = place;
+    for (double steps = 1.0; steps <= 64.0; steps *= 2.0)
+    {
+      if (Orientation(from, place, apex) == Positive && Orientation(place, to, apex) == Positive)
+      {
+        return true;
+      }
+      place = { first.X + steps * outwards.X, first.Y + steps * outwards.Y };
+    }
+    return false;
   }
 
   InsertedVertex WeightsIn(Index t, const Point2& p) const

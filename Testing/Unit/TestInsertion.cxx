@@ -652,3 +652,133 @@ TEST(InsertRings, StopsWhenAsked)
                  [](double fraction) { return fraction < 0.5; }),
     Aborted);
 }
+
+TEST(InsertRings, OnLatticesWithHolesNeverFailsAndDecidesEveryTriangle)
+{
+  // Everything meets exactly: rings through points, along borders, through pinched vertices; and
+  // edges of all slopes cross the borders at places that are rounded.
+  Random random(38);
+  int decided = 0;
+  int cut = 0;
+  for (int round = 0; round < 4000; ++round)
+  {
+    const Mesh full = LatticeMesh(6);
+    const Mesh before = Without(full, [&](Index) { return random.Below(4) == 0; });
+    Boundary boundary;
+    const int rings = 1 + random.Below(2);
+    for (int ring = 0; ring < rings; ++ring)
+    {
+      std::vector<Point2> points;
+      for (int i = 3 + random.Below(3); i > 0; --i)
+      {
+        const double half = round % 2 ? 0.5 : 1.0;
+        points.push_back({ half * (random.Below(static_cast<int>(9 / half)) - 1.5 / half),
+          half * (random.Below(static_cast<int>(9 / half)) - 1.5 / half) });
+        if (random.Below(2))
+        {
+          points.back() = { std::floor(points.back().X), std::floor(points.back().Y) };
+        }
+      }
+      boundary.Add(points);
+    }
+    Mesh mesh = before;
+    TrimResult trimmed;
+    try
+    {
+      const InsertedRings inserted = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      cut += inserted.Inserted.size() > boundary.Points.size();
+      ASSERT_EQ(FindingsOf(mesh), "");
+      trimmed = Trim(mesh, inserted.Vertices, TrimOptions());
+    }
+    catch (const Error& error)
+    {
+      const std::string message = error.what();
+      ASSERT_TRUE(message.find("crosses its edge") != std::string::npos ||
+        message.find("encloses no triangle") != std::string::npos)
+        << message;
+      continue;
+    }
+    ++decided;
+    ASSERT_EQ(FindingsOf(mesh), "");
+    double all = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      const double area = testing_surfaces::TwiceArea(mesh, t);
+      all += area;
+      if (area > 1e-12)
+      {
+        ASSERT_EQ(Locate(boundary.Points, boundary.Lines, MiddleOf(mesh, t)) == Location::Inside,
+          !trimmed.IsOutward[t])
+          << round;
+      }
+    }
+    ASSERT_NEAR(all, testing_surfaces::TwiceArea(before), 1e-12);
+  }
+  EXPECT_GT(decided, 1000);
+  EXPECT_GT(cut, 500);
+}
+
+TEST(InsertRings, GoThroughVerticesExactlyOnTheWayToARoundedCrossing)
+{
+  std::vector<Point2> points;
+  for (int i = 0; i < 25; ++i)
+  {
+    points.push_back({ static_cast<double>(i % 5), static_cast<double>(i / 5) });
+  }
+  points.push_back({ 10, 3 });
+  points.push_back({ 3, 10 });
+  const Mesh before = Delaunay(points);
+  Boundary boundary; // its first edge runs through (2, 3) and crosses the border at x = 14 / 3
+  boundary.Add({ { 1, 1 }, { 9, 17 }, { -9, 17 } });
+  Mesh mesh = before;
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+  EXPECT_NE(std::find(rings.Vertices.Vertices.begin(), rings.Vertices.Vertices.end(), 2 + 5 * 3),
+    rings.Vertices.Vertices.end());
+  Trim(mesh, rings.Vertices, TrimOptions());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    EXPECT_GT(testing_surfaces::TwiceArea(mesh, t), 1e-3) << "a sliver beside the edge";
+  }
+}
+
+TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
+{
+  // A turned lattice in map coordinates, and a rectangle through its corners, or nearly: its sides
+  // run along the border, now within the mesh, now outside.
+  Random random(39);
+  int inserted = 0;
+  for (int round = 0; round < 200; ++round)
+  {
+    const double angle = 6.28 * random.Unit();
+    const Point2 u{ 25 * std::cos(angle), 25 * std::sin(angle) };
+    const auto node = [&](double i, double j) {
+      return Point2{ 460838.3 + i * u.X - j * u.Y, 6215400.7 + i * u.Y + j * u.X };
+    };
+    std::vector<Point2> points;
+    for (int i = 0; i < 400; ++i)
+    {
+      points.push_back(node(i % 20, i / 20));
+    }
+    const Mesh before = Delaunay(points);
+    Boundary boundary;
+    const double beyond = round % 3 == 0 ? 0.0 : 1e-12 * random.Below(100);
+    boundary.Add({ node(0 - beyond, 0), node(19 + beyond, 0), node(19 + beyond, 19),
+      node(round % 2 ? 9.3 : 0.0, 19), node(0 - beyond, 10) });
+    Mesh mesh = before;
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+    inserted += static_cast<int>(rings.Inserted.size());
+    ASSERT_EQ(FindingsOf(mesh), "");
+    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    ASSERT_EQ(FindingsOf(mesh), "");
+    double kept = 0.0;
+    double all = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      all += testing_surfaces::TwiceArea(mesh, t) / 625;
+      kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t) / 625;
+    }
+    ASSERT_NEAR(all, 2.0 * 19 * 19, 1e-6);
+    ASSERT_NEAR(kept, 2.0 * 19 * 19 - (round % 2 ? 9 * 9.3 : 0.0), 1e-6);
+  }
+  EXPECT_GT(inserted, 500);
+}
