@@ -53,9 +53,9 @@ public:
     double width = hasWidth ? high.X - low.X : 1.0;
     double height = hasHeight ? high.Y - low.Y : 1.0;
     const double most = std::min(1e6, static_cast<double>(std::max<std::size_t>(count, 1)));
-    const double columns = !hasWidth
-      ? 1.0
-      : hasHeight ? std::min(most, std::max(1.0, std::sqrt(most * (width / height)))) : most;
+    const double columns = !hasWidth ? 1.0
+      : hasHeight ? std::min(most, std::max(1.0, std::sqrt(most * (width / height))))
+                  : most;
     const double rows = !hasHeight ? 1.0 : std::min(most, std::max(1.0, most / columns));
     this->Columns = static_cast<Index>(std::min(columns, 4096.0));
     this->Rows = static_cast<Index>(std::min(rows, 4096.0));
@@ -339,9 +339,23 @@ public:
     this->MatchCorners(Part(progress, 0.1, 0.5));
     this->LocateOthers(Part(progress, 0.5, 0.75));
     this->InsertLocated(Part(progress, 0.75, 0.8));
-    this->CutAtBorder(Part(progress, 0.8, 0.9));
-    this->FindOnTheWay(Part(progress, 0.9, 1.0));
-    this->MakeRings();
+    this->StartRings();
+    // The pieces of an edge, and of a border, that has been cut at a rounded place are not quite where
+    // they were: all are looked at again. As rounding rarely leads past anything, one round more is
+    // the rule.
+    constexpr int mostRounds = 100;
+    bool isCut = this->CutAtBorder(Part(progress, 0.8, 1.0));
+    for (int round = 1; isCut; ++round)
+    {
+      if (round == mostRounds)
+      {
+        throw Error("The boundary's edge " + this->NameOfEdge(this->EdgeOfCut) +
+          " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
+          "pass through points of the mesh.");
+      }
+      isCut = this->CutAtBorder(Part(progress, 1.0, 1.0));
+    }
+    this->FinishRings();
   }
 
 private:
@@ -473,7 +487,8 @@ private:
     {
       throw Error("The boundary's " + NameOf(this->Points, this->Located.front().Point) +
         " is not a corner of the mesh: no triangle has a point with exactly the same x,y. Turn "
-        "RecoverBoundary on, or add the boundary's points to the points before triangulating them.");
+        "RecoverBoundary on, or add the boundary's points to the points before triangulating "
+        "them.");
     }
     this->Reserve(this->Located.size());
   }
@@ -492,8 +507,7 @@ private:
     if (vertices > 0)
     {
       // Not more than that, as growing by halves would; the points outside come last.
-      this->Surface.Points.reserve(
-        this->Surface.Points.size() + this->VertexAt.size() + vertices);
+      this->Surface.Points.reserve(this->Surface.Points.size() + this->VertexAt.size() + vertices);
       this->Surface.Triangles.reserve(this->Surface.Triangles.size() + 6 * vertices);
       this->Surface.Twins.reserve(this->Surface.Twins.size() + 6 * vertices);
     }
@@ -592,13 +606,40 @@ private:
     }
   }
 
-  /** Gives vertices to the border where edges of the rings cross it or run through its vertices. */
-  void CutAtBorder(const Progress& progress)
+  Point2 PlaceOf(Index vertex) const
+  {
+    return vertex >= 0 ? this->Surface.PointOf(vertex) : this->OutsidePoints[FirstOutside - vertex];
+  }
+
+  /** The rings as given, by vertices; points outside the mesh have numbers below. */
+  void StartRings()
+  {
+    for (const Index point : this->Given.Vertices)
+    {
+      Index& vertex = this->VertexAt.at(this->Points[point]);
+      if (vertex == Outside)
+      {
+        vertex = FirstOutside - static_cast<Index>(this->OutsidePoints.size());
+        this->OutsidePoints.push_back(this->Points[point]);
+      }
+      this->Pieces.push_back({ vertex, this->Pieces.size() });
+    }
+    this->Result.Vertices.Offsets = this->Given.Offsets;
+  }
+
+  /**
+   * Gives vertices to the border where pieces of the rings cross it, and to the rings where they run
+   * through the border's vertices. @return whether there was a crossing
+   */
+  bool CutAtBorder(const Progress& progress)
   {
     Mesh& mesh = this->Surface;
+    const std::vector<Ends> pieces = this->EndsOfPieces();
+    this->OnTheWay.clear();
+    this->IsCut.clear();
     this->Moved.clear();
     std::vector<Index> borders;
-    InStretches(mesh.NumberOfHalfEdges(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+    InStretches(mesh.NumberOfHalfEdges(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
       for (Index h = begin; h < end; ++h)
       {
         if (mesh.IsBorder(h))
@@ -617,14 +658,15 @@ private:
     {
       Index Border; // of borders
       Point2 Place;
-      std::size_t Edge;
+      std::size_t Piece;
     };
     std::vector<Crossing> crossings;
-    std::vector<std::size_t> lastSeen(segments.size(), this->Edges.size());
-    for (std::size_t i = 0; i < this->Edges.size(); ++i)
+    std::vector<std::size_t> lastSeen(segments.size(), pieces.size());
+    const Progress looking = Part(progress, 0.3, 0.5);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
     {
-      ReportStep(progress, this->Edges.size() + i, 2 * this->Edges.size(), 1024);
-      const Ends& edge = this->Edges[i];
+      ReportStep(looking, i, pieces.size(), 1024);
+      const Ends& edge = pieces[i];
       bins.Visit(edge, [&](Index border) {
         if (lastSeen[border] == i)
         {
@@ -642,25 +684,21 @@ private:
         }
       });
     }
-    if (crossings.empty())
+    if (!crossings.empty() && !this->MayInsert)
     {
-      return;
-    }
-    if (!this->MayInsert)
-    {
-      throw Error("The boundary's edge " + this->NameOfEdge(crossings.front().Edge) +
+      throw Error("The boundary's edge " +
+        this->NameOfEdge(this->Pieces[crossings.front().Piece].Edge) +
         " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
     }
     this->Reserve(crossings.size());
 
     // Along each border from its first end, so that its last part is the one to cut next.
-    std::sort(
-      crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) {
-        const IsBeforeAlong before(segments[a.Border]);
-        return a.Border != b.Border
-          ? a.Border < b.Border
-          : before(a.Place, b.Place) || (!before(b.Place, a.Place) && a.Edge < b.Edge);
-      });
+    std::sort(crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) {
+      const IsBeforeAlong before(segments[a.Border]);
+      return a.Border != b.Border
+        ? a.Border < b.Border
+        : before(a.Place, b.Place) || (!before(b.Place, a.Place) && a.Piece < b.Piece);
+    });
     Index h = None;
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
@@ -684,7 +722,7 @@ private:
         Point2 place = crossing.Place;
         if (!this->MoveToCut(h, place))
         {
-          throw Error("The boundary's edge " + this->NameOfEdge(crossing.Edge) +
+          throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
             " leaves the mesh across a triangle too thin to be cut there, between " +
             NameOf(mesh.Points, vertex) + " and " + NameOf(mesh.Points, end) +
             " of the mesh. Let the boundary pass through one of them.");
@@ -692,16 +730,38 @@ private:
         vertex = this->AddVertex(place, this->WeightsBetween(vertex, end, place));
         h = this->CutEdge(h, vertex);
       }
-      this->OnTheWay.push_back({ crossing.Edge, vertex });
-      this->IsCut.push_back(crossing.Edge);
+      this->OnTheWay.push_back({ crossing.Piece, vertex });
+      this->IsCut.push_back(crossing.Piece);
+      this->EdgeOfCut = this->Pieces[crossing.Piece].Edge;
     }
+    this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
+    this->CutPieces(pieces);
+    return !crossings.empty();
+  }
+
+  /** From each of the rings' vertices to the next. */
+  std::vector<Ends> EndsOfPieces() const
+  {
+    std::vector<Ends> ends;
+    ends.reserve(this->Pieces.size());
+    const Rings& rings = this->Result.Vertices; // its offsets
+    for (Index ring = 0; ring < rings.Count(); ++ring)
+    {
+      for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
+      {
+        const Index next = i + 1 == rings.Offsets[ring + 1] ? rings.Offsets[ring] : i + 1;
+        ends.push_back(
+          { this->PlaceOf(this->Pieces[i].Vertex), this->PlaceOf(this->Pieces[next].Vertex) });
+      }
+    }
+    return ends;
   }
 
   /**
-   * Of edges that cross the border, finds the vertices they run through exactly: the part up to a
+   * Of pieces that cross the border, finds the vertices they run through exactly: the part up to a
    * crossing, whose place is rounded, would pass beside them.
    */
-  void FindOnTheWay(const Progress& progress)
+  void FindOnTheWay(const std::vector<Ends>& pieces, const Progress& progress)
   {
     if (this->IsCut.empty())
     {
@@ -711,9 +771,9 @@ private:
     std::sort(this->IsCut.begin(), this->IsCut.end());
     this->IsCut.erase(std::unique(this->IsCut.begin(), this->IsCut.end()), this->IsCut.end());
     std::vector<Ends> segments;
-    for (const std::size_t edge : this->IsCut)
+    for (const std::size_t piece : this->IsCut)
     {
-      segments.push_back(this->Edges[edge]);
+      segments.push_back(pieces[piece]);
     }
     const Bins bins = BinSegments(segments);
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
@@ -752,49 +812,61 @@ private:
     });
   }
 
-  void MakeRings()
+  /** Cuts the pieces where vertices are on their way. */
+  void CutPieces(const std::vector<Ends>& pieces)
   {
-    Mesh& mesh = this->Surface;
-    // The points outside, in the order of the rings.
-    for (const Index point : this->Given.Vertices)
-    {
-      Index& vertex = this->VertexAt.at(this->Points[point]);
-      if (vertex == Outside)
-      {
-        vertex = mesh.NumberOfPoints();
-        mesh.Points.push_back(this->Points[point]);
-      }
-    }
+    const Mesh& mesh = this->Surface;
     std::sort(this->OnTheWay.begin(), this->OnTheWay.end(), [&](const Stop& a, const Stop& b) {
-      if (a.Edge != b.Edge)
+      if (a.Piece != b.Piece)
       {
-        return a.Edge < b.Edge;
+        return a.Piece < b.Piece;
       }
-      const IsBeforeAlong before(this->Edges[a.Edge]);
+      const IsBeforeAlong before(pieces[a.Piece]);
       const Point2& p = mesh.PointOf(a.Vertex);
       const Point2& q = mesh.PointOf(b.Vertex);
       return before(p, q) || (!before(q, p) && a.Vertex < b.Vertex);
     });
-    Rings& rings = this->Result.Vertices;
+    std::vector<Piece> cut;
+    cut.reserve(this->Pieces.size() + this->OnTheWay.size());
     auto stop = this->OnTheWay.begin();
-    for (Index ring = 0; ring < this->Given.Count(); ++ring)
+    std::vector<Index> offsets{ 0 };
+    const std::vector<Index>& before = this->Result.Vertices.Offsets;
+    for (std::size_t ring = 0; ring + 1 < before.size(); ++ring)
     {
-      const std::size_t first = rings.Vertices.size();
-      const auto add = [&](Index vertex) {
-        if (rings.Vertices.size() == first || rings.Vertices.back() != vertex)
+      const auto add = [&](const Piece& piece) {
+        if (cut.size() > static_cast<std::size_t>(offsets.back()) &&
+          cut.back().Vertex == piece.Vertex)
         {
-          rings.Vertices.push_back(vertex);
+          cut.pop_back(); // it leads nowhere
         }
+        cut.push_back(piece);
       };
-      for (Index i = this->Given.Offsets[ring]; i < this->Given.Offsets[ring + 1]; ++i)
+      for (Index i = before[ring]; i < before[ring + 1]; ++i)
       {
-        add(this->VertexAt.at(this->Points[this->Given.Vertices[i]]));
-        for (; stop != this->OnTheWay.end() && stop->Edge == static_cast<std::size_t>(i); ++stop)
+        Piece piece = this->Pieces[i];
+        add(piece);
+        for (; stop != this->OnTheWay.end() && stop->Piece == static_cast<std::size_t>(i); ++stop)
         {
-          add(stop->Vertex);
+          piece.Vertex = stop->Vertex;
+          add(piece);
         }
       }
-      rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
+      offsets.push_back(static_cast<Index>(cut.size()));
+    }
+    this->Pieces = std::move(cut);
+    this->Result.Vertices.Offsets = std::move(offsets);
+  }
+
+  /** The points outside the mesh become its last ones. */
+  void FinishRings()
+  {
+    Mesh& mesh = this->Surface;
+    const Index first = mesh.NumberOfPoints();
+    mesh.Points.insert(mesh.Points.end(), this->OutsidePoints.begin(), this->OutsidePoints.end());
+    for (const Piece& piece : this->Pieces)
+    {
+      this->Result.Vertices.Vertices.push_back(
+        piece.Vertex >= 0 ? piece.Vertex : first + (FirstOutside - piece.Vertex));
     }
   }
 
@@ -826,8 +898,8 @@ private:
     const Point2& to = this->Surface.PointOf(this->Surface.Destination(h));
     const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
     const double length = std::hypot(to.X - from.X, to.Y - from.Y);
-    const double step = std::numeric_limits<double>::epsilon() *
-      std::max(std::fabs(place.X), std::fabs(place.Y));
+    const double step =
+      std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
     const Point2 outwards{ step * ((to.Y - from.Y) / length), step * ((from.X - to.X) / length) };
     const Point2 first = place;
     for (double steps = 1.0; steps <= 64.0; steps *= 2.0)
@@ -995,18 +1067,25 @@ private:
     return part;
   }
 
-  /** In place of a vertex, at first: outside the mesh. */
+  /** In place of a vertex: of a point outside the mesh, at first, and the first of such. */
   static constexpr Index Outside = -2;
+  static constexpr Index FirstOutside = -3;
 
   struct Place
   {
     Index Triangle;
     Index Point;
   };
-  /** A vertex that an edge of the rings runs through. */
+  /** A piece of an edge of the rings, up to the next piece. */
+  struct Piece
+  {
+    Index Vertex;     ///< where it begins
+    std::size_t Edge; ///< of the given ones
+  };
+  /** A vertex that a piece runs through. */
   struct Stop
   {
-    std::size_t Edge;
+    std::size_t Piece;
     Index Vertex;
   };
 
@@ -1022,8 +1101,11 @@ private:
   std::vector<Place> Located;
   std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: points to be inserted
   std::unordered_map<Index, Index> Moved; ///< half-edges of the border that a cut renumbered
+  std::vector<Point2> OutsidePoints;
+  std::vector<Piece> Pieces; ///< one after another along each ring
   std::vector<Stop> OnTheWay;
-  std::vector<std::size_t> IsCut; ///< edges that cross the border
+  std::vector<std::size_t> IsCut; ///< pieces that cross the border
+  std::size_t EdgeOfCut = 0;      ///< the edge of one of them
 };
 
 } // namespace
