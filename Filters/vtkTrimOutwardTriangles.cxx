@@ -150,16 +150,16 @@ void PassPoints(vtkPolyData* input, const Mesh& mesh,
       {
         return;
       }
-      auto* values = elevation::IsFloatingPoint(before) ? vtkArrayDownCast<vtkDataArray>(after)
-                                                        : nullptr;
+      auto* values =
+        elevation::IsFloatingPoint(before) ? vtkArrayDownCast<vtkDataArray>(after) : nullptr;
       for (vtkIdType i = 0; i < more; ++i)
       {
         ReportStep(ofArray, static_cast<std::size_t>(i), static_cast<std::size_t>(more));
         const elevation::InsertedVertex& vertex = inserted[i];
         if (!values)
         {
-          const int nearest = static_cast<int>(
-            std::max_element(vertex.Weights, vertex.Weights + 3) - vertex.Weights);
+          const int nearest =
+            static_cast<int>(std::max_element(vertex.Weights, vertex.Weights + 3) - vertex.Weights);
           after->SetTuple(count + i, vertex.Corners[nearest], before);
           continue;
         }
@@ -179,7 +179,8 @@ void PassPoints(vtkPolyData* input, const Mesh& mesh,
         }
         for (int c = 0; before == data->GetNormals() && squares > 0.0 && c < 3; ++c)
         {
-          values->SetComponent(count + i, c, values->GetComponent(count + i, c) / std::sqrt(squares));
+          values->SetComponent(
+            count + i, c, values->GetComponent(count + i, c) / std::sqrt(squares));
         }
       }
     });
@@ -283,8 +284,8 @@ void AddCounts(const elevation::TrimResult& trimmed, const UsedBoundary& boundar
     vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
     elevation::AddCount(fieldData, "NumberOfOutwardTriangles", trimmed.NumberOfOutwardTriangles);
     elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
-    elevation::AddCount(fieldData, "NumberOfInsertedPoints",
-      static_cast<vtkIdType>(boundary.Mesh.Inserted.size()));
+    elevation::AddCount(
+      fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(boundary.Mesh.Inserted.size()));
     vtkNew<vtkDoubleArray> tolerance;
     tolerance->SetName("EffectiveGapTolerance");
     tolerance->InsertNextValue(boundary.GapTolerance);

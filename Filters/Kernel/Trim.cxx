@@ -49,7 +49,9 @@ std::vector<Segment> SegmentsOf(const Mesh& mesh, const Fans& fans, const Rings&
       {
         throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
           NameOf(mesh.Points, segment.B) +
-          " leaves the mesh on its way, where it crosses a hole or the outside.");
+          " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
+          "pass "
+          "through points of the mesh there.");
       }
       if (isInside)
       {

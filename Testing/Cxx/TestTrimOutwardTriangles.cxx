@@ -261,8 +261,8 @@ void TestBoundaryDrawnAnywhere()
   Check(mesh->GetMTime() == time && mesh->GetNumberOfPoints() == Size * Size,
     "the input is not written");
   // Six corners that are not points, and (8, 1.5), where the boundary leaves the mesh.
-  Check(trim->GetNumberOfInsertedPoints() == 7, "inserted points are counted: " +
-      std::to_string(trim->GetNumberOfInsertedPoints()));
+  Check(trim->GetNumberOfInsertedPoints() == 7,
+    "inserted points are counted: " + std::to_string(trim->GetNumberOfInsertedPoints()));
   Check(kept->GetFieldData()->GetArray("NumberOfInsertedPoints") &&
       kept->GetFieldData()->GetArray("NumberOfInsertedPoints")->GetTuple1(0) == 7,
     "and stand in the field data");
@@ -287,14 +287,14 @@ void TestBoundaryDrawnAnywhere()
     const auto id = static_cast<vtkIdType>(data->GetArray("Id")->GetTuple1(i));
     Check(i < Size * Size ? id == i
                           : std::fabs(mesh->GetPoint(id)[0] - p[0]) <= 0.75 &&
-            std::fabs(mesh->GetPoint(id)[1] - p[1]) <= 0.75,
+          std::fabs(mesh->GetPoint(id)[1] - p[1]) <= 0.75,
       "ids are those of a corner near by");
     Check(vtkStringArray::SafeDownCast(data->GetAbstractArray("Names"))->GetValue(i) ==
         std::to_string(id),
       "strings too");
     const double* n = data->GetNormals()->GetTuple3(i);
-    Check(std::fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1.0) < 1e-6,
-      "normals keep their length");
+    Check(
+      std::fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1.0) < 1e-6, "normals keep their length");
   }
   for (vtkPolyData* output : { kept, outward })
   {
@@ -432,8 +432,8 @@ void TestErrors()
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7.5, 6 }, { 7, 0 } } }), false, "point 1 (7.5, 6)");
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 9.5, 6 }, { 7, 0 } } }), false,
     "edge from point 0 (0, 0) to point 1 (9.5, 6) leaves the mesh");
-  ExpectError(mesh, MakeRings({ { { 10, 10 }, { 19, 10 }, { 10, 20 } } }), true,
-    "encloses no triangle");
+  ExpectError(
+    mesh, MakeRings({ { { 10, 10 }, { 19, 10 }, { 10, 20 } } }), true, "encloses no triangle");
   ExpectError(mesh,
     MakeRings({ { { 0.5, 0.5 }, { 5, 1 }, { 4, 5 } }, { { 3, 0.5 }, { 7, 3 }, { 2, 4 } } }), true,
     "crosses its edge from");

@@ -288,8 +288,8 @@ TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
       EXPECT_GE(size, 3);
       for (Index i = 0; i < size; ++i)
       {
-        const std::pair<Index, Index> edge = std::minmax(
-          { joined.Begin(ring)[i], joined.Begin(ring)[(i + 1) % size] });
+        const std::pair<Index, Index> edge =
+          std::minmax({ joined.Begin(ring)[i], joined.Begin(ring)[(i + 1) % size] });
         if (!odd.insert(edge).second)
         {
           odd.erase(edge);
