@@ -25,7 +25,8 @@
  *   strings, integers) are those of the nearest corner. So inserting does not change the surface.
  * - What lies outside the mesh or in a hole of it needs no edges: what is kept is both in
  *   the boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is inserted
- *   in the border, at the crossing, rounded to double precision.
+ *   in the border, at the crossing, rounded to double precision. (An edge that follows a border
+ *   so closely that rounding folds the border over is an error that names it.)
  * - An edge of the boundary that is not an edge of the mesh is recovered: the triangles that it
  *   crosses are replaced by as many others of the same corners; edges among these are
  *   constrained Delaunay within each side of the boundary's edge, and in the whole mesh when it was
