@@ -140,9 +140,10 @@ void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOdd,
     edges[t] = isTaken;
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
-      // The walk goes on along the third edge, seen from the other side. A boundary edge it leaves.
+      // The walk goes on along the third edge, seen from the other side: in an outward triangle,
+      // unless that edge is of the boundary.
       const Index twin = mesh.Twin(h);
-      if (!isOdd[h] && twin != Mesh::Border && edges[Mesh::Triangle(twin)] < 2)
+      if (twin != Mesh::Border && edges[Mesh::Triangle(twin)] < 2)
       {
         walkAlong(twin);
       }
