@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshConversion.h"
 
+#include "Kernel/Parallel.h"
 #include "Kernel/Predicates.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
@@ -21,6 +21,8 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <type_traits>
+#include <vector>
 
 namespace elevation
 {
@@ -94,19 +96,129 @@ vtkIdType FirstPolygon(vtkPolyData* input)
   return input->GetNumberOfVerts() + input->GetNumberOfLines();
 }
 
-void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress)
+namespace
+{
+/** Copies the points, in pieces. @return whether all are finite */
+bool CopyPoints(const PointView& points, int threads, const Progress& progress, Mesh& mesh)
+{
+  mesh.Points.resize(points.Count);
+  constexpr Index piecePoints = 1 << 17;
+  const Index pieces = (points.Count + piecePoints - 1) / piecePoints;
+  std::vector<char> isFinite(pieces, 0);
+  ForEachPiece(pieces, threads, progress, [&](Index piece) {
+    const Index begin = piece * piecePoints, end = std::min(begin + piecePoints, points.Count);
+    double sum = 0.0; // of differences of numbers with themselves: 0, or not a number
+    for (Index i = begin; i < end; ++i)
+    {
+      const Point2 p = points.At(i);
+      const double z = points.Elevation(i);
+      sum += (p.X - p.X) + (p.Y - p.Y) + (z - z);
+      mesh.Points[i] = p;
+    }
+    isFinite[piece] = sum == 0.0;
+  });
+  return std::count(isFinite.begin(), isFinite.end(), 0) == 0;
+}
+
+/** Triangles from arrays of one of the types that a vtkCellArray has. */
+template <typename Id>
+class TriangleReader
+{
+public:
+  TriangleReader(
+    const Id* offsets, const Id* ids, vtkIdType firstCell, const PointView& points, bool areFinite)
+    : Offsets(offsets)
+    , Ids(ids)
+    , FirstCell(firstCell)
+    , Points(points)
+    , AreFinite(areFinite)
+  {
+  }
+
+  /** Writes the triangles [begin, end) to the mesh, counter-clockwise. */
+  void Read(Index begin, Index end, Mesh& mesh) const
+  {
+    // Few at a time: their points are asked for before they are needed.
+    constexpr Index few = 128;
+    for (; begin < end; begin += few)
+    {
+      const Index last = std::min(begin + few, end);
+      for (Index t = begin; t < last; ++t)
+      {
+        this->Copy(t, mesh);
+      }
+      for (Index t = begin; t < last; ++t)
+      {
+        this->Turn(t, mesh);
+      }
+    }
+  }
+
+private:
+  void Copy(Index t, Mesh& mesh) const
+  {
+    const Id begin = this->Offsets[t], size = this->Offsets[t + 1] - begin;
+    if (size != 3)
+    {
+      throw Error("Cell " + this->NameOf(t) + " has " + std::to_string(size) +
+        " points, but only triangles can be handled; pass the input through vtkTriangleFilter "
+        "first.");
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      const Id id = this->Ids[begin + i];
+      if (id < 0 || id >= this->Points.Count)
+      {
+        throw Error("Cell " + this->NameOf(t) + " names point " + std::to_string(id) +
+          ", but the points are 0 to " + std::to_string(this->Points.Count - 1) + ".");
+      }
+      Prefetch(&mesh.Points[id]);
+      mesh.Triangles[3 * static_cast<std::size_t>(t) + i] = static_cast<Index>(id);
+    }
+  }
+
+  void Turn(Index t, Mesh& mesh) const
+  {
+    Index* const ids = &mesh.Triangles[3 * static_cast<std::size_t>(t)];
+    for (int i = 0; i < 3 && !this->AreFinite; ++i)
+    {
+      const Point2& p = mesh.Points[ids[i]];
+      if (!std::isfinite(p.X) || !std::isfinite(p.Y) ||
+        !std::isfinite(this->Points.Elevation(ids[i])))
+      {
+        throw Error("Point " + std::to_string(ids[i]) + " of cell " + this->NameOf(t) +
+          " has a coordinate that is not finite.");
+      }
+    }
+    const Sign side = Orientation(mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]]);
+    if (side == Zero)
+    {
+      throw Error("Cell " + this->NameOf(t) + " (points " + std::to_string(ids[0]) + ", " +
+        std::to_string(ids[1]) + ", " + std::to_string(ids[2]) +
+        ") is flat in x,y: an elevation surface has no vertical or empty triangles.");
+    }
+    if (side == Negative)
+    {
+      std::swap(ids[1], ids[2]);
+    }
+  }
+
+  std::string NameOf(Index t) const { return std::to_string(this->FirstCell + t); }
+
+  const Id* Offsets;
+  const Id* Ids;
+  const vtkIdType FirstCell;
+  const PointView& Points;
+  const bool AreFinite;
+};
+} // namespace
+
+void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int threads)
 {
   if (input->GetNumberOfStrips() > 0)
   {
     throw Error("The input has triangle strips; pass it through vtkTriangleFilter first.");
   }
-  const PointsOfDataSet points = ViewPoints(input);
-  mesh.Points.resize(points.View.Count);
-  for (Index i = 0; i < points.View.Count; ++i)
-  {
-    mesh.Points[i] = points.View.At(i);
-  }
-
   vtkCellArray* polygons = input->GetPolys();
   const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
   if (count > std::numeric_limits<Index>::max() / 3)
@@ -114,58 +226,29 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress)
     throw Error("The input has " + std::to_string(count) + " triangles; at most " +
       std::to_string(std::numeric_limits<Index>::max() / 3) + " can be handled at once.");
   }
-  const vtkIdType first = FirstPolygon(input);
-  mesh.Triangles.clear();
-  mesh.Triangles.reserve(3 * static_cast<std::size_t>(count));
+  const PointsOfDataSet points = ViewPoints(input);
+  const bool areFinite = CopyPoints(points.View, threads, Part(progress, 0.0, 0.2), mesh);
   mesh.Twins.clear();
-  if (count == 0)
+  mesh.Triangles.clear();
+  mesh.Triangles.resize(3 * static_cast<std::size_t>(count));
+  const auto read = [&](auto* offsets, auto* ids) {
+    using Id = std::remove_reference_t<decltype(*ids->GetPointer(0))>;
+    const TriangleReader<Id> reader(
+      offsets->GetPointer(0), ids->GetPointer(0), FirstPolygon(input), points.View, areFinite);
+    constexpr Index pieceTriangles = 1 << 16;
+    const Index pieces = (static_cast<Index>(count) + pieceTriangles - 1) / pieceTriangles;
+    ForEachPiece(pieces, threads, Part(progress, 0.2, 1.0), [&](Index piece) {
+      const Index begin = piece * pieceTriangles;
+      reader.Read(begin, begin + std::min(pieceTriangles, static_cast<Index>(count) - begin), mesh);
+    });
+  };
+  if (count > 0 && polygons->IsStorage64Bit())
   {
-    return;
+    read(polygons->GetOffsetsArray64(), polygons->GetConnectivityArray64());
   }
-  auto cells = vtk::TakeSmartPointer(polygons->NewIterator());
-  vtkIdType cell = first;
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell(), ++cell)
+  else if (count > 0)
   {
-    ReportStep(progress, static_cast<std::size_t>(cell - first), static_cast<std::size_t>(count));
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    cells->GetCurrentCell(size, ids);
-    if (size != 3)
-    {
-      throw Error("Cell " + std::to_string(cell) + " has " + std::to_string(size) +
-        " points, but only triangles can be handled; pass the input through vtkTriangleFilter "
-        "first.");
-    }
-    for (int i = 0; i < 3; ++i)
-    {
-      if (ids[i] < 0 || ids[i] >= points.View.Count)
-      {
-        throw Error("Cell " + std::to_string(cell) + " names point " + std::to_string(ids[i]) +
-          ", but the points are 0 to " + std::to_string(points.View.Count - 1) + ".");
-      }
-      const Point2& p = mesh.Points[ids[i]];
-      if (!std::isfinite(p.X) || !std::isfinite(p.Y) ||
-        !std::isfinite(points.View.Elevation(static_cast<Index>(ids[i]))))
-      {
-        throw Error("Point " + std::to_string(ids[i]) + " of cell " + std::to_string(cell) +
-          " has a coordinate that is not finite.");
-      }
-    }
-    const Index a = static_cast<Index>(ids[0]);
-    Index b = static_cast<Index>(ids[1]);
-    Index c = static_cast<Index>(ids[2]);
-    const Sign side = Orientation(mesh.Points[a], mesh.Points[b], mesh.Points[c]);
-    if (side == Zero)
-    {
-      throw Error("Cell " + std::to_string(cell) + " (points " + std::to_string(a) + ", " +
-        std::to_string(b) + ", " + std::to_string(c) +
-        ") is flat in x,y: an elevation surface has no vertical or empty triangles.");
-    }
-    if (side == Negative)
-    {
-      std::swap(b, c);
-    }
-    mesh.Triangles.insert(mesh.Triangles.end(), { a, b, c });
+    read(polygons->GetOffsetsArray32(), polygons->GetConnectivityArray32());
   }
 }
 

@@ -51,12 +51,12 @@ void CheckArrays(vtkPolyData* input, const std::string& owner = "");
  * The polygons of a triangulated polydata as a mesh: Points are all points' x,y; triangle i is the
  * i-th polygon, turned counter-clockwise where it is not. Vertices and lines are left alone (their
  * cells precede the polygons in the cell numbering: see FirstPolygon).
- * Twins are not filled.
+ * Twins are not filled. Linear; on up to so many threads.
  * @throws Error that names the cell: not a triangle, a point that does not exist or is not finite,
  *         flat in x,y (as is a triangle that has a point twice); or when there are triangle strips.
  *         Aborted.
  */
-void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress());
+void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
 
 /** The cell id of the first polygon of a polydata. */
 vtkIdType FirstPolygon(vtkPolyData* input);

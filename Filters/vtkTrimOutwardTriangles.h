@@ -24,9 +24,9 @@
  *   the surface there: linear on the triangle or edge; values that are not floating point (ids,
  *   strings, integers) are those of the nearest corner. So inserting does not change the surface.
  * - What lies outside the mesh or in a hole of it needs no edges: what is kept is both in
- *   the boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is inserted
- *   in the border, at the crossing, rounded to double precision. (An edge that follows a border
- *   so closely that rounding folds the border over is an error that names it.)
+ *   the boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is
+ *   inserted in the border, at the crossing, rounded to double precision. (An edge that follows a
+ *   border so closely that rounding folds the border over is an error that names it.)
  * - An edge of the boundary that is not an edge of the mesh is recovered: the triangles that it
  *   crosses are replaced by as many others of the same corners; edges among these are
  *   constrained Delaunay within each side of the boundary's edge, and in the whole mesh when it was
@@ -69,8 +69,8 @@
  * value).
  *
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
- * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite, a
- * ring of fewer than three points, edges that cross each other, a boundary that encloses no
+ * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
+ * a ring of fewer than three points, edges that cross each other, a boundary that encloses no
  * triangle; also a point or cell array of an input that has not as many tuples as there are points
  * or cells. A mesh without triangles passes with a warning,
  * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
@@ -115,13 +115,13 @@ public:
    * The test for outward triangles: an OutwardTestType, to which other numbers are clamped.
    * EXACT (default) walks the mesh between boundary edges and removes all that is outside.
    *
-   * INWARD_NORMAL is the published test, to compare with. The boundary is walked clockwise, with the
-   * surface on the right (around a lake the other way). At p2, between the edges from p1 to p2 and
-   * from p2 to p3, the triangle of the three is outward when (p3 - p1) . N < 0, with N the inward
-   * normal of the first edge. Then the edge from p1 to p3 takes the place of the two, and the walk
-   * goes on with it, so that a pocket of the boundary is emptied triangle by triangle. It removes
-   * no triangle that EXACT keeps, but looks only at triangles of three boundary points. So it keeps,
-   * outside the boundary,
+   * INWARD_NORMAL is the published test, to compare with. The boundary is walked clockwise, with
+   * the surface on the right (around a lake the other way). At p2, between the edges from p1 to p2
+   * and from p2 to p3, the triangle of the three is outward when (p3 - p1) . N < 0, with N the
+   * inward normal of the first edge. Then the edge from p1 to p3 takes the place of the two, and
+   * the walk goes on with it, so that a pocket of the boundary is emptied triangle by triangle. It
+   * removes no triangle that EXACT keeps, but looks only at triangles of three boundary points. So
+   * it keeps, outside the boundary,
    * - triangles at a point that is not on the boundary, and those behind them: much of a deep
    *   pocket, or of a lake, with points in it,
    * - triangles between two rings: between separate parts of a surface, or a lake and its island,

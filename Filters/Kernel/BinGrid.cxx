@@ -311,6 +311,9 @@ private:
     {
       this->ReportProgress(0);
     }
+    // What fits into one node stays together, so that the lowest nodes are full.
+    constexpr Index fitting = BinGrid::Node::Places * FullBin;
+    const bool isLowest = whole.Size() <= fitting;
     Heap heaps[BinGrid::Node::Places];
     heaps[0] = whole;
     int count = 1;
@@ -319,7 +322,8 @@ private:
       int largest = -1;
       for (int i = 0; i < count; ++i)
       {
-        if (!heaps[i].IsLeaf() && (largest < 0 || heaps[i].Size() > heaps[largest].Size()))
+        if (!heaps[i].IsLeaf() && (isLowest || heaps[i].Size() > fitting) &&
+          (largest < 0 || heaps[i].Size() > heaps[largest].Size()))
         {
           largest = i;
         }
@@ -611,10 +615,14 @@ struct BinGrid::Block
   std::vector<Index> Duplicates;
 };
 
-BinGrid::BinGrid(
-  const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads)
+BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
+  int threads, const Extent* known)
 {
-  if (!this->Lay(points, Part(progress, 0.0, 0.2), threads))
+  const auto look = [&]() {
+    return FindExtent(points, threads, Part(progress, 0.0, 0.2), [](Index, const Point2&) {});
+  };
+  const Extent extent = known ? *known : look();
+  if (!this->Lay(points, extent))
   {
     this->Starts.Append(0);
     return;
@@ -682,45 +690,18 @@ Index BinGrid::FindLowest(Index slot) const
   }
 }
 
-bool BinGrid::Lay(const PointView& points, const Progress& progress, int threads)
+bool BinGrid::Lay(const PointView& points, const Extent& extent)
 {
-  struct Piece
-  {
-    Box Bounds;
-    std::vector<Index> NotFinite;
-  };
-  std::vector<Piece> pieces(points.Count / PiecePoints + 1);
-  ForEachPieceOf(points, threads, progress, [&](Index number, Index begin, Index end) {
-    Box bounds;
-    Index finite = 0;
-    VisitFinite(points, begin, end, 1.0, [&](Index, double x, double y) {
-      bounds.Add(x, y);
-      ++finite;
-    });
-    pieces[number].Bounds = bounds;
-    for (Index i = begin, next = begin; finite < end - begin && i < end; next = ++i)
-    {
-      VisitFinite(points, i, i + 1, 1.0, [&](Index, double, double) { ++next; });
-      if (next == i)
-      {
-        pieces[number].NotFinite.push_back(i);
-      }
-    }
-  });
-  Box bounds;
-  for (const Piece& piece : pieces)
-  {
-    bounds.Add(piece.Bounds);
-    this->NotFinite.insert(this->NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());
-  }
+  this->NotFinite = extent.NotFinite;
   const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
   if (count == 0)
   {
     return false;
   }
 
-  const double greatest = std::max(std::max(std::fabs(bounds.LowX), std::fabs(bounds.HighX)),
-    std::max(std::fabs(bounds.LowY), std::fabs(bounds.HighY)));
+  Point2 low = extent.Low, high = extent.High;
+  const double greatest = std::max(
+    std::max(std::fabs(low.X), std::fabs(high.X)), std::max(std::fabs(low.Y), std::fabs(high.Y)));
   if (greatest > 1e60 || (greatest > 0.0 && greatest < 1e-60))
   {
     double least = DBL_MAX; // magnitude other than zero
@@ -738,15 +719,15 @@ bool BinGrid::Lay(const PointView& points, const Progress& progress, int threads
     if (least * scale > DBL_MIN / DBL_EPSILON)
     {
       this->Scale = scale;
-      for (double* bound : { &bounds.LowX, &bounds.HighX, &bounds.LowY, &bounds.HighY })
+      for (double* bound : { &low.X, &high.X, &low.Y, &high.Y })
       {
         *bound *= scale;
       }
     }
   }
-  this->Bins.OriginX = bounds.LowX;
-  this->Bins.OriginY = bounds.LowY;
-  ChooseBins(this->Bins, bounds.HighX - bounds.LowX, bounds.HighY - bounds.LowY, count);
+  this->Bins.OriginX = low.X;
+  this->Bins.OriginY = low.Y;
+  ChooseBins(this->Bins, high.X - low.X, high.Y - low.Y, count);
   return true;
 }
 
@@ -864,6 +845,7 @@ std::vector<BinGrid::Block> BinGrid::Fill(
       this->FillBlock(block, points, policy, Part(inBlocks, begin, done));
     }
   }
+  this->Room.Recycle(std::move(placed));
   return blocks;
 }
 

@@ -21,13 +21,14 @@
  * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
  * The boxes of a node's children have no point in common.
  *
- * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 3 for the bins and
- * 3 for the tree (7 in full bins). While it is built, 24 more, and a few more in full bins.
+ * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 4 for the bins and
+ * 3 for the tree (5 in full bins). While it is built, 24 more, and a few more in full bins.
  */
 #ifndef elevation_BinGrid_h
 #define elevation_BinGrid_h
 
 #include "Delaunay.h"
+#include "Extent.h"
 #include "Types.h"
 
 #include <utility>
@@ -93,9 +94,10 @@ public:
    * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
    * that squares of distances neither over- nor underflow; this is exact, or not done.
    * @param threads  how many to use
+   * @param known    the points' extent; null: it is looked for
    */
-  BinGrid(
-    const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads = 1);
+  BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
+    int threads = 1, const Extent* known = nullptr);
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
   Point2 PointAt(Index slot) const { return { this->X[slot], this->Y[slot] }; }
@@ -122,6 +124,10 @@ public:
   Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
   Buffer<Index> LeafNodes; ///< for eight slots after eight, a node above one of their leaves
 
+  /** Memory that binning has used and nobody uses now: as much as the triangles take. To reuse it
+     is cheaper than to ask for other: the system clears what it gives. */
+  Buffer<Index> Room;
+
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite
 
@@ -131,7 +137,7 @@ private:
   Step StepTo(Index node) const;
   Index FindLowest(Index slot) const;
 
-  bool Lay(const PointView& points, const Progress& progress, int threads);
+  bool Lay(const PointView& points, const Extent& extent);
   std::vector<Block> Fill(
     const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads);
   void FillBlock(

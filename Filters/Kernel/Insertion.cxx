@@ -340,9 +340,9 @@ public:
     this->LocateOthers(Part(progress, 0.5, 0.75));
     this->InsertLocated(Part(progress, 0.75, 0.8));
     this->StartRings();
-    // The pieces of an edge, and of a border, that has been cut at a rounded place are not quite where
-    // they were: all are looked at again. As rounding rarely leads past anything, one round more is
-    // the rule.
+    // The pieces of an edge, and of a border, that has been cut at a rounded place are not quite
+    // where they were: all are looked at again. As rounding rarely leads past anything, one round
+    // more is the rule.
     constexpr int mostRounds = 100;
     bool isCut = this->CutAtBorder(Part(progress, 0.8, 1.0));
     for (int round = 1; isCut; ++round)
@@ -628,8 +628,8 @@ private:
   }
 
   /**
-   * Gives vertices to the border where pieces of the rings cross it, and to the rings where they run
-   * through the border's vertices. @return whether there was a crossing
+   * Gives vertices to the border where pieces of the rings cross it, and to the rings where they
+   * run through the border's vertices. @return whether there was a crossing
    */
   bool CutAtBorder(const Progress& progress)
   {
@@ -870,7 +870,7 @@ private:
     }
   }
 
-  // ---------------------------------------------------------------------------------------- cutting
+  // --------------------------------------------------------------------------------------- cutting
 
   std::array<Point2, 3> CornersOf(Index t) const
   {
@@ -889,8 +889,8 @@ private:
   }
 
   /**
-   * Moves a place on the border, within rounding, to where the triangle of h can be cut: rounded, it
-   * may be beyond a thin triangle. Outwards is always room. @return whether one was found
+   * Moves a place on the border, within rounding, to where the triangle of h can be cut: rounded,
+   * it may be beyond a thin triangle. Outwards is always room. @return whether one was found
    */
   bool MoveToCut(Index h, Point2& place) const
   {

@@ -15,6 +15,7 @@ constexpr Index FewestPoints = 6;      // fewer than that fit some lattice by ch
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
 constexpr std::size_t Vectors = 128;   // shortest of their differences
 constexpr double SampleSize = 1024.0;
+constexpr double WideSampleSize = 16384.0; // in which the fullest place is looked for
 // A remainder of so many steps is taken for none, tried in turn: exact coordinates allow large
 // multiples of the steps, rounded ones do not.
 constexpr std::array<double, 3> Nothings{ 0.02, 0.06, 0.15 };
@@ -35,28 +36,9 @@ Point2 Minus(const Point2& p, const Point2& q, double times = 1.0)
   return { p.X - times * q.X, p.Y - times * q.Y };
 }
 
-/** The least rectangle around points. */
-struct Box
+Extent BoxOf(const std::vector<Point2>& points)
 {
-  Point2 Low{ DBL_MAX, DBL_MAX }, High{ -DBL_MAX, -DBL_MAX };
-
-  void Add(const Point2& p)
-  {
-    this->Low = { std::min(this->Low.X, p.X), std::min(this->Low.Y, p.Y) };
-    this->High = { std::max(this->High.X, p.X), std::max(this->High.Y, p.Y) };
-  }
-  void Add(const Box& box)
-  {
-    this->Low = { std::min(this->Low.X, box.Low.X), std::min(this->Low.Y, box.Low.Y) };
-    this->High = { std::max(this->High.X, box.High.X), std::max(this->High.Y, box.High.Y) };
-  }
-  double Width() const { return this->High.X - this->Low.X; }
-  double Height() const { return this->High.Y - this->Low.Y; }
-};
-
-Box BoxOf(const std::vector<Point2>& points)
-{
-  Box box;
+  Extent box;
   for (const Point2& p : points)
   {
     box.Add(p);
@@ -238,7 +220,7 @@ private:
   Point2 P{ 0.0, 0.0 }, PI{ 0.0, 0.0 }, PJ{ 0.0, 0.0 };
 };
 
-/** The same for equal points, and spread evenly over 64 bits. */
+/** The same for equal points, and spread evenly over 32 bits. */
 std::uint64_t HashOf(const Point2& p)
 {
   const double x = p.X + 0.0, y = p.Y + 0.0; // one zero
@@ -247,7 +229,13 @@ std::uint64_t HashOf(const Point2& p)
   std::memcpy(&b, &y, sizeof b);
   a = (a ^ (a >> 32)) * 0x9e3779b97f4a7c15u + b;
   a = (a ^ (a >> 29)) * 0xbf58476d1ce4e5b9u;
-  return a ^ (a >> 32);
+  return (a ^ (a >> 32)) & 0xffffffffu;
+}
+
+/** The points with a hash below it are a sample of about so many, the same in any order. */
+std::uint64_t HashLimit(double size, double count)
+{
+  return static_cast<std::uint64_t>(std::min(size / count, 1.0) * 0x1p32);
 }
 
 void SortUnique(std::vector<Point2>& points)
@@ -259,7 +247,7 @@ void SortUnique(std::vector<Point2>& points)
 /** Cells over a box, to find where most points are. */
 struct Histogram
 {
-  Histogram(const Box& box, int cells)
+  Histogram(const Extent& box, int cells)
     : Low(box.Low)
     , PerX(box.Width() > 0.0 ? cells / box.Width() : 0.0)
     , PerY(box.Height() > 0.0 ? cells / box.Height() : 0.0)
@@ -273,12 +261,18 @@ struct Histogram
     const int row = std::min(static_cast<int>((p.Y - this->Low.Y) * this->PerY), this->Side - 1);
     return row * this->Side + column;
   }
-  void Add(const Histogram& other)
+  void Add(const std::vector<Point2>& points)
   {
-    for (std::size_t cell = 0; cell < this->Counts.size(); ++cell)
+    for (const Point2& p : points)
     {
-      this->Counts[cell] += other.Counts[cell];
+      ++this->Counts[this->CellOf(p)];
     }
+  }
+  /** The lower left (0) or upper right (1) corner of a cell. */
+  Point2 CornerOf(int cell, int upper) const
+  {
+    return { this->Low.X + (cell % this->Side + upper) / this->PerX,
+      this->Low.Y + (cell / this->Side + upper) / this->PerY };
   }
   int Fullest() const
   {
@@ -301,7 +295,7 @@ void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
   constexpr std::size_t few = 1 << 16;
   while (points.size() > few)
   {
-    const Box box = BoxOf(points);
+    const Extent box = BoxOf(points);
     if (box.Low == box.High)
     {
       points.resize(1);
@@ -312,10 +306,7 @@ void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
     {
       return;
     }
-    for (const Point2& p : points)
-    {
-      ++histogram.Counts[histogram.CellOf(p)];
-    }
+    histogram.Add(points);
     const int fullest = histogram.Fullest();
     points.erase(std::remove_if(points.begin(), points.end(),
                    [&](const Point2& p) { return histogram.CellOf(p) != fullest; }),
@@ -329,7 +320,7 @@ void KeepFullest(std::vector<Point2>& points)
 {
   while (points.size() > Neighbors)
   {
-    const Box box = BoxOf(points);
+    const Extent box = BoxOf(points);
     const Point2 &low = box.Low, &high = box.High;
     // Halves of the longer side; a box without height has the longer one all the same.
     const bool isWide = box.Width() > box.Height();
@@ -352,7 +343,7 @@ void KeepFullest(std::vector<Point2>& points)
 /** Area a point in the fullest part; where that has no area, a thousandth of the mean of all. */
 double MeanAreaOf(const std::vector<Point2>& points, double ofAll)
 {
-  const Box box = BoxOf(points);
+  const Extent box = BoxOf(points);
   return std::max(box.Width() * box.Height() / points.size(), 1e-3 * ofAll);
 }
 
@@ -466,6 +457,7 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
     v = generators.V;
     Fit fit;
     std::size_t next = 8;
+    Point2 beside{ 0.0, 0.0 }; // farthest from the line, as long as there is but one step
     isFitted = true;
     for (std::size_t k = 0; k < sample.size() && isFitted; ++k)
     {
@@ -484,6 +476,7 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
       {
         rest = Minus(d, u, std::round(Dot(d, u) / Dot(u, u)));
         isNode = Dot(rest, rest) <= far * far * Dot(u, u);
+        beside = Dot(rest, rest) > Dot(beside, beside) ? rest : beside;
       }
       else
       {
@@ -504,6 +497,15 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
         fit.Solve(origin, u, v);
         next += next / 4;
       }
+    }
+    if (isFitted && generators.Rank == 1)
+    {
+      // The other step is so short that it was taken for a remainder.
+      if (!generators.Insert(beside))
+      {
+        return false;
+      }
+      isFitted = false;
     }
   }
   if (!isFitted || generators.Rank < 2)
@@ -532,7 +534,7 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
   v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
   origin.X = std::fabs(origin.X) <= 1e-6 * length ? 0.0 : origin.X;
   origin.Y = std::fabs(origin.Y) <= 1e-6 * length ? 0.0 : origin.Y;
-  Box box; // in steps
+  Extent box; // in steps
   for (const Point2& p : sample)
   {
     const Point2 steps = InSteps(Minus(p, origin), u, v);
@@ -558,88 +560,70 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  struct Gathered
-  {
-    Box Around;
-    std::vector<Index> NotFinite;
-    std::vector<Point2> Near, Sample;
-  };
-  std::vector<Gathered> parts(NumberOfParts(threads));
-  ForEachRange(
-    points.Count, threads, Part(progress, 0.0, 0.3), [&](Index part, Index begin, Index end) {
-      Box box; // not in memory that other threads write next to
-      ForEachPoint(points, begin, end, {}, [&](Index id, const Point2& p) {
-        // The difference of a finite number with itself is 0, of any other not a number.
-        if (!((p.X - p.X) + (p.Y - p.Y) + (points.Elevation(id) - points.Elevation(id)) == 0.0))
-        {
-          parts[part].NotFinite.push_back(id);
-          return;
-        }
-        box.Add(p);
-      });
-      parts[part].Around.Add(box);
+  std::vector<std::vector<Point2>> parts(NumberOfParts(threads));
+  const std::uint64_t wideLimit = HashLimit(WideSampleSize, points.Count);
+  static_cast<Extent&>(search) =
+    FindExtent(points, threads, Part(progress, 0.0, 0.5), [&](Index part, const Point2& p) {
+      if (HashOf(p) < wideLimit)
+      {
+        parts[part].push_back(p);
+      }
     });
-  Box box;
-  for (const Gathered& part : parts)
-  {
-    box.Add(part.Around);
-    search.NotFinite.insert(search.NotFinite.end(), part.NotFinite.begin(), part.NotFinite.end());
-  }
-  std::sort(search.NotFinite.begin(), search.NotFinite.end());
-  search.Low = box.Low;
-  search.High = box.High;
   const Index count = points.Count - static_cast<Index>(search.NotFinite.size());
-  const double width = box.Width(), height = box.Height();
+  const double width = search.Width(), height = search.Height();
   const double extent = width + height;
   // Where squares and quotients might leave the range of double there is no lattice.
   if (count < FewestPoints || !(width > 1e-60 && height > 1e-60 && extent < 1e60))
   {
     return search;
   }
-
-  const double cells = std::sqrt(count / static_cast<double>(Neighbors));
-  const Histogram empty(box, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
-  const bool isFew = count <= static_cast<Index>(Neighbors);
-  int fullest = 0;
-  if (!isFew)
-  {
-    std::vector<Histogram> histograms(parts.size(), empty);
-    ForEachRange(
-      points.Count, threads, Part(progress, 0.3, 0.6), [&](Index part, Index begin, Index end) {
-        Histogram& histogram = histograms[part];
-        ForEachPoint(points, begin, end, search.NotFinite,
-          [&](Index, const Point2& p) { ++histogram.Counts[histogram.CellOf(p)]; });
-      });
-    for (std::size_t part = 1; part < histograms.size(); ++part)
+  const auto takeAll = [&parts](std::vector<Point2>& all) {
+    for (std::vector<Point2>& part : parts)
     {
-      histograms[0].Add(histograms[part]);
+      all.insert(all.end(), part.begin(), part.end());
+      part.clear();
     }
-    fullest = histograms[0].Fullest();
+  };
+  std::vector<Point2> around, sample;
+  takeAll(sample);
+  SortUnique(sample);
+
+  Extent place; // the fullest; where hardly any points differ, all
+  if (sample.size() <= Neighbors)
+  {
+    place = search;
   }
-  const double share = SampleSize / count;
-  const std::uint64_t threshold =
-    share < 1.0 ? static_cast<std::uint64_t>(share * 0x1p32) : std::uint64_t(1) << 32;
+  else
+  {
+    const double cells = std::sqrt(count / static_cast<double>(Neighbors));
+    Histogram histogram(search, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
+    histogram.Add(sample);
+    const int fullest = histogram.Fullest();
+    place.Add(histogram.CornerOf(fullest, 0));
+    place.Add(histogram.CornerOf(fullest, 1));
+    for (const Point2& p : sample)
+    {
+      if (histogram.CellOf(p) == fullest)
+      {
+        place.Add(p); // rounding may have put it beside the cell
+      }
+    }
+  }
   ForEachRange(
-    points.Count, threads, Part(progress, 0.6, 0.9), [&](Index part, Index begin, Index end) {
-      Gathered& gathered = parts[part];
+    points.Count, threads, Part(progress, 0.5, 0.9), [&](Index part, Index begin, Index end) {
       ForEachPoint(points, begin, end, search.NotFinite, [&](Index, const Point2& p) {
-        if (isFew || empty.CellOf(p) == fullest)
+        if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
+          (p.Y <= place.High.Y))
         {
-          gathered.Near.push_back(p);
-        }
-        if ((HashOf(p) & 0xffffffffu) < threshold)
-        {
-          gathered.Sample.push_back(p);
+          parts[part].push_back(p);
         }
       });
     });
-  std::vector<Point2> around, sample;
-  for (const Gathered& part : parts)
-  {
-    around.insert(around.end(), part.Near.begin(), part.Near.end());
-    sample.insert(sample.end(), part.Sample.begin(), part.Sample.end());
-  }
-  parts.clear();
+  takeAll(around);
+  const std::uint64_t limit = HashLimit(SampleSize, points.Count);
+  sample.erase(std::remove_if(sample.begin(), sample.end(),
+                 [limit](const Point2& p) { return HashOf(p) >= limit; }),
+    sample.end());
 
   KeepFullestCells(around, Part(progress, 0.9, 1.0));
   SortUnique(around);

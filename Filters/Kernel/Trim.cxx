@@ -30,8 +30,8 @@ bool BeginsInside(const Mesh& mesh, const Fans& fans, Index from, Index to)
 }
 
 /**
- * The edges of rings that lie within the mesh, in an order that depends on their places alone: where
- * the mesh is not Delaunay, the order in which they are recovered matters.
+ * The edges of rings that lie within the mesh, in an order that depends on their places alone:
+ * where the mesh is not Delaunay, the order in which they are recovered matters.
  */
 std::vector<Segment> SegmentsOf(const Mesh& mesh, const Fans& fans, const Rings& rings)
 {

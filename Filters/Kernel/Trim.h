@@ -34,8 +34,8 @@ enum class OutwardTest
   /** What lies outside the rings. */
   Exact,
   /**
-   * The published test [Nguyen]. The boundary is walked clockwise, with the surface on the right. At
-   * p2, between the edges from p1 to p2 and from p2 to p3, the triangle p1 p2 p3 is outward when
+   * The published test [Nguyen]. The boundary is walked clockwise, with the surface on the right.
+   * At p2, between the edges from p1 to p2 and from p2 to p3, the triangle p1 p2 p3 is outward when
    * (p3 - p1) . N < 0, with N the inward normal of the first edge: when p3 is on the left. The edge
    * from p1 to p3 takes the place of the two, and the walk goes on until no triangle is outward. So
    * a pocket of the boundary is emptied as far as its triangles have corners on the boundary

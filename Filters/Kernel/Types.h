@@ -218,6 +218,7 @@ public:
   ~Buffer() { std::free(this->Begin); }
 
   std::size_t size() const { return this->Length; }
+  std::size_t capacity() const { return this->Capacity; }
   bool empty() const { return this->Length == 0; }
   T* data() { return this->Begin; }
   const T* data() const { return this->Begin; }
@@ -257,6 +258,15 @@ public:
     {
       this->Reallocate(this->Length);
     }
+  }
+  /** Takes the memory of another buffer, whose values are lost, in place of its own. */
+  template <typename Other>
+  void Recycle(Buffer<Other>&& other)
+  {
+    std::free(this->Begin);
+    this->Length = 0;
+    this->Capacity = other.capacity() * sizeof(Other) / sizeof(T);
+    this->Begin = reinterpret_cast<T*>(other.Release());
   }
   /** The memory becomes the caller's, who frees it with std::free. */
   T* Release()

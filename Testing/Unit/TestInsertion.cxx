@@ -745,8 +745,8 @@ TEST(InsertRings, GoThroughVerticesExactlyOnTheWayToARoundedCrossing)
 TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
 {
   // A turned lattice in map coordinates, and a rectangle through its corners, or nearly: its sides
-  // run along the border, now within the mesh, now outside. Where rounding makes the border fold over
-  // itself, the edge is refused by name, which is rare.
+  // run along the border, now within the mesh, now outside. Where rounding makes the border fold
+  // over itself, the edge is refused by name, which is rare.
   Random random(39);
   int inserted = 0;
   int refused = 0;

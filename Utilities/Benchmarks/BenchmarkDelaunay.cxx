@@ -10,6 +10,7 @@
 //   2. Check: in another process the survivors run once and their meshes are examined.
 //   3. Timing: in that same process they run in turn, A B C A B C ..., so that whatever else the
 //      machine does meets all of them alike.
+#include "Arguments.h"
 #include "ChildProcess.h"
 #include "Competitor.h"
 #include "MeshCheck.h"
@@ -95,62 +96,6 @@ struct Options
   bool Check = true;
   std::string JSONFile;
 };
-
-class UsageError : public std::runtime_error
-{
-public:
-  using std::runtime_error::runtime_error;
-};
-
-std::vector<std::string> Split(const std::string& list)
-{
-  std::vector<std::string> parts;
-  std::istringstream stream(list);
-  for (std::string part; std::getline(stream, part, ',');)
-  {
-    if (!part.empty())
-    {
-      parts.push_back(part);
-    }
-  }
-  return parts;
-}
-
-std::uint64_t ToNumber(
-  const std::string& option, const std::string& text, std::uint64_t least, std::uint64_t most)
-{
-  const bool isNumber =
-    !text.empty() && text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos;
-  const std::uint64_t number = isNumber ? std::stoull(text) : 0;
-  if (!isNumber || number < least || number > most)
-  {
-    throw UsageError(option + " takes whole numbers from " + std::to_string(least) + " to " +
-      std::to_string(most) + ", not \"" + text + "\"");
-  }
-  return number;
-}
-
-void AddSets(const std::string& list, std::vector<std::string>& sets)
-{
-  for (const std::string& name : Split(list))
-  {
-    bool isKnown = false;
-    std::string known;
-    for (const Generator& generator : Generators())
-    {
-      if (name == generator.Name || name == "all")
-      {
-        sets.push_back(generator.Name);
-        isKnown = true;
-      }
-      known += std::string(" ") + generator.Name;
-    }
-    if (!isKnown)
-    {
-      throw UsageError("there is no data set \"" + name + "\"; there are: all" + known);
-    }
-  }
-}
 
 void AddExtraFiles(std::vector<std::string>& files)
 {
@@ -562,13 +507,6 @@ Results Measure(const PointSource& source, const Options& options, const Competi
 }
 
 // ---- figures -----------------------------------------------------------------------------------
-
-double Median(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 std::vector<double> NanosecondsPerPoint(
   const Result& result, const std::array<double, MaximumRepeats>& seconds)

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What the benchmarks' command lines and tables share.
+ */
+#ifndef Arguments_h
+#define Arguments_h
+
+#include "PointSets.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace benchmark
+{
+
+class UsageError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+inline std::vector<std::string> Split(const std::string& list)
+{
+  std::vector<std::string> parts;
+  std::istringstream stream(list);
+  for (std::string part; std::getline(stream, part, ',');)
+  {
+    if (!part.empty())
+    {
+      parts.push_back(part);
+    }
+  }
+  return parts;
+}
+
+inline std::uint64_t ToNumber(
+  const std::string& option, const std::string& text, std::uint64_t least, std::uint64_t most)
+{
+  const bool isNumber =
+    !text.empty() && text.size() < 19 && text.find_first_not_of("0123456789") == std::string::npos;
+  const std::uint64_t number = isNumber ? std::stoull(text) : 0;
+  if (!isNumber || number < least || number > most)
+  {
+    throw UsageError(option + " takes whole numbers from " + std::to_string(least) + " to " +
+      std::to_string(most) + ", not \"" + text + "\"");
+  }
+  return number;
+}
+
+/** Adds the named data sets, or all. */
+inline void AddSets(const std::string& list, std::vector<std::string>& sets)
+{
+  for (const std::string& name : Split(list))
+  {
+    bool isKnown = false;
+    std::string known;
+    for (const Generator& generator : Generators())
+    {
+      if (name == generator.Name || name == "all")
+      {
+        sets.push_back(generator.Name);
+        isKnown = true;
+      }
+      known += std::string(" ") + generator.Name;
+    }
+    if (!isKnown)
+    {
+      throw UsageError("there is no data set \"" + name + "\"; there are: all" + known);
+    }
+  }
+}
+
+inline double Median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+} // namespace benchmark
+
+#endif
