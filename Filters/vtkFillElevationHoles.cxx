@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFillElevationHoles.h"
 
-#include "ExtendedArrays.h"
 #include "Kernel/Fill.h"
 #include "Kernel/Holes.h"
 #include "KernelCall.h"
@@ -40,11 +39,8 @@ using elevation::FillStatus;
 using elevation::HoleReport;
 using elevation::Holes;
 using elevation::Index;
-using elevation::IsFloatingPoint;
-using elevation::IsGhostArray;
 using elevation::Mesh;
 using elevation::Part;
-using elevation::PassExtended;
 using elevation::Progress;
 using elevation::Report;
 using elevation::ReportStep;
@@ -106,13 +102,13 @@ void Average(
 void PassPointData(vtkPointData* input, const FillResult& patches, bool interpolate,
   vtkPointData* output, const Progress& progress)
 {
-  PassExtended(input, patches.NumberOfPoints(), output, progress,
+  elevation::PassExtended(input, patches.NumberOfPoints(), output, progress,
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
-      if (!interpolate || IsGhostArray(before))
+      if (!interpolate || elevation::IsGhostArray(before))
       {
         return;
       }
-      if (IsFloatingPoint(before))
+      if (elevation::IsFloatingPoint(before))
       {
         Average(
           patches, before == input->GetNormals(), vtkArrayDownCast<vtkDataArray>(after), ofArray);
@@ -178,7 +174,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
     patches.Triangles.begin(), patches.Triangles.end(), triangles.begin() + mesh.Triangles.size());
   output->SetPolys(elevation::ToCellArray(std::move(triangles)));
 
-  PassExtended(input->GetCellData(), patches.NumberOfTriangles(), output->GetCellData(),
+  elevation::PassExtended(input->GetCellData(), patches.NumberOfTriangles(), output->GetCellData(),
     Part(progress, 0.7, 0.9), [](vtkAbstractArray*, vtkAbstractArray*, const Progress&) {});
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkGridDelaunay2D.h"
 
-#include "ExtendedArrays.h"
 #include "Kernel/ConstrainedDelaunay.h"
 #include "Kernel/Delaunay.h"
 #include "KernelCall.h"

@@ -49,6 +49,7 @@ class WrongOption(Failure):
 
 
 SEARCH_STRATEGIES = ("voxel-traversal", "compactness")
+OUTWARD_TESTS = ("exact", "inward-normal")
 LATTICE_MODES = ("automatic", "off")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
@@ -103,6 +104,7 @@ TAKES = {
     "--threads": "a whole number of 0 or more",
     "--breaklines": "a file",
     "--boundary": "a file",
+    "--outward-test": "one of " + ", ".join(OUTWARD_TESTS),
     "--gap-tolerance": NUMBER,
     "--maximum-hole-size": NUMBER,
     "--maximum-hole-edges": "a whole number of 0 or more",
@@ -157,6 +159,7 @@ def make_parser():
     add("--threads", type=count_at_least_zero, default=0)
     add("--breaklines")
     add("--boundary")
+    add("--outward-test", choices=OUTWARD_TESTS, default=OUTWARD_TESTS[0])
     add("--gap-tolerance", type=number_at_least_zero, default=0.0)
     add("--no-recover-boundary", action="store_true")
     add("--no-trim", action="store_true")
@@ -180,7 +183,10 @@ def parse_arguments(arguments):
     options = parser.parse_args(arguments)
 
     if options.no_trim and (
-        options.boundary or options.gap_tolerance or options.no_recover_boundary
+        options.boundary
+        or options.gap_tolerance
+        or options.no_recover_boundary
+        or options.outward_test != OUTWARD_TESTS[0]
     ):
         parser.error("--no-trim leaves nothing for the trimming options to do")
     if options.no_fill and (
@@ -316,6 +322,7 @@ def reconstruct(run, cloud, breaklines, boundary):
         trim.SetInputData(0, last.GetOutput())
         if boundary is not None:
             trim.SetBoundaryData(boundary)
+        trim.SetOutwardTest(OUTWARD_TESTS.index(options.outward_test))
         trim.SetGapTolerance(options.gap_tolerance)
         trim.SetRecoverBoundary(not options.no_recover_boundary)
         run.update("trim", "trimming", trim)
@@ -446,6 +453,7 @@ def make_report(run, cloud, delaunay, trim, fill):
         report["trim"] = {
             "outward_triangles": trim.GetNumberOfOutwardTriangles(),
             "recovered_edges": trim.GetNumberOfRecoveredEdges(),
+            "inserted_points": trim.GetNumberOfInsertedPoints(),
             "boundary": options.boundary or "found from the points",
             "boundary_rings": trim.GetOutput(2).GetNumberOfLines(),
         }
@@ -608,6 +616,8 @@ def print_report(report, options):
             line("", f"gap tolerance {trim['effective_gap_tolerance']:.4g} spacings")
         if trim["recovered_edges"]:
             line("", f"{counted(trim['recovered_edges'], 'boundary edge')} recovered")
+        if trim["inserted_points"]:
+            line("", f"{counted(trim['inserted_points'], 'boundary point')} inserted")
     if "holes" in report:
         holes = report["holes"]
         line(

@@ -19,7 +19,11 @@ OTHER_VALUES = {
         "LatticeTolerance": 0.05,
         "NumberOfThreads": 2,
     },
-    "TrimOutwardTriangles": {"GapTolerance": 3.5, "RecoverBoundary": 0},
+    "TrimOutwardTriangles": {
+        "OutwardTest": "Inward Normal",
+        "GapTolerance": 3.5,
+        "RecoverBoundary": 0,
+    },
     "FillElevationHoles": {
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,

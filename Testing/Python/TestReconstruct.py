@@ -262,6 +262,24 @@ class Report(Program):
         self.assertEqual(report["unused_reasons"], {"outside the boundary": 12 * 12 - 7 * 7})
         self.assertNotIn("effective_gap_tolerance", report["trim"])
 
+    def test_a_boundary_on_the_map_needs_no_points_of_the_file(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("lease.txt", "2.25 2.5\n20 2.5\n20 8\n2.25 8\n2.25 2.5\n")
+        report = self.report(name, "--boundary", ring)
+        # Two corners, and where the boundary leaves the sheet at (11, 2.5).
+        self.assertEqual(report["trim"]["inserted_points"], 3)
+        refused = self.call(name, "--boundary", ring, "--no-recover-boundary")
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("point 0 (2.25, 2.5)", refused.stderr)
+
+    def test_the_published_test_can_be_chosen(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("ring.txt", "x y\n2 2\n8 2\n8 8\n2 8\n2 2\n")
+        report = self.report(name, "--boundary", ring, "--outward-test", "inward-normal")
+        self.assertEqual(report["trim"]["outward_triangles"], 0)
+        done = self.call(name, "--outward-test", "outward")
+        self.assertIn("--outward-test takes one of exact, inward-normal", done.stderr)
+
     def test_rows_without_data_are_left_out_and_counted(self):
         name = self.file("sheet.xyz", text_of(SHEET) + "5.5 5.5 -999\n")
         report = self.report(name, "--no-data", "-999")
@@ -440,21 +458,36 @@ class ShortExample(Program):
         self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
 
 
-class FaultedHorizon(Program):
-    def test_the_example_adds_the_fault_and_draws_it(self):
-        script = os.path.join(os.path.dirname(PROGRAM), "faulted_horizon.py")
+class Examples(Program):
+    def lines_of(self, name, *arguments):
+        script = os.path.join(os.path.dirname(PROGRAM), name)
         done = subprocess.run(
-            [sys.executable, script, "fault.png", "fault.vtp"],
+            [sys.executable, script, *arguments],
             cwd=self.folder,
             stdout=subprocess.PIPE,
             text=True,
             timeout=300,
             check=True,
         )
-        self.assertEqual(done.stdout, "290 points added, 0 crossings\n")
+        return done.stdout.splitlines()
+
+    def test_the_example_adds_the_fault_and_draws_it(self):
+        lines = self.lines_of("faulted_horizon.py", "fault.png", "fault.vtp")
+        self.assertEqual(lines, ["290 points added, 0 crossings"])
         self.assertGreater(os.path.getsize(self.path("fault.png")), 100000)
         surface = files.run_vtk_reader(self.path("fault.vtp"))
         self.assertGreater(surface.GetNumberOfPolys(), 4000)
+
+    def test_the_lake_is_cut_along_lines_that_are_no_points(self):
+        lines = self.lines_of("lake.py", "lake.png")
+        # All corners of the shores, one of the lease; and where the lease leaves the survey.
+        self.assertEqual(lines[1], "335 points inserted along the boundary")
+        self.assertGreater(os.path.getsize(self.path("lake.png")), 50000)
+
+    def test_the_swath_has_an_outline_and_the_inside_of_its_loop(self):
+        lines = self.lines_of("survey_swath.py", "swath.png")
+        self.assertTrue(lines[1].startswith("2 rings at a gap tolerance of "), lines[1])
+        self.assertGreater(os.path.getsize(self.path("swath.png")), 50000)
 
 
 class Pictures(Program):
