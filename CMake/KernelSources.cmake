@@ -14,7 +14,9 @@ set(es_kernel_concepts
   LatticeNodes
   LatticeDelaunay
   Constraints
+  ConstrainedDelaunay
   Boundary
+  Insertion
   Trim
   Holes
   Membrane

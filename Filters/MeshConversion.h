@@ -12,10 +12,13 @@
 
 #include "vtkSmartPointer.h"
 
+#include <functional>
 #include <string>
 
+class vtkAbstractArray;
 class vtkCellArray;
 class vtkDataArray;
+class vtkDataSetAttributes;
 class vtkPointSet;
 class vtkPolyData;
 
@@ -60,6 +63,20 @@ vtkIdType FirstPolygon(vtkPolyData* input);
 
 /** Triangles as a cell array; the connectivity is handed over without a copy. */
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles);
+
+/** Whether the values are float or double: what can be interpolated. */
+bool IsFloatingPoint(vtkAbstractArray* array);
+
+/** Whether the array holds the flags of ghost points or cells. */
+bool IsGhostArray(vtkAbstractArray* array);
+
+/**
+ * All arrays of the input, extended by @a more tuples (NaN, 0 or nothing), which fill(input array,
+ * output array, progress) sets. The input's own arrays when there are no more.
+ */
+void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttributes* output,
+  const Progress& progress,
+  const std::function<void(vtkAbstractArray*, vtkAbstractArray*, const Progress&)>& fill);
 
 } // namespace elevation
 

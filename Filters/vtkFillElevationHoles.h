@@ -127,7 +127,7 @@ public:
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
    * - ADAPTIVE: the best of MEMBRANE, THIN_PLATE and CUBIC_SPLINE for each hole. Its boundary is moved to
    *   eight places around it, where the surface is known, and the methods predict there what is inside;
-   *   the least error decides, THIN_PLATE where another is not better by a tenth or where there is no
+   *   the least error decides, THIN_PLATE where another is not better by 15 % or where there is no
    *   room to try.
    *
    * The splines may leave the range of z around the hole, as a lost summit rises above

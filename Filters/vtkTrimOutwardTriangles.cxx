@@ -4,6 +4,7 @@
 
 #include "Kernel/Boundary.h"
 #include "Kernel/Holes.h"
+#include "Kernel/Insertion.h"
 #include "Kernel/Trim.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
@@ -39,11 +40,11 @@ using elevation::Progress;
 using elevation::Report;
 using elevation::ReportStep;
 
-/** The rings to trim along, and the data set and point ids that output 2 takes its points from. */
+/** The rings to trim along, and what output 2 shows of them. */
 struct UsedBoundary
 {
-  elevation::Rings Vertices; ///< of the mesh
-  std::vector<Index> Points; ///< beside each of Vertices, of Source
+  elevation::InsertedRings Mesh;
+  elevation::Rings Points; ///< of Source
   vtkPolyData* Source = nullptr;
   double GapTolerance = 0.0;
 };
@@ -88,15 +89,15 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary)
   return lines;
 }
 
-UsedBoundary FindBoundary(const Mesh& mesh, vtkPolyData* input, vtkPolyData* given,
-  double gapTolerance, const Progress& progress)
+UsedBoundary FindBoundary(Mesh& mesh, vtkPolyData* input, vtkPolyData* given, double gapTolerance,
+  bool recover, const Progress& progress)
 {
   UsedBoundary boundary;
   if (given)
   {
-    elevation::JoinedBoundary joined = elevation::JoinLines(mesh, ToLines(given), progress);
-    boundary.Vertices = std::move(joined.Vertices);
-    boundary.Points = std::move(joined.Points);
+    const elevation::BoundaryLines lines = ToLines(given);
+    boundary.Points = elevation::JoinLines(lines);
+    boundary.Mesh = elevation::InsertRings(mesh, lines.Points, boundary.Points, recover, progress);
     boundary.Source = given;
     return boundary;
   }
@@ -104,17 +105,95 @@ UsedBoundary FindBoundary(const Mesh& mesh, vtkPolyData* input, vtkPolyData* giv
   options.GapTolerance = gapTolerance;
   options.Monitor = progress;
   elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
-  boundary.Vertices = std::move(extracted.Vertices);
-  boundary.Points = boundary.Vertices.Vertices;
+  boundary.Points = extracted.Vertices;
+  boundary.Mesh.Vertices = std::move(extracted.Vertices);
   boundary.Source = input;
   boundary.GapTolerance = extracted.GapTolerance;
   return boundary;
 }
 
-/** Outputs 0 and 1: the triangles with the flag, after the first cells, which are no triangles. */
-void PassTriangles(vtkPolyData* input, const Mesh& mesh, const elevation::TrimResult& trimmed,
-  char flag, const Progress& progress, vtkPolyData* output)
+/** The points of outputs 0 and 1 with their data: those of the input, and behind them new ones. */
+void PassPoints(vtkPolyData* input, const Mesh& mesh,
+  const std::vector<elevation::InsertedVertex>& inserted, const Progress& progress,
+  vtkPolyData* output)
 {
+  const vtkIdType count = input->GetNumberOfPoints();
+  const vtkIdType more = static_cast<vtkIdType>(inserted.size());
+  if (more == 0)
+  {
+    output->SetPoints(input->GetPoints());
+  }
+  else
+  {
+    // In double precision, or the new points would leave the boundary.
+    vtkNew<vtkPoints> points;
+    points->SetDataType(VTK_DOUBLE);
+    points->SetNumberOfPoints(count + more);
+    points->InsertPoints(0, count, 0, input->GetPoints());
+    for (vtkIdType i = 0; i < more; ++i)
+    {
+      const elevation::InsertedVertex& vertex = inserted[i];
+      double z = 0.0;
+      for (int k = 0; k < 3; ++k)
+      {
+        z += vertex.Weights[k] * points->GetPoint(vertex.Corners[k])[2];
+      }
+      const elevation::Point2& p = mesh.PointOf(static_cast<Index>(count + i));
+      points->SetPoint(count + i, p.X, p.Y, z);
+    }
+    output->SetPoints(points);
+  }
+  vtkPointData* data = input->GetPointData();
+  elevation::PassExtended(data, more, output->GetPointData(), progress,
+    [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
+      if (elevation::IsGhostArray(before))
+      {
+        return;
+      }
+      auto* values =
+        elevation::IsFloatingPoint(before) ? vtkArrayDownCast<vtkDataArray>(after) : nullptr;
+      for (vtkIdType i = 0; i < more; ++i)
+      {
+        ReportStep(ofArray, static_cast<std::size_t>(i), static_cast<std::size_t>(more));
+        const elevation::InsertedVertex& vertex = inserted[i];
+        if (!values)
+        {
+          const int nearest =
+            static_cast<int>(std::max_element(vertex.Weights, vertex.Weights + 3) - vertex.Weights);
+          after->SetTuple(count + i, vertex.Corners[nearest], before);
+          continue;
+        }
+        double squares = 0.0;
+        for (int c = 0; c < values->GetNumberOfComponents(); ++c)
+        {
+          double value = 0.0;
+          for (int k = 0; k < 3; ++k)
+          {
+            // A corner beyond the edge that the point is on may be NaN.
+            value += vertex.Weights[k] > 0.0
+              ? vertex.Weights[k] * values->GetComponent(vertex.Corners[k], c)
+              : 0.0;
+          }
+          values->SetComponent(count + i, c, value);
+          squares += value * value;
+        }
+        for (int c = 0; before == data->GetNormals() && squares > 0.0 && c < 3; ++c)
+        {
+          values->SetComponent(
+            count + i, c, values->GetComponent(count + i, c) / std::sqrt(squares));
+        }
+      }
+    });
+}
+
+/**
+ * Outputs 0 and 1, which have their points: the triangles with the flag, after the first cells,
+ * which are no triangles.
+ */
+void PassTriangles(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& parents,
+  const elevation::TrimResult& trimmed, char flag, const Progress& progress, vtkPolyData* output)
+{
+  const Index given = mesh.NumberOfTriangles() - static_cast<Index>(parents.size());
   const Progress choosing = Part(progress, 0.0, 0.5);
   const Progress copying = Part(progress, 0.5, 1.0);
   const vtkIdType first = elevation::FirstPolygon(input);
@@ -140,7 +219,7 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const elevation::TrimRe
       {
         if (hasCellData)
         {
-          cells.Append(first + t);
+          cells.Append(first + (t < given ? t : parents[t - given]));
         }
         const std::size_t size = triangles.size();
         triangles.Resize(size + 3);
@@ -148,9 +227,7 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const elevation::TrimRe
       }
     }
   });
-  output->SetPoints(input->GetPoints());
   output->SetPolys(elevation::ToCellArray(std::move(triangles)));
-  output->GetPointData()->PassData(input->GetPointData());
   output->GetFieldData()->PassData(input->GetFieldData());
   output->GetCellData()->CopyAllOn();
   const std::size_t count = cells.size();
@@ -180,15 +257,16 @@ void PassBoundary(const UsedBoundary& boundary, const Progress& progress, vtkPol
   pointData->CopyAllOn();
   pointData->CopyAllocate(boundary.Source->GetPointData());
   vtkNew<vtkCellArray> lines;
-  for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)
+  const elevation::Rings& rings = boundary.Points;
+  for (Index ring = 0; ring < rings.Count(); ++ring)
   {
     const vtkIdType first = points->GetNumberOfPoints();
-    lines->InsertNextCell(boundary.Vertices.Size(ring) + 1);
-    for (Index i = boundary.Vertices.Offsets[ring]; i < boundary.Vertices.Offsets[ring + 1]; ++i)
+    lines->InsertNextCell(rings.Size(ring) + 1);
+    for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
     {
-      ReportStep(progress, i, boundary.Vertices.Vertices.size());
-      const vtkIdType id = points->InsertNextPoint(from->GetPoint(boundary.Points[i]));
-      pointData->CopyData(boundary.Source->GetPointData(), boundary.Points[i], id);
+      ReportStep(progress, i, rings.Vertices.size());
+      const vtkIdType id = points->InsertNextPoint(from->GetPoint(rings.Vertices[i]));
+      pointData->CopyData(boundary.Source->GetPointData(), rings.Vertices[i], id);
       lines->InsertCellPoint(id);
     }
     lines->InsertCellPoint(first);
@@ -198,17 +276,19 @@ void PassBoundary(const UsedBoundary& boundary, const Progress& progress, vtkPol
 }
 
 /** In the field data of all outputs. */
-void AddCounts(
-  const elevation::TrimResult& trimmed, double gapTolerance, vtkInformationVector* outputVector)
+void AddCounts(const elevation::TrimResult& trimmed, const UsedBoundary& boundary,
+  vtkInformationVector* outputVector)
 {
   for (int port = 0; port < 3; ++port)
   {
     vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
     elevation::AddCount(fieldData, "NumberOfOutwardTriangles", trimmed.NumberOfOutwardTriangles);
     elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
+    elevation::AddCount(
+      fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(boundary.Mesh.Inserted.size()));
     vtkNew<vtkDoubleArray> tolerance;
     tolerance->SetName("EffectiveGapTolerance");
-    tolerance->InsertNextValue(gapTolerance);
+    tolerance->InsertNextValue(boundary.GapTolerance);
     fieldData->AddArray(tolerance);
   }
 }
@@ -257,6 +337,7 @@ int vtkTrimOutwardTriangles::RequestData(
   this->EffectiveGapTolerance = 0.0;
   this->NumberOfOutwardTriangles = 0;
   this->NumberOfRecoveredEdges = 0;
+  this->NumberOfInsertedPoints = 0;
 
   return elevation::CallKernel(this, outputVector, [&]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
@@ -277,14 +358,16 @@ int vtkTrimOutwardTriangles::RequestData(
     elevation::TrimResult trimmed;
     if (mesh.NumberOfTriangles() > 0)
     {
-      boundary = FindBoundary(mesh, input, given, this->GapTolerance, Part(progress, 0.3, 0.6));
+      boundary = FindBoundary(
+        mesh, input, given, this->GapTolerance, this->RecoverBoundary, Part(progress, 0.3, 0.6));
     }
-    if (boundary.Vertices.Count() > 0)
+    if (boundary.Mesh.Vertices.Count() > 0)
     {
       elevation::TrimOptions options;
+      options.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
       options.RecoverBoundary = this->RecoverBoundary;
       options.Monitor = Part(progress, 0.6, 0.8);
-      trimmed = elevation::Trim(mesh, boundary.Vertices, options);
+      trimmed = elevation::Trim(mesh, boundary.Mesh.Vertices, options);
     }
     else
     {
@@ -298,26 +381,38 @@ int vtkTrimOutwardTriangles::RequestData(
       trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
     }
 
-    PassTriangles(
-      input, mesh, trimmed, 0, Part(progress, 0.8, 0.88), vtkPolyData::GetData(outputVector, 0));
-    PassTriangles(
-      input, mesh, trimmed, 1, Part(progress, 0.88, 0.96), vtkPolyData::GetData(outputVector, 1));
+    vtkPolyData* kept = vtkPolyData::GetData(outputVector, 0);
+    vtkPolyData* outward = vtkPolyData::GetData(outputVector, 1);
+    PassPoints(input, mesh, boundary.Mesh.Inserted, Part(progress, 0.8, 0.84), kept);
+    outward->SetPoints(kept->GetPoints());
+    outward->GetPointData()->PassData(kept->GetPointData());
+    const std::vector<Index>& parents = boundary.Mesh.Parents;
+    PassTriangles(input, mesh, parents, trimmed, 0, Part(progress, 0.84, 0.9), kept);
+    PassTriangles(input, mesh, parents, trimmed, 1, Part(progress, 0.9, 0.96), outward);
     PassBoundary(boundary, Part(progress, 0.96, 1.0), vtkPolyData::GetData(outputVector, 2));
-    AddCounts(trimmed, boundary.GapTolerance, outputVector);
+    AddCounts(trimmed, boundary, outputVector);
     Report(progress, 1.0);
     // Only now, as an abort or an error leaves no counts.
     this->EffectiveGapTolerance = boundary.GapTolerance;
     this->NumberOfOutwardTriangles = trimmed.NumberOfOutwardTriangles;
     this->NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;
+    this->NumberOfInsertedPoints = static_cast<vtkIdType>(boundary.Mesh.Inserted.size());
   });
+}
+
+const char* vtkTrimOutwardTriangles::GetOutwardTestAsString() const
+{
+  return this->OutwardTest == INWARD_NORMAL ? "InwardNormal" : "Exact";
 }
 
 void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "OutwardTest: " << this->GetOutwardTestAsString() << "\n";
   os << indent << "GapTolerance: " << this->GapTolerance << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";
   os << indent << "NumberOfOutwardTriangles: " << this->NumberOfOutwardTriangles << "\n";
   os << indent << "NumberOfRecoveredEdges: " << this->NumberOfRecoveredEdges << "\n";
+  os << indent << "NumberOfInsertedPoints: " << this->NumberOfInsertedPoints << "\n";
 }

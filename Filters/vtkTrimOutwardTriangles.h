@@ -15,10 +15,23 @@
  * - polygons.
  * A place is inside when an odd number of rings goes around it, so rings may nest (a lake, an
  * island in it), in any order and direction. They may touch; edges that two rings share cancel out,
- * so that two parcels side by side are one surface. Points of the boundary must be corners of the
- * triangles, with exactly the same x,y; z may differ. An edge of the boundary that is not an edge
- * of the mesh is recovered: the triangles that it crosses are replaced by as many others of the
- * same corners, constrained Delaunay. An edge that runs through points of the mesh is cut there.
+ * so that two parcels side by side are one surface. They may not cross.
+ *
+ * The boundary may be drawn anywhere, and its z plays no part. It becomes edges of the mesh:
+ * - A point of it with exactly the x,y of a corner of the mesh is that corner.
+ * - Any other point within the mesh is inserted: it cuts the triangle that it is in into three, or
+ *   the triangles beside the edge that it is on into two each. Its z and point data are those of
+ *   the surface there: linear on the triangle or edge; values that are not floating point (ids,
+ *   strings, integers) are those of the nearest corner. So inserting does not change the surface.
+ * - What lies outside the mesh or in a hole of it needs no edges: what is kept is both in
+ *   the boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is
+ *   inserted in the border, at the crossing, rounded to double precision. (An edge that follows a
+ *   border so closely that rounding folds the border over is an error that names it.)
+ * - An edge of the boundary that is not an edge of the mesh is recovered: the triangles that it
+ *   crosses are replaced by as many others of the same corners; edges among these are
+ *   constrained Delaunay within each side of the boundary's edge, and in the whole mesh when it was
+ *   Delaunay and no point has been inserted. Only there the surface changes between its points. An
+ *   edge that runs through points of the mesh is cut there.
  *
  * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its
  * longest edge is at most GapTolerance times the spacing of the points there; so dense and thin
@@ -42,24 +55,29 @@
  * Outputs 0 and 1 share the input's points and pass its point data; their triangles are
  * counter-clockwise seen from +z and keep their cell data and order. Together they are the
  * triangles of the input, with boundary edges recovered. A triangle that recovery made has the cell
- * data of one of the triangles that it replaces, the k-th new one that of the k-th old one. Field
- * data passes to outputs 0 and 1. Nothing is written to the inputs.
+ * data of one of the triangles that it replaces, the k-th new one that of the k-th old one. Where
+ * points are inserted, they come after the input's, and points are in double precision; the
+ * parts of a cut triangle have its cell data, and all but one come after the input's triangles.
+ * Field data passes to outputs 0 and 1. Nothing is written to the inputs.
  *
- * Guarantee: all decisions are exact. The triangles of output 0 cover exactly what is inside the
- * boundary and covered by the mesh; interior holes of the mesh stay.
+ * Guarantee (OutwardTest EXACT): all decisions are exact. The triangles of output 0 cover exactly
+ * what is inside the boundary and covered by the mesh (apart from the rounding of crossings);
+ * interior holes of the mesh stay.
  *
- * Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges (vtkIdTypeArray, one
- * value), EffectiveGapTolerance (vtkDoubleArray, one value).
+ * Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
+ * NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance (vtkDoubleArray, one
+ * value).
  *
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
- * mesh that covers a place twice, a boundary that is not closed, has a point that is not finite or
- * not in the mesh, a ring of fewer than three points, edges that cross each other or lead out of
- * the mesh, a boundary that encloses no triangle; also a point or cell array of an input that has
- * not as many tuples as there are points or cells. A mesh without triangles passes with a warning,
+ * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
+ * a ring of fewer than three points, edges that cross each other, a boundary that encloses no
+ * triangle; also a point or cell array of an input that has not as many tuples as there are points
+ * or cells. A mesh without triangles passes with a warning,
  * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
  * outward then).
  *
- * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges.
+ * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges; where
+ * points are inserted, a sweep over the triangles more.
  *
  * @sa vtkGridDelaunay2D vtkFillElevationHoles
  */
@@ -85,6 +103,40 @@ public:
   vtkPolyData* GetBoundary();
   ///@}
 
+  /** Which triangles are outward. */
+  enum OutwardTestType
+  {
+    EXACT = 0,        ///< those outside the boundary
+    INWARD_NORMAL = 1 ///< those that the published method finds along the boundary
+  };
+
+  ///@{
+  /**
+   * The test for outward triangles: an OutwardTestType, to which other numbers are clamped.
+   * EXACT (default) walks the mesh between boundary edges and removes all that is outside.
+   *
+   * INWARD_NORMAL is the published test, to compare with. The boundary is walked clockwise, with
+   * the surface on the right (around a lake the other way). At p2, between the edges from p1 to p2
+   * and from p2 to p3, the triangle of the three is outward when (p3 - p1) . N < 0, with N the
+   * inward normal of the first edge. Then the edge from p1 to p3 takes the place of the two, and
+   * the walk goes on with it, so that a pocket of the boundary is emptied triangle by triangle. It
+   * removes no triangle that EXACT keeps, but looks only at triangles of three boundary points. So
+   * it keeps, outside the boundary,
+   * - triangles at a point that is not on the boundary, and those behind them: much of a deep
+   *   pocket, or of a lake, with points in it,
+   * - triangles between two rings: between separate parts of a surface, or a lake and its island,
+   * - parts of the mesh that the boundary does not touch.
+   * Where no point lies outside a single ring, or within its lakes, both tests agree.
+   * Missing edges are recovered, and points inserted, as for EXACT: the method presumes that
+   * they are there. With RecoverBoundary off they are errors.
+   */
+  vtkSetClampMacro(OutwardTest, int, EXACT, INWARD_NORMAL);
+  vtkGetMacro(OutwardTest, int);
+  void SetOutwardTestToExact() { this->SetOutwardTest(EXACT); }
+  void SetOutwardTestToInwardNormal() { this->SetOutwardTest(INWARD_NORMAL); }
+  const char* GetOutwardTestAsString() const;
+  ///@}
+
   ///@{
   /**
    * For the extracted boundary: how many spacings an empty stretch may measure and still be
@@ -98,8 +150,9 @@ public:
 
   ///@{
   /**
-   * Whether a boundary edge that is missing in the mesh is recovered (default on). Off: such an
-   * edge is an error that names it, and no triangle is ever changed.
+   * Whether a boundary edge that is missing in the mesh is recovered, and a boundary point that is
+   * not a corner of the mesh inserted (default on). Off: such an edge or point is an error that
+   * names it, and no triangle is ever changed.
    */
   vtkSetMacro(RecoverBoundary, bool);
   vtkGetMacro(RecoverBoundary, bool);
@@ -112,8 +165,14 @@ public:
   /** After Update(): the number of triangles in output 1. */
   vtkGetMacro(NumberOfOutwardTriangles, vtkIdType);
 
-  /** After Update(): the number of boundary edges that were missing in the mesh. */
+  /**
+   * After Update(): the number of boundary edges that were missing in the mesh. One that leaves the
+   * mesh counts once for each part of it within.
+   */
   vtkGetMacro(NumberOfRecoveredEdges, vtkIdType);
+
+  /** After Update(): the number of points that were inserted, for the boundary or for crossings. */
+  vtkGetMacro(NumberOfInsertedPoints, vtkIdType);
 
 protected:
   vtkTrimOutwardTriangles();
@@ -122,12 +181,14 @@ protected:
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  int OutwardTest = EXACT;
   double GapTolerance = 0.0;
   bool RecoverBoundary = true;
 
   double EffectiveGapTolerance = 0.0;
   vtkIdType NumberOfOutwardTriangles = 0;
   vtkIdType NumberOfRecoveredEdges = 0;
+  vtkIdType NumberOfInsertedPoints = 0;
 
 private:
   vtkTrimOutwardTriangles(const vtkTrimOutwardTriangles&) = delete;

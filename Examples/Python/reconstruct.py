@@ -50,6 +50,7 @@ class WrongOption(Failure):
 
 SEARCH_STRATEGIES = ("voxel-traversal", "compactness")
 INTERPOLATIONS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-spline")
+OUTWARD_TESTS = ("exact", "inward-normal")
 LATTICE_MODES = ("automatic", "off")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
@@ -102,7 +103,9 @@ TAKES = {
     "--lattice-mode": "one of " + ", ".join(LATTICE_MODES),
     "--lattice-tolerance": "a number from 0 to 0.25",
     "--threads": "a whole number of 0 or more",
+    "--breaklines": "a file",
     "--boundary": "a file",
+    "--outward-test": "one of " + ", ".join(OUTWARD_TESTS),
     "--gap-tolerance": NUMBER,
     "--maximum-hole-size": NUMBER,
     "--maximum-hole-edges": "a whole number of 0 or more",
@@ -156,7 +159,9 @@ def make_parser():
     add("--lattice-mode", choices=LATTICE_MODES, default=LATTICE_MODES[0])
     add("--lattice-tolerance", type=number_up_to_a_quarter, default=0.01)
     add("--threads", type=count_at_least_zero, default=0)
+    add("--breaklines")
     add("--boundary")
+    add("--outward-test", choices=OUTWARD_TESTS, default=OUTWARD_TESTS[0])
     add("--gap-tolerance", type=number_at_least_zero, default=0.0)
     add("--no-recover-boundary", action="store_true")
     add("--no-trim", action="store_true")
@@ -181,7 +186,10 @@ def parse_arguments(arguments):
     options = parser.parse_args(arguments)
 
     if options.no_trim and (
-        options.boundary or options.gap_tolerance or options.no_recover_boundary
+        options.boundary
+        or options.gap_tolerance
+        or options.no_recover_boundary
+        or options.outward_test != OUTWARD_TESTS[0]
     ):
         parser.error("--no-trim leaves nothing for the trimming options to do")
     if options.no_fill and (
@@ -285,6 +293,8 @@ class Run:
         if messages.errors:
             # With a boundary of the user's, what trimming refuses is that boundary.
             culprit = self.options.boundary if name == "trim" else None
+            if name == "triangulate" and "constraints" in messages.errors[0]:
+                culprit = self.options.breaklines
             raise Failure(f"{culprit or self.options.file}: {text}: {messages.errors[0]}")
         for warning in messages.warnings:
             # A filter may tell of several holes in one message.
@@ -293,11 +303,13 @@ class Run:
         return algorithm
 
 
-def reconstruct(run, cloud, boundary):
+def reconstruct(run, cloud, breaklines, boundary):
     """The chain. Returns the three filters, None for those that are switched off."""
     options = run.options
     delaunay = vtkGridDelaunay2D()
     delaunay.SetInputData(cloud.points)
+    if breaklines is not None:
+        delaunay.SetSourceData(breaklines)
     delaunay.SetMaximumEdgeLength(options.maximum_edge_length)
     delaunay.SetDuplicatePolicy(DUPLICATES.index(options.duplicates))
     delaunay.SetSearchStrategy(SEARCH_STRATEGIES.index(options.search_strategy))
@@ -314,6 +326,7 @@ def reconstruct(run, cloud, boundary):
         trim.SetInputData(0, last.GetOutput())
         if boundary is not None:
             trim.SetBoundaryData(boundary)
+        trim.SetOutwardTest(OUTWARD_TESTS.index(options.outward_test))
         trim.SetGapTolerance(options.gap_tolerance)
         trim.SetRecoverBoundary(not options.no_recover_boundary)
         run.update("trim", "trimming", trim)
@@ -437,10 +450,17 @@ def make_report(run, cloud, delaunay, trim, fill):
         "lattice": lattice_of(fields),
         "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
     }
+    if options.breaklines:
+        report["breaklines"] = {
+            "file": options.breaklines,
+            "added_points": delaunay.GetNumberOfAddedPoints(),
+            "crossings": delaunay.GetNumberOfConstraintCrossings(),
+        }
     if trim:
         report["trim"] = {
             "outward_triangles": trim.GetNumberOfOutwardTriangles(),
             "recovered_edges": trim.GetNumberOfRecoveredEdges(),
+            "inserted_points": trim.GetNumberOfInsertedPoints(),
             "boundary": options.boundary or "found from the points",
             "boundary_rings": trim.GetOutput(2).GetNumberOfLines(),
         }
@@ -581,9 +601,18 @@ def print_report(report, options):
             )
         ]
         line("lattice", f"steps of {' and '.join(steps)}")
+    elif "breaklines" in report:
+        line("lattice", "not looked for, because of the breaklines")
     elif options.lattice_mode == "automatic":
         line("lattice", "none: the points are not on the nodes of a grid")
     line("triangles", f"{report['triangles']['delaunay']:,} in the triangulation")
+    if "breaklines" in report:
+        lines = report["breaklines"]
+        line(
+            "breaklines",
+            f"{lines['file']}: {counted(lines['added_points'], 'point')} added, "
+            f"{counted(lines['crossings'], 'crossing')}",
+        )
     if "trim" in report:
         trim = report["trim"]
         rings = trim["boundary_rings"]
@@ -596,6 +625,8 @@ def print_report(report, options):
             line("", f"gap tolerance {trim['effective_gap_tolerance']:.4g} spacings")
         if trim["recovered_edges"]:
             line("", f"{counted(trim['recovered_edges'], 'boundary edge')} recovered")
+        if trim["inserted_points"]:
+            line("", f"{counted(trim['inserted_points'], 'boundary point')} inserted")
     if "holes" in report:
         holes = report["holes"]
         line(
@@ -699,7 +730,7 @@ def work(options, results):
     except files.FileError as error:
         raise WrongOption(str(error)) from None
     wanted = [p for p in (options.output, options.picture, options.report) if p]
-    inputs = [p for p in (options.file, options.boundary) if p]
+    inputs = [p for p in (options.file, options.breaklines, options.boundary) if p]
     for i, path in enumerate(wanted):
         files.check_writable(path)
         for other in inputs + wanted[:i]:
@@ -725,8 +756,9 @@ def work(options, results):
             "reading",
             lambda: files.read_points(options.file, options.columns, options.no_data),
         )
+        breaklines = files.read_breaklines(options.breaklines) if options.breaklines else None
         boundary = files.read_boundary(options.boundary) if options.boundary else None
-        delaunay, trim, fill = reconstruct(run, cloud, boundary)
+        delaunay, trim, fill = reconstruct(run, cloud, breaklines, boundary)
         report = make_report(run, cloud, delaunay, trim, fill)
         surface = (fill or trim or delaunay).GetOutput()
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads point clouds, rasters and boundary lines for reconstruct.py, and writes surfaces.
+"""Reads point clouds, rasters, boundaries and breaklines for reconstruct.py, and writes surfaces.
 
 VTK reads whatever it has a good reader for. Three things it leaves to us:
 
@@ -858,7 +858,41 @@ def read_text(path, columns, no_data):
     return cloud
 
 
-# ---- boundary ---------------------------------------------------------------------------------
+# ---- boundary and breaklines ------------------------------------------------------------------
+
+LINE_SUFFIXES = (".vtp", ".vtk", ".ply", ".stl", ".obj") + TEXT_SUFFIXES
+
+
+def read_lines_with_vtk(path, singular):
+    """The vtkPolyData of a file in one of VTK's formats, which must hold lines or polygons."""
+    data = run_vtk_reader(path)
+    if not isinstance(data, vtkPolyData):
+        raise FileError(f"{path}: holds a {data.GetClassName()}; {singular} is vtkPolyData")
+    if data.GetNumberOfLines() + data.GetNumberOfPolys() == 0:
+        raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
+    return data
+
+
+def read_breaklines(path):
+    """The breaklines of a file as vtkPolyData with lines or polygons.
+
+    A text file holds one line after the other, x, y and z in the first columns, a blank line
+    between them. Raises FileError.
+    """
+    check_suffix(path, LINE_SUFFIXES, "read as breaklines")
+    check_readable(path)
+    if suffix_of(path) not in TEXT_SUFFIXES:
+        return read_lines_with_vtk(path, "a breakline")
+    rows, lines, starts, _ = read_table(path, needed=3)
+    bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
+    if len(bad):
+        raise FileError(f"{path}, line {lines[bad[0]]}: a breakline point is not finite")
+    cells = vtkCellArray()
+    for start, end in zip(starts, starts[1:] + [len(rows)]):
+        cells.InsertNextCell(end - start, list(range(start, end)))
+    data = make_points(rows)
+    data.SetLines(cells)
+    return data
 
 
 def read_boundary(path):
@@ -868,16 +902,10 @@ def read_boundary(path):
     x and y in the first columns, a blank line between rings, and each ring's first point again
     at its end. Raises FileError, also for a text ring that is not closed.
     """
-    suffixes = (".vtp", ".vtk", ".ply", ".stl", ".obj") + TEXT_SUFFIXES
-    check_suffix(path, suffixes, "read as a boundary")
+    check_suffix(path, LINE_SUFFIXES, "read as a boundary")
     check_readable(path)
     if suffix_of(path) not in TEXT_SUFFIXES:
-        data = run_vtk_reader(path)
-        if not isinstance(data, vtkPolyData):
-            raise FileError(f"{path}: holds a {data.GetClassName()}; a boundary is vtkPolyData")
-        if data.GetNumberOfLines() + data.GetNumberOfPolys() == 0:
-            raise FileError(f"{path}: holds no line and no polygon that could be a boundary")
-        return data
+        return read_lines_with_vtk(path, "a boundary")
     rows, lines, starts, _ = read_table(path, needed=2)
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
     if len(bad):

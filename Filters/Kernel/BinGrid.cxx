@@ -311,6 +311,9 @@ private:
     {
       this->ReportProgress(0);
     }
+    // What fits into one node stays together, so that the lowest nodes are full.
+    constexpr Index fitting = BinGrid::Node::Places * FullBin;
+    const bool isLowest = whole.Size() <= fitting;
     Heap heaps[BinGrid::Node::Places];
     heaps[0] = whole;
     int count = 1;
@@ -319,7 +322,8 @@ private:
       int largest = -1;
       for (int i = 0; i < count; ++i)
       {
-        if (!heaps[i].IsLeaf() && (largest < 0 || heaps[i].Size() > heaps[largest].Size()))
+        if (!heaps[i].IsLeaf() && (isLowest || heaps[i].Size() > fitting) &&
+          (largest < 0 || heaps[i].Size() > heaps[largest].Size()))
         {
           largest = i;
         }

@@ -21,8 +21,8 @@
  * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
  * The boxes of a node's children have no point in common.
  *
- * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 3 for the bins and
- * 3 for the tree (7 in full bins). While it is built, 24 more, and a few more in full bins.
+ * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 4 for the bins and
+ * 3 for the tree (5 in full bins). While it is built, 24 more, and a few more in full bins.
  */
 #ifndef elevation_BinGrid_h
 #define elevation_BinGrid_h

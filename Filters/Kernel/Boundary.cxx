@@ -127,126 +127,10 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
 namespace
 {
 
-struct HashOfPoint
-{
-  std::size_t operator()(const Point2& p) const
-  {
-    // 0.0 and -0.0 are equal, and have the same hash.
-    const std::hash<double> hash;
-    return hash(p.X) ^ (hash(p.Y) * 0x9E3779B97F4A7C15ull);
-  }
-};
-
 std::string NameOfLine(const BoundaryLines& lines, Index line)
 {
   return (lines.IsPolygon[line] ? "polygon (cell " : "line (cell ") +
     std::to_string(lines.Cells[line]) + ")";
-}
-
-/**
- * The points that may be one of those added: all of these, and few others. For to look each up in a
- * map is slow.
- */
-class PointSieve
-{
-public:
-  explicit PointSieve(std::size_t capacity)
-  {
-    while (this->Shift > 32 && (std::size_t(1) << (64 - this->Shift)) < 16 * capacity)
-    {
-      --this->Shift;
-    }
-    this->Places.resize(std::size_t(1) << (64 - this->Shift));
-  }
-  void Add(const Point2& p) { this->Places[this->PlaceOf(p)] = 1; }
-  bool MayHold(const Point2& p) const { return this->Places[this->PlaceOf(p)]; }
-
-private:
-  std::size_t PlaceOf(const Point2& p) const
-  {
-    // 0.0 and -0.0 are equal, and go to the same place.
-    const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
-    std::uint64_t bits[2];
-    std::memcpy(bits, coordinates, sizeof(bits));
-    const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
-    return ((mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull) >> this->Shift;
-  }
-  int Shift = 58;
-  std::vector<char> Places;
-};
-
-/** The mesh vertex at each point of the lines that a line uses. */
-std::vector<Index> MatchPoints(
-  const Mesh& mesh, const BoundaryLines& lines, const Progress& progress)
-{
-  std::unordered_map<Point2, Index, HashOfPoint> vertexAt;
-  for (Index line = 0; line < lines.Lines.Count(); ++line)
-  {
-    for (const Index* point = lines.Lines.Begin(line); point != lines.Lines.End(line); ++point)
-    {
-      const Point2& p = lines.Points[*point];
-      if (!std::isfinite(p.X) || !std::isfinite(p.Y))
-      {
-        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
-          NameOfLine(lines, line) + " is not finite.");
-      }
-      vertexAt.emplace(p, None);
-    }
-  }
-  PointSieve sieve(vertexAt.size());
-  for (const auto& entry : vertexAt)
-  {
-    sieve.Add(entry.first);
-  }
-  std::vector<char> isToMatch(mesh.Points.size());
-  InStretches(mesh.NumberOfPoints(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v)
-    {
-      isToMatch[v] = sieve.MayHold(mesh.PointOf(v));
-    }
-  });
-  const Progress matching = Part(progress, 0.3, 1.0);
-  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
-  {
-    ReportStep(matching, h, mesh.Triangles.size());
-    const Index vertex = mesh.Origin(h);
-    if (!isToMatch[vertex])
-    {
-      continue;
-    }
-    isToMatch[vertex] = 0;
-    const auto found = vertexAt.find(mesh.PointOf(vertex));
-    if (found == vertexAt.end())
-    {
-      continue;
-    }
-    if (found->second != None)
-    {
-      throw Error("Points " + std::to_string(std::min(found->second, vertex)) + " and " +
-        std::to_string(std::max(found->second, vertex)) +
-        " of the mesh have the same x,y and both are corners of triangles, so that the "
-        "boundary's " +
-        "point there is not one place of the mesh. Merge them, as vtkStaticCleanPolyData does.");
-    }
-    found->second = vertex;
-  }
-
-  std::vector<Index> vertices(lines.Points.size(), None);
-  for (Index line = 0; line < lines.Lines.Count(); ++line)
-  {
-    for (const Index* point = lines.Lines.Begin(line); point != lines.Lines.End(line); ++point)
-    {
-      vertices[*point] = vertexAt.at(lines.Points[*point]);
-      if (vertices[*point] == None)
-      {
-        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
-          NameOfLine(lines, line) + " is not a corner of the mesh: no triangle has a point with " +
-          "exactly the same x,y. Add the boundary's points to the points before triangulating "
-          "them.");
-      }
-    }
-  }
-  return vertices;
 }
 
 /** A line without points that repeat the one before; closed ones do not repeat the first. */
@@ -257,7 +141,7 @@ struct Piece
   bool IsClosed;
 };
 
-std::vector<Piece> MakePieces(const BoundaryLines& lines, const std::vector<Index>& vertexOf)
+std::vector<Piece> MakePieces(const BoundaryLines& lines)
 {
   std::vector<Piece> pieces;
   for (Index line = 0; line < lines.Lines.Count(); ++line)
@@ -266,7 +150,13 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines, const std::vector<Inde
     piece.Line = line;
     for (const Index* point = lines.Lines.Begin(line); point != lines.Lines.End(line); ++point)
     {
-      if (piece.Points.empty() || vertexOf[piece.Points.back()] != vertexOf[*point])
+      const Point2& p = lines.Points[*point];
+      if (!std::isfinite(p.X) || !std::isfinite(p.Y))
+      {
+        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
+          NameOfLine(lines, line) + " is not finite.");
+      }
+      if (piece.Points.empty() || lines.Points[piece.Points.back()] != p)
       {
         piece.Points.push_back(*point);
       }
@@ -275,7 +165,7 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines, const std::vector<Inde
     {
       continue;
     }
-    const bool returns = vertexOf[piece.Points.front()] == vertexOf[piece.Points.back()];
+    const bool returns = lines.Points[piece.Points.front()] == lines.Points[piece.Points.back()];
     piece.IsClosed = lines.IsPolygon[line] || returns;
     if (piece.Points.size() > 1 && returns)
     {
@@ -292,43 +182,38 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines, const std::vector<Inde
   return pieces;
 }
 
-void Append(
-  JoinedBoundary& joined, const std::vector<Index>& points, const std::vector<Index>& vertexOf)
+void Append(Rings& rings, const std::vector<Index>& points)
 {
-  for (const Index point : points)
-  {
-    joined.Vertices.Vertices.push_back(vertexOf[point]);
-    joined.Points.push_back(point);
-  }
-  joined.Vertices.Offsets.push_back(static_cast<Index>(joined.Points.size()));
+  rings.Vertices.insert(rings.Vertices.end(), points.begin(), points.end());
+  rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
 }
 
 } // namespace
 
-JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines, const Progress& progress)
+Rings JoinLines(const BoundaryLines& lines)
 {
-  const std::vector<Index> vertexOf = MatchPoints(mesh, lines, progress);
-  const std::vector<Piece> pieces = MakePieces(lines, vertexOf);
+  const std::vector<Piece> pieces = MakePieces(lines);
+  const auto placeOf = [&lines](Index point) { return lines.Points[point]; };
   if (pieces.empty())
   {
     throw Error("The boundary has no line and no polygon.");
   }
 
-  // The open pieces that end in a vertex, in their order.
-  std::unordered_map<Index, std::vector<std::size_t>> endsAt;
+  // The open pieces that end in a place, in their order.
+  std::unordered_map<Point2, std::vector<std::size_t>, HashOfPoint> endsAt;
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     if (!pieces[i].IsClosed)
     {
-      endsAt[vertexOf[pieces[i].Points.front()]].push_back(i);
-      endsAt[vertexOf[pieces[i].Points.back()]].push_back(i);
+      endsAt[placeOf(pieces[i].Points.front())].push_back(i);
+      endsAt[placeOf(pieces[i].Points.back())].push_back(i);
     }
   }
   for (const Piece& piece : pieces)
   {
     for (const Index end : { piece.Points.front(), piece.Points.back() })
     {
-      const auto meeting = endsAt.find(vertexOf[end]);
+      const auto meeting = endsAt.find(placeOf(end));
       if (!piece.IsClosed && meeting->second.size() % 2 != 0)
       {
         throw Error("The boundary is not closed: " + NameOfLine(lines, piece.Line) + " ends at " +
@@ -341,7 +226,7 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines, const Pro
   }
 
   // An even number of lines ends everywhere, so a walk along lines not yet used comes back.
-  JoinedBoundary joined;
+  Rings joined;
   std::vector<char> used(pieces.size(), 0);
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
@@ -352,18 +237,18 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines, const Pro
     used[i] = 1;
     if (pieces[i].IsClosed)
     {
-      Append(joined, pieces[i].Points, vertexOf);
+      Append(joined, pieces[i].Points);
       continue;
     }
     std::vector<Index> ring = pieces[i].Points;
-    while (vertexOf[ring.back()] != vertexOf[ring.front()])
+    while (placeOf(ring.back()) != placeOf(ring.front()))
     {
-      const std::vector<std::size_t>& meeting = endsAt[vertexOf[ring.back()]];
+      const std::vector<std::size_t>& meeting = endsAt[placeOf(ring.back())];
       const std::size_t next =
         *std::find_if(meeting.begin(), meeting.end(), [&](std::size_t j) { return !used[j]; });
       used[next] = 1;
       const std::vector<Index>& points = pieces[next].Points;
-      if (vertexOf[points.front()] == vertexOf[ring.back()])
+      if (placeOf(points.front()) == placeOf(ring.back()))
       {
         ring.insert(ring.end(), points.begin() + 1, points.end());
       }
@@ -377,10 +262,10 @@ JoinedBoundary JoinLines(const Mesh& mesh, const BoundaryLines& lines, const Pro
     // or in two larger rings depends on the order of the lines alone.
     if (ring.size() > 2)
     {
-      Append(joined, ring, vertexOf);
+      Append(joined, ring);
     }
   }
-  if (joined.Points.empty())
+  if (joined.Vertices.empty())
   {
     throw Error("The boundary's " + NameOfLine(lines, pieces.front().Line) +
       " makes a ring of only two points, and so do all others; a ring has at least three.");

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Closed rings around a surface: joined from lines, located in, or extracted from a mesh.
+ * Closed rings around a surface: joined from lines, asked what they enclose, or extracted from a
+ * mesh.
  *
  * Several rings bound a region by the even-odd rule: a place is inside when an odd number of rings
  * goes around it. So rings may nest (lake, island in the lake), in any direction and order, and may
@@ -52,6 +53,16 @@ private:
   double BinsPerUnit = 0.0;
 };
 
+/** Of a place: 0.0 and -0.0 are equal, and have the same hash. */
+struct HashOfPoint
+{
+  std::size_t operator()(const Point2& p) const
+  {
+    const std::hash<double> hash;
+    return hash(p.X) ^ (hash(p.Y) * 0x9E3779B97F4A7C15ull);
+  }
+};
+
 /** Lines and polygons as they come in, each a list of points. */
 struct BoundaryLines
 {
@@ -61,23 +72,16 @@ struct BoundaryLines
   std::vector<Index> Cells;    ///< one a line; the number that messages use
 };
 
-struct JoinedBoundary
-{
-  Rings Vertices;            ///< mesh vertices
-  std::vector<Index> Points; ///< beside each of Vertices: its point among the lines' points
-};
-
 /**
- * Joins lines to rings of mesh vertices. A line is a ring when it returns to its first point
- * (the same id or the same x,y); other lines are chained with each other where their ends meet. Two
- * lines that lie on each other and close a ring of two points are left out: they cancel out.
- * Points are matched to the corners of the mesh's triangles by equal x,y.
- * @throws Error naming the line and the point: a point not finite or not a mesh vertex; an end
- *         where no other line goes on; a line that is a ring of fewer than three points; no line at
- *         all, or only lines that cancel each other
+ * Joins lines to rings. A line is a ring when it returns to its first point (the same id or the
+ * same x,y); other lines are chained with each other where their ends meet. Two lines that lie on
+ * each other and close a ring of two points are left out: they cancel out.
+ * @return rings of ids of the lines' points; no two that follow each other have the same x,y
+ * @throws Error naming the line and the point: a point not finite; an end where no other line goes
+ *         on; a line that is a ring of fewer than three points; no line at all, or only lines that
+ *         cancel each other
  */
-JoinedBoundary JoinLines(
-  const Mesh& mesh, const BoundaryLines& lines, const Progress& progress = Progress());
+Rings JoinLines(const BoundaryLines& lines);
 
 struct ExtractOptions
 {

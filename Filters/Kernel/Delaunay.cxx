@@ -37,17 +37,32 @@ constexpr std::chrono::milliseconds TimePerRound(50);
 constexpr std::int64_t WorkPerVertex = 300;
 /** What an exact comparison counts for: its cost in looks. */
 constexpr std::int64_t WorkOfExact = 10;
+/** So many in one search, points are on one circle or line: growing is given up at once. */
+constexpr int MostExacts = 2000;
+/** After so many looks, the time is looked at. */
+constexpr std::int64_t LooksPerClock = 10000;
+
+/** Thrown where growing is given up, because the searches look at too many points. */
+struct CannotGrow
+{
+};
+
+/** How far around a vertex bins are looked at before the tree is, and at most how many points. */
+constexpr Index NearColumns = 8, NearRows = 12, MostNear = 256;
 
 /**
  * One side of the convex hull as a chain from the lowest to the highest point, collinear points
  * included [Andrew 1979, Another efficient algorithm for convex hulls in two dimensions].
  * @param outside  the side of the chain that must stay empty: Negative for the right chain
  */
-std::vector<Index> HullChain(const BinGrid& grid, const Buffer<Index>& order, Sign outside)
+std::vector<Index> HullChain(
+  const BinGrid& grid, const Buffer<Index>& order, Sign outside, const Progress& progress)
 {
   std::vector<Index> chain;
-  for (Index slot : order)
+  for (std::size_t i = 0; i < order.size(); ++i)
   {
+    ReportStep(progress, i, order.size());
+    const Index slot = order[i];
     while (chain.size() > 1 &&
       Orientation(grid.PointAt(chain[chain.size() - 2]), grid.PointAt(chain.back()),
         grid.PointAt(slot)) == outside)
@@ -63,7 +78,8 @@ std::vector<Index> HullChain(const BinGrid& grid, const Buffer<Index>& order, Si
  * The points that may be on the convex hull, by increasing (y, x): those not well within the hull
  * of the leftmost and rightmost points of the rows. Nearly all points are.
  */
-Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
+Buffer<Index> HullCandidates(
+  const BinGrid& grid, const Buffer<Index>& order, const Progress& progress)
 {
   const BinGrid::Layout& bins = grid.Bins;
   Buffer<Index> extremes;
@@ -94,8 +110,8 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Buffer<Index>& order)
       }
     }
   }
-  const std::vector<Index> rightChain = HullChain(grid, extremes, Negative);
-  const std::vector<Index> leftChain = HullChain(grid, extremes, Positive);
+  const std::vector<Index> rightChain = HullChain(grid, extremes, Negative, progress);
+  const std::vector<Index> leftChain = HullChain(grid, extremes, Positive, progress);
 
   // Where a chain is at a height; wrong by a few roundoffs of the greatest coordinate.
   const auto at = [&grid](const std::vector<Index>& chain, std::size_t& edge, double y) {
@@ -188,9 +204,17 @@ public:
   {
     this->Origin = slot;
     this->A = this->Grid.PointAt(slot);
-    this->HasAround =
-      !this->IsByAngle && (this->IsWide ? this->Around.Gather(slot, next) : this->ChooseWindow());
+    this->HasAround = !this->IsByAngle && this->IsWide && this->Around.Gather(slot, next);
     this->OpenEnd = None;
+  }
+
+  /** Asks for the memory that SetOrigin() will need for a vertex some calls later. */
+  void Foresee(Index slot) const
+  {
+    if (this->IsWide)
+    {
+      this->Around.Foresee(slot);
+    }
   }
 
   /**
@@ -199,7 +223,7 @@ public:
    */
   void Follow(Buffer<Index>& fan, Index end)
   {
-    if (this->HasAround && this->IsWide)
+    if (this->HasAround)
     {
       const std::size_t count = fan.size();
       fan.Resize(count + Surroundings::Capacity);
@@ -212,9 +236,9 @@ public:
   /**
    * The apex of the Delaunay triangle on the left of the edge from the origin to b.
    * Only points above the origin are looked for: the caller knows that the origin is the lowest
-   * vertex of the triangle. The points around the origin come first. Where they do not tell, the
-   * tree of boxes is entered, nearest box first; what the disc through the best point so far does
-   * not reach is passed over.
+   * vertex of the triangle. The points around the origin come first; where they do not tell, the
+   * bins around it; then the tree of boxes is entered, nearest box first. What the disc through the
+   * best point so far does not reach is passed over.
    * @param[in] end  the last neighbour of the fan, which is on the left of the edge: a first guess
    * @return None when no point lies on the left of the edge
    */
@@ -228,7 +252,7 @@ public:
     Index best = None;
     this->Target = b;
     this->B = this->Grid.PointAt(b);
-    if (this->HasAround && this->IsWide)
+    if (this->HasAround)
     {
       const Surroundings::Candidates found =
         b == this->OpenEnd ? this->Open : this->Around.FindCandidates(b);
@@ -239,11 +263,14 @@ public:
       }
     }
     this->SetEdge(this->Origin, b);
-    if (best != None || end != None)
+    for (Index known : { best, end })
     {
-      this->Compare(best != None ? best : end, 1);
+      if (known != None)
+      {
+        this->Compare(known, 1);
+      }
     }
-    if (this->HasAround && !this->IsWide && this->LookIntoWindow())
+    if (this->Grid.Bins.HasPlainBins && this->LookIntoBins())
     {
       return this->Best;
     }
@@ -297,6 +324,7 @@ private:
     this->EdgeY = this->B.Y - this->A.Y;
     this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
     this->Best = None;
+    this->Exacts = 0;
     this->SetDisc(Infinity);
   }
 
@@ -368,52 +396,62 @@ private:
   }
 
   /**
-   * Without wide instructions: the bins around the origin that are looked at first, fewer where
-   * there are many points in them. False when there are too many in any case.
+   * The bins around the origin, as far as the disc and the free side reach; fewer when these hold
+   * too many points.
+   * @return whether the best point is known, because its disc lies within these bins
    */
-  bool ChooseWindow()
+  bool LookIntoBins()
   {
-    constexpr Index tooMany = 56;
     const BinGrid::Layout& bins = this->Grid.Bins;
-    const Index column = bins.Column(this->A.X);
-    this->FirstRow = bins.Row(this->A.Y);
-    for (Index reach = 2; reach > 0 && bins.HasPlainBins; --reach)
+    const Index column = bins.Column(this->A.X), row = bins.Row(this->A.Y);
+    const Index firstColumn = std::max(column - NearColumns, 0);
+    const Index lastColumn = std::min(column + NearColumns, bins.Columns - 1);
+    const Index lastRow = std::min(row + NearRows, bins.Rows - 1);
+    // Bounds of bins are known to a thousandth of a bin, which also is more than the rounding of
+    // what follows as long as radii are less than a million bins.
+    const double slackX = 0.002 * bins.BinWidth, slackY = 0.002 * bins.BinHeight;
+    const double slope = this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity;
+    const double most =
+      1e12 * std::min(bins.BinWidth * bins.BinWidth, bins.BinHeight * bins.BinHeight);
+    Index count = 0;
+    for (Index r = row; r <= lastRow; ++r)
     {
-      this->FirstColumn = std::max(column - reach, 0);
-      this->LastColumn = std::min(column + reach, bins.Columns - 1);
-      this->LastRow = std::min(this->FirstRow + reach + 1, bins.Rows - 1);
-      Index count = 0;
-      for (Index row = this->FirstRow; row <= this->LastRow; ++row)
+      const double low = bins.OriginY + r * bins.BinHeight - slackY - this->A.Y;
+      const double high = low + bins.BinHeight + 2.0 * slackY;
+      double left = -Infinity, right = Infinity;
+      if (this->RadiusSquared < most)
       {
-        const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
+        const double off = OffInterval(this->CenterY, low, high);
+        const double halfSquared = this->RadiusSquared - off * off;
+        if (halfSquared < 0.0) // the origin is on the circle: so it is above
+        {
+          break;
+        }
+        const double half = std::sqrt(halfSquared);
+        left = this->CenterX - half;
+        right = this->CenterX + half;
+      }
+      right = std::min(right, std::max(slope * low, slope * high));
+      const Index first = std::max(bins.Column(this->A.X + left - slackX), firstColumn);
+      const Index last = std::min(bins.Column(this->A.X + right + slackX), lastColumn);
+      if (first <= last)
+      {
+        const auto slots = this->Grid.Slots(r, first, last);
         count += slots.second - slots.first;
+        if (count > MostNear)
+        {
+          return false;
+        }
+        this->Compare(slots.first, slots.second - slots.first);
       }
-      if (count <= tooMany)
-      {
-        // Bounds of bins are known to a thousandth of a bin.
-        const double low = bins.OriginX + (this->FirstColumn + 0.002) * bins.BinWidth;
-        const double high = bins.OriginX + (this->LastColumn + 0.998) * bins.BinWidth;
-        const double top = bins.OriginY + (this->LastRow + 0.998) * bins.BinHeight;
-        this->Left = this->FirstColumn == 0 ? -Infinity : low - this->A.X;
-        this->Right = this->LastColumn == bins.Columns - 1 ? Infinity : high - this->A.X;
-        this->Top = this->LastRow == bins.Rows - 1 ? Infinity : top - this->A.Y;
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /** Whether the best point is known, because its disc lies within the window. */
-  bool LookIntoWindow()
-  {
-    for (Index row = this->FirstRow; row <= this->LastRow; ++row)
-    {
-      const auto slots = this->Grid.Slots(row, this->FirstColumn, this->LastColumn);
-      this->Compare(slots.first, slots.second - slots.first);
     }
     const double radius = std::sqrt(this->RadiusSquared);
-    return this->Best != None && this->CenterX - radius > this->Left &&
-      this->CenterX + radius < this->Right && this->CenterY + radius < this->Top;
+    const double low = bins.OriginX + firstColumn * bins.BinWidth + slackX - this->A.X;
+    const double high = bins.OriginX + (lastColumn + 1) * bins.BinWidth - slackX - this->A.X;
+    const double top = bins.OriginY + (lastRow + 1) * bins.BinHeight - slackY - this->A.Y;
+    return this->Best != None && (firstColumn == 0 || this->CenterX - radius > low) &&
+      (lastColumn == bins.Columns - 1 || this->CenterX + radius < high) &&
+      (lastRow == bins.Rows - 1 || this->CenterY + radius < top);
   }
 
   /** Nearly always there is one candidate; else exact comparisons decide. */
@@ -610,13 +648,20 @@ private:
     return reached;
   }
 
+  /** Of lanes, the one with this number, if it is one. */
+  static unsigned int BitOf(Index number)
+  {
+    return number >= 0 && number < 32 ? 1u << number : 0u;
+  }
+
   __attribute__((target("avx2"))) bool CompareWide(Index first, Index count)
   {
     bool isChanged = false;
     const Index end = first + count;
     for (Index slot = first; slot < end; slot += 4)
     {
-      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0));
+      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0)) &
+        ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
       for (; left; left &= left - 1)
       {
         isChanged = this->CompareOne(slot + __builtin_ctz(left)) || isChanged;
@@ -658,7 +703,7 @@ private:
         _mm256_mul_pd(_mm256_set1_pd(this->BestDotMagnitude), crossMagnitude));
     const __m256d error =
       _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(16.0), roundoffs), magnitude),
-        _mm256_set1_pd(1e-170));
+        _mm256_set1_pd(this->LeastError));
     // Worse only counts where cross is certain; else Compare() asks for the side first.
     const __m256d isWorse = _mm256_and_pd(_mm256_cmp_pd(cross, crossError, _CMP_GT_OQ),
       _mm256_and_pd(_mm256_cmp_pd(error, _mm256_set1_pd(1e140), _CMP_LT_OQ),
@@ -711,7 +756,7 @@ private:
       {
         return false;
       }
-      this->Looks += WorkOfExact;
+      this->CountExact();
       if (Orientation(this->A, this->B, p) != Positive)
       {
         return false;
@@ -723,12 +768,12 @@ private:
     if (this->Best != None)
     {
       const double difference = dot * this->BestCross - this->BestDot * cross;
-      // 10 roundoffs cover the rounding, 1e-170 what underflow may lose as long as no factor is
-      // above 1e150; when one is, the product is too large or not a number, and the sign is left
-      // to the exact predicate.
+      // 10 roundoffs cover the rounding, LeastError and what the best's magnitudes have on top
+      // underflow. Where products are too large or not a number, the sign is left to the exact
+      // predicate.
       const double error = 16.0 * UnitRoundoff *
           (dotMagnitude * this->BestCrossMagnitude + this->BestDotMagnitude * crossMagnitude) +
-        1e-170;
+        this->LeastError;
       const bool isClear = error < 1e140;
       if (isClear && difference > error)
       {
@@ -736,19 +781,32 @@ private:
       }
       if (!(isClear && difference < -error))
       {
-        this->Looks += WorkOfExact;
+        this->CountExact();
         if (slot == this->Best || !this->IsBetter(slot, this->Best))
         {
           return false;
         }
       }
     }
+    // Underflow may take 1e-323 from a cross or a dot product, and either is multiplied by one of
+    // another point, which may be huge.
+    constexpr double least = 1e-300;
     this->Best = slot;
     this->BestCross = cross;
-    this->BestCrossMagnitude = crossMagnitude;
+    this->BestCrossMagnitude = crossMagnitude + least;
     this->BestDot = dot;
-    this->BestDotMagnitude = dotMagnitude;
+    this->BestDotMagnitude = dotMagnitude + least;
+    this->LeastError = least * (crossMagnitude + dotMagnitude) + 1e-170;
     return true;
+  }
+
+  void CountExact()
+  {
+    this->Looks += WorkOfExact;
+    if (++this->Exacts > MostExacts)
+    {
+      throw CannotGrow();
+    }
   }
 
   /**
@@ -780,13 +838,10 @@ private:
   const bool IsByAngle;
   const bool IsWide;
   std::int64_t Looks = 0;
+  int Exacts = 0; ///< in the search at hand
   bool HasAround = false;
   Surroundings::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
-
-  // The window where there are no wide instructions, its bounds relative to A.
-  Index FirstRow = 0, LastRow = 0, FirstColumn = 0, LastColumn = 0;
-  double Left = 0.0, Right = 0.0, Top = 0.0;
 
   // The edge.
   double Floor = 0.0; ///< relative to the origin; what is below is passed over
@@ -800,6 +855,7 @@ private:
   // The best point so far.
   Index Best = None;
   double BestCross = 0.0, BestCrossMagnitude = 0.0, BestDot = 0.0, BestDotMagnitude = 0.0;
+  double LeastError = 0.0; ///< of a comparison with it
 };
 
 /** Which triangles DelaunayOptions::MaximumEdgeLength leaves in. */
@@ -865,6 +921,7 @@ public:
     }
   }
 
+  const Index* At(Index vertex) const { return &this->Ends[2 * static_cast<std::size_t>(vertex)]; }
   Index First(Index vertex) const { return this->Ends[2 * static_cast<std::size_t>(vertex)]; }
   Index Last(Index vertex) const { return this->Ends[2 * static_cast<std::size_t>(vertex) + 1]; }
   void Tell(Index vertex, int isLast, Index end)
@@ -874,11 +931,6 @@ public:
 
 private:
   Buffer<Index> Ends;
-};
-
-/** Thrown where growing is given up, because the searches look at too many points. */
-struct CannotGrow
-{
 };
 
 /**
@@ -950,7 +1002,7 @@ public:
         this->Tell(this->Upper, apex);
         this->Upper = apex;
       }
-      if (steps % 64 == 0 && std::chrono::steady_clock::now() > end)
+      if ((steps % 64 == 0 || this->HasLooked()) && std::chrono::steady_clock::now() > end)
       {
         return;
       }
@@ -986,9 +1038,12 @@ public:
     const auto end = std::chrono::steady_clock::now() + TimePerRound;
     for (int fans = 1; this->Next < this->End; ++fans)
     {
-      this->GrowFan(this->Order[this->Next]);
+      this->AskForRowsAbove();
+      if (!this->GrowFan(this->Order[this->Next], end))
+      {
+        return;
+      }
       ++this->Next;
-      this->CheckWork();
       if (fans % 256 == 0 && (fans == FansPerRound || std::chrono::steady_clock::now() > end))
       {
         return;
@@ -1002,21 +1057,48 @@ private:
     return IsLower(this->Grid.PointAt(slot), this->Grid.PointAt(this->Order[this->Begin]));
   }
 
-  void GrowFan(Index lowest)
+  /**
+   * Slots are in rows as well: so many further on lies what fans soon reach for the first time, in
+   * another order.
+   */
+  void AskForRowsAbove() const
+  {
+    constexpr Index rows = 5, inLine = 8; // of the widest values
+    if (this->Next % inLine == 0)
+    {
+      const Index ahead =
+        std::min(this->Next + rows * this->Grid.Bins.Columns, this->Grid.NumberOfPoints() - 1);
+      Prefetch(&this->Grid.X[ahead]);
+      Prefetch(&this->Grid.Y[ahead]);
+      Prefetch(&this->Grid.Ids[ahead]);
+      Prefetch(this->Pool.At(ahead));
+    }
+  }
+
+  /**
+   * Grows the fan of the next vertex, or goes on with it.
+   * @return false when it is not complete at the given time
+   */
+  bool GrowFan(Index lowest, std::chrono::steady_clock::time_point until)
   {
     if (lowest == this->Order[this->Grid.NumberOfPoints() - 1])
     {
-      return;
+      return true;
     }
     const Index first = this->Pool.First(lowest), end = this->Pool.Last(lowest);
     if (first == end && first != None)
     {
-      return;
+      return true;
     }
-    this->Fan.Resize(1);
-    this->Fan[0] = first;
-    this->Search.SetOrigin(lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
-    Index current = first;
+    if (this->Fan.empty())
+    {
+      constexpr Index ahead = 8;
+      this->Fan.Append(first);
+      this->Search.Foresee(this->Order[std::min(this->Next + ahead, this->End - 1)]);
+      this->Search.SetOrigin(
+        lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
+    }
+    Index current = this->Fan[this->Fan.size() - 1];
     while (current != end || current == None)
     {
       const std::size_t count = this->Fan.size();
@@ -1026,6 +1108,7 @@ private:
         if (this->Fan.size() == count)
         {
           this->Fan.Append(this->Search.Find(current, end));
+          this->CheckWork();
         }
         current = this->Fan[this->Fan.size() - 1];
       }
@@ -1034,8 +1117,25 @@ private:
         throw std::logic_error("the fan of point " + std::to_string(this->Grid.Ids[lowest]) +
           " does not close; this is a fault of the triangulation, please report it");
       }
+      if (current != end && this->HasLooked() && std::chrono::steady_clock::now() > until)
+      {
+        return false;
+      }
     }
     this->Emit(lowest);
+    this->Fan.Resize(0);
+    return true;
+  }
+
+  /** Whether searches have looked at many points since it was so the last time. */
+  bool HasLooked()
+  {
+    if (this->Search.Work() < this->NextClock)
+    {
+      return false;
+    }
+    this->NextClock = this->Search.Work() + LooksPerClock;
+    return true;
   }
 
   /** Writes the triangles of a fan and tells their upper vertices. */
@@ -1089,8 +1189,9 @@ private:
   const Index Begin, End;
   Index Next;
   const std::int64_t MostWork;
+  std::int64_t NextClock = LooksPerClock;
   const EdgeLimit Limit;
-  Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours, counter-clockwise
+  Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours so far, counter-clockwise
   // The edge that the walk has come to, and the last one; edges of the outline above.
   Index Lower = None, Upper = None, LastLower = None, LastUpper = None;
   std::size_t Outline = 0;
@@ -1269,8 +1370,10 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
     return result;
   }
 
-  const Buffer<Index> outermost = HullCandidates(grid, grid.Order);
-  const Hull hull{ HullChain(grid, outermost, Negative), HullChain(grid, outermost, Positive) };
+  const Progress inHull = Part(options.Monitor, 0.2, 0.2);
+  const Buffer<Index> outermost = HullCandidates(grid, grid.Order, inHull);
+  const Hull hull{ HullChain(grid, outermost, Negative, inHull),
+    HullChain(grid, outermost, Positive, inHull) };
   if (hull.RightChain == hull.LeftChain)
   {
     return result; // all points on one line

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DivideAndConquer.h"
 
+#include "LatticeDelaunay.h"
 #include "Predicates.h"
 
 #include <vector>
@@ -32,8 +33,9 @@ struct HullEnds
 class Division
 {
 public:
-  Division(const Buffer<Point2>& points, const Progress& progress)
+  Division(const Buffer<Point2>& points, const Progress& progress, const LatticeMetric* metric)
     : Points(points)
+    , Metric(metric)
     , Count(static_cast<Index>(points.size()))
     , Monitor(progress)
     , Work(static_cast<double>(points.size()) * std::log2(static_cast<double>(points.size())))
@@ -84,8 +86,8 @@ public:
       ReportStep(progress, spoke, number, 2 * ReportStride);
       // Where an edge has been removed before, any other vertex of the polygon is on its circle.
       if (this->Spokes[spoke].Origin != None && !isOnHull[spoke / 2] &&
-        InCircle(this->OriginOf(spoke), this->EndOf(spoke), this->EndOf(this->NextLeft(spoke)),
-          this->EndOf(this->NextLeft(Twin(spoke)))) == Zero)
+        this->IsInCircle(this->OriginOf(spoke), this->EndOf(spoke),
+          this->EndOf(this->NextLeft(spoke)), this->EndOf(this->NextLeft(Twin(spoke)))) == Zero)
       {
         this->RemoveEdge(spoke);
       }
@@ -273,7 +275,7 @@ private:
       if (hasLower)
       {
         for (Index next = this->Spokes[inLower].Next; next != Twin(base) &&
-             InCircle(q, p, this->EndOf(inLower), this->EndOf(next)) == Positive;
+             this->IsInCircle(q, p, this->EndOf(inLower), this->EndOf(next)) == Positive;
              next = this->Spokes[inLower].Next)
         {
           this->RemoveEdge(inLower);
@@ -285,8 +287,8 @@ private:
       const bool hasUpper = isAbove(inUpper);
       if (hasUpper)
       {
-        for (Index next = this->Spokes[inUpper].Previous;
-             next != base && InCircle(q, p, this->EndOf(inUpper), this->EndOf(next)) == Positive;
+        for (Index next = this->Spokes[inUpper].Previous; next != base &&
+             this->IsInCircle(q, p, this->EndOf(inUpper), this->EndOf(next)) == Positive;
              next = this->Spokes[inUpper].Previous)
         {
           this->RemoveEdge(inUpper);
@@ -299,10 +301,35 @@ private:
         return { lower.FromLowest, upper.FromHighest };
       }
       const bool isUpper = !hasLower ||
-        (hasUpper && InCircle(this->EndOf(inLower), q, p, this->EndOf(inUpper)) == Positive);
+        (hasUpper &&
+          this->IsInCircle(this->EndOf(inLower), q, p, this->EndOf(inUpper)) == Positive);
       base =
         isUpper ? this->Connect(Twin(inUpper), Twin(base)) : this->Connect(base, Twin(inLower));
     }
+  }
+
+  /** As InCircle(), of counter-clockwise a, b, c, also in a lattice's metric. */
+  Sign IsInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d) const
+  {
+    if (!this->Metric)
+    {
+      return InCircle(a, b, c, d);
+    }
+    // Of two points left of ab, the one with the smaller quotient dot / cross is in the circle of
+    // the other; multiplied out, this holds on either side.
+    struct Offset
+    {
+      std::int64_t X, Y;
+    };
+    const auto from = [&a](const Point2& p) {
+      return Offset{ static_cast<std::int64_t>(p.X - a.X), static_cast<std::int64_t>(p.Y - a.Y) };
+    };
+    const Offset e = from(b), p = from(c), q = from(d);
+    const auto dot = [&](const Offset& o) {
+      return this->Metric->Dot(o.X, o.Y, o.X - e.X, o.Y - e.Y);
+    };
+    const auto cross = [&](const Offset& o) { return e.X * o.Y - e.Y * o.X; };
+    return static_cast<Sign>(CompareProducts(dot(p), cross(q), dot(q), cross(p)));
   }
 
   /** Reports within a merge, which at the top takes long. */
@@ -317,6 +344,7 @@ private:
   }
 
   const Buffer<Point2>& Points;
+  const LatticeMetric* const Metric;
   const Index Count;
   Buffer<Spoke> Spokes;
   Index Removed = None; ///< the first spokes of removed edges, as a list
@@ -331,14 +359,15 @@ private:
 
 } // namespace
 
-Buffer<Index> DivideAndConquer(const Buffer<Point2>& points, const Progress& progress)
+Buffer<Index> DivideAndConquer(
+  const Buffer<Point2>& points, const Progress& progress, const LatticeMetric* metric)
 {
   if (points.size() < 3)
   {
     return Buffer<Index>();
   }
   const Progress dividing = Part(progress, 0.0, 0.9);
-  Division division(points, dividing);
+  Division division(points, dividing, metric);
   const Index hullSpoke = division.Divide(0, static_cast<Index>(points.size())).FromLowest;
   division.RemoveTies(hullSpoke, Part(progress, 0.9, 0.95));
   Buffer<Index> triangles = division.CutIntoFans(hullSpoke, Part(progress, 0.95, 1.0));

@@ -30,15 +30,20 @@
 namespace elevation
 {
 
+struct LatticeMetric;
+
 /**
  * Triangulates.
  * @param[in] points  distinct and finite, by increasing (y, x); at most MaximumNumberOfPoints
+ * @param[in] metric  points are nodes of a lattice (column, row), and circles those of its metric
+ *                    (LatticeDelaunay.h); null: circles are circles
  * @return three positions in points a triangle, the lowest of them first, counter-clockwise; by
  *         their lowest vertices, and those of one vertex counter-clockwise. None when fewer than
  *         three points are given or all are on one line.
  * @throws std::bad_alloc; Aborted
  */
-Buffer<Index> DivideAndConquer(const Buffer<Point2>& points, const Progress& progress = Progress());
+Buffer<Index> DivideAndConquer(const Buffer<Point2>& points, const Progress& progress = Progress(),
+  const LatticeMetric* metric = nullptr);
 
 } // namespace elevation
 

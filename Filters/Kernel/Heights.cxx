@@ -26,14 +26,16 @@ constexpr double LeastDistance = 0.02;
 /** Places where Adaptive tries the methods, new points it compares there, places that suffice. */
 constexpr int NumberOfPlaces = 8;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
-constexpr Index NumberOfProbes = 32;
+constexpr Index LeastProbes = 32;
+constexpr Index MostProbes = 100;
+constexpr Index PointsPerProbe = 16;
 constexpr int EnoughPlaces = 2;
 
 /**
  * The thin plate is the safe choice: another method must be that much better, in root mean square
  * errors. Without, the worst surface tried lost a tenth.
  */
-constexpr double Advantage = 0.9;
+constexpr double Advantage = 0.85;
 
 /** Errors below that share of the range are rounding. */
 constexpr double LeastError = 1e-9;
@@ -362,7 +364,8 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
   }
   const std::size_t firstProbe = points.size();
   std::vector<Index> probes;
-  const Index numberOfProbes = std::min(count, NumberOfProbes);
+  const Index numberOfProbes =
+    std::min({ count, LeastProbes + count / PointsPerProbe, MostProbes });
   for (Index k = 0; k < numberOfProbes; ++k)
   {
     probes.push_back(static_cast<Index>((2 * std::int64_t(k) + 1) * count / (2 * numberOfProbes)));
@@ -611,7 +614,8 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   }
   if (!this->Smooth || !this->AllBoundaryIsCentre)
   {
-    const std::vector<double> flat = this->Flat->Solve(rim, 1e-10, Part(progress, this->Smooth ? 0.3 : 0.0, 1.0));
+    const std::vector<double> flat =
+      this->Flat->Solve(rim, 1e-10, Part(progress, this->Smooth ? 0.3 : 0.0, 1.0));
     if (this->Smooth)
     {
       for (std::size_t i = 0; i < count; ++i)

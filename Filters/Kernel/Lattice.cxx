@@ -457,6 +457,7 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
     v = generators.V;
     Fit fit;
     std::size_t next = 8;
+    Point2 beside{ 0.0, 0.0 }; // farthest from the line, as long as there is but one step
     isFitted = true;
     for (std::size_t k = 0; k < sample.size() && isFitted; ++k)
     {
@@ -475,6 +476,7 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
       {
         rest = Minus(d, u, std::round(Dot(d, u) / Dot(u, u)));
         isNode = Dot(rest, rest) <= far * far * Dot(u, u);
+        beside = Dot(rest, rest) > Dot(beside, beside) ? rest : beside;
       }
       else
       {
@@ -495,6 +497,15 @@ bool FitOutwards(const std::vector<Point2>& sample, Generators generators, doubl
         fit.Solve(origin, u, v);
         next += next / 4;
       }
+    }
+    if (isFitted && generators.Rank == 1)
+    {
+      // The other step is so short that it was taken for a remainder.
+      if (!generators.Insert(beside))
+      {
+        return false;
+      }
+      isFitted = false;
     }
   }
   if (!isFitted || generators.Rank < 2)

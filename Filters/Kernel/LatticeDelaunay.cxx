@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LatticeDelaunay.h"
 
+#include "DivideAndConquer.h"
 #include "LatticeNodes.h"
 #include "Parallel.h"
 #include "Predicates.h"
@@ -399,6 +400,16 @@ private:
   std::array<Slot, (2 * Reach + 1) * (Reach + 1)> Slots;
 };
 
+/** Work for each point before growing is given up, in nanoseconds or so. */
+constexpr std::int64_t WorkPerPoint = 1000;
+/** And for a walk across the points, during which nothing is reported. */
+constexpr std::int64_t MostWorkOfWalk = 30000000;
+
+/** Thrown where it is. */
+struct CannotGrow
+{
+};
+
 /**
  * Grows the triangulation in strips of rows, several at the same time. A strip writes to its own
  * part of the triangles and of the fans' ends. What a triangle from below the strip would have told
@@ -440,7 +451,41 @@ public:
       return false;
     }
     const std::size_t hull = this->RightChain.size() + this->LeftChain.size() - 2;
-    const std::size_t total = 2 * static_cast<std::size_t>(this->Count) - 2 - hull;
+    const Progress progress = Part(this->Options.Monitor, 0.4, 1.0);
+    Buffer<Index> triangles;
+    bool isGrown = !this->Options.DivideAtOnce;
+    if (isGrown)
+    {
+      try
+      {
+        if (!this->GrowAll(
+              2 * static_cast<std::size_t>(this->Count) - 2 - hull, threads, progress, triangles))
+        {
+          return false;
+        }
+      }
+      catch (const CannotGrow&)
+      {
+        isGrown = false;
+      }
+    }
+    if (!isGrown && !this->Divide(progress, triangles))
+    {
+      return false;
+    }
+    result.Triangles = std::move(triangles);
+    result.NumberOfHullPoints = static_cast<Index>(hull);
+    return true;
+  }
+
+private:
+  /**
+   * Grows all triangles.
+   * @param[in] total  how many
+   * @return false when one would be flat
+   */
+  bool GrowAll(std::size_t total, int threads, const Progress& progress, Buffer<Index>& triangles)
+  {
     this->First.Resize(this->Count);
     this->Last.Resize(this->Count);
     const auto open = [&](const std::vector<Index>& chain, Buffer<Index>& ends) {
@@ -452,7 +497,6 @@ public:
     open(this->RightChain, this->First);
     open(this->LeftChain, this->Last);
 
-    const Progress progress = Part(this->Options.Monitor, 0.4, 1.0);
     std::vector<Strip> strips = this->MakeStrips(threads);
     const Index number = static_cast<Index>(strips.size());
     for (Index done = 1; done < number; done += threads)
@@ -462,7 +506,6 @@ public:
         [&](Index i) { this->WalkBelow(strips[done + i]); });
     }
 
-    Buffer<Index> triangles;
     triangles.Resize(3 * total);
     for (Index i = 0; i < number; ++i)
     {
@@ -485,12 +528,57 @@ public:
       end = strip.Begin == end ? strip.Next : std::copy(strip.Begin, strip.Next, end);
     }
     triangles.Resize(static_cast<std::size_t>(end - triangles.data()));
-    result.Triangles = std::move(triangles);
-    result.NumberOfHullPoints = static_cast<Index>(hull);
     return true;
   }
 
-private:
+  /**
+   * The same triangles in the same order, in n log n whatever the nodes.
+   * @return false when one would be flat
+   */
+  bool Divide(const Progress& progress, Buffer<Index>& triangles) const
+  {
+    const LatticeNodes& nodes = this->Nodes;
+    Buffer<Point2> places;
+    places.Reserve(this->Count);
+    for (Index row = 0; row < nodes.Rows; ++row)
+    {
+      const Index begin = nodes.NodeAt(row, 0) / 64;
+      for (Index w = begin; w < begin + nodes.WordsPerRow - 1; ++w)
+      {
+        for (std::uint64_t bits = nodes.Word(w); bits; bits &= bits - 1)
+        {
+          places.Append({ 64.0 * (w - begin) + LowestBit(bits), 1.0 * row });
+        }
+      }
+    }
+    triangles = DivideAndConquer(places, Part(progress, 0.0, 0.95), &this->Metric);
+    const Progress naming = Part(progress, 0.95, 1.0);
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < triangles.size(); t += 3)
+    {
+      ReportStep(naming, t, triangles.size(), 49152);
+      const Index* const ranks = triangles.data() + t;
+      const auto from = [&](Index rank) {
+        return Offset{ static_cast<std::int64_t>(places[rank].X - places[ranks[0]].X),
+          static_cast<std::int64_t>(places[rank].Y - places[ranks[0]].Y) };
+      };
+      const Offset p = from(ranks[1]), q = from(ranks[2]);
+      const Index a = nodes.Ids[ranks[0]], b = nodes.Ids[ranks[1]], c = nodes.Ids[ranks[2]];
+      if (this->IsFlat(p, q, a, b, c))
+      {
+        return false;
+      }
+      if (this->Admits(a, b, c))
+      {
+        triangles[kept++] = a;
+        triangles[kept++] = b;
+        triangles[kept++] = c;
+      }
+    }
+    triangles.Resize(kept);
+    return true;
+  }
+
   /** Rows that one thread grows. */
   struct Strip
   {
@@ -577,6 +665,11 @@ private:
         apex = other;
       }
       const Offset place = this->Search(row, column, e, apex, strip.Work);
+      CheckWork(strip);
+      if (strip.Work > MostWorkOfWalk)
+      {
+        throw CannotGrow();
+      }
       const Index node = high + this->StepTo(place);
       if (node < border)
       {
@@ -839,14 +932,12 @@ private:
       const Index rankOfApex = nodes.RankOf(apex);
       NeedRoom(strip, 1);
       const Index b = nodes.Ids[rankOfCurrent], c = nodes.Ids[rankOfApex];
-      if (!this->IsProved(e, p) &&
-        Orientation(this->Points.At(id), this->Points.At(b), this->Points.At(c)) != Positive)
+      if (this->IsFlat(e, p, id, b, c))
       {
         strip.IsFlat = true;
         return;
       }
-      if (this->LimitSquared == Infinity ||
-        (this->IsShort(id, b) && this->IsShort(b, c) && this->IsShort(c, id)))
+      if (this->Admits(id, b, c))
       {
         strip.Next[0] = id;
         strip.Next[1] = b;
@@ -858,6 +949,7 @@ private:
       rankOfCurrent = rankOfApex;
       e = p;
       strip.Work += 30;
+      CheckWork(strip);
     }
   }
 
@@ -876,6 +968,28 @@ private:
     {
       this->First[rankOfB] = a;
     }
+  }
+
+  static void CheckWork(const Strip& strip)
+  {
+    if (strip.Work > WorkPerPoint * (std::int64_t(strip.EndRank) - strip.FirstRank + 1000))
+    {
+      throw CannotGrow();
+    }
+  }
+
+  /** Whether a triangle of points is flat or inverted; p and q are its upper nodes. */
+  bool IsFlat(const Offset& p, const Offset& q, Index a, Index b, Index c) const
+  {
+    return !this->IsProved(p, q) &&
+      Orientation(this->Points.At(a), this->Points.At(b), this->Points.At(c)) != Positive;
+  }
+
+  /** Whether the limit on edges leaves in a triangle of points. */
+  bool Admits(Index a, Index b, Index c) const
+  {
+    return this->LimitSquared == Infinity ||
+      (this->IsShort(a, b) && this->IsShort(b, c) && this->IsShort(c, a));
   }
 
   bool IsShort(Index a, Index b) const

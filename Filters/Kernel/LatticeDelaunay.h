@@ -14,7 +14,9 @@
  * two triangles of one cell, and all such vertices of 64 nodes are told at once by a few operations
  *      on words. For all others the apex is the first occupied node in a list of the nodes near the
  *      edge, by increasing circle, that is made once for each edge vector; what the lists do not
- *      reach is searched for row by row, in a disc that is proved to hold all better nodes.
+ *      reach is searched for row by row, in a disc that is proved to hold all better nodes. Where
+ *      that takes too long, as for nodes along a flat arc, the nodes are divided and conquered
+ *      (DivideAndConquer.h), in n log n; the triangles are the same, byte for byte.
  *
  * Guarantees: exact and unique, as the general path, for the nodes in the metric: no node lies
  * inside a triangle's circle, and co-circular nodes are cut into the fan of the lowest (by row,

@@ -288,7 +288,69 @@ public:
     return result;
   }
 
+  /** 2^exponent times this / divisor, rounded to the nearest double. */
+  double DividedBy(const BigInteger& divisor, int exponent) const
+  {
+    if (this->Limbs.empty())
+    {
+      return 0.0;
+    }
+    BigInteger rest = *this, d = divisor;
+    rest.IsNegative = d.IsNegative = false;
+    // Powers of two in one of them make the whole quotient one of 55 to 57 bits: 53 of a double,
+    // one to round by, and one that tells whether anything follows.
+    const int shift = 56 - (rest.NumberOfBits() - d.NumberOfBits());
+    (shift > 0 ? rest : d) = (shift > 0 ? rest : d) * BigInteger(1.0, -std::abs(shift));
+    // In two digits of 28 bits, each guessed in double and put right.
+    std::uint64_t quotient = 0;
+    for (const int digitShift : { 28, 0 })
+    {
+      if (rest.Limbs.empty())
+      {
+        break; // what follows is zero
+      }
+      const BigInteger unit = d * BigInteger(1.0, -digitShift);
+      double digit = std::floor(
+        std::ldexp(rest.Leading() / unit.Leading(), rest.NumberOfBits() - unit.NumberOfBits()));
+      rest = rest - unit * BigInteger(digit, 0);
+      for (; rest.IsNegative; digit -= 1.0)
+      {
+        rest = rest + unit;
+      }
+      for (BigInteger less = rest - unit; !less.IsNegative; digit += 1.0, less = rest - unit)
+      {
+        rest = less;
+      }
+      quotient += static_cast<std::uint64_t>(digit) << digitShift;
+    }
+    quotient |= rest.Limbs.empty() ? 0 : 1;
+    const double value = std::ldexp(static_cast<double>(quotient), exponent - shift);
+    return this->IsNegative != divisor.IsNegative ? -value : value;
+  }
+
 private:
+  int NumberOfBits() const
+  {
+    int bits = 0;
+    for (std::uint32_t limb = this->Limbs.back(); limb; limb >>= 1)
+    {
+      ++bits;
+    }
+    return bits + 32 * static_cast<int>(this->Limbs.size() - 1);
+  }
+
+  /** this / 2^NumberOfBits(), within a rounding. */
+  double Leading() const
+  {
+    double value = 0.0;
+    const std::size_t size = this->Limbs.size();
+    for (std::size_t i = size < 4 ? 0 : size - 4; i < size; ++i)
+    {
+      value = value / 4294967296.0 + this->Limbs[i];
+    }
+    return std::ldexp(value, 32 * static_cast<int>(size - 1) - this->NumberOfBits());
+  }
+
   std::uint32_t Limb(std::size_t i) const { return i < this->Limbs.size() ? this->Limbs[i] : 0; }
 
   void Trim()
@@ -447,4 +509,18 @@ Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Poin
 }
 
 } // namespace detail
+
+Point2 RoundedCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
+{
+  const int e = CommonExponent({ a, b, c, d });
+  const BigInteger ax(a.X, e), ay(a.Y, e), cx(c.X, e), cy(c.Y, e);
+  const BigInteger abx = BigInteger(b.X, e) - ax, aby = BigInteger(b.Y, e) - ay;
+  const BigInteger cdx = BigInteger(d.X, e) - cx, cdy = BigInteger(d.Y, e) - cy;
+  // a + t (b - a), with t a quotient.
+  const BigInteger whole = abx * cdy - aby * cdx;
+  const BigInteger part = (cx - ax) * cdy - (cy - ay) * cdx;
+  return { (ax * whole + abx * part).DividedBy(whole, e),
+    (ay * whole + aby * part).DividedBy(whole, e) };
+}
+
 } // namespace elevation

@@ -7,7 +7,8 @@
  * Method: a floating-point filter with a proved error bound answers almost always; behind it come
  * floating-point expansions [Shewchuk 1997], and behind those, for coordinates so large or so small
  * that products of four would leave the range of double, integers of any length.
- * Every answer is the sign of the real determinant; nothing here allocates except the last stage.
+ * Every answer is the sign of the real determinant; nothing here allocates except the last stage
+ * and RoundedCrossing().
  *
  * [Shewchuk 1997] Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
  * Predicates, Discrete & Computational Geometry 18:305-363.
@@ -109,6 +110,14 @@ inline Sign InCircle(const Point2& a, const Point2& b, const Point2& c, const Po
   }
   return detail::ExactInCircle(a, b, c, d);
 }
+
+/**
+ * Where the line through a and b crosses the line through c and d, each coordinate rounded to the
+ * nearest double (below 1e-307 to one of the two nearest). So it does not depend on the order of
+ * the lines or of their ends, is exact where it can be, and along a segment the crossings come in
+ * their true order, or are equal. The lines must not be parallel. Some 8 microseconds.
+ */
+Point2 RoundedCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2& d);
 
 } // namespace elevation
 

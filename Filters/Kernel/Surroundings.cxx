@@ -136,6 +136,22 @@ void Surroundings::Bounds::Set(double reach, double error, double margin)
   this->Margin = static_cast<float>(margin);
 }
 
+void Surroundings::Foresee(Index slot) const
+{
+  // In full bins, the points of a row are far apart in memory.
+  if (this->Current->IsBox)
+  {
+    const BinGrid& grid = this->Grid;
+    const char* const node = reinterpret_cast<const char*>(&grid.Nodes[grid.LeafNodes[slot / 8]]);
+    for (std::size_t line = 0; line < sizeof(BinGrid::Node); line += 64)
+    {
+      __builtin_prefetch(node + line);
+    }
+    __builtin_prefetch(&grid.X[slot]);
+    __builtin_prefetch(&grid.Y[slot]);
+  }
+}
+
 bool Surroundings::Gather(Index origin, Index next)
 {
   Window* other = this->Windows + (this->Current == this->Windows);
@@ -168,12 +184,11 @@ void Surroundings::GatherInto(Window& window)
       this->EnterRow(row);
     }
     const Index first = static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3;
-    if ((this->IsWidest && this->GatherWidest(window, first)) || this->GatherEven(window, first))
-    {
-      return;
-    }
     const Index column = bins.Column(p.X);
-    if (this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2))
+    const Index* const own = this->Near[0]->Starts + column;
+    if (own[1] - own[0] <= Capacity &&
+      ((this->IsWidest ? this->GatherWidest(window, first) : this->GatherEven(window, first)) ||
+        this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2)))
     {
       return;
     }
@@ -417,7 +432,7 @@ ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int s
     }
     count += end - first;
   }
-  window.Close(count);
+  window.Close(count, this->IsWidest);
   window.IsBox = false;
   const Index above = std::min(this->CurrentRow + Shapes[shape].Rows, bins.Rows);
   window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
@@ -430,17 +445,19 @@ ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int s
 }
 
 /** Ends the lists of the window's points. */
-ELEVATION_WIDE void Surroundings::Window::Close(int count)
+ELEVATION_WIDE void Surroundings::Window::Close(int count, bool isWidest)
 {
-  this->Vectors = MostVectors;
+  this->Vectors = isWidest && count <= 8 * WidestVectors ? WidestVectors
+    : count <= 8 * EvenVectors                           ? EvenVectors
+                                                         : MostVectors;
   const __m256 nothing = _mm256_set1_ps(NotANumber);
-  for (int at = count; at < 8 * MostVectors; at += 8)
+  for (int at = count; at < 8 * this->Vectors; at += 8)
   {
     _mm256_storeu_ps(this->X + at, nothing);
     _mm256_storeu_ps(this->Y + at, nothing);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(this->Slots + at), _mm256_set1_epi32(None));
   }
-  for (int i = 0; i < MostVectors; ++i)
+  for (int i = 0; i < this->Vectors; ++i)
   {
     const __m256 x = _mm256_load_ps(this->X + 8 * i), y = _mm256_load_ps(this->Y + 8 * i);
     _mm256_store_ps(this->Square + 8 * i, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
@@ -482,6 +499,13 @@ bool Surroundings::GatherBox(Window& window)
       return false;
     }
     const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
+    // Of a box of a few roundoffs of the coordinates, rounding makes a larger one.
+    const double across = std::max(p.X - lowX, highX - p.X) * perSide;
+    const double up = (highY - p.Y) * perSide;
+    if (!(across * across + up * up < 1.2))
+    {
+      return false; // R is 1.1
+    }
     BinGrid::Step top = last;
     while (!(top.LowX < lowX && highX < top.HighX && highY < top.HighY) && !top.IsRoot())
     {
@@ -571,7 +595,7 @@ ELEVATION_WIDE bool Surroundings::GatherBox(
       }
     }
   }
-  window.Close(count);
+  window.Close(count, this->IsWidest);
   window.OriginLane = __builtin_ctzll(window.LanesOf<MostVectors>(window.Origin));
   return true;
 }
@@ -692,7 +716,8 @@ ELEVATION_WIDE_INLINE Surroundings::Candidates Surroundings::Search(
  * Leaves out the end of the edge to b = (bx, by); what is not a candidate by the errors that its own
  * size allows, rather than the window's; and, told exactly, what is not on the edge's left.
  */
-void Surroundings::Sift(Index b, float bx, float by, int guess, Candidates& candidates) const
+ELEVATION_WIDE void Surroundings::Sift(
+  Index b, float bx, float by, int guess, Candidates& candidates) const
 {
   const Window& window = *this->Current;
   const float bestX = window.X[guess], bestY = window.Y[guess];
@@ -701,25 +726,44 @@ void Surroundings::Sift(Index b, float bx, float by, int guess, Candidates& cand
   const float e = 2.0f * window.Errors->CoordinateError;
   const float u = 8.0f * static_cast<float>(Roundoff);
   const float length = std::fabs(bx) + std::fabs(by);
-  const auto crossError = [&](float x, float y) {
-    const float size = std::fabs(x) + std::fabs(y);
-    return e * (length + size) + u * length * size;
-  };
-  const auto dotError = [&](float x, float y) {
-    const float size = std::fabs(x) + std::fabs(y);
-    return (e + u * size) * (2.0f * size + length);
-  };
-  for (std::uint64_t left = candidates.Bits; left; left &= left - 1)
+  const float bestSize = std::fabs(bestX) + std::fabs(bestY);
+  const float bestCrossError = e * (length + bestSize) + u * length * bestSize;
+  const float bestDotError = (e + u * bestSize) * (2.0f * bestSize + length);
+
+  const __m256 signBit = _mm256_set1_ps(-0.0f);
+  const __m256 endX = _mm256_set1_ps(bx), endY = _mm256_set1_ps(by);
+  const __m256 lengths = _mm256_set1_ps(length), es = _mm256_set1_ps(e), us = _mm256_set1_ps(u);
+  std::uint64_t isWorse = 0, isLeft = 0;
+  for (int i = 0; i < window.Vectors; ++i)
   {
-    const int lane = __builtin_ctzll(left);
-    const Index slot = window.Slots[lane];
-    const float x = window.X[lane], y = window.Y[lane];
-    const float cross = bx * y - by * x, dot = x * (x - bx) + y * (y - by);
-    const float error = std::fabs(dot) * crossError(bestX, bestY) +
-      std::fabs(bestCross) * dotError(x, y) +
-      (std::fabs(cross) + crossError(x, y)) * dotError(bestX, bestY) +
-      std::fabs(bestDot) * crossError(x, y);
-    if (slot == b || dot * bestCross - bestDot * cross > 2.0f * error ||
+    const __m256 x = _mm256_load_ps(window.X + 8 * i), y = _mm256_load_ps(window.Y + 8 * i);
+    const __m256 cross = _mm256_fmsub_ps(endX, y, _mm256_mul_ps(endY, x));
+    const __m256 dot =
+      _mm256_fmadd_ps(x, _mm256_sub_ps(x, endX), _mm256_mul_ps(y, _mm256_sub_ps(y, endY)));
+    const __m256 size = _mm256_add_ps(_mm256_andnot_ps(signBit, x), _mm256_andnot_ps(signBit, y));
+    const __m256 ofSize = _mm256_fmadd_ps(us, size, es);
+    const __m256 crossError = _mm256_fmadd_ps(ofSize, lengths, _mm256_mul_ps(es, size));
+    const __m256 dotError =
+      _mm256_mul_ps(ofSize, _mm256_add_ps(_mm256_add_ps(size, size), lengths));
+    const __m256 absoluteCross = _mm256_andnot_ps(signBit, cross);
+    __m256 error =
+      _mm256_mul_ps(_mm256_andnot_ps(signBit, dot), _mm256_set1_ps(2.0f * bestCrossError));
+    error = _mm256_fmadd_ps(_mm256_set1_ps(2.0f * std::fabs(bestCross)), dotError, error);
+    error = _mm256_fmadd_ps(
+      _mm256_set1_ps(2.0f * bestDotError), _mm256_add_ps(absoluteCross, crossError), error);
+    error = _mm256_fmadd_ps(_mm256_set1_ps(2.0f * std::fabs(bestDot)), crossError, error);
+    const __m256 difference = _mm256_fmsub_ps(
+      dot, _mm256_set1_ps(bestCross), _mm256_mul_ps(_mm256_set1_ps(bestDot), cross));
+    const int worse = _mm256_movemask_ps(_mm256_cmp_ps(difference, error, _CMP_GT_OQ));
+    const int left = _mm256_movemask_ps(_mm256_cmp_ps(cross, crossError, _CMP_GT_OQ));
+    isWorse |= static_cast<std::uint64_t>(worse) << (8 * i);
+    isLeft |= static_cast<std::uint64_t>(left) << (8 * i);
+  }
+  candidates.Bits &= ~isWorse;
+  for (std::uint64_t left = candidates.Bits & ~isLeft; left; left &= left - 1)
+  {
+    const Index slot = window.Slots[__builtin_ctzll(left)];
+    if (slot == b ||
       Orientation(this->Grid.PointAt(window.Origin), this->Grid.PointAt(b),
         this->Grid.PointAt(slot)) != Positive)
     {
@@ -735,6 +779,7 @@ bool Surroundings::IsDecided(Index b, float bx, float by, int& guess, Candidates
   if (!candidates.IsProved)
   {
     candidates.Bits = std::uint64_t(1) << guess; // a start for the search elsewhere
+    return false;
   }
   this->Sift(b, bx, by, guess, candidates);
   if (!candidates.IsProved || (candidates.Bits & (candidates.Bits - 1)) != 0)
@@ -920,6 +965,8 @@ bool Surroundings::Gather(Index, Index)
 {
   return false;
 }
+
+void Surroundings::Foresee(Index) const {}
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {

@@ -63,15 +63,20 @@ public:
    */
   bool Gather(Index origin, Index next = None);
 
+  /** Asks for the memory that gathering the window of a vertex will need, when called some vertices
+   * before. */
+  void Foresee(Index slot) const;
+
   struct Candidates
   {
     std::uint64_t Bits = 0; ///< numbers that SlotOf takes
-    /** Whether one of them is the apex; otherwise one may be near it. */
+    /** Whether one of them is the apex. */
     bool IsProved = false;
   };
 
   /**
-   * The points that may be the apex over the edge from the vertex to b, all on its left.
+   * The points that may be the apex over the edge from the vertex to b, all on its left; or, when
+   * that is not proved, a point that is near it, on whichever side.
    * @return none when it cannot tell
    */
   Candidates FindCandidates(Index b) const;
@@ -132,7 +137,7 @@ private:
     bool IsBox = false;
     double PerSide = 0.0; ///< units of the box a unit of the grid
 
-    void Close(int count);
+    void Close(int count, bool isWidest);
     template <int Count>
     std::uint64_t LanesOf(Index slot) const;
   };

@@ -3,6 +3,7 @@
 #include "Trim.h"
 
 #include "Constraints.h"
+#include "Predicates.h"
 
 #include <algorithm>
 #include <string>
@@ -13,7 +14,26 @@ namespace elevation
 namespace
 {
 
-std::vector<Segment> SegmentsOf(const Rings& rings)
+/** Whether the way from a vertex to another begins in a triangle or along an edge. */
+bool BeginsInside(const Mesh& mesh, const Fans& fans, Index from, Index to)
+{
+  bool isInside = StepAlong(mesh, fans, from, to).HalfEdge != None;
+  const Point2& a = mesh.PointOf(from);
+  const Point2& b = mesh.PointOf(to);
+  fans.Visit(mesh, from, [&](Index h) {
+    isInside = isInside ||
+      (Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
+        Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive);
+    return !isInside;
+  });
+  return isInside;
+}
+
+/**
+ * The edges of rings that lie within the mesh, in an order that depends on their places alone:
+ * where the mesh is not Delaunay, the order in which they are recovered matters.
+ */
+std::vector<Segment> SegmentsOf(const Mesh& mesh, const Fans& fans, const Rings& rings)
 {
   std::vector<Segment> segments;
   segments.reserve(rings.Vertices.size());
@@ -23,9 +43,28 @@ std::vector<Segment> SegmentsOf(const Rings& rings)
     const Index* vertices = rings.Begin(ring);
     for (Index i = 0; i < size; ++i)
     {
-      segments.push_back({ vertices[i], vertices[i + 1 == size ? 0 : i + 1] });
+      const Segment segment{ vertices[i], vertices[i + 1 == size ? 0 : i + 1] };
+      const bool isInside = BeginsInside(mesh, fans, segment.A, segment.B);
+      if (isInside != BeginsInside(mesh, fans, segment.B, segment.A))
+      {
+        throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
+          NameOf(mesh.Points, segment.B) +
+          " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
+          "pass "
+          "through points of the mesh there.");
+      }
+      if (isInside)
+      {
+        const bool isUp = IsLower(mesh.PointOf(segment.A), mesh.PointOf(segment.B));
+        segments.push_back(isUp ? segment : Segment{ segment.B, segment.A });
+      }
     }
   }
+  std::sort(segments.begin(), segments.end(), [&mesh](const Segment& s, const Segment& t) {
+    const Point2& a = mesh.PointOf(s.A);
+    const Point2& b = mesh.PointOf(t.A);
+    return IsLower(a, b) || (a == b && IsLower(mesh.PointOf(s.B), mesh.PointOf(t.B)));
+  });
   return segments;
 }
 
@@ -60,15 +99,71 @@ void MarkEdges(const Mesh& mesh, const Fans& fans, const std::vector<Segment>& s
   }
 }
 
+/**
+ * The published test. A walk with the surface on the right has outward triangles on its left. Two
+ * edges of such a triangle follow each other on the walk if and only if it is on the left of both:
+ * nothing else has room in its corner. So no walk is kept, but the number of edges of each triangle
+ * that are on it by now.
+ * @param[in]     isOdd      one flag a half-edge: whether its edge is of the boundary
+ * @param[in,out] isOutward  in: the triangles outside, which tell the walk's direction; out: those
+ *                           that the test finds
+ */
+void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOdd,
+  std::vector<char>& isOutward, const Progress& progress)
+{
+  constexpr char isTaken = 4;
+  std::vector<char> edges(isOutward.size(), 0);
+  std::vector<Index> taken;
+  const auto walkAlong = [&](Index h) {
+    const Index t = Mesh::Triangle(h);
+    if (isOutward[t] && ++edges[t] == 2)
+    {
+      taken.push_back(t);
+    }
+  };
+  InStretches(mesh.NumberOfHalfEdges(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+    for (Index h = begin; h < end; ++h)
+    {
+      if (isOdd[h])
+      {
+        walkAlong(h);
+      }
+    }
+  });
+  const Progress walking = Part(progress, 0.5, 1.0);
+  std::size_t done = 0;
+  while (!taken.empty())
+  {
+    ReportStep(walking, done++, isOutward.size());
+    const Index t = taken.back();
+    taken.pop_back();
+    edges[t] = isTaken;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      // The walk goes on along the third edge, seen from the other side: in an outward triangle,
+      // unless that edge is of the boundary.
+      const Index twin = mesh.Twin(h);
+      if (twin != Mesh::Border && edges[Mesh::Triangle(twin)] < 2)
+      {
+        walkAlong(twin);
+      }
+    }
+  }
+  for (std::size_t t = 0; t < isOutward.size(); ++t)
+  {
+    isOutward[t] = edges[t] >= 2;
+  }
+}
+
 } // namespace
 
 TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
 {
   const Index count = mesh.NumberOfTriangles();
-  const std::vector<Segment> segments = SegmentsOf(boundary);
   TrimResult result;
   Report(options.Monitor, 0.0);
   Fans fans(mesh, Part(options.Monitor, 0.0, 0.4));
+  const std::vector<Segment> segments = SegmentsOf(mesh, fans, boundary);
   std::vector<char> flags;
   if (options.RecoverBoundary)
   {
@@ -78,7 +173,7 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
   MarkEdges(mesh, fans, segments, flags, Part(options.Monitor, 0.5, 0.6));
 
   const RingLocator locator(mesh.Points, boundary);
-  const Parts parts = FindParts(mesh, Part(options.Monitor, 0.6, 0.95),
+  const Parts parts = FindParts(mesh, Part(options.Monitor, 0.6, 0.9),
     [&flags](Index h) { return static_cast<int>(flags[h]); });
   std::vector<char> isOutward; // one a label
   for (const Index t : parts.Lowest)
@@ -89,7 +184,7 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
     isOutward.push_back(isInside);
   }
   result.IsOutward.resize(count);
-  InStretches(count, Part(options.Monitor, 0.95, 1.0), [&](Index begin, Index end) {
+  InStretches(count, Part(options.Monitor, 0.9, 0.95), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       result.IsOutward[t] = isOutward[parts.Labels[t]];
@@ -99,6 +194,12 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
   if (count > 0 && result.NumberOfOutwardTriangles == count)
   {
     throw Error("The boundary encloses no triangle of the mesh.");
+  }
+  if (options.Test == OutwardTest::InwardNormal)
+  {
+    TakeAlongBoundary(mesh, flags, result.IsOutward, Part(options.Monitor, 0.95, 1.0));
+    result.NumberOfOutwardTriangles =
+      static_cast<Index>(std::count(result.IsOutward.begin(), result.IsOutward.end(), 1));
   }
   Report(options.Monitor, 1.0);
   return result;

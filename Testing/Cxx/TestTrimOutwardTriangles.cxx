@@ -11,6 +11,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkGridDelaunay2D.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
@@ -18,6 +19,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTrimOutwardTriangles.h"
 
@@ -227,6 +229,141 @@ void TestCellData()
   }
 }
 
+/** A boundary drawn anywhere: points inside triangles, on edges, outside; a lake in it. */
+void TestBoundaryDrawnAnywhere()
+{
+  auto mesh = MakeMesh();
+  vtkNew<vtkDoubleArray> heights; // linear in x,y, but for one value
+  heights->SetName("Heights");
+  vtkNew<vtkFloatArray> normals;
+  normals->SetName("Normals");
+  normals->SetNumberOfComponents(3);
+  vtkNew<vtkStringArray> names;
+  names->SetName("Names");
+  for (vtkIdType i = 0; i < Size * Size; ++i)
+  {
+    heights->InsertNextValue(3.0 * (i % Size) - 2.0 * (i / Size));
+    normals->InsertNextTuple3(i % 2 ? 1.0 : 0.0, i % 2 ? 0.0 : 1.0, 0.0);
+    names->InsertNextValue(std::to_string(i));
+  }
+  mesh->GetPointData()->AddArray(heights);
+  mesh->GetPointData()->SetNormals(normals);
+  mesh->GetPointData()->AddArray(names);
+  const vtkMTimeType time = mesh->GetMTime();
+  auto boundary = MakeRings({ { { 1.25, 1.5 }, { 12, 1.5 }, { 12, 7 }, { 1.25, 7 } },
+    { { 3.25, 3.25 }, { 5.5, 3.25 }, { 5.5, 5.75 }, { 3.25, 5.75 } } });
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputData(mesh);
+  trim->SetBoundaryData(boundary);
+  trim->Update();
+  vtkPolyData* kept = trim->GetOutput(0);
+  vtkPolyData* outward = trim->GetOutput(1);
+  Check(mesh->GetMTime() == time && mesh->GetNumberOfPoints() == Size * Size,
+    "the input is not written");
+  // Six corners that are not points, and (8, 1.5), where the boundary leaves the mesh.
+  Check(trim->GetNumberOfInsertedPoints() == 7,
+    "inserted points are counted: " + std::to_string(trim->GetNumberOfInsertedPoints()));
+  Check(kept->GetFieldData()->GetArray("NumberOfInsertedPoints") &&
+      kept->GetFieldData()->GetArray("NumberOfInsertedPoints")->GetTuple1(0) == 7,
+    "and stand in the field data");
+  Check(TwiceArea(kept) == 2.0 * (6.75 * 5.5 - 2.25 * 2.5), "the kept triangles cover the inside");
+  Check(TwiceArea(kept) + TwiceArea(outward) == 2.0 * 64, "both together cover the input");
+  Check(NumberOfFindings(kept, RulesOfSurface()) == 0 &&
+      NumberOfFindings(outward, RulesOfSurface()) == 0,
+    "both parts are surfaces");
+  Check(kept->GetPoints() == outward->GetPoints() &&
+      kept->GetNumberOfPoints() == Size * Size + trim->GetNumberOfInsertedPoints(),
+    "both have the input's points and the new ones");
+  Check(kept->GetPoints()->GetDataType() == VTK_DOUBLE, "points are double where some are new");
+  vtkPointData* data = kept->GetPointData();
+  Check(data->GetNormals() != nullptr && data->GetNumberOfArrays() == 4, "point data passes");
+  for (vtkIdType i = 0; i < kept->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    kept->GetPoint(i, p);
+    Check(std::fabs(p[2] - (100.0 + p[0] + Size * p[1])) < 1e-12, "the surface stays as it is");
+    Check(std::fabs(data->GetArray("Heights")->GetTuple1(i) - (3.0 * p[0] - 2.0 * p[1])) < 1e-12,
+      "point data are interpolated");
+    const auto id = static_cast<vtkIdType>(data->GetArray("Id")->GetTuple1(i));
+    Check(i < Size * Size ? id == i
+                          : std::fabs(mesh->GetPoint(id)[0] - p[0]) <= 0.75 &&
+          std::fabs(mesh->GetPoint(id)[1] - p[1]) <= 0.75,
+      "ids are those of a corner near by");
+    Check(vtkStringArray::SafeDownCast(data->GetAbstractArray("Names"))->GetValue(i) ==
+        std::to_string(id),
+      "strings too");
+    const double* n = data->GetNormals()->GetTuple3(i);
+    Check(
+      std::fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1.0) < 1e-6, "normals keep their length");
+  }
+  for (vtkPolyData* output : { kept, outward })
+  {
+    vtkDataArray* cells = output->GetCellData()->GetArray("Cell");
+    Check(cells && cells->GetNumberOfTuples() == output->GetNumberOfCells(), "cell data fits");
+  }
+  Check(trim->GetOutput(2)->GetNumberOfPoints() == 8, "the boundary is shown as it was given");
+
+  // A boundary around everything changes nothing.
+  trim->SetBoundaryData(MakeRings({ { { -5, -5 }, { 20, -5 }, { 20, 20 }, { -5, 20 } } }));
+  trim->RecoverBoundaryOff();
+  trim->Update();
+  Check(trim->GetNumberOfInsertedPoints() == 0 && trim->GetNumberOfOutwardTriangles() == 0 &&
+      trim->GetOutput(0)->GetPoints() == mesh->GetPoints(),
+    "a boundary around the mesh keeps it");
+
+  Check(mesh->GetPoints()->GetDataType() == VTK_FLOAT, "the mesh was in single precision");
+}
+
+/** The parts of cut triangles have the data of the triangle that they are of. */
+void TestCellDataOfParts()
+{
+  auto mesh = MakeMesh();
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputData(mesh);
+  // A small ring in one triangle, around the middle of it: it cuts no other.
+  trim->SetBoundaryData(MakeRings({ { { 4.5, 4.125 }, { 4.875, 4.125 }, { 4.75, 4.25 } } }));
+  trim->Update();
+  Check(trim->GetOutput(0)->GetNumberOfPolys() == 1 && trim->GetNumberOfInsertedPoints() == 3,
+    "the ring is one triangle");
+  Check(trim->GetOutput(1)->GetNumberOfPolys() == mesh->GetNumberOfPolys() + 5,
+    "the others are around it");
+  const double parent = trim->GetOutput(0)->GetCellData()->GetArray("Cell")->GetTuple1(2);
+  vtkDataArray* cells = trim->GetOutput(1)->GetCellData()->GetArray("Cell");
+  int parts = 0;
+  for (vtkIdType i = 0; i < cells->GetNumberOfTuples(); ++i)
+  {
+    parts += cells->GetTuple1(i) == parent;
+  }
+  Check(parts == 6, "seven parts of one triangle");
+}
+
+void TestOutwardTest()
+{
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  Check(trim->GetOutwardTest() == vtkTrimOutwardTriangles::EXACT &&
+      std::string(trim->GetOutwardTestAsString()) == "Exact",
+    "exact by default");
+  trim->SetOutwardTest(7);
+  Check(trim->GetOutwardTest() == vtkTrimOutwardTriangles::INWARD_NORMAL &&
+      std::string(trim->GetOutwardTestAsString()) == "InwardNormal",
+    "clamped from above");
+  trim->SetOutwardTest(-7);
+  Check(trim->GetOutwardTest() == vtkTrimOutwardTriangles::EXACT, "clamped from below");
+  auto mesh = MakeMesh();
+  trim->SetInputData(mesh);
+  // A lake of one square is emptied; the outside has points that are not on the boundary.
+  trim->SetBoundaryData(MakeRings(
+    { { { 1, 1 }, { 7, 1 }, { 7, 7 }, { 1, 7 } }, { { 3, 3 }, { 4, 3 }, { 4, 4 }, { 3, 4 } } }));
+  trim->SetOutwardTestToInwardNormal();
+  trim->Update();
+  Check(trim->GetNumberOfOutwardTriangles() == 2 && TwiceArea(trim->GetOutput(1)) == 2.0,
+    "the published test takes the lake, and nothing at points off the boundary");
+  Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 63, "the others stay");
+  trim->SetOutwardTestToExact();
+  trim->Update();
+  Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 35, "the exact test takes all that is outside");
+}
+
 void TestExtractedBoundary()
 {
   // Two blocks apart, and a lone point.
@@ -292,7 +429,14 @@ void TestErrors()
   open->SetLines(line);
   ExpectError(mesh, open, true, "line (cell 0) ends at point 0 (1, 1)");
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7, 6 }, { 7, 0 }, { 0, 5 } } }), true, "crosses");
-  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7.5, 6 }, { 7, 0 } } }), true, "point 1 (7.5, 6)");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7.5, 6 }, { 7, 0 } } }), false, "point 1 (7.5, 6)");
+  ExpectError(mesh, MakeRings({ { { 0, 0 }, { 9.5, 6 }, { 7, 0 } } }), false,
+    "edge from point 0 (0, 0) to point 1 (9.5, 6) leaves the mesh");
+  ExpectError(
+    mesh, MakeRings({ { { 10, 10 }, { 19, 10 }, { 10, 20 } } }), true, "encloses no triangle");
+  ExpectError(mesh,
+    MakeRings({ { { 0.5, 0.5 }, { 5, 1 }, { 4, 5 } }, { { 3, 0.5 }, { 7, 3 }, { 2, 4 } } }), true,
+    "crosses its edge from");
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { std::nan(""), 6 }, { 7, 0 } } }), true, "not finite");
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 0 } } }), false, "not an edge");
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7, 2 } } }), true, "at least three");
@@ -396,6 +540,9 @@ int TestTrimOutwardTriangles(int, char*[])
 {
   TestGivenBoundary();
   TestCellData();
+  TestBoundaryDrawnAnywhere();
+  TestCellDataOfParts();
+  TestOutwardTest();
   TestExtractedBoundary();
   TestErrors();
   TestEmptyMeshAndAbort();

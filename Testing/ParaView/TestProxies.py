@@ -19,7 +19,11 @@ OTHER_VALUES = {
         "LatticeTolerance": 0.05,
         "NumberOfThreads": 2,
     },
-    "TrimOutwardTriangles": {"GapTolerance": 3.5, "RecoverBoundary": 0},
+    "TrimOutwardTriangles": {
+        "OutwardTest": "Inward Normal",
+        "GapTolerance": 3.5,
+        "RecoverBoundary": 0,
+    },
     "FillElevationHoles": {
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
@@ -46,7 +50,8 @@ def members(header):
     """Names of the parameters of a class, and of what it tells after Update(), from its header."""
     parameters = set(re.findall(r"vtkSet\w*Macro\((\w+)", header))
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
-    parameters -= {"BoundaryConnection", "BoundaryData"}  # the second input
+    # The second inputs.
+    parameters -= {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData"}
     results = set(re.findall(r"vtkGet\w*Macro\((\w+)", header)) - parameters
     return parameters, results
 

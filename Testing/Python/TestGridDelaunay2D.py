@@ -6,7 +6,7 @@ import unittest
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from vtkelevationsurface import vtkGridDelaunay2D
 
@@ -56,7 +56,8 @@ class TestGridDelaunay2D(unittest.TestCase):
         text = str(vtkGridDelaunay2D())
         for name in ("SearchStrategy", "MaximumEdgeLength", "DuplicatePolicy", "LatticeMode",
                      "LatticeTolerance", "LatticeFound", "NumberOfThreads",
-                     "NumberOfDuplicatePoints", "NumberOfNonFinitePoints"):
+                     "NumberOfDuplicatePoints", "NumberOfNonFinitePoints",
+                     "NumberOfConstraintCrossings", "NumberOfAddedPoints"):
             self.assertIn(name, text)
 
     def test_triangles_do_not_depend_on_the_order_of_points(self):
@@ -140,6 +141,38 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetNumberOfDuplicatePoints(), 1)
         self.assertEqual(delaunay.GetNumberOfNonFinitePoints(), 1)
         self.assertEqual(triangles(delaunay.GetOutput()).tolist(), [[0, 1, 2]])
+
+    def test_constraints_are_edges_and_crossings_are_points(self):
+        j, i = numpy.mgrid[0:10, 0:10]
+        grid = numpy.column_stack([i.ravel(), j.ravel(), numpy.zeros(100)]).astype(float)
+        lines = cloud(numpy.array([[1, 1, 5], [8, 4.5, 5], [4.5, 1.5, 9], [2, 8, 9.0]]))
+        cells = vtkCellArray()
+        cells.InsertNextCell(2, [0, 1])
+        cells.InsertNextCell(2, [2, 3])
+        lines.SetLines(cells)
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(grid))
+        delaunay.SetSourceData(lines)
+        self.assertIs(delaunay.GetSource(), lines)
+        delaunay.Update()
+        self.assertEqual(delaunay.GetNumberOfConstraintCrossings(), 1)
+        self.assertEqual(delaunay.GetNumberOfAddedPoints(), 3)
+        output = delaunay.GetOutput()
+        points = vtk_to_numpy(output.GetPoints().GetData())
+        numpy.testing.assert_array_equal(points[:100], grid)
+        # (8, 4.5), (4.5, 1.5) and the crossing; (1, 1) and (2, 8) are points of the grid. The first
+        # line's first end has the grid's z, 0; it passes (3, 2), which has too.
+        numpy.testing.assert_array_equal(points[100:102], [[8, 4.5, 5], [4.5, 1.5, 9]])
+        x, y, z = points[102]
+        self.assertAlmostEqual((x - 1) / 7, (y - 1) / 3.5, places=12)
+        self.assertAlmostEqual((x - 2) / 2.5, (y - 8) / -6.5, places=12)
+        edges = {frozenset(e) for t in triangles(output) for e in zip(t, numpy.roll(t, 1))}
+        for edge in ((11, 23), (23, 102), (101, 102)):
+            self.assertIn(frozenset(edge), edges)
+        fields = output.GetFieldData()
+        self.assertEqual(fields.GetArray("NumberOfConstraintCrossings").GetValue(0), 1)
+        self.assertEqual(fields.GetArray("NumberOfAddedPoints").GetValue(0), 3)
+        self.assertIsNone(fields.GetArray("Lattice"))
 
 
 if __name__ == "__main__":

@@ -233,6 +233,33 @@ class Report(Program):
                 }
                 self.assertEqual([p[2] for p in used if p[:2] == (3.0, 3.0)], [z])
 
+    def test_breaklines_become_edges_and_are_told(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        lines = self.file("faults.txt", "x y z\n2 2.5 9\n8 2.5 9\n\n4.5 1 7\n4.5 6 7\n")
+        report = self.report(name, "--breaklines", lines, "--no-trim", "--no-fill", "-o", "s.vtp")
+        self.assertEqual(
+            report["breaklines"], {"file": lines, "added_points": 5, "crossings": 1}
+        )
+        self.assertIsNone(report["lattice"])
+        surface = files.run_vtk_reader(self.path("s.vtp"))
+        self.assertEqual(surface.GetNumberOfPoints(), len(SHEET) + 5)
+        self.assertEqual(surface.GetPoint(surface.GetNumberOfPoints() - 1), (4.5, 2.5, 9.0))
+        self.assertIn("5 points added, 1 crossing", self.output)
+
+    def test_breaklines_that_cannot_be_used_are_named(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        self.assert_refused("no.vtp: no such file", name, "--breaklines", "no.vtp")
+        bad = self.file("bad.txt", "1 1 0\n2 inf 0\n")
+        self.assert_refused("bad.txt, line 2: a breakline", name, "--breaklines", bad)
+        from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+        data = files.make_points([(2, 2, 0), (8, 2, float("nan"))])
+        lines = vtkCellArray()
+        lines.InsertNextCell(2, [0, 1])
+        data.SetLines(lines)
+        files.write_surface(data, self.path("nan.vtp"), ".vtp")
+        self.assert_refused(["nan.vtp: ", "Point 1"], name, "--breaklines", "nan.vtp")
+
     def test_a_boundary_file_cuts_the_surface(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         ring = self.file("ring.txt", "x y\n2 2\n8 2\n8 8\n2 8\n2 2\n")
@@ -242,6 +269,24 @@ class Report(Program):
         self.assertEqual(report["trim"]["outward_triangles"], 2 * (11 * 11 - 6 * 6))
         self.assertEqual(report["unused_reasons"], {"outside the boundary": 12 * 12 - 7 * 7})
         self.assertNotIn("effective_gap_tolerance", report["trim"])
+
+    def test_a_boundary_on_the_map_needs_no_points_of_the_file(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("lease.txt", "2.25 2.5\n20 2.5\n20 8\n2.25 8\n2.25 2.5\n")
+        report = self.report(name, "--boundary", ring)
+        # Two corners, and where the boundary leaves the sheet at (11, 2.5).
+        self.assertEqual(report["trim"]["inserted_points"], 3)
+        refused = self.call(name, "--boundary", ring, "--no-recover-boundary")
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("point 0 (2.25, 2.5)", refused.stderr)
+
+    def test_the_published_test_can_be_chosen(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        ring = self.file("ring.txt", "x y\n2 2\n8 2\n8 8\n2 8\n2 2\n")
+        report = self.report(name, "--boundary", ring, "--outward-test", "inward-normal")
+        self.assertEqual(report["trim"]["outward_triangles"], 0)
+        done = self.call(name, "--outward-test", "outward")
+        self.assertIn("--outward-test takes one of exact, inward-normal", done.stderr)
 
     def test_rows_without_data_are_left_out_and_counted(self):
         name = self.file("sheet.xyz", text_of(SHEET) + "5.5 5.5 -999\n")
@@ -419,6 +464,38 @@ class ShortExample(Program):
         report = self.report(data, "--maximum-edge-length", "2")
         surface = files.run_vtk_reader(self.path("short.vtp"))
         self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
+
+
+class Examples(Program):
+    def lines_of(self, name, *arguments):
+        script = os.path.join(os.path.dirname(PROGRAM), name)
+        done = subprocess.run(
+            [sys.executable, script, *arguments],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=True,
+        )
+        return done.stdout.splitlines()
+
+    def test_the_example_adds_the_fault_and_draws_it(self):
+        lines = self.lines_of("faulted_horizon.py", "fault.png", "fault.vtp")
+        self.assertEqual(lines, ["290 points added, 0 crossings"])
+        self.assertGreater(os.path.getsize(self.path("fault.png")), 100000)
+        surface = files.run_vtk_reader(self.path("fault.vtp"))
+        self.assertGreater(surface.GetNumberOfPolys(), 4000)
+
+    def test_the_lake_is_cut_along_lines_that_are_no_points(self):
+        lines = self.lines_of("lake.py", "lake.png")
+        # All corners of the shores, one of the lease; and where the lease leaves the survey.
+        self.assertEqual(lines[1], "335 points inserted along the boundary")
+        self.assertGreater(os.path.getsize(self.path("lake.png")), 50000)
+
+    def test_the_swath_has_an_outline_and_the_inside_of_its_loop(self):
+        lines = self.lines_of("survey_swath.py", "swath.png")
+        self.assertTrue(lines[1].startswith("2 rings at a gap tolerance of "), lines[1])
+        self.assertGreater(os.path.getsize(self.path("swath.png")), 50000)
 
 
 class Pictures(Program):

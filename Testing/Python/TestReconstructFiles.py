@@ -533,6 +533,23 @@ class Dem(InFolder):
         self.assert_refused("profile 2 of 2: 1 of 3", whole[: 2048 + 150], "d.dem")
 
 
+class Breaklines(InFolder):
+    def test_text_lines_stay_open_and_apart(self):
+        data = files.read_breaklines(self.file("b.txt", "0 0 1\n10 0 2\n\n2 2 3\n4 2 4\n4 4 5\n"))
+        self.assertEqual(data.GetNumberOfLines(), 2)
+        self.assertEqual(data.GetNumberOfPoints(), 5)
+        line = data.GetCell(1).GetPointIds()
+        self.assertEqual([line.GetId(i) for i in range(line.GetNumberOfIds())], [2, 3, 4])
+        self.assertEqual(data.GetPoint(4), (4.0, 4.0, 5.0))
+
+    def test_what_holds_no_lines_is_refused(self):
+        files.write_surface(files.make_points(ROWS), self.path("b.vtp"), ".vtp")
+        with self.assertRaisesRegex(files.FileError, "no line and no polygon that could be a break"):
+            files.read_breaklines(self.path("b.vtp"))
+        with self.assertRaisesRegex(files.FileError, "line 2: a breakline point is not finite"):
+            files.read_breaklines(self.file("b.txt", "0 0 1\n1 nan 0\n"))
+
+
 class Boundary(InFolder):
     RING = "0 0\n10 0\n10 10\n0 10\n0 0\n"
 

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """vtkTrimOutwardTriangles from Python: names, defaults, both kinds of boundary, through NumPy."""
+import math
+import os
+import sys
 import unittest
 
 import numpy
@@ -9,6 +12,9 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from vtkelevationsurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from TestData import read  # noqa: E402  (the files of Data/)
 
 
 def triangulate(xy):
@@ -29,11 +35,55 @@ def area(mesh):
     return 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum()
 
 
+def polygons(*rings):
+    data = vtkPolyData()
+    points = vtkPoints()
+    points.SetDataTypeToDouble()
+    cells = vtkCellArray()
+    for ring in rings:
+        cells.InsertNextCell(len(ring))
+        for x, y in ring:
+            cells.InsertCellPoint(points.InsertNextPoint(x, y, 0.0))
+    data.SetPoints(points)
+    data.SetPolys(cells)
+    return data
+
+
+def corners(mesh, origin):
+    xy = vtk_to_numpy(mesh.GetPoints().GetData())[:, :2].astype(float) - origin
+    t = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return xy[t]
+
+
+def areas(mesh, origin):
+    a, b, c = numpy.moveaxis(corners(mesh, origin), 1, 0)
+    return 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+
+
+def ring_area(ring):
+    x, y = ring.T
+    return 0.5 * math.fsum(x * numpy.roll(y, -1) - y * numpy.roll(x, -1))
+
+
+def is_inside(mesh, rings, origin):
+    """Whether the middle of each triangle is inside, by the even-odd rule; slivers are left out."""
+    size = areas(mesh, origin)
+    x, y = corners(mesh, origin).mean(axis=1)[size > 1e-9 * size.mean()].T
+    inside = numpy.zeros(len(x), dtype=bool)
+    for ring in rings:
+        for (ax, ay), (bx, by) in zip(ring - origin, numpy.roll(ring, -1, axis=0) - origin):
+            between = (ay <= y) != (by <= y)
+            inside ^= between & (x < ax + (y - ay) / (by - ay) * (bx - ax))
+    return inside
+
+
 class TestTrimOutwardTriangles(unittest.TestCase):
     def test_defaults(self):
         trim = vtkTrimOutwardTriangles()
         self.assertEqual(trim.GetGapTolerance(), 0.0)
         self.assertTrue(trim.GetRecoverBoundary())
+        self.assertEqual(trim.GetOutwardTest(), vtkTrimOutwardTriangles.EXACT)
+        self.assertEqual(trim.GetOutwardTestAsString(), "Exact")
         self.assertIsNone(trim.GetBoundary())
         self.assertEqual(trim.GetNumberOfOutputPorts(), 3)
 
@@ -41,11 +91,15 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         trim = vtkTrimOutwardTriangles()
         trim.SetGapTolerance(-1.0)
         self.assertEqual(trim.GetGapTolerance(), 0.0)
+        trim.SetOutwardTest(9)
+        self.assertEqual(trim.GetOutwardTest(), vtkTrimOutwardTriangles.INWARD_NORMAL)
+        self.assertEqual(trim.GetOutwardTestAsString(), "InwardNormal")
 
     def test_every_property_is_printed(self):
         text = str(vtkTrimOutwardTriangles())
-        for name in ("GapTolerance", "RecoverBoundary", "EffectiveGapTolerance",
-                     "NumberOfOutwardTriangles", "NumberOfRecoveredEdges"):
+        for name in ("OutwardTest", "GapTolerance", "RecoverBoundary", "EffectiveGapTolerance",
+                     "NumberOfOutwardTriangles", "NumberOfRecoveredEdges",
+                     "NumberOfInsertedPoints"):
             self.assertIn(name, text)
 
     def test_a_star_has_its_area(self):
@@ -70,6 +124,81 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         self.assertAlmostEqual(area(trim.GetOutput(0)), expected, places=12)
         self.assertAlmostEqual(area(trim.GetOutput(0)) + area(trim.GetOutput(1)), area(mesh), places=12)
         self.assertGreater(trim.GetNumberOfRecoveredEdges(), 20)
+
+    def test_a_boundary_on_a_map_cuts_the_surface_as_it_is(self):
+        # A plane, so that every inserted elevation is known; the boundary reaches beyond the points.
+        xy = numpy.random.RandomState(3).rand(2000, 2)
+        mesh = triangulate(xy)
+        vtk_to_numpy(mesh.GetPoints().GetData())[:, 2] = 2.0 * xy[:, 0] - xy[:, 1]
+        square = area(mesh)
+        boundary = polygons([(0.21, 0.33), (0.71, 0.33), (0.71, 2.0), (0.21, 2.0)],
+                            [(0.4, 0.5), (0.6, 0.5), (0.5, 0.7)])
+        trim = vtkTrimOutwardTriangles()
+        trim.SetInputData(mesh)
+        trim.SetBoundaryData(boundary)
+        trim.Update()
+        points = vtk_to_numpy(trim.GetOutput().GetPoints().GetData())
+        self.assertEqual(len(points), 2000 + trim.GetNumberOfInsertedPoints())
+        self.assertEqual(trim.GetNumberOfInsertedPoints(), 7)  # five corners, two crossings
+        numpy.testing.assert_allclose(points[:, 2], 2.0 * points[:, 0] - points[:, 1], atol=1e-14)
+        self.assertLess(area(trim.GetOutput(0)), 0.5 * 0.67 - 0.02)
+        self.assertGreater(area(trim.GetOutput(0)), 0.5 * 0.66 - 0.02)
+        self.assertAlmostEqual(area(trim.GetOutput(0)) + area(trim.GetOutput(1)), square, places=14)
+
+    def test_polygons_over_real_points_keep_their_area(self):
+        # Also what is inside is kept, and nothing else: asked for the middle of each triangle.
+        random = numpy.random.RandomState(4)
+        for name in ("aegean_sea.csv", "b9_ground.vtp", "horizon_synthetic.vtp",
+                     "jacksboro_fault.vtp", "olinda_land.xyz"):
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(read(name))
+            delaunay.Update()
+            low_x, high_x, low_y, high_y = delaunay.GetOutput().GetBounds()[:4]
+            center = numpy.array([0.5 * (low_x + high_x), 0.5 * (low_y + high_y)])
+            rings = []
+            for reach in (0.3, 0.15, 0.05):  # an island in a lake
+                angle = 2.0 * numpy.pi * (numpy.arange(40) + 0.5 * random.rand(40)) / 40
+                radius = reach * min(high_x - low_x, high_y - low_y) * (0.6 + 0.4 * random.rand(40))
+                rings.append(center + radius[:, None] * numpy.column_stack(
+                    [numpy.cos(angle), numpy.sin(angle)]))
+            expected = sum(sign * ring_area(ring - center)
+                           for sign, ring in zip((1, -1, 1), rings))
+            for test in ("Exact", "InwardNormal"):
+                with self.subTest(name=name, test=test):
+                    trim = vtkTrimOutwardTriangles()
+                    trim.SetInputData(delaunay.GetOutput())
+                    trim.SetBoundaryData(polygons(*rings))
+                    getattr(trim, "SetOutwardTestTo" + test)()
+                    trim.Update()
+                    self.assertEqual(trim.GetNumberOfInsertedPoints(), 120)
+                    kept, outward = trim.GetOutput(0), trim.GetOutput(1)
+                    self.assertEqual(kept.GetNumberOfPolys() + outward.GetNumberOfPolys(),
+                                     delaunay.GetOutput().GetNumberOfPolys() + 240)
+                    if test == "Exact":
+                        self.assertAlmostEqual(areas(kept, center).sum() / expected, 1.0, delta=1e-12)
+                        self.assertTrue(is_inside(kept, rings, center).all())
+                        self.assertFalse(is_inside(outward, rings, center).any())
+                    else:
+                        self.assertFalse(is_inside(outward, rings, center).any())
+
+    def test_the_published_test_leaves_what_lies_behind_points(self):
+        # The corners of a hull have points on the boundary alone, but for one.
+        angle = numpy.linspace(0.0, 2.0 * numpy.pi, 24, endpoint=False)
+        radius = numpy.where(numpy.arange(24) % 2, 0.3, 0.5)
+        star = radius[:, None] * numpy.column_stack([numpy.cos(angle), numpy.sin(angle)])
+        kept = {}
+        for points in (star, numpy.vstack([star, 0.45 * numpy.array([[numpy.cos(angle[1]),
+                                                                      numpy.sin(angle[1])]])])):
+            for test in ("Exact", "InwardNormal"):
+                trim = vtkTrimOutwardTriangles()
+                trim.SetInputData(triangulate(points))
+                trim.SetBoundaryData(polygons(star))
+                getattr(trim, "SetOutwardTestTo" + test)()
+                trim.Update()
+                kept[test, len(points)] = area(trim.GetOutput(0))
+        self.assertAlmostEqual(kept["Exact", 24], kept["InwardNormal", 24], places=14)
+        self.assertAlmostEqual(kept["Exact", 24], kept["Exact", 25], places=14)
+        self.assertGreater(kept["InwardNormal", 25], kept["Exact", 25] + 0.01)
 
     def test_the_boundary_is_found(self):
         # A ring of points: its inside is a lake, the corners of its hull are outward.

@@ -120,6 +120,23 @@ inline Cloud LatticeCloud(std::mt19937_64& random, int size, double probability)
   return cloud;
 }
 
+/**
+ * Nodes of a small lattice, many of them more than once.
+ * @param sizes,counts  how many sizes, from 2, and numbers of points, from 3, are drawn from
+ */
+inline Cloud SmallLatticeCloud(std::mt19937_64& random, int sizes, int counts)
+{
+  Cloud cloud;
+  const int size = 2 + static_cast<int>(random() % sizes);
+  const int count = 3 + static_cast<int>(random() % counts);
+  for (int k = 0; k < count; ++k)
+  {
+    const double x = static_cast<double>(random() % size);
+    cloud.Add(x, static_cast<double>(random() % size));
+  }
+  return cloud;
+}
+
 inline elevation::Mesh MeshOf(const Cloud& cloud, const elevation::Triangulation& triangulation)
 {
   elevation::Mesh mesh;

@@ -60,7 +60,7 @@ std::string MessageOf(const BoundaryLines& lines)
 {
   try
   {
-    JoinLines(Lattice4(), lines);
+    JoinLines(lines);
   }
   catch (const Error& error)
   {
@@ -250,24 +250,25 @@ TEST(RingLocator, AgreesWithEveryEdgeAsked)
 TEST(JoinLines, TakesClosedLinesPolygonsAndChains)
 {
   const Mesh mesh = Lattice4();
-  auto joined = JoinLines(mesh, MakeLines(mesh.Points, { { 0, 3, 15, 12, 0 } }, false));
-  EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
-  joined = JoinLines(mesh, MakeLines(mesh.Points, { { 5, 6, 10 }, { 0, 3, 15 } }, true));
-  EXPECT_EQ(joined.Vertices.Offsets, (std::vector<Index>{ 0, 3, 6 }));
+  Rings joined = JoinLines(MakeLines(mesh.Points, { { 0, 3, 15, 12, 0 } }, false));
+  EXPECT_EQ(joined.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
+  joined = JoinLines(MakeLines(mesh.Points, { { 5, 6, 10 }, { 0, 3, 15 } }, true));
+  EXPECT_EQ(joined.Offsets, (std::vector<Index>{ 0, 3, 6 }));
   // Segments in any order and direction.
-  joined =
-    JoinLines(mesh, MakeLines(mesh.Points, { { 0, 3 }, { 12, 0 }, { 3, 15 }, { 12, 15 } }, false));
-  EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
-  // Closed by coordinates; a repeated point; ids that are not those of the mesh; minus zero.
-  joined = JoinLines(mesh,
-    MakeLines(
-      { { -0.0, 0.0 }, { 3, 0 }, { 3, 0 }, { 3, 3 }, { 0, -0.0 } }, { { 0, 1, 2, 3, 4 } }, false));
-  EXPECT_EQ(joined.Vertices.Vertices, (std::vector<Index>{ 0, 3, 15 }));
-  EXPECT_EQ(joined.Points, (std::vector<Index>{ 0, 1, 3 }));
+  joined = JoinLines(MakeLines(mesh.Points, { { 0, 3 }, { 12, 0 }, { 3, 15 }, { 12, 15 } }, false));
+  EXPECT_EQ(joined.Vertices, (std::vector<Index>{ 0, 3, 15, 12 }));
+  // Closed by coordinates; a repeated point; minus zero.
+  joined = JoinLines(MakeLines(
+    { { -0.0, 0.0 }, { 3, 0 }, { 3, 0 }, { 3, 3 }, { 0, -0.0 } }, { { 0, 1, 2, 3, 4 } }, false));
+  EXPECT_EQ(joined.Vertices, (std::vector<Index>{ 0, 1, 3 }));
+  // Chained by coordinates.
+  joined = JoinLines(MakeLines(
+    { { 0.0, 1.0 }, { 3, 0 }, { 3, 3 }, { -0.0, 1.0 } }, { { 0, 1 }, { 3, 2 }, { 1, 2 } }, false));
+  EXPECT_EQ(joined.Vertices, (std::vector<Index>{ 0, 1, 2 }));
   // Four ends in one vertex: two rings that touch, or one through it twice.
-  joined = JoinLines(
-    mesh, MakeLines(mesh.Points, { { 5, 0, 1 }, { 1, 5 }, { 5, 10, 6 }, { 6, 5 } }, false));
-  EXPECT_EQ(joined.Vertices.Vertices.size(), 6u);
+  joined =
+    JoinLines(MakeLines(mesh.Points, { { 5, 0, 1 }, { 1, 5 }, { 5, 10, 6 }, { 6, 5 } }, false));
+  EXPECT_EQ(joined.Vertices.size(), 6u);
 }
 
 TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
@@ -279,16 +280,16 @@ TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
   Random random(17);
   for (int round = 0; round < 500; ++round)
   {
-    const JoinedBoundary joined = JoinLines(mesh, MakeLines(mesh.Points, edges, false));
+    const Rings joined = JoinLines(MakeLines(mesh.Points, edges, false));
     std::set<std::pair<Index, Index>> odd; // edges that the rings run along an odd number of times
-    for (Index ring = 0; ring < joined.Vertices.Count(); ++ring)
+    for (Index ring = 0; ring < joined.Count(); ++ring)
     {
-      const Index size = joined.Vertices.Size(ring);
+      const Index size = joined.Size(ring);
       EXPECT_GE(size, 3);
       for (Index i = 0; i < size; ++i)
       {
-        const std::pair<Index, Index> edge = std::minmax(
-          { joined.Vertices.Begin(ring)[i], joined.Vertices.Begin(ring)[(i + 1) % size] });
+        const std::pair<Index, Index> edge =
+          std::minmax({ joined.Begin(ring)[i], joined.Begin(ring)[(i + 1) % size] });
         if (!odd.insert(edge).second)
         {
           odd.erase(edge);
@@ -316,28 +317,9 @@ TEST(JoinLines, RefusesWhatIsNoBoundaryByName)
   EXPECT_HAS(message, "ring of only two points");
   message = MessageOf(MakeLines(points, { { 0, 1 }, { 0, 2 }, { 0, 3 } }, false));
   EXPECT_HAS(message, "where 3 lines end");
-  message = MessageOf(MakeLines({ { 0, 0 }, { 3, 0 }, { 1.5, 1.25 } }, { { 0, 1, 2 } }, true));
-  EXPECT_HAS(message, "point 2 (1.5, 1.25) of polygon (cell 10) is not a corner of the mesh");
   message =
     MessageOf(MakeLines({ { 0, 0 }, { std::nan(""), 0 }, { 1, 1 } }, { { 0, 1, 2 } }, true));
   EXPECT_HAS(message, "point 1 (nan, 0) of polygon (cell 10) is not finite");
-}
-
-TEST(JoinLines, RefusesPointsThatAreTwoCornersOfTheMesh)
-{
-  Mesh mesh;
-  mesh.Points = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 0, 0 }, { -1, 0 }, { 0, -1 } };
-  mesh.Triangles = { 0, 1, 2, 3, 4, 5 };
-  mesh.ConnectTwins();
-  try
-  {
-    JoinLines(mesh, MakeLines(mesh.Points, { { 0, 1, 2 } }, true));
-    FAIL() << "no error";
-  }
-  catch (const Error& error)
-  {
-    EXPECT_HAS(std::string(error.what()), "Points 0 and 3 of the mesh");
-  }
 }
 
 TEST(ExtractBoundary, OfAFullLatticeIsItsOutline)

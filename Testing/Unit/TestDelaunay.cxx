@@ -124,14 +124,7 @@ TEST(Delaunay, IsTheDefinitionOnSmallLattices)
   std::mt19937_64 random(17);
   for (int i = 0; i < 20000; ++i)
   {
-    Cloud cloud;
-    const int size = 2 + static_cast<int>(random() % 5);
-    const int count = 3 + static_cast<int>(random() % 12);
-    for (int k = 0; k < count; ++k)
-    {
-      const double x = static_cast<double>(random() % size);
-      cloud.Add(x, static_cast<double>(random() % size));
-    }
+    const Cloud cloud = SmallLatticeCloud(random, 5, 12);
     ASSERT_EQ(TriangleSet(cloud, Triangulate(cloud)), BruteForce(cloud)) << "cloud " << i;
   }
 }
@@ -142,14 +135,7 @@ TEST(Delaunay, IsTheSameFromEverySearchOnSmallLattices)
   std::mt19937_64 random(31);
   for (int i = 0; i < 2000; ++i)
   {
-    Cloud cloud;
-    const int size = 2 + static_cast<int>(random() % 12);
-    const int count = 3 + static_cast<int>(random() % 80);
-    for (int k = 0; k < count; ++k)
-    {
-      const double x = static_cast<double>(random() % size);
-      cloud.Add(x, static_cast<double>(random() % size));
-    }
+    const Cloud cloud = SmallLatticeCloud(random, 12, 80);
     SCOPED_TRACE(i);
     DelaunayOptions options;
     options.Duplicates = static_cast<DuplicatePolicy>(random() % 4);
@@ -330,6 +316,22 @@ TEST(Delaunay, KeepsEveryRuleOnAClusterOfTheSmallestNumbers)
   cloud.Add(1.0, 0.0);
   cloud.Add(0.0, 1.0);
   ExpectValid(cloud, "a cluster within 1e-310");
+}
+
+TEST(Delaunay, KeepsEveryRuleWhereUnderflowMeetsHugeNumbers)
+{
+  // Products so small that they are wrong by much of themselves, times others so large that this
+  // counts.
+  const double x = 0x1.7a93a2954f3b8p+903, y = 0x1.b2c189ad56408p-704;
+  Cloud cloud;
+  cloud.Add(x, 0x1.d9b71552621efp-366);
+  cloud.Add(0.0, 0x1.0311f32db42dap-373);
+  cloud.Add(x, -y);
+  cloud.Add(0.0, -y);
+  cloud.Add(0x1.a7f0182268621p+898, 0x1.d9b71552621efp-366);
+  cloud.Add(-x, 0.0);
+  cloud.Add(0.0, 0x1.49a1f6788dcbep-705);
+  ExpectValid(cloud, "thin");
 }
 
 TEST(Delaunay, CutsACocircularPolygonFromItsLowestPoint)

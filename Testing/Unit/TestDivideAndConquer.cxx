@@ -119,14 +119,7 @@ TEST(DivideAndConquer, IsTheTriangulationOnSmallLattices)
   std::mt19937_64 random(81);
   for (int i = 0; i < 40000; ++i)
   {
-    Cloud cloud;
-    const int size = 2 + static_cast<int>(random() % 5);
-    const int count = 3 + static_cast<int>(random() % 20);
-    for (int k = 0; k < count; ++k)
-    {
-      const double x = static_cast<double>(random() % size);
-      cloud.Add(x, static_cast<double>(random() % size));
-    }
+    const Cloud cloud = SmallLatticeCloud(random, 5, 20);
     ASSERT_EQ(Divided(cloud), Triangulated(cloud)) << "cloud " << i;
   }
 }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <map>
 #include <ostream>
@@ -527,6 +528,94 @@ TEST(Lattice, IsTheDefinitionOnSmallClouds)
     ASSERT_EQ(NodeTriangles(here, triangulation), BruteForce(here, metric)) << "cloud " << i;
   }
   EXPECT_GT(found, 14000);
+}
+
+TEST(Lattice, IsTheSameByDivideAndConquer)
+{
+  // In metrics of all kinds, full and sparse, by one order of the triangles.
+  std::mt19937_64 random(53);
+  const std::vector<Frame> frames{ MakeFrame(1.0, 1.0, 0.0), MakeFrame(3.0, 1.7, 10.0),
+    MakeFrame(1.0, 1.0, 30.0, 60.0), MakeFrame(1.0, 1.1, -50.0, 75.0),
+    MakeFrame(1.0, 1.2, 0.0, 110.0), MakeFrame(1.0, 20.0, 0.0) };
+  for (int i = 0; i < 600; ++i)
+  {
+    const int columns = 3 + static_cast<int>(random() % 30);
+    const int rows = 3 + static_cast<int>(random() % 30);
+    const double probability = i % 3 ? 0.2 + 0.8 * Uniform(random) : 1.0;
+    const Cloud cloud =
+      CloudOn(frames[i % frames.size()], RandomNodes(random, columns, rows, probability));
+    DelaunayOptions options = Automatic();
+    options.MaximumEdgeLength = i % 2 ? 0.0 : 2.5;
+    const Triangulation grown = Triangulate(cloud.View(), options);
+    options.DivideAtOnce = true;
+    const Triangulation divided = Triangulate(cloud.View(), options);
+    ASSERT_EQ(grown.LatticeFound, divided.LatticeFound) << "cloud " << i;
+    EXPECT_EQ(grown.NumberOfHullPoints, divided.NumberOfHullPoints);
+    ASSERT_TRUE(std::equal(grown.Triangles.begin(), grown.Triangles.end(),
+      divided.Triangles.begin(), divided.Triangles.end()))
+      << "cloud " << i;
+  }
+}
+
+TEST(Lattice, TakesNoLongAlongAFlatArc)
+{
+  // One node a row, nearly convex: no disc is empty of rows. Growing would cost n * n.
+  Cloud arc;
+  constexpr int count = 100000;
+  for (int j = 0; j < count; ++j)
+  {
+    const double t = 2.0 * j / count - 1.0;
+    arc.Add(std::round(20.0 * std::sqrt(1.0 - t * t)), j);
+  }
+  for (const int threads : { 1, 3 })
+  {
+    DelaunayOptions options = Automatic();
+    options.NumberOfThreads = threads;
+    int reports = 0;
+    std::clock_t last = std::clock(), longest = 0;
+    options.Monitor = [&](double) {
+      ++reports;
+      longest = std::max(longest, std::clock() - last);
+      last = std::clock();
+      return true;
+    };
+    const std::clock_t begin = std::clock();
+    const Triangulation triangulation = Triangulate(arc.View(), options);
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 2.0);
+    EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.4 * threads);
+    EXPECT_GT(reports, 100);
+    EXPECT_TRUE(triangulation.LatticeFound);
+    EXPECT_EQ(FindingsOf(arc, triangulation), "");
+  }
+}
+
+TEST(Lattice, IsFoundInThinAndSmallOnes)
+{
+  for (const double offset : { 0.0, 5e6 })
+  {
+    for (const std::array<int, 2>& size : std::vector<std::array<int, 2>>{ { 2, 3 }, { 2, 8 },
+           { 3, 3 }, { 4, 5 }, { 3, 500 }, { 500, 3 }, { 2, 500 }, { 500, 2 }, { 40, 40 } })
+    {
+      for (const std::array<double, 2>& steps :
+        std::vector<std::array<double, 2>>{ { 1.0, 1.0 }, { 1.0, 20.0 }, { 50.0, 1.0 } })
+      {
+        SCOPED_TRACE(testing::Message() << size[0] << " x " << size[1] << ", steps " << steps[0]
+                                        << " x " << steps[1] << " at " << offset);
+        Cloud cloud;
+        for (int k = 0; k < size[0] * size[1]; ++k)
+        {
+          cloud.Add(offset + k % size[0] * steps[0], offset + k / size[0] * steps[1]);
+        }
+        const Triangulation triangulation = Triangulate(cloud.View(), Automatic());
+        EXPECT_TRUE(triangulation.LatticeFound);
+        EXPECT_EQ(triangulation.Steps.StepU, (Point2{ steps[0], 0.0 }));
+        EXPECT_EQ(triangulation.Steps.StepV, (Point2{ 0.0, steps[1] }));
+        cloud.Add(offset + 0.41421 * steps[0], offset + 0.31831 * steps[1]);
+        EXPECT_FALSE(Triangulate(cloud.View(), Automatic()).LatticeFound)
+          << "one point is between the nodes";
+      }
+    }
+  }
 }
 
 TEST(Lattice, IsFoundWhateverItsSteps)

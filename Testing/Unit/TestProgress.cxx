@@ -4,14 +4,17 @@
 // Progress rises, and no step of a long computation is silent, so that an abort is heard soon.
 #include "Kernel/Boundary.h"
 #include "Kernel/Constraints.h"
+#include "Kernel/Delaunay.h"
 #include "Kernel/Fill.h"
 #include "Kernel/Holes.h"
 #include "Kernel/Trim.h"
 #include "LatticeSurface.h"
+#include "PointSets.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -154,4 +157,43 @@ TEST(Progress, OfFillingOneLargeHoleIsNotSilent)
     EXPECT_GT(result.NumberOfPoints(), 250000);
   }),
     0.1);
+}
+
+TEST(Progress, OfTriangulatingPointsThatAreSlowIsNotSilent)
+{
+  // One fan of a circle's points, and comparisons that take integers of any length.
+  std::mt19937_64 random(3);
+  testing_points::Cloud circle, range;
+  for (int i = 0; i < 100000; ++i)
+  {
+    const double angle = 6.283185307179586 * testing_points::Uniform(random);
+    circle.Add(std::cos(angle), std::sin(angle));
+  }
+  for (int i = 0; i < 1500; ++i)
+  {
+    const auto coordinate = [&]() {
+      return std::ldexp(testing_points::Uniform(random), static_cast<int>(random() % 2000) - 1000);
+    };
+    const double x = coordinate();
+    range.Add(x, coordinate());
+  }
+  for (const testing_points::Cloud* cloud : { &circle, &range })
+  {
+    for (const SearchStrategy strategy :
+      { SearchStrategy::VoxelTraversal, SearchStrategy::Compactness })
+    {
+      std::clock_t last = std::clock(), longest = 0;
+      DelaunayOptions options;
+      options.Strategy = strategy;
+      options.Monitor = [&](double) {
+        const std::clock_t now = std::clock();
+        longest = std::max(longest, now - last);
+        last = now;
+        return true;
+      };
+      Triangulate(cloud->View(), options);
+      EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.4)
+        << (cloud == &circle ? "circle" : "range");
+    }
+  }
 }

@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <map>
 #include <string>
 
 using namespace elevation;
@@ -324,4 +327,202 @@ TEST(Trim, StopsWhenAsked)
   TrimOptions options;
   options.Monitor = [](double fraction) { return fraction < 0.5; };
   EXPECT_THROW(Trim(mesh, rings, options), Aborted);
+}
+
+namespace
+{
+
+/** The published walk to the letter, along rings of vertices that run clockwise around surface. */
+std::vector<char> WalkAlong(const Mesh& mesh, const Rings& rings)
+{
+  std::map<std::array<Index, 3>, Index> triangleOf;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    std::array<Index, 3> corners{ mesh.Origin(3 * t), mesh.Origin(3 * t + 1),
+      mesh.Origin(3 * t + 2) };
+    std::sort(corners.begin(), corners.end());
+    triangleOf[corners] = t;
+  }
+  std::vector<char> isOutward(mesh.NumberOfTriangles(), 0);
+  for (Index ring = 0; ring < rings.Count(); ++ring)
+  {
+    std::vector<Index> walk(rings.Begin(ring), rings.End(ring));
+    for (bool goesOn = true; goesOn;)
+    {
+      goesOn = false;
+      for (std::size_t i = 0; i < walk.size() && walk.size() > 2; ++i)
+      {
+        const std::size_t middle = (i + 1) % walk.size();
+        std::array<Index, 3> corners{ walk[i], walk[middle], walk[(i + 2) % walk.size()] };
+        const Point2& p1 = mesh.PointOf(corners[0]);
+        const Point2& p2 = mesh.PointOf(corners[1]);
+        const Point2& p3 = mesh.PointOf(corners[2]);
+        const Point2 normal{ p2.Y - p1.Y, p1.X - p2.X };
+        std::sort(corners.begin(), corners.end());
+        const auto found = triangleOf.find(corners);
+        if (found != triangleOf.end() && !isOutward[found->second] &&
+          (p3.X - p1.X) * normal.X + (p3.Y - p1.Y) * normal.Y < 0)
+        {
+          isOutward[found->second] = 1;
+          walk.erase(walk.begin() + static_cast<std::ptrdiff_t>(middle));
+          goesOn = true;
+        }
+      }
+    }
+  }
+  return isOutward;
+}
+
+/** A closed curve around the middle of the unit square. */
+std::vector<Point2> Star(Random& random, double least, double most, int corners, bool isClockwise)
+{
+  std::vector<Point2> ring;
+  for (int i = 0; i < corners; ++i)
+  {
+    const double angle = 6.283185307179586 * (i + 0.5 * random.Unit()) / corners;
+    const double radius = least + (most - least) * random.Unit();
+    ring.push_back({ 0.5 + radius * std::cos(angle), 0.5 + radius * std::sin(angle) });
+  }
+  if (isClockwise)
+  {
+    std::reverse(ring.begin(), ring.end());
+  }
+  return ring;
+}
+
+/** A star with a lake, and points around: everywhere, or on the surface alone. */
+Mesh MakeStar(Random& random, int count, bool everywhere, Rings& rings)
+{
+  std::vector<Point2> points = Star(random, 0.25, 0.5, 10 + random.Below(40), true);
+  const Index first = static_cast<Index>(points.size());
+  const std::vector<Point2> lake = Star(random, 0.1, 0.2, 5 + random.Below(15), false);
+  points.insert(points.end(), lake.begin(), lake.end());
+  rings.Offsets = { 0, first, static_cast<Index>(points.size()) };
+  for (Index v = 0; v < rings.Offsets[2]; ++v)
+  {
+    rings.Vertices.push_back(v);
+  }
+  for (int i = 0; i < count; ++i)
+  {
+    const Point2 p{ random.Unit(), random.Unit() };
+    if (everywhere || Locate(points, rings, p) == Location::Inside)
+    {
+      points.push_back(p);
+    }
+  }
+  return Delaunay(points);
+}
+
+TrimResult TrimBy(OutwardTest test, Mesh& mesh, const Rings& rings)
+{
+  TrimOptions options;
+  options.Test = test;
+  return Trim(mesh, rings, options);
+}
+
+} // namespace
+
+TEST(InwardNormal, AgreesWithExactWherePocketsAreShallow)
+{
+  // No point lies outside the surface, so that pockets and lakes have corners on rings alone.
+  Random random(30);
+  for (int round = 0; round < 300; ++round)
+  {
+    Rings rings;
+    Mesh mesh = MakeStar(random, random.Below(500), false, rings);
+    const TrimResult exact = TrimBy(OutwardTest::Exact, mesh, rings);
+    ASSERT_GT(exact.NumberOfOutwardTriangles, 0);
+    for (Index ring = 0; ring < 2; ++ring) // in any direction
+    {
+      if (random.Below(2))
+      {
+        std::reverse(rings.Vertices.begin() + rings.Offsets[ring],
+          rings.Vertices.begin() + rings.Offsets[ring + 1]);
+      }
+    }
+    const TrimResult inward = TrimBy(OutwardTest::InwardNormal, mesh, rings);
+    ASSERT_EQ(inward.IsOutward, exact.IsOutward);
+    ASSERT_EQ(inward.NumberOfOutwardTriangles, exact.NumberOfOutwardTriangles);
+  }
+}
+
+TEST(InwardNormal, IsThePublishedWalk)
+{
+  Random random(36);
+  int less = 0;
+  for (int round = 0; round < 300; ++round)
+  {
+    Rings rings;
+    Mesh mesh = MakeStar(random, random.Below(200), true, rings);
+    const TrimResult inward = TrimBy(OutwardTest::InwardNormal, mesh, rings);
+    ASSERT_EQ(inward.IsOutward, WalkAlong(mesh, rings));
+    ASSERT_EQ(inward.NumberOfOutwardTriangles,
+      std::count(inward.IsOutward.begin(), inward.IsOutward.end(), 1));
+    const TrimResult exact = TrimBy(OutwardTest::Exact, mesh, rings);
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      ASSERT_TRUE(exact.IsOutward[t] || !inward.IsOutward[t]);
+      less += exact.IsOutward[t] - inward.IsOutward[t];
+    }
+  }
+  EXPECT_GT(less, 1000);
+}
+
+TEST(InwardNormal, KeepsWhatIsBehindAPointInADeepPocket)
+{
+  // A pocket two wide and five deep, open at the top, of points on its rim alone: it is emptied.
+  std::vector<Point2> points{ { 0, 0 }, { 4, 0 }, { 4, 6 }, { 3, 6 }, { 3, 5 }, { 3, 4 }, { 3, 3 },
+    { 3, 2 }, { 3, 1 }, { 1, 1 }, { 1, 2 }, { 1, 3 }, { 1, 4 }, { 1, 5 }, { 1, 6 }, { 0, 6 } };
+  Rings rings;
+  rings.Offsets = { 0, 16 };
+  for (Index v = 0; v < 16; ++v)
+  {
+    rings.Vertices.push_back(v);
+  }
+  const auto twiceOutward = [&](OutwardTest test) {
+    Mesh mesh = Delaunay(points);
+    const TrimResult trimmed = TrimBy(test, mesh, rings);
+    return TwiceArea(mesh) - KeptTwiceArea(mesh, trimmed);
+  };
+  EXPECT_EQ(twiceOutward(OutwardTest::Exact), 20.0);
+  EXPECT_EQ(twiceOutward(OutwardTest::InwardNormal), 20.0);
+  // With a point in the middle of the pocket, the triangles around it stay.
+  points.push_back({ 2, 3.25 });
+  EXPECT_EQ(twiceOutward(OutwardTest::Exact), 20.0);
+  EXPECT_GT(twiceOutward(OutwardTest::InwardNormal), 0.0);
+  EXPECT_LE(twiceOutward(OutwardTest::InwardNormal), 20.0 - 4.0);
+  // With a column of points, nothing is taken: no triangle has two edges on the boundary.
+  points.back() = { 2, 1.5 };
+  for (const double y : { 2.5, 3.5, 4.5, 5.5 })
+  {
+    points.push_back({ 2, y });
+  }
+  EXPECT_EQ(twiceOutward(OutwardTest::Exact), 20.0);
+  EXPECT_EQ(twiceOutward(OutwardTest::InwardNormal), 0.0);
+}
+
+TEST(InwardNormal, KeepsWhatIsBetweenTwoRings)
+{
+  std::vector<Point2> points{ { 0, 0 }, { 2, 0 }, { 2, 2 }, { 0, 2 }, { 5, 0 }, { 7, 0 }, { 7, 2 },
+    { 5, 2 } };
+  Mesh mesh = Delaunay(points);
+  Rings rings;
+  rings.Offsets = { 0, 4, 8 };
+  rings.Vertices = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  EXPECT_EQ(TrimBy(OutwardTest::Exact, mesh, rings).NumberOfOutwardTriangles, 2);
+  EXPECT_EQ(TrimBy(OutwardTest::InwardNormal, mesh, rings).NumberOfOutwardTriangles, 0);
+}
+
+TEST(InwardNormal, RefusesMissingEdgesAsExactDoes)
+{
+  Random random(37);
+  Mesh mesh = LatticeMesh(random, 5);
+  Rings rings;
+  AddRing(mesh, { { 0, 0 }, { 4, 1 }, { 2, 4 } }, rings);
+  TrimOptions options;
+  options.Test = OutwardTest::InwardNormal;
+  options.RecoverBoundary = false;
+  EXPECT_THROW(Trim(mesh, rings, options), Error);
+  options.RecoverBoundary = true;
+  EXPECT_GT(Trim(mesh, rings, options).NumberOfRecoveredEdges, 0);
 }

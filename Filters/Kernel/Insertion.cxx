@@ -1,0 +1,1121 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Insertion.h"
+
+#include "Boundary.h"
+#include "Predicates.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+
+namespace elevation
+{
+
+namespace
+{
+
+// ------------------------------------------------------------------------------------------- bins
+
+/**
+ * Points, segments or triangles in the cells of a grid. What touches a cell is found there, and
+ * perhaps some more: bins answer nothing, they only leave out.
+ */
+class Bins
+{
+public:
+  /** A grid over the box of points, with about as many cells as @a count. */
+  template <typename PointOf>
+  Bins(Index numberOfPoints, std::size_t count, PointOf&& pointOf)
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Point2 low{ infinity, infinity };
+    Point2 high{ -infinity, -infinity };
+    for (Index i = 0; i < numberOfPoints; ++i)
+    {
+      const Point2 p = pointOf(i);
+      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+    }
+    this->Low = low;
+    this->High = high;
+    // Where rounding would be as large as cells, or the box too large to tell, one cell is left.
+    const auto isWide = [](double from, double to) {
+      return to - from < infinity &&
+        to - from > 1e-9 * std::max({ std::fabs(from), std::fabs(to), 1e-300 });
+    };
+    const bool hasWidth = isWide(low.X, high.X);
+    const bool hasHeight = isWide(low.Y, high.Y);
+    double width = hasWidth ? high.X - low.X : 1.0;
+    double height = hasHeight ? high.Y - low.Y : 1.0;
+    const double most = std::min(1e6, static_cast<double>(std::max<std::size_t>(count, 1)));
+    const double columns = !hasWidth ? 1.0
+      : hasHeight ? std::min(most, std::max(1.0, std::sqrt(most * (width / height))))
+                  : most;
+    const double rows = !hasHeight ? 1.0 : std::min(most, std::max(1.0, most / columns));
+    this->Columns = static_cast<Index>(std::min(columns, 4096.0));
+    this->Rows = static_cast<Index>(std::min(rows, 4096.0));
+    this->ColumnsPerUnit = hasWidth ? this->Columns / width : 0.0;
+    this->RowsPerUnit = hasHeight ? this->Rows / height : 0.0;
+  }
+
+  /** Puts things 0 to count - 1 into their cells; cornersOf(i) are one to three points. */
+  template <typename CornersOf>
+  void Fill(Index count, CornersOf&& cornersOf)
+  {
+    this->Offsets.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
+    for (const bool fill : { false, true })
+    {
+      for (Index i = 0; i < count; ++i)
+      {
+        this->VisitCells(cornersOf(i), [&](std::size_t cell) {
+          if (fill)
+          {
+            this->Things[--this->Offsets[cell]] = i;
+          }
+          else
+          {
+            ++this->Offsets[cell];
+          }
+        });
+      }
+      if (!fill)
+      {
+        std::size_t sum = 0;
+        for (std::size_t& offset : this->Offsets)
+        {
+          sum += offset;
+          offset = sum;
+        }
+        this->Things.resize(sum);
+      }
+    }
+  }
+
+  /** Calls visit for all things that may touch a point, segment or triangle; perhaps repeatedly. */
+  template <std::size_t Count, typename Visitor>
+  void Visit(const std::array<Point2, Count>& corners, Visitor&& visit) const
+  {
+    this->VisitCells(corners, [&](std::size_t cell) {
+      for (std::size_t i = this->Offsets[cell]; i < this->Offsets[cell + 1]; ++i)
+      {
+        visit(this->Things[i]);
+      }
+    });
+  }
+
+private:
+  // Monotone, so that what lies between two points lies between their cells.
+  Index ColumnOf(double x) const
+  {
+    return CellOf((x - this->Low.X) * this->ColumnsPerUnit, this->Columns);
+  }
+  Index RowOf(double y) const { return CellOf((y - this->Low.Y) * this->RowsPerUnit, this->Rows); }
+  static Index CellOf(double position, Index count)
+  {
+    return position > 0.0 ? (position < count ? static_cast<Index>(position) : count - 1) : 0;
+  }
+
+  template <std::size_t Count, typename Visitor>
+  void VisitCells(const std::array<Point2, Count>& corners, Visitor&& visit) const
+  {
+    Point2 low = corners[0];
+    Point2 high = corners[0];
+    for (std::size_t i = 1; i < Count; ++i)
+    {
+      low = { std::min(low.X, corners[i].X), std::min(low.Y, corners[i].Y) };
+      high = { std::max(high.X, corners[i].X), std::max(high.Y, corners[i].Y) };
+    }
+    if (high.X < this->Low.X || low.X > this->High.X || high.Y < this->Low.Y ||
+      low.Y > this->High.Y)
+    {
+      return;
+    }
+    const Index firstColumn = this->ColumnOf(low.X);
+    const Index lastColumn = this->ColumnOf(high.X);
+    const Index firstRow = this->RowOf(low.Y);
+    const Index lastRow = this->RowOf(high.Y);
+    for (Index row = firstRow; row <= lastRow; ++row)
+    {
+      Index begin = firstColumn;
+      Index end = lastColumn;
+      if (firstRow < lastRow && lastColumn > firstColumn + 2)
+      {
+        // What of it lies in the row; a column more on either side makes up for rounding.
+        Point2 range{ high.X, low.X };
+        const double bottom = this->Low.Y + (row - 1e-3) / this->RowsPerUnit;
+        const double top = this->Low.Y + (row + 1 + 1e-3) / this->RowsPerUnit;
+        for (std::size_t i = 0; i < Count; ++i)
+        {
+          Widen(corners[i], corners[(i + 1) % Count], bottom, top, range);
+        }
+        begin = std::max(begin, this->ColumnOf(range.X) - 1);
+        end = std::min(end, this->ColumnOf(range.Y) + 1);
+      }
+      for (Index column = begin; column <= end; ++column)
+      {
+        visit(static_cast<std::size_t>(row) * this->Columns + column);
+      }
+    }
+  }
+
+  /** Widens a range of x by what of a segment lies between two heights. */
+  static void Widen(Point2 a, Point2 b, double bottom, double top, Point2& range)
+  {
+    if (b.Y < a.Y)
+    {
+      std::swap(a, b);
+    }
+    if (b.Y < bottom || a.Y > top)
+    {
+      return;
+    }
+    const auto at = [&](double y) {
+      const double x = a.X + (y - a.Y) / (b.Y - a.Y) * (b.X - a.X);
+      return std::max(std::min(a.X, b.X), std::min(std::max(a.X, b.X), x));
+    };
+    const double from = a.Y < bottom ? at(bottom) : a.X;
+    const double to = b.Y > top ? at(top) : b.X;
+    range = { std::min({ range.X, from, to }), std::max({ range.Y, from, to }) };
+  }
+
+  Point2 Low;
+  Point2 High;
+  Index Columns = 1;
+  Index Rows = 1;
+  double ColumnsPerUnit = 0.0;
+  double RowsPerUnit = 0.0;
+  std::vector<std::size_t> Offsets;
+  std::vector<Index> Things;
+};
+
+using Ends = std::array<Point2, 2>;
+
+Bins BinSegments(const std::vector<Ends>& segments)
+{
+  const Index count = static_cast<Index>(segments.size());
+  Bins bins(2 * count, segments.size(), [&](Index i) { return segments[i / 2][i % 2]; });
+  bins.Fill(count, [&](Index i) { return segments[i]; });
+  return bins;
+}
+
+// ---------------------------------------------------------------------------------------- crossing
+
+/** Whether each of two segments has the ends of the other on its two sides. */
+bool Cross(const Ends& s, const Ends& t)
+{
+  return Orientation(s[0], s[1], t[0]) * Orientation(s[0], s[1], t[1]) < 0 &&
+    Orientation(t[0], t[1], s[0]) * Orientation(t[0], t[1], s[1]) < 0;
+}
+
+/** Whether a point of the segment's line lies between its ends. */
+bool IsBetween(const Ends& s, const Point2& p)
+{
+  return IsLower(s[0], s[1]) ? IsLower(s[0], p) && IsLower(p, s[1])
+                             : IsLower(p, s[0]) && IsLower(s[1], p);
+}
+
+/** Where the segment from p to q crosses a line: rounded, and between p and q. */
+Point2 CrossingOf(const Ends& segment, Point2 a, Point2 b)
+{
+  // The same for both directions of the line.
+  if (IsLower(b, a))
+  {
+    std::swap(a, b);
+  }
+  const double scale = std::max(std::fabs(b.X - a.X), std::fabs(b.Y - a.Y));
+  const Point2 direction{ (b.X - a.X) / scale, (b.Y - a.Y) / scale };
+  const auto distance = [&](const Point2& p) {
+    return std::fabs(direction.X * (p.Y - a.Y) - direction.Y * (p.X - a.X));
+  };
+  const Point2& p = segment[0];
+  const Point2& q = segment[1];
+  const double share = distance(p) / (distance(p) + distance(q));
+  const double s = share >= 0.0 && share <= 1.0 ? share : 0.5;
+  const auto between = [s](double from, double to) {
+    const double value = s < 0.5 ? from + s * (to - from) : to - (1.0 - s) * (to - from);
+    return std::max(std::min(from, to), std::min(std::max(from, to), value));
+  };
+  return { between(p.X, q.X), between(p.Y, q.Y) };
+}
+
+/** Sorts points of a segment, or near it, from its first end to its second. */
+struct IsBeforeAlong
+{
+  explicit IsBeforeAlong(const Ends& segment)
+    : AlongX(std::fabs(segment[1].X - segment[0].X) > std::fabs(segment[1].Y - segment[0].Y))
+    , XRises(segment[1].X > segment[0].X)
+    , YRises(segment[1].Y > segment[0].Y)
+  {
+  }
+  bool operator()(const Point2& p, const Point2& q) const
+  {
+    const bool xIsLess = this->XRises ? p.X < q.X : p.X > q.X;
+    const bool yIsLess = this->YRises ? p.Y < q.Y : p.Y > q.Y;
+    return this->AlongX ? xIsLess || (p.X == q.X && yIsLess) : yIsLess || (p.Y == q.Y && xIsLess);
+  }
+  bool AlongX;
+  bool XRises;
+  bool YRises;
+};
+
+// ---------------------------------------------------------------------------------------- matching
+
+/** A hash of a place that is well mixed in all bits. */
+std::uint64_t Mix(const Point2& p)
+{
+  // 0.0 and -0.0 are equal, and go to the same place.
+  const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
+  std::uint64_t bits[2];
+  std::memcpy(bits, coordinates, sizeof(bits));
+  const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
+  return (mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull;
+}
+
+/**
+ * The points that may be one of those added: all of these, and one in a hundred others. For to look
+ * each up in a map is slow.
+ */
+class PointSieve
+{
+public:
+  explicit PointSieve(std::size_t capacity)
+  {
+    while (this->Shift > 32 && (std::size_t(1) << (64 - this->Shift)) < 128 * capacity)
+    {
+      --this->Shift;
+    }
+    this->Words.resize((std::size_t(1) << (64 - this->Shift)) / 64);
+  }
+  void Add(const Point2& p)
+  {
+    const std::uint64_t place = Mix(p) >> this->Shift;
+    this->Words[place / 64] |= std::uint64_t(1) << place % 64;
+  }
+  bool MayHold(const Point2& p) const
+  {
+    const std::uint64_t place = Mix(p) >> this->Shift;
+    return this->Words[place / 64] >> place % 64 & 1;
+  }
+
+private:
+  int Shift = 58;
+  std::vector<std::uint64_t> Words;
+};
+
+// --------------------------------------------------------------------------------------- insertion
+
+class Insertion
+{
+public:
+  Insertion(Mesh& mesh, const std::vector<Point2>& points, const Rings& rings, bool insert,
+    InsertedRings& result)
+    : Surface(mesh)
+    , Points(points)
+    , Given(rings)
+    , MayInsert(insert)
+    , Result(result)
+    , CountBefore(mesh.NumberOfPoints())
+    , TrianglesBefore(mesh.NumberOfTriangles())
+  {
+    for (Index ring = 0; ring < rings.Count(); ++ring)
+    {
+      for (Index i = 0; i < rings.Size(ring); ++i)
+      {
+        const Index a = rings.Begin(ring)[i];
+        const Index b = rings.Begin(ring)[i + 1 == rings.Size(ring) ? 0 : i + 1];
+        this->Edges.push_back({ points[a], points[b] });
+      }
+    }
+  }
+
+  void Run(const Progress& progress)
+  {
+    this->CheckCrossings(Part(progress, 0.0, 0.1));
+    this->MatchCorners(Part(progress, 0.1, 0.5));
+    this->LocateOthers(Part(progress, 0.5, 0.75));
+    this->InsertLocated(Part(progress, 0.75, 0.8));
+    this->StartRings();
+    // The pieces of an edge, and of a border, that has been cut at a rounded place are not quite
+    // where they were: all are looked at again. As rounding rarely leads past anything, one round
+    // more is the rule.
+    constexpr int mostRounds = 100;
+    bool isCut = this->CutAtBorder(Part(progress, 0.8, 1.0));
+    for (int round = 1; isCut; ++round)
+    {
+      if (round == mostRounds)
+      {
+        throw Error("The boundary's edge " + this->NameOfEdge(this->EdgeOfCut) +
+          " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
+          "pass through points of the mesh.");
+      }
+      isCut = this->CutAtBorder(Part(progress, 1.0, 1.0));
+    }
+    this->FinishRings();
+  }
+
+private:
+  std::string NameOfEdge(std::size_t edge) const
+  {
+    const auto ring = std::upper_bound(this->Given.Offsets.begin(), this->Given.Offsets.end(),
+                        static_cast<Index>(edge)) -
+      1;
+    const std::size_t next =
+      edge + 1 == static_cast<std::size_t>(ring[1]) ? static_cast<std::size_t>(*ring) : edge + 1;
+    return "from " + NameOf(this->Points, this->Given.Vertices[edge]) + " to " +
+      NameOf(this->Points, this->Given.Vertices[next]);
+  }
+
+  void CheckCrossings(const Progress& progress) const
+  {
+    const Bins bins = BinSegments(this->Edges);
+    for (std::size_t i = 0; i < this->Edges.size(); ++i)
+    {
+      ReportStep(progress, i, this->Edges.size(), 1024);
+      bins.Visit(this->Edges[i], [&](Index other) {
+        const std::size_t j = static_cast<std::size_t>(other);
+        if (j > i && Cross(this->Edges[i], this->Edges[j]))
+        {
+          throw Error("The boundary's edge " + this->NameOfEdge(i) + " crosses its edge " +
+            this->NameOfEdge(j) + ". Rings may touch and nest, but not cross.");
+        }
+      });
+    }
+  }
+
+  /** Finds the corner of the mesh at each point of the rings. */
+  void MatchCorners(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    for (const Index point : this->Given.Vertices)
+    {
+      this->VertexAt.emplace(this->Points[point], None);
+    }
+    PointSieve sieve(this->VertexAt.size());
+    for (const auto& entry : this->VertexAt)
+    {
+      sieve.Add(entry.first);
+    }
+    std::vector<char> isToMatch(mesh.Points.size());
+    InStretches(mesh.NumberOfPoints(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v)
+      {
+        isToMatch[v] = sieve.MayHold(mesh.PointOf(v));
+      }
+    });
+    const Progress matching = Part(progress, 0.3, 1.0);
+    for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+    {
+      ReportStep(matching, h, mesh.Triangles.size());
+      const Index vertex = mesh.Origin(h);
+      if (!isToMatch[vertex])
+      {
+        continue;
+      }
+      isToMatch[vertex] = 0;
+      const auto found = this->VertexAt.find(mesh.PointOf(vertex));
+      if (found == this->VertexAt.end())
+      {
+        continue;
+      }
+      if (found->second != None)
+      {
+        throw Error("Points " + std::to_string(std::min(found->second, vertex)) + " and " +
+          std::to_string(std::max(found->second, vertex)) +
+          " of the mesh have the same x,y and both are corners of triangles, so that the "
+          "boundary's point there is not one place of the mesh. Merge them, as "
+          "vtkStaticCleanPolyData does.");
+      }
+      found->second = vertex;
+    }
+  }
+
+  /** Finds the triangle at each point that is no corner. */
+  void LocateOthers(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<Index> open; // ids of Points
+    for (const Index point : this->Given.Vertices)
+    {
+      Index& vertex = this->VertexAt.at(this->Points[point]);
+      if (vertex == None)
+      {
+        vertex = Outside;
+        open.push_back(point);
+      }
+    }
+    if (open.empty())
+    {
+      return;
+    }
+    const Index count = static_cast<Index>(open.size());
+    const auto pointOf = [&](Index i) { return this->Points[open[i]]; };
+    Bins bins(count, open.size(), pointOf);
+    bins.Fill(count, [&](Index i) { return std::array<Point2, 1>{ { pointOf(i) } }; });
+    std::vector<Index> triangles(open.size(), None);
+    InStretches(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        const std::size_t ahead = 3 * static_cast<std::size_t>(t) + HalfEdgesAhead;
+        if (ahead + 2 < mesh.Triangles.size())
+        {
+          Prefetch(&mesh.Points[mesh.Triangles[ahead]]);
+          Prefetch(&mesh.Points[mesh.Triangles[ahead + 1]]);
+          Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
+        }
+        const std::array<Point2, 3> corners = this->CornersOf(t);
+        bins.Visit(corners, [&](Index i) {
+          if (triangles[i] == None && this->Holds(t, pointOf(i)))
+          {
+            triangles[i] = t;
+          }
+        });
+      }
+    });
+    for (Index i = 0; i < count; ++i)
+    {
+      if (triangles[i] != None)
+      {
+        this->Located.push_back({ triangles[i], open[i] });
+      }
+    }
+    if (!this->Located.empty() && !this->MayInsert)
+    {
+      throw Error("The boundary's " + NameOf(this->Points, this->Located.front().Point) +
+        " is not a corner of the mesh: no triangle has a point with exactly the same x,y. Turn "
+        "RecoverBoundary on, or add the boundary's points to the points before triangulating "
+        "them.");
+    }
+    this->Reserve(this->Located.size());
+  }
+
+  /** Room for so many more vertices. @throws Error when these are too many */
+  void Reserve(std::size_t vertices)
+  {
+    constexpr std::size_t most = MaximumNumberOfPoints;
+    if (this->Surface.Points.size() + this->VertexAt.size() + vertices > most ||
+      this->Surface.Triangles.size() / 3 + 2 * vertices > 2 * most)
+    {
+      throw Error("The mesh has no room for " + std::to_string(vertices) +
+        " points of the boundary: at most " + std::to_string(most) +
+        " points can be handled at once. Cut it into parts.");
+    }
+    if (vertices > 0)
+    {
+      // Not more than that, as growing by halves would; the points outside come last.
+      this->Surface.Points.reserve(this->Surface.Points.size() + this->VertexAt.size() + vertices);
+      this->Surface.Triangles.reserve(this->Surface.Triangles.size() + 6 * vertices);
+      this->Surface.Twins.reserve(this->Surface.Twins.size() + 6 * vertices);
+    }
+  }
+
+  void InsertLocated(const Progress& progress)
+  {
+    // In an order that depends on nothing but the places, and has no order as seen in a triangle:
+    // then lists of many points are halved or so by each.
+    std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
+      const Point2& p = this->Points[a.Point];
+      const Point2& q = this->Points[b.Point];
+      const std::uint64_t mixedP = Mix(p);
+      const std::uint64_t mixedQ = Mix(q);
+      return std::tie(a.Triangle, mixedP, p.X, p.Y) < std::tie(b.Triangle, mixedQ, q.X, q.Y);
+    });
+    // Weights in the triangles as they are now.
+    std::unordered_map<Index, InsertedVertex> weights;
+    std::vector<Index> work;
+    for (const Place& place : this->Located)
+    {
+      weights[place.Point] = this->WeightsIn(place.Triangle, this->Points[place.Point]);
+      std::vector<Index>& waiting = this->Waiting[place.Triangle];
+      if (waiting.empty())
+      {
+        work.push_back(place.Triangle);
+      }
+      waiting.push_back(place.Point);
+    }
+    std::reverse(work.begin(), work.end());
+    std::size_t done = 0;
+    while (!work.empty())
+    {
+      const Index t = work.back();
+      const auto found = this->Waiting.find(t);
+      if (found == this->Waiting.end() || found->second.empty())
+      {
+        work.pop_back();
+        continue;
+      }
+      ReportStep(progress, done++, this->Located.size(), 1024);
+      const Index point = found->second.front();
+      const Point2 p = this->Points[point];
+      const Index vertex = this->AddVertex(p, weights.at(point));
+      this->VertexAt.at(p) = vertex;
+      Index on = None; // the edge that the point is on
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        if (Orientation(this->Surface.PointOf(this->Surface.Origin(h)),
+              this->Surface.PointOf(this->Surface.Destination(h)), p) == Zero)
+        {
+          on = h;
+        }
+      }
+      // The parts: this triangle, perhaps the one beyond the edge, and new ones.
+      std::vector<Index> before{ t };
+      if (on != None && !this->Surface.IsBorder(on))
+      {
+        before.push_back(Mesh::Triangle(this->Surface.Twin(on)));
+      }
+      std::vector<Index> parts = before;
+      const Index firstNew = this->Surface.NumberOfTriangles();
+      if (on == None)
+      {
+        this->CutTriangle(t, vertex);
+      }
+      else
+      {
+        this->CutEdge(on, vertex);
+      }
+      for (Index part = firstNew; part < this->Surface.NumberOfTriangles(); ++part)
+      {
+        parts.push_back(part);
+      }
+      std::vector<Index> moving;
+      for (const Index part : before)
+      {
+        std::vector<Index>& waiting = this->Waiting[part];
+        moving.insert(moving.end(), waiting.begin(), waiting.end());
+        waiting.clear();
+      }
+      for (const Index other : moving)
+      {
+        if (other == point)
+        {
+          continue;
+        }
+        const Index part = *std::find_if(parts.begin(), parts.end(),
+          [&](Index candidate) { return this->Holds(candidate, this->Points[other]); });
+        this->Waiting[part].push_back(other);
+      }
+      for (const Index part : parts)
+      {
+        work.push_back(part);
+      }
+    }
+  }
+
+  Point2 PlaceOf(Index vertex) const
+  {
+    return vertex >= 0 ? this->Surface.PointOf(vertex) : this->OutsidePoints[FirstOutside - vertex];
+  }
+
+  /** The rings as given, by vertices; points outside the mesh have numbers below. */
+  void StartRings()
+  {
+    for (const Index point : this->Given.Vertices)
+    {
+      Index& vertex = this->VertexAt.at(this->Points[point]);
+      if (vertex == Outside)
+      {
+        vertex = FirstOutside - static_cast<Index>(this->OutsidePoints.size());
+        this->OutsidePoints.push_back(this->Points[point]);
+      }
+      this->Pieces.push_back({ vertex, this->Pieces.size() });
+    }
+    this->Result.Vertices.Offsets = this->Given.Offsets;
+  }
+
+  /**
+   * Gives vertices to the border where pieces of the rings cross it, and to the rings where they
+   * run through the border's vertices. @return whether there was a crossing
+   */
+  bool CutAtBorder(const Progress& progress)
+  {
+    Mesh& mesh = this->Surface;
+    const std::vector<Ends> pieces = this->EndsOfPieces();
+    this->OnTheWay.clear();
+    this->IsCut.clear();
+    this->Moved.clear();
+    std::vector<Index> borders;
+    InStretches(mesh.NumberOfHalfEdges(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+      for (Index h = begin; h < end; ++h)
+      {
+        if (mesh.IsBorder(h))
+        {
+          borders.push_back(h);
+        }
+      }
+    });
+    std::vector<Ends> segments;
+    for (const Index h : borders)
+    {
+      segments.push_back({ mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)) });
+    }
+    const Bins bins = BinSegments(segments);
+    struct Crossing
+    {
+      Index Border; // of borders
+      Point2 Place;
+      std::size_t Piece;
+    };
+    std::vector<Crossing> crossings;
+    std::vector<std::size_t> lastSeen(segments.size(), pieces.size());
+    const Progress looking = Part(progress, 0.3, 0.5);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+    {
+      ReportStep(looking, i, pieces.size(), 1024);
+      const Ends& edge = pieces[i];
+      bins.Visit(edge, [&](Index border) {
+        if (lastSeen[border] == i)
+        {
+          return;
+        }
+        lastSeen[border] = i;
+        const Ends& segment = segments[border];
+        if (Cross(edge, segment))
+        {
+          crossings.push_back({ border, CrossingOf(segment, edge[0], edge[1]), i });
+        }
+        else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsBetween(edge, segment[0]))
+        {
+          this->OnTheWay.push_back({ i, mesh.Origin(borders[border]) });
+        }
+      });
+    }
+    if (!crossings.empty() && !this->MayInsert)
+    {
+      throw Error("The boundary's edge " +
+        this->NameOfEdge(this->Pieces[crossings.front().Piece].Edge) +
+        " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
+    }
+    this->Reserve(crossings.size());
+
+    // Along each border from its first end, so that its last part is the one to cut next.
+    std::sort(crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) {
+      const IsBeforeAlong before(segments[a.Border]);
+      return a.Border != b.Border
+        ? a.Border < b.Border
+        : before(a.Place, b.Place) || (!before(b.Place, a.Place) && a.Piece < b.Piece);
+    });
+    Index h = None;
+    for (std::size_t i = 0; i < crossings.size(); ++i)
+    {
+      const Crossing& crossing = crossings[i];
+      if (i == 0 || crossings[i - 1].Border != crossing.Border)
+      {
+        h = borders[crossing.Border];
+        for (auto next = this->Moved.find(h); next != this->Moved.end(); next = this->Moved.find(h))
+        {
+          h = next->second;
+        }
+      }
+      Index vertex = mesh.Origin(h);
+      if (crossing.Place == mesh.PointOf(mesh.Destination(h)))
+      {
+        vertex = mesh.Destination(h);
+      }
+      else if (crossing.Place != mesh.PointOf(vertex))
+      {
+        const Index end = mesh.Destination(h);
+        Point2 place = crossing.Place;
+        if (!this->MoveToCut(h, place))
+        {
+          throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
+            " leaves the mesh across a triangle too thin to be cut there, between " +
+            NameOf(mesh.Points, vertex) + " and " + NameOf(mesh.Points, end) +
+            " of the mesh. Let the boundary pass through one of them.");
+        }
+        vertex = this->AddVertex(place, this->WeightsBetween(vertex, end, place));
+        h = this->CutEdge(h, vertex);
+      }
+      this->OnTheWay.push_back({ crossing.Piece, vertex });
+      this->IsCut.push_back(crossing.Piece);
+      this->EdgeOfCut = this->Pieces[crossing.Piece].Edge;
+    }
+    this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
+    this->CutPieces(pieces);
+    return !crossings.empty();
+  }
+
+  /** From each of the rings' vertices to the next. */
+  std::vector<Ends> EndsOfPieces() const
+  {
+    std::vector<Ends> ends;
+    ends.reserve(this->Pieces.size());
+    const Rings& rings = this->Result.Vertices; // its offsets
+    for (Index ring = 0; ring < rings.Count(); ++ring)
+    {
+      for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
+      {
+        const Index next = i + 1 == rings.Offsets[ring + 1] ? rings.Offsets[ring] : i + 1;
+        ends.push_back(
+          { this->PlaceOf(this->Pieces[i].Vertex), this->PlaceOf(this->Pieces[next].Vertex) });
+      }
+    }
+    return ends;
+  }
+
+  /**
+   * Of pieces that cross the border, finds the vertices they run through exactly: the part up to a
+   * crossing, whose place is rounded, would pass beside them.
+   */
+  void FindOnTheWay(const std::vector<Ends>& pieces, const Progress& progress)
+  {
+    if (this->IsCut.empty())
+    {
+      return;
+    }
+    const Mesh& mesh = this->Surface;
+    std::sort(this->IsCut.begin(), this->IsCut.end());
+    this->IsCut.erase(std::unique(this->IsCut.begin(), this->IsCut.end()), this->IsCut.end());
+    std::vector<Ends> segments;
+    for (const std::size_t piece : this->IsCut)
+    {
+      segments.push_back(pieces[piece]);
+    }
+    const Bins bins = BinSegments(segments);
+    std::unordered_map<Index, std::vector<Index>> segmentsThrough;
+    std::vector<char> isOn(mesh.Points.size(), 0);
+    InStretches(mesh.NumberOfPoints(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v)
+      {
+        const Point2& p = mesh.PointOf(v);
+        bins.Visit(std::array<Point2, 1>{ { p } }, [&](Index i) {
+          if (Orientation(segments[i][0], segments[i][1], p) == Zero && IsBetween(segments[i], p))
+          {
+            isOn[v] = 1;
+            segmentsThrough[v].push_back(i);
+          }
+        });
+      }
+    });
+    if (segmentsThrough.empty())
+    {
+      return;
+    }
+    // Points that no triangle uses do not count.
+    InStretches(mesh.NumberOfHalfEdges(), Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
+      for (Index h = begin; h < end; ++h)
+      {
+        const Index v = mesh.Origin(h);
+        if (isOn[v])
+        {
+          isOn[v] = 0;
+          for (const Index i : segmentsThrough.at(v))
+          {
+            this->OnTheWay.push_back({ this->IsCut[i], v });
+          }
+        }
+      }
+    });
+  }
+
+  /** Cuts the pieces where vertices are on their way. */
+  void CutPieces(const std::vector<Ends>& pieces)
+  {
+    const Mesh& mesh = this->Surface;
+    std::sort(this->OnTheWay.begin(), this->OnTheWay.end(), [&](const Stop& a, const Stop& b) {
+      if (a.Piece != b.Piece)
+      {
+        return a.Piece < b.Piece;
+      }
+      const IsBeforeAlong before(pieces[a.Piece]);
+      const Point2& p = mesh.PointOf(a.Vertex);
+      const Point2& q = mesh.PointOf(b.Vertex);
+      return before(p, q) || (!before(q, p) && a.Vertex < b.Vertex);
+    });
+    std::vector<Piece> cut;
+    cut.reserve(this->Pieces.size() + this->OnTheWay.size());
+    auto stop = this->OnTheWay.begin();
+    std::vector<Index> offsets{ 0 };
+    const std::vector<Index>& before = this->Result.Vertices.Offsets;
+    for (std::size_t ring = 0; ring + 1 < before.size(); ++ring)
+    {
+      const auto add = [&](const Piece& piece) {
+        if (cut.size() > static_cast<std::size_t>(offsets.back()) &&
+          cut.back().Vertex == piece.Vertex)
+        {
+          cut.pop_back(); // it leads nowhere
+        }
+        cut.push_back(piece);
+      };
+      for (Index i = before[ring]; i < before[ring + 1]; ++i)
+      {
+        Piece piece = this->Pieces[i];
+        add(piece);
+        for (; stop != this->OnTheWay.end() && stop->Piece == static_cast<std::size_t>(i); ++stop)
+        {
+          piece.Vertex = stop->Vertex;
+          add(piece);
+        }
+      }
+      offsets.push_back(static_cast<Index>(cut.size()));
+    }
+    this->Pieces = std::move(cut);
+    this->Result.Vertices.Offsets = std::move(offsets);
+  }
+
+  /** The points outside the mesh become its last ones. */
+  void FinishRings()
+  {
+    Mesh& mesh = this->Surface;
+    const Index first = mesh.NumberOfPoints();
+    mesh.Points.insert(mesh.Points.end(), this->OutsidePoints.begin(), this->OutsidePoints.end());
+    for (const Piece& piece : this->Pieces)
+    {
+      this->Result.Vertices.Vertices.push_back(
+        piece.Vertex >= 0 ? piece.Vertex : first + (FirstOutside - piece.Vertex));
+    }
+  }
+
+  // --------------------------------------------------------------------------------------- cutting
+
+  std::array<Point2, 3> CornersOf(Index t) const
+  {
+    const Mesh& mesh = this->Surface;
+    return { { mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
+      mesh.PointOf(mesh.Origin(3 * t + 2)) } };
+  }
+
+  /** Whether the point is in the triangle or on an edge of it. */
+  bool Holds(Index t, const Point2& p) const
+  {
+    const std::array<Point2, 3> corners = this->CornersOf(t);
+    return Orientation(corners[0], corners[1], p) != Negative &&
+      Orientation(corners[1], corners[2], p) != Negative &&
+      Orientation(corners[2], corners[0], p) != Negative;
+  }
+
+  /**
+   * Moves a place on the border, within rounding, to where the triangle of h can be cut: rounded,
+   * it may be beyond a thin triangle. Outwards is always room. @return whether one was found
+   */
+  bool MoveToCut(Index h, Point2& place) const
+  {
+    const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
+    const Point2& to = this->Surface.PointOf(this->Surface.Destination(h));
+    const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
+    const double length = std::hypot(to.X - from.X, to.Y - from.Y);
+    const double step =
+      std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
+    const Point2 outwards{ step * ((to.Y - from.Y) / length), step * ((from.X - to.X) / length) };
+    const Point2 first = place;
+    for (double steps = 1.0; steps <= 64.0; steps *= 2.0)
+    {
+      if (Orientation(from, place, apex) == Positive && Orientation(place, to, apex) == Positive)
+      {
+        return true;
+      }
+      place = { first.X + steps * outwards.X, first.Y + steps * outwards.Y };
+    }
+    return false;
+  }
+
+  InsertedVertex WeightsIn(Index t, const Point2& p) const
+  {
+    const std::array<Point2, 3> corners = this->CornersOf(t);
+    InsertedVertex vertex{};
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const Point2& a = corners[(i + 1) % 3];
+      const Point2& b = corners[(i + 2) % 3];
+      vertex.Corners[i] = this->Surface.Origin(3 * t + i);
+      // On an edge, rounding must not bring in the corner beyond.
+      vertex.Weights[i] = Orientation(a, b, p) == Zero
+        ? 0.0
+        : std::fabs((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X));
+      sum += vertex.Weights[i];
+    }
+    return Normalized(vertex, sum);
+  }
+
+  /** The weights of a place on an edge, whose ends may be new vertices themselves. */
+  InsertedVertex WeightsBetween(Index a, Index b, const Point2& p) const
+  {
+    const Point2& from = this->Surface.PointOf(a);
+    const Point2& to = this->Surface.PointOf(b);
+    const double first = std::hypot(to.X - p.X, to.Y - p.Y);
+    const double second = std::hypot(p.X - from.X, p.Y - from.Y);
+    InsertedVertex vertex{ { None, None, None }, { 0.0, 0.0, 0.0 } };
+    double sum = 0.0;
+    const auto add = [&](Index corner, double weight) {
+      if (weight > 0.0)
+      {
+        // Both ends are of one triangle before, which has three corners.
+        int i = 0;
+        while (i < 2 && vertex.Corners[i] != corner && vertex.Corners[i] != None)
+        {
+          ++i;
+        }
+        vertex.Corners[i] = corner;
+        vertex.Weights[i] += weight;
+        sum += weight;
+      }
+    };
+    for (const auto& end : { std::make_pair(a, first), std::make_pair(b, second) })
+    {
+      if (end.first < this->CountBefore)
+      {
+        add(end.first, end.second);
+        continue;
+      }
+      const InsertedVertex& inserted = this->Result.Inserted[end.first - this->CountBefore];
+      for (int i = 0; i < 3; ++i)
+      {
+        add(inserted.Corners[i], end.second * inserted.Weights[i]);
+      }
+    }
+    for (Index& corner : vertex.Corners)
+    {
+      corner = corner == None ? vertex.Corners[0] : corner;
+    }
+    return Normalized(vertex, sum);
+  }
+
+  static InsertedVertex Normalized(InsertedVertex vertex, double sum)
+  {
+    const bool isUsable = sum > 0.0 && sum < std::numeric_limits<double>::infinity();
+    for (double& weight : vertex.Weights)
+    {
+      // What leaves the range of double has no ratios.
+      weight = isUsable ? weight / sum : 1.0 / 3.0;
+    }
+    return vertex;
+  }
+
+  Index AddVertex(const Point2& p, const InsertedVertex& inserted)
+  {
+    this->Surface.Points.push_back(p);
+    this->Result.Inserted.push_back(inserted);
+    return this->Surface.NumberOfPoints() - 1;
+  }
+
+  /** Room for a part of a triangle. @return its first half-edge */
+  Index AddPart(Index t)
+  {
+    Mesh& mesh = this->Surface;
+    this->Result.Parents.push_back(
+      t < this->TrianglesBefore ? t : this->Result.Parents[t - this->TrianglesBefore]);
+    mesh.Triangles.resize(mesh.Triangles.size() + 3, None);
+    mesh.Twins.resize(mesh.Twins.size() + 3, Mesh::Border);
+    return mesh.NumberOfHalfEdges() - 3;
+  }
+
+  void SetEdge(Index h, Index origin, Index twin)
+  {
+    this->Surface.Triangles[h] = origin;
+    this->Surface.Twins[h] = twin;
+    if (twin != Mesh::Border)
+    {
+      this->Surface.Twins[twin] = h;
+    }
+  }
+
+  /** Triangle abc becomes abv, and bcv and cav are new. */
+  void CutTriangle(Index t, Index v)
+  {
+    Mesh& mesh = this->Surface;
+    const Index b = mesh.Origin(3 * t + 1);
+    const Index c = mesh.Origin(3 * t + 2);
+    const Index a = mesh.Origin(3 * t);
+    const Index first = this->AddPart(t);
+    const Index second = this->AddPart(t);
+    this->SetEdge(first, b, mesh.Twin(3 * t + 1));
+    this->SetEdge(second, c, mesh.Twin(3 * t + 2));
+    this->SetEdge(3 * t + 1, b, first + 2);
+    this->SetEdge(3 * t + 2, v, second + 1);
+    this->SetEdge(first + 1, c, second + 2);
+    this->SetEdge(first + 2, v, 3 * t + 1);
+    this->SetEdge(second + 1, a, 3 * t + 2);
+    this->SetEdge(second + 2, v, first + 1);
+  }
+
+  /** Cuts the triangles beside an edge. @return the half-edge from v to where h led */
+  Index CutEdge(Index h, Index v)
+  {
+    Mesh& mesh = this->Surface;
+    const Index twin = mesh.Twin(h);
+    const Index after = this->Halve(h, v);
+    if (twin != Mesh::Border)
+    {
+      const Index afterTwin = this->Halve(twin, v);
+      this->SetEdge(h, mesh.Origin(h), afterTwin);
+      this->SetEdge(twin, mesh.Origin(twin), after);
+    }
+    return after;
+  }
+
+  /** Triangle abc with h from a to b becomes avc, and vbc is new; not connected along h. */
+  Index Halve(Index h, Index v)
+  {
+    Mesh& mesh = this->Surface;
+    const Index next = Mesh::Next(h);
+    const Index b = mesh.Origin(next);
+    const Index c = mesh.Apex(h);
+    const Index part = this->AddPart(Mesh::Triangle(h));
+    if (mesh.IsBorder(next))
+    {
+      this->Moved[next] = part + 1;
+    }
+    this->SetEdge(part, v, Mesh::Border);
+    this->SetEdge(part + 1, b, mesh.Twin(next));
+    this->SetEdge(part + 2, c, next);
+    this->Surface.Triangles[next] = v;
+    return part;
+  }
+
+  /** In place of a vertex: of a point outside the mesh, at first, and the first of such. */
+  static constexpr Index Outside = -2;
+  static constexpr Index FirstOutside = -3;
+
+  struct Place
+  {
+    Index Triangle;
+    Index Point;
+  };
+  /** A piece of an edge of the rings, up to the next piece. */
+  struct Piece
+  {
+    Index Vertex;     ///< where it begins
+    std::size_t Edge; ///< of the given ones
+  };
+  /** A vertex that a piece runs through. */
+  struct Stop
+  {
+    std::size_t Piece;
+    Index Vertex;
+  };
+
+  Mesh& Surface;
+  const std::vector<Point2>& Points;
+  const Rings& Given;
+  const bool MayInsert;
+  InsertedRings& Result;
+  const Index CountBefore;
+  const Index TrianglesBefore;
+  std::vector<Ends> Edges; ///< beside Given.Vertices: the edge from there
+  std::unordered_map<Point2, Index, HashOfPoint> VertexAt;
+  std::vector<Place> Located;
+  std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: points to be inserted
+  std::unordered_map<Index, Index> Moved; ///< half-edges of the border that a cut renumbered
+  std::vector<Point2> OutsidePoints;
+  std::vector<Piece> Pieces; ///< one after another along each ring
+  std::vector<Stop> OnTheWay;
+  std::vector<std::size_t> IsCut; ///< pieces that cross the border
+  std::size_t EdgeOfCut = 0;      ///< the edge of one of them
+};
+
+} // namespace
+
+InsertedRings InsertRings(Mesh& mesh, const std::vector<Point2>& points, const Rings& rings,
+  bool insert, const Progress& progress)
+{
+  InsertedRings result;
+  Insertion(mesh, points, rings, insert, result).Run(progress);
+  return result;
+}
+
+} // namespace elevation

@@ -1,0 +1,331 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The second input of vtkGridDelaunay2D, by numbers: what is added, what stays shared, what arrays
+// hold at added points, what is counted, and which constraints are refused.
+#include "MeshRules.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkTrivialProducer.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace
+{
+int failures = 0;
+
+void Check(bool isTrue, const std::string& claim)
+{
+  if (!isTrue)
+  {
+    std::cerr << "Not true: " << claim << "\n";
+    ++failures;
+  }
+}
+
+/** A lattice of 9 x 9 nodes with arrays. */
+vtkSmartPointer<vtkPolyData> MakeInput(int precision)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataType(precision);
+  vtkNew<vtkFloatArray> amplitude;
+  amplitude->SetName("Amplitude");
+  vtkNew<vtkIntArray> inlines;
+  inlines->SetName("Inline");
+  vtkNew<vtkStringArray> names;
+  names->SetName("Name");
+  vtkNew<vtkDoubleArray> alone;
+  alone->SetName("OfTheInputAlone");
+  for (int i = 0; i < 81; ++i)
+  {
+    points->InsertNextPoint(i % 9, i / 9, 0.125 * i);
+    amplitude->InsertNextValue(i);
+    inlines->InsertNextValue(i);
+    names->InsertNextValue(std::to_string(i));
+    alone->InsertNextValue(i);
+  }
+  auto input = vtkSmartPointer<vtkPolyData>::New();
+  input->SetPoints(points);
+  input->GetPointData()->SetScalars(amplitude);
+  input->GetPointData()->AddArray(inlines);
+  input->GetPointData()->AddArray(names);
+  input->GetPointData()->AddArray(alone);
+  return input;
+}
+
+/** Lines through points; the last one is a polygon when asked. */
+vtkSmartPointer<vtkPolyData> MakeLines(
+  const std::vector<std::vector<std::vector<double>>>& lines, bool isLastPolygon = false)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkCellArray> polygons;
+  vtkNew<vtkDoubleArray> amplitude;
+  amplitude->SetName("Amplitude");
+  vtkNew<vtkIntArray> inlines;
+  inlines->SetName("Inline");
+  vtkNew<vtkStringArray> names;
+  names->SetName("Name");
+  for (std::size_t i = 0; i < lines.size(); ++i)
+  {
+    vtkCellArray* to = isLastPolygon && i + 1 == lines.size() ? polygons.Get() : cells.Get();
+    to->InsertNextCell(static_cast<int>(lines[i].size()));
+    for (const auto& p : lines[i])
+    {
+      to->InsertCellPoint(points->InsertNextPoint(p.data()));
+      amplitude->InsertNextValue(1000.0 + p[0]);
+      inlines->InsertNextValue(7);
+      names->InsertNextValue("line " + std::to_string(i));
+    }
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(cells);
+  data->SetPolys(polygons);
+  data->GetPointData()->AddArray(amplitude);
+  data->GetPointData()->AddArray(inlines);
+  data->GetPointData()->AddArray(names);
+  return data;
+}
+
+bool HasEdge(vtkPolyData* surface, vtkIdType from, vtkIdType to)
+{
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfPolys(); ++cell)
+  {
+    surface->GetPolys()->GetCellAtId(cell, size, ids);
+    for (int i = 0; i < 3; ++i)
+    {
+      if ((ids[i] == from && ids[(i + 1) % 3] == to) || (ids[i] == to && ids[(i + 1) % 3] == from))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+void TestNothingIsAdded()
+{
+  auto input = MakeInput(VTK_FLOAT);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+  Check(delaunay->GetSource() == nullptr, "there are no constraints at first");
+  delaunay->Update();
+  vtkNew<vtkPolyData> plain;
+  plain->DeepCopy(delaunay->GetOutput());
+
+  auto lines = MakeLines({ { { 1, 1, -50 }, { 3, 2, -50 } } });
+  delaunay->SetSourceData(lines);
+  Check(delaunay->GetSource() == lines, "the constraints are told");
+  delaunay->Update();
+  vtkPolyData* output = delaunay->GetOutput();
+  Check(output->GetPoints() == input->GetPoints() &&
+      output->GetPointData()->GetScalars() == input->GetPointData()->GetScalars(),
+    "points and arrays stay shared when nothing is added");
+  Check(HasEdge(output, 10, 21) && !HasEdge(plain, 10, 21), "the line is an edge");
+  Check(!delaunay->GetLatticeFound() && !output->GetFieldData()->GetArray("Lattice"),
+    "no lattice with constraints");
+  elevation::ValidateOptions rules;
+  rules.Delaunay = false;
+  Check(NumberOfFindings(output, rules) == 0, "the whole hull is covered");
+
+  // Vertex cells and points in no cell are no constraints.
+  vtkNew<vtkPolyData> vertices;
+  vertices->SetPoints(lines->GetPoints());
+  vtkNew<vtkCellArray> cells;
+  const vtkIdType ids[2] = { 0, 1 };
+  cells->InsertNextCell(2, ids);
+  vertices->SetVerts(cells);
+  delaunay->SetSourceData(vertices);
+  delaunay->Update();
+  Check(delaunay->GetLatticeFound(), "without lines all is as without constraints");
+
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(lines);
+  delaunay->SetSourceConnection(producer->GetOutputPort());
+  delaunay->Update();
+  Check(HasEdge(delaunay->GetOutput(), 10, 21), "constraints may come through a connection");
+  delaunay->SetSourceConnection(nullptr);
+  delaunay->Update();
+  Check(delaunay->GetSource() == nullptr && delaunay->GetLatticeFound(), "and can be taken away");
+}
+
+void TestPointsAreAdded()
+{
+  auto input = MakeInput(VTK_FLOAT);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+  // 81, 82 and, of a polygon, 83 and 84; two crossings with the polygon, 85 and 86.
+  delaunay->SetSourceData(MakeLines({ { { 0.5, 4.5, 40.0 }, { 7.5, 4.5, 54.0 } },
+                                      { { 3.0, 3.0, 0.0 }, { 4.5, 6.5, 2.5 }, { 2.5, 6.5, 3.5 } } },
+    true));
+  delaunay->Update();
+  vtkPolyData* output = delaunay->GetOutput();
+  Check(output->GetNumberOfPoints() == 87 && delaunay->GetNumberOfAddedPoints() == 6,
+    "points are added behind the input's");
+  Check(delaunay->GetNumberOfConstraintCrossings() == 2 &&
+      output->GetFieldData()->GetArray("NumberOfConstraintCrossings")->GetTuple1(0) == 2 &&
+      output->GetFieldData()->GetArray("NumberOfAddedPoints")->GetTuple1(0) == 6,
+    "crossings and added points are counted");
+  Check(input->GetNumberOfPoints() == 81 && input->GetPointData()->GetScalars()->GetSize() >= 81 &&
+      input->GetPoints() != output->GetPoints(),
+    "the input is not written");
+  Check(output->GetPoints()->GetDataType() == VTK_DOUBLE, "a third is no float");
+  double p[3];
+  output->GetPoint(82, p);
+  Check(p[0] == 7.5 && p[1] == 4.5 && p[2] == 54.0, "an added point has its own z");
+  output->GetPoint(80, p);
+  Check(p[0] == 8.0 && p[1] == 8.0 && p[2] == 10.0, "the others stay");
+  vtkDataArray* amplitude = output->GetPointData()->GetScalars();
+  Check(amplitude && amplitude->GetDataType() == VTK_FLOAT &&
+      std::string(amplitude->GetName()) == "Amplitude" && amplitude->GetTuple1(80) == 80.0 &&
+      amplitude->GetTuple1(82) == 1007.5,
+    "arrays have the constraints' values at their points");
+  for (vtkIdType id = 85; id < 87; ++id)
+  {
+    output->GetPoint(id, p);
+    Check(std::fabs(p[2] - (40.0 + 2.0 * (p[0] - 0.5))) < 1e-12 && p[1] == 4.5,
+      "z of a crossing is that of the first line");
+    Check(std::fabs(amplitude->GetTuple1(id) - (1000.0 + p[0])) < 1e-3, "and so are numbers");
+  }
+  Check(output->GetPointData()->GetArray("Inline")->GetTuple1(82) == 7 &&
+      output->GetPointData()->GetArray("Inline")->GetTuple1(85) == 0,
+    "integers are the constraints', or 0");
+  auto* names = vtkStringArray::SafeDownCast(output->GetPointData()->GetAbstractArray("Name"));
+  Check(names && names->GetValue(80) == "80" && names->GetValue(81) == "line 0" &&
+      names->GetValue(84) == "line 1" && names->GetValue(85).empty(),
+    "strings are the constraints', or empty");
+  Check(std::isnan(output->GetPointData()->GetArray("OfTheInputAlone")->GetTuple1(82)),
+    "what the constraints do not have is not a number");
+  Check(HasEdge(output, 84, 85) && HasEdge(output, 85, 30), "polygons are closed");
+
+  delaunay->SetSourceData(MakeLines({ { { 0.5, 4.5, 40.0 }, { 7.5, 4.5, 54.0 } } }));
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetPoints()->GetDataType() == VTK_FLOAT &&
+      delaunay->GetOutput()->GetNumberOfPoints() == 83,
+    "points stay float as long as that is exact");
+
+  delaunay->SetMaximumEdgeLength(1.5);
+  delaunay->SetSourceData(MakeLines({ { { 0, 0, 0 }, { 8, 7, 0 } } }));
+  delaunay->Update();
+  Check(delaunay->GetOutput()->GetNumberOfPolys() > 80 && !HasEdge(delaunay->GetOutput(), 0, 71),
+    "the edge limit applies to edges of lines");
+}
+
+void TestRefusals()
+{
+  const auto messageOf = [](vtkPolyData* source) {
+    vtkNew<vtkGridDelaunay2D> delaunay;
+    vtkNew<vtkTest::ErrorObserver> observer;
+    delaunay->AddObserver(vtkCommand::ErrorEvent, observer);
+    delaunay->SetInputData(MakeInput(VTK_DOUBLE));
+    delaunay->SetSourceData(source);
+    delaunay->Update();
+    Check(delaunay->GetOutput()->GetNumberOfPoints() == 0 &&
+        delaunay->GetNumberOfConstraintCrossings() == 0 && delaunay->GetNumberOfAddedPoints() == 0,
+      "an error leaves empty output");
+    return observer->GetErrorMessage();
+  };
+  const auto expect = [&](vtkPolyData* source, const std::string& words) {
+    const std::string message = messageOf(source);
+    Check(message.find(words) != std::string::npos, words + "; but it was: " + message);
+  };
+  expect(MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } }, { { 2, 2, 0 }, { NAN, 1, 0 } } }),
+    "Point 3 of the constraints' cell 1 has a coordinate that is not finite.");
+
+  auto missing = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } } });
+  const vtkIdType ids[2] = { 1, 4294967296 };
+  missing->GetLines()->InsertNextCell(2, ids);
+  expect(missing, "Point 4294967296 of the constraints' cell 1 does not exist.");
+
+  auto strips = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 }, { 1, 2, 0 } } });
+  vtkNew<vtkCellArray> strip;
+  const vtkIdType corners[3] = { 0, 1, 2 };
+  strip->InsertNextCell(3, corners);
+  strips->SetStrips(strip);
+  expect(strips, "The constraints have triangle strips");
+
+  auto arrays = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } } });
+  arrays->GetPointData()->GetArray("Inline")->InsertNextTuple1(3);
+  expect(arrays, "The constraints' point array \"Inline\" has 3 tuples, but there are 2 points.");
+}
+
+void TestProgressAndAbort()
+{
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 60000; ++i)
+  {
+    points->InsertNextPoint(std::fmod(i * 0.618033988749895, 1.0), i / 60000.0, 0.0);
+  }
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(points);
+  std::vector<std::vector<std::vector<double>>> lines;
+  for (int i = 1; i < 20; ++i)
+  {
+    lines.push_back({ { 0.05 * i, 0.1, 0 }, { 1 - 0.05 * i, 0.9, 0 } });
+  }
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+  delaunay->SetSourceData(MakeLines(lines));
+  struct State
+  {
+    double Last = 0.0, LargestStep = 0.0, AbortAt = 2.0;
+    bool IsRising = true;
+  } state;
+  vtkNew<vtkCallbackCommand> callback;
+  callback->SetClientData(&state);
+  callback->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    auto* seen = static_cast<State*>(data);
+    auto* filter = static_cast<vtkAlgorithm*>(caller);
+    seen->IsRising = seen->IsRising && filter->GetProgress() >= seen->Last;
+    seen->LargestStep = std::max(seen->LargestStep, filter->GetProgress() - seen->Last);
+    seen->Last = filter->GetProgress();
+    if (seen->Last >= seen->AbortAt)
+    {
+      filter->SetAbortExecute(1);
+    }
+  });
+  delaunay->AddObserver(vtkCommand::ProgressEvent, callback);
+  delaunay->Update();
+  Check(state.IsRising && state.Last == 1.0, "progress rises to 1");
+  Check(state.LargestStep < 0.3, "and is not silent for long");
+  Check(delaunay->GetNumberOfConstraintCrossings() == 19 * 18 / 2, "all lines cross each other");
+  for (const double at : { 0.05, 0.5, 0.9, 0.99 })
+  {
+    state = State();
+    state.AbortAt = at;
+    delaunay->Modified();
+    delaunay->Update();
+    Check(
+      delaunay->GetOutput()->GetNumberOfPoints() == 0 && delaunay->GetNumberOfAddedPoints() == 0,
+      "an abort leaves empty output");
+  }
+}
+} // namespace
+
+int TestGridDelaunay2DConstraints(int, char*[])
+{
+  TestNothingIsAdded();
+  TestPointsAreAdded();
+  TestRefusals();
+  TestProgressAndAbort();
+  return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,800 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunayMesh.h"
+#include "Location.h"
+#include "PointSets.h"
+
+#include "Kernel/Insertion.h"
+#include "Kernel/Predicates.h"
+#include "Kernel/Trim.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+using namespace elevation;
+using namespace testing_surfaces;
+
+namespace
+{
+
+struct Boundary
+{
+  std::vector<Point2> Points;
+  Rings Lines;
+  std::vector<int> Depths; ///< one a ring: how many others it is in
+
+  void Add(const std::vector<Point2>& ring, int depth = 0)
+  {
+    this->Depths.push_back(depth);
+    for (const Point2& p : ring)
+    {
+      this->Lines.Vertices.push_back(static_cast<Index>(this->Points.size()));
+      this->Points.push_back(p);
+    }
+    this->Lines.Offsets.push_back(static_cast<Index>(this->Points.size()));
+  }
+};
+
+std::string MessageOf(Mesh mesh, const Boundary& boundary, bool insert = true)
+{
+  try
+  {
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, insert);
+    TrimOptions options;
+    options.RecoverBoundary = insert;
+    Trim(mesh, rings.Vertices, options);
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "no error";
+}
+
+#define EXPECT_HAS(text, part)                                                                     \
+  EXPECT_NE((text).find(part), std::string::npos) << "no \"" << (part) << "\" in: " << (text)
+
+/** What makes a mesh with Twins wrong, as text. */
+std::string FindingsOf(Mesh mesh)
+{
+  std::string text;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    if (Orientation(mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
+          mesh.PointOf(mesh.Origin(3 * t + 2))) != Positive)
+    {
+      text += "triangle " + std::to_string(t) + " is not counter-clockwise\n";
+    }
+  }
+  const std::vector<Index> twins = mesh.Twins;
+  mesh.ConnectTwins();
+  return text + (twins == mesh.Twins ? "" : "twins are wrong\n");
+}
+
+Mesh LatticeMesh(int size)
+{
+  std::vector<Point2> points;
+  for (int i = 0; i < size * size; ++i)
+  {
+    points.push_back({ static_cast<double>(i % size), static_cast<double>(i / size) });
+  }
+  return Delaunay(points);
+}
+
+/** Checks that interpolated coordinates are those of the inserted vertices, within rounding. */
+void ExpectWeightsFit(const Mesh& before, const Mesh& mesh, const InsertedRings& rings, double size)
+{
+  for (std::size_t i = 0; i < rings.Inserted.size(); ++i)
+  {
+    const InsertedVertex& vertex = rings.Inserted[i];
+    const Point2& p = mesh.PointOf(before.NumberOfPoints() + static_cast<Index>(i));
+    Point2 sum{ -p.X, -p.Y };
+    double one = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      ASSERT_GE(vertex.Weights[k], 0.0);
+      ASSERT_LT(vertex.Corners[k], before.NumberOfPoints());
+      one += vertex.Weights[k];
+      sum.X += vertex.Weights[k] * before.PointOf(vertex.Corners[k]).X;
+      sum.Y += vertex.Weights[k] * before.PointOf(vertex.Corners[k]).Y;
+    }
+    ASSERT_NEAR(one, 1.0, 1e-14);
+    ASSERT_NEAR(std::hypot(sum.X, sum.Y), 0.0, 1e-12 * size);
+  }
+}
+
+/** A closed curve around a centre, between two radii; whole coordinates when rounded. */
+std::vector<Point2> Star(
+  Random& random, const Point2& center, double least, double most, int corners, bool isWhole)
+{
+  std::vector<Point2> ring;
+  const double turn = random.Unit();
+  for (int i = 0; i < corners; ++i)
+  {
+    const double angle = 6.283185307179586 * (i + turn + 0.4 * random.Unit()) / corners;
+    const double radius = least + (most - least) * random.Unit();
+    Point2 p{ center.X + radius * std::cos(angle), center.Y + radius * std::sin(angle) };
+    if (isWhole)
+    {
+      p = { std::round(p.X), std::round(p.Y) };
+    }
+    ring.push_back(p);
+  }
+  return ring;
+}
+
+/** A ring with others inside it, each far enough from the next one that edges do not cross. */
+void AddNest(
+  Random& random, Boundary& boundary, const Point2& center, double size, int depth, bool isWhole)
+{
+  for (int i = 0; i < depth; ++i)
+  {
+    // With 12 corners and more, an edge comes as near to the centre as 0.93 of its nearer end.
+    boundary.Add(Star(random, center, 0.7 * size, size, 12 + random.Below(20), isWhole), i);
+    size *= 0.6;
+  }
+}
+
+/** Twice the area of a ring of whole coordinates below 2^24. */
+std::int64_t TwiceArea(const Boundary& boundary, Index ring)
+{
+  std::int64_t area = 0;
+  const Index size = boundary.Lines.Size(ring);
+  for (Index i = 0; i < size; ++i)
+  {
+    const Point2& p = boundary.Points[boundary.Lines.Begin(ring)[i]];
+    const Point2& q = boundary.Points[boundary.Lines.Begin(ring)[(i + 1) % size]];
+    area += static_cast<std::int64_t>(p.X) * static_cast<std::int64_t>(q.Y) -
+      static_cast<std::int64_t>(p.Y) * static_cast<std::int64_t>(q.X);
+  }
+  return std::abs(area);
+}
+
+/** The area of a convex polygon's part of a ring [Sutherland & Hodgman 1974]. */
+double ClippedArea(std::vector<Point2> ring, const std::vector<Point2>& convex)
+{
+  for (std::size_t k = 0; k < convex.size(); ++k)
+  {
+    const Point2& a = convex[k];
+    const Point2& b = convex[(k + 1) % convex.size()];
+    const auto distance = [&](const Point2& p) {
+      return (b.X - a.X) * (p.Y - a.Y) - (b.Y - a.Y) * (p.X - a.X);
+    };
+    std::vector<Point2> clipped;
+    for (std::size_t i = 0; i < ring.size(); ++i)
+    {
+      const Point2& p = ring[i];
+      const Point2& q = ring[(i + 1) % ring.size()];
+      const double dp = distance(p);
+      const double dq = distance(q);
+      if (dp >= 0.0)
+      {
+        clipped.push_back(p);
+      }
+      if ((dp < 0.0) != (dq < 0.0))
+      {
+        const double s = dp / (dp - dq);
+        clipped.push_back({ p.X + s * (q.X - p.X), p.Y + s * (q.Y - p.Y) });
+      }
+    }
+    ring = clipped;
+  }
+  double area = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i)
+  {
+    const Point2& p = ring[i];
+    const Point2& q = ring[(i + 1) % ring.size()];
+    area += 0.5 * (p.X * q.Y - p.Y * q.X);
+  }
+  return std::fabs(area);
+}
+
+Point2 MiddleOf(const Mesh& mesh, Index t)
+{
+  Point2 sum{ 0, 0 };
+  for (Index h = 3 * t; h < 3 * t + 3; ++h)
+  {
+    sum.X += mesh.PointOf(mesh.Origin(h)).X / 3;
+    sum.Y += mesh.PointOf(mesh.Origin(h)).Y / 3;
+  }
+  return sum;
+}
+
+/** Whether a triangle is inside, exactly for whole coordinates: at three times the scale. */
+bool IsInside(const Mesh& mesh, const Boundary& boundary, Index t)
+{
+  std::vector<Point2> points = boundary.Points;
+  for (Point2& p : points)
+  {
+    p = { 3 * p.X, 3 * p.Y };
+  }
+  Point2 middle{ 0, 0 };
+  for (Index h = 3 * t; h < 3 * t + 3; ++h)
+  {
+    middle.X += mesh.PointOf(mesh.Origin(h)).X;
+    middle.Y += mesh.PointOf(mesh.Origin(h)).Y;
+  }
+  const Location location = Locate(points, boundary.Lines, middle);
+  EXPECT_NE(location, Location::On);
+  return location == Location::Inside;
+}
+
+} // namespace
+
+TEST(InsertRings, CutsTheTriangleOrTheTrianglesBesideAnEdge)
+{
+  const Mesh before = LatticeMesh(3); // 8 triangles
+  Boundary boundary;
+  boundary.Add({ { 0.25, 0.125 }, { 1, 0.5 }, { 2, 1.5 }, { 0.25, 1 } });
+  Mesh mesh = before;
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+  EXPECT_EQ(FindingsOf(mesh), "");
+  // Two more triangles for a point inside or on an inner edge, one for a point on the border.
+  EXPECT_EQ(mesh.NumberOfTriangles(), 8 + 2 + 2 + 1 + 2);
+  EXPECT_EQ(mesh.NumberOfPoints(), 9 + 4);
+  EXPECT_EQ(rings.Inserted.size(), 4u);
+  EXPECT_EQ(rings.Parents.size(), 7u);
+  EXPECT_EQ(TwiceArea(mesh), 8.0);
+  ExpectWeightsFit(before, mesh, rings, 3.0);
+  for (Index t = 8; t < mesh.NumberOfTriangles(); ++t)
+  {
+    // Each part lies in its parent.
+    const Index parent = rings.Parents[t - 8];
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      for (Index k = 3 * parent; k < 3 * parent + 3; ++k)
+      {
+        EXPECT_NE(Orientation(before.PointOf(before.Origin(k)),
+                    before.PointOf(before.Destination(k)), mesh.PointOf(mesh.Origin(h))),
+          Negative);
+      }
+    }
+  }
+}
+
+TEST(InsertRings, ChangesNothingWhereAllPointsAreCorners)
+{
+  const Mesh before = LatticeMesh(5);
+  Boundary boundary;
+  boundary.Add({ { -0.0, 0.0 }, { 4, 1 }, { 4, 3 }, { 1, 4 } });
+  for (const bool insert : { false, true })
+  {
+    Mesh mesh = before;
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, insert);
+    EXPECT_EQ(mesh.Triangles, before.Triangles);
+    EXPECT_EQ(mesh.NumberOfPoints(), before.NumberOfPoints());
+    EXPECT_TRUE(rings.Inserted.empty());
+    EXPECT_EQ(rings.Vertices.Vertices,
+      (std::vector<Index>{ 0, 9, 14, 19, 21 })); // 14 is on the border, between
+  }
+}
+
+TEST(InsertRings, LetsTheInsideBeKeptExactlyWhereverRingsRun)
+{
+  // Whole coordinates, so that areas are exact. Corners of the rings are data points, on edges
+  // between them, or anywhere; on meshes of lattices and of random points.
+  Random random(31);
+  int decided = 0;
+  int inserted = 0;
+  for (int round = 0; round < 200; ++round)
+  {
+    constexpr double step = 4096;
+    const int size = 16 + random.Below(30);
+    std::vector<Point2> points;
+    for (int i = 0; i < size * size; ++i)
+    {
+      Point2 p{ step * (i % size), step * (i / size) };
+      const bool isBorder =
+        i % size == 0 || i % size == size - 1 || i < size || i >= size * (size - 1);
+      if (round % 2 && !isBorder)
+      {
+        p.X += random.Below(3000);
+        p.Y += random.Below(3000);
+      }
+      points.push_back(p);
+    }
+    const Mesh before = Delaunay(points);
+    Boundary boundary;
+    const double extent = step * (size - 1);
+    const int nests = round % 4 == 0 ? 1 : 2; // along each side
+    for (int nest = 0; nest < nests * nests; ++nest)
+    {
+      const Point2 center{ extent * (0.5 + nest % nests) / nests,
+        extent * (0.5 + static_cast<double>(nest / nests)) / nests };
+      AddNest(random, boundary, center, 0.49 * extent / nests, 1 + random.Below(3), true);
+    }
+    for (Point2& p : boundary.Points)
+    {
+      const int kind = random.Below(3); // of a lattice: data point, on an edge, anywhere
+      const double snap = kind == 0 ? step : kind == 1 ? step / 2 : 1.0;
+      p = { snap * std::round(p.X / snap), snap * std::round(p.Y / snap) };
+    }
+    Mesh mesh = before;
+    InsertedRings rings;
+    TrimResult trimmed;
+    try
+    {
+      rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      ASSERT_EQ(FindingsOf(mesh), "");
+      trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    }
+    catch (const Error& error)
+    {
+      EXPECT_HAS(std::string(error.what()), "crosses its edge"); // after snapping
+      continue;
+    }
+    ++decided;
+    inserted += static_cast<int>(rings.Inserted.size());
+    ASSERT_EQ(FindingsOf(mesh), "");
+    ExpectWeightsFit(before, mesh, rings, extent);
+    std::int64_t kept = 0;
+    std::int64_t all = 0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      const auto area = static_cast<std::int64_t>(testing_surfaces::TwiceArea(mesh, t));
+      all += area;
+      kept += trimmed.IsOutward[t] ? 0 : area;
+      ASSERT_EQ(IsInside(mesh, boundary, t), !trimmed.IsOutward[t]);
+    }
+    std::int64_t expected = 0;
+    for (Index ring = 0; ring < boundary.Lines.Count(); ++ring)
+    {
+      expected += (boundary.Depths[ring] % 2 ? -1 : 1) * TwiceArea(boundary, ring);
+    }
+    ASSERT_EQ(kept, expected);
+    ASSERT_EQ(all, static_cast<std::int64_t>(2 * extent * extent));
+  }
+  EXPECT_GT(decided, 150);
+  EXPECT_GT(inserted, 5000);
+}
+
+TEST(InsertRings, LetsHundredRingsBeKept)
+{
+  for (const int count : { 2, 10, 100 })
+  {
+    Random random(32);
+    const Mesh before = Delaunay(ScatteredPoints(random, 5000));
+    Boundary boundary;
+    const int columns = count == 100 ? 10 : count / 2;
+    double expected = 0.0;
+    for (int i = 0; i < count; ++i)
+    {
+      // Two or ten rings as pairs, one inside the other.
+      const bool isLake = count < 100 && i % 2;
+      const int place = count == 100 ? i : i / 2;
+      const double width = 0.9 / columns;
+      const Point2 center{ 0.05 + width * (place % columns + 0.5),
+        0.05 + width * (static_cast<double>(place / columns) + 0.5) };
+      boundary.Add(Star(
+        random, center, (isLake ? 0.2 : 0.35) * width, (isLake ? 0.3 : 0.48) * width, 20, false));
+      double area = 0.0;
+      for (int k = 0; k < 20; ++k)
+      {
+        const Point2& p = boundary.Points[20 * i + k];
+        const Point2& q = boundary.Points[20 * i + (k + 1) % 20];
+        area += 0.5 * (p.X * q.Y - p.Y * q.X);
+      }
+      expected += isLake ? -area : area;
+    }
+    Mesh mesh = before;
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+    EXPECT_EQ(rings.Inserted.size(), boundary.Points.size());
+    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    EXPECT_EQ(FindingsOf(mesh), "");
+    double kept = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      kept += trimmed.IsOutward[t] ? 0.0 : 0.5 * testing_surfaces::TwiceArea(mesh, t);
+    }
+    EXPECT_NEAR(kept, expected, 1e-12 * expected);
+  }
+}
+
+TEST(InsertRings, KeepsWhatIsBothInTheRingsAndInTheMesh)
+{
+  // Rings that reach beyond a mesh of random points, with and without a hole.
+  Random random(33);
+  const std::vector<Point2> square{ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } };
+  for (int round = 0; round < 300; ++round)
+  {
+    std::vector<Point2> points = ScatteredPoints(random, 30 + random.Below(400));
+    points.insert(points.end(), square.begin(), square.end());
+    Mesh before = Delaunay(points);
+    const bool hasHole = round % 2;
+    if (hasHole)
+    {
+      const Mesh full = before;
+      before = Without(full, [&](Index t) {
+        const Point2 middle = MiddleOf(full, t);
+        return std::hypot(middle.X - 0.6, middle.Y - 0.4) < 0.25;
+      });
+    }
+    Boundary boundary;
+    boundary.Add(Star(random, { random.Unit(), random.Unit() }, 0.4, 0.4 + random.Unit(),
+      6 + random.Below(20), false));
+    Mesh mesh = before;
+    InsertedRings rings;
+    TrimResult trimmed;
+    try
+    {
+      rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    }
+    catch (const Error& error)
+    {
+      EXPECT_HAS(std::string(error.what()), "crosses its edge");
+      continue;
+    }
+    ASSERT_EQ(FindingsOf(mesh), "");
+    ExpectWeightsFit(before, mesh, rings, 1.0);
+    double kept = 0.0;
+    double all = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      const double area = 0.5 * testing_surfaces::TwiceArea(mesh, t);
+      all += area;
+      kept += trimmed.IsOutward[t] ? 0.0 : area;
+      if (area > 1e-13)
+      {
+        ASSERT_EQ(Locate(boundary.Points, boundary.Lines, MiddleOf(mesh, t)) == Location::Inside,
+          !trimmed.IsOutward[t]);
+      }
+    }
+    ASSERT_NEAR(all, 0.5 * testing_surfaces::TwiceArea(before), 1e-14 * mesh.NumberOfTriangles());
+    if (!hasHole)
+    {
+      ASSERT_NEAR(kept, ClippedArea(boundary.Points, square), 1e-12);
+    }
+  }
+}
+
+TEST(InsertRings, ThatRunAlongTheBorderOrThroughItsVerticesCutExactly)
+{
+  const Mesh before = LatticeMesh(5); // a square of 4 x 4
+  struct Case
+  {
+    std::vector<Point2> Ring;
+    double TwiceArea;
+    std::size_t Inserted;
+  };
+  const std::vector<Case> cases{
+    { { { -1, -1 }, { 5, -1 }, { 5, 5 }, { -1, 5 } }, 32, 0 }, // all around
+    { { { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 } }, 32, 0 },     // the border itself
+    { { { 2, 0 }, { 9, 0 }, { 9, 9 }, { 2, 9 } }, 16, 0 },     // along it and through vertices
+    { { { -1, 5 }, { 5, -1 }, { 9, 9 } }, 16, 0 },             // on a diagonal, through corners
+    { { { -2, 2 }, { 2, -2 }, { 2, 2 } }, 8, 0 },              // touches a corner
+    { { { -1, 2 }, { 2, -1 }, { 2, 2 } }, 7, 0 },              // cuts a corner off, at vertices
+    { { { -1, 1.5 }, { 5, 1.5 }, { 5, 9 }, { -1, 9 } }, 20, 2 },
+    { { { 2, 2 }, { 10, 4 }, { 10, 0 } }, 2, 2 } // at (4, 2.5) and (4, 1.5)
+  };
+  for (const Case& c : cases)
+  {
+    Boundary boundary;
+    boundary.Add(c.Ring);
+    Mesh mesh = before;
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    EXPECT_EQ(FindingsOf(mesh), "");
+    double kept = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t);
+    }
+    EXPECT_EQ(kept, c.TwiceArea) << c.Ring[0].X << " " << c.Ring[0].Y;
+    EXPECT_EQ(rings.Inserted.size(), c.Inserted) << c.Ring[0].X << " " << c.Ring[0].Y;
+  }
+}
+
+TEST(InsertRings, DoesNotDependOnTheOrderOfRingsAndPoints)
+{
+  Random random(34);
+  const Mesh before = Delaunay(ScatteredPoints(random, 60)); // many points in each triangle
+  std::vector<std::vector<Point2>> rings;
+  for (int i = 0; i < 4; ++i)
+  {
+    rings.push_back(Star(random, { 0.3 + 0.4 * (i % 2), 0.3 + 0.4 * static_cast<double>(i / 2) },
+      0.1, 0.19, 200, false));
+  }
+  std::multiset<Positions> first;
+  for (int round = 0; round < 5; ++round)
+  {
+    Boundary boundary;
+    for (const std::vector<Point2>& ring : rings)
+    {
+      boundary.Add(ring);
+    }
+    Mesh mesh = before;
+    const InsertedRings inserted = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+    EXPECT_GE(inserted.Inserted.size(), 700u);
+    Trim(mesh, inserted.Vertices, TrimOptions());
+    EXPECT_EQ(FindingsOf(mesh), "");
+    if (round == 0)
+    {
+      first = PositionsOf(mesh);
+    }
+    ASSERT_EQ(PositionsOf(mesh), first);
+    random.Shuffle(rings);
+    for (std::vector<Point2>& ring : rings)
+    {
+      std::rotate(ring.begin(), ring.begin() + random.Below(200), ring.end());
+      if (random.Below(2))
+      {
+        std::reverse(ring.begin(), ring.end());
+      }
+    }
+  }
+}
+
+TEST(InsertRings, RefusesByNameWhatCrossesOrMayNotBeInserted)
+{
+  const Mesh mesh = LatticeMesh(5);
+  Boundary bow;
+  bow.Add({ { 0.5, 0.5 }, { 3.5, 3 }, { 3.5, 0.5 }, { 0.5, 3 } });
+  const std::string message = MessageOf(mesh, bow);
+  EXPECT_HAS(message,
+    "edge from point 0 (0.5, 0.5) to point 1 (3.5, 3) crosses its edge from "
+    "point 2 (3.5, 0.5) to point 3 (0.5, 3)");
+  Boundary two;
+  two.Add({ { 0.5, 0.5 }, { 3, 0.5 }, { 3, 3 } });
+  two.Add({ { 9, 1 }, { 9, 2 }, { 2, 1.25 } }); // crosses outside the mesh or inside
+  EXPECT_HAS(MessageOf(mesh, two), "crosses its edge from point");
+  Boundary far;
+  far.Add({ { 9, 9 }, { 12, 9 }, { 9, 12 } });
+  EXPECT_HAS(MessageOf(mesh, far), "encloses no triangle");
+  Boundary inner;
+  inner.Add({ { 1, 1 }, { 3, 1 }, { 2.5, 2.25 } });
+  EXPECT_HAS(MessageOf(mesh, inner, false), "point 2 (2.5, 2.25) is not a corner of the mesh");
+  EXPECT_HAS(MessageOf(mesh, inner, false), "RecoverBoundary");
+  Boundary out;
+  out.Add({ { 1, 1 }, { 9, 1.5 }, { 9, 4 } });
+  EXPECT_HAS(MessageOf(mesh, out, false), "edge from point 0 (1, 1) to point 1 (9, 1.5) leaves");
+  Boundary around;
+  around.Add({ { -1, -1 }, { 9, -1 }, { 9, 9 }, { -1, 9 } });
+  EXPECT_EQ(MessageOf(mesh, around, false), "no error");
+
+  Mesh pinched;
+  pinched.Points = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 0, 0 }, { -1, 0 }, { 0, -1 } };
+  pinched.Triangles = { 0, 1, 2, 3, 4, 5 };
+  pinched.ConnectTwins();
+  Boundary through;
+  through.Add({ { 0, 0 }, { 1, 0 }, { 0, 1 } });
+  EXPECT_HAS(MessageOf(pinched, through), "Points 0 and 3 of the mesh");
+}
+
+TEST(InsertRings, TakesManyPointsInOneTriangleInReasonableTime)
+{
+  Mesh mesh;
+  mesh.Points = { { -10, -10 }, { 10, -10 }, { 0, 10 } };
+  mesh.Triangles = { 0, 1, 2 };
+  mesh.ConnectTwins();
+  Boundary boundary;
+  std::vector<Point2> ring;
+  for (int i = 0; i < 100000; ++i)
+  {
+    const double angle = 6.283185307179586 * i / 100000;
+    ring.push_back({ std::cos(angle), std::sin(angle) });
+  }
+  boundary.Add(ring);
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+  const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+  double kept = 0.0;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    kept += trimmed.IsOutward[t] ? 0.0 : 0.5 * testing_surfaces::TwiceArea(mesh, t);
+  }
+  EXPECT_NEAR(kept, 3.141592653589793, 1e-8);
+  EXPECT_EQ(FindingsOf(mesh), "");
+}
+
+TEST(InsertRings, InRealCloudsKeepsTheAreaOfThePolygon)
+{
+  int clouds = 0;
+  for (const char* name : { "f3_fs6", "st_helens_after_usgs", "autzen_trim_ground",
+         "nankai_channels", "srtm_pyrenees_voids400" })
+  {
+    testing_points::Cloud cloud;
+    if (!testing_points::ReadExtraData(name, cloud).empty() || cloud.Count() > 2000000)
+    {
+      continue;
+    }
+    ++clouds;
+    std::vector<Point2> points;
+    Point2 low{ 1e300, 1e300 };
+    Point2 high{ -1e300, -1e300 };
+    for (Index i = 0; i < cloud.Count(); ++i)
+    {
+      points.push_back(cloud.View().At(i));
+      low = { std::min(low.X, points.back().X), std::min(low.Y, points.back().Y) };
+      high = { std::max(high.X, points.back().X), std::max(high.Y, points.back().Y) };
+    }
+    Mesh mesh = Delaunay(points);
+    Random random(35);
+    Boundary boundary;
+    const Point2 center{ 0.5 * (low.X + high.X), 0.5 * (low.Y + high.Y) };
+    const double size = 0.3 * std::min(high.X - low.X, high.Y - low.Y);
+    AddNest(random, boundary, center, size, 3, false);
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    double expected = 0.0;
+    for (Index ring = 0; ring < 3; ++ring)
+    {
+      const Index count = boundary.Lines.Size(ring);
+      for (Index i = 0; i < count; ++i)
+      {
+        const Point2& p = boundary.Points[boundary.Lines.Begin(ring)[i]];
+        const Point2& q = boundary.Points[boundary.Lines.Begin(ring)[(i + 1) % count]];
+        expected += (ring == 1 ? -1 : 1) *
+          ((p.X - center.X) * (q.Y - center.Y) - (p.Y - center.Y) * (q.X - center.X));
+      }
+    }
+    double kept = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t);
+    }
+    EXPECT_NEAR(kept, expected, 1e-12 * expected) << name;
+  }
+  if (clouds == 0)
+  {
+    GTEST_SKIP() << "ELEVATION_SURFACE_EXTRA_DATA has none of the clouds";
+  }
+}
+
+TEST(InsertRings, StopsWhenAsked)
+{
+  Mesh mesh = LatticeMesh(5);
+  Boundary boundary;
+  boundary.Add({ { 0.5, 0.5 }, { 3.25, 0.5 }, { 2.25, 3.125 } });
+  EXPECT_THROW(InsertRings(mesh, boundary.Points, boundary.Lines, true,
+                 [](double fraction) { return fraction < 0.5; }),
+    Aborted);
+}
+
+TEST(InsertRings, OnLatticesWithHolesNeverFailsAndDecidesEveryTriangle)
+{
+  // Everything meets exactly: rings through points, along borders, through pinched vertices; and
+  // edges of all slopes cross the borders at places that are rounded.
+  Random random(38);
+  int decided = 0;
+  int cut = 0;
+  for (int round = 0; round < 4000; ++round)
+  {
+    const Mesh full = LatticeMesh(6);
+    const Mesh before = Without(full, [&](Index) { return random.Below(4) == 0; });
+    Boundary boundary;
+    const int rings = 1 + random.Below(2);
+    for (int ring = 0; ring < rings; ++ring)
+    {
+      std::vector<Point2> points;
+      for (int i = 3 + random.Below(3); i > 0; --i)
+      {
+        const double half = round % 2 ? 0.5 : 1.0;
+        points.push_back({ half * (random.Below(static_cast<int>(9 / half)) - 1.5 / half),
+          half * (random.Below(static_cast<int>(9 / half)) - 1.5 / half) });
+        if (random.Below(2))
+        {
+          points.back() = { std::floor(points.back().X), std::floor(points.back().Y) };
+        }
+      }
+      boundary.Add(points);
+    }
+    Mesh mesh = before;
+    TrimResult trimmed;
+    try
+    {
+      const InsertedRings inserted = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      cut += inserted.Inserted.size() > boundary.Points.size();
+      ASSERT_EQ(FindingsOf(mesh), "");
+      trimmed = Trim(mesh, inserted.Vertices, TrimOptions());
+    }
+    catch (const Error& error)
+    {
+      const std::string message = error.what();
+      ASSERT_TRUE(message.find("crosses its edge") != std::string::npos ||
+        message.find("encloses no triangle") != std::string::npos)
+        << message;
+      continue;
+    }
+    ++decided;
+    ASSERT_EQ(FindingsOf(mesh), "");
+    double all = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      const double area = testing_surfaces::TwiceArea(mesh, t);
+      all += area;
+      if (area > 1e-12)
+      {
+        ASSERT_EQ(Locate(boundary.Points, boundary.Lines, MiddleOf(mesh, t)) == Location::Inside,
+          !trimmed.IsOutward[t])
+          << round;
+      }
+    }
+    ASSERT_NEAR(all, testing_surfaces::TwiceArea(before), 1e-12);
+  }
+  EXPECT_GT(decided, 1000);
+  EXPECT_GT(cut, 500);
+}
+
+TEST(InsertRings, GoThroughVerticesExactlyOnTheWayToARoundedCrossing)
+{
+  std::vector<Point2> points;
+  for (int i = 0; i < 25; ++i)
+  {
+    points.push_back({ static_cast<double>(i % 5), static_cast<double>(i / 5) });
+  }
+  points.push_back({ 10, 3 });
+  points.push_back({ 3, 10 });
+  const Mesh before = Delaunay(points);
+  Boundary boundary; // its first edge runs through (2, 3) and crosses the border at x = 14 / 3
+  boundary.Add({ { 1, 1 }, { 9, 17 }, { -9, 17 } });
+  Mesh mesh = before;
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+  EXPECT_NE(std::find(rings.Vertices.Vertices.begin(), rings.Vertices.Vertices.end(), 2 + 5 * 3),
+    rings.Vertices.Vertices.end());
+  Trim(mesh, rings.Vertices, TrimOptions());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    EXPECT_GT(testing_surfaces::TwiceArea(mesh, t), 1e-3) << "a sliver beside the edge";
+  }
+}
+
+TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
+{
+  // A turned lattice in map coordinates, and a rectangle through its corners, or nearly: its sides
+  // run along the border, now within the mesh, now outside. Where rounding makes the border fold
+  // over itself, the edge is refused by name, which is rare.
+  Random random(39);
+  int inserted = 0;
+  int refused = 0;
+  for (int round = 0; round < 400; ++round)
+  {
+    const double angle = 6.28 * random.Unit();
+    const Point2 u{ 25 * std::cos(angle), 25 * std::sin(angle) };
+    const auto node = [&](double i, double j) {
+      return Point2{ 460838.3 + i * u.X - j * u.Y, 6215400.7 + i * u.Y + j * u.X };
+    };
+    std::vector<Point2> points;
+    for (int i = 0; i < 400; ++i)
+    {
+      points.push_back(node(i % 20, i / 20));
+    }
+    const Mesh before = Delaunay(points);
+    Boundary boundary;
+    const double beyond = std::array<double, 4>{ 0.0, 1e-6, 1e-3, 0.3 }[round % 4];
+    boundary.Add({ node(0 - beyond, 0), node(19 + beyond, 0), node(19 + beyond, 19),
+      node(round % 8 < 4 ? 9.3 : 0.0, 19), node(0 - beyond, 10) });
+    Mesh mesh = before;
+    InsertedRings rings;
+    TrimResult trimmed;
+    try
+    {
+      rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      ASSERT_EQ(FindingsOf(mesh), "");
+      trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    }
+    catch (const Error& error)
+    {
+      EXPECT_HAS(std::string(error.what()), "leaves the mesh");
+      ++refused;
+      continue;
+    }
+    inserted += static_cast<int>(rings.Inserted.size());
+    ASSERT_EQ(FindingsOf(mesh), "");
+    double kept = 0.0;
+    double all = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      all += testing_surfaces::TwiceArea(mesh, t) / 625;
+      kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t) / 625;
+    }
+    ASSERT_NEAR(all, 2.0 * 19 * 19, 1e-6);
+    const double cutOff = round % 8 < 4 ? 9.3 * (9 - 9 * beyond / (9.3 + beyond)) : 0.0;
+    ASSERT_NEAR(kept, 2.0 * 19 * 19 - cutOff, 1e-6);
+  }
+  EXPECT_GT(inserted, 500);
+  EXPECT_LE(refused, 8);
+}
