@@ -25,6 +25,19 @@ namespace benchmark
 std::vector<Index> FillWithCGAL(
   Coordinates& points, const std::vector<Index>& triangles, Index from, Index to);
 
+/** What TimeFillWithCGAL did. */
+struct TimedFill
+{
+  double Seconds = 0.0; ///< of filling alone; the mesh is made before
+  Index Points = 0;     ///< inserted
+  Index Triangles = 0;  ///< inserted
+  Index Open = 0;       ///< borders that CGAL failed to fill, or did not fair
+};
+
+/** Fills all borders of at most so many edges, one after the other. */
+TimedFill TimeFillWithCGAL(
+  const Coordinates& points, const std::vector<Index>& triangles, Index mostEdges);
+
 } // namespace benchmark
 
 #endif

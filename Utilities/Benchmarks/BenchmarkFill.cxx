@@ -1,0 +1,427 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Times vtkFillElevationHoles on a large surface with many holes, beside CGAL and
+// vtkFillHolesFilter. See README.md.
+#include "Arguments.h"
+#ifdef ES_BENCHMARK_CGAL
+#include "CGALFill.h"
+#endif
+
+#include "vtkCellArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFillElevationHoles.h"
+#include "vtkFillHolesFilter.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <random>
+
+namespace
+{
+using namespace benchmark;
+
+const char* const Usage = R"(Usage: BenchmarkFill [options]
+
+Times filling the holes of a surface, per inserted point: vtkFillElevationHoles by each method, CGAL's
+triangulate_refine_and_fair_hole, and vtkFillHolesFilter, which inserts no points. The holes are discs
+whose numbers of lost points are spread evenly by their logarithm. Filters are timed as a whole; of
+CGAL the filling alone.
+
+  --holes N         holes; default 2000
+  --least N         lost points of the smallest; default 20
+  --most N          lost points of the largest; default 5000
+  --points N        at least so many points stay; default 1000000
+  --lattice         points on a grid, not moved at random from its nodes
+  --threads N       threads of vtkFillElevationHoles, 0: one a core; default 1
+  --repeats N       timed runs, of which the fastest counts; default 3
+  --no-cgal         without CGAL, which takes longest
+  --seed N          of the points; default 1
+  --help            shows this text
+
+The exit code is 1 when vtkFillElevationHoles leaves a hole open; 2 for a wrong option.
+)";
+
+struct Options
+{
+  int Holes = 2000;
+  int Least = 20;
+  int Most = 5000;
+  Index Points = 1000000;
+  bool Lattice = false;
+  int Threads = 1;
+  int Repeats = 3;
+  bool CGAL = true;
+  std::uint64_t Seed = 1;
+};
+
+bool ReadOptions(int argc, char* argv[], Options& options)
+{
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string option = argv[i];
+    if (option == "--help" || option == "-h")
+    {
+      return false;
+    }
+    if (option == "--lattice")
+    {
+      options.Lattice = true;
+      continue;
+    }
+    if (option == "--no-cgal")
+    {
+      options.CGAL = false;
+      continue;
+    }
+    if (i + 1 >= argc)
+    {
+      throw UsageError(option + " is no option, or needs a value; --help lists them");
+    }
+    const std::string value = argv[++i];
+    const auto number = [&](std::uint64_t least, std::uint64_t most) {
+      return static_cast<int>(ToNumber(option, value, least, most));
+    };
+    if (option == "--holes")
+    {
+      options.Holes = number(1, 1000000);
+    }
+    else if (option == "--least")
+    {
+      options.Least = number(1, 10000000);
+    }
+    else if (option == "--most")
+    {
+      options.Most = number(1, 10000000);
+    }
+    else if (option == "--points")
+    {
+      options.Points = number(0, 100000000);
+    }
+    else if (option == "--threads")
+    {
+      options.Threads = number(0, 1024);
+    }
+    else if (option == "--repeats")
+    {
+      options.Repeats = number(1, 101);
+    }
+    else if (option == "--seed")
+    {
+      options.Seed = ToNumber(option, value, 0, 1000000000);
+    }
+    else
+    {
+      throw UsageError("there is no option \"" + option + "\"; --help lists them");
+    }
+  }
+  if (options.Most < options.Least)
+  {
+    throw UsageError("--most must not be less than --least");
+  }
+  return true;
+}
+
+struct Disc
+{
+  double X;
+  double Y;
+  double Radius;
+};
+
+/** Discs beside each other in rows, the largest first. @return the height they take */
+double Arrange(const Options& options, double width, std::vector<Disc>& discs)
+{
+  constexpr double margin = 3.0;
+  const double ratio = static_cast<double>(options.Most) / options.Least;
+  double x = margin, y = margin, row = 0.0;
+  for (int i = 0; i < options.Holes; ++i)
+  {
+    const double share = options.Holes > 1 ? static_cast<double>(i) / (options.Holes - 1) : 0.0;
+    const double radius = std::sqrt(options.Most * std::pow(ratio, -share) / 3.14159265358979);
+    if (x + 2.0 * radius + margin > width)
+    {
+      x = margin;
+      y += row + margin;
+      row = 0.0;
+    }
+    row = std::max(row, 2.0 * radius);
+    discs.push_back({ x + radius, y + radius, radius });
+    x += 2.0 * radius + margin;
+  }
+  return y + row + margin;
+}
+
+/** The surface, without the points and triangles whose middle lies in a disc. */
+vtkSmartPointer<vtkPolyData> MakeSurface(const Options& options, Index& lost)
+{
+  std::vector<Disc> discs;
+  double width = 2.0 * std::sqrt(options.Most) + 10.0;
+  double height = Arrange(options, width, discs);
+  while (height > width) // about a square
+  {
+    width *= 1.02;
+    discs.clear();
+    height = Arrange(options, width, discs);
+  }
+  double area = 0.0;
+  for (const Disc& disc : discs)
+  {
+    area += 3.14159265358979 * disc.Radius * disc.Radius;
+  }
+  height = std::max(height, (options.Points + area) / width);
+
+  // Which disc is near, by squares.
+  constexpr double side = 8.0;
+  const int columns = static_cast<int>(width / side) + 2;
+  const int rows = static_cast<int>(height / side) + 2;
+  std::vector<std::vector<int>> near(static_cast<std::size_t>(columns) * rows);
+  for (std::size_t i = 0; i < discs.size(); ++i)
+  {
+    const Disc& d = discs[i];
+    for (int row = int((d.Y - d.Radius) / side); row <= int((d.Y + d.Radius) / side); ++row)
+    {
+      for (int k = int((d.X - d.Radius) / side); k <= int((d.X + d.Radius) / side); ++k)
+      {
+        near[static_cast<std::size_t>(row) * columns + k].push_back(static_cast<int>(i));
+      }
+    }
+  }
+  const auto isLost = [&](double x, double y) {
+    const int column = std::min(std::max(0, static_cast<int>(x / side)), columns - 1);
+    const int row = std::min(std::max(0, static_cast<int>(y / side)), rows - 1);
+    for (const int i : near[static_cast<std::size_t>(row) * columns + column])
+    {
+      if (std::hypot(x - discs[i].X, y - discs[i].Y) < discs[i].Radius)
+      {
+        return true;
+      }
+    }
+    return false;
+  };
+
+  std::mt19937_64 random(options.Seed);
+  const auto moved = [&]() {
+    return options.Lattice ? 0.0 : 0.7 * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
+  };
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  lost = 0;
+  for (int row = 0; row <= static_cast<int>(height); ++row)
+  {
+    for (int column = 0; column <= static_cast<int>(width); ++column)
+    {
+      const double x = column + moved(), y = row + moved();
+      if (isLost(x, y))
+      {
+        ++lost;
+        continue;
+      }
+      points->InsertNextPoint(x, y, 5.0 * std::sin(0.05 * x) + 4.0 * std::cos(0.07 * y + 0.02 * x));
+    }
+  }
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  delaunay->Update();
+  vtkNew<vtkCellArray> kept;
+  vtkNew<vtkIdList> ids;
+  vtkCellArray* all = delaunay->GetOutput()->GetPolys();
+  for (vtkIdType cell = 0; cell < all->GetNumberOfCells(); ++cell)
+  {
+    all->GetCellAtId(cell, ids);
+    double x = 0.0, y = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+      const double* p = points->GetPoint(ids->GetId(i));
+      x += p[0] / 3.0;
+      y += p[1] / 3.0;
+    }
+    if (!isLost(x, y))
+    {
+      kept->InsertNextCell(ids);
+    }
+  }
+  auto surface = vtkSmartPointer<vtkPolyData>::New();
+  surface->SetPoints(points);
+  surface->SetPolys(kept);
+  return surface;
+}
+
+struct Outcome
+{
+  double Seconds = 0.0;
+  vtkIdType Points = 0;    ///< inserted
+  vtkIdType Triangles = 0; ///< inserted
+  vtkIdType Open = 0;      ///< holes, where it is known
+};
+
+void Measure(const char* name, int repeats, const std::function<Outcome()>& run, double& reference)
+{
+  Outcome best = run();
+  for (int i = 1; i < repeats; ++i)
+  {
+    const Outcome next = run();
+    best = next.Seconds < best.Seconds ? next : best;
+  }
+  std::printf("%-34s %9.3f %10lld %10lld", name, best.Seconds, static_cast<long long>(best.Points),
+    static_cast<long long>(best.Triangles));
+  if (best.Points > 0)
+  {
+    const double perPoint = 1e6 * best.Seconds / static_cast<double>(best.Points);
+    reference = reference > 0.0 ? reference : perPoint;
+    std::printf(" %9.2f %7.2f", perPoint, perPoint / reference);
+  }
+  else
+  {
+    std::printf(" %9s %7s", "-", "-");
+  }
+  std::printf(" %6.2f%s\n", 1e6 * best.Seconds / static_cast<double>(best.Triangles),
+    best.Open > 0 ? ("  " + std::to_string(best.Open) + " holes left open").c_str() : "");
+  std::fflush(stdout);
+}
+
+Outcome FillWithOurs(vtkPolyData* surface, int method, int threads)
+{
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(surface);
+  fill->SetInterpolation(method);
+  fill->SetNumberOfThreads(threads);
+  const auto start = std::chrono::steady_clock::now();
+  fill->Update();
+  Outcome outcome;
+  outcome.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.Points = fill->GetOutput()->GetNumberOfPoints() - surface->GetNumberOfPoints();
+  outcome.Triangles = fill->GetOutput()->GetNumberOfPolys() - surface->GetNumberOfPolys();
+  outcome.Open = fill->GetNumberOfHoles() - fill->GetNumberOfFilledHoles();
+  return outcome;
+}
+
+/** Only holes up to a size, or it closes the outer border too. */
+Outcome FillWithVTK(vtkPolyData* surface, double size)
+{
+  vtkNew<vtkFillHolesFilter> fill;
+  fill->SetInputData(surface);
+  fill->SetHoleSize(size);
+  const auto start = std::chrono::steady_clock::now();
+  fill->Update();
+  Outcome outcome;
+  outcome.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.Points = fill->GetOutput()->GetNumberOfPoints() - surface->GetNumberOfPoints();
+  outcome.Triangles = fill->GetOutput()->GetNumberOfPolys() - surface->GetNumberOfPolys();
+  return outcome;
+}
+
+#ifdef ES_BENCHMARK_CGAL
+Outcome FillByCGAL(vtkPolyData* surface, int longest)
+{
+  Coordinates points;
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
+  {
+    const double* p = surface->GetPoint(i);
+    points.insert(points.end(), p, p + 3);
+  }
+  std::vector<Index> triangles;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfPolys(); ++cell)
+  {
+    surface->GetPolys()->GetCellAtId(cell, ids);
+    for (int i = 0; i < 3; ++i)
+    {
+      triangles.push_back(static_cast<Index>(ids->GetId(i)));
+    }
+  }
+  const TimedFill timed = TimeFillWithCGAL(points, triangles, longest);
+  Outcome outcome;
+  outcome.Seconds = timed.Seconds;
+  outcome.Points = timed.Points;
+  outcome.Triangles = timed.Triangles;
+  outcome.Open = timed.Open;
+  return outcome;
+}
+#endif
+
+void Run(const Options& options)
+{
+  Index lost = 0;
+  const vtkSmartPointer<vtkPolyData> surface = MakeSurface(options, lost);
+  std::printf("%lld points, %lld triangles, %d holes, %d points lost; %s\n\n",
+    static_cast<long long>(surface->GetNumberOfPoints()),
+    static_cast<long long>(surface->GetNumberOfPolys()), options.Holes, lost,
+    options.Lattice ? "a lattice" : "points at random");
+  std::printf("%-34s %9s %10s %10s %9s %7s %6s\n", "", "s", "points", "triangles", "us/point",
+    "ratio", "us/tri");
+  double reference = 0.0;
+  bool isFilled = true;
+  const struct
+  {
+    const char* Name;
+    int Method;
+  } methods[] = { { "vtkFillElevationHoles ThinPlate", vtkFillElevationHoles::THIN_PLATE },
+    { "vtkFillElevationHoles Adaptive", vtkFillElevationHoles::ADAPTIVE },
+    { "vtkFillElevationHoles Membrane", vtkFillElevationHoles::MEMBRANE },
+    { "vtkFillElevationHoles NeighborMean", vtkFillElevationHoles::NEIGHBOR_MEAN } };
+  for (const auto& method : methods)
+  {
+    Measure(
+      method.Name, options.Repeats,
+      [&]() {
+        const Outcome outcome = FillWithOurs(surface, method.Method, options.Threads);
+        isFilled = isFilled && outcome.Open == 0;
+        return outcome;
+      },
+      reference);
+  }
+  const double radius = std::sqrt(options.Most / 3.14159265358979);
+  Measure(
+    "vtkFillHolesFilter", options.Repeats,
+    [&]() { return FillWithVTK(surface, 1.5 * radius + 3.0); }, reference);
+#ifdef ES_BENCHMARK_CGAL
+  if (options.CGAL)
+  {
+    // Twice the edges of the largest disc; the outer border has more.
+    Measure(
+      "CGAL refine and fair", 1,
+      [&]() { return FillByCGAL(surface, static_cast<int>(12.6 * radius) + 20); }, reference);
+  }
+#endif
+  if (!isFilled)
+  {
+    throw std::runtime_error("vtkFillElevationHoles left holes open.");
+  }
+}
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  try
+  {
+    Options options;
+    if (!ReadOptions(argc, argv, options))
+    {
+      std::fputs(Usage, stdout);
+      return 0;
+    }
+    Run(options);
+    return 0;
+  }
+  catch (const UsageError& error)
+  {
+    std::fprintf(stderr, "BenchmarkFill: %s\n", error.what());
+    return 2;
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "BenchmarkFill: %s\n", error.what());
+    return 1;
+  }
+}
