@@ -22,7 +22,7 @@ constexpr double LargestLength = 1e150;
 /** Patches of more points are made one by one and report progress; others several at a time. */
 constexpr double PointsPerReport = 10000.0;
 
-/** What a patch costs that has no points, as many points: trying methods takes about a millisecond. */
+/** What any patch costs, as so many points; trying methods takes about a millisecond. */
 constexpr double PointsPerPatch = 10.0;
 constexpr double PointsPerTrial = 150.0;
 

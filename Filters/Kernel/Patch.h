@@ -59,7 +59,7 @@
 namespace elevation
 {
 
-/** How far a point of the boundary may lie from its node of a lattice, along each step, in steps. */
+/** How far a point may lie from its node of a lattice, along each step, in steps. */
 constexpr double LatticeTolerance = 0.01;
 
 /** How new points lie. */

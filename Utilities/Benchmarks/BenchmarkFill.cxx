@@ -31,9 +31,9 @@ using namespace benchmark;
 
 const char* const Usage = R"(Usage: BenchmarkFill [options]
 
-Times filling the holes of a surface, per inserted point: vtkFillElevationHoles by each method, CGAL's
-triangulate_refine_and_fair_hole, and vtkFillHolesFilter, which inserts no points. The holes are discs
-whose numbers of lost points are spread evenly by their logarithm. Filters are timed as a whole; of
+Times filling the holes of a surface, per inserted point: vtkFillElevationHoles by each method,
+CGAL's triangulate_refine_and_fair_hole, and vtkFillHolesFilter, which inserts no points. The holes
+are discs whose numbers of lost points are spread evenly by their logarithm. Filters are timed as a whole; of
 CGAL the filling alone.
 
   --holes N         holes; default 2000
@@ -160,7 +160,7 @@ double Arrange(const Options& options, double width, std::vector<Disc>& discs)
   return y + row + margin;
 }
 
-/** The surface, without the points and triangles whose middle lies in a disc. */
+/** The surface, without the points in discs and their triangles. */
 vtkSmartPointer<vtkPolyData> MakeSurface(const Options& options, Index& lost)
 {
   std::vector<Disc> discs;
@@ -212,41 +212,43 @@ vtkSmartPointer<vtkPolyData> MakeSurface(const Options& options, Index& lost)
   const auto moved = [&]() {
     return options.Lattice ? 0.0 : 0.7 * (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5);
   };
+  // All points are triangulated, so that the edges around a hole are as long as others.
+  vtkNew<vtkPoints> all;
+  all->SetDataTypeToDouble();
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
+  std::vector<vtkIdType> placeOf; // in the surface; -1: lost
   lost = 0;
   for (int row = 0; row <= static_cast<int>(height); ++row)
   {
     for (int column = 0; column <= static_cast<int>(width); ++column)
     {
       const double x = column + moved(), y = row + moved();
-      if (isLost(x, y))
-      {
-        ++lost;
-        continue;
-      }
-      points->InsertNextPoint(x, y, 5.0 * std::sin(0.05 * x) + 4.0 * std::cos(0.07 * y + 0.02 * x));
+      const double z = 5.0 * std::sin(0.05 * x) + 4.0 * std::cos(0.07 * y + 0.02 * x);
+      all->InsertNextPoint(x, y, z);
+      const bool isHere = !isLost(x, y);
+      placeOf.push_back(isHere ? points->InsertNextPoint(x, y, z) : -1);
+      lost += isHere ? 0 : 1;
     }
   }
   vtkNew<vtkPolyData> cloud;
-  cloud->SetPoints(points);
+  cloud->SetPoints(all);
   vtkNew<vtkGridDelaunay2D> delaunay;
   delaunay->SetInputData(cloud);
   delaunay->Update();
   vtkNew<vtkCellArray> kept;
   vtkNew<vtkIdList> ids;
-  vtkCellArray* all = delaunay->GetOutput()->GetPolys();
-  for (vtkIdType cell = 0; cell < all->GetNumberOfCells(); ++cell)
+  vtkCellArray* triangles = delaunay->GetOutput()->GetPolys();
+  for (vtkIdType cell = 0; cell < triangles->GetNumberOfCells(); ++cell)
   {
-    all->GetCellAtId(cell, ids);
-    double x = 0.0, y = 0.0;
+    triangles->GetCellAtId(cell, ids);
+    bool isHere = true;
     for (int i = 0; i < 3; ++i)
     {
-      const double* p = points->GetPoint(ids->GetId(i));
-      x += p[0] / 3.0;
-      y += p[1] / 3.0;
+      ids->SetId(i, placeOf[ids->GetId(i)]);
+      isHere = isHere && ids->GetId(i) >= 0;
     }
-    if (!isLost(x, y))
+    if (isHere)
     {
       kept->InsertNextCell(ids);
     }
