@@ -365,16 +365,19 @@ public:
       queue[t] = t;
     }
     // What is queued again comes after all that is: the largest triangles are cut first.
-    std::size_t steps = 0;
     std::vector<Index> next;
+    // Of points that have been placed before, most triangles are good: one pass is nearly all.
+    const double first = this->Spacings.empty() ? static_cast<double>(queue.size()) : 0.0;
+    double steps = 0.0;
     while (!queue.empty())
     {
       for (const Index t : queue)
       {
-        if (++steps % 8192 == 0)
+        if (std::fmod(++steps, 4096.0) == 0.0)
         {
           const double points = static_cast<double>(this->Patch.NumberOfPoints());
-          Report(progress, most > count ? (points - count) / (most - count) : 1.0);
+          Report(progress,
+            first > 0.0 ? std::min(1.0, steps / first) : (points - count) / (most - count));
         }
         if (this->Patch.NumberOfPoints() + 1 > most)
         {
