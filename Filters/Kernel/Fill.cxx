@@ -154,8 +154,7 @@ void Judge(HoleReport& report, bool isTouched, double room, const FillOptions& o
 }
 
 /** Vertices and edges of the boundary. */
-void CollectBoundary(
-  const Mesh& mesh, const PointView& points, const Holes& holes, Index hole, Patch& patch)
+void CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole, Patch& patch)
 {
   const Index edges = holes.NumberOfEdges(hole);
   patch.BoundaryIds.reserve(edges);
@@ -184,7 +183,7 @@ void CollectBoundary(
   {
     patch.Points.push_back(mesh.PointOf(id).X);
     patch.Points.push_back(mesh.PointOf(id).Y);
-    patch.Points.push_back(points.Elevation(id));
+    patch.Points.push_back(0.0); // not looked at; and no number would not be triangulated
   }
 }
 
@@ -632,7 +631,7 @@ FillResult FillHoles(
           : Part(filling, done / work, std::min(1.0, (done + share) / work));
         patch.Spacing = report.Spacing;
         std::vector<std::vector<double>> attributes;
-        CollectBoundary(mesh, points, holes, hole, patch);
+        CollectBoundary(mesh, holes, hole, patch);
         PlacePoints(options, report, Part(ofHole, 0.0, 0.05), patch);
         Connect(Part(ofHole, 0.05, 0.4), patch);
         Arrange(patch, Part(ofHole, 0.4, 0.45));
