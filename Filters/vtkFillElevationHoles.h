@@ -32,8 +32,8 @@
  * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
  *   the hole is above 1e150 or below 1e-150.
  * - NumberOfInsertedPoints (vtkIdTypeArray).
- * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType; never ADAPTIVE, but
- *   what it chose. 0 also where there are no new points.
+ * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType; never ADAPTIVE,
+ *   but what it chose. 0 also where there are no new points.
  *
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
@@ -78,7 +78,8 @@
  * each), with sorting of the border.
  *
  * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation
- * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation NEIGHBOR_MEAN.
+ * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation
+ * NEIGHBOR_MEAN.
  *
  * @sa vtkGridDelaunay2D vtkTrimOutwardTriangles vtkFillHolesFilter
  */
@@ -120,21 +121,21 @@ public:
    * InterpolationType, to which other numbers are clamped; ADAPTIVE (default).
    * - NEIGHBOR_MEAN: the mean over the known neighbours, layer by layer from the boundary inwards.
    *   Fast and rough: it flattens what was lost.
-   * - MEMBRANE: each new point is the mean of all its neighbours, as if a membrane were stretched over
-   *   the hole. Both stay between the least and the greatest z of the hole's boundary.
+   * - MEMBRANE: each new point is the mean of all its neighbours, as if a membrane were stretched
+   *   over the hole. Both stay between the least and the greatest z of the hole's boundary.
    * - THIN_PLATE: continues slope and curvature from the boundary and three rings of points around
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
-   * - ADAPTIVE: the best of MEMBRANE, THIN_PLATE and CUBIC_SPLINE for each hole. Its boundary is moved to
-   *   eight places around it, where the surface is known, and the methods predict there what is inside;
-   *   the least error decides, THIN_PLATE where another is not better by 15 % or where there is no
-   *   room to try.
+   * - ADAPTIVE: the best of MEMBRANE, THIN_PLATE and CUBIC_SPLINE for each hole. Its boundary is
+   *   moved to eight places around it, where the surface is known, and the methods predict there
+   *   what is inside; the least error decides, THIN_PLATE where another is not better by 15 % or
+   *   where there is no room to try.
    *
    * The splines may leave the range of z around the hole, as a lost summit rises above
    * what is left of it, by at most the distance from the nearest boundary point times
    * twice the slope of the surface around the hole (root mean square). Points that determine no
-   * spline, because they are nearly in one line, give MEMBRANE; z that are not finite around the hole
-   * give NEIGHBOR_MEAN.
+   * spline, because they are nearly in one line, give MEMBRANE; z that are not finite around the
+   * hole give NEIGHBOR_MEAN.
    */
   vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
   vtkGetMacro(Interpolation, int);
@@ -175,11 +176,11 @@ public:
 
   ///@{
   /**
-   * Values of the point arrays at new points. On (default): floating-point arrays are interpolated as
-   * z is, by the method that was chosen for z (where values around the hole are not finite, by
+   * Values of the point arrays at new points. On (default): floating-point arrays are interpolated
+   * as z is, by the method that was chosen for z (where values around the hole are not finite, by
    * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and
-   * other arrays get the value of the nearest point of the hole's boundary.
-   * Off: NaN, 0, or nothing. New points are never marked as ghosts.
+   * other arrays get the value of the nearest point of the hole's boundary. Off: NaN, 0, or
+   * nothing. New points are never marked as ghosts.
    */
   vtkSetMacro(InterpolatePointData, bool);
   vtkGetMacro(InterpolatePointData, bool);

@@ -5,6 +5,7 @@
 #include "Kernel/Boundary.h"
 #include "Kernel/Holes.h"
 #include "Kernel/Insertion.h"
+#include "Kernel/Parallel.h"
 #include "Kernel/Trim.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
@@ -89,21 +90,19 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary)
   return lines;
 }
 
-UsedBoundary FindBoundary(Mesh& mesh, vtkPolyData* input, vtkPolyData* given, double gapTolerance,
-  bool recover, const Progress& progress)
+UsedBoundary FindBoundary(Mesh& mesh, vtkPolyData* input, vtkPolyData* given,
+  elevation::ExtractOptions options, bool recover)
 {
   UsedBoundary boundary;
   if (given)
   {
     const elevation::BoundaryLines lines = ToLines(given);
     boundary.Points = elevation::JoinLines(lines);
-    boundary.Mesh = elevation::InsertRings(mesh, lines.Points, boundary.Points, recover, progress);
+    boundary.Mesh =
+      elevation::InsertRings(mesh, lines.Points, boundary.Points, recover, options.Monitor);
     boundary.Source = given;
     return boundary;
   }
-  elevation::ExtractOptions options;
-  options.GapTolerance = gapTolerance;
-  options.Monitor = progress;
   elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
   boundary.Points = extracted.Vertices;
   boundary.Mesh.Vertices = std::move(extracted.Vertices);
@@ -349,7 +348,8 @@ int vtkTrimOutwardTriangles::RequestData(
     }
     const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
     Mesh mesh;
-    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1));
+    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1),
+      elevation::ResolveNumberOfThreads(this->NumberOfThreads));
     mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
     // For its proof that nothing is covered twice.
     elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
@@ -358,8 +358,11 @@ int vtkTrimOutwardTriangles::RequestData(
     elevation::TrimResult trimmed;
     if (mesh.NumberOfTriangles() > 0)
     {
-      boundary = FindBoundary(
-        mesh, input, given, this->GapTolerance, this->RecoverBoundary, Part(progress, 0.3, 0.6));
+      elevation::ExtractOptions options;
+      options.GapTolerance = this->GapTolerance;
+      options.NumberOfThreads = this->NumberOfThreads;
+      options.Monitor = Part(progress, 0.3, 0.6);
+      boundary = FindBoundary(mesh, input, given, options, this->RecoverBoundary);
     }
     if (boundary.Mesh.Vertices.Count() > 0)
     {
@@ -411,6 +414,7 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OutwardTest: " << this->GetOutwardTestAsString() << "\n";
   os << indent << "GapTolerance: " << this->GapTolerance << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";
   os << indent << "NumberOfOutwardTriangles: " << this->NumberOfOutwardTriangles << "\n";
   os << indent << "NumberOfRecoveredEdges: " << this->NumberOfRecoveredEdges << "\n";

@@ -159,6 +159,17 @@ public:
   vtkBooleanMacro(RecoverBoundary, bool);
   ///@}
 
+  ///@{
+  /**
+   * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
+   * without threads by default, as in ParaView. The output is the same, byte for byte, for any
+   * number. Several threads read the triangles and measure the spacing of the points for the
+   * boundary that is extracted; the rest has one. Range: 0 to 1024.
+   */
+  vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
   /** After Update(): the GapTolerance that was used, in spacings; 0 when a boundary was given. */
   vtkGetMacro(EffectiveGapTolerance, double);
 
@@ -184,6 +195,7 @@ protected:
   int OutwardTest = EXACT;
   double GapTolerance = 0.0;
   bool RecoverBoundary = true;
+  int NumberOfThreads = 0;
 
   double EffectiveGapTolerance = 0.0;
   vtkIdType NumberOfOutwardTriangles = 0;

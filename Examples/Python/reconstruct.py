@@ -328,6 +328,7 @@ def reconstruct(run, cloud, breaklines, boundary):
             trim.SetBoundaryData(boundary)
         trim.SetOutwardTest(OUTWARD_TESTS.index(options.outward_test))
         trim.SetGapTolerance(options.gap_tolerance)
+        trim.SetNumberOfThreads(options.threads)
         trim.SetRecoverBoundary(not options.no_recover_boundary)
         run.update("trim", "trimming", trim)
         if trim.GetOutput().GetNumberOfPolys() == 0:

@@ -434,7 +434,6 @@ public:
     , Entries(static_cast<Entry*>(static_cast<void*>(room)))
     , Monitor(progress)
   {
-    static_assert(sizeof(Entry) <= sizeof(Placed), "there is room");
   }
 
   /**
@@ -445,11 +444,13 @@ public:
   {
     const double* const y = this->Grid.Y + slots.first;
     const Index count = slots.second - slots.first, first = slots.first;
+    static_assert(sizeof(Entry) + sizeof(Index) <= sizeof(Placed), "there is room for both");
+    Index* const room = static_cast<Index*>(static_cast<void*>(this->Entries + count));
     this->Sort(
       [=](Index i) {
         return Entry{ y[i], first + i };
       },
-      this->Entries, nullptr, count, low, high, 0);
+      this->Entries, room, count, low, high, 0);
     for (Index i = 0; i < count; ++i)
     {
       order[i] = this->Entries[i].Slot;
@@ -467,11 +468,12 @@ private:
   };
 
   /** Not a lambda, which would be another type, and another Sort(), at every depth. */
-  struct Copies
+  struct Listed
   {
-    const Entry* From;
+    const Index* Slots;
+    const double* Y;
 
-    Entry operator()(Index i) const { return this->From[i]; }
+    Entry operator()(Index i) const { return { this->Y[this->Slots[i]], this->Slots[i] }; }
   };
 
   bool IsBefore(const Entry& p, const Entry& q) const
@@ -496,11 +498,11 @@ private:
   /**
    * Sorts the entries that get(0) to get(count - 1) return.
    * @param[out] sorted  room for them, where they are not yet
-   * @param[in]  room    where they are, of no use afterwards; null when that is not among entries
+   * @param[in]  room    for as many slots; get() may read it
    */
   template <typename Get>
   void Sort(
-    const Get& get, Entry* sorted, Entry* room, Index count, double low, double high, int depth)
+    const Get& get, Entry* sorted, Index* room, Index count, double low, double high, int depth)
   {
     const double last = count - 1;
     const double perHeight = last / (high - low);
@@ -546,13 +548,11 @@ private:
         const auto range = std::minmax_element(sorted + begin, sorted + begin + size,
           [](const Entry& p, const Entry& q) { return p.Y < q.Y; });
         const double lowest = range.first->Y, highest = range.second->Y;
-        if (!room)
-        {
-          this->Spreads.resize(std::max<std::size_t>(fullest, this->Spreads.size()));
-        }
-        Entry* const from = room ? room + begin : this->Spreads.data();
-        std::copy_n(sorted + begin, size, from);
-        this->Sort(Copies{ from }, sorted + begin, from, size, lowest, highest, depth + 1);
+        Index* const from = room + begin;
+        std::transform(sorted + begin, sorted + begin + size, from,
+          [](const Entry& entry) { return entry.Slot; });
+        this->Sort(
+          Listed{ from, this->Grid.Y }, sorted + begin, from, size, lowest, highest, depth + 1);
       }
     }
     this->Insert(sorted, count);
@@ -562,7 +562,6 @@ private:
   Entry* const Entries;
   const Progress& Monitor;
   std::vector<Index> Ends[MaximumDepth + 1];
-  std::vector<Entry> Spreads; ///< of the fullest bucket
 };
 
 /** Visits the finite ones of the points [begin, end): their id and position. */

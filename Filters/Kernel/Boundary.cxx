@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Boundary.h"
 
+#include "Parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -411,34 +413,35 @@ struct Neighbors
  * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
  * with very many neighbours, which would make it quadratic.
  */
-Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Progress& progress)
+Buffer<double> FindSpacings(
+  const Mesh& mesh, const LocalMesh& local, int threads, const Progress& progress)
 {
   const Neighbors neighbors(mesh, local, Part(progress, 0.0, 0.2));
   const Index count = static_cast<Index>(local.Points.size());
   const Point2* points = local.Points.data();
   Buffer<double> spacings;
   spacings.Resize(count);
-  Buffer<Index> knownTo; // the last vertex that has had each one among its nearest
-  knownTo.Resize(count);
-  std::fill(knownTo.begin(), knownTo.end(), None);
 
   struct Candidate
   {
     double Squared;
     Index Vertex;
   };
-  std::vector<Index> found;
-  Index* known = knownTo.data();
   const Index* ids = neighbors.Ids.data();
   constexpr int last = NeighborOfSpacing - 1;
   constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None };
-  InStretches(count, Part(progress, 0.2, 1.0), [&](Index begin, Index end) {
+  const auto find = [&](Index begin, Index end) {
+    std::vector<Index> found;
+    // Vertices that the one at hand has had among its nearest. One may have taken the place of
+    // another, which then is compared once more with the nearest themselves.
+    constexpr std::uint32_t places = 1024;
+    std::vector<std::uint64_t> known(places, ~std::uint64_t(0));
     for (Index v = begin; v < end; ++v)
     {
+      const auto keyOf = [v](Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); };
       // What lies ahead is soon reached, but not in order.
       const Index ahead = v < count - 1 - 2048 ? v + 2048 : count - 1;
       Prefetch(points + ahead);
-      Prefetch(known + ahead);
       Prefetch(ids + neighbors.Offsets[ahead]);
 
       // The nearest vertices found: those passed in the order in which they were, then the next
@@ -451,7 +454,7 @@ Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Prog
         const double y = p.Y - points[w].Y;
         return x * x + y * y;
       };
-      known[v] = v;
+      known[static_cast<std::uint32_t>(v) % places] = keyOf(v);
       Index passed = v;
       for (int k = 0;; ++k)
       {
@@ -466,25 +469,31 @@ Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Prog
           // Those that are near enough, without branches, for which they are cannot be predicted.
           const double limit = nearest[last].Squared;
           Index* next = found.data();
-          const Index* end = ids + first + size;
-          for (const Index* group = ids + first; group != end; group += Neighbors::Group)
+          const Index* groupsEnd = ids + first + size;
+          for (const Index* group = ids + first; group != groupsEnd; group += Neighbors::Group)
           {
             for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
             {
               const Index w = group[j];
               *next = w;
-              next += (squaredTo(w) < limit) & (known[w] != v);
+              next += (squaredTo(w) < limit) &
+                (known[static_cast<std::uint32_t>(w) % places] != keyOf(w));
             }
           }
           const std::size_t numberFound = next - found.data();
           for (std::size_t i = 0; i < numberFound; ++i)
           {
             const Candidate candidate{ squaredTo(found[i]), found[i] };
-            if (known[candidate.Vertex] == v || !(candidate.Squared < nearest[last].Squared))
+            bool isKnown = candidate.Vertex == v;
+            for (const Candidate& other : nearest)
+            {
+              isKnown |= other.Vertex == candidate.Vertex;
+            }
+            if (isKnown || !(candidate.Squared < nearest[last].Squared))
             {
               continue;
             }
-            known[candidate.Vertex] = v;
+            known[static_cast<std::uint32_t>(candidate.Vertex) % places] = keyOf(candidate.Vertex);
             int place = last;
             for (; place > k && candidate.Squared < nearest[place - 1].Squared; --place)
             {
@@ -506,7 +515,13 @@ Buffer<double> FindSpacings(const Mesh& mesh, const LocalMesh& local, const Prog
       }
       spacings[v] = SpacingPerNeighborDistance * std::sqrt(nearest[k].Squared);
     }
-  });
+  };
+  constexpr Index pieceVertices = 1 << 11;
+  ForEachPiece((count + pieceVertices - 1) / pieceVertices, threads, Part(progress, 0.2, 1.0),
+    [&](Index piece) {
+      const Index begin = piece * pieceVertices;
+      find(begin, begin + std::min(pieceVertices, count - begin));
+    });
   return spacings;
 }
 
@@ -735,7 +750,9 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
   }
   const LocalMesh local(mesh, Part(options.Monitor, 0.0, 0.1));
   const Index* corners = local.Corners.data();
-  const Buffer<double> spacings = FindSpacings(mesh, local, Part(options.Monitor, 0.1, 0.6));
+  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+  const Buffer<double> spacings =
+    FindSpacings(mesh, local, threads, Part(options.Monitor, 0.1, 0.6));
 
   // The spacing of a triangle: the middle one of its corners' three, which the spacing of a point
   // that lies alone is not, nor of two that lie alone.
@@ -750,7 +767,11 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
   // The longest edge of each triangle in spacings.
   Buffer<double> ratios;
   ratios.Resize(count);
-  InStretches(count, Part(options.Monitor, 0.6, 0.7), [&](Index begin, Index end) {
+  constexpr Index pieceTriangles = 1 << 13;
+  const Index pieces = (count + pieceTriangles - 1) / pieceTriangles;
+  ForEachPiece(pieces, threads, Part(options.Monitor, 0.6, 0.7), [&](Index piece) {
+    const Index begin = piece * pieceTriangles;
+    const Index end = begin + std::min(pieceTriangles, count - begin);
     for (Index t = begin; t < end; ++t)
     {
       const Index a = corners[3 * t];

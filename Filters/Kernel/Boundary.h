@@ -89,6 +89,8 @@ struct ExtractOptions
    * How many local spacings an empty stretch may measure and still be surface; 0: from the data.
    */
   double GapTolerance = 0.0;
+  /** Threads to use; 0: one a core. The result is the same. */
+  int NumberOfThreads = 1;
   Progress Monitor;
 };
 

@@ -389,7 +389,7 @@ FillResult FillHoles(
   const auto fill = [&](Index hole, const Progress& progress, FilledHole& filled) {
     HoleReport& report = result.Reports[hole];
     Attempt(report, [&]() {
-      filled.Triangles = CollectBoundary(mesh, points, holes, hole);
+      filled.Triangles = CollectBoundary(mesh, holes, hole);
       Patch& patch = filled.Triangles;
       MakePatch(plans[hole], Part(progress, 0.0, 0.4), patch);
       Arrange(patch, Part(progress, 0.4, 0.45));

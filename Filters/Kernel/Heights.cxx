@@ -14,8 +14,8 @@ namespace elevation
 namespace
 {
 /**
- * Most centres of a spline, whose cost is their number's cube. With a hundred fewer the error grew by
- * 2 %, with more it did not fall. More rings than one did not help either: at the same number of
+ * Most centres of a spline, whose cost is their number's cube. With a hundred fewer the error grew
+ * by 2 %, with more it did not fall. More rings than one did not help either: at the same number of
  * centres they leave fewer for the boundary, where the surface is nearest.
  */
 constexpr std::size_t MostCentres = 300;

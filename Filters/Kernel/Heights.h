@@ -20,12 +20,13 @@
  * their boundary.
  *
  * Adaptive leaves out what is like the hole: its boundary, its ring and some of its new points are
- * moved to eight places (four for very large holes) around it, where the surface is known, and each method predicts there the
- * points inside from those around. Splines and membrane depend on where points lie to each other
- * alone, so the factors of the hole serve at all places. A place counts when surface is at each of
- * the moved points; where a hole has less than two such places, points at half the size are tried;
- * without any, the thin plate is taken. The least error wins (the geometric mean over the places of root
- * mean squares); but the thin plate stays where another is not better by 15 %.
+ * moved to eight places (four for very large holes) around it, where the surface is known, and each
+ * method predicts there the points inside from those around. Splines and membrane depend on where
+ * points lie to each other alone, so the factors of the hole serve at all places. A place counts
+ * when surface is at each of the moved points; where a hole has less than two such places, points
+ * at half the size are tried; without any, the thin plate is taken. The least error wins (the
+ * geometric mean over the places of root mean squares); but the thin plate stays where another is
+ * not better by 15 %.
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
  * Splines may leave the range of boundary and ring, as a summit that was lost rises above all that

@@ -753,7 +753,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   return plan;
 }
 
-Patch CollectBoundary(const Mesh& mesh, const PointView& points, const Holes& holes, Index hole)
+Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
 {
   Patch patch;
   const Index edges = holes.NumberOfEdges(hole);
@@ -776,8 +776,8 @@ Patch CollectBoundary(const Mesh& mesh, const PointView& points, const Holes& ho
   patch.Points.reserve(3 * ids.size());
   for (const Index id : ids)
   {
-    patch.Points.insert(
-      patch.Points.end(), { mesh.PointOf(id).X, mesh.PointOf(id).Y, points.Elevation(id) });
+    // The elevation is not looked at; one that is no number would not be triangulated.
+    patch.Points.insert(patch.Points.end(), { mesh.PointOf(id).X, mesh.PointOf(id).Y, 0.0 });
   }
   return patch;
 }

@@ -118,7 +118,7 @@ struct Patch : PatchMesh
 };
 
 /** Vertices and edges of the boundary. n log n. */
-Patch CollectBoundary(const Mesh& mesh, const PointView& points, const Holes& holes, Index hole);
+Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole);
 
 /**
  * New points and triangles for a patch that has its boundary.

@@ -186,7 +186,7 @@ void Surroundings::GatherInto(Window& window)
     const Index first = static_cast<Index>((p.X - bins.OriginX) * bins.PerX + 0.5) - 3;
     const Index column = bins.Column(p.X);
     const Index* const own = this->Near[0]->Starts + column;
-    if (own[1] - own[0] <= Capacity &&
+    if (this->AreNearRead && own[1] - own[0] <= Capacity &&
       ((this->IsWidest ? this->GatherWidest(window, first) : this->GatherEven(window, first)) ||
         this->GatherBins(window, column, 1) || this->GatherBins(window, column, 2)))
     {
@@ -204,6 +204,7 @@ ELEVATION_WIDE void Surroundings::EnterRow(Index number)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
   this->CurrentRow = number;
+  this->AreNearRead = true;
   for (Index r = number; r < number + MostRows; ++r)
   {
     Row& row = this->Rows[r % MostRows];
@@ -218,6 +219,7 @@ ELEVATION_WIDE void Surroundings::EnterRow(Index number)
       row.Number = r;
       this->ReadRow(row);
     }
+    this->AreNearRead = this->AreNearRead && (row.Number == None || row.IsRead);
     this->Near[r - number] = &row;
   }
   const Index above = std::min(number + MostRows, bins.Rows);
@@ -233,6 +235,11 @@ ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
   const std::size_t count = slots.second - slots.first;
   row.FirstSlot = slots.first;
   row.Starts = this->Grid.Starts.data() + static_cast<std::size_t>(row.Number) * bins.Columns;
+  row.IsRead = count <= MostPerBin * static_cast<std::size_t>(bins.Columns);
+  if (!row.IsRead)
+  {
+    return;
+  }
   if (row.X.size() < count + RowRoom)
   {
     row.X.resize(count + count / 4 + RowRoom);

@@ -99,7 +99,8 @@ private:
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
   static constexpr int Room = Capacity + 8; // whole vectors are written
   static constexpr Index MostRows = 4;
-  static constexpr int RowRoom = 40; // whole vectors are read
+  static constexpr int RowRoom = 40;            // whole vectors are read
+  static constexpr std::size_t MostPerBin = 32; // points in a row of which windows are made
 
   /** The points of a row of bins in units from the grid's corner. */
   struct Row
@@ -108,6 +109,7 @@ private:
     Index FirstSlot = 0;
     const Index* Starts = nullptr;  ///< the first slot of each bin, and one more
     std::vector<std::int32_t> X, Y; ///< and RowRoom more
+    bool IsRead = false;            ///< else there are too many points: most bins are full
   };
 
   /** What the size of a window tells of rounding; lengths in the window's unit. */
@@ -173,6 +175,7 @@ private:
   Row Rows[MostRows];                     ///< by their number modulo MostRows
   Row* Near[MostRows];                    ///< from the current row upwards
   Index CurrentRow = None;
+  bool AreNearRead = false;
   std::int32_t TopBound = 0;
   Bounds OfBox; ///< of all boxes, whose unit is their side
 };

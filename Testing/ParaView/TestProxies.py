@@ -23,6 +23,7 @@ OTHER_VALUES = {
         "OutwardTest": "Inward Normal",
         "GapTolerance": 3.5,
         "RecoverBoundary": 0,
+        "NumberOfThreads": 2,
     },
     "FillElevationHoles": {
         "MaximumHoleSize": 12.5,

@@ -82,6 +82,7 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         trim = vtkTrimOutwardTriangles()
         self.assertEqual(trim.GetGapTolerance(), 0.0)
         self.assertTrue(trim.GetRecoverBoundary())
+        self.assertEqual(trim.GetNumberOfThreads(), 0)
         self.assertEqual(trim.GetOutwardTest(), vtkTrimOutwardTriangles.EXACT)
         self.assertEqual(trim.GetOutwardTestAsString(), "Exact")
         self.assertIsNone(trim.GetBoundary())
@@ -97,8 +98,8 @@ class TestTrimOutwardTriangles(unittest.TestCase):
 
     def test_every_property_is_printed(self):
         text = str(vtkTrimOutwardTriangles())
-        for name in ("OutwardTest", "GapTolerance", "RecoverBoundary", "EffectiveGapTolerance",
-                     "NumberOfOutwardTriangles", "NumberOfRecoveredEdges",
+        for name in ("OutwardTest", "GapTolerance", "RecoverBoundary", "NumberOfThreads",
+                     "EffectiveGapTolerance", "NumberOfOutwardTriangles", "NumberOfRecoveredEdges",
                      "NumberOfInsertedPoints"):
             self.assertIn(name, text)
 

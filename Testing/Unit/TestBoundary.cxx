@@ -333,6 +333,28 @@ TEST(ExtractBoundary, OfAFullLatticeIsItsOutline)
   EXPECT_NEAR(boundary.GapTolerance, 4.5, 1e-12);
 }
 
+TEST(ExtractBoundary, IsTheSameForAnyNumberOfThreads)
+{
+  std::mt19937_64 random(71);
+  std::uniform_real_distribution<double> place(0.0, 1.0);
+  std::vector<Point2> points;
+  for (int i = 0; i < 30000; ++i)
+  {
+    points.push_back({ place(random), place(random) * place(random) });
+  }
+  const Mesh mesh = Delaunay(points);
+  ExtractOptions options;
+  const ExtractedBoundary one = ExtractBoundary(mesh, options);
+  for (const int threads : { 2, 4 })
+  {
+    options.NumberOfThreads = threads;
+    const ExtractedBoundary several = ExtractBoundary(mesh, options);
+    EXPECT_EQ(several.GapTolerance, one.GapTolerance);
+    EXPECT_EQ(several.Vertices.Offsets, one.Vertices.Offsets);
+    EXPECT_EQ(several.Vertices.Vertices, one.Vertices.Vertices);
+  }
+}
+
 TEST(ExtractBoundary, HasLakesAndIslands)
 {
   // A block with a lake of 10 x 10 missing nodes and an island of 4 x 4 in it; another block apart.

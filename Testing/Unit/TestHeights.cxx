@@ -305,6 +305,68 @@ TEST(Heights, DoNotOvershootSteepRims)
   }
 }
 
+TEST(Heights, OfSplinesKeepToTheBound)
+{
+  // A pit beside the rim, of which the spline makes a hill inside.
+  const Mesh mesh = Sheet(60, Disc(30, 30, 15));
+  const Elevation pit = [](const Point2& p) { return p.X == 14.0 && p.Y == 30.0 ? -1000.0 : 0.0; };
+  const Outcome run = Fill(mesh, pit, Interpolation::Cubic);
+  double squares = 0.0;
+  double edges = 0.0;
+  std::vector<char> isBoundary(mesh.NumberOfPoints(), 0);
+  for (const Index id : run.Patches.Triangles)
+  {
+    if (id < mesh.NumberOfPoints())
+    {
+      isBoundary[id] = 1;
+    }
+  }
+  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+  {
+    const Point2& a = mesh.PointOf(mesh.Origin(h));
+    const Point2& b = mesh.PointOf(mesh.Destination(h));
+    if (isBoundary[mesh.Origin(h)])
+    {
+      squares += std::pow((pit(b) - pit(a)) / std::hypot(b.X - a.X, b.Y - a.Y), 2);
+      ++edges;
+    }
+  }
+  const double slope = 2.0 * std::sqrt(squares / edges);
+  int atTheBound = 0;
+  for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+  {
+    const Point2& q = mesh.Points[run.Patches.NearestBoundaryPoints[i]];
+    const double room = slope * std::hypot(run.At(i).X - q.X, run.At(i).Y - q.Y);
+    EXPECT_LE(run.Value(i), room * (1.0 + 1e-9));
+    EXPECT_GE(run.Value(i), -1000.0 - room * (1.0 + 1e-9));
+    atTheBound += run.Value(i) > room * (1.0 - 1e-9) ? 1 : 0;
+  }
+  EXPECT_GT(atTheBound, 0) << "else this test shows nothing";
+}
+
+TEST(Heights, MeetALongRim)
+{
+  // Four times as many boundary points as a spline takes of them, and waves that need them all.
+  const Elevation waves = [](const Point2& p) { return std::sin(0.7 * p.X) * std::sin(0.7 * p.Y); };
+  FillOptions options;
+  options.Method = Interpolation::ThinPlate;
+  options.UseLattice = LatticeMode::Off; // no node is as near to the rim as other points
+  const Outcome run = Fill(Sheet(220, Disc(110, 110, 75)), waves, options);
+  EXPECT_GT(run.Patches.Reports[0].NumberOfEdges, 590);
+  double squares = 0.0;
+  double all = 0.0;
+  for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+  {
+    const Point2& q = run.Surface.Points[run.Patches.NearestBoundaryPoints[i]];
+    if (std::hypot(run.At(i).X - q.X, run.At(i).Y - q.Y) < 1.0)
+    {
+      squares += std::pow(run.Value(i) - waves(run.At(i)), 2);
+      all += std::pow(waves(run.At(i)), 2);
+    }
+  }
+  EXPECT_LT(squares, 0.4 * all);
+}
+
 TEST(Heights, DoNotDependOnOtherHoles)
 {
   // A large and a small hole, three squares apart; then the small one alone is filled.
@@ -362,13 +424,18 @@ TEST(Heights, LeaveOutWhatIsNotFinite)
     { Interpolation::Membrane, Interpolation::ThinPlate, Interpolation::Adaptive })
   {
     const Outcome run = Fill(
-      Sheet(30, Disc(15, 15, 6)), [=](const Point2& p) { return p.X == 10.0 ? nothing : 7.0; },
+      Sheet(30, Disc(15, 15, 6)), [=](const Point2& p) { return p.X == p.Y ? nothing : 7.0; },
       method);
+    EXPECT_GT(run.Patches.NumberOfPoints(), 80) << run.Patches.Reports[0].Reason;
     EXPECT_EQ(run.Patches.Reports[0].Method, Interpolation::NeighborMean);
+    Index numbers = 0;
     for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
     {
-      EXPECT_NEAR(run.Value(i), 7.0, 1e-12);
+      // The only known neighbour may be without a number.
+      EXPECT_TRUE(std::isnan(run.Value(i)) || std::fabs(run.Value(i) - 7.0) < 1e-12);
+      numbers += std::isnan(run.Value(i)) ? 0 : 1;
     }
+    EXPECT_GT(numbers, run.Patches.NumberOfPoints() * 9 / 10);
   }
 }
 

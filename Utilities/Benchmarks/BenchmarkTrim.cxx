@@ -34,7 +34,7 @@ with the boundary that it extracts. All in one process and in turn; whole filter
 
   --sets LIST       generated data sets, or "all"; default L,D,U
   --points LIST     numbers of points; default 1000000
-  --threads N       threads of vtkGridDelaunay2D, 0: one a core; default 1
+  --threads N       threads of all filters, 0: one a core; default 1
   --repeats N       timed runs; default 5
   --seed N          seed of the generators; default 1
   --help            shows this text
@@ -241,6 +241,7 @@ bool Measure(
         continue;
       }
       vtkNew<vtkTrimOutwardTriangles> filter;
+      filter->SetNumberOfThreads(options.Threads);
       filter->SetInputData(mesh);
       if (i == 1)
       {
