@@ -588,26 +588,29 @@ LatticeSearch FindLattice(
   takeAll(sample);
   SortUnique(sample);
 
-  Extent place; // the fullest; where hardly any points differ, all
-  if (sample.size() <= Neighbors)
+  // The fullest place: a cell of the sample's extent, a cell of that, and so on. Where hardly any
+  // points differ, everywhere.
+  Extent place = search;
+  std::vector<Point2> crowd = sample;
+  for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
   {
-    place = search;
-  }
-  else
-  {
-    const double cells = std::sqrt(count / static_cast<double>(Neighbors));
-    Histogram histogram(search, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
-    histogram.Add(sample);
+    const double here = count * (crowd.size() / static_cast<double>(sample.size()));
+    const double cells = std::sqrt(here / static_cast<double>(Neighbors));
+    Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
+    const bool hasCells = histogram.PerX > 0.0 && histogram.PerX <= DBL_MAX &&
+      histogram.PerY > 0.0 && histogram.PerY <= DBL_MAX;
+    if (histogram.Side < 2 || !hasCells)
+    {
+      break;
+    }
+    histogram.Add(crowd);
     const int fullest = histogram.Fullest();
+    crowd.erase(std::remove_if(crowd.begin(), crowd.end(),
+                  [&](const Point2& p) { return histogram.CellOf(p) != fullest; }),
+      crowd.end());
+    place = BoxOf(crowd); // rounding may have put a point beside its cell
     place.Add(histogram.CornerOf(fullest, 0));
     place.Add(histogram.CornerOf(fullest, 1));
-    for (const Point2& p : sample)
-    {
-      if (histogram.CellOf(p) == fullest)
-      {
-        place.Add(p); // rounding may have put it beside the cell
-      }
-    }
   }
   ForEachRange(
     points.Count, threads, Part(progress, 0.5, 0.9), [&](Index part, Index begin, Index end) {

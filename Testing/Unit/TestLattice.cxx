@@ -826,10 +826,15 @@ TEST(Lattice, DoubtsTrianglesWhereStepsAreVeryUnequal)
 
 TEST(Lattice, ReportsWhileItLooksIntoACrowd)
 {
-  // All but one point are in one cell of the histogram.
+  // Few points, but each of them many times.
   std::mt19937_64 random(54);
-  Cloud cloud = RandomCloud(random, 200000);
-  cloud.Coordinates[0] = cloud.Coordinates[1] = 1e9;
+  const Cloud few = RandomCloud(random, 50);
+  Cloud cloud;
+  for (int i = 0; i < 4000; ++i)
+  {
+    cloud.Coordinates.insert(
+      cloud.Coordinates.end(), few.Coordinates.begin(), few.Coordinates.end());
+  }
   int calls = 0;
   const Progress count = [&](double fraction) {
     calls += fraction > 0.9 && fraction < 1.0;
