@@ -244,6 +244,11 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const std::vector<Index
     std::iota(to->begin(), to->end(), static_cast<vtkIdType>(begin));
     output->GetCellData()->CopyData(input->GetCellData(), from, to);
   }
+  if (!parents.empty())
+  {
+    // Pieces have what their triangle has, so the values are no global ids any more.
+    output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
+  }
 }
 
 /** Output 2. */

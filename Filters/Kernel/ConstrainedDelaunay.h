@@ -85,7 +85,8 @@ struct ConstrainedTriangulation
  * the vertices next to the crossing on that segment.
  *
  * @throws Error naming line and point: a point of a line that does not exist or is not finite;
- *         naming two segments: rounding makes them cross again and again (never seen); more points
+ *         naming two segments: rounding makes them cross again and again, as it may where many lie
+ *         nearly on one line or through one place, at coordinates that are not whole; more points
  *         than an Index can hold. Aborted; std::bad_alloc.
  */
 ConstrainedTriangulation TriangulateConstrained(

@@ -111,9 +111,19 @@ check(signed_areas(filled).min() > 0, "every triangle is counter-clockwise after
 check_equal(edge_uses(filled).max(), 2, "triangles at an edge after filling, at most")
 check_equal((edge_uses(kept) == 1).sum() - (edge_uses(filled) == 1).sum(),
             array(holes.GetCellData(), "NumberOfEdges").sum(), "rim edges that were closed")
-z = points(filled)[:, 2]
-check(z[is_new == 1].min() >= z[is_new == 0].min() and z[is_new == 1].max() <= z[is_new == 0].max(),
-      "new points lie within the elevations of the old ones")
+
+def beyond(surface):
+    """How far new points lie above or below all old ones, in parts of the old ones' range."""
+    z = points(surface)[:, 2]
+    old, new = z[is_new == 0], z[is_new == 1]
+    return max(old.min() - new.min(), new.max() - old.max(), 0.0) / (old.max() - old.min())
+
+
+# The largest building is as wide as the ground around it: slopes at its walls go on below it.
+check(beyond(filled) < 0.5, "new points lie near the elevations of the old ones")
+fill.Interpolation = "Membrane"
+check_equal(beyond(fetch(fill, 0)), 0.0, "new points of a membrane beyond the old ones")
+fill.Interpolation = "Adaptive"
 
 # A limit leaves the large holes open, and says so.
 fill.MaximumHoleSize = 10
