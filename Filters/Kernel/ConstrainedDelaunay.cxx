@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <string>
+#include <unordered_map>
+#include <utility>
 
 namespace elevation
 {
@@ -22,6 +24,9 @@ struct Piece
   Index B;
   Index Rank;  ///< the first segment that it is part of
   Index Count; ///< of distinct segments that it is part of
+  /** How far rounding moves things along x and y, about a unit in the last place of segments. */
+  double UnitX = 0.0;
+  double UnitY = 0.0;
 };
 
 /** A vertex of the lines. */
@@ -72,6 +77,36 @@ bool AreCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2
   }
   return Orientation(a, b, c) * Orientation(a, b, d) < 0 &&
     Orientation(c, d, a) * Orientation(c, d, b) < 0;
+}
+
+/** The distance from the larger of two coordinates to its neighbour towards zero. */
+double LastPlaceOf(double a, double b)
+{
+  const double larger = std::max(std::fabs(a), std::fabs(b));
+  return larger - std::nextafter(larger, 0.0);
+}
+
+/** Sets the units of a piece that is the segment from a to b. */
+void SetUnits(Piece& piece, const Point2& a, const Point2& b)
+{
+  // Rounding one coordinate moves a crossing along the other one, too; where extents are so unequal
+  // that this would be much of the smaller one, slopes are as unequal, and it is less.
+  constexpr double part = 0x1p-40;
+  const double x = LastPlaceOf(a.X, b.X), y = LastPlaceOf(a.Y, b.Y);
+  const double width = std::fabs(0.5 * b.X - 0.5 * a.X), height = std::fabs(0.5 * b.Y - 0.5 * a.Y);
+  // A segment of few units could be bent to anything near it.
+  const bool isShort = std::max(width, height) < 2048.0 * std::max(x, y);
+  piece.UnitX = isShort ? 0.0 : std::max(x, std::min(y, part * width));
+  piece.UnitY = isShort ? 0.0 : std::max(y, std::min(x, part * height));
+}
+
+/** Whether p comes after a and before b along the longer of the segment's x and y. */
+bool IsBetween(const Point2& a, const Point2& b, const Point2& p)
+{
+  // Halves, so that no difference overflows.
+  const bool isAlongX = std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y);
+  return isAlongX ? std::min(a.X, b.X) < p.X && p.X < std::max(a.X, b.X)
+                  : std::min(a.Y, b.Y) < p.Y && p.Y < std::max(a.Y, b.Y);
 }
 
 /**
@@ -364,6 +399,7 @@ private:
           this->Segments.push_back({ isUp ? p : q, isUp ? q : p });
           this->Pieces.push_back(
             { isUp ? p : q, isUp ? q : p, static_cast<Index>(this->Segments.size()) - 1, 1 });
+          SetUnits(this->Pieces.back(), this->At(p), this->At(q));
           hasSegment[p] = hasSegment[q] = 1;
         }
       }
@@ -395,7 +431,10 @@ private:
     {
       if (kept > 0 && this->Pieces[kept - 1].A == piece.A && this->Pieces[kept - 1].B == piece.B)
       {
-        this->Pieces[kept - 1].Count += piece.Count;
+        Piece& same = this->Pieces[kept - 1];
+        same.Count += piece.Count;
+        same.UnitX = std::max(same.UnitX, piece.UnitX);
+        same.UnitY = std::max(same.UnitY, piece.UnitY);
       }
       else
       {
@@ -408,8 +447,43 @@ private:
   /** Pass 2. */
   void Split(const Progress& progress)
   {
+    {
+      const PieceGrid grid(this->Vertices, this->Pieces, Part(progress, 0.0, 0.1));
+      std::vector<Cut> cuts;
+      this->CutAtVertices(grid, cuts, Part(progress, 0.1, 0.2));
+      this->CutAtInputPoints(grid, cuts, Part(progress, 0.2, 0.45));
+      this->CountCrossingsAtVertices(cuts, Part(progress, 0.45, 0.47));
+      this->Apply(cuts, Part(progress, 0.47, 0.5));
+    }
+    // As the lines run exactly; what follows moves pieces by rounding.
+    const std::vector<Piece> pieces = this->Pieces;
+    const std::size_t count = this->Vertices.size();
+    // Two units make up for the rounding of an end and of a crossing. Without any it goes where
+    // they are no less than the lines' own lengths, and the grid of the doubles bounds all there is.
+    if (this->Settle(2.0, true, Part(progress, 0.5, 0.9)))
+    {
+      return;
+    }
+    this->Pieces = pieces;
+    this->Vertices.resize(count);
+    if (!this->Settle(0.0, false, Part(progress, 0.9, 1.0)))
+    {
+      throw Error(this->Unsettled);
+    }
+  }
+
+  /**
+   * Cuts until no pieces cross and none runs through a vertex.
+   * @param reach  in units in the last place: two pieces that cross go through an end of one that
+   *               is so near to the other, and through a vertex within twice as much of the place
+   *               where they cross, instead of a new vertex.
+   * @return whether it came to an end
+   */
+  bool Settle(double reach, bool isToCount, const Progress& progress)
+  {
     constexpr int mostRounds = 64; // two or three are usual
-    bool haveCounted = false;
+    this->Reach = reach;
+    bool haveCounted = !isToCount;
     for (int round = 0; round < mostRounds; ++round)
     {
       // Half of what is left for each.
@@ -417,33 +491,24 @@ private:
         Part(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
       const PieceGrid grid(this->Vertices, this->Pieces, Part(ofRound, 0.0, 0.2));
       std::vector<Cut> cuts;
-      this->CutAtVertices(grid, cuts, Part(ofRound, 0.2, 0.3));
-      if (round == 0)
-      {
-        this->CutAtInputPoints(grid, cuts, Part(ofRound, 0.3, 0.55));
-        this->CountCrossingsAtVertices(cuts, Part(ofRound, 0.55, 0.6));
-      }
+      this->CutAtVertices(grid, cuts, Part(ofRound, 0.2, 0.4));
       std::vector<Crossing> crossings;
       if (cuts.empty())
       {
-        this->FindCrossings(grid, crossings, Part(ofRound, 0.6, 0.8));
+        this->FindCrossings(grid, crossings, Part(ofRound, 0.4, 0.7));
         if (crossings.empty())
         {
-          return;
+          return true;
         }
-        this->CutAtCrossings(crossings, !haveCounted, cuts, Part(ofRound, 0.8, 0.9));
+        this->CutAtCrossings(grid, crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
         haveCounted = true;
-      }
-      if (round == mostRounds - 1)
-      {
-        throw Error(crossings.empty()
-            ? std::string("The lines meet again and again where rounding moves them.")
-            : this->NameOf(this->Pieces[crossings[0].P]) + " and " +
-              this->NameOf(this->Pieces[crossings[0].Q]) +
-              " cross again and again where rounding moves them.");
+        this->Unsettled = this->NameOf(this->Pieces[crossings[0].P]) + " and t" +
+          this->NameOf(this->Pieces[crossings[0].Q]).substr(1) +
+          " cross again and again where rounding moves them.";
       }
       this->Apply(cuts, Part(ofRound, 0.9, 1.0));
     }
+    return false;
   }
 
   /**
@@ -606,64 +671,190 @@ private:
       crossings.end());
   }
 
-  void CutAtCrossings(const std::vector<Crossing>& crossings, bool areToCount,
-    std::vector<Cut>& cuts, const Progress& progress)
+  /** Whether the vertex is so near the piece, between its ends, that rounding may put it there. */
+  bool IsInReach(const Piece& piece, Index vertex) const
+  {
+    const Point2 &a = this->At(piece.A), &b = this->At(piece.B), &p = this->At(vertex);
+    if (this->Reach <= 0.0 || !IsBetween(a, b, p))
+    {
+      return false;
+    }
+    // Quarters, so that no difference overflows.
+    double dx = 0.25 * b.X - 0.25 * a.X, dy = 0.25 * b.Y - 0.25 * a.Y;
+    double px = 0.25 * p.X - 0.25 * a.X, py = 0.25 * p.Y - 0.25 * a.Y;
+    double unitX = piece.UnitX, unitY = piece.UnitY;
+    if (std::fabs(dx) < std::fabs(dy))
+    {
+      std::swap(dx, dy);
+      std::swap(px, py);
+      std::swap(unitX, unitY);
+    }
+    const double slope = dy / dx;
+    return std::fabs(py - px * slope) <= 0.25 * this->Reach * (unitY + std::fabs(slope) * unitX);
+  }
+
+  bool CanPassThrough(const Piece& piece, Index vertex) const
+  {
+    return piece.A == vertex || piece.B == vertex ||
+      IsBetween(this->At(piece.A), this->At(piece.B), this->At(vertex));
+  }
+
+  /** Cuts at an end of one of two pieces that cross, where the other one runs by it in reach. */
+  bool CutAtEnds(const Crossing& crossing, std::vector<Cut>& cuts) const
+  {
+    bool isCut = false;
+    for (const auto& [piece, other] :
+      { std::make_pair(crossing.P, crossing.Q), std::make_pair(crossing.Q, crossing.P) })
+    {
+      for (const Index end : { this->Pieces[other].A, this->Pieces[other].B })
+      {
+        if (this->IsInReach(this->Pieces[piece], end))
+        {
+          cuts.push_back({ piece, end });
+          isCut = true;
+        }
+      }
+    }
+    return isCut;
+  }
+
+  void CutAtCrossings(const PieceGrid& grid, const std::vector<Crossing>& crossings,
+    bool areToCount, std::vector<Cut>& cuts, const Progress& progress)
   {
     struct Place
     {
       Point2 Position;
       Crossing Of;
+      Index Vertex;
     };
-    const Progress naming = Part(progress, 0.8, 1.0);
     std::vector<Place> places;
-    for (const Crossing& crossing : crossings)
+    for (std::size_t i = 0; i < crossings.size(); ++i)
     {
-      ReportStep(progress, places.size(), 2 * crossings.size(), 1024);
+      ReportStep(progress, i, 2 * crossings.size(), 1024);
+      const Crossing& crossing = crossings[i];
       const Piece &p = this->Pieces[crossing.P], &q = this->Pieces[crossing.Q];
-      places.push_back(
-        { RoundedCrossing(this->At(p.A), this->At(p.B), this->At(q.A), this->At(q.B)), crossing });
       this->Crossings +=
         areToCount ? static_cast<std::int64_t>(p.Count) * static_cast<std::int64_t>(q.Count) : 0;
+      if (!this->CutAtEnds(crossing, cuts))
+      {
+        places.push_back(
+          { RoundedCrossing(this->At(p.A), this->At(p.B), this->At(q.A), this->At(q.B)), crossing,
+            None });
+      }
     }
     Sort(
       places.begin(), places.end(),
       [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
       Part(progress, 0.5, 0.7));
-    std::vector<Index> known(this->Vertices.size());
-    std::iota(known.begin(), known.end(), 0);
-    const auto isLower = [&](Index v, const Point2& p) { return IsLower(this->At(v), p); };
-    Sort(
-      known.begin(), known.end(), [&](Index v, Index w) { return isLower(v, this->At(w)); },
-      Part(progress, 0.7, 0.8));
 
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < places.size();)
+    NewVertices added{ {}, {}, static_cast<Index>(this->Vertices.size()) };
+    const Progress naming = Part(progress, 0.7, 1.0);
+    for (std::size_t i = 0, end = 0; i < places.size(); i = end)
     {
-      ReportStep(naming, done++, places.size());
+      ReportStep(naming, i, places.size());
       const Point2 position = places[i].Position;
-      const auto found = std::lower_bound(known.begin(), known.end(), position, isLower);
-      Index vertex = static_cast<Index>(this->Vertices.size());
-      if (found != known.end() && this->At(*found) == position)
+      for (; end < places.size() && places[end].Position == position; ++end)
       {
-        vertex = *found;
+        places[end].Vertex = this->FindVertexInReach(grid, added, position, places[end].Of);
       }
-      Index first = places[i].Of.P;
-      for (; i < places.size() && places[i].Position == position; ++i)
+      // Those of the same place that are in reach of none share a new one, which lies on the first.
+      Index vertex = None, first = None;
+      for (std::size_t k = i; k < end; ++k)
       {
-        for (const Index piece : { places[i].Of.P, places[i].Of.Q })
+        Index at = places[k].Vertex;
+        if (at == None)
         {
-          cuts.push_back({ piece, vertex });
-          first = this->Pieces[piece].Rank < this->Pieces[first].Rank ? piece : first;
+          vertex = at = vertex == None ? this->AddVertex(grid, added, position) : vertex;
+        }
+        for (const Index piece : { places[k].Of.P, places[k].Of.Q })
+        {
+          cuts.push_back({ piece, at });
+          if (at == vertex &&
+            (first == None || this->Pieces[piece].Rank < this->Pieces[first].Rank))
+          {
+            first = piece;
+          }
         }
       }
-      if (vertex == static_cast<Index>(this->Vertices.size()))
+      if (vertex != None)
       {
-        this->Vertices.emplace_back();
-        this->Vertices.back().Position = position;
-        this->Vertices.back().From = this->Pieces[first].A;
-        this->Vertices.back().To = this->Pieces[first].B;
+        this->Vertices[vertex].From = this->Pieces[first].A;
+        this->Vertices[vertex].To = this->Pieces[first].B;
       }
     }
+  }
+
+  /** Vertices that one round adds, from the lowest to the highest, by cells of the grid. */
+  struct NewVertices
+  {
+    std::unordered_map<std::size_t, Index> Last; ///< the last one in a cell
+    std::vector<Index> Before;                   ///< of each, the one in the same cell before it
+    Index First;                                 ///< the first of all
+  };
+
+  Index AddVertex(const PieceGrid& grid, NewVertices& added, const Point2& position)
+  {
+    const Index vertex = static_cast<Index>(this->Vertices.size());
+    this->Vertices.emplace_back();
+    this->Vertices.back().Position = position;
+    std::size_t cell = 0;
+    grid.FindCell(position, cell); // it is within the box of two pieces
+    Index& last = added.Last.emplace(cell, None).first->second;
+    added.Before.push_back(last);
+    last = vertex;
+    return vertex;
+  }
+
+  /** The vertex next to where two pieces cross that both can pass through; None: none in reach. */
+  Index FindVertexInReach(const PieceGrid& grid, const NewVertices& added, const Point2& p,
+    const Crossing& crossing) const
+  {
+    const Piece& one = this->Pieces[crossing.P];
+    const Piece& other = this->Pieces[crossing.Q];
+    // Anything but zero, to divide by.
+    const double least = std::numeric_limits<double>::denorm_min();
+    const double unitX = std::max({ one.UnitX, other.UnitX, least });
+    const double unitY = std::max({ one.UnitY, other.UnitY, least });
+    const double reach = 2.0 * this->Reach, reachX = reach * unitX, reachY = reach * unitY;
+    Index nearest = None;
+    double shortest = 0.0;
+    const auto look = [&](Index v) {
+      const double distance =
+        std::max(std::fabs(this->At(v).X - p.X) / unitX, std::fabs(this->At(v).Y - p.Y) / unitY);
+      if (distance <= reach &&
+        (this->At(v) == p || (this->CanPassThrough(one, v) && this->CanPassThrough(other, v))) &&
+        (nearest == None || distance < shortest ||
+          (distance == shortest && IsLower(this->At(v), this->At(nearest)))))
+      {
+        nearest = v;
+        shortest = distance;
+      }
+    };
+    std::size_t last = static_cast<std::size_t>(-1);
+    for (const double y : { -reachY, reachY })
+    {
+      for (const double x : { -reachX, reachX })
+      {
+        std::size_t cell;
+        if (!grid.FindCell(Point2{ p.X + x, p.Y + y }, cell) || cell == last)
+        {
+          continue;
+        }
+        last = cell;
+        for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
+        {
+          look(this->Pieces[*i].A);
+          look(this->Pieces[*i].B);
+        }
+        const auto found = added.Last.find(cell);
+        for (Index v = found == added.Last.end() ? None : found->second;
+             v != None && this->At(v).Y >= p.Y - reachY; v = added.Before[v - added.First])
+        {
+          look(v);
+        }
+      }
+    }
+    return nearest;
   }
 
   /** Puts pieces from cut to cut in the place of those that are cut. */
@@ -774,6 +965,8 @@ private:
   std::vector<Segment> Segments;   ///< by rank, which is the order of the lines
   std::vector<Index> SegmentLines; ///< by rank
   std::int64_t Crossings = 0;
+  double Reach = 0.0;    ///< see Settle()
+  std::string Unsettled; ///< two segments that still cross
 };
 
 /** Input points and added ones in one array; empty when nothing is added. */

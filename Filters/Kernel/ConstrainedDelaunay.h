@@ -11,11 +11,20 @@
  *   2. Split: segments are cut at every point of a line and every input point that lies exactly on
  *      them; then pieces that cross are cut at a new vertex, the crossing rounded to the nearest
  *      doubles. Rounding moves pieces a little, so this is repeated until nothing crosses and no
- *      vertex is on a piece. Pairs are found in a grid of cells that the segments are entered in.
+ *      vertex is on a piece. It comes to an end because, as in snap rounding [Hobby 1999; Halperin
+ *      and Packer 2002], pieces that cross are bent to a vertex that is next to both of them, if
+ *      there is one, rather than cut at yet another. Pairs are found in a grid of cells that the
+ *      segments are entered in.
  *   3. Match: a vertex with the x,y of an input point is that point; the others are added.
  *   4. Triangulate all points (Delaunay.h), by their coordinates.
  *   5. Recover the pieces as edges (Constraints.h); triangles that changed are sorted in among the
  *      others; those with an edge over MaximumEdgeLength are left out last.
+ *
+ * How near is next to: within two units in the last place of the longest coordinate of the segment
+ * an end of one piece beside the other, and within four a vertex beside the place where they cross.
+ * For lines of map coordinates (5e6 m) that is 2 and 4 nanometres. Lines that, but for the rounding
+ * of their decimals, run along each other so become one chain, and many through one place meet in
+ * one vertex or few.
  *
  * Guarantees: exact, as Delaunay.h: every edge that is not of a line is locally Delaunay; and
  * unique: the set of triangles depends on the positions of points and segments alone, not on their
@@ -27,6 +36,9 @@
  * mesh, about two fifths of triangulating; and the edges that segments cross. Finding crossings
  * takes time proportional to segments and crossings where segments are short beside the whole, as
  * those of lines are; n that all span the whole aslant are compared in up to n^2 short steps.
+ *
+ * [Hobby 1999] Practical Segment Intersection with Finite Precision Output, Computational Geometry
+ * 13:199-214. [Halperin and Packer 2002] Iterated Snap Rounding, Computational Geometry 23:209-225.
  */
 #ifndef elevation_ConstrainedDelaunay_h
 #define elevation_ConstrainedDelaunay_h
@@ -80,14 +92,13 @@ struct ConstrainedTriangulation
  *
  * A crossing counts for each pair of distinct segments (two ends in x,y) that have one point in
  * common which is an end of neither. Segments that meet in an end of one of them, or overlap,
- * do not cross. Where there is a vertex at the crossing, nothing is added. The elevation of a
+ * do not cross. Where there is a vertex at the crossing or next to it, nothing is added. The elevation of a
  * crossing is interpolated along the segment that comes first in the order of the lines, between
  * the vertices next to the crossing on that segment.
  *
  * @throws Error naming line and point: a point of a line that does not exist or is not finite;
- *         naming two segments: rounding makes them cross again and again, as it may where many lie
- *         nearly on one line or through one place, at coordinates that are not whole; more points
- *         than an Index can hold. Aborted; std::bad_alloc.
+ *         naming two segments: rounding makes them cross again and again (no lines are known to);
+ *         more points than an Index can hold. Aborted; std::bad_alloc.
  */
 ConstrainedTriangulation TriangulateConstrained(
   const PointView& points, const ConstraintLines& lines, const DelaunayOptions& options);

@@ -687,6 +687,135 @@ TEST(ConstrainedDelaunay, ThousandsOfLinesKeepAllRules)
   }
 }
 
+/** Random lines between the nodes of a grid with its coordinates rounded to decimals. */
+template <typename Node>
+void ExpectLinesBetweenNodesToSettle(unsigned seed, int rounds, int count, int size, Node&& node)
+{
+  Random random(seed);
+  for (int round = 0; round < rounds; ++round)
+  {
+    Lines lines, reversed;
+    std::vector<std::array<std::array<double, 3>, 2>> ends;
+    for (int i = 0; i < count; ++i)
+    {
+      std::array<std::array<double, 3>, 2> segment;
+      for (auto& end : segment)
+      {
+        const int column = random.Below(size), row = random.Below(size);
+        end = node(column, row);
+      }
+      ends.push_back(segment);
+    }
+    for (std::size_t i = 0; i < ends.size(); ++i)
+    {
+      lines.AddPoints({ ends[i][0], ends[i][1] });
+      const auto& other = ends[ends.size() - 1 - i];
+      reversed.AddPoints({ other[1], other[0] });
+    }
+    const Cloud cloud;
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+    ExpectRules(cloud, constrained);
+    // The same from lines in another order and direction.
+    const ConstrainedTriangulation other = Triangulate(cloud, reversed);
+    EXPECT_EQ(PiecePositions(cloud, constrained), PiecePositions(cloud, other))
+      << "round " << round;
+    EXPECT_EQ(constrained.NumberOfCrossings, other.NumberOfCrossings);
+    // Crossings are next to two segments at least.
+    for (const AddedPoint& p : constrained.Added)
+    {
+      int beside = 0;
+      for (const auto& [a, b] : ends)
+      {
+        const long double dx = b[0] - a[0], dy = b[1] - a[1];
+        const long double unit = std::ldexp(
+          std::max({ std::fabs(a[0]), std::fabs(a[1]), std::fabs(b[0]), std::fabs(b[1]) }), -52);
+        const long double cross = dx * (p.Position.Y - static_cast<long double>(a[1])) -
+          dy * (p.Position.X - static_cast<long double>(a[0]));
+        beside += std::fabs(cross) <= 8 * unit * (std::fabs(dx) + std::fabs(dy));
+      }
+      EXPECT_TRUE(p.Source != None || beside >= 2);
+    }
+  }
+}
+
+double RoundedTo(double value, double perUnit)
+{
+  return std::round(value * perUnit) / perUnit;
+}
+
+TEST(ConstrainedDelaunay, LinesThatNearlyOverlapSettle)
+{
+  // Each but for the rounding of decimals along one line.
+  for (const auto& points : std::vector<std::vector<std::array<double, 3>>>{
+         { { 7.0025, 45.004167, 0 }, { 7.000833, 45, 0 }, { 7.003333, 45.003333, 0 },
+           { 7.000833, 45.000833, 0 }, { 7.004167, 45.004167, 0 }, { 7, 45, 0 } },
+         { { 0, 5.2, 0 }, { .1, 4.9, 0 }, { 0, 5.1000000000000005, 0 }, { .1, 5, 0 },
+           { .2, 4.9, 0 }, { 0, 5.1000000000000005, 0 } },
+         { { 512007.7, 4096001.7, 0 }, { 512007.4, 4096001.4, 0 }, { 512007.6, 4096001.6, 0 },
+           { 512007.7, 4096001.7, 0 }, { 512007.5, 4096001.4, 0 }, { 512007.6, 4096001.6, 0 },
+           { 512007.6, 4096001.6, 0 }, { 512007.7, 4096001.8, 0 } } })
+  {
+    Cloud cloud;
+    Lines lines;
+    for (std::size_t i = 0; i < points.size(); i += 2)
+    {
+      lines.AddPoints({ points[i], points[i + 1] });
+    }
+    ExpectRules(cloud, Triangulate(cloud, lines));
+  }
+}
+
+TEST(ConstrainedDelaunay, LinesBetweenNodesOfDecimalGridsSettle)
+{
+  const auto degrees = [](int i, int j) {
+    return std::array<double, 3>{ RoundedTo(7 + i / 1200.0, 1e6), RoundedTo(45 + j / 1200.0, 1e6),
+      0 };
+  };
+  const auto tenths = [](int i, int j) { return std::array<double, 3>{ i * 0.1, j * 0.1, 0 }; };
+  const auto aroundZero = [](int i, int j) {
+    return std::array<double, 3>{ (i - 4) * 0.1, (j - 4) * 0.1, 0 };
+  };
+  const auto map = [](int i, int j) {
+    return std::array<double, 3>{ 5e6 + i * 0.1, 4e5 + j * 0.1, 0 };
+  };
+  const auto turned = [](int i, int j) {
+    return std::array<double, 3>{ RoundedTo(5e6 + 20 * i - 15 * j, 100),
+      RoundedTo(4e5 + 15 * i + 20 * j, 100), 0 };
+  };
+  // Nodes a few units in the last place apart, in pairs.
+  const auto pairs = [](int i, int j) {
+    return std::array<double, 3>{ 1 + i / 3 * 0.25 + i % 3 * 0x1p-52,
+      1 + j / 3 * 0.25 + j % 3 * 0x1p-52, 0 };
+  };
+  const auto few = [](int i, int j) { return std::array<double, 3>{ 0x1p52 + i, 0x1p52 + j, 0 }; };
+  for (const auto& [count, size, rounds] :
+    std::vector<std::array<int, 3>>{ { 8, 6, 100 }, { 20, 9, 50 }, { 100, 11, 3 } })
+  {
+    ExpectLinesBetweenNodesToSettle(1, rounds, count, size, degrees);
+    ExpectLinesBetweenNodesToSettle(2, rounds, count, size, tenths);
+    ExpectLinesBetweenNodesToSettle(3, rounds, count, size, aroundZero);
+    ExpectLinesBetweenNodesToSettle(4, rounds, count, size, map);
+    ExpectLinesBetweenNodesToSettle(5, rounds, count, size, turned);
+    ExpectLinesBetweenNodesToSettle(6, rounds, count, size, pairs);
+    ExpectLinesBetweenNodesToSettle(7, rounds, count, size, few);
+  }
+}
+
+TEST(ConstrainedDelaunay, HundredsOfLinesThroughOnePlaceMeetInFewVertices)
+{
+  Lines lines;
+  for (int i = 0; i < 200; ++i)
+  {
+    const double x = 0.4 * std::cos(0.0157 * i), y = 0.4 * std::sin(0.0157 * i);
+    lines.AddPoints({ { 0.5 + x, 0.5 + y, 0 }, { 0.5 - x, 0.5 - y, 0 } });
+  }
+  const Cloud cloud;
+  const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+  ExpectRules(cloud, constrained);
+  EXPECT_EQ(constrained.NumberOfCrossings, 200 * 199 / 2);
+  EXPECT_LT(constrained.Added.size(), 400u + 300u); // of 19,900 crossings
+}
+
 TEST(ConstrainedDelaunay, InFewBitsSettles)
 {
   // Crossings are rounded to the doubles around 2^52, which are whole numbers: pieces move by up to
