@@ -48,8 +48,8 @@
  * 2. They are joined with the boundary by a constrained Delaunay triangulation.
  * 3. Where points are not on a lattice, a triangle with an edge of more than 1.6 spacings that is no
  *    edge of the boundary, or with an angle below 20 degrees, gets a point in the centre of its
- *    circle. Edges of the boundary are not split, and no point comes nearer to them than half a
- *    spacing; so such triangles remain where the centre of the circle lies nearer to the boundary
+ *    circle. Edges of the boundary are not split, and no point comes nearer to them than 0.3
+ *    spacings; so such triangles remain where the centre of the circle lies nearer to the boundary
  *    than that, or behind it.
  * 4. The z of new points is found from the surface around the hole, see Interpolation.
  *

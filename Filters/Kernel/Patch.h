@@ -25,8 +25,8 @@
  *      the boundary, or with an angle below 20 degrees, gets a point in the centre of its circle
  *      [Chew 1989, Ruppert 1995]. With Graded this places all the points.
  *
- * What the boundary forces: its edges are not split, and no point comes nearer to it than half a
- * spacing. So a triangle stays as it is when the centre of its circle lies behind an edge of the
+ * What the boundary forces: its edges are not split, and no point comes nearer to it than 0.3
+ * spacings. So a triangle stays as it is when the centre of its circle lies behind an edge of the
  * boundary or nearer than that to one. All other triangles of Even and Graded have angles of at
  * least 20 degrees, and edges of at most 1.6 spacings but for those of the boundary: an edge inside
  * that is longer has such a forced triangle on both sides. The spacing of Graded is the mean of
@@ -35,8 +35,8 @@
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole. Unlimited by its number of points, refinement ends: a new
- * point keeps half a spacing from all others that it sees. Discs of a quarter spacing around new
- * points are disjoint and inside the hole, which bounds their number.
+ * point keeps 0.3 spacings from all others that it sees. Discs of half of that around new points
+ * are disjoint and inside the hole, which bounds their number.
  *
  * Cost: expected linear in the number of points.
  *
