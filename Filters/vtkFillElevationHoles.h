@@ -39,8 +39,8 @@
  *
  * The method, for each hole on its own:
  * 1. New points lie on the nodes of the lattice of the surface's points, where it has one and the
- *    boundary's edges measure less than two steps on average, unless a spacing is given. Else they
- *    are put into the hole in rows, one spacing apart, every second row moved by half a spacing;
+ *    triangles beside the hole measure less than 1.75 cells (half of them), unless a spacing is
+ *    given. Else they are put into the hole in rows, one spacing apart, every second row moved by half a spacing;
  *    points nearer to the boundary than 0.6 spacings are left out. The spacing is, unless given, the
  *    mean length of the hole's boundary edges. Where this mean over eight edges in a row is at one
  *    place of the boundary more than three times that at another, points are graded from the one to

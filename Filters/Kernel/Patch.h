@@ -7,9 +7,9 @@
  * In: the boundary of a hole. Out: new points inside, and triangles over boundary and new points.
  *
  * Points are arranged in one of three ways:
- *   Nodes   Where the hole's boundary lies on the surface's lattice, and its edges measure less
- *           than two steps on average, new points are the nodes inside. (A surface of which most
- *           nodes are missing has longer edges: all nodes would be many more points than it has.)
+ *   Nodes   Where the hole's boundary lies on the surface's lattice, and most nodes are there: the
+ *           median of the triangles at the boundary measures less than 1.75 cells. New points are
+ *           the nodes inside. (Of a thinned lattice they would be many more points than it has.)
  *   Graded  Where the mean length of eight edges in a row of the boundary is at one place more than
  *           three times that at another: this mean is the spacing at the boundary. It grows
  *           inwards by 0.2 times the way, up to the largest of the boundary.

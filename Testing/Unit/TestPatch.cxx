@@ -18,6 +18,7 @@
 #include <random>
 
 using namespace elevation;
+using testing_points::Cloud;
 using testing_points::Uniform;
 using testing_surfaces::Draw;
 using testing_surfaces::ExpectPatchesFit;
@@ -268,6 +269,37 @@ TEST(Patch, DoesNotFillEveryNodeOfAThinnedLattice)
   const double area = run.Patches.Reports[0].Area;
   EXPECT_LT(run.Patches.NumberOfPoints(), 0.3 * area);
   EXPECT_GT(run.Patches.NumberOfPoints(), 0.05 * area);
+}
+
+TEST(Patch, FillsNodesAlsoBehindLongEdges)
+{
+  // A limit on edge lengths bridges corners of the hole, so that its edges are long.
+  const int size = 24;
+  Cloud cloud;
+  for (int y = 0; y <= size; ++y)
+  {
+    for (int x = 0; x <= size; ++x)
+    {
+      if (std::fabs(x - 12) + std::fabs(y - 12) > 3.5)
+      {
+        cloud.Add(x, y);
+      }
+    }
+  }
+  DelaunayOptions limited;
+  limited.MaximumEdgeLength = 5.0;
+  Mesh mesh = MeshOf(cloud, Triangulate(cloud.View(), limited));
+  mesh.ConnectTwins();
+  const Outcome run = Fill(std::move(mesh));
+  ASSERT_EQ(run.Found.Count(), 1);
+  EXPECT_GT(run.Patches.Reports[0].Spacing, 2.0);
+  ExpectPatchesFit(run, 1e-12);
+  EXPECT_EQ(run.Patches.NumberOfPoints(), 9);
+  for (const Point2& p : NewPoints(run))
+  {
+    EXPECT_EQ(p.X, std::round(p.X));
+    EXPECT_EQ(p.Y, std::round(p.Y));
+  }
 }
 
 TEST(Patch, KeepsToTheSpacingThatIsAskedForOnALattice)
