@@ -7,6 +7,7 @@ from_above.py outline CLOUD PICTURE.png [options]   the boundary that is found, 
 from_above.py voids CLOUD PICTURE.png [options]     the surface before and after its holes are filled
 
   --maximum-edge-length L   gaps wider than this become holes; default 0: no limit
+  --interpolation METHOD    neighbor-mean, membrane, thin-plate, cubic-spline; default adaptive
   --window X0,X1,Y0,Y1      draw this part alone; default: all
   --title TEXT              default: the file's name
 
@@ -34,6 +35,8 @@ from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderWindow, 
 
 HEAD, FOOT, EDGE, GAP = 76, 70, 24, 24
 MOST_WIDTH, MOST_HEIGHT = 1560, 1040
+METHODS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-spline")
+DEFAULTS = {"--maximum-edge-length": "0", "--interpolation": "adaptive", "--window": "", "--title": ""}
 LEFT_OUT = (0.90, 0.10, 0.05)
 RIM = (0.72, 0.07, 0.30)
 
@@ -49,7 +52,7 @@ def read(path):
 class Chain:
     """The three filters on a cloud, run; with what a picture needs to know of all its panels."""
 
-    def __init__(self, cloud, longest_edge, region):
+    def __init__(self, cloud, longest_edge, interpolation, region):
         self.delaunay = vtkGridDelaunay2D()
         self.delaunay.SetInputData(cloud)
         self.delaunay.SetMaximumEdgeLength(longest_edge)
@@ -57,10 +60,11 @@ class Chain:
         self.trim.SetInputConnection(self.delaunay.GetOutputPort())
         self.fill = vtkFillElevationHoles()
         self.fill.SetInputConnection(self.trim.GetOutputPort())
+        self.fill.SetInterpolation(METHODS.index(interpolation))
         self.fill.Update()
 
         points = vtk_to_numpy(cloud.GetPoints().GetData()).astype("f8")
-        if region is None:
+        if not region:
             low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
             margin = 0.02 * (high - low).max()
             low, high = low - margin, high + margin
@@ -187,7 +191,7 @@ def draw(path, chain, title, panels, legend):
         label.GetBoundingBox(frame, box)
         x += 46 + box[1] - box[0] + 36
     length = look.nice_number(0.14 * width / pixels, (1.0, 2.0, 5.0))
-    right = width - EDGE - 8
+    right = EDGE + count * wide + (count - 1) * GAP
     bar = [(right - length * pixels, 42), (right - length * pixels, 30), (right, 30), (right, 42)]
     look.add_strokes(frame, [bar])
     look.add_text(frame, look.round_text(length), right - 0.5 * length * pixels, 40, 19, "centre")
@@ -210,7 +214,8 @@ def outline(chain, path, title):
     used[vtk_to_numpy(trimmed.GetPolys().GetConnectivityArray())] = True
     lone = vtk_to_numpy(trimmed.GetPoints().GetData())[~used].astype("f8")
     boundary = chain.trim.GetOutput(2)
-    words = (f"{boundary.GetNumberOfLines()} rings at a gap tolerance of "
+    rings = boundary.GetNumberOfLines()
+    words = (f"{rings} ring{'s' if rings != 1 else ''} at a gap tolerance of "
              f"{chain.trim.GetEffectiveGapTolerance():.1f} spacings, {len(lone)} points outside")
     print(words)
     actors = [surface_actor(chain, trimmed), rims_actor(chain, boundary, look.INK, 2.0)]
@@ -224,7 +229,7 @@ def outline(chain, path, title):
 def voids(chain, path, title):
     """Two panels: before and after."""
     holes = chain.fill.GetOutput(1)
-    words = f"{chain.fill.GetNumberOfFilledHoles()} of {chain.fill.GetNumberOfHoles()} holes filled"
+    words = f"after: {chain.fill.GetNumberOfFilledHoles()} of {chain.fill.GetNumberOfHoles()} holes filled"
     print(words)
     draw(path, chain, title, [
         ("before", [surface_actor(chain, chain.trim.GetOutput())]),
@@ -233,25 +238,23 @@ def voids(chain, path, title):
 
 
 def main(what, cloud, path, *options):
-    values = {"--maximum-edge-length": "0", "--window": None, "--title": os.path.basename(cloud)}
-    for name, value in zip(options[0::2], options[1::2]):
-        values[name] = value
+    values = dict(DEFAULTS, **dict(zip(options[0::2], options[1::2])))
     region = values["--window"] and [float(x) for x in values["--window"].split(",")]
-    chain = Chain(read(cloud), float(values["--maximum-edge-length"]), region)
+    chain = Chain(read(cloud), float(values["--maximum-edge-length"]), values["--interpolation"], region)
     display = VirtualDisplay()
     try:
         reason = None if os.environ.get("DISPLAY") else display.open()
         reason = reason or look.why_no_picture()
         if reason:
             sys.exit(f"{path}: cannot be drawn: {reason}")
-        {"outline": outline, "voids": voids}[what](chain, path, values["--title"])
+        draw_it = outline if what == "outline" else voids
+        draw_it(chain, path, values["--title"] or os.path.basename(cloud))
     finally:
         display.close()
 
 
 if __name__ == "__main__":
-    names = ("--maximum-edge-length", "--window", "--title")
     if (len(sys.argv) < 4 or len(sys.argv) % 2 or sys.argv[1] not in ("outline", "voids")
-            or not set(sys.argv[4::2]) <= set(names)):
+            or not set(sys.argv[4::2]) <= set(DEFAULTS)):
         sys.exit(__doc__)
     main(*sys.argv[1:])
