@@ -48,9 +48,9 @@
 #define elevation_Patch_h
 
 #include "Constraints.h"
-#include "Heights.h"
 #include "Holes.h"
 #include "Lattice.h"
+#include "Membrane.h"
 #include "Mesh.h"
 #include "Types.h"
 
@@ -110,6 +110,33 @@ struct PatchPlan
  */
 PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double area, double spacing,
   const Lattice* lattice);
+
+/** A hole with its vertices numbered from 0: first those of the boundary, then new ones. */
+struct PatchMesh
+{
+  std::vector<Index> BoundaryIds; ///< vertex -> id in the surface, increasing
+  std::vector<double> Points;     ///< x, y and room for z of all vertices
+  std::vector<Index> Triangles;   ///< inside the hole
+  double Spacing = 0.0;
+
+  // What Arrange() of Heights.h finds; one for each new vertex.
+  Adjacency Neighbours;
+  std::vector<Index> Layers;  ///< edges from the boundary
+  std::vector<Index> Outward; ///< a neighbour one layer further out
+  std::vector<Index> Nearest; ///< boundary vertex; set by the caller
+  std::vector<Index> Order;   ///< new vertices, from the boundary inwards
+
+  Index NumberOfBoundaryVertices() const { return static_cast<Index>(this->BoundaryIds.size()); }
+  Index NumberOfVertices() const { return static_cast<Index>(this->Points.size() / 3); }
+  Index NumberOfNewVertices() const
+  {
+    return this->NumberOfVertices() - this->NumberOfBoundaryVertices();
+  }
+  Point2 At(Index vertex) const
+  {
+    return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
+  }
+};
 
 /** A hole that is being filled. */
 struct Patch : PatchMesh
