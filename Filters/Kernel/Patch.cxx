@@ -738,7 +738,8 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   // In holes of a few points refinement may need one more.
   constexpr double morePerEdge = 0.125;
   plan.MostPoints += morePerEdge * edges;
-  if (isOnLattice && TypicalTriangle(mesh, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
+  if (isOnLattice &&
+    TypicalTriangle(mesh, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
   {
     plan.Kind = Arrangement::Nodes;
     plan.Steps = *lattice;

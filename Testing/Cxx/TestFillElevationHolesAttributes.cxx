@@ -94,8 +94,8 @@ vtkSmartPointer<vtkStringArray> MakeNames(vtkIdType tuples, const char* name, in
 /** A sheet with a hole in which some new points have several neighbours. */
 vtkSmartPointer<vtkPolyData> MakeInput()
 {
-  auto input = MakeSheet({ "########", "########", "##    ##", "##    ##", "##  ####", "########",
-                           "########" },
+  auto input = MakeSheet(
+    { "########", "########", "##    ##", "##    ##", "##  ####", "########", "########" },
     VTK_DOUBLE, [](double x, double y) { return 3.0 + 0.5 * x - y; });
   const vtkIdType points = input->GetNumberOfPoints();
   vtkPointData* ofPoints = input->GetPointData();
@@ -134,8 +134,8 @@ vtkSmartPointer<vtkPolyData> MakeInput()
   ofCells->SetPedigreeIds(MakeNames(cells, "CellOrigin", 1));
   ofCells->SetVectors(MakeNumbered<vtkFloatArray>(cells, "Flow", 3));
   ofCells->SetScalars(MakeNumbered<vtkUnsignedCharArray>(cells, "CellColors", 4));
-  ofCells->AddArray(MakeNumbered<vtkUnsignedCharArray>(
-    cells, vtkDataSetAttributes::GhostArrayName(), 1));
+  ofCells->AddArray(
+    MakeNumbered<vtkUnsignedCharArray>(cells, vtkDataSetAttributes::GhostArrayName(), 1));
   return input;
 }
 
@@ -169,7 +169,8 @@ void TestPoints(vtkPolyData* input, vtkPolyData* output)
   CheckFirstTuples(input->GetPointData(), data, points);
   Check(points - before >= 4, "the hole gets points");
   Check(data->GetVectors() && data->GetVectors() == data->GetArray("Wind"), "vectors");
-  Check(data->GetTCoords() && data->GetTCoords() == data->GetArray("Texture"), "texture coordinates");
+  Check(
+    data->GetTCoords() && data->GetTCoords() == data->GetArray("Texture"), "texture coordinates");
   Check(data->GetTensors() && data->GetTensors() == data->GetArray("Stress"), "tensors");
   Check(data->GetScalars() && data->GetScalars() == data->GetArray("Colors"), "scalars");
   Check(data->GetPedigreeIds() && data->GetPedigreeIds() == data->GetAbstractArray("Origin"),
@@ -188,8 +189,8 @@ void TestPoints(vtkPolyData* input, vtkPolyData* output)
     {
       vtkDataArray* array = data->GetArray(k);
       const int type = array ? array->GetDataType() : 0;
-      for (int c = 0; c < (type == VTK_FLOAT || type == VTK_DOUBLE ? array->GetNumberOfComponents() : 0);
-           ++c)
+      for (int c = 0;
+           c < (type == VTK_FLOAT || type == VTK_DOUBLE ? array->GetNumberOfComponents() : 0); ++c)
       {
         const double difference = array->GetComponent(i, c) - Linear(p[0], p[1], c);
         Check(std::fabs(difference) < (type == VTK_FLOAT ? 1e-4 : 1e-9),

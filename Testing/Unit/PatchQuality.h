@@ -113,8 +113,7 @@ Quality Judge(const Outcome& run, const Mesh& all, Index hole, SpacingAt&& spaci
     ++quality.Bad;
     quality.BadInside += known < 2;
     const double uu = u.X * u.X + u.Y * u.Y, ww = w.X * w.X + w.Y * w.Y;
-    const Point2 centre{ q.X + (w.Y * uu - u.Y * ww) / twice,
-      q.Y + (u.X * ww - w.X * uu) / twice };
+    const Point2 centre{ q.X + (w.Y * uu - u.Y * ww) / twice, q.Y + (u.X * ww - w.X * uu) / twice };
     const double clearance = 0.3 * (1.0 + 1e-9) * spacingAt(centre);
     const bool isForced = std::any_of(rim.begin(), rim.end(), [&](Index h) {
       const Point2& from = run.Surface.PointOf(run.Surface.Origin(h));

@@ -251,6 +251,54 @@ TEST(Patch, GivesBackNodesRoundedToFloat)
   }
 }
 
+TEST(Patch, OnALatticeDoesNotDependOnTheOrderOfPoints)
+{
+  std::mt19937_64 random(11);
+  const int size = 40;
+  for (int shape = 0; shape < NumberOfShapes; ++shape)
+  {
+    SCOPED_TRACE(shape);
+    Cloud cloud;
+    const Mesh full = Cut(Jittered(random, size, 0.0), RandomShape(random, shape, size));
+    std::vector<char> isUsed(full.Points.size(), 0);
+    for (const Index v : full.Triangles)
+    {
+      isUsed[v] = 1;
+    }
+    for (Index v = 0; v < full.NumberOfPoints(); ++v)
+    {
+      if (isUsed[v])
+      {
+        cloud.Add(25.0 * full.PointOf(v).X, 12.5 * full.PointOf(v).Y);
+      }
+    }
+    const auto trianglesOf = [](const Cloud& points) {
+      DelaunayOptions limited;
+      limited.UseLattice = LatticeMode::Automatic;
+      limited.MaximumEdgeLength = 28.0;
+      Mesh mesh = MeshOf(points, Triangulate(points.View(), limited));
+      mesh.ConnectTwins();
+      const Outcome run = Fill(std::move(mesh), points.Coordinates, FillOptions());
+      EXPECT_GT(run.Found.Count(), 0);
+      Cloud all;
+      for (const Point2& p : run.Filled().Points)
+      {
+        all.Add(p.X, p.Y);
+      }
+      Triangulation patches;
+      patches.Triangles.Resize(run.Patches.Triangles.size());
+      std::copy(
+        run.Patches.Triangles.begin(), run.Patches.Triangles.end(), patches.Triangles.begin());
+      return TriangleSet(all, patches);
+    };
+    const auto triangles = trianglesOf(cloud);
+    for (int k = 0; k < 3; ++k)
+    {
+      EXPECT_EQ(trianglesOf(cloud.Shuffled(random)), triangles);
+    }
+  }
+}
+
 TEST(Patch, DoesNotFillEveryNodeOfAThinnedLattice)
 {
   std::mt19937_64 random(9);
