@@ -38,13 +38,14 @@
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
  * The method, for each hole on its own:
- * 1. New points lie on the nodes of the lattice of the surface's points, where it has one and the
- *    triangles beside the hole measure less than 1.75 cells (half of them), unless a spacing is
- *    given. Else they are put into the hole in rows, one spacing apart, every second row moved by half a spacing;
- *    points nearer to the boundary than 0.6 spacings are left out. The spacing is, unless given, the
- *    mean length of the hole's boundary edges. Where this mean over eight edges in a row is at one
- *    place of the boundary more than three times that at another, points are graded from the one to
- *    the other. A small hole may get none.
+ * 1. New points lie on the nodes of the lattice of the surface's points, where it has one and half
+ *    of the triangles at the hole's boundary measure no more than 1.75 cells (of a lattice that is
+ *    thinned there would be too many), unless a spacing is given. Else they are put into the hole
+ *    in rows, one spacing apart, every second row moved by half a spacing; points nearer to the
+ *    boundary than 0.6 spacings are left out. The spacing is, unless given, the mean length of the
+ *    hole's boundary edges. Where this mean over eight edges in a row is at one place of the
+ *    boundary more than three times that at another, points are graded from the one to the other. A
+ *    small hole may get none.
  * 2. They are joined with the boundary by a constrained Delaunay triangulation.
  * 3. Where points are not on a lattice, a triangle with an edge of more than 1.6 spacings that is no
  *    edge of the boundary, or with an angle below 20 degrees, gets a point in the centre of its
