@@ -38,18 +38,19 @@
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
  * The method, for each hole on its own:
- * 1. New points lie on the nodes of the lattice of the surface's points, where it has one and the
- *    boundary's edges measure less than two steps on average, unless a spacing is given. Else they
- *    are put into the hole in rows, one spacing apart, every second row moved by half a spacing;
- *    points nearer to the boundary than 0.6 spacings are left out. The spacing is, unless given, the
- *    mean length of the hole's boundary edges. Where this mean over eight edges in a row is at one
- *    place of the boundary more than three times that at another, points are graded from the one to
- *    the other. A small hole may get none.
+ * 1. New points lie on the nodes of the lattice of the surface's points, where it has one and half
+ *    of the triangles at the hole's boundary measure no more than 1.75 cells (of a lattice that is
+ *    thinned there would be too many), unless a spacing is given. Else they are put into the hole
+ *    in rows, one spacing apart, every second row moved by half a spacing; points nearer to the
+ *    boundary than 0.6 spacings are left out. The spacing is, unless given, the mean length of the
+ *    hole's boundary edges. Where this mean over eight edges in a row is at one place of the
+ *    boundary more than three times that at another, points are graded from the one to the other. A
+ *    small hole may get none.
  * 2. They are joined with the boundary by a constrained Delaunay triangulation.
  * 3. Where points are not on a lattice, a triangle with an edge of more than 1.6 spacings that is no
  *    edge of the boundary, or with an angle below 20 degrees, gets a point in the centre of its
- *    circle. Edges of the boundary are not split, and no point comes nearer to them than half a
- *    spacing; so such triangles remain where the centre of the circle lies nearer to the boundary
+ *    circle. Edges of the boundary are not split, and no point comes nearer to them than 0.3
+ *    spacings; so such triangles remain where the centre of the circle lies nearer to the boundary
  *    than that, or behind it.
  * 4. The z of new points is found from the surface around the hole, see Interpolation.
  *

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 namespace elevation
 {
@@ -287,11 +288,20 @@ void Heights::ChooseCentres()
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = this->Known.size();
+  // From the lowest to the highest, so that the order of points does not decide.
+  std::vector<Index> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(boundary);
+  const auto isLower = [this](Index i, Index j) {
+    return IsLower(this->Surface.PointOf(this->Known[i]), this->Surface.PointOf(this->Known[j]));
+  };
+  std::sort(order.begin(), middle, isLower);
+  std::sort(middle, order.end(), isLower);
   std::vector<double> x(count);
   std::vector<double> y(count);
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Point2 p = this->Normalized(this->Surface.PointOf(this->Known[i]));
+    const Point2 p = this->Normalized(this->Surface.PointOf(this->Known[order[i]]));
     x[i] = p.X;
     y[i] = p.Y;
   }
@@ -307,7 +317,7 @@ void Heights::ChooseCentres()
       {
         return;
       }
-      this->Centres.push_back(static_cast<Index>(best));
+      this->Centres.push_back(order[best]);
       for (std::size_t i = 0; i < count; ++i)
       {
         const double square =
@@ -390,7 +400,9 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
     {
       near = std::min(near, along(normalized[i]));
       far = std::max(far, along(normalized[i]));
-      end = i < static_cast<std::size_t>(boundary) && along(normalized[i]) > along(normalized[end])
+      const double ahead = along(normalized[i]) - along(normalized[end]);
+      end = i < static_cast<std::size_t>(boundary) &&
+          (ahead > 0.0 || (ahead == 0.0 && IsLower(points[i], points[end])))
         ? static_cast<Index>(i)
         : end;
     }

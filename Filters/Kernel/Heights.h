@@ -48,6 +48,7 @@
 #include "Constraints.h"
 #include "Membrane.h"
 #include "Mesh.h"
+#include "Patch.h"
 #include "Spline.h"
 #include "Types.h"
 
@@ -70,33 +71,6 @@ enum class Interpolation : unsigned char
 
 /** The value of a point of the surface, by its id. */
 using Values = std::function<double(Index)>;
-
-/** A hole with its vertices numbered from 0: first those of the boundary, then new ones. */
-struct PatchMesh
-{
-  std::vector<Index> BoundaryIds; ///< vertex -> id in the surface, increasing
-  std::vector<double> Points;     ///< x, y and room for z of all vertices
-  std::vector<Index> Triangles;   ///< inside the hole
-  double Spacing = 0.0;
-
-  // What Arrange() finds; one for each new vertex.
-  Adjacency Neighbours;
-  std::vector<Index> Layers;  ///< edges from the boundary
-  std::vector<Index> Outward; ///< a neighbour one layer further out
-  std::vector<Index> Nearest; ///< boundary vertex; set by the caller
-  std::vector<Index> Order;   ///< new vertices, from the boundary inwards
-
-  Index NumberOfBoundaryVertices() const { return static_cast<Index>(this->BoundaryIds.size()); }
-  Index NumberOfVertices() const { return static_cast<Index>(this->Points.size() / 3); }
-  Index NumberOfNewVertices() const
-  {
-    return this->NumberOfVertices() - this->NumberOfBoundaryVertices();
-  }
-  Point2 At(Index vertex) const
-  {
-    return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
-  }
-};
 
 /** Neighbours and layers of the new vertices. Linear. */
 void Arrange(PatchMesh& patch, const Progress& progress = Progress());

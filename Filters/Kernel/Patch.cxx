@@ -19,8 +19,12 @@ namespace
 constexpr double Clearance = 0.6;
 constexpr double ClearanceOfNodes = 0.4;
 
-/** Least distance of points from the boundary when they refine, in spacings. */
-constexpr double ClearanceWhenRefining = 0.5;
+/**
+ * Least distance of points from the boundary and from each other when they refine, in spacings. On
+ * rims of unequal edges 0.5 left twice as many small angles, and many more long edges; less than
+ * 0.3 gains nothing.
+ */
+constexpr double ClearanceWhenRefining = 0.3;
 
 /** Longest edge, in spacings. */
 constexpr double LongestEdge = 1.6;
@@ -40,8 +44,11 @@ constexpr double LargestRatioOfSpacings = 3.0;
 /** How much the spacing grows with the distance. */
 constexpr double Growth = 0.2;
 
-/** Mean length of edges on a lattice, in steps, from which on its nodes are too many. */
-constexpr double LargestStepsPerEdge = 2.0;
+/**
+ * The typical triangle on a lattice, in cells, from which on its nodes are too many. It is half a
+ * cell where all nodes are there, and one and a half where a quarter of them is.
+ */
+constexpr double LargestCellsPerTriangle = 1.75;
 
 /** Below this many steps of the coordinates, rounding would push points onto each other. */
 constexpr double LeastStepsPerSpacing = 4.0;
@@ -685,25 +692,41 @@ private:
 };
 } // namespace
 
+namespace
+{
+/** The median area of the surface's triangles at the vertices of a hole's boundary. */
+double TypicalTriangle(const Mesh& mesh, const Holes& holes, Index hole)
+{
+  std::vector<double> areas;
+  holes.VisitEdges(hole, [&](Index h) {
+    const Point2& p = mesh.PointOf(mesh.Origin(h));
+    for (; h != Mesh::Border; h = mesh.Twin(Mesh::Previous(h)))
+    {
+      const Point2& a = mesh.PointOf(mesh.Destination(h));
+      const Point2& b = mesh.PointOf(mesh.Apex(h));
+      areas.push_back(0.5 * ((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)));
+    }
+  });
+  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::nth_element(areas.begin(), middle, areas.end());
+  return *middle;
+}
+} // namespace
+
 PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double area, double spacing,
   const Lattice* lattice)
 {
   PatchPlan plan;
   const double edges = holes.NumberOfEdges(hole);
-  double onLattice = 0.0; // the perimeter, in steps
+  bool isOnLattice = lattice && !(spacing > 0.0);
   std::vector<double> lengths;
   lengths.reserve(holes.NumberOfEdges(hole));
   holes.VisitEdges(hole, [&](Index h) {
     const Point2& a = mesh.PointOf(mesh.Origin(h));
     const Point2& b = mesh.PointOf(mesh.Destination(h));
     lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
-    if (lattice && !(onLattice > LargestStepsPerEdge * edges))
-    {
-      Point2 i, j;
-      onLattice = FindNode(*lattice, a, i) && FindNode(*lattice, b, j) && i != j
-        ? onLattice + std::hypot(j.X - i.X, j.Y - i.Y)
-        : std::numeric_limits<double>::infinity();
-    }
+    Point2 i, j;
+    isOnLattice = isOnLattice && FindNode(*lattice, a, i) && FindNode(*lattice, b, j) && i != j;
   });
   plan.Spacing =
     spacing > 0.0 ? spacing : std::accumulate(lengths.begin(), lengths.end(), 0.0) / edges;
@@ -712,7 +735,11 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   {
     return plan;
   }
-  if (lattice && onLattice <= LargestStepsPerEdge * edges)
+  // In holes of a few points refinement may need one more.
+  constexpr double morePerEdge = 0.125;
+  plan.MostPoints += morePerEdge * edges;
+  if (isOnLattice &&
+    TypicalTriangle(mesh, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
   {
     plan.Kind = Arrangement::Nodes;
     plan.Steps = *lattice;
@@ -742,9 +769,9 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   if (*range.second > LargestRatioOfSpacings * *range.first)
   {
     // Where the boundary is finer than on average there are more points near it.
-    constexpr double morePerEdge = 8.0;
+    constexpr double morePerEdgeWhenGraded = 8.0;
     plan.Kind = Arrangement::Graded;
-    plan.MostPoints += morePerEdge * edges;
+    plan.MostPoints += morePerEdgeWhenGraded * edges;
   }
   else
   {

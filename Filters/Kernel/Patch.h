@@ -7,9 +7,9 @@
  * In: the boundary of a hole. Out: new points inside, and triangles over boundary and new points.
  *
  * Points are arranged in one of three ways:
- *   Nodes   Where the hole's boundary lies on the surface's lattice, and its edges measure less
- *           than two steps on average, new points are the nodes inside. (A surface of which most
- *           nodes are missing has longer edges: all nodes would be many more points than it has.)
+ *   Nodes   Where the hole's boundary lies on the surface's lattice, and most nodes are there: the
+ *           median of the triangles at the boundary measures less than 1.75 cells. New points are
+ *           the nodes inside. (Of a thinned lattice they would be many more points than it has.)
  *   Graded  Where the mean length of eight edges in a row of the boundary is at one place more than
  *           three times that at another: this mean is the spacing at the boundary. It grows
  *           inwards by 0.2 times the way, up to the largest of the boundary.
@@ -25,8 +25,8 @@
  *      the boundary, or with an angle below 20 degrees, gets a point in the centre of its circle
  *      [Chew 1989, Ruppert 1995]. With Graded this places all the points.
  *
- * What the boundary forces: its edges are not split, and no point comes nearer to it than half a
- * spacing. So a triangle stays as it is when the centre of its circle lies behind an edge of the
+ * What the boundary forces: its edges are not split, and no point comes nearer to it than 0.3
+ * spacings. So a triangle stays as it is when the centre of its circle lies behind an edge of the
  * boundary or nearer than that to one. All other triangles of Even and Graded have angles of at
  * least 20 degrees, and edges of at most 1.6 spacings but for those of the boundary: an edge inside
  * that is longer has such a forced triangle on both sides. The spacing of Graded is the mean of
@@ -35,8 +35,8 @@
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole. Unlimited by its number of points, refinement ends: a new
- * point keeps half a spacing from all others that it sees. Discs of a quarter spacing around new
- * points are disjoint and inside the hole, which bounds their number.
+ * point keeps 0.3 spacings from all others that it sees. Discs of half of that around new points
+ * are disjoint and inside the hole, which bounds their number.
  *
  * Cost: expected linear in the number of points.
  *
@@ -48,9 +48,9 @@
 #define elevation_Patch_h
 
 #include "Constraints.h"
-#include "Heights.h"
 #include "Holes.h"
 #include "Lattice.h"
+#include "Membrane.h"
 #include "Mesh.h"
 #include "Types.h"
 
@@ -110,6 +110,33 @@ struct PatchPlan
  */
 PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double area, double spacing,
   const Lattice* lattice);
+
+/** A hole with its vertices numbered from 0: first those of the boundary, then new ones. */
+struct PatchMesh
+{
+  std::vector<Index> BoundaryIds; ///< vertex -> id in the surface, increasing
+  std::vector<double> Points;     ///< x, y and room for z of all vertices
+  std::vector<Index> Triangles;   ///< inside the hole
+  double Spacing = 0.0;
+
+  // What Arrange() of Heights.h finds; one for each new vertex.
+  Adjacency Neighbours;
+  std::vector<Index> Layers;  ///< edges from the boundary
+  std::vector<Index> Outward; ///< a neighbour one layer further out
+  std::vector<Index> Nearest; ///< boundary vertex; set by the caller
+  std::vector<Index> Order;   ///< new vertices, from the boundary inwards
+
+  Index NumberOfBoundaryVertices() const { return static_cast<Index>(this->BoundaryIds.size()); }
+  Index NumberOfVertices() const { return static_cast<Index>(this->Points.size() / 3); }
+  Index NumberOfNewVertices() const
+  {
+    return this->NumberOfVertices() - this->NumberOfBoundaryVertices();
+  }
+  Point2 At(Index vertex) const
+  {
+    return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
+  }
+};
 
 /** A hole that is being filled. */
 struct Patch : PatchMesh

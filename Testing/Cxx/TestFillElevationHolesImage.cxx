@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A picture of vtkFillElevationHoles: a sheet with a notched outline and six holes: a large
-// one with an island, one that a corner of the surface pinches, two that share a vertex, a
-// channel, and one above the limit on edges, which stays open. New triangles are coloured
-// by hole, rims are drawn.
+// A picture of vtkFillElevationHoles: a sheet with a notched outline and eight holes. Two of them
+// have an island, of which one has a hole again; a channel, which shares a vertex with the
+// largest, is above the limit on edges and stays open. New triangles are coloured by hole, rims
+// are drawn.
 #include "MeshRules.h"
 #include "PictureFromAbove.h"
 #include "SheetOfSquares.h"

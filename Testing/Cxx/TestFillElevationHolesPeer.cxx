@@ -85,7 +85,7 @@ int TestFillElevationHolesPeer(int, char*[])
   Check(ours.NonManifoldEdges == 0, "the sheet stays manifold");
   Check(ours.KeepsCellData, "cell data are kept");
   Numbers peer = Peer(sheet);
-  Check(peer.Area > 401.0,
+  Check(peer.Area > 401.0 && peer.NonManifoldEdges > 0 && !peer.KeepsCellData,
     "vtkFillHolesFilter closes the outer border (if not, tell the documentation)");
 
   std::cout << "The same with a hole of 10 x 10 and an island of 2 x 2 in it\n";
@@ -106,6 +106,7 @@ int TestFillElevationHolesPeer(int, char*[])
   vtkNew<vtkFillHolesFilter> filter;
   filter->SetHoleSize(9.0);
   peer = Measure(filter, sheet);
-  Check(std::fabs(peer.Area - 400.0) > 1.0, "vtkFillHolesFilter does not know islands");
+  Check(std::fabs(peer.Area - 400.0) > 1.0 && peer.NonManifoldEdges > 0,
+    "vtkFillHolesFilter does not know islands");
   return failures ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -20,6 +20,7 @@ DATA = os.path.join(ROOT, "Data")
 sys.path.insert(0, os.path.dirname(PROGRAM))
 
 import surface_files as files
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 SIZE = 12
 # A sheet of SIZE x SIZE points, one apart; z is a plane, so that nothing depends on the triangles.
@@ -496,6 +497,21 @@ class Examples(Program):
         lines = self.lines_of("survey_swath.py", "swath.png")
         self.assertTrue(lines[1].startswith("2 rings at a gap tolerance of "), lines[1])
         self.assertGreater(os.path.getsize(self.path("swath.png")), 50000)
+
+    def test_maps_show_the_boundary_and_the_holes_before_and_after(self):
+        buildings = os.path.join(DATA, "b9_ground.vtp")
+        lines = self.lines_of("from_above.py", "outline", buildings, "outline.png")
+        self.assertRegex(lines[0], r"^\d+ rings? at a gap tolerance of \d\.\d spacings, \d+ points outside$")
+        self.assertGreater(os.path.getsize(self.path("outline.png")), 100000)
+        surface = files.run_vtk_reader(buildings)
+        vtk_to_numpy(surface.GetPoints().GetData()).astype("<f8").tofile(self.path("plain.f64"))
+        for cloud in (buildings, "plain.f64"):
+            lines = self.lines_of(
+                "from_above.py", "voids", cloud, "voids.png", "--maximum-edge-length", "2",
+                "--interpolation", "membrane", "--window", "596650,596730,243620,243730",
+                "--title", "Buildings")
+            self.assertEqual(lines, ["after: 21 of 21 holes filled"])
+            self.assertGreater(os.path.getsize(self.path("voids.png")), 100000)
 
 
 class Pictures(Program):

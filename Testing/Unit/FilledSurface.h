@@ -73,18 +73,26 @@ inline double Slope(const Point2& p)
   return 2.0 * p.X - 3.0 * p.Y;
 }
 
-inline Outcome Fill(
-  Mesh mesh, const FillOptions& options = FillOptions(), const Elevation& elevation = Slope)
+/** @param coordinates  x, y, z of the mesh's points */
+inline Outcome Fill(Mesh mesh, std::vector<double> coordinates, const FillOptions& options)
 {
   Outcome run;
   run.Surface = std::move(mesh);
-  for (const Point2& p : run.Surface.Points)
-  {
-    run.Coordinates.insert(run.Coordinates.end(), { p.X, p.Y, elevation(p) });
-  }
+  run.Coordinates = std::move(coordinates);
   run.Found = FindHoles(run.Surface);
   run.Patches = FillHoles(run.Surface, run.Points(), run.Found, options);
   return run;
+}
+
+inline Outcome Fill(
+  Mesh mesh, const FillOptions& options = FillOptions(), const Elevation& elevation = Slope)
+{
+  std::vector<double> coordinates;
+  for (const Point2& p : mesh.Points)
+  {
+    coordinates.insert(coordinates.end(), { p.X, p.Y, elevation(p) });
+  }
+  return Fill(std::move(mesh), std::move(coordinates), options);
 }
 
 /**

@@ -6,6 +6,7 @@
 #include "Kernel/Delaunay.h"
 #include "Kernel/Predicates.h"
 #include "LatticeSurface.h"
+#include "PatchQuality.h"
 #include "PointSets.h"
 
 #include <gtest/gtest.h>
@@ -17,11 +18,14 @@
 #include <random>
 
 using namespace elevation;
+using testing_points::Cloud;
 using testing_points::Uniform;
 using testing_surfaces::Draw;
 using testing_surfaces::ExpectPatchesFit;
 using testing_surfaces::Fill;
+using testing_surfaces::Judge;
 using testing_surfaces::Outcome;
+using testing_surfaces::Quality;
 using testing_surfaces::TurnedSheet;
 
 namespace
@@ -69,95 +73,6 @@ std::vector<Point2> Jittered(std::mt19937_64& random, int size, double jitter)
     }
   }
   return points;
-}
-
-double SquareToEdge(const Point2& a, const Point2& b, const Point2& p)
-{
-  const Point2 ab{ b.X - a.X, b.Y - a.Y };
-  const Point2 ap{ p.X - a.X, p.Y - a.Y };
-  const double along =
-    std::max(0.0, std::min(1.0, (ab.X * ap.X + ab.Y * ap.Y) / (ab.X * ab.X + ab.Y * ab.Y)));
-  return std::pow(ap.X - along * ab.X, 2) + std::pow(ap.Y - along * ab.Y, 2);
-}
-
-/** What patches are like that were arranged evenly. */
-struct Quality
-{
-  Index Triangles = 0;
-  Index Bad = 0;       ///< triangles with a long edge that is no boundary edge, or a small angle
-  Index BadInside = 0; ///< of them those with at most one corner on the boundary
-  Index Unforced = 0;  ///< of them those that the boundary does not force
-  double LongestEdge = 0.0; ///< in spacings, boundary edges not counted
-};
-
-Quality Judge(const Outcome& run)
-{
-  Quality quality;
-  const FillResult& patches = run.Patches;
-  const Mesh all = run.Filled();
-  const Index firstNew = run.Surface.NumberOfPoints();
-  for (Index hole = 0; hole < run.Found.Count(); ++hole)
-  {
-    const double d = patches.Reports[hole].Spacing;
-    std::vector<Index> rim;
-    run.Found.VisitEdges(hole, [&rim](Index h) { rim.push_back(h); });
-    const auto isBoundary = [&](Index a, Index b) {
-      return std::any_of(rim.begin(), rim.end(),
-        [&](Index h) { return run.Surface.Origin(h) == b && run.Surface.Destination(h) == a; });
-    };
-    for (Index t = patches.TriangleOffsets[hole]; t < patches.TriangleOffsets[hole + 1]; ++t)
-    {
-      ++quality.Triangles;
-      const Index* v = patches.Triangles.data() + 3 * t;
-      double longest = 0.0, shortest = 1e300, lengths = 1.0;
-      int apex = 0, known = 0;
-      bool isLong = false;
-      for (int i = 0; i < 3; ++i)
-      {
-        const Point2& a = all.PointOf(v[i]);
-        const Point2& b = all.PointOf(v[(i + 1) % 3]);
-        const double length = std::hypot(b.X - a.X, b.Y - a.Y);
-        lengths *= length;
-        known += v[i] < firstNew;
-        shortest = std::min(shortest, length);
-        if (length > longest)
-        {
-          longest = length;
-          apex = (i + 2) % 3;
-        }
-        if (length > quality.LongestEdge * d && !isBoundary(v[i], v[(i + 1) % 3]))
-        {
-          quality.LongestEdge = length / d;
-        }
-        isLong |= length > 1.6 * (1.0 + 1e-9) * d && !isBoundary(v[i], v[(i + 1) % 3]);
-      }
-      const Point2& q = all.PointOf(v[apex]);
-      const Point2& a = all.PointOf(v[(apex + 1) % 3]);
-      const Point2& b = all.PointOf(v[(apex + 2) % 3]);
-      const Point2 u{ a.X - q.X, a.Y - q.Y }, w{ b.X - q.X, b.Y - q.Y };
-      const double twice = 2.0 * (u.X * w.Y - u.Y * w.X);
-      const double radius = lengths / twice;
-      const double sine = shortest / (2.0 * radius);
-      if (!isLong && sine >= std::sin(20.0 * 3.14159265358979 / 180.0) - 1e-9)
-      {
-        continue;
-      }
-      ++quality.Bad;
-      quality.BadInside += known < 2;
-      const double uu = u.X * u.X + u.Y * u.Y, ww = w.X * w.X + w.Y * w.Y;
-      const Point2 centre{ q.X + (w.Y * uu - u.Y * ww) / twice,
-        q.Y + (u.X * ww - w.X * uu) / twice };
-      const bool isForced = std::any_of(rim.begin(), rim.end(), [&](Index h) {
-        const Point2& from = run.Surface.PointOf(run.Surface.Origin(h));
-        const Point2& to = run.Surface.PointOf(run.Surface.Destination(h));
-        return SquareToEdge(from, to, centre) < 0.25 * d * d * (1.0 + 1e-9) ||
-          (Orientation(from, to, q) * Orientation(from, to, centre) <= 0 &&
-            Orientation(q, centre, from) * Orientation(q, centre, to) <= 0);
-      });
-      quality.Unforced += !isForced;
-    }
-  }
-  return quality;
 }
 
 FillOptions Evenly(double spacing = 0.0)
@@ -336,6 +251,56 @@ TEST(Patch, GivesBackNodesRoundedToFloat)
   }
 }
 
+TEST(Patch, OnALatticeDoesNotDependOnTheOrderOfPoints)
+{
+  std::mt19937_64 random(11);
+  const int size = 40;
+  std::size_t count = 0;
+  for (int shape = 0; shape < NumberOfShapes; ++shape)
+  {
+    SCOPED_TRACE(shape);
+    Cloud cloud;
+    const Mesh full = Cut(Jittered(random, size, 0.0), RandomShape(random, shape, size));
+    std::vector<char> isUsed(full.Points.size(), 0);
+    for (const Index v : full.Triangles)
+    {
+      isUsed[v] = 1;
+    }
+    for (Index v = 0; v < full.NumberOfPoints(); ++v)
+    {
+      if (isUsed[v])
+      {
+        cloud.Add(25.0 * full.PointOf(v).X, 12.5 * full.PointOf(v).Y);
+      }
+    }
+    const auto trianglesOf = [](const Cloud& points) {
+      DelaunayOptions limited;
+      limited.UseLattice = LatticeMode::Automatic;
+      limited.MaximumEdgeLength = 28.0;
+      Mesh mesh = MeshOf(points, Triangulate(points.View(), limited));
+      mesh.ConnectTwins();
+      const Outcome run = Fill(std::move(mesh), points.Coordinates, FillOptions());
+      Cloud all;
+      for (const Point2& p : run.Filled().Points)
+      {
+        all.Add(p.X, p.Y);
+      }
+      Triangulation patches;
+      patches.Triangles.Resize(run.Patches.Triangles.size());
+      std::copy(
+        run.Patches.Triangles.begin(), run.Patches.Triangles.end(), patches.Triangles.begin());
+      return TriangleSet(all, patches);
+    };
+    const auto triangles = trianglesOf(cloud);
+    count += triangles.size();
+    for (int k = 0; k < 3; ++k)
+    {
+      EXPECT_EQ(trianglesOf(cloud.Shuffled(random)), triangles);
+    }
+  }
+  EXPECT_GT(count, 1000u);
+}
+
 TEST(Patch, DoesNotFillEveryNodeOfAThinnedLattice)
 {
   std::mt19937_64 random(9);
@@ -354,6 +319,37 @@ TEST(Patch, DoesNotFillEveryNodeOfAThinnedLattice)
   const double area = run.Patches.Reports[0].Area;
   EXPECT_LT(run.Patches.NumberOfPoints(), 0.3 * area);
   EXPECT_GT(run.Patches.NumberOfPoints(), 0.05 * area);
+}
+
+TEST(Patch, FillsNodesAlsoBehindLongEdges)
+{
+  // A limit on edge lengths bridges corners of the hole, so that its edges are long.
+  const int size = 24;
+  Cloud cloud;
+  for (int y = 0; y <= size; ++y)
+  {
+    for (int x = 0; x <= size; ++x)
+    {
+      if (std::fabs(x - 12) + std::fabs(y - 12) > 3.5)
+      {
+        cloud.Add(x, y);
+      }
+    }
+  }
+  DelaunayOptions limited;
+  limited.MaximumEdgeLength = 5.0;
+  Mesh mesh = MeshOf(cloud, Triangulate(cloud.View(), limited));
+  mesh.ConnectTwins();
+  const Outcome run = Fill(std::move(mesh));
+  ASSERT_EQ(run.Found.Count(), 1);
+  EXPECT_GT(run.Patches.Reports[0].Spacing, 2.0);
+  ExpectPatchesFit(run, 1e-12);
+  EXPECT_EQ(run.Patches.NumberOfPoints(), 9);
+  for (const Point2& p : NewPoints(run))
+  {
+    EXPECT_EQ(p.X, std::round(p.X));
+    EXPECT_EQ(p.Y, std::round(p.Y));
+  }
 }
 
 TEST(Patch, KeepsToTheSpacingThatIsAskedForOnALattice)
