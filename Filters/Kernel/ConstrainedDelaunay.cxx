@@ -3,6 +3,7 @@
 #include "ConstrainedDelaunay.h"
 
 #include "Predicates.h"
+#include "Reach.h"
 
 #include <algorithm>
 #include <array>
@@ -24,9 +25,7 @@ struct Piece
   Index B;
   Index Rank;  ///< the first segment that it is part of
   Index Count; ///< of distinct segments that it is part of
-  /** How far rounding moves things along x and y, about a unit in the last place of segments. */
-  double UnitX = 0.0;
-  double UnitY = 0.0;
+  Units Unit;  ///< the largest of its segments
 };
 
 /** A vertex of the lines. */
@@ -77,36 +76,6 @@ bool AreCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2
   }
   return Orientation(a, b, c) * Orientation(a, b, d) < 0 &&
     Orientation(c, d, a) * Orientation(c, d, b) < 0;
-}
-
-/** The distance from the larger of two coordinates to its neighbour towards zero. */
-double LastPlaceOf(double a, double b)
-{
-  const double larger = std::max(std::fabs(a), std::fabs(b));
-  return larger - std::nextafter(larger, 0.0);
-}
-
-/** Sets the units of a piece that is the segment from a to b. */
-void SetUnits(Piece& piece, const Point2& a, const Point2& b)
-{
-  // Rounding one coordinate moves a crossing along the other one, too; where extents are so unequal
-  // that this would be much of the smaller one, slopes are as unequal, and it is less.
-  constexpr double part = 0x1p-40;
-  const double x = LastPlaceOf(a.X, b.X), y = LastPlaceOf(a.Y, b.Y);
-  const double width = std::fabs(0.5 * b.X - 0.5 * a.X), height = std::fabs(0.5 * b.Y - 0.5 * a.Y);
-  // A segment of few units could be bent to anything near it.
-  const bool isShort = std::max(width, height) < 2048.0 * std::max(x, y);
-  piece.UnitX = isShort ? 0.0 : std::max(x, std::min(y, part * width));
-  piece.UnitY = isShort ? 0.0 : std::max(y, std::min(x, part * height));
-}
-
-/** Whether p comes after a and before b along the longer of the segment's x and y. */
-bool IsBetween(const Point2& a, const Point2& b, const Point2& p)
-{
-  // Halves, so that no difference overflows.
-  const bool isAlongX = std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y);
-  return isAlongX ? std::min(a.X, b.X) < p.X && p.X < std::max(a.X, b.X)
-                  : std::min(a.Y, b.Y) < p.Y && p.Y < std::max(a.Y, b.Y);
 }
 
 /**
@@ -399,7 +368,7 @@ private:
           this->Segments.push_back({ isUp ? p : q, isUp ? q : p });
           this->Pieces.push_back(
             { isUp ? p : q, isUp ? q : p, static_cast<Index>(this->Segments.size()) - 1, 1 });
-          SetUnits(this->Pieces.back(), this->At(p), this->At(q));
+          this->Pieces.back().Unit = UnitsOf(this->At(p), this->At(q));
           hasSegment[p] = hasSegment[q] = 1;
         }
       }
@@ -433,8 +402,7 @@ private:
       {
         Piece& same = this->Pieces[kept - 1];
         same.Count += piece.Count;
-        same.UnitX = std::max(same.UnitX, piece.UnitX);
-        same.UnitY = std::max(same.UnitY, piece.UnitY);
+        same.Unit = { std::max(same.Unit.X, piece.Unit.X), std::max(same.Unit.Y, piece.Unit.Y) };
       }
       else
       {
@@ -671,28 +639,6 @@ private:
       crossings.end());
   }
 
-  /** Whether the vertex is so near the piece, between its ends, that rounding may put it there. */
-  bool IsInReach(const Piece& piece, Index vertex) const
-  {
-    const Point2 &a = this->At(piece.A), &b = this->At(piece.B), &p = this->At(vertex);
-    if (this->Reach <= 0.0 || !IsBetween(a, b, p))
-    {
-      return false;
-    }
-    // Quarters, so that no difference overflows.
-    double dx = 0.25 * b.X - 0.25 * a.X, dy = 0.25 * b.Y - 0.25 * a.Y;
-    double px = 0.25 * p.X - 0.25 * a.X, py = 0.25 * p.Y - 0.25 * a.Y;
-    double unitX = piece.UnitX, unitY = piece.UnitY;
-    if (std::fabs(dx) < std::fabs(dy))
-    {
-      std::swap(dx, dy);
-      std::swap(px, py);
-      std::swap(unitX, unitY);
-    }
-    const double slope = dy / dx;
-    return std::fabs(py - px * slope) <= 0.25 * this->Reach * (unitY + std::fabs(slope) * unitX);
-  }
-
   bool CanPassThrough(const Piece& piece, Index vertex) const
   {
     return piece.A == vertex || piece.B == vertex ||
@@ -708,7 +654,8 @@ private:
     {
       for (const Index end : { this->Pieces[other].A, this->Pieces[other].B })
       {
-        if (this->IsInReach(this->Pieces[piece], end))
+        const Piece& bent = this->Pieces[piece];
+        if (IsInReach(this->At(bent.A), this->At(bent.B), bent.Unit, this->Reach, this->At(end)))
         {
           cuts.push_back({ piece, end });
           isCut = true;
@@ -813,8 +760,8 @@ private:
     const Piece& other = this->Pieces[crossing.Q];
     // Anything but zero, to divide by.
     const double least = std::numeric_limits<double>::denorm_min();
-    const double unitX = std::max({ one.UnitX, other.UnitX, least });
-    const double unitY = std::max({ one.UnitY, other.UnitY, least });
+    const double unitX = std::max({ one.Unit.X, other.Unit.X, least });
+    const double unitY = std::max({ one.Unit.Y, other.Unit.Y, least });
     const double reach = 2.0 * this->Reach, reachX = reach * unitX, reachY = reach * unitY;
     Index nearest = None;
     double shortest = 0.0;

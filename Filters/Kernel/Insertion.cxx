@@ -4,6 +4,7 @@
 
 #include "Boundary.h"
 #include "Predicates.h"
+#include "Reach.h"
 
 #include <algorithm>
 #include <array>
@@ -213,34 +214,10 @@ bool Cross(const Ends& s, const Ends& t)
 }
 
 /** Whether a point of the segment's line lies between its ends. */
-bool IsBetween(const Ends& s, const Point2& p)
+bool IsWithin(const Ends& s, const Point2& p)
 {
   return IsLower(s[0], s[1]) ? IsLower(s[0], p) && IsLower(p, s[1])
                              : IsLower(p, s[0]) && IsLower(s[1], p);
-}
-
-/** Where the segment from p to q crosses a line: rounded, and between p and q. */
-Point2 CrossingOf(const Ends& segment, Point2 a, Point2 b)
-{
-  // The same for both directions of the line.
-  if (IsLower(b, a))
-  {
-    std::swap(a, b);
-  }
-  const double scale = std::max(std::fabs(b.X - a.X), std::fabs(b.Y - a.Y));
-  const Point2 direction{ (b.X - a.X) / scale, (b.Y - a.Y) / scale };
-  const auto distance = [&](const Point2& p) {
-    return std::fabs(direction.X * (p.Y - a.Y) - direction.Y * (p.X - a.X));
-  };
-  const Point2& p = segment[0];
-  const Point2& q = segment[1];
-  const double share = distance(p) / (distance(p) + distance(q));
-  const double s = share >= 0.0 && share <= 1.0 ? share : 0.5;
-  const auto between = [s](double from, double to) {
-    const double value = s < 0.5 ? from + s * (to - from) : to - (1.0 - s) * (to - from);
-    return std::max(std::min(from, to), std::min(std::max(from, to), value));
-  };
-  return { between(p.X, q.X), between(p.Y, q.Y) };
 }
 
 /** Sorts points of a segment, or near it, from its first end to its second. */
@@ -370,6 +347,14 @@ private:
       NameOf(this->Points, this->Given.Vertices[next]);
   }
 
+  std::string NameOfVertex(Index vertex) const
+  {
+    const std::string name = NameOf(this->Surface.Points, vertex);
+    return vertex < this->CountBefore
+      ? name + " of the mesh"
+      : "where the boundary has cut it already" + name.substr(name.find(" ("));
+  }
+
   void CheckCrossings(const Progress& progress) const
   {
     const Bins bins = BinSegments(this->Edges);
@@ -448,6 +433,10 @@ private:
         open.push_back(point);
       }
     }
+    if (!open.empty() && this->MayInsert)
+    {
+      this->TakeInBorder(open, Part(progress, 0.0, 0.2));
+    }
     if (open.empty())
     {
       return;
@@ -457,7 +446,8 @@ private:
     Bins bins(count, open.size(), pointOf);
     bins.Fill(count, [&](Index i) { return std::array<Point2, 1>{ { pointOf(i) } }; });
     std::vector<Index> triangles(open.size(), None);
-    InStretches(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+    const Progress looking = Part(progress, 0.2, 1.0);
+    InStretches(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         const std::size_t ahead = 3 * static_cast<std::size_t>(t) + HalfEdgesAhead;
@@ -627,6 +617,107 @@ private:
     this->Result.Vertices.Offsets = this->Given.Offsets;
   }
 
+  /** The half-edges of the border, and their ends. */
+  std::vector<Ends> FindBorder(std::vector<Index>& borders, const Progress& progress) const
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<Ends> segments;
+    InStretches(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
+      for (Index h = begin; h < end; ++h)
+      {
+        if (mesh.IsBorder(h))
+        {
+          borders.push_back(h);
+          segments.push_back({ mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)) });
+        }
+      }
+    });
+    return segments;
+  }
+
+  /** The number that a half-edge of the border has after cuts; of its first part. */
+  Index NowOf(Index h) const
+  {
+    for (auto next = this->Moved.find(h); next != this->Moved.end(); next = this->Moved.find(h))
+    {
+      h = next->second;
+    }
+    return h;
+  }
+
+  /**
+   * Makes points of the rings that the border passes within rounding vertices of the border, where
+   * they are: the border moves, by as little, rather than that a ring crosses it beside the point.
+   */
+  void TakeInBorder(std::vector<Index>& open, const Progress& progress)
+  {
+    Mesh& mesh = this->Surface;
+    std::vector<Index> borders;
+    const std::vector<Ends> segments = this->FindBorder(borders, progress);
+    if (segments.empty())
+    {
+      return;
+    }
+    const Bins bins = BinSegments(segments);
+    struct Taken
+    {
+      Index Border; // of borders
+      Index Point;
+    };
+    std::vector<Taken> taken;
+    std::vector<Index> others;
+    for (const Index point : open)
+    {
+      const Point2 p = this->Points[point];
+      const Units around = UnitsOf({ 0.0, 0.0 }, p);
+      const double reach = 2.0 * Reach * std::max(around.X, around.Y);
+      Index border = None;
+      bins.Visit(
+        Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
+          const Ends& segment = segments[i];
+          if ((border == None || i < border) &&
+            IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), Reach, p))
+          {
+            border = i;
+          }
+        });
+      if (border != None)
+      {
+        taken.push_back({ border, point });
+      }
+      else
+      {
+        others.push_back(point);
+      }
+    }
+    this->Reserve(taken.size());
+    // Along each border from its first end, as in CutAtBorder.
+    std::sort(taken.begin(), taken.end(), [&](const Taken& a, const Taken& b) {
+      return a.Border != b.Border
+        ? a.Border < b.Border
+        : IsBeforeAlong(segments[a.Border])(this->Points[a.Point], this->Points[b.Point]);
+    });
+    Index h = None;
+    for (std::size_t i = 0; i < taken.size(); ++i)
+    {
+      if (i == 0 || taken[i - 1].Border != taken[i].Border)
+      {
+        h = this->NowOf(borders[taken[i].Border]);
+      }
+      const Point2 p = this->Points[taken[i].Point];
+      const Index from = mesh.Origin(h), to = mesh.Destination(h);
+      if (!this->CanCut(h, p))
+      {
+        others.push_back(taken[i].Point);
+        continue;
+      }
+      const Index vertex = this->AddVertex(p, this->WeightsBetween(from, to, p));
+      this->VertexAt.at(p) = vertex;
+      h = this->CutEdge(h, vertex);
+    }
+    open = std::move(others);
+  }
+
   /**
    * Gives vertices to the border where pieces of the rings cross it, and to the rings where they
    * run through the border's vertices. @return whether there was a crossing
@@ -639,20 +730,7 @@ private:
     this->IsCut.clear();
     this->Moved.clear();
     std::vector<Index> borders;
-    InStretches(mesh.NumberOfHalfEdges(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
-      for (Index h = begin; h < end; ++h)
-      {
-        if (mesh.IsBorder(h))
-        {
-          borders.push_back(h);
-        }
-      }
-    });
-    std::vector<Ends> segments;
-    for (const Index h : borders)
-    {
-      segments.push_back({ mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)) });
-    }
+    const std::vector<Ends> segments = this->FindBorder(borders, Part(progress, 0.0, 0.3));
     const Bins bins = BinSegments(segments);
     struct Crossing
     {
@@ -676,9 +754,13 @@ private:
         const Ends& segment = segments[border];
         if (Cross(edge, segment))
         {
-          crossings.push_back({ border, CrossingOf(segment, edge[0], edge[1]), i });
+          if (!this->PassEnds(i, edge, segment, borders[border]))
+          {
+            crossings.push_back(
+              { border, RoundedCrossing(segment[0], segment[1], edge[0], edge[1]), i });
+          }
         }
-        else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsBetween(edge, segment[0]))
+        else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsWithin(edge, segment[0]))
         {
           this->OnTheWay.push_back({ i, mesh.Origin(borders[border]) });
         }
@@ -699,20 +781,22 @@ private:
         ? a.Border < b.Border
         : before(a.Place, b.Place) || (!before(b.Place, a.Place) && a.Piece < b.Piece);
     });
-    Index h = None;
+    Index h = None, last = None; // and the vertex of the crossing before
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
       const Crossing& crossing = crossings[i];
+      const bool isSamePlace = i > 0 && crossings[i - 1].Border == crossing.Border &&
+        crossings[i - 1].Place == crossing.Place;
       if (i == 0 || crossings[i - 1].Border != crossing.Border)
       {
-        h = borders[crossing.Border];
-        for (auto next = this->Moved.find(h); next != this->Moved.end(); next = this->Moved.find(h))
-        {
-          h = next->second;
-        }
+        h = this->NowOf(borders[crossing.Border]);
       }
       Index vertex = mesh.Origin(h);
-      if (crossing.Place == mesh.PointOf(mesh.Destination(h)))
+      if (isSamePlace)
+      {
+        vertex = last;
+      }
+      else if (crossing.Place == mesh.PointOf(mesh.Destination(h)))
       {
         vertex = mesh.Destination(h);
       }
@@ -724,19 +808,45 @@ private:
         {
           throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
             " leaves the mesh across a triangle too thin to be cut there, between " +
-            NameOf(mesh.Points, vertex) + " and " + NameOf(mesh.Points, end) +
-            " of the mesh. Let the boundary pass through one of them.");
+            this->NameOfVertex(vertex) + " and " + this->NameOfVertex(end) +
+            ". Let the boundary pass through one of them.");
         }
         vertex = this->AddVertex(place, this->WeightsBetween(vertex, end, place));
         h = this->CutEdge(h, vertex);
       }
+      last = vertex;
       this->OnTheWay.push_back({ crossing.Piece, vertex });
       this->IsCut.push_back(crossing.Piece);
       this->EdgeOfCut = this->Pieces[crossing.Piece].Edge;
     }
     this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
     this->CutPieces(pieces);
-    return !crossings.empty();
+    return !this->IsCut.empty();
+  }
+
+  /**
+   * Leads a piece that crosses the border through an end of the border's edge that is in reach.
+   * @return whether there is one
+   */
+  bool PassEnds(std::size_t piece, const Ends& edge, const Ends& segment, Index h)
+  {
+    const Units units = UnitsOf(edge[0], edge[1]);
+    bool isInReach = false;
+    for (const int end : { 0, 1 })
+    {
+      if (IsInReach(edge[0], edge[1], units, Reach, segment[end]))
+      {
+        this->OnTheWay.push_back(
+          { piece, end == 0 ? this->Surface.Origin(h) : this->Surface.Destination(h) });
+        isInReach = true;
+      }
+    }
+    if (isInReach)
+    {
+      this->IsCut.push_back(piece);
+      this->EdgeOfCut = this->Pieces[piece].Edge;
+    }
+    return isInReach;
   }
 
   /** From each of the rings' vertices to the next. */
@@ -783,7 +893,7 @@ private:
       {
         const Point2& p = mesh.PointOf(v);
         bins.Visit(std::array<Point2, 1>{ { p } }, [&](Index i) {
-          if (Orientation(segments[i][0], segments[i][1], p) == Zero && IsBetween(segments[i], p))
+          if (Orientation(segments[i][0], segments[i][1], p) == Zero && IsWithin(segments[i], p))
           {
             isOn[v] = 1;
             segmentsThrough[v].push_back(i);
@@ -888,63 +998,93 @@ private:
       Orientation(corners[2], corners[0], p) != Negative;
   }
 
+  /** Whether the triangle of h leaves two triangles when its edge is led through the place. */
+  bool CanCut(Index h, const Point2& place) const
+  {
+    const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
+    return Orientation(this->Surface.PointOf(this->Surface.Origin(h)), place, apex) == Positive &&
+      Orientation(place, this->Surface.PointOf(this->Surface.Destination(h)), apex) == Positive;
+  }
+
   /**
    * Moves a place on the border, within rounding, to where the triangle of h can be cut: rounded,
-   * it may be beyond a thin triangle. Outwards is always room. @return whether one was found
+   * it may be beyond a thin triangle. Outwards is room where the apex is beside the place.
+   * @return whether one was found
    */
   bool MoveToCut(Index h, Point2& place) const
   {
     const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
     const Point2& to = this->Surface.PointOf(this->Surface.Destination(h));
-    const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
     const double length = std::hypot(to.X - from.X, to.Y - from.Y);
     const double step =
       std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
     const Point2 outwards{ step * ((to.Y - from.Y) / length), step * ((from.X - to.X) / length) };
     const Point2 first = place;
-    for (double steps = 1.0; steps <= 64.0; steps *= 2.0)
+    const auto isFound = [&](double dx, double dy) {
+      place = { first.X + dx, first.Y + dy };
+      return this->CanCut(h, place);
+    };
+    // The nearest ones, from the middle out, then further outwards.
+    for (int ring = 0; ring <= 3; ++ring)
     {
-      if (Orientation(from, place, apex) == Positive && Orientation(place, to, apex) == Positive)
+      for (int i = -ring; i <= ring; ++i)
+      {
+        for (int j = -ring; j <= ring; ++j)
+        {
+          if (std::max(std::abs(i), std::abs(j)) == ring && isFound(0.5 * i * step, 0.5 * j * step))
+          {
+            return true;
+          }
+        }
+      }
+    }
+    for (double steps = 4.0; steps <= 64.0; steps *= 2.0)
+    {
+      if (isFound(steps * outwards.X, steps * outwards.Y))
       {
         return true;
       }
-      place = { first.X + steps * outwards.X, first.Y + steps * outwards.Y };
     }
     return false;
   }
 
+  /** The weights of a place in a triangle, of which corners may be new vertices themselves. */
   InsertedVertex WeightsIn(Index t, const Point2& p) const
   {
     const std::array<Point2, 3> corners = this->CornersOf(t);
-    InsertedVertex vertex{};
-    double sum = 0.0;
+    std::array<std::pair<Index, double>, 3> shares;
     for (int i = 0; i < 3; ++i)
     {
       const Point2& a = corners[(i + 1) % 3];
       const Point2& b = corners[(i + 2) % 3];
-      vertex.Corners[i] = this->Surface.Origin(3 * t + i);
       // On an edge, rounding must not bring in the corner beyond.
-      vertex.Weights[i] = Orientation(a, b, p) == Zero
-        ? 0.0
-        : std::fabs((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X));
-      sum += vertex.Weights[i];
+      shares[i] = { this->Surface.Origin(3 * t + i),
+        Orientation(a, b, p) == Zero
+          ? 0.0
+          : std::fabs((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)) };
     }
-    return Normalized(vertex, sum);
+    return this->WeightsOf(shares.data(), shares.size());
   }
 
-  /** The weights of a place on an edge, whose ends may be new vertices themselves. */
+  /** The weights of a place on an edge, or so near that it is made one of it. */
   InsertedVertex WeightsBetween(Index a, Index b, const Point2& p) const
   {
     const Point2& from = this->Surface.PointOf(a);
     const Point2& to = this->Surface.PointOf(b);
-    const double first = std::hypot(to.X - p.X, to.Y - p.Y);
-    const double second = std::hypot(p.X - from.X, p.Y - from.Y);
+    const std::array<std::pair<Index, double>, 2> shares{
+      { { a, std::hypot(to.X - p.X, to.Y - p.Y) }, { b, std::hypot(p.X - from.X, p.Y - from.Y) } }
+    };
+    return this->WeightsOf(shares.data(), shares.size());
+  }
+
+  /** Of vertices that may be new themselves, all on one triangle before, which has three corners. */
+  InsertedVertex WeightsOf(const std::pair<Index, double>* shares, std::size_t count) const
+  {
     InsertedVertex vertex{ { None, None, None }, { 0.0, 0.0, 0.0 } };
     double sum = 0.0;
     const auto add = [&](Index corner, double weight) {
       if (weight > 0.0)
       {
-        // Both ends are of one triangle before, which has three corners.
         int i = 0;
         while (i < 2 && vertex.Corners[i] != corner && vertex.Corners[i] != None)
         {
@@ -955,17 +1095,18 @@ private:
         sum += weight;
       }
     };
-    for (const auto& end : { std::make_pair(a, first), std::make_pair(b, second) })
+    for (std::size_t k = 0; k < count; ++k)
     {
-      if (end.first < this->CountBefore)
+      const auto& [corner, share] = shares[k];
+      if (corner < this->CountBefore)
       {
-        add(end.first, end.second);
+        add(corner, share);
         continue;
       }
-      const InsertedVertex& inserted = this->Result.Inserted[end.first - this->CountBefore];
+      const InsertedVertex& inserted = this->Result.Inserted[corner - this->CountBefore];
       for (int i = 0; i < 3; ++i)
       {
-        add(inserted.Corners[i], end.second * inserted.Weights[i]);
+        add(inserted.Corners[i], share * inserted.Weights[i]);
       }
     }
     for (Index& corner : vertex.Corners)
@@ -1066,6 +1207,9 @@ private:
     this->Surface.Triangles[next] = v;
     return part;
   }
+
+  /** In units in the last place: how near the border and a ring take on each other's vertices. */
+  static constexpr double Reach = 4.0;
 
   /** In place of a vertex: of a point outside the mesh, at first, and the first of such. */
   static constexpr Index Outside = -2;

@@ -8,16 +8,18 @@
  * In: a mesh with Twins, rings of points in the plane. Out: the mesh with more vertices, and the
  * rings through these. The passes:
  *   1. Look whether edges of the rings cross each other.
- *   2. Match the rings' points to corners of the mesh with the same x,y.
+ *   2. Match the rings' points to corners of the mesh with the same x,y. One that the border passes
+ *      within rounding (Reach.h) becomes a vertex of the border, which moves by as little.
  *   3. Locate the others: they are binned, and one sweep over the triangles looks into the bins
  *      that each one touches. A point inside a triangle cuts it in three; one on an edge cuts the
  *      two triangles beside it, or the one, at the border.
- *   4. Where an edge of the rings crosses the border, or runs through a vertex of the border, it
- *      gets a vertex; again and again until none crosses, as the place of a crossing is rounded. So
+ *   4. Where an edge of the rings crosses the border, or runs through a vertex of the border, or
+ *      crosses it beside such a vertex within rounding, it gets a vertex; again and again until none crosses, as the place of a crossing is rounded. So
  *      each edge of the new rings lies within the mesh or outside, apart from its ends.
  *
- * Guarantees: exact, but for the place of a crossing, which is rounded to doubles, and moved
- * outwards by some units in the last place where a triangle is too thin for that. What the mesh
+ * Guarantees: exact, but for the place of a crossing, which is rounded to doubles, and moved by
+ * some units in the last place where a triangle is too thin for that, and for what lies within four
+ * units of the border and is taken as on it. What the mesh
  * covers stays the same, but for that. All cuts are made in the triangles as they were: no edge is
  * flipped, and the surface through interpolated elevations is the one before.
  * The result does not depend on the order of the rings' points.

@@ -745,8 +745,7 @@ TEST(InsertRings, GoThroughVerticesExactlyOnTheWayToARoundedCrossing)
 TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
 {
   // A turned lattice in map coordinates, and a rectangle through its corners, or nearly: its sides
-  // run along the border, now within the mesh, now outside. Where rounding makes the border fold
-  // over itself, the edge is refused by name, which is rare.
+  // run along the border, within the mesh and outside by turns, and take part of it.
   Random random(39);
   int inserted = 0;
   int refused = 0;
@@ -795,6 +794,6 @@ TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
     const double cutOff = round % 8 < 4 ? 9.3 * (9 - 9 * beyond / (9.3 + beyond)) : 0.0;
     ASSERT_NEAR(kept, 2.0 * 19 * 19 - cutOff, 1e-6);
   }
-  EXPECT_GT(inserted, 500);
-  EXPECT_LE(refused, 8);
+  EXPECT_GT(inserted, 300);
+  EXPECT_EQ(refused, 0);
 }
