@@ -370,6 +370,59 @@ private:
         }
       });
     }
+    this->CheckCommonPoints();
+  }
+
+  /** Looks whether one ring changes to the other side of another one in a point of both. */
+  void CheckCommonPoints() const
+  {
+    struct Passage
+    {
+      Point2 Before, At, After;
+      Index Point;
+      Index Ring;
+    };
+    std::vector<Passage> passages;
+    for (Index ring = 0; ring < this->Given.Count(); ++ring)
+    {
+      const Index count = this->Given.Size(ring);
+      const Index* const ids = this->Given.Begin(ring);
+      for (Index i = 0; i < count; ++i)
+      {
+        passages.push_back({ this->Points[ids[i == 0 ? count - 1 : i - 1]], this->Points[ids[i]],
+          this->Points[ids[i + 1 == count ? 0 : i + 1]], ids[i], ring });
+      }
+    }
+    std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
+      return a.At != b.At ? IsLower(a.At, b.At) : a.Ring < b.Ring;
+    });
+    // Positive: to the left of a passage; Zero: on it, or it turns back on itself.
+    const auto sideOf = [](const Passage& of, const Point2& p) {
+      const Sign turn = Orientation(of.Before, of.At, of.After);
+      const Sign first = Orientation(of.Before, of.At, p), second = Orientation(of.At, of.After, p);
+      if (turn == Zero && !IsWithin({ of.Before, of.After }, of.At))
+      {
+        return Zero;
+      }
+      const Sign sharp = turn == Negative ? Negative : Positive; // on the inside of the turn
+      const Sign other = sharp == Positive ? Negative : Positive;
+      return first == sharp && second == sharp ? sharp
+        : first == other || second == other    ? other
+                                               : Zero;
+    };
+    for (std::size_t i = 0; i < passages.size(); ++i)
+    {
+      const Passage& a = passages[i];
+      for (std::size_t j = i + 1; j < passages.size() && passages[j].At == a.At; ++j)
+      {
+        const Passage& b = passages[j];
+        if (a.Ring != b.Ring && sideOf(a, b.Before) * sideOf(a, b.After) < 0)
+        {
+          throw Error("Two rings of the boundary cross in " + NameOf(this->Points, a.Point) +
+            ". Rings may touch and nest, but not cross.");
+        }
+      }
+    }
   }
 
   /** Finds the corner of the mesh at each point of the rings. */

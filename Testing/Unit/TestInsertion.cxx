@@ -565,6 +565,46 @@ TEST(InsertRings, RefusesByNameWhatCrossesOrMayNotBeInserted)
   EXPECT_HAS(MessageOf(pinched, through), "Points 0 and 3 of the mesh");
 }
 
+TEST(InsertRings, RefusesRingsThatCrossInPointsOfBoth)
+{
+  std::vector<Point2> points;
+  for (int i = 0; i < 81; ++i)
+  {
+    points.push_back({ static_cast<double>(i % 9), static_cast<double>(i / 9) });
+  }
+  const Mesh before = Delaunay(points);
+  const auto messageOf = [&](const std::vector<Point2>& first, const std::vector<Point2>& second) {
+    for (const bool isReversed : { false, true })
+    {
+      Boundary boundary;
+      boundary.Add(first);
+      boundary.Add(isReversed ? std::vector<Point2>(second.rbegin(), second.rend()) : second);
+      Mesh mesh = before;
+      try
+      {
+        InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      }
+      catch (const Error& error)
+      {
+        return std::string(error.what());
+      }
+    }
+    return std::string();
+  };
+  const std::vector<Point2> square{ { 0, 0 }, { 4, 0 }, { 4, 2 }, { 4, 4 }, { 2, 4 }, { 0, 4 } };
+  // Out through (4, 2), and in through (2, 4).
+  EXPECT_HAS(messageOf(square, { { 2, 2 }, { 4, 2 }, { 6, 2 }, { 6, 6 }, { 2, 6 }, { 2, 4 } }),
+    "Two rings of the boundary cross in point");
+  // At the square's corner, where its turn is sharp.
+  EXPECT_HAS(messageOf(square, { { 3, 3 }, { 4, 4 }, { 5, 5 }, { 1, 6 }, { 2, 4 } }),
+    "Two rings of the boundary cross in point");
+  // Touching from inside and outside, in a point, a corner and along edges.
+  EXPECT_EQ(messageOf(square, { { 4, 2 }, { 6, 1 }, { 6, 3 } }), "");
+  EXPECT_EQ(messageOf(square, { { 4, 4 }, { 6, 4 }, { 6, 6 } }), "");
+  EXPECT_EQ(messageOf(square, { { 4, 2 }, { 1, 3 }, { 1, 1 } }), "");
+  EXPECT_EQ(messageOf(square, { { 4, 4 }, { 1, 2 }, { 2, 1 } }), "");
+}
+
 TEST(InsertRings, TakesManyPointsInOneTriangleInReasonableTime)
 {
   Mesh mesh;
