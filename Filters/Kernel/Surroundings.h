@@ -144,6 +144,21 @@ private:
     std::uint64_t LanesOf(Index slot) const;
   };
 
+  /**
+   * The points around a leaf of the tree: those of the boxes of all its points, relative to its
+   * middle. Vertices of a full bin come by their y, from everywhere in it, but only those of some
+   * leaves at a time.
+   */
+  static constexpr int MostAround = 120;
+  struct Neighborhood
+  {
+    Index First = 0, End = 0; ///< slots of the leaf
+    int Count = 0;            ///< 0 where they are too many
+    double CenterX, CenterY, PerSide; ///< sides of the boxes a unit of the grid
+    float X[MostAround + 8], Y[MostAround + 8];
+    Index Slots[MostAround + 8];
+  };
+
   void EnterRow(Index number);
   void ReadRow(Row& row);
   void GatherInto(Window& window);
@@ -151,7 +166,10 @@ private:
   bool GatherEven(Window& window, Index firstColumn);
   bool GatherBins(Window& window, Index column, int shape);
   bool GatherBox(Window& window);
-  bool GatherBox(Window& window, const BinGrid::Node& top, double lowX, double highX, double highY);
+  const Neighborhood* Around(Index slot);
+  void GatherNeighborhood(Neighborhood& around, Index slot);
+  bool GatherBox(Neighborhood& around, const BinGrid::Node& top, double lowX, double highX,
+    double lowY, double highY);
   bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
   template <int Vectors>
   Candidates Search(float bx, float by, int& guess) const;
@@ -178,6 +196,9 @@ private:
   bool AreNearRead = false;
   std::int32_t TopBound = 0;
   Bounds OfBox; ///< of all boxes, whose unit is their side
+  std::vector<Neighborhood> Neighborhoods;
+  std::vector<Index> Known; ///< for eight slots after eight, where their leaf's neighborhood was
+  std::size_t Oldest = 0;
 };
 
 } // namespace elevation
