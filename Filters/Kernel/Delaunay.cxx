@@ -208,15 +208,6 @@ public:
     this->OpenEnd = None;
   }
 
-  /** Asks for the memory that SetOrigin() will need for a vertex some calls later. */
-  void Foresee(Index slot) const
-  {
-    if (this->IsWide)
-    {
-      this->Around.Foresee(slot);
-    }
-  }
-
   /**
    * Appends the origin's neighbours counter-clockwise after the last one in the list, as far as
    * they are easily told, and not beyond the end of the fan.
@@ -654,61 +645,40 @@ private:
     return number >= 0 && number < 32 ? 1u << number : 0u;
   }
 
-  __attribute__((target("avx2"))) bool CompareWide(Index first, Index count)
+  /** Compares a stretch of slots with the best so far, but for those outside the disc. */
+  __attribute__((target("avx2"))) void CompareWide(Index first, Index count)
   {
-    bool isChanged = false;
     const Index end = first + count;
-    for (Index slot = first; slot < end; slot += 4)
+    for (Index slot = first; slot < end; slot += 8)
     {
-      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0)) &
+      unsigned int inside = (this->InDisc(slot) | this->InDisc(slot + 4) << 4) &
+        (255u >> std::max(slot + 8 - end, 0)) &
         ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
-      for (; left; left &= left - 1)
+      while (inside)
       {
-        isChanged = this->CompareOne(slot + __builtin_ctz(left)) || isChanged;
+        const int next = __builtin_ctz(inside);
+        inside &= inside - 1;
+        if (this->CompareOne(slot + next))
+        {
+          this->SetDisc(this->UpperPositionOfBest());
+          inside &= this->InDisc(slot) | this->InDisc(slot + 4) << 4;
+        }
       }
     }
-    return isChanged;
   }
 
-  /** Four slots from this one: which of them Compare() would not pass over at once, as bits. */
-  __attribute__((target("avx2"), always_inline)) inline unsigned int MayBeBetter(Index slot) const
+  /** Which of four slots from this one are inside the disc, as bits. */
+  __attribute__((target("avx2"), always_inline)) inline unsigned int InDisc(Index slot) const
   {
-    const __m256d signBit = _mm256_set1_pd(-0.0), roundoffs = _mm256_set1_pd(UnitRoundoff);
-    const __m256d edgeX = _mm256_set1_pd(this->EdgeX), edgeY = _mm256_set1_pd(this->EdgeY);
-    const __m256d x = _mm256_loadu_pd(this->Grid.X.data() + slot);
-    const __m256d y = _mm256_loadu_pd(this->Grid.Y.data() + slot);
-    const __m256d px = _mm256_sub_pd(x, _mm256_set1_pd(this->A.X));
-    const __m256d py = _mm256_sub_pd(y, _mm256_set1_pd(this->A.Y));
-    const __m256d left = _mm256_mul_pd(edgeX, py), right = _mm256_mul_pd(edgeY, px);
-    const __m256d cross = _mm256_sub_pd(left, right);
-    const __m256d crossMagnitude =
-      _mm256_add_pd(_mm256_andnot_pd(signBit, left), _mm256_andnot_pd(signBit, right));
-    const __m256d crossError =
-      _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(8.0), roundoffs), crossMagnitude),
-        _mm256_set1_pd(1e-290));
-    const __m256d isRight = _mm256_cmp_pd(cross, _mm256_xor_pd(signBit, crossError), _CMP_LT_OQ);
-    if (this->Best == None)
-    {
-      return ~static_cast<unsigned int>(_mm256_movemask_pd(isRight)) & 15u;
-    }
-    const __m256d dotX = _mm256_mul_pd(px, _mm256_sub_pd(x, _mm256_set1_pd(this->B.X)));
-    const __m256d dotY = _mm256_mul_pd(py, _mm256_sub_pd(y, _mm256_set1_pd(this->B.Y)));
-    const __m256d dotMagnitude =
-      _mm256_add_pd(_mm256_andnot_pd(signBit, dotX), _mm256_andnot_pd(signBit, dotY));
-    const __m256d difference =
-      _mm256_sub_pd(_mm256_mul_pd(_mm256_add_pd(dotX, dotY), _mm256_set1_pd(this->BestCross)),
-        _mm256_mul_pd(_mm256_set1_pd(this->BestDot), cross));
-    const __m256d magnitude =
-      _mm256_add_pd(_mm256_mul_pd(dotMagnitude, _mm256_set1_pd(this->BestCrossMagnitude)),
-        _mm256_mul_pd(_mm256_set1_pd(this->BestDotMagnitude), crossMagnitude));
-    const __m256d error =
-      _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(16.0), roundoffs), magnitude),
-        _mm256_set1_pd(this->LeastError));
-    // Worse only counts where cross is certain; else Compare() asks for the side first.
-    const __m256d isWorse = _mm256_and_pd(_mm256_cmp_pd(cross, crossError, _CMP_GT_OQ),
-      _mm256_and_pd(_mm256_cmp_pd(error, _mm256_set1_pd(1e140), _CMP_LT_OQ),
-        _mm256_cmp_pd(difference, error, _CMP_GT_OQ)));
-    return ~static_cast<unsigned int>(_mm256_movemask_pd(_mm256_or_pd(isRight, isWorse))) & 15u;
+    const __m256d x = _mm256_sub_pd(_mm256_sub_pd(_mm256_loadu_pd(this->Grid.X.data() + slot),
+                                      _mm256_set1_pd(this->A.X)),
+      _mm256_set1_pd(this->CenterX));
+    const __m256d y = _mm256_sub_pd(_mm256_sub_pd(_mm256_loadu_pd(this->Grid.Y.data() + slot),
+                                      _mm256_set1_pd(this->A.Y)),
+      _mm256_set1_pd(this->CenterY));
+    const __m256d squared = _mm256_add_pd(_mm256_mul_pd(x, x), _mm256_mul_pd(y, y));
+    return static_cast<unsigned int>(_mm256_movemask_pd(
+      _mm256_cmp_pd(squared, _mm256_set1_pd(this->RadiusSquared), _CMP_NGT_UQ)));
   }
 #endif
 
@@ -716,23 +686,19 @@ private:
   void Compare(Index first, Index count)
   {
     this->Looks += count;
-    bool isChanged = false;
 #ifdef ELEVATION_HAS_AVX2
     if (this->IsWide)
     {
-      isChanged = this->CompareWide(first, count);
+      this->CompareWide(first, count);
+      return;
     }
-    else
 #endif
+    for (Index slot = first; slot < first + count; ++slot)
     {
-      for (Index slot = first; slot < first + count; ++slot)
+      if (this->CompareOne(slot))
       {
-        isChanged = this->CompareOne(slot) || isChanged;
+        this->SetDisc(this->UpperPositionOfBest());
       }
-    }
-    if (isChanged)
-    {
-      this->SetDisc(this->UpperPositionOfBest());
     }
   }
 
@@ -1092,9 +1058,7 @@ private:
     }
     if (this->Fan.empty())
     {
-      constexpr Index ahead = 8;
       this->Fan.Append(first);
-      this->Search.Foresee(this->Order[std::min(this->Next + ahead, this->End - 1)]);
       this->Search.SetOrigin(
         lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
     }

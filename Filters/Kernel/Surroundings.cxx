@@ -29,7 +29,7 @@ namespace elevation
 
 namespace
 {
-constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
+constexpr double PointsInBox = 18.0; // as expected; half of that when it was too much
 constexpr double MostSides = 4.0;    // from the middle of a leaf to the farthest point around it
 constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr double Roundoff = 0x1p-24; // of single precision
@@ -136,22 +136,6 @@ void Surroundings::Bounds::Set(double reach, double error, double margin)
   this->ComparisonError =
     static_cast<float>(slack * square * (24.0 * reach * error + 32.0 * Roundoff * square));
   this->Margin = static_cast<float>(margin);
-}
-
-void Surroundings::Foresee(Index slot) const
-{
-  // In full bins, the points of a row are far apart in memory.
-  if (this->Current->IsBox)
-  {
-    const BinGrid& grid = this->Grid;
-    const char* const node = reinterpret_cast<const char*>(&grid.Nodes[grid.LeafNodes[slot / 8]]);
-    for (std::size_t line = 0; line < sizeof(BinGrid::Node); line += 64)
-    {
-      __builtin_prefetch(node + line);
-    }
-    __builtin_prefetch(&grid.X[slot]);
-    __builtin_prefetch(&grid.Y[slot]);
-  }
 }
 
 bool Surroundings::Gather(Index origin, Index next)
@@ -1083,8 +1067,6 @@ bool Surroundings::Gather(Index, Index)
 {
   return false;
 }
-
-void Surroundings::Foresee(Index) const {}
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {

@@ -12,7 +12,7 @@
  *
  * Around the vertex all points of six columns and four rows of bins are gathered: the window. Where
  * these are too many, it is three columns and less rows; in full bins, a box in which the density
- * thereabouts promises about fifteen points. For bins, the coordinates of the four rows are kept as
+ * thereabouts promises about eighteen points. For bins, the coordinates of the four rows are kept as
  * whole multiples of a unit that is small against the bins, so that differences are exact.
  *
  * The proof. Let R be the longest distance from the vertex within the window, e the error of a
@@ -62,10 +62,6 @@ public:
    * @return false when there is none: too many points in each that was tried
    */
   bool Gather(Index origin, Index next = None);
-
-  /** Asks for the memory that gathering the window of a vertex will need, when called some vertices
-   * before. */
-  void Foresee(Index slot) const;
 
   struct Candidates
   {
