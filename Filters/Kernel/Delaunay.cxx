@@ -256,9 +256,9 @@ public:
     this->SetEdge(this->Origin, b);
     for (Index known : { best, end })
     {
-      if (known != None)
+      if (known != None && known != this->Best && this->CompareOne(known))
       {
-        this->Compare(known, 1);
+        this->SetDisc(this->UpperPositionOfBest());
       }
     }
     if (this->Grid.Bins.HasPlainBins && this->LookIntoBins())
