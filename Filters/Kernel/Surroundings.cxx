@@ -39,7 +39,7 @@ struct Shape
 {
   Index Columns, Rows;
 };
-constexpr Shape Shapes[] = { { 6, 4 }, { 3, 3 }, { 3, 2 } };
+constexpr Shape Shapes[Surroundings::NumberOfShapes] = { { 6, 4 }, { 3, 3 }, { 3, 2 } };
 
 ELEVATION_WIDE inline __m256i EightUnits(const double* values, __m256d from, __m256d perUnit)
 {
@@ -97,7 +97,7 @@ Surroundings::Surroundings(const BinGrid& grid)
     return;
   }
   this->PerUnit = perUnit;
-  for (int shape = 0; shape < 3; ++shape)
+  for (int shape = 0; shape < NumberOfShapes; ++shape)
   {
     // From a vertex in the middle columns or at their border, and in the lowest row.
     const double across = (Shapes[shape].Columns / 2 + 1) * width * perUnit;
@@ -208,10 +208,13 @@ ELEVATION_WIDE void Surroundings::EnterRow(Index number)
     this->AreNearRead = this->AreNearRead && (row.Number == None || row.IsRead);
     this->Near[r - number] = &row;
   }
-  const Index above = std::min(number + MostRows, bins.Rows);
-  this->TopBound = above == bins.Rows
-    ? std::numeric_limits<std::int32_t>::max()
-    : static_cast<std::int32_t>(above * bins.BinHeight * this->PerUnit);
+  for (int shape = 0; shape < NumberOfShapes; ++shape)
+  {
+    const Index above = std::min(number + Shapes[shape].Rows, bins.Rows);
+    this->TopBounds[shape] = above == bins.Rows
+      ? std::numeric_limits<std::int32_t>::max()
+      : static_cast<std::int32_t>(above * bins.BinHeight * this->PerUnit);
+  }
 }
 
 ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
@@ -240,6 +243,17 @@ ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(row.Y.data() + i),
       EightUnits(this->Grid.Y.data() + slots.first + i, fromY, perUnit));
   }
+}
+
+/** How far a window of bins reaches from the vertex. */
+ELEVATION_WIDE_INLINE void Surroundings::SetBounds(Window& window, int shape, Index firstColumn,
+  Index endColumn, std::int32_t originX, std::int32_t originY) const
+{
+  window.IsBox = false;
+  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
+  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
+  window.Top = static_cast<float>(this->TopBounds[shape] - originY);
+  window.Errors = &this->OfShapes[shape];
 }
 
 /** At most 32 points, packed into two vectors. */
@@ -303,11 +317,7 @@ ELEVATION_WIDEST bool Surroundings::GatherWidest(Window& window, Index firstColu
 
   window.OriginLane = window.Origin - own.Starts[firstColumn];
   window.Vectors = WidestVectors;
-  window.IsBox = false;
-  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
-  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
-  window.Top = static_cast<float>(this->TopBound - originY);
-  window.Errors = &this->OfShapes[0];
+  this->SetBounds(window, 0, firstColumn, endColumn, originX, originY);
   return true;
 }
 
@@ -378,11 +388,7 @@ ELEVATION_WIDE bool Surroundings::GatherEven(Window& window, Index firstColumn)
     _mm256_store_ps(window.Square + 32, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
   }
   window.Vectors = EvenVectors;
-  window.IsBox = false;
-  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
-  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
-  window.Top = static_cast<float>(this->TopBound - originY);
-  window.Errors = &this->OfShapes[0];
+  this->SetBounds(window, 0, firstColumn, endColumn, originX, originY);
   return true;
 }
 
@@ -426,14 +432,7 @@ ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int s
     count += end - first;
   }
   window.Close(count, this->IsWidest);
-  window.IsBox = false;
-  const Index above = std::min(this->CurrentRow + Shapes[shape].Rows, bins.Rows);
-  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
-  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
-  window.Top = above == bins.Rows
-    ? std::numeric_limits<float>::max()
-    : static_cast<float>(above * bins.BinHeight * this->PerUnit - originY);
-  window.Errors = &this->OfShapes[shape];
+  this->SetBounds(window, shape, firstColumn, endColumn, originX, originY);
   return true;
 }
 

@@ -78,6 +78,7 @@ public:
   Candidates FindCandidates(Index b) const;
 
   static constexpr int Capacity = 56;
+  static constexpr int NumberOfShapes = 3; ///< of windows of bins
 
   /**
    * The neighbours of the vertex counter-clockwise after b, apex after apex, as far as each is
@@ -158,6 +159,8 @@ private:
   void EnterRow(Index number);
   void ReadRow(Row& row);
   void GatherInto(Window& window);
+  void SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
+    std::int32_t originX, std::int32_t originY) const;
   bool GatherWidest(Window& window, Index firstColumn);
   bool GatherEven(Window& window, Index firstColumn);
   bool GatherBins(Window& window, Index column, int shape);
@@ -183,14 +186,14 @@ private:
 
   // Windows of bins; none when PerUnit is 0.
   double PerUnit = 0.0; ///< units a unit of the grid
-  Bounds OfShapes[3];
+  Bounds OfShapes[NumberOfShapes];
   std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
   std::vector<Index> Nothing;             ///< the starts of a row beyond the last
   Row Rows[MostRows];                     ///< by their number modulo MostRows
   Row* Near[MostRows];                    ///< from the current row upwards
   Index CurrentRow = None;
   bool AreNearRead = false;
-  std::int32_t TopBound = 0;
+  std::int32_t TopBounds[NumberOfShapes]; ///< of the windows of the current row's vertices
   Bounds OfBox; ///< of all boxes, whose unit is their side
   std::vector<Neighborhood> Neighborhoods;
   std::vector<Index> Known; ///< for eight slots after eight, where their leaf's neighborhood was

@@ -108,7 +108,7 @@ TEST(Surroundings, ProvesTheApexInEvenAndUnevenDensity)
     tiny.Add(1e-20 * Uniform(random), 1e-20 * Uniform(random));
   }
   EXPECT_GT(ExpectProofsHold(denser), 0.7);
-  EXPECT_GT(ExpectProofsHold(clustered), 0.4);
+  EXPECT_GT(ExpectProofsHold(clustered), 0.5);
   ExpectProofsHold(tracks);
   ExpectProofsHold(tiny);
 }
