@@ -722,18 +722,17 @@ private:
     } parts[MostNear / 8 + NearRows + 1 + 3];
     Index number = 0, count = 0;
     const __m256d zero = _mm256_setzero_pd();
-    const __m256d slope =
-      _mm256_set1_pd(this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity);
+    const __m256d slope = _mm256_set1_pd(this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity);
     const __m256d centerX = _mm256_set1_pd(this->CenterX), centerY = _mm256_set1_pd(this->CenterY);
     const __m256d slack = _mm256_set1_pd(region.SlackX);
     const __m256d rowHeight = _mm256_set1_pd(bins.BinHeight + 2.0 * region.SlackY);
     const __m128i fours = _mm_setr_epi32(0, 1, 2, 3);
     for (Index four = region.FirstRow; four <= lastRow; four += 4)
     {
-      const __m256d above = _mm256_cvtepi32_pd(
-        _mm_add_epi32(_mm_set1_epi32(four - region.FirstRow), fours));
-      const __m256d low = _mm256_add_pd(
-        _mm256_set1_pd(lowest), _mm256_mul_pd(above, _mm256_set1_pd(bins.BinHeight)));
+      const __m256d above =
+        _mm256_cvtepi32_pd(_mm_add_epi32(_mm_set1_epi32(four - region.FirstRow), fours));
+      const __m256d low =
+        _mm256_add_pd(_mm256_set1_pd(lowest), _mm256_mul_pd(above, _mm256_set1_pd(bins.BinHeight)));
       const __m256d high = _mm256_add_pd(low, rowHeight);
       const __m256d off = _mm256_max_pd(
         _mm256_max_pd(_mm256_sub_pd(low, centerY), _mm256_sub_pd(centerY, high)), zero);
@@ -748,7 +747,8 @@ private:
         _mm_max_epi32(
           this->ColumnsOf(_mm256_sub_pd(left, slack)), _mm_set1_epi32(region.FirstColumn)));
       _mm_store_si128(reinterpret_cast<__m128i*>(lasts),
-        _mm_min_epi32(this->ColumnsOf(_mm256_add_pd(right, slack)), _mm_set1_epi32(region.LastColumn)));
+        _mm_min_epi32(
+          this->ColumnsOf(_mm256_add_pd(right, slack)), _mm_set1_epi32(region.LastColumn)));
       for (Index k = 0; k < 4; ++k)
       {
         const Index r = std::min(four + k, lastRow);
@@ -792,15 +792,15 @@ private:
   /** Which of four slots from this one are inside the disc, as bits. */
   __attribute__((target("avx2"), always_inline)) inline unsigned int InDisc(Index slot) const
   {
-    const __m256d x = _mm256_sub_pd(_mm256_sub_pd(_mm256_loadu_pd(this->Grid.X.data() + slot),
-                                      _mm256_set1_pd(this->A.X)),
+    const __m256d x = _mm256_sub_pd(
+      _mm256_sub_pd(_mm256_loadu_pd(this->Grid.X.data() + slot), _mm256_set1_pd(this->A.X)),
       _mm256_set1_pd(this->CenterX));
-    const __m256d y = _mm256_sub_pd(_mm256_sub_pd(_mm256_loadu_pd(this->Grid.Y.data() + slot),
-                                      _mm256_set1_pd(this->A.Y)),
+    const __m256d y = _mm256_sub_pd(
+      _mm256_sub_pd(_mm256_loadu_pd(this->Grid.Y.data() + slot), _mm256_set1_pd(this->A.Y)),
       _mm256_set1_pd(this->CenterY));
     const __m256d squared = _mm256_add_pd(_mm256_mul_pd(x, x), _mm256_mul_pd(y, y));
-    return static_cast<unsigned int>(_mm256_movemask_pd(
-      _mm256_cmp_pd(squared, _mm256_set1_pd(this->RadiusSquared), _CMP_NGT_UQ)));
+    return static_cast<unsigned int>(
+      _mm256_movemask_pd(_mm256_cmp_pd(squared, _mm256_set1_pd(this->RadiusSquared), _CMP_NGT_UQ)));
   }
 #endif
 

@@ -470,7 +470,8 @@ ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) co
   return lanes;
 }
 
-const Surroundings::Neighborhood* Surroundings::Around(Index slot)
+/** The points around the leaf that holds a slot. */
+const Surroundings::Neighborhood& Surroundings::Around(Index slot)
 {
   const Index eights = (this->Grid.NumberOfPoints() - 1) / 8 + 1;
   if (this->Neighborhoods.empty())
@@ -487,7 +488,7 @@ const Surroundings::Neighborhood* Surroundings::Around(Index slot)
     const Neighborhood& known = this->Neighborhoods[this->Known[at]];
     if (known.First <= slot && slot < known.End)
     {
-      return &known;
+      return known;
     }
   }
   const std::size_t oldest = this->Oldest;
@@ -496,7 +497,7 @@ const Surroundings::Neighborhood* Surroundings::Around(Index slot)
   this->GatherNeighborhood(made, slot);
   std::fill(this->Known.begin() + made.First / 8, this->Known.begin() + (made.End + 7) / 8,
     static_cast<Index>(oldest));
-  return &made;
+  return made;
 }
 
 void Surroundings::GatherNeighborhood(Neighborhood& around, Index slot)
@@ -524,8 +525,8 @@ void Surroundings::GatherNeighborhood(Neighborhood& around, Index slot)
     }
     const double lowX = leafLowX - 0.551 * side, highX = leafHighX + 0.551 * side;
     const double highY = leafHighY + 0.901 * side;
-    const double greatest = std::max(std::max(std::fabs(lowX), std::fabs(highX)),
-      std::max(std::fabs(leafLowY), std::fabs(highY)));
+    const double greatest = std::max(
+      std::max(std::fabs(lowX), std::fabs(highX)), std::max(std::fabs(leafLowY), std::fabs(highY)));
     around.PerSide = 1.0 / side;
     around.CenterX = 0.5 * leafLowX + 0.5 * leafHighX;
     around.CenterY = 0.5 * leafLowY + 0.5 * leafHighY;
@@ -656,7 +657,7 @@ ELEVATION_WIDE bool Surroundings::GatherBox(Neighborhood& around, const BinGrid:
 /** The points of a box around the vertex, from those around its leaf. */
 ELEVATION_WIDE bool Surroundings::GatherBox(Window& window)
 {
-  const Neighborhood& around = *this->Around(window.Origin);
+  const Neighborhood& around = this->Around(window.Origin);
   if (around.Count == 0)
   {
     return false;

@@ -14,6 +14,8 @@
  * these are too many, it is three columns and less rows; in full bins, a box in which the density
  * thereabouts promises about eighteen points. For bins, the coordinates of the four rows are kept as
  * whole multiples of a unit that is small against the bins, so that differences are exact.
+ * Boxes are taken from the points around a leaf of the tree, its neighborhood, which are gathered
+ * once for all vertices of the leaf and kept while the sweep over the vertices passes through it.
  *
  * The proof. Let R be the longest distance from the vertex within the window, e the error of a
  * coordinate relative to the vertex and u = 2^-24. With cross = b x p and dot = p . (p - b) for the
@@ -95,6 +97,7 @@ public:
 private:
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
   static constexpr int Room = Capacity + 8; // whole vectors are written
+  static constexpr int MostAround = 120;    // a leaf
   static constexpr Index MostRows = 4;
   static constexpr int RowRoom = 40;            // whole vectors are read
   static constexpr std::size_t MostPerBin = 32; // points in a row of which windows are made
@@ -146,11 +149,10 @@ private:
    * middle. Vertices of a full bin come by their y, from everywhere in it, but only those of some
    * leaves at a time.
    */
-  static constexpr int MostAround = 120;
   struct Neighborhood
   {
-    Index First = 0, End = 0; ///< slots of the leaf
-    int Count = 0;            ///< 0 where they are too many
+    Index First = 0, End = 0;         ///< slots of the leaf
+    int Count = 0;                    ///< 0 where they are too many
     double CenterX, CenterY, PerSide; ///< sides of the boxes a unit of the grid
     float X[MostAround + 8], Y[MostAround + 8];
     Index Slots[MostAround + 8];
@@ -165,7 +167,7 @@ private:
   bool GatherEven(Window& window, Index firstColumn);
   bool GatherBins(Window& window, Index column, int shape);
   bool GatherBox(Window& window);
-  const Neighborhood* Around(Index slot);
+  const Neighborhood& Around(Index slot);
   void GatherNeighborhood(Neighborhood& around, Index slot);
   bool GatherBox(Neighborhood& around, const BinGrid::Node& top, double lowX, double highX,
     double lowY, double highY);
@@ -194,7 +196,7 @@ private:
   Index CurrentRow = None;
   bool AreNearRead = false;
   std::int32_t TopBounds[NumberOfShapes]; ///< of the windows of the current row's vertices
-  Bounds OfBox; ///< of all boxes, whose unit is their side
+  Bounds OfBox;                           ///< of all boxes, whose unit is their side
   std::vector<Neighborhood> Neighborhoods;
   std::vector<Index> Known; ///< for eight slots after eight, where their leaf's neighborhood was
   std::size_t Oldest = 0;
