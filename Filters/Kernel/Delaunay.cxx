@@ -208,15 +208,6 @@ public:
     this->OpenEnd = None;
   }
 
-  /** Asks for the memory that SetOrigin() will need for a vertex some calls later. */
-  void Foresee(Index slot) const
-  {
-    if (this->IsWide)
-    {
-      this->Around.Foresee(slot);
-    }
-  }
-
   /**
    * Appends the origin's neighbours counter-clockwise after the last one in the list, as far as
    * they are easily told, and not beyond the end of the fan.
@@ -265,9 +256,9 @@ public:
     this->SetEdge(this->Origin, b);
     for (Index known : { best, end })
     {
-      if (known != None)
+      if (known != None && known != this->Best && this->CompareOne(known))
       {
-        this->Compare(known, 1);
+        this->SetDisc(this->UpperPositionOfBest());
       }
     }
     if (this->Grid.Bins.HasPlainBins && this->LookIntoBins())
@@ -395,6 +386,16 @@ private:
     }
   }
 
+  /** The bins around the origin that are looked at before the tree is. */
+  struct Region
+  {
+    Index FirstColumn, LastColumn, FirstRow, LastRow;
+    // Bounds of bins are known to a thousandth of a bin, which also is more than the rounding of
+    // what is done with them as long as radii are less than a million bins.
+    double SlackX, SlackY;
+    double MostSquared; ///< of the radii
+  };
+
   /**
    * The bins around the origin, as far as the disc and the free side reach; fewer when these hold
    * too many points.
@@ -404,22 +405,43 @@ private:
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
     const Index column = bins.Column(this->A.X), row = bins.Row(this->A.Y);
-    const Index firstColumn = std::max(column - NearColumns, 0);
-    const Index lastColumn = std::min(column + NearColumns, bins.Columns - 1);
-    const Index lastRow = std::min(row + NearRows, bins.Rows - 1);
-    // Bounds of bins are known to a thousandth of a bin, which also is more than the rounding of
-    // what follows as long as radii are less than a million bins.
-    const double slackX = 0.002 * bins.BinWidth, slackY = 0.002 * bins.BinHeight;
-    const double slope = this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity;
-    const double most =
-      1e12 * std::min(bins.BinWidth * bins.BinWidth, bins.BinHeight * bins.BinHeight);
-    Index count = 0;
-    for (Index r = row; r <= lastRow; ++r)
+    const double leastSide = std::min(bins.BinWidth, bins.BinHeight);
+    const Region region{ std::max(column - NearColumns, 0),
+      std::min(column + NearColumns, bins.Columns - 1), row,
+      std::min(row + NearRows, bins.Rows - 1), 0.002 * bins.BinWidth, 0.002 * bins.BinHeight,
+      1e12 * leastSide * leastSide };
+    bool haveLooked = false;
+#ifdef ELEVATION_HAS_AVX2
+    haveLooked = this->IsWide && this->LookIntoRowsWide(region);
+#endif
+    if (!haveLooked && !this->LookIntoRows(region))
     {
-      const double low = bins.OriginY + r * bins.BinHeight - slackY - this->A.Y;
-      const double high = low + bins.BinHeight + 2.0 * slackY;
+      return false;
+    }
+    const double radius = std::sqrt(this->RadiusSquared);
+    const double low =
+      bins.OriginX + region.FirstColumn * bins.BinWidth + region.SlackX - this->A.X;
+    const double high =
+      bins.OriginX + (region.LastColumn + 1) * bins.BinWidth - region.SlackX - this->A.X;
+    const double top =
+      bins.OriginY + (region.LastRow + 1) * bins.BinHeight - region.SlackY - this->A.Y;
+    return this->Best != None && (region.FirstColumn == 0 || this->CenterX - radius > low) &&
+      (region.LastColumn == bins.Columns - 1 || this->CenterX + radius < high) &&
+      (region.LastRow == bins.Rows - 1 || this->CenterY + radius < top);
+  }
+
+  /** Row after row, each as far as the disc reaches by then. */
+  bool LookIntoRows(const Region& region)
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    const double slope = this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity;
+    Index count = 0;
+    for (Index r = region.FirstRow; r <= region.LastRow; ++r)
+    {
+      const double low = bins.OriginY + r * bins.BinHeight - region.SlackY - this->A.Y;
+      const double high = low + bins.BinHeight + 2.0 * region.SlackY;
       double left = -Infinity, right = Infinity;
-      if (this->RadiusSquared < most)
+      if (this->RadiusSquared < region.MostSquared)
       {
         const double off = OffInterval(this->CenterY, low, high);
         const double halfSquared = this->RadiusSquared - off * off;
@@ -432,8 +454,10 @@ private:
         right = this->CenterX + half;
       }
       right = std::min(right, std::max(slope * low, slope * high));
-      const Index first = std::max(bins.Column(this->A.X + left - slackX), firstColumn);
-      const Index last = std::min(bins.Column(this->A.X + right + slackX), lastColumn);
+      const Index first =
+        std::max(bins.Column(this->A.X + left - region.SlackX), region.FirstColumn);
+      const Index last =
+        std::min(bins.Column(this->A.X + right + region.SlackX), region.LastColumn);
       if (first <= last)
       {
         const auto slots = this->Grid.Slots(r, first, last);
@@ -445,13 +469,7 @@ private:
         this->Compare(slots.first, slots.second - slots.first);
       }
     }
-    const double radius = std::sqrt(this->RadiusSquared);
-    const double low = bins.OriginX + firstColumn * bins.BinWidth + slackX - this->A.X;
-    const double high = bins.OriginX + (lastColumn + 1) * bins.BinWidth - slackX - this->A.X;
-    const double top = bins.OriginY + (lastRow + 1) * bins.BinHeight - slackY - this->A.Y;
-    return this->Best != None && (firstColumn == 0 || this->CenterX - radius > low) &&
-      (lastColumn == bins.Columns - 1 || this->CenterX + radius < high) &&
-      (lastRow == bins.Rows - 1 || this->CenterY + radius < top);
+    return true;
   }
 
   /** Nearly always there is one candidate; else exact comparisons decide. */
@@ -654,61 +672,135 @@ private:
     return number >= 0 && number < 32 ? 1u << number : 0u;
   }
 
-  __attribute__((target("avx2"))) bool CompareWide(Index first, Index count)
+  /** Compares a stretch of slots with the best so far, but for those outside the disc. */
+  __attribute__((target("avx2"))) void CompareWide(Index first, Index end)
   {
-    bool isChanged = false;
-    const Index end = first + count;
-    for (Index slot = first; slot < end; slot += 4)
+    for (Index slot = first; slot < end; slot += 8)
     {
-      unsigned int left = this->MayBeBetter(slot) & (15u >> std::max(slot + 4 - end, 0)) &
-        ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
-      for (; left; left &= left - 1)
-      {
-        isChanged = this->CompareOne(slot + __builtin_ctz(left)) || isChanged;
-      }
+      this->CompareEight(slot, end);
     }
-    return isChanged;
   }
 
-  /** Four slots from this one: which of them Compare() would not pass over at once, as bits. */
-  __attribute__((target("avx2"), always_inline)) inline unsigned int MayBeBetter(Index slot) const
+  /** At most eight slots from this one. */
+  __attribute__((target("avx2"), always_inline)) inline void CompareEight(Index slot, Index end)
   {
-    const __m256d signBit = _mm256_set1_pd(-0.0), roundoffs = _mm256_set1_pd(UnitRoundoff);
-    const __m256d edgeX = _mm256_set1_pd(this->EdgeX), edgeY = _mm256_set1_pd(this->EdgeY);
-    const __m256d x = _mm256_loadu_pd(this->Grid.X.data() + slot);
-    const __m256d y = _mm256_loadu_pd(this->Grid.Y.data() + slot);
-    const __m256d px = _mm256_sub_pd(x, _mm256_set1_pd(this->A.X));
-    const __m256d py = _mm256_sub_pd(y, _mm256_set1_pd(this->A.Y));
-    const __m256d left = _mm256_mul_pd(edgeX, py), right = _mm256_mul_pd(edgeY, px);
-    const __m256d cross = _mm256_sub_pd(left, right);
-    const __m256d crossMagnitude =
-      _mm256_add_pd(_mm256_andnot_pd(signBit, left), _mm256_andnot_pd(signBit, right));
-    const __m256d crossError =
-      _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(8.0), roundoffs), crossMagnitude),
-        _mm256_set1_pd(1e-290));
-    const __m256d isRight = _mm256_cmp_pd(cross, _mm256_xor_pd(signBit, crossError), _CMP_LT_OQ);
-    if (this->Best == None)
+    unsigned int inside = (this->InDisc(slot) | this->InDisc(slot + 4) << 4) &
+      (255u >> std::max(slot + 8 - end, 0)) &
+      ~(BitOf(this->Origin - slot) | BitOf(this->Target - slot) | BitOf(this->Best - slot));
+    while (inside)
     {
-      return ~static_cast<unsigned int>(_mm256_movemask_pd(isRight)) & 15u;
+      const int next = __builtin_ctz(inside);
+      inside &= inside - 1;
+      if (this->CompareOne(slot + next))
+      {
+        this->SetDisc(this->UpperPositionOfBest());
+        inside &= this->InDisc(slot) | this->InDisc(slot + 4) << 4;
+      }
     }
-    const __m256d dotX = _mm256_mul_pd(px, _mm256_sub_pd(x, _mm256_set1_pd(this->B.X)));
-    const __m256d dotY = _mm256_mul_pd(py, _mm256_sub_pd(y, _mm256_set1_pd(this->B.Y)));
-    const __m256d dotMagnitude =
-      _mm256_add_pd(_mm256_andnot_pd(signBit, dotX), _mm256_andnot_pd(signBit, dotY));
-    const __m256d difference =
-      _mm256_sub_pd(_mm256_mul_pd(_mm256_add_pd(dotX, dotY), _mm256_set1_pd(this->BestCross)),
-        _mm256_mul_pd(_mm256_set1_pd(this->BestDot), cross));
-    const __m256d magnitude =
-      _mm256_add_pd(_mm256_mul_pd(dotMagnitude, _mm256_set1_pd(this->BestCrossMagnitude)),
-        _mm256_mul_pd(_mm256_set1_pd(this->BestDotMagnitude), crossMagnitude));
-    const __m256d error =
-      _mm256_add_pd(_mm256_mul_pd(_mm256_mul_pd(_mm256_set1_pd(16.0), roundoffs), magnitude),
-        _mm256_set1_pd(this->LeastError));
-    // Worse only counts where cross is certain; else Compare() asks for the side first.
-    const __m256d isWorse = _mm256_and_pd(_mm256_cmp_pd(cross, crossError, _CMP_GT_OQ),
-      _mm256_and_pd(_mm256_cmp_pd(error, _mm256_set1_pd(1e140), _CMP_LT_OQ),
-        _mm256_cmp_pd(difference, error, _CMP_GT_OQ)));
-    return ~static_cast<unsigned int>(_mm256_movemask_pd(_mm256_or_pd(isRight, isWorse))) & 15u;
+  }
+
+  /**
+   * As far as the disc reaches before: so neither the rows wait for the points, nor are branches
+   * taken before it is known which.
+   * @return false when nothing was done, because these are too many points
+   */
+  __attribute__((target("avx2"))) bool LookIntoRowsWide(const Region& region)
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    if (!(this->RadiusSquared < region.MostSquared))
+    {
+      return false;
+    }
+    const double top = this->A.Y + this->CenterY + std::sqrt(this->RadiusSquared) + region.SlackY;
+    const Index lastRow = std::min(bins.Row(top), region.LastRow);
+    const double lowest =
+      bins.OriginY + region.FirstRow * bins.BinHeight - region.SlackY - this->A.Y;
+
+    struct
+    {
+      Index First, End;
+    } parts[MostNear / 8 + NearRows + 1 + 3];
+    Index number = 0, count = 0;
+    const __m256d zero = _mm256_setzero_pd();
+    const __m256d slope = _mm256_set1_pd(this->EdgeY > 0.0 ? this->EdgeX / this->EdgeY : Infinity);
+    const __m256d centerX = _mm256_set1_pd(this->CenterX), centerY = _mm256_set1_pd(this->CenterY);
+    const __m256d slack = _mm256_set1_pd(region.SlackX);
+    const __m256d rowHeight = _mm256_set1_pd(bins.BinHeight + 2.0 * region.SlackY);
+    const __m128i fours = _mm_setr_epi32(0, 1, 2, 3);
+    for (Index four = region.FirstRow; four <= lastRow; four += 4)
+    {
+      const __m256d above =
+        _mm256_cvtepi32_pd(_mm_add_epi32(_mm_set1_epi32(four - region.FirstRow), fours));
+      const __m256d low =
+        _mm256_add_pd(_mm256_set1_pd(lowest), _mm256_mul_pd(above, _mm256_set1_pd(bins.BinHeight)));
+      const __m256d high = _mm256_add_pd(low, rowHeight);
+      const __m256d off = _mm256_max_pd(
+        _mm256_max_pd(_mm256_sub_pd(low, centerY), _mm256_sub_pd(centerY, high)), zero);
+      const __m256d half = _mm256_sqrt_pd(_mm256_max_pd(
+        _mm256_sub_pd(_mm256_set1_pd(this->RadiusSquared), _mm256_mul_pd(off, off)), zero));
+      const __m256d left = _mm256_sub_pd(centerX, half);
+      const __m256d right =
+        _mm256_min_pd(_mm256_max_pd(_mm256_mul_pd(slope, low), _mm256_mul_pd(slope, high)),
+          _mm256_add_pd(centerX, half));
+      alignas(16) Index firsts[4], lasts[4];
+      _mm_store_si128(reinterpret_cast<__m128i*>(firsts),
+        _mm_max_epi32(
+          this->ColumnsOf(_mm256_sub_pd(left, slack)), _mm_set1_epi32(region.FirstColumn)));
+      _mm_store_si128(reinterpret_cast<__m128i*>(lasts),
+        _mm_min_epi32(
+          this->ColumnsOf(_mm256_add_pd(right, slack)), _mm_set1_epi32(region.LastColumn)));
+      for (Index k = 0; k < 4; ++k)
+      {
+        const Index r = std::min(four + k, lastRow);
+        const auto slots = this->Grid.Slots(r, firsts[k], four + k <= lastRow ? lasts[k] : -1);
+        const Index size = std::max(slots.second - slots.first, 0);
+        count += size;
+        if (count > MostNear)
+        {
+          return false;
+        }
+        Index first = slots.first;
+        for (Index i = 0; i < 3; ++i)
+        {
+          parts[number + i] = { first + 8 * i, slots.second };
+        }
+        for (Index i = 3; 8 * i < size; ++i)
+        {
+          parts[number + i] = { first + 8 * i, slots.second };
+        }
+        number += (size + 7) / 8;
+      }
+    }
+    this->Looks += count;
+    for (Index i = 0; i < number; ++i)
+    {
+      this->CompareEight(parts[i].First, parts[i].End);
+    }
+    return true;
+  }
+
+  /** The columns of four x relative to the origin. */
+  __attribute__((target("avx2"), always_inline)) inline __m128i ColumnsOf(__m256d x) const
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    const __m256d positions = _mm256_mul_pd(
+      _mm256_add_pd(_mm256_set1_pd(this->A.X - bins.OriginX), x), _mm256_set1_pd(bins.PerX));
+    return _mm256_cvttpd_epi32(_mm256_min_pd(
+      _mm256_max_pd(positions, _mm256_setzero_pd()), _mm256_set1_pd(bins.Columns - 1)));
+  }
+
+  /** Which of four slots from this one are inside the disc, as bits. */
+  __attribute__((target("avx2"), always_inline)) inline unsigned int InDisc(Index slot) const
+  {
+    const __m256d x = _mm256_sub_pd(
+      _mm256_sub_pd(_mm256_loadu_pd(this->Grid.X.data() + slot), _mm256_set1_pd(this->A.X)),
+      _mm256_set1_pd(this->CenterX));
+    const __m256d y = _mm256_sub_pd(
+      _mm256_sub_pd(_mm256_loadu_pd(this->Grid.Y.data() + slot), _mm256_set1_pd(this->A.Y)),
+      _mm256_set1_pd(this->CenterY));
+    const __m256d squared = _mm256_add_pd(_mm256_mul_pd(x, x), _mm256_mul_pd(y, y));
+    return static_cast<unsigned int>(
+      _mm256_movemask_pd(_mm256_cmp_pd(squared, _mm256_set1_pd(this->RadiusSquared), _CMP_NGT_UQ)));
   }
 #endif
 
@@ -716,23 +808,19 @@ private:
   void Compare(Index first, Index count)
   {
     this->Looks += count;
-    bool isChanged = false;
 #ifdef ELEVATION_HAS_AVX2
     if (this->IsWide)
     {
-      isChanged = this->CompareWide(first, count);
+      this->CompareWide(first, first + count);
+      return;
     }
-    else
 #endif
+    for (Index slot = first; slot < first + count; ++slot)
     {
-      for (Index slot = first; slot < first + count; ++slot)
+      if (this->CompareOne(slot))
       {
-        isChanged = this->CompareOne(slot) || isChanged;
+        this->SetDisc(this->UpperPositionOfBest());
       }
-    }
-    if (isChanged)
-    {
-      this->SetDisc(this->UpperPositionOfBest());
     }
   }
 
@@ -1092,9 +1180,7 @@ private:
     }
     if (this->Fan.empty())
     {
-      constexpr Index ahead = 8;
       this->Fan.Append(first);
-      this->Search.Foresee(this->Order[std::min(this->Next + ahead, this->End - 1)]);
       this->Search.SetOrigin(
         lowest, this->Next + 1 < this->End ? this->Order[this->Next + 1] : None);
     }

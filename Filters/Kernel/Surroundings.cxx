@@ -29,7 +29,8 @@ namespace elevation
 
 namespace
 {
-constexpr double PointsInBox = 14.0; // as expected; half of that when it was too much
+constexpr double PointsInBox = 18.0; // as expected; half of that when it was too much
+constexpr double MostSides = 4.0;    // from the middle of a leaf to the farthest point around it
 constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr double Roundoff = 0x1p-24; // of single precision
 
@@ -38,7 +39,7 @@ struct Shape
 {
   Index Columns, Rows;
 };
-constexpr Shape Shapes[] = { { 6, 4 }, { 3, 3 }, { 3, 2 } };
+constexpr Shape Shapes[Surroundings::NumberOfShapes] = { { 6, 4 }, { 3, 3 }, { 3, 2 } };
 
 ELEVATION_WIDE inline __m256i EightUnits(const double* values, __m256d from, __m256d perUnit)
 {
@@ -81,7 +82,8 @@ Surroundings::Surroundings(const BinGrid& grid)
   , IsWidest(HasAVX512())
 {
   const BinGrid::Layout& bins = grid.Bins;
-  this->OfBox.Set(1.1, 2.0 * Roundoff, 0.002);
+  // Two coordinates are rounded, then their difference.
+  this->OfBox.Set(1.1, (2.0 * MostSides + 1.2) * Roundoff, 0.002);
   if (!IsSupported() || !bins.HasPlainBins)
   {
     return;
@@ -95,7 +97,7 @@ Surroundings::Surroundings(const BinGrid& grid)
     return;
   }
   this->PerUnit = perUnit;
-  for (int shape = 0; shape < 3; ++shape)
+  for (int shape = 0; shape < NumberOfShapes; ++shape)
   {
     // From a vertex in the middle columns or at their border, and in the lowest row.
     const double across = (Shapes[shape].Columns / 2 + 1) * width * perUnit;
@@ -134,22 +136,6 @@ void Surroundings::Bounds::Set(double reach, double error, double margin)
   this->ComparisonError =
     static_cast<float>(slack * square * (24.0 * reach * error + 32.0 * Roundoff * square));
   this->Margin = static_cast<float>(margin);
-}
-
-void Surroundings::Foresee(Index slot) const
-{
-  // In full bins, the points of a row are far apart in memory.
-  if (this->Current->IsBox)
-  {
-    const BinGrid& grid = this->Grid;
-    const char* const node = reinterpret_cast<const char*>(&grid.Nodes[grid.LeafNodes[slot / 8]]);
-    for (std::size_t line = 0; line < sizeof(BinGrid::Node); line += 64)
-    {
-      __builtin_prefetch(node + line);
-    }
-    __builtin_prefetch(&grid.X[slot]);
-    __builtin_prefetch(&grid.Y[slot]);
-  }
 }
 
 bool Surroundings::Gather(Index origin, Index next)
@@ -222,10 +208,13 @@ ELEVATION_WIDE void Surroundings::EnterRow(Index number)
     this->AreNearRead = this->AreNearRead && (row.Number == None || row.IsRead);
     this->Near[r - number] = &row;
   }
-  const Index above = std::min(number + MostRows, bins.Rows);
-  this->TopBound = above == bins.Rows
-    ? std::numeric_limits<std::int32_t>::max()
-    : static_cast<std::int32_t>(above * bins.BinHeight * this->PerUnit);
+  for (int shape = 0; shape < NumberOfShapes; ++shape)
+  {
+    const Index above = std::min(number + Shapes[shape].Rows, bins.Rows);
+    this->TopBounds[shape] = above == bins.Rows
+      ? std::numeric_limits<std::int32_t>::max()
+      : static_cast<std::int32_t>(above * bins.BinHeight * this->PerUnit);
+  }
 }
 
 ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
@@ -254,6 +243,17 @@ ELEVATION_WIDE void Surroundings::ReadRow(Row& row)
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(row.Y.data() + i),
       EightUnits(this->Grid.Y.data() + slots.first + i, fromY, perUnit));
   }
+}
+
+/** How far a window of bins reaches from the vertex. */
+ELEVATION_WIDE_INLINE void Surroundings::SetBounds(Window& window, int shape, Index firstColumn,
+  Index endColumn, std::int32_t originX, std::int32_t originY) const
+{
+  window.IsBox = false;
+  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
+  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
+  window.Top = static_cast<float>(this->TopBounds[shape] - originY);
+  window.Errors = &this->OfShapes[shape];
 }
 
 /** At most 32 points, packed into two vectors. */
@@ -317,11 +317,7 @@ ELEVATION_WIDEST bool Surroundings::GatherWidest(Window& window, Index firstColu
 
   window.OriginLane = window.Origin - own.Starts[firstColumn];
   window.Vectors = WidestVectors;
-  window.IsBox = false;
-  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
-  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
-  window.Top = static_cast<float>(this->TopBound - originY);
-  window.Errors = &this->OfShapes[0];
+  this->SetBounds(window, 0, firstColumn, endColumn, originX, originY);
   return true;
 }
 
@@ -392,11 +388,7 @@ ELEVATION_WIDE bool Surroundings::GatherEven(Window& window, Index firstColumn)
     _mm256_store_ps(window.Square + 32, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
   }
   window.Vectors = EvenVectors;
-  window.IsBox = false;
-  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
-  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
-  window.Top = static_cast<float>(this->TopBound - originY);
-  window.Errors = &this->OfShapes[0];
+  this->SetBounds(window, 0, firstColumn, endColumn, originX, originY);
   return true;
 }
 
@@ -440,14 +432,7 @@ ELEVATION_WIDE bool Surroundings::GatherBins(Window& window, Index column, int s
     count += end - first;
   }
   window.Close(count, this->IsWidest);
-  window.IsBox = false;
-  const Index above = std::min(this->CurrentRow + Shapes[shape].Rows, bins.Rows);
-  window.Left = static_cast<float>(originX - this->ColumnBounds[firstColumn]);
-  window.Right = static_cast<float>(this->ColumnBounds[endColumn] - originX);
-  window.Top = above == bins.Rows
-    ? std::numeric_limits<float>::max()
-    : static_cast<float>(above * bins.BinHeight * this->PerUnit - originY);
-  window.Errors = &this->OfShapes[shape];
+  this->SetBounds(window, shape, firstColumn, endColumn, originX, originY);
   return true;
 }
 
@@ -485,12 +470,50 @@ ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) co
   return lanes;
 }
 
-bool Surroundings::GatherBox(Window& window)
+/** The points around the leaf that holds a slot. */
+const Surroundings::Neighborhood& Surroundings::Around(Index slot)
 {
-  const Point2 p = this->Grid.PointAt(window.Origin);
-  const BinGrid::Step last = this->Grid.Lowest(window.Origin);
-  const double size = last.Node->Size, width = last.HighX - last.LowX,
-               height = last.HighY - last.LowY;
+  const Index eights = (this->Grid.NumberOfPoints() - 1) / 8 + 1;
+  if (this->Neighborhoods.empty())
+  {
+    // A line of equal y runs through about as many leaves as the root of their number: vertices of
+    // these come in turn.
+    const double leaves = this->Grid.NumberOfPoints() / 16.0;
+    this->Neighborhoods.resize(static_cast<std::size_t>(16.0 + 2.0 * std::sqrt(leaves)));
+    this->Known.assign(eights, 0);
+  }
+  const Index eight = slot / 8;
+  for (Index at : { eight, std::max(eight - 1, 0), std::min(eight + 1, eights - 1) })
+  {
+    const Neighborhood& known = this->Neighborhoods[this->Known[at]];
+    if (known.First <= slot && slot < known.End)
+    {
+      return known;
+    }
+  }
+  const std::size_t oldest = this->Oldest;
+  this->Oldest = (oldest + 1) % this->Neighborhoods.size();
+  Neighborhood& made = this->Neighborhoods[oldest];
+  this->GatherNeighborhood(made, slot);
+  std::fill(this->Known.begin() + made.First / 8, this->Known.begin() + (made.End + 7) / 8,
+    static_cast<Index>(oldest));
+  return made;
+}
+
+void Surroundings::GatherNeighborhood(Neighborhood& around, Index slot)
+{
+  const BinGrid::Step last = this->Grid.Lowest(slot);
+  const BinGrid::Node& node = *last.Node;
+  int place = 0;
+  while (slot < node.First[place] || slot >= node.First[place] + node.Count[place])
+  {
+    ++place;
+  }
+  around.First = node.First[place];
+  around.End = around.First + node.Count[place];
+  const double size = node.Size, width = last.HighX - last.LowX, height = last.HighY - last.LowY;
+  const double leafLowX = node.LowX[place], leafHighX = node.HighX[place];
+  const double leafLowY = node.LowY[place], leafHighY = node.HighY[place];
   for (double points : { PointsInBox, 0.5 * PointsInBox })
   {
     // The side of a square with so many points; where points lie in a strip narrower than that, the
@@ -500,52 +523,69 @@ bool Surroundings::GatherBox(Window& window)
     {
       side = points / size * std::max(width, height);
     }
-    const double perSide = 1.0 / side;
-    if (!(perSide > 1e-150 && perSide < 1e150))
+    const double lowX = leafLowX - 0.551 * side, highX = leafHighX + 0.551 * side;
+    const double highY = leafHighY + 0.901 * side;
+    const double greatest = std::max(
+      std::max(std::fabs(lowX), std::fabs(highX)), std::max(std::fabs(leafLowY), std::fabs(highY)));
+    around.PerSide = 1.0 / side;
+    around.CenterX = 0.5 * leafLowX + 0.5 * leafHighX;
+    around.CenterY = 0.5 * leafLowY + 0.5 * leafHighY;
+    // Of a box of a few roundoffs of the coordinates, rounding makes another one.
+    if (!(around.PerSide > 1e-150 && around.PerSide < 1e150 && greatest < 1e10 * side &&
+          highX - around.CenterX < MostSides * side && highY - around.CenterY < MostSides * side))
     {
-      return false;
-    }
-    const double lowX = p.X - 0.55 * side, highX = p.X + 0.55 * side, highY = p.Y + 0.9 * side;
-    // Of a box of a few roundoffs of the coordinates, rounding makes a larger one.
-    const double across = std::max(p.X - lowX, highX - p.X) * perSide;
-    const double up = (highY - p.Y) * perSide;
-    if (!(across * across + up * up < 1.2))
-    {
-      return false; // R is 1.1
+      break;
     }
     BinGrid::Step top = last;
     while (!(top.LowX < lowX && highX < top.HighX && highY < top.HighY) && !top.IsRoot())
     {
       top = this->Grid.Above(top);
     }
-    window.PerSide = perSide;
-    if (this->GatherBox(window, *top.Node, lowX, highX, highY))
+    if (this->GatherBox(around, *top.Node, lowX, highX, leafLowY, highY))
     {
-      window.Left = static_cast<float>(0.999999 * (p.X - lowX) * perSide);
-      window.Right = static_cast<float>(0.999999 * (highX - p.X) * perSide);
-      window.Top = static_cast<float>(0.999999 * (highY - p.Y) * perSide);
-      window.IsBox = true;
-      window.Errors = &this->OfBox;
-      return true;
+      return;
     }
   }
-  return false;
+  around.Count = 0;
 }
 
-/** For the bits of four places, which of them are set; then any. */
-alignas(16) constexpr std::int32_t Packing[16][4] = { { 0, 0, 0, 0 }, { 0, 0, 0, 0 },
-  { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 2, 0, 0, 0 }, { 0, 2, 0, 0 }, { 1, 2, 0, 0 }, { 0, 1, 2, 0 },
-  { 3, 0, 0, 0 }, { 0, 3, 0, 0 }, { 1, 3, 0, 0 }, { 0, 1, 3, 0 }, { 2, 3, 0, 0 }, { 0, 2, 3, 0 },
-  { 1, 2, 3, 0 }, { 0, 1, 2, 3 } };
-
-/** All points of the box below a node, not below the origin; false when they are too many. */
-ELEVATION_WIDE bool Surroundings::GatherBox(
-  Window& window, const BinGrid::Node& top, double lowX, double highX, double highY)
+/** For the bits of eight places, which of them are set; then any. */
+struct Packing
 {
-  const Point2 p = this->Grid.PointAt(window.Origin);
-  const __m256d originX = _mm256_set1_pd(p.X), scale = _mm256_set1_pd(window.PerSide);
+  alignas(8) std::uint8_t Places[256][8];
+
+  constexpr Packing()
+    : Places()
+  {
+    for (int bits = 0; bits < 256; ++bits)
+    {
+      for (int place = 0, count = 0; place < 8; ++place)
+      {
+        if (bits >> place & 1)
+        {
+          this->Places[bits][count++] = static_cast<std::uint8_t>(place);
+        }
+      }
+    }
+  }
+};
+constexpr Packing Packings;
+
+/** The places that are set. */
+ELEVATION_WIDE_INLINE __m256i PlacesOf(int bits)
+{
+  return _mm256_cvtepu8_epi32(
+    _mm_loadl_epi64(reinterpret_cast<const __m128i*>(Packings.Places[bits])));
+}
+
+/** All points of the box below a node; false when they are too many. */
+ELEVATION_WIDE bool Surroundings::GatherBox(Neighborhood& around, const BinGrid::Node& top,
+  double lowX, double highX, double lowY, double highY)
+{
+  const __m256d centerX = _mm256_set1_pd(around.CenterX), centerY = _mm256_set1_pd(around.CenterY);
+  const __m256d scale = _mm256_set1_pd(around.PerSide);
   const __m256d boxLowX = _mm256_set1_pd(lowX), boxHighX = _mm256_set1_pd(highX);
-  const __m256d boxLowY = _mm256_set1_pd(p.Y), boxHighY = _mm256_set1_pd(highY);
+  const __m256d boxLowY = _mm256_set1_pd(lowY), boxHighY = _mm256_set1_pd(highY);
   const BinGrid::Node* stack[64];
   stack[0] = &top;
   int height = 1;
@@ -575,26 +615,33 @@ ELEVATION_WIDE bool Surroundings::GatherBox(
           continue;
         }
         const Index end = node.First[place] + node.Count[place];
-        for (Index slot = node.First[place]; slot < end; slot += 4)
+        for (Index slot = node.First[place]; slot < end; slot += 8)
         {
-          const __m256d x = _mm256_loadu_pd(this->Grid.X.data() + slot);
-          const __m256d y = _mm256_loadu_pd(this->Grid.Y.data() + slot);
-          const __m256d isInX = _mm256_and_pd(
-            _mm256_cmp_pd(x, boxLowX, _CMP_GE_OQ), _mm256_cmp_pd(x, boxHighX, _CMP_LE_OQ));
-          const __m256d isInY = _mm256_and_pd(
-            _mm256_cmp_pd(y, boxLowY, _CMP_GE_OQ), _mm256_cmp_pd(y, boxHighY, _CMP_LE_OQ));
-          const int in =
-            _mm256_movemask_pd(_mm256_and_pd(isInX, isInY)) & (15 >> std::max(slot + 4 - end, 0));
+          int in = 0;
+          __m128 x[2], y[2]; // in sides
+          for (int half = 0; half < 2; ++half)
+          {
+            const __m256d pointX = _mm256_loadu_pd(this->Grid.X.data() + slot + 4 * half);
+            const __m256d pointY = _mm256_loadu_pd(this->Grid.Y.data() + slot + 4 * half);
+            const __m256d isInX = _mm256_and_pd(_mm256_cmp_pd(pointX, boxLowX, _CMP_GE_OQ),
+              _mm256_cmp_pd(pointX, boxHighX, _CMP_LE_OQ));
+            const __m256d isInY = _mm256_and_pd(_mm256_cmp_pd(pointY, boxLowY, _CMP_GE_OQ),
+              _mm256_cmp_pd(pointY, boxHighY, _CMP_LE_OQ));
+            in |= _mm256_movemask_pd(_mm256_and_pd(isInX, isInY)) << (4 * half);
+            x[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointX, centerX), scale));
+            y[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointY, centerY), scale));
+          }
+          in &= 255 >> std::max(slot + 8 - end, 0);
           // Those within come first, the others are overwritten.
-          const __m128i which = _mm_load_si128(reinterpret_cast<const __m128i*>(Packing[in]));
-          const __m128 unitsX = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(x, originX), scale));
-          const __m128 unitsY = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(y, boxLowY), scale));
-          _mm_storeu_ps(window.X + count, _mm_permutevar_ps(unitsX, which));
-          _mm_storeu_ps(window.Y + count, _mm_permutevar_ps(unitsY, which));
-          _mm_storeu_si128(reinterpret_cast<__m128i*>(window.Slots + count),
-            _mm_add_epi32(_mm_set1_epi32(slot), which));
+          const __m256i which = PlacesOf(in);
+          _mm256_storeu_ps(
+            around.X + count, _mm256_permutevar8x32_ps(_mm256_set_m128(x[1], x[0]), which));
+          _mm256_storeu_ps(
+            around.Y + count, _mm256_permutevar8x32_ps(_mm256_set_m128(y[1], y[0]), which));
+          _mm256_storeu_si256(reinterpret_cast<__m256i*>(around.Slots + count),
+            _mm256_add_epi32(_mm256_set1_epi32(slot), which));
           count += __builtin_popcount(in);
-          if (count > Capacity)
+          if (count > MostAround)
           {
             return false;
           }
@@ -602,9 +649,57 @@ ELEVATION_WIDE bool Surroundings::GatherBox(
       }
     }
   }
-  window.Close(count, this->IsWidest);
-  window.OriginLane = __builtin_ctzll(window.LanesOf<MostVectors>(window.Origin));
+  around.Count = count;
+  _mm256_storeu_ps(around.X + count, _mm256_set1_ps(NotANumber));
   return true;
+}
+
+/** The points of a box around the vertex, from those around its leaf. */
+ELEVATION_WIDE bool Surroundings::GatherBox(Window& window)
+{
+  const Neighborhood& around = this->Around(window.Origin);
+  if (around.Count == 0)
+  {
+    return false;
+  }
+  const Point2 p = this->Grid.PointAt(window.Origin);
+  const __m256 originX =
+    _mm256_set1_ps(static_cast<float>((p.X - around.CenterX) * around.PerSide));
+  const __m256 originY =
+    _mm256_set1_ps(static_cast<float>((p.Y - around.CenterY) * around.PerSide));
+  const __m256 signBit = _mm256_set1_ps(-0.0f), down = _mm256_set1_ps(-0.0005f);
+  for (float size : { 1.0f, 0.7f })
+  {
+    const __m256 across = _mm256_set1_ps(0.5505f * size), up = _mm256_set1_ps(0.9005f * size);
+    int count = 0;
+    for (int i = 0; i < around.Count && count <= Capacity; i += 8)
+    {
+      const __m256 x = _mm256_sub_ps(_mm256_loadu_ps(around.X + i), originX);
+      const __m256 y = _mm256_sub_ps(_mm256_loadu_ps(around.Y + i), originY);
+      const __m256i slots = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(around.Slots + i));
+      const int in = _mm256_movemask_ps(
+        _mm256_and_ps(_mm256_cmp_ps(_mm256_andnot_ps(signBit, x), across, _CMP_LE_OQ),
+          _mm256_and_ps(_mm256_cmp_ps(y, down, _CMP_GE_OQ), _mm256_cmp_ps(y, up, _CMP_LE_OQ))));
+      const __m256i which = PlacesOf(in);
+      _mm256_storeu_ps(window.X + count, _mm256_permutevar8x32_ps(x, which));
+      _mm256_storeu_ps(window.Y + count, _mm256_permutevar8x32_ps(y, which));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(window.Slots + count),
+        _mm256_permutevar8x32_epi32(slots, which));
+      count += __builtin_popcount(in);
+    }
+    if (count <= Capacity)
+    {
+      window.Close(count, this->IsWidest);
+      window.OriginLane = __builtin_ctzll(window.LanesOf<MostVectors>(window.Origin));
+      window.PerSide = around.PerSide;
+      window.Left = window.Right = 0.55f * size;
+      window.Top = 0.9f * size;
+      window.IsBox = true;
+      window.Errors = &this->OfBox;
+      return true;
+    }
+  }
+  return false;
 }
 
 /**
@@ -972,8 +1067,6 @@ bool Surroundings::Gather(Index, Index)
 {
   return false;
 }
-
-void Surroundings::Foresee(Index) const {}
 
 Surroundings::Candidates Surroundings::FindCandidates(Index) const
 {

@@ -12,8 +12,10 @@
  *
  * Around the vertex all points of six columns and four rows of bins are gathered: the window. Where
  * these are too many, it is three columns and less rows; in full bins, a box in which the density
- * thereabouts promises about fifteen points. For bins, the coordinates of the four rows are kept as
+ * thereabouts promises about eighteen points. For bins, the coordinates of the four rows are kept as
  * whole multiples of a unit that is small against the bins, so that differences are exact.
+ * Boxes are taken from the points around a leaf of the tree, its neighborhood, which are gathered
+ * once for all vertices of the leaf and kept while the sweep over the vertices passes through it.
  *
  * The proof. Let R be the longest distance from the vertex within the window, e the error of a
  * coordinate relative to the vertex and u = 2^-24. With cross = b x p and dot = p . (p - b) for the
@@ -63,10 +65,6 @@ public:
    */
   bool Gather(Index origin, Index next = None);
 
-  /** Asks for the memory that gathering the window of a vertex will need, when called some vertices
-   * before. */
-  void Foresee(Index slot) const;
-
   struct Candidates
   {
     std::uint64_t Bits = 0; ///< numbers that SlotOf takes
@@ -82,6 +80,7 @@ public:
   Candidates FindCandidates(Index b) const;
 
   static constexpr int Capacity = 56;
+  static constexpr int NumberOfShapes = 3; ///< of windows of bins
 
   /**
    * The neighbours of the vertex counter-clockwise after b, apex after apex, as far as each is
@@ -98,6 +97,7 @@ public:
 private:
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
   static constexpr int Room = Capacity + 8; // whole vectors are written
+  static constexpr int MostAround = 120;    // a leaf
   static constexpr Index MostRows = 4;
   static constexpr int RowRoom = 40;            // whole vectors are read
   static constexpr std::size_t MostPerBin = 32; // points in a row of which windows are made
@@ -144,14 +144,33 @@ private:
     std::uint64_t LanesOf(Index slot) const;
   };
 
+  /**
+   * The points around a leaf of the tree: those of the boxes of all its points, relative to its
+   * middle. Vertices of a full bin come by their y, from everywhere in it, but only those of some
+   * leaves at a time.
+   */
+  struct Neighborhood
+  {
+    Index First = 0, End = 0;         ///< slots of the leaf
+    int Count = 0;                    ///< 0 where they are too many
+    double CenterX, CenterY, PerSide; ///< sides of the boxes a unit of the grid
+    float X[MostAround + 8], Y[MostAround + 8];
+    Index Slots[MostAround + 8];
+  };
+
   void EnterRow(Index number);
   void ReadRow(Row& row);
   void GatherInto(Window& window);
+  void SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
+    std::int32_t originX, std::int32_t originY) const;
   bool GatherWidest(Window& window, Index firstColumn);
   bool GatherEven(Window& window, Index firstColumn);
   bool GatherBins(Window& window, Index column, int shape);
   bool GatherBox(Window& window);
-  bool GatherBox(Window& window, const BinGrid::Node& top, double lowX, double highX, double highY);
+  const Neighborhood& Around(Index slot);
+  void GatherNeighborhood(Neighborhood& around, Index slot);
+  bool GatherBox(Neighborhood& around, const BinGrid::Node& top, double lowX, double highX,
+    double lowY, double highY);
   bool PlaceEnd(Index b, std::uint64_t lanes, float& x, float& y) const;
   template <int Vectors>
   Candidates Search(float bx, float by, int& guess) const;
@@ -169,15 +188,18 @@ private:
 
   // Windows of bins; none when PerUnit is 0.
   double PerUnit = 0.0; ///< units a unit of the grid
-  Bounds OfShapes[3];
+  Bounds OfShapes[NumberOfShapes];
   std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
   std::vector<Index> Nothing;             ///< the starts of a row beyond the last
   Row Rows[MostRows];                     ///< by their number modulo MostRows
   Row* Near[MostRows];                    ///< from the current row upwards
   Index CurrentRow = None;
   bool AreNearRead = false;
-  std::int32_t TopBound = 0;
-  Bounds OfBox; ///< of all boxes, whose unit is their side
+  std::int32_t TopBounds[NumberOfShapes]; ///< of the windows of the current row's vertices
+  Bounds OfBox;                           ///< of all boxes, whose unit is their side
+  std::vector<Neighborhood> Neighborhoods;
+  std::vector<Index> Known; ///< for eight slots after eight, where their leaf's neighborhood was
+  std::size_t Oldest = 0;
 };
 
 } // namespace elevation

@@ -29,8 +29,8 @@ Index Apex(const BinGrid& grid, Index a, Index b)
 }
 
 /**
- * Over edges from every tenth vertex to near ones: what is said to be proved holds the apex, as long
- * as the apex is above the vertex.
+ * Over edges from every tenth vertex to near ones, from the lowest vertex up: what is said to be
+ * proved holds the apex, as long as the apex is above the vertex.
  * @return the part of the edges for which there was a proof
  */
 double ExpectProofsHold(const Cloud& cloud)
@@ -39,8 +39,9 @@ double ExpectProofsHold(const Cloud& cloud)
   Surroundings around(grid);
   const Index count = grid.NumberOfPoints();
   int asked = 0, proved = 0;
-  for (Index a = 0; a < count; a += 10)
+  for (Index i = 0; i < count; i += 10)
   {
+    const Index a = grid.Order[i];
     const Point2 origin = grid.PointAt(a);
     std::vector<std::pair<double, Index>> above;
     for (Index b = 0; b < count; ++b)
@@ -52,9 +53,9 @@ double ExpectProofsHold(const Cloud& cloud)
     }
     std::sort(above.begin(), above.end());
     const bool isGathered = around.Gather(a);
-    for (std::size_t i = 0; i < std::min<std::size_t>(above.size(), 3); ++i)
+    for (std::size_t nth = 0; nth < std::min<std::size_t>(above.size(), 3); ++nth)
     {
-      const Index b = above[i].second;
+      const Index b = above[nth].second;
       const Index apex = Apex(grid, a, b);
       if (apex == None || IsLower(grid.PointAt(apex), origin))
       {
