@@ -1183,6 +1183,10 @@ private:
     };
     for (; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
+      if (y == 0 || y == e.Y)
+      {
+        continue; // a disc through an end has no node beyond its neighbor in its row
+      }
       int level = 0;
       while (level < MostBands && ((row + y) & ((1 << BandBits * (level + 1)) - 1)) == 0 &&
         isMissed(level + 1))
@@ -1225,6 +1229,7 @@ private:
         }
         for (; bits; bits &= bits - 1)
         {
+          work += 8;
           const Offset p{ 64 * w + LowestBit(bits) - origin, y };
           const Apex apex = ApexAt(this->Metric, e, p);
           if (apex.Cross > 0 && IsBetter(apex, best, e))
@@ -1272,7 +1277,8 @@ private:
 /** No more than there are cores: what is done at once must be done soon, for the next report. */
 int NumberOfThreads(const DelaunayOptions& options)
 {
-  return std::min(ResolveNumberOfThreads(options.NumberOfThreads), ResolveNumberOfThreads(0));
+  const int asked = ResolveNumberOfThreads(options.NumberOfThreads);
+  return asked > 1 ? std::min(asked, ResolveNumberOfThreads(0)) : 1;
 }
 
 /** Few points fit some lattice by chance, the more easily the larger the tolerance. */
