@@ -456,6 +456,10 @@ TEST(Lattice, IsTheSameForAnyNumberOfThreads)
   }
   // Large enough for several ranges of points and several rounds of strips.
   check(frames[1], RandomNodes(random, 1200, 900, 0.12), "large and sparse");
+  for (const Frame& frame : frames)
+  {
+    check(frame, RandomNodes(random, 400, 400, 0.04), "many borders of a sparse one");
+  }
   check(frames[3], GridWithHoles(700), "large with holes");
 }
 
@@ -469,7 +473,10 @@ TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
   for (Index i = 0; i < distinct / 3; ++i)
   {
     const std::size_t id = random() % static_cast<std::size_t>(distinct);
-    cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
+    for (Index times = i % 7 == 0 ? 2 : 1; times > 0; --times) // also one right after the other
+    {
+      cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
+    }
     if (i % 1000 == 0)
     {
       cloud.Add(0.0, INFINITY);
