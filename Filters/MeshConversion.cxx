@@ -252,22 +252,25 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
   }
 }
 
-vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles)
+vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads)
 {
   triangles.Shrink();
   const vtkIdType size = static_cast<vtkIdType>(triangles.size());
   vtkNew<vtkTypeInt32Array> connectivity;
   connectivity->SetArray(triangles.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
   Buffer<Index> begins; // one cell's after another's, and the last one's end
-  begins.Resize(static_cast<std::size_t>(size) / 3 + 1);
-  Index begin = 0;
-  for (Index& entry : begins)
-  {
-    entry = begin;
-    begin += 3;
-  }
+  const Index count = static_cast<Index>(size / 3) + 1;
+  begins.Resize(static_cast<std::size_t>(count));
+  constexpr Index pieceCells = 1 << 18;
+  ForEachPiece((count - 1) / pieceCells + 1, threads, [&](Index piece) {
+    const Index first = piece * pieceCells, last = first + std::min(pieceCells, count - first);
+    for (Index i = first; i < last; ++i)
+    {
+      begins[i] = 3 * i;
+    }
+  });
   vtkNew<vtkTypeInt32Array> offsets;
-  offsets->SetArray(begins.Release(), size / 3 + 1, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+  offsets->SetArray(begins.Release(), count, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
   auto cells = vtkSmartPointer<vtkCellArray>::New();
   cells->SetData(offsets, connectivity);
   return cells;

@@ -61,8 +61,11 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(
 /** The cell id of the first polygon of a polydata. */
 vtkIdType FirstPolygon(vtkPolyData* input);
 
-/** Triangles as a cell array; the connectivity is handed over without a copy. */
-vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles);
+/**
+ * Triangles as a cell array; the connectivity is handed over without a copy, the offsets are
+ * written on up to so many threads.
+ */
+vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads = 1);
 
 /** Whether the values are float or double: what can be interpolated. */
 bool IsFloatingPoint(vtkAbstractArray* array);

@@ -4,6 +4,7 @@
 
 #include "Kernel/ConstrainedDelaunay.h"
 #include "Kernel/Delaunay.h"
+#include "Kernel/Parallel.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
 
@@ -301,7 +302,8 @@ int vtkGridDelaunay2D::RequestData(
     {
       AddLattice(triangulation.Steps, output->GetFieldData());
     }
-    output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles)));
+    output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
+      elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
     elevation::Report(progress, 1.0);
     // Only now, as an abort or an error leaves no counts.
     this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;

@@ -35,33 +35,26 @@ struct Extent
   }
 };
 
-/** Into how many parts ForEachRange divides points, for so many threads. */
-inline Index NumberOfParts(int threads)
+/** How many points are passed over at once: a piece of work for one thread. */
+constexpr Index PointsPerRange = 1 << 16;
+
+inline Index NumberOfRanges(Index count)
 {
-  return threads > 1 ? 4 * threads : 1;
+  return count / PointsPerRange + (count % PointsPerRange != 0 ? 1 : 0);
 }
 
 /**
- * Calls work(part, begin, end) for ranges of ids that make up [0, count), on several threads, and
- * reports between them. A part gets the same ranges each time, by increasing id, and is never with
- * two threads at once, so what it gathers may be kept by part without locks.
+ * Calls work(piece, begin, end) for the ranges of ids that make up [0, count), on several threads,
+ * and reports between them. A piece is the same range each time, so what it gathers may be kept by
+ * piece without locks.
  */
 template <typename Work>
 void ForEachRange(Index count, int threads, const Progress& progress, Work&& work)
 {
-  constexpr Index least = 1 << 14, most = 1 << 18;
-  const Index parts = NumberOfParts(threads);
-  const Index length = std::min(std::max(count / parts + 1, least), most);
-  for (std::int64_t done = 0; done < count; done += std::int64_t(parts) * length)
-  {
-    Report(progress, double(done) / count);
-    const Index ranges =
-      static_cast<Index>(std::min<std::int64_t>(parts, (count - done + length - 1) / length));
-    ForEachPiece(ranges, threads, [&](Index part) {
-      const Index begin = static_cast<Index>(done) + part * length;
-      work(part, begin, begin + std::min(length, count - begin));
-    });
-  }
+  ForEachPiece(NumberOfRanges(count), threads, progress, [&](Index piece) {
+    const Index begin = piece * PointsPerRange;
+    work(piece, begin, begin + std::min(PointsPerRange, count - begin));
+  });
 }
 
 /** Visits (id, Point2) of the points of a range but those listed, by increasing id. */
@@ -97,35 +90,54 @@ void ForEachPoint(
   }
 }
 
+/** Adds the points of a range, x, y, z interleaved, to an extent; visits those that are finite. */
+template <typename T, typename Visit>
+void AddToExtent(const T* points, Index begin, Index end, Extent& extent, Visit&& visit)
+{
+  Extent here; // in registers
+  const T* p = points + 3 * static_cast<std::size_t>(begin);
+  for (Index id = begin; id < end; ++id, p += 3)
+  {
+    const double x = p[0], y = p[1], z = p[2];
+    // The difference of a finite number with itself is 0, of any other not a number.
+    if (!((x - x) + (y - y) + (z - z) == 0.0))
+    {
+      extent.NotFinite.push_back(id);
+      continue;
+    }
+    here.Add({ x, y });
+    visit(Point2{ x, y });
+  }
+  extent.Add(here.Low, here.High);
+}
+
 /**
- * The extent of points, which are visited on the way: visit(part, point) for each that is finite,
- * with the part as of ForEachRange().
+ * The extent of points, which are visited on the way: visit(piece, point) for each that is finite,
+ * with the piece as of ForEachRange().
  */
 template <typename Visit>
 Extent FindExtent(const PointView& points, int threads, const Progress& progress, Visit&& visit)
 {
-  std::vector<Extent> parts(NumberOfParts(threads));
-  ForEachRange(points.Count, threads, progress, [&](Index part, Index begin, Index end) {
+  std::vector<Extent> pieces(NumberOfRanges(points.Count));
+  ForEachRange(points.Count, threads, progress, [&](Index piece, Index begin, Index end) {
     Extent here; // not in memory that other threads write next to
-    ForEachPoint(points, begin, end, {}, [&](Index id, const Point2& p) {
-      // The difference of a finite number with itself is 0, of any other not a number.
-      if (!((p.X - p.X) + (p.Y - p.Y) + (points.Elevation(id) - points.Elevation(id)) == 0.0))
-      {
-        parts[part].NotFinite.push_back(id);
-        return;
-      }
-      here.Add(p);
-      visit(part, p);
-    });
-    parts[part].Add(here.Low, here.High);
+    const auto visitHere = [&](const Point2& p) { visit(piece, p); };
+    if (points.Double)
+    {
+      AddToExtent(points.Double, begin, end, here, visitHere);
+    }
+    else
+    {
+      AddToExtent(points.Float, begin, end, here, visitHere);
+    }
+    pieces[piece] = std::move(here);
   });
   Extent extent;
-  for (const Extent& part : parts)
+  for (const Extent& piece : pieces)
   {
-    extent.Add(part.Low, part.High);
-    extent.NotFinite.insert(extent.NotFinite.end(), part.NotFinite.begin(), part.NotFinite.end());
+    extent.Add(piece.Low, piece.High);
+    extent.NotFinite.insert(extent.NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());
   }
-  std::sort(extent.NotFinite.begin(), extent.NotFinite.end());
   return extent;
 }
 

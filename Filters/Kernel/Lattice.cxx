@@ -560,13 +560,17 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  std::vector<std::vector<Point2>> parts(NumberOfParts(threads));
+  struct alignas(64) Picked // not where other threads write next to
+  {
+    std::vector<Point2> Points;
+  };
+  std::vector<Picked> pieces(NumberOfRanges(points.Count));
   const std::uint64_t wideLimit = HashLimit(WideSampleSize, points.Count);
   static_cast<Extent&>(search) =
-    FindExtent(points, threads, Part(progress, 0.0, 0.5), [&](Index part, const Point2& p) {
+    FindExtent(points, threads, Part(progress, 0.0, 0.5), [&](Index piece, const Point2& p) {
       if (HashOf(p) < wideLimit)
       {
-        parts[part].push_back(p);
+        pieces[piece].Points.push_back(p);
       }
     });
   const Index count = points.Count - static_cast<Index>(search.NotFinite.size());
@@ -577,11 +581,11 @@ LatticeSearch FindLattice(
   {
     return search;
   }
-  const auto takeAll = [&parts](std::vector<Point2>& all) {
-    for (std::vector<Point2>& part : parts)
+  const auto takeAll = [&pieces](std::vector<Point2>& all) {
+    for (Picked& piece : pieces)
     {
-      all.insert(all.end(), part.begin(), part.end());
-      part.clear();
+      all.insert(all.end(), piece.Points.begin(), piece.Points.end());
+      piece.Points.clear();
     }
   };
   std::vector<Point2> around, sample;
@@ -613,12 +617,12 @@ LatticeSearch FindLattice(
     place.Add(histogram.CornerOf(fullest, 1));
   }
   ForEachRange(
-    points.Count, threads, Part(progress, 0.5, 0.9), [&](Index part, Index begin, Index end) {
+    points.Count, threads, Part(progress, 0.5, 0.9), [&](Index piece, Index begin, Index end) {
       ForEachPoint(points, begin, end, search.NotFinite, [&](Index, const Point2& p) {
         if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
           (p.Y <= place.High.Y))
         {
-          parts[part].push_back(p);
+          pieces[piece].Points.push_back(p);
         }
       });
     });

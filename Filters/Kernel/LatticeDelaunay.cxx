@@ -175,6 +175,8 @@ public:
     , B(static_cast<double>(metric.B))
     , Determinant(A * static_cast<double>(metric.C) - B * B)
     , Root(std::sqrt(Determinant))
+    , Slant(B / A)
+    , PerRow(Determinant / A / A)
     , EdgeX(static_cast<double>(e.X))
     , EdgeY(static_cast<double>(e.Y))
     , C(static_cast<double>(metric.C))
@@ -215,6 +217,7 @@ public:
     const double centerX = 0.5 * this->EdgeX + bound * this->NormalX;
     const double centerY = 0.5 * this->EdgeY + bound * this->NormalY;
     this->IsHalfPlane = !(this->RadiusSquared < 1e16 * this->LengthOfStep);
+    this->WidthSquared = this->RadiusSquared / this->A * (1.0 + 1e-14);
     this->Left = centerX - halfWidth * (1.0 + 1e-9);
     this->Right = centerX + halfWidth * (1.0 + 1e-9);
     this->Bottom = centerY - halfHeight * (1.0 + 1e-9);
@@ -272,32 +275,33 @@ private:
     if (!this->IsHalfPlane)
     {
       const double dy = y - this->CenterY;
-      const double tolerance = 1e-14 * this->RadiusSquared / this->A;
-      const double squared =
-        (this->RadiusSquared - this->Determinant / this->A * dy * dy) / this->A + tolerance;
+      const double squared = this->WidthSquared - this->PerRow * dy * dy;
       if (squared < 0.0)
       {
         return false;
       }
       const double half = std::sqrt(squared) + Slack;
-      const double middle = this->CenterX - this->B / this->A * dy;
+      const double middle = this->CenterX - this->Slant * dy;
       low = std::max(low, middle - half);
       high = std::min(high, middle + half);
     }
     return true;
   }
 
-  double A, B, Determinant, Root, EdgeX, EdgeY, C;
+  double A, B, Determinant, Root, Slant, PerRow, EdgeX, EdgeY, C;
   double LengthSquared, NormalX, NormalY;
-  double RadiusSquared = 0.0, CenterX = 0.0, CenterY = 0.0, LengthOfStep = 0.0;
+  double RadiusSquared = 0.0, WidthSquared = 0.0, CenterX = 0.0, CenterY = 0.0, LengthOfStep = 0.0;
   bool IsHalfPlane = true;
 };
 
-/** For an edge vector, the nodes near it that may be the apex, the best first. */
+/**
+ * For an edge vector, the nodes near it that may be the apex, the best first: over an edge upwards
+ * those above the vertex, over one downwards all of them.
+ */
 class ApexList
 {
 public:
-  static constexpr Index Reach = 15; ///< columns to each side, and rows up
+  static constexpr Index Reach = 15; ///< columns to each side, and rows
   static constexpr std::size_t Length = 64;
 
   struct Entry
@@ -310,12 +314,12 @@ public:
   ApexList(const LatticeMetric& metric, const Offset& e, const LatticeNodes& nodes)
   {
     std::vector<Apex> all;
-    for (std::int64_t y = 0; y <= Reach; ++y)
+    for (std::int64_t y = e.Y < 0 ? -Reach : 0; y <= Reach; ++y)
     {
-      for (std::int64_t x = y == 0 ? 1 : -Reach; x <= Reach; ++x)
+      for (std::int64_t x = -Reach; x <= Reach; ++x)
       {
         const Offset p{ x, y };
-        if (Cross(e, p) > 0)
+        if (Cross(e, p) > 0 && (e.Y < 0 || y > 0 || x > 0))
         {
           all.push_back(ApexAt(metric, e, p));
         }
@@ -330,7 +334,8 @@ public:
       const Apex& apex = all[i];
       disc.Set(disc.PositionOf(apex));
       const double limit = Reach + 1 - 1e-6;
-      if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit))
+      if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit) ||
+        (e.Y < 0 && !(disc.Bottom > -limit)))
       {
         break;
       }
@@ -368,11 +373,11 @@ public:
   /** @return nullptr when there is none. Threads may ask at the same time. */
   const ApexList* Of(const Offset& e)
   {
-    if (std::abs(e.X) > Reach || e.Y > Reach)
+    if (std::abs(e.X) > Reach || std::abs(e.Y) > Reach)
     {
       return nullptr;
     }
-    Slot& slot = this->Slots[static_cast<std::size_t>(e.Y * (2 * Reach + 1) + e.X + Reach)];
+    Slot& slot = this->Slots[static_cast<std::size_t>((e.Y + Reach) * Side + e.X + Reach)];
     const ApexList* list = slot.List.load(std::memory_order_acquire);
     if (!list && slot.Uses.fetch_add(1, std::memory_order_relaxed) >= UsesBeforeList)
     {
@@ -386,7 +391,7 @@ public:
   }
 
 private:
-  static constexpr Index Reach = 10;
+  static constexpr Index Reach = 10, Side = 2 * Reach + 1;
   static constexpr int UsesBeforeList = 16;
 
   struct Slot
@@ -397,13 +402,11 @@ private:
 
   const LatticeMetric& Metric;
   const LatticeNodes& Nodes;
-  std::array<Slot, (2 * Reach + 1) * (Reach + 1)> Slots;
+  std::array<Slot, Side * Side> Slots;
 };
 
 /** Work for each point before growing is given up, in nanoseconds or so. */
 constexpr std::int64_t WorkPerPoint = 1000;
-/** And for a walk across the points, during which nothing is reported. */
-constexpr std::int64_t MostWorkOfWalk = 30000000;
 
 /** Thrown where it is. */
 struct CannotGrow
@@ -419,7 +422,7 @@ struct CannotGrow
 class Grower
 {
 public:
-  Grower(const PointView& points, const LatticeNodes& nodes, const LatticeMetric& metric,
+  Grower(const PointView& points, LatticeNodes& nodes, const LatticeMetric& metric,
     const DelaunayOptions& options)
     : Points(points)
     , Nodes(nodes)
@@ -428,6 +431,7 @@ public:
     , Count(nodes.NumberOfPoints())
     , Lists(metric, nodes)
   {
+    this->First.Recycle(std::move(nodes.Room));
     const double area = double(metric.A) * double(metric.C) - double(metric.B) * double(metric.B);
     const double perPoint = double(nodes.Columns) * nodes.Rows / this->Count;
     this->FirstHeight = 1.3 * std::sqrt(std::sqrt(area) * perPoint);
@@ -488,32 +492,14 @@ private:
   {
     this->First.Resize(this->Count);
     this->Last.Resize(this->Count);
-    const auto open = [&](const std::vector<Index>& chain, Buffer<Index>& ends) {
-      for (std::size_t i = 0; i + 1 < chain.size(); ++i)
-      {
-        ends[this->Nodes.RankOf(chain[i])] = chain[i + 1];
-      }
-    };
-    open(this->RightChain, this->First);
-    open(this->LeftChain, this->Last);
-
-    std::vector<Strip> strips = this->MakeStrips(threads);
-    const Index number = static_cast<Index>(strips.size());
-    for (Index done = 1; done < number; done += threads)
-    {
-      Report(progress, 0.0);
-      ForEachPiece(std::min(threads, number - done), threads,
-        [&](Index i) { this->WalkBelow(strips[done + i]); });
-    }
-
     triangles.Resize(3 * total);
-    for (Index i = 0; i < number; ++i)
+    std::vector<Strip> strips = this->MakeStrips(threads);
+    for (Strip& strip : strips)
     {
-      const std::size_t end = i + 1 < number ? strips[i + 1].FirstTriangle : total;
-      strips[i].Begin = strips[i].Next = triangles.data() + 3 * strips[i].FirstTriangle;
-      strips[i].End = triangles.data() + 3 * end;
+      strip.End = triangles.data() + 3 * total;
     }
-    if (!this->GrowStrips(strips, threads, progress))
+    strips[0].Begin = strips[0].Next = triangles.data();
+    if (!this->GrowStrips(strips, threads, progress, triangles.data()))
     {
       return false;
     }
@@ -521,11 +507,15 @@ private:
     Index* end = triangles.data();
     for (const Strip& strip : strips)
     {
-      if (this->LimitSquared == Infinity && strip.Next != strip.End)
+      if (this->LimitSquared == Infinity && strip.Begin != end)
       {
         ThrowOpenFan();
       }
       end = strip.Begin == end ? strip.Next : std::copy(strip.Begin, strip.Next, end);
+    }
+    if (this->LimitSquared == Infinity && end != triangles.end())
+    {
+      ThrowOpenFan();
     }
     triangles.Resize(static_cast<std::size_t>(end - triangles.data()));
     return true;
@@ -579,63 +569,98 @@ private:
     return true;
   }
 
-  /** Rows that one thread grows. */
+  /** Rows that one thread grows, a little at a time. */
   struct Strip
   {
-    Index FirstRow = 0, EndRow = 0;
     Index FirstRank = 0, EndRank = 0;
-    std::size_t FirstTriangle = 0; ///< how many triangles start below the strip
-    Index* Begin = nullptr;        ///< of its triangles
+    Index FirstWord = 0, EndWord = 0; ///< of the bitmap
+    Index Word = 0;                   ///< the next one to grow
+    Index Low = None, High = None;    ///< nodes where the walk below has come to
+    std::size_t Pairs = 0;            ///< triangles with two vertices above that it has found
+    Index* Begin = nullptr;           ///< of its triangles; known when the walk is done
     Index* Next = nullptr;
-    Index* End = nullptr;
-    Index Row = 0;         ///< the next one to grow
-    std::int64_t Work = 0; ///< done so far, in nanoseconds or so
-    bool IsFlat = false;   ///< a triangle would be flat or inverted
+    Index* End = nullptr;   ///< of all triangles
+    std::int64_t Work = 0;  ///< done so far, in nanoseconds or so
+    std::int64_t Pause = 0; ///< the work at which to look at the clock
+    bool IsStarted = false; ///< the hull's edges are entered
+    bool IsFlat = false;    ///< a triangle would be flat or inverted
   };
 
-  Index FirstRankOf(Index row) const { return this->Nodes.Before[this->Nodes.NodeAt(row, 0) / 64]; }
+  Index FirstWordOf(Index row) const { return this->Nodes.NodeAt(row, 0) / 64; }
+  Index FirstRankOf(Index row) const { return this->Nodes.Before[this->FirstWordOf(row)]; }
 
-  /** Strips of about as many points each, all of them with points. */
+  /**
+   * Strips of about as many points each, all of them with points: several a thread, as they do not
+   * take equally long, but not so many that the walks below them count.
+   */
   std::vector<Strip> MakeStrips(int threads) const
   {
-    constexpr Index fewest = 20000;
-    const Index perStrip = this->Options.PointsPerStrip > 0 ? this->Options.PointsPerStrip
-      : threads > 1 ? std::max(this->Count / (4 * threads) + 1, fewest)
-                    : this->Count;
+    const LatticeNodes& nodes = this->Nodes;
+    double perStrip = this->Count; // points
+    if (this->Options.PointsPerStrip > 0)
+    {
+      perStrip = this->Options.PointsPerStrip;
+    }
+    else if (threads > 1)
+    {
+      // In nanoseconds or so; where there are few gaps most points are of full cells.
+      constexpr double perFullCell = 6.0, perOther = 80.0, perPointOfWalk = 500.0, fewest = 2000.0;
+      const double gaps = static_cast<double>(this->Gaps) / this->Count;
+      const double all = this->Count * (perFullCell + perOther * std::min(gaps, 1.0));
+      const double walk = perPointOfWalk * nodes.Columns / std::sqrt(1.0 + gaps);
+      const double perThread =
+        std::min(std::max(std::floor(all / (8.0 * walk * threads)), 1.0), 8.0);
+      perStrip = std::max(std::ceil(this->Count / (perThread * threads)), fewest);
+    }
     std::vector<Strip> strips;
     Strip strip;
-    for (Index row = 1; row <= this->Nodes.Rows; ++row)
+    strip.FirstWord = strip.Word = this->FirstWordOf(0);
+    for (Index row = 1; row <= nodes.Rows; ++row)
     {
-      const bool isLast = row == this->Nodes.Rows;
+      const bool isLast = row == nodes.Rows;
       const Index rank = isLast ? this->Count : this->FirstRankOf(row);
       if (rank - strip.FirstRank >= perStrip || isLast)
       {
+        strip.EndWord = this->FirstWordOf(row);
         // No points for one more: these rows are empty.
         if (rank == strip.FirstRank)
         {
-          strips.back().EndRow = row;
+          strips.back().EndWord = strip.EndWord;
           break;
         }
-        strip.EndRow = row;
         strip.EndRank = rank;
-        strip.Row = strip.FirstRow;
         strips.push_back(strip);
-        strip.FirstRow = row;
+        strip.FirstWord = strip.Word = strip.EndWord;
         strip.FirstRank = rank;
       }
     }
     return strips;
   }
 
+  /** Enters the hull's edges from the vertices of a strip, as triangles below them would. */
+  void OpenHull(const Strip& strip)
+  {
+    const auto open = [&](const std::vector<Index>& chain, Buffer<Index>& ends) {
+      for (auto i = std::lower_bound(chain.begin(), chain.end(), 64 * strip.FirstWord);
+           i != chain.end() && *i < 64 * strip.EndWord && i + 1 != chain.end(); ++i)
+      {
+        ends[this->Nodes.RankOf(*i)] = i[1];
+      }
+    };
+    open(this->RightChain, this->First);
+    open(this->LeftChain, this->Last);
+  }
+
   /**
    * The triangles across the lower border of a strip, from the left end of the hull to the right:
    * each edge across the border is that of two of them. Those with two vertices above tell them of
    * each other, as in GrowFan; what vertices of full cells know of each other is not told.
+   * @return false when it pauses
    */
-  void WalkBelow(Strip& strip)
+  bool WalkBelow(Strip& strip, Index* triangles)
   {
     const LatticeNodes& nodes = this->Nodes;
-    const Index border = nodes.NodeAt(strip.FirstRow, 0) - 64; // nodes above are not less
+    const Index border = 64 * strip.FirstWord - 64; // nodes above are not less
     const auto isInStrip = [&](Index rank) {
       return rank >= strip.FirstRank && rank < strip.EndRank;
     };
@@ -643,91 +668,128 @@ private:
       return std::lower_bound(chain.begin(), chain.end(), border);
     };
     const auto left = above(this->LeftChain), right = above(this->RightChain);
-    Index low = left[-1], high = left[0];
-    std::size_t pairs = 0; // triangles with two vertices above
+    Index low = strip.Low, high = strip.High;
+    if (low == None)
+    {
+      low = left[-1];
+      high = left[0];
+    }
     while (low != right[-1] || high != right[0])
     {
+      if (strip.Work >= strip.Pause)
+      {
+        strip.Low = low;
+        strip.High = high;
+        return false;
+      }
       if (high - low == 64 * nodes.WordsPerRow && nodes.IsOccupied(low + 1) &&
         nodes.IsOccupied(high + 1))
       {
         ++low;
         ++high;
-        ++pairs;
+        ++strip.Pairs;
+        strip.Work += 3;
         continue;
       }
       const Index row = nodes.RowOf(high), column = nodes.ColumnOf(high, row);
       const Offset e = this->Between(high, low);
-      // The hull's edge is on the right: one of its ends at least is an apex.
-      Apex apex = ApexAt(this->Metric, e, this->Between(high, right[0]));
-      const Apex other = ApexAt(this->Metric, e, this->Between(high, right[-1]));
-      if (apex.Cross <= 0 || (other.Cross > 0 && IsBetter(other, apex, e)))
+      Offset place;
+      if (row < ApexList::Reach || !this->FindInList(high, e, place))
       {
-        apex = other;
+        // The hull's edge is on the right: one of its ends at least is an apex.
+        Apex apex = ApexAt(this->Metric, e, this->Between(high, right[0]));
+        const Apex other = ApexAt(this->Metric, e, this->Between(high, right[-1]));
+        if (apex.Cross <= 0 || (other.Cross > 0 && IsBetter(other, apex, e)))
+        {
+          apex = other;
+        }
+        place = this->Search(row, column, e, apex, strip.Work);
       }
-      const Offset place = this->Search(row, column, e, apex, strip.Work);
+      strip.Work += 30;
       CheckWork(strip);
-      if (strip.Work > MostWorkOfWalk)
-      {
-        throw CannotGrow();
-      }
       const Index node = high + this->StepTo(place);
       if (node < border)
       {
         low = node;
         continue;
       }
-      ++pairs;
+      ++strip.Pairs;
       this->Tell(node, nodes.RankOf(node), high, nodes.RankOf(high), isInStrip);
       high = node;
     }
     // By Euler, with those vertices as the inner ones that are below and not on the hull.
     const std::size_t hull =
       static_cast<std::size_t>(left - this->LeftChain.begin() + (right - this->RightChain.begin()));
-    strip.FirstTriangle = 2 * static_cast<std::size_t>(strip.FirstRank) - hull + pairs;
+    const std::size_t below = 2 * static_cast<std::size_t>(strip.FirstRank) - hull + strip.Pairs;
+    strip.Begin = strip.Next = triangles + 3 * below;
+    return true;
   }
+
+  /** Goes on with a strip until it is done, or until about a time. */
+  void GrowStrip(Strip& strip, Index* triangles, const RoundClock::time_point& end)
+  {
+    constexpr std::int64_t betweenLooks = 100000;
+    if (!strip.IsStarted)
+    {
+      this->OpenHull(strip);
+      strip.IsStarted = true;
+    }
+    do
+    {
+      strip.Pause = strip.Work + betweenLooks;
+      if (strip.Begin || this->WalkBelow(strip, triangles))
+      {
+        this->GrowWords(strip);
+      }
+    } while (!IsDone(strip) && RoundClock::now() < end);
+  }
+
+  static bool IsDone(const Strip& strip) { return strip.IsFlat || strip.Word == strip.EndWord; }
 
   /**
    * Grows all strips, as many at a time as there are threads, with a report between rounds.
    * @return false when a triangle would be flat or inverted
    */
-  bool GrowStrips(std::vector<Strip>& strips, int threads, const Progress& progress)
+  bool GrowStrips(
+    std::vector<Strip>& strips, int threads, const Progress& progress, Index* triangles)
   {
-    std::vector<Strip*> active;
-    std::size_t started = 0;
-    for (;;)
-    {
-      while (active.size() < static_cast<std::size_t>(threads) && started < strips.size())
-      {
-        active.push_back(&strips[started++]);
-      }
-      if (active.empty())
-      {
-        return true;
-      }
-      Index done = 0;
+    const Index number = static_cast<Index>(strips.size());
+    std::vector<Index> atWork(std::max(threads, 1), None); // the strip that a thread is at
+    std::atomic<Index> next{ 0 };
+    std::atomic<bool> isFlat{ false };
+    const auto fraction = [&]() {
+      double done = 0.0;
       for (const Strip& strip : strips)
       {
-        done += strip.Row - strip.FirstRow;
+        done += strip.Word - strip.FirstWord;
       }
-      Report(progress, double(done) / this->Nodes.Rows);
-      ForEachPiece(static_cast<Index>(active.size()), threads, [&](Index i) {
-        constexpr std::int64_t workInARound = 20000000;
-        Strip strip = *active[i]; // not in memory that other threads write next to
-        const std::int64_t end = strip.Work + workInARound;
-        while (strip.Row < strip.EndRow && strip.Work < end && !strip.IsFlat)
+      return done / (strips.back().EndWord - strips.front().FirstWord);
+    };
+    InRounds(std::min<int>(threads, number), progress, fraction,
+      [&](Index thread, const RoundClock::time_point& end) {
+        for (Index i = atWork[thread]; !isFlat; i = None)
         {
-          this->GrowRow(strip, strip.Row++);
+          i = i == None ? next++ : i;
+          atWork[thread] = i;
+          if (i >= number)
+          {
+            return false;
+          }
+          Strip strip = strips[i]; // not in memory that other threads write next to
+          this->GrowStrip(strip, triangles, end);
+          strips[i] = strip;
+          if (strip.IsFlat)
+          {
+            isFlat = true;
+          }
+          if (!IsDone(strip))
+          {
+            return true;
+          }
         }
-        *active[i] = strip;
-      });
-      const auto isFlat = [](const Strip* strip) { return strip->IsFlat; };
-      if (std::any_of(active.begin(), active.end(), isFlat))
-      {
         return false;
-      }
-      const auto isDone = [](const Strip* strip) { return strip->Row == strip->EndRow; };
-      active.erase(std::remove_if(active.begin(), active.end(), isDone), active.end());
-    }
+      });
+    return !isFlat;
   }
 
   Offset Between(Index from, Index to) const
@@ -765,6 +827,7 @@ private:
       const Index leftmost = nodes.Following(nodes.NodeAt(row, -1));
       const Index rightmost = nodes.Previous(nodes.NodeAt(row, nodes.Columns));
       const Index left = nodes.ColumnOf(leftmost, row), right = nodes.ColumnOf(rightmost, row);
+      this->Gaps += right - left + 1;
       for (int level = 0; level <= MostBands; ++level)
       {
         RowEnds& ends = this->Ends[level][row >> BandBits * level];
@@ -790,6 +853,7 @@ private:
       }
       highestRow = row;
     }
+    this->Gaps -= this->Count;
     // The whole of the highest row is on the left side.
     const Index end = this->RightChain.back();
     for (Index node = this->LeftChain.back() + 1; node <= end && highestRow > lowestRow; ++node)
@@ -815,26 +879,27 @@ private:
   }
 
   /**
-   * The vertices of a row in turn. With an obtuse or right angle between the steps, full cells are
-   * cut from their lower left corner; with an acute one, from the lower right one to the upper
-   * left. A unit edge is in the triangulation wherever both of its nodes are occupied, and so are
-   * the triangles of the cut cell: their circles are empty even when all nodes are occupied. This
-   * makes the fan of a vertex known when the nodes left, right, above and beside that are occupied,
-   * and its first and last edge known when only some are.
+   * The vertices of a strip in turn, until its work pauses. With an obtuse or right angle between
+   * the steps, full cells are cut from their lower left corner; with an acute one, from the lower
+   * right one to the upper left. A unit edge is in the triangulation wherever both of its nodes are
+   * occupied, and so are the triangles of the cut cell: their circles are empty even when all nodes
+   * are occupied. This makes the fan of a vertex known when the nodes left, right, above and beside
+   * that are occupied, and its first and last edge known when only some are.
    */
-  void GrowRow(Strip& strip, Index row)
+  void GrowWords(Strip& strip)
   {
     const LatticeNodes& nodes = this->Nodes;
     const bool isAcute = this->Metric.B > 0;
-    const Index begin = nodes.NodeAt(row, 0) / 64;
-    const Index end = begin + nodes.WordsPerRow - 1;
-    for (Index w = begin; w < end; ++w)
+    for (; strip.Word < strip.EndWord && strip.Work < strip.Pause; ++strip.Word)
     {
+      const Index w = strip.Word;
       std::uint64_t rest = nodes.Word(w);
+      ++strip.Work;
       if (rest == 0)
       {
         continue;
       }
+      const Index row = nodes.RowOf(64 * w);
       const Index above = w + nodes.WordsPerRow;
       const std::uint64_t up = nodes.Word(above);
       const std::uint64_t right = (rest >> 1) | (nodes.Word(w + 1) << 63);
@@ -1004,9 +1069,8 @@ private:
     return static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X);
   }
 
-  /** The apex over the edge from a vertex to the node at e above it; @a end is the fan's last. */
-  Offset Find(
-    Index row, Index column, Index node, const Offset& e, const Offset& end, std::int64_t& work)
+  /** @return false when the list of the edge, if there is one, does not tell the apex */
+  bool FindInList(Index node, const Offset& e, Offset& place)
   {
     if (const ApexList* list = this->Lists.Of(e))
     {
@@ -1014,9 +1078,22 @@ private:
       {
         if (this->Nodes.IsOccupied(node + entry.Step))
         {
-          return { entry.X, entry.Y };
+          place = { entry.X, entry.Y };
+          return true;
         }
       }
+    }
+    return false;
+  }
+
+  /** The apex over the edge from a vertex to the node at e above it; @a end is the fan's last. */
+  Offset Find(
+    Index row, Index column, Index node, const Offset& e, const Offset& end, std::int64_t& work)
+  {
+    Offset place;
+    if (this->FindInList(node, e, place))
+    {
+      return place;
     }
     // The last vertex of the fan is on the free side.
     return this->Search(row, column, e, ApexAt(this->Metric, e, end), work);
@@ -1106,6 +1183,10 @@ private:
     };
     for (; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
+      if (y == 0 || y == e.Y)
+      {
+        continue; // a disc through an end has no node beyond its neighbor in its row
+      }
       int level = 0;
       while (level < MostBands && ((row + y) & ((1 << BandBits * (level + 1)) - 1)) == 0 &&
         isMissed(level + 1))
@@ -1148,6 +1229,7 @@ private:
         }
         for (; bits; bits &= bits - 1)
         {
+          work += 8;
           const Offset p{ 64 * w + LowestBit(bits) - origin, y };
           const Apex apex = ApexAt(this->Metric, e, p);
           if (apex.Cross > 0 && IsBetter(apex, best, e))
@@ -1179,6 +1261,7 @@ private:
   double FirstHeight = 0.0;
   double LimitSquared = Infinity;
   bool UseCells = true;
+  std::int64_t Gaps = 0; ///< nodes between the ends of their rows that are not occupied
   struct RowEnds
   {
     Index Left = LatticeNodes::MaximumSide, Right = -1; ///< first and last occupied column
@@ -1194,7 +1277,8 @@ private:
 /** No more than there are cores: what is done at once must be done soon, for the next report. */
 int NumberOfThreads(const DelaunayOptions& options)
 {
-  return std::min(ResolveNumberOfThreads(options.NumberOfThreads), ResolveNumberOfThreads(0));
+  const int asked = ResolveNumberOfThreads(options.NumberOfThreads);
+  return asked > 1 ? std::min(asked, ResolveNumberOfThreads(0)) : 1;
 }
 
 /** Few points fit some lattice by chance, the more easily the larger the tolerance. */

@@ -101,44 +101,54 @@ private:
 };
 } // namespace
 
-/** A few dozen points and their nodes, between the steps that wait for memory. */
-struct Batch
+/** Sets bits of a word. @return what was set before */
+std::uint64_t LatticeNodes::SetBits(Index word, std::uint64_t bits, bool isShared)
 {
-  static constexpr int Capacity = 32;
-  int Size = 0;
-  std::array<Index, Capacity> Ids, Nodes;
-};
-
-/** Calls visit(batch) for all points of a range, by increasing id; nodeOf(p) is asked before. */
-template <typename Node, typename Visit>
-void ForEachBatch(const PointView& points, Index begin, Index end, const std::vector<Index>& but,
-  Node&& nodeOf, Visit&& visit)
-{
-  Batch batch;
-  ForEachPoint(points, begin, end, but, [&](Index id, const Point2& p) {
-    batch.Ids[batch.Size] = id;
-    batch.Nodes[batch.Size++] = nodeOf(p);
-    if (batch.Size == Batch::Capacity)
-    {
-      visit(batch);
-      batch.Size = 0;
-    }
-  });
-  visit(batch);
-}
-
-/** @return false when it is set already */
-bool LatticeNodes::SetBit(Index node, bool isShared)
-{
-  AtomicWord& word = this->Words[node >> 6];
-  const std::uint64_t bit = std::uint64_t(1) << (node & 63);
+  AtomicWord& there = this->Words[word];
   if (isShared)
   {
-    return !(word.fetch_or(bit, std::memory_order_relaxed) & bit);
+    return there.fetch_or(bits, std::memory_order_relaxed);
   }
-  const std::uint64_t bits = word.load(std::memory_order_relaxed);
-  word.store(bits | bit, std::memory_order_relaxed);
-  return !(bits & bit);
+  const std::uint64_t before = there.load(std::memory_order_relaxed);
+  there.store(before | bits, std::memory_order_relaxed);
+  return before;
+}
+
+void LatticeNodes::Occupy(
+  Index begin, Index end, Index* nodes, bool isShared, std::vector<Index>& second)
+{
+  while (begin < end)
+  {
+    if (nodes[begin] == None)
+    {
+      ++begin;
+      continue;
+    }
+    // Points in the order of their nodes fill a word at a time.
+    const Index word = nodes[begin] >> 6;
+    std::uint64_t bits = 0;
+    Index next = begin;
+    do
+    {
+      bits |= std::uint64_t(1) << (nodes[next] & 63);
+      ++next;
+    } while (next < end && nodes[next] >> 6 == word);
+    std::uint64_t taken = this->SetBits(word, bits, isShared);
+    if ((taken & bits) || (next - begin > 1 && CountBits(bits) != next - begin))
+    {
+      for (Index id = begin; id < next; ++id)
+      {
+        const std::uint64_t bit = std::uint64_t(1) << (nodes[id] & 63);
+        if (taken & bit)
+        {
+          second.push_back(id);
+          nodes[id] = None;
+        }
+        taken |= bit;
+      }
+    }
+    begin = next;
+  }
 }
 
 void LatticeNodes::CountBefore(int threads)
@@ -187,24 +197,23 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
     NodeOfPoint::Box Box;
     double Largest = 0.0;      // distance of a point from its node
     std::vector<Index> Second; // points on a node that is taken
-    std::size_t NextSecond = 0;
   };
-  std::vector<Gathered> parts(NumberOfParts(threads));
+  std::vector<Gathered> pieces(NumberOfRanges(points.Count));
   const double nodesInBox = (high.X - low.X) * (high.Y - low.Y) / search.Steps.Area();
   if (box.Columns() * box.Rows() > 1.05 * nodesInBox + 64.0)
   {
     // A lattice across the axes: the points themselves tell it better.
     ForEachRange(
-      points.Count, threads, Part(progress, 0.0, 0.2), [&](Index part, Index begin, Index end) {
+      points.Count, threads, Part(progress, 0.0, 0.2), [&](Index piece, Index begin, Index end) {
         NodeOfPoint::Box here;
         ForEachPoint(points, begin, end, search.NotFinite,
           [&](Index, const Point2& p) { nodeOf.Extend(here, p); });
-        parts[part].Box.Add(here);
+        pieces[piece].Box = here;
       });
     box = NodeOfPoint::Box();
-    for (const Gathered& part : parts)
+    for (const Gathered& piece : pieces)
     {
-      box.Add(part.Box);
+      box.Add(piece.Box);
     }
   }
   nodeOf.Start(box);
@@ -222,100 +231,95 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   this->WordsPerRow = static_cast<Index>(wordsPerRow);
   this->Memory.Resize(static_cast<std::size_t>(words));
   this->Words = reinterpret_cast<AtomicWord*>(this->Memory.data());
-  for (std::size_t i = 0; i < this->Memory.size(); ++i)
-  {
-    new (this->Words + i) AtomicWord(0);
-  }
+  const Index numberOfWords = static_cast<Index>(words);
+  ForEachPiece(NumberOfRanges(numberOfWords), threads, [&](Index piece) {
+    const Index begin = piece * PointsPerRange;
+    const Index end = begin + std::min(PointsPerRange, numberOfWords - begin);
+    for (Index word = begin; word < end; ++word)
+    {
+      new (this->Words + word) AtomicWord(0);
+    }
+  });
 
-  const auto largestOffset = [&]() {
-    double largest = 0.0;
-    for (const Gathered& part : parts)
-    {
-      largest = std::max(largest, part.Largest);
-    }
-    return largest;
-  };
-  // A point that does not fit ends the pass before long.
-  struct DoesNotFit
-  {
-  };
-  const Progress check = [&](double fraction) {
-    if (!(largestOffset() <= tolerance + Roundoff))
-    {
-      throw DoesNotFit();
-    }
-    return !progress || progress(0.2 + 0.3 * fraction);
-  };
-  try
-  {
-    ForEachRange(points.Count, threads, check, [&](Index part, Index begin, Index end) {
+  // Nodes are told a few dozen points ahead of what has to wait for memory.
+  constexpr Index few = 32;
+  this->Room.Resize(static_cast<std::size_t>(points.Count));
+  Index* const nodes = this->Room.data(); // of each point, or None
+  std::atomic<bool> fits{ true };
+  ForEachRange(
+    points.Count, threads, Part(progress, 0.2, 0.5), [&](Index piece, Index begin, Index end) {
+      if (!fits)
+      {
+        return;
+      }
+      Gathered here; // not in memory that other threads write next to
       double largest = 0.0;
-      ForEachBatch(
-        points, begin, end, search.NotFinite,
-        [&](const Point2& p) {
+      for (; begin < end; begin += few)
+      {
+        const Index last = std::min(begin + few, end);
+        if (!search.NotFinite.empty())
+        {
+          std::fill(nodes + begin, nodes + last, None);
+        }
+        ForEachPoint(points, begin, last, search.NotFinite, [&](Index id, const Point2& p) {
           Index column, row;
           largest = std::max(largest, nodeOf(p, column, row));
-          const Index node = this->NodeAt(row, column);
-          Prefetch(this->Words + (node >> 6));
-          return node;
-        },
-        [&](const Batch& batch) {
-          for (int i = 0; i < batch.Size; ++i)
-          {
-            if (!this->SetBit(batch.Nodes[i], threads > 1))
-            {
-              parts[part].Second.push_back(batch.Ids[i]);
-            }
-          }
+          nodes[id] = this->NodeAt(row, column);
+          Prefetch(this->Words + (nodes[id] >> 6));
         });
-      parts[part].Largest = std::max(parts[part].Largest, largest);
+        this->Occupy(begin, last, nodes, threads > 1, here.Second);
+      }
+      if (!(largest <= tolerance + Roundoff))
+      {
+        fits = false;
+      }
+      here.Largest = largest;
+      pieces[piece] = std::move(here);
     });
-    check(1.0);
-  }
-  catch (const DoesNotFit&)
+  if (!fits)
   {
     return false;
   }
-  this->LargestOffset = largestOffset() + std::max(Roundoff, nodeOf.Roundoff(low, high));
+  double largest = 0.0;
+  for (const Gathered& piece : pieces)
+  {
+    largest = std::max(largest, piece.Largest);
+  }
+  this->LargestOffset = largest + std::max(Roundoff, nodeOf.Roundoff(low, high));
 
   this->CountBefore(threads);
   Index* const ids = this->Ids.data();
   ForEachRange(
-    points.Count, threads, Part(progress, 0.5, 0.95), [&](Index part, Index begin, Index end) {
-      const std::vector<Index>& second = parts[part].Second;
-      std::size_t next = parts[part].NextSecond;
-      ForEachBatch(
-        points, begin, end, search.NotFinite,
-        [&](const Point2& p) {
-          Index column, row;
-          nodeOf(p, column, row);
-          const Index node = this->NodeAt(row, column);
-          Prefetch(this->Words + (node >> 6));
-          Prefetch(this->Before.data() + (node >> 6));
-          return node;
-        },
-        [&](Batch& batch) {
-          for (int i = 0; i < batch.Size; ++i)
+    points.Count, threads, Part(progress, 0.5, 0.95), [&](Index, Index begin, Index end) {
+      std::array<Index, few> ranks;
+      for (; begin < end; begin += few)
+      {
+        const Index size = std::min(few, end - begin);
+        const Index* const here = nodes + begin;
+        for (Index i = 0; i < size; ++i)
+        {
+          Prefetch(this->Words + (here[i] >> 6));
+          Prefetch(this->Before.data() + (here[i] >> 6));
+        }
+        for (Index i = 0; i < size; ++i)
+        {
+          const bool isNext = i > 0 && ranks[i - 1] != None && here[i] == here[i - 1] + 1;
+          ranks[i] = isNext ? ranks[i - 1] + 1 : here[i] != None ? this->RankOf(here[i]) : None;
+          Prefetch(ids + ranks[i]);
+        }
+        for (Index i = 0; i < size; ++i)
+        {
+          if (ranks[i] != None)
           {
-            batch.Nodes[i] = this->RankOf(batch.Nodes[i]);
-            Prefetch(ids + batch.Nodes[i]);
+            ids[ranks[i]] = begin + i;
           }
-          for (int i = 0; i < batch.Size; ++i)
-          {
-            if (next < second.size() && second[next] == batch.Ids[i])
-            {
-              ++next;
-              continue;
-            }
-            ids[batch.Nodes[i]] = batch.Ids[i];
-          }
-        });
-      parts[part].NextSecond = next;
+        }
+      }
     });
   std::size_t steps = 0;
-  for (const Gathered& part : parts)
+  for (const Gathered& piece : pieces)
   {
-    for (Index id : part.Second)
+    for (Index id : piece.Second)
     {
       ReportStep(Part(progress, 0.95, 0.97), steps++, points.Count);
       Index column, row;

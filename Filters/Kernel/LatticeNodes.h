@@ -6,13 +6,14 @@
  *
  * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
  * in the order of their nodes (by row, then column), which the number of bits before a node tells;
- * or the answer that a point does not fit. No sorting: two passes over the points, one that sets
- * the bits and one that writes each id to its place; both on several threads.
+ * or the answer that a point does not fit. No sorting: one pass over the points sets the bits and
+ * keeps the nodes, one over these writes each id to its place; both on several threads.
  *
  * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
  * the last row are rows of zeros, so that neighbours may be looked at without a check.
  *
- * Memory: at most 24 bytes a point for the bitmap (two words and two counts), and 4 for the ids.
+ * Memory: at most 24 bytes a point for the bitmap (two words and two counts), 4 for the ids, and 4
+ * for the nodes, which are left for other use.
  */
 #ifndef elevation_LatticeNodes_h
 #define elevation_LatticeNodes_h
@@ -123,12 +124,15 @@ public:
   Index Columns = 0, Rows = 0, WordsPerRow = 0;
   Buffer<Index> Before;          ///< occupied nodes before each word
   Buffer<Index> Ids;             ///< point ids by rank
+  Buffer<Index> Room;            ///< as much as there are points; of no use after Place
   double LargestOffset = 0.0;    ///< no point is farther from its node, in steps along each step
   Lattice Steps;                 ///< Origin is the lowest occupied node
   std::vector<Index> Duplicates; ///< ids, increasing
 
 private:
-  bool SetBit(Index node, bool isShared);
+  std::uint64_t SetBits(Index word, std::uint64_t bits, bool isShared);
+  /** Sets the bits of points' nodes; those on a node that is taken lose theirs, and are listed. */
+  void Occupy(Index begin, Index end, Index* nodes, bool isShared, std::vector<Index>& second);
   void CountBefore(int threads);
 
   using AtomicWord = std::atomic<std::uint64_t>; // several threads set bits

@@ -12,7 +12,10 @@
 #include "vtkSMPTools.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <exception>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -74,18 +77,89 @@ void ForEachPiece(Index count, int threads, Work&& work)
   }
 }
 
+using RoundClock = std::chrono::steady_clock;
+
 /**
- * ForEachPiece() for pieces of about a millisecond, of which each thread does a few between two
- * reports of progress, which the calling thread makes.
+ * Calls work(thread, end) on all threads at once, round after round, until all of them return
+ * false: there is nothing left to do. Each call works on until about the time @a end, a few
+ * hundredths of a second later, so that no thread waits long for another one. Before each round the
+ * calling thread reports fraction(). With one thread, all is done on the caller's.
+ */
+template <typename Fraction, typename Work>
+void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&& work)
+{
+  constexpr std::chrono::milliseconds length{ 30 };
+  const int used = threads > 1 ? std::min(threads, ResolveNumberOfThreads(0)) : 1;
+  std::atomic<bool> isMoreLeft{ true };
+  while (isMoreLeft)
+  {
+    Report(progress, fraction());
+    isMoreLeft = false;
+    const RoundClock::time_point end = RoundClock::now() + length;
+    ForEachPiece(used, used, [&](Index thread) {
+      if (work(thread, end))
+      {
+        isMoreLeft = true;
+      }
+    });
+  }
+}
+
+/**
+ * ForEachPiece() for pieces of about a millisecond or less, of which a thread takes the next one
+ * when it is done with one; with reports of progress, which the calling thread makes.
  */
 template <typename Work>
 void ForEachPiece(Index count, int threads, const Progress& progress, Work&& work)
 {
-  const Index atOnce = 16 * std::max(1, threads);
-  for (Index done = 0; done < count; done += atOnce)
+  const auto fractionOf = [count](Index done) {
+    return std::min(1.0, static_cast<double>(done) / std::max(count, 1));
+  };
+  if (threads <= 1)
   {
-    Report(progress, static_cast<double>(done) / count);
-    ForEachPiece(std::min(atOnce, count - done), threads, [&](Index i) { work(done + i); });
+    for (Index i = 0; i < count; ++i)
+    {
+      ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(count), 4);
+      work(i);
+    }
+    return;
+  }
+  std::atomic<Index> next{ 0 };
+  // All pieces before one that fails have been taken, and are done to the end.
+  std::mutex failing;
+  Index failed = count;
+  std::exception_ptr failure;
+  InRounds(
+    threads, progress, [&]() { return fractionOf(next); },
+    [&](Index, const RoundClock::time_point& end) {
+      do
+      {
+        const Index i = next++;
+        if (i >= count)
+        {
+          return false;
+        }
+        try
+        {
+          work(i);
+        }
+        catch (...)
+        {
+          const std::lock_guard<std::mutex> lock(failing);
+          next = count;
+          if (i < failed)
+          {
+            failed = i;
+            failure = std::current_exception();
+          }
+          return false;
+        }
+      } while (RoundClock::now() < end);
+      return true;
+    });
+  if (failure)
+  {
+    std::rethrow_exception(failure);
   }
 }
 

@@ -219,17 +219,19 @@ void ExpectSameAsGeneral(const Cloud& cloud, const std::string& name)
   EXPECT_TRUE(TriangleSet(cloud, lattice) == TriangleSet(cloud, general));
 }
 
-/** All triangles by the definition, in integers, as node numbers; see TestDelaunay.cxx. */
-std::vector<std::array<Node, 3>> BruteForce(std::vector<Node> nodes, const LatticeMetric& metric)
+/**
+ * Visits all triangles of sorted, distinct nodes by the definition, in integers, as the numbers of
+ * their corners; see TestDelaunay.cxx.
+ */
+template <typename Visit>
+void BruteForce(const std::vector<Node>& nodes, const LatticeMetric& metric, Visit&& visit)
 {
-  std::sort(nodes.begin(), nodes.end(), IsLowerNode);
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<std::array<Node, 3>> set;
-  for (std::size_t a = 0; a < nodes.size(); ++a)
+  const int count = static_cast<int>(nodes.size());
+  for (int a = 0; a < count; ++a)
   {
-    for (std::size_t i = a + 1; i < nodes.size(); ++i)
+    for (int i = a + 1; i < count; ++i)
     {
-      for (std::size_t j = a + 1; j < nodes.size(); ++j)
+      for (int j = a + 1; j < count; ++j)
       {
         const Node &p = nodes[a], &q = nodes[i], &r = nodes[j];
         if (CrossOf(p, q, r) <= 0)
@@ -237,7 +239,7 @@ std::vector<std::array<Node, 3>> BruteForce(std::vector<Node> nodes, const Latti
           continue;
         }
         bool isKept = true;
-        for (std::size_t k = 0; k < nodes.size() && isKept; ++k)
+        for (int k = 0; k < count && isKept; ++k)
         {
           const Node& d = nodes[k];
           if (k == a || k == i || k == j)
@@ -250,13 +252,18 @@ std::vector<std::array<Node, 3>> BruteForce(std::vector<Node> nodes, const Latti
         }
         if (isKept)
         {
-          set.push_back({ p, q, r });
+          visit(a, i, j);
         }
       }
     }
   }
-  std::sort(set.begin(), set.end());
-  return set;
+}
+
+std::vector<Node> SortedNodes(std::vector<Node> nodes)
+{
+  std::sort(nodes.begin(), nodes.end(), IsLowerNode);
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
 }
 
 std::vector<std::array<Node, 3>> NodeTriangles(
@@ -316,44 +323,6 @@ void SmallNodes(std::mt19937_64& random, int kind, std::vector<Node>& nodes)
   }
 }
 
-/** Of at most 16 sorted nodes, the triangles by the definition, as numbers of their corners. */
-std::vector<int> SmallBruteForce(const std::vector<Node>& nodes, const LatticeMetric& metric)
-{
-  const int count = static_cast<int>(nodes.size());
-  std::vector<int> set;
-  for (int a = 0; a < count; ++a)
-  {
-    for (int i = a + 1; i < count; ++i)
-    {
-      for (int j = a + 1; j < count; ++j)
-      {
-        const Node &p = nodes[a], &q = nodes[i], &r = nodes[j];
-        if (CrossOf(p, q, r) <= 0)
-        {
-          continue;
-        }
-        bool isKept = true;
-        for (int k = 0; k < count && isKept; ++k)
-        {
-          const Node& d = nodes[k];
-          if (k == a || k == i || k == j)
-          {
-            continue;
-          }
-          const std::int64_t inside = DotOf(metric, d, p, p) * CrossOf(d, q, r) +
-            DotOf(metric, d, q, q) * CrossOf(d, r, p) + DotOf(metric, d, r, r) * CrossOf(d, p, q);
-          isKept = inside < 0 || (inside == 0 && k > a && CrossOf(q, r, d) > 0);
-        }
-        if (isKept)
-        {
-          set.push_back(a << 8 | i << 4 | j);
-        }
-      }
-    }
-  }
-  return set;
-}
-
 /** The same bytes for any number of threads and any strips. */
 void ExpectSameForAnyStrips(
   const Cloud& cloud, DelaunayOptions options, const std::string& name, Index perStrip)
@@ -391,16 +360,14 @@ TEST(Lattice, IsTheDefinitionOnAMillionSmallClouds)
     { { { 2.0, 0.0 }, { -1.0, 2.0 } } } } };
   std::mt19937_64 random(30);
   std::vector<Node> nodes, sorted;
-  std::vector<int> set;
+  std::vector<int> set, expected; // of triangles, as the numbers of their corners
   Cloud cloud;
   DelaunayOptions options = Automatic(0.0);
   int triangulated = 0;
   for (int i = 0; i < 1000000; ++i)
   {
     SmallNodes(random, i / 10 % 5, nodes);
-    sorted = nodes;
-    std::sort(sorted.begin(), sorted.end(), IsLowerNode);
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    sorted = SortedNodes(nodes);
     const auto& frame = frames[i % 10];
     LatticeSearch search;
     search.Found = true;
@@ -416,7 +383,9 @@ TEST(Lattice, IsTheDefinitionOnAMillionSmallClouds)
     }
     LatticeMetric metric;
     ASSERT_TRUE(metric.Set(search.Steps));
-    const std::vector<int> expected = SmallBruteForce(sorted, metric);
+    expected.clear();
+    BruteForce(
+      sorted, metric, [&](int p, int q, int r) { expected.push_back(p << 8 | q << 4 | r); });
     for (const Index perStrip : { 0, 1 })
     {
       options.PointsPerStrip = perStrip;
@@ -487,7 +456,95 @@ TEST(Lattice, IsTheSameForAnyNumberOfThreads)
   }
   // Large enough for several ranges of points and several rounds of strips.
   check(frames[1], RandomNodes(random, 1200, 900, 0.12), "large and sparse");
+  for (const Frame& frame : frames)
+  {
+    check(frame, RandomNodes(random, 400, 400, 0.04), "many borders of a sparse one");
+  }
   check(frames[3], GridWithHoles(700), "large with holes");
+}
+
+TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
+{
+  // Many ranges of points; one point in four is on a node that another one takes as well.
+  std::mt19937_64 random(55);
+  const Frame frame = MakeFrame(25.0, 30.0, 10.0, 110.0, { 612000.0, 6073000.0 });
+  Cloud cloud = CloudOn(frame, RandomNodes(random, 900, 1000, 0.4));
+  const Index distinct = cloud.Count();
+  for (Index i = 0; i < distinct / 3; ++i)
+  {
+    const std::size_t id = random() % static_cast<std::size_t>(distinct);
+    for (Index times = i % 7 == 0 ? 2 : 1; times > 0; --times) // also one right after the other
+    {
+      cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
+    }
+    if (i % 1000 == 0)
+    {
+      cloud.Add(0.0, INFINITY);
+    }
+  }
+  const auto search = [&](int threads) {
+    return FindLattice(cloud.View(), 0.01, threads, Progress());
+  };
+  for (const bool isShuffled : { false, true })
+  {
+    cloud = isShuffled ? cloud.Shuffled(random) : cloud;
+    const LatticeSearch found = search(1);
+    ASSERT_TRUE(found.Found);
+    EXPECT_EQ(found.NotFinite.size(), static_cast<std::size_t>(distinct / 3 + 999) / 1000);
+    LatticeNodes one;
+    ASSERT_TRUE(one.Place(cloud.View(), found, 0.01, DuplicatePolicy::KeepLast, 1, Progress()));
+    EXPECT_EQ(one.NumberOfPoints(), distinct);
+    for (const int threads : { 2, 4 })
+    {
+      const LatticeSearch other = search(threads);
+      EXPECT_TRUE(other.Found);
+      EXPECT_TRUE(IsSame(found.Steps, other.Steps));
+      EXPECT_TRUE(found.Low == other.Low && found.High == other.High);
+      EXPECT_EQ(found.NotFinite, other.NotFinite);
+      LatticeNodes nodes;
+      ASSERT_TRUE(
+        nodes.Place(cloud.View(), other, 0.01, DuplicatePolicy::KeepLast, threads, Progress()));
+      EXPECT_TRUE(std::equal(one.Ids.begin(), one.Ids.end(), nodes.Ids.begin(), nodes.Ids.end()));
+      EXPECT_TRUE(
+        std::equal(one.Before.begin(), one.Before.end(), nodes.Before.begin(), nodes.Before.end()));
+      EXPECT_EQ(one.Duplicates, nodes.Duplicates);
+      EXPECT_EQ(one.LargestOffset, nodes.LargestOffset);
+    }
+  }
+}
+
+TEST(Lattice, ReportsWithinLongRows)
+{
+  // Rows as long as they may be, and one fan of nearly a whole row.
+  std::mt19937_64 random(56);
+  const Frame frame = MakeFrame(1.0, 1.0, 0.0);
+  std::vector<Node> fan;
+  for (std::int64_t i = 0; i < 1000000; ++i)
+  {
+    fan.push_back({ i, 1 });
+    if (i < 10000)
+    {
+      fan.push_back({ i, 0 });
+    }
+  }
+  for (const std::vector<Node>& nodes :
+    { RandomNodes(random, 1000000, 2, 0.3), RandomNodes(random, 1000000, 2, 1.0), fan })
+  {
+    const Cloud cloud = CloudOn(frame, nodes);
+    for (const int threads : { 1, 2 })
+    {
+      DelaunayOptions options = Automatic();
+      options.NumberOfThreads = threads;
+      std::clock_t last = std::clock(), longest = 0;
+      options.Monitor = [&](double) {
+        longest = std::max(longest, std::clock() - last);
+        last = std::clock();
+        return true;
+      };
+      EXPECT_TRUE(Triangulate(cloud.View(), options).LatticeFound);
+      EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.25 * threads);
+    }
+  }
 }
 
 TEST(Lattice, IsTheDefinitionOnSmallClouds)
@@ -525,7 +582,13 @@ TEST(Lattice, IsTheDefinitionOnSmallClouds)
     LatticeMetric metric;
     ASSERT_TRUE(metric.Set(triangulation.Steps));
     const std::vector<Node> here = NodesOf(cloud, triangulation.Steps);
-    ASSERT_EQ(NodeTriangles(here, triangulation), BruteForce(here, metric)) << "cloud " << i;
+    const std::vector<Node> sorted = SortedNodes(here);
+    std::vector<std::array<Node, 3>> expected;
+    BruteForce(sorted, metric, [&](int p, int q, int r) {
+      expected.push_back({ sorted[p], sorted[q], sorted[r] });
+    });
+    std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(NodeTriangles(here, triangulation), expected) << "cloud " << i;
   }
   EXPECT_GT(found, 14000);
 }
