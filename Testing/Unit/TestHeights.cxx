@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -105,9 +106,8 @@ double Cotangent(const Point2& a, const Point2& b, const Point2& c)
 double LargestImbalance(const Outcome& run)
 {
   const Index first = run.Surface.NumberOfPoints();
-  const auto at = [&](Index id) {
-    return id < first ? run.Surface.Points[id] : run.At(id - first);
-  };
+  const auto at = [&](
+                    Index id) { return id < first ? run.Surface.Points[id] : run.At(id - first); };
   std::vector<double> sums(run.Patches.NumberOfPoints(), 0.0);
   std::vector<double> weights(run.Patches.NumberOfPoints(), 0.0);
   const std::vector<Index>& ids = run.Patches.Triangles;
@@ -297,6 +297,60 @@ TEST(Heights, AdaptiveChooses)
     Interpolation::ThinPlate);
 }
 
+TEST(Heights, AdaptiveMixesWhatPredictsAboutEquallyWell)
+{
+  // A little noise: neither spline is much better than the other at most places.
+  const Mesh mesh = Sheet(60, Disc(30, 30, 8));
+  int mixed = 0;
+  for (const double noise : { 0.0, 0.001, 0.002, 0.003, 0.2, 0.3, 0.4, 1.0 })
+  {
+    const Elevation hills = [noise](const Point2& p) {
+      return std::sin(0.2 * p.X) * std::cos(0.15 * p.Y) + noise * Noise(p);
+    };
+    const Outcome run = Fill(mesh, hills, Interpolation::Adaptive);
+    const Outcome membrane = Fill(mesh, hills, Interpolation::Membrane);
+    const Outcome plate = Fill(mesh, hills, Interpolation::ThinPlate);
+    const Outcome cubic = Fill(mesh, hills, Interpolation::Cubic);
+    // The shares by least squares: run - plate = a (membrane - plate) + b (cubic - plate).
+    double aa = 0.0, ab = 0.0, bb = 0.0, ar = 0.0, br = 0.0;
+    const auto differences = [&](Index i) {
+      const double p = plate.Value(i);
+      return std::array<double, 3>{ membrane.Value(i) - p, cubic.Value(i) - p, run.Value(i) - p };
+    };
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      const auto d = differences(i);
+      aa += d[0] * d[0];
+      ab += d[0] * d[1];
+      bb += d[1] * d[1];
+      ar += d[0] * d[2];
+      br += d[1] * d[2];
+    }
+    const double a = (ar * bb - br * ab) / (aa * bb - ab * ab);
+    const double b = (br * aa - ar * ab) / (aa * bb - ab * ab);
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      const auto d = differences(i);
+      ASSERT_NEAR(d[2], a * d[0] + b * d[1], 1e-9) << noise;
+    }
+    const double shares[3] = { a, 1.0 - a - b, b };
+    const Interpolation methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
+      Interpolation::Cubic };
+    int best = 0;
+    int parts = 0;
+    for (int i = 0; i < 3; ++i)
+    {
+      EXPECT_TRUE(std::fabs(shares[i]) < 1e-6 || shares[i] > 0.02) << shares[i];
+      parts += shares[i] > 0.02 ? 1 : 0;
+      best = shares[i] > shares[best] ? i : best;
+    }
+    EXPECT_EQ(run.Patches.Reports[0].Method, methods[best]);
+    mixed += parts > 1 ? 1 : 0;
+  }
+  EXPECT_GT(mixed, 0);
+  EXPECT_LT(mixed, 8);
+}
+
 TEST(Heights, AdaptiveTakesTheThinPlateWhereItCannotTry)
 {
   // As much surface as there is does not hold another hole of even half the size.
@@ -421,9 +475,8 @@ double SlopeOver(int rings, const Outcome& run)
   {
     const Point2& a = mesh.PointOf(from[id]);
     const Point2& b = mesh.PointOf(id);
-    squares += std::pow((run.ElevationOf(id) - run.ElevationOf(from[id])) /
-        std::hypot(b.X - a.X, b.Y - a.Y),
-      2);
+    squares += std::pow(
+      (run.ElevationOf(id) - run.ElevationOf(from[id])) / std::hypot(b.X - a.X, b.Y - a.Y), 2);
   }
   return std::sqrt(squares / static_cast<double>(last.size()));
 }
@@ -431,12 +484,13 @@ double SlopeOver(int rings, const Outcome& run)
 
 TEST(Heights, OfSplinesKeepToTheBound)
 {
-  // A wide pit beside the rim, of which the spline makes a hill inside.
-  const Mesh mesh = Sheet(60, Disc(30, 30, 12));
-  const Elevation pit = [](const Point2& p) {
-    return -std::max(0.0, 6.0 - std::hypot(p.X - 14.0, p.Y - 30.0));
+  // A ditch around the hole, of which the spline makes a hill inside, and gentle slopes beyond.
+  const Mesh mesh = Sheet(90, Disc(45, 45, 20));
+  const Elevation ditch = [](const Point2& p) {
+    const double r = std::hypot(p.X - 45, p.Y - 45);
+    return r < 20.8 ? 0.0 : (r < 21.8 ? -1.0 : 0.02 * (20.5 - r));
   };
-  const Outcome run = Fill(mesh, pit, Interpolation::Cubic);
+  const Outcome run = Fill(mesh, ditch, Interpolation::Cubic);
   const int half = DepthOf(run) / 2;
   ASSERT_GE(half, 3);
   for (const int rings : { half - 1, half, half + 1 })
