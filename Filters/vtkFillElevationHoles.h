@@ -33,7 +33,8 @@
  *   the hole is above 1e150 or below 1e-150.
  * - NumberOfInsertedPoints (vtkIdTypeArray).
  * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType; never ADAPTIVE,
- *   but what it chose. 0 also where there are no new points.
+ *   but what it chose, of methods that it mixed the one with the largest share. 0 also where there
+ *   are no new points.
  *
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
@@ -135,11 +136,11 @@ public:
    *   tells the one with the largest share.
    *
    * The splines may leave the range of z around the hole, as a lost summit rises above
-   * what is left of it, by at most the distance from the nearest boundary point times
-   * twice the slope of the surface around the hole (root mean square, measured over half as many
-   * edges as the middle of the hole is away from its boundary, 16 at most). Points that determine no
-   * spline, because they are nearly in one line, give MEMBRANE; z that are not finite around the
-   * hole give NEIGHBOR_MEAN.
+   * what is left of it, by at most the distance from the nearest boundary point times the slope of
+   * the surface around the hole: the root mean square of slopes from the boundary to points half as
+   * many edges away as the middle of the hole is, 16 at most. Points that determine no spline,
+   * because they are nearly in one line, give MEMBRANE; z that are not finite around the hole give
+   * NEIGHBOR_MEAN.
    */
   vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
   vtkGetMacro(Interpolation, int);

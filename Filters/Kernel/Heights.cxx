@@ -59,7 +59,7 @@ constexpr double RoughAccuracy = 1e-2;
 constexpr std::size_t PointsPerReport = 4096;
 
 /** How far beyond the range values may go: slopes of the surface times distance. */
-constexpr double SlopeLimit = 2.0;
+constexpr double SlopeLimit = 1.0;
 
 /** Slopes are measured over that many edges at most. */
 constexpr Index MostRings = 16;

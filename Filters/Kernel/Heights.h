@@ -39,7 +39,7 @@
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
  * Splines may leave the range of boundary and ring, as a summit that was lost rises above all that
- * is left of it; but by no more than the distance from the nearest boundary point times twice
+ * is left of it; but by no more than the distance from the nearest boundary point times
  * the slope of the surface. This is the root mean square of slopes from the boundary to points
  * half as many edges away from it as the middle of the hole is, 16 at most: what is rough near by
  * need not be steep.
