@@ -131,9 +131,9 @@ public:
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
    *   surface around it best. The hole's boundary is moved to up to 16 places around it, where the
-   *   surface is known, and the methods predict there what is inside. Methods that predict it about
-   *   equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred. Output 1
-   *   tells the one with the largest share.
+   *   surface is known, and the methods predict there what is inside. Methods that predict it
+   *   about equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred.
+   *   Output 1 tells the one with the largest share.
    *
    * The splines may leave the range of z around the hole, as a lost summit rises above
    * what is left of it, by at most the distance from the nearest boundary point times the slope of
