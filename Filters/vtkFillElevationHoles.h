@@ -33,7 +33,8 @@
  *   the hole is above 1e150 or below 1e-150.
  * - NumberOfInsertedPoints (vtkIdTypeArray).
  * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType; never ADAPTIVE,
- *   but what it chose. 0 also where there are no new points.
+ *   but what it chose, of methods that it mixed the one with the largest share. 0 also where there
+ *   are no new points.
  *
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
@@ -122,21 +123,25 @@ public:
    * InterpolationType, to which other numbers are clamped; ADAPTIVE (default).
    * - NEIGHBOR_MEAN: the mean over the known neighbours, layer by layer from the boundary inwards.
    *   Fast and rough: it flattens what was lost.
-   * - MEMBRANE: each new point is the mean of all its neighbours, as if a membrane were stretched
-   *   over the hole. Both stay between the least and the greatest z of the hole's boundary.
-   * - THIN_PLATE: continues slope and curvature from the boundary and three rings of points around
+   * - MEMBRANE: each new point is the mean of all its neighbours, weighted by the cotangents of the
+   *   angles that face their edges (on a square lattice, of the four along the axes), as if a
+   *   membrane were stretched over the hole. Both stay between the least and the greatest z of the
+   *   hole's boundary.
+   * - THIN_PLATE: continues slope and curvature from the boundary and the ring of points around
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
-   * - ADAPTIVE: the best of MEMBRANE, THIN_PLATE and CUBIC_SPLINE for each hole. Its boundary is
-   *   moved to eight places around it, where the surface is known, and the methods predict there
-   *   what is inside; the least error decides, THIN_PLATE where another is not better by 15 % or
-   *   where there is no room to try.
+   * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
+   *   surface around it best. The hole's boundary is moved to up to 16 places around it, where the
+   *   surface is known, and the methods predict there what is inside. Methods that predict it
+   *   about equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred.
+   *   Output 1 tells the one with the largest share.
    *
    * The splines may leave the range of z around the hole, as a lost summit rises above
-   * what is left of it, by at most the distance from the nearest boundary point times
-   * twice the slope of the surface around the hole (root mean square). Points that determine no
-   * spline, because they are nearly in one line, give MEMBRANE; z that are not finite around the
-   * hole give NEIGHBOR_MEAN.
+   * what is left of it, by at most the distance from the nearest boundary point times the slope of
+   * the surface around the hole: the root mean square of slopes from the boundary to points half as
+   * many edges away as the middle of the hole is, 16 at most. Points that determine no spline,
+   * because they are nearly in one line, give MEMBRANE; z that are not finite around the hole give
+   * NEIGHBOR_MEAN.
    */
   vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
   vtkGetMacro(Interpolation, int);

@@ -25,7 +25,7 @@ constexpr std::size_t MostCentres = 300;
 constexpr double LeastDistance = 0.02;
 
 /** Places where Adaptive tries the methods, new points it compares there, places that suffice. */
-constexpr int NumberOfPlaces = 8;
+constexpr int NumberOfPlaces = 16;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr Index LeastProbes = 32;
 constexpr Index MostProbes = 100;
@@ -33,10 +33,21 @@ constexpr Index PointsPerProbe = 16;
 constexpr int EnoughPlaces = 2;
 
 /**
- * The thin plate is the safe choice: another method must be that much better, in root mean square
- * errors. Without, the worst surface tried lost a tenth.
+ * Shares of membrane, thin plate and cubic spline before anything is tried, and how many
+ * observations of their error each place is worth. Neighbouring places overlap, and a single
+ * rough one must not decide.
  */
-constexpr double Advantage = 0.85;
+constexpr double LogarithmOfPrior[3] = { 0.0, 1.5, -1.0 };
+constexpr double ObservationsPerPlace = 4.0;
+
+/**
+ * What is added to the logarithm of an error that was found at half the size. Between its points a
+ * surface is taken to be flat, so that the smoother methods look better there than they are.
+ */
+constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.6 };
+
+/** Shares below are not worth computing. */
+constexpr double LeastShare = 0.03;
 
 /** Errors below that share of the range are rounding. */
 constexpr double LeastError = 1e-9;
@@ -49,7 +60,14 @@ constexpr double RoughAccuracy = 1e-2;
 constexpr std::size_t PointsPerReport = 4096;
 
 /** How far beyond the range values may go: slopes of the surface times distance. */
-constexpr double SlopeLimit = 2.0;
+constexpr double SlopeLimit = 1.0;
+
+/** Slopes are measured over that many edges at most. */
+constexpr Index MostRings = 16;
+
+constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kernel::Cubic };
+constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
+  Interpolation::Cubic };
 
 /** Finds the triangle of a mesh that a point lies in, by a walk from a triangle near it. */
 class Walk
@@ -129,6 +147,25 @@ private:
   double Shares[3] = { 1.0, 0.0, 0.0 };
 };
 
+/**
+ * Cotangents are that much at most: coordinates are rounded. No weight is less than the other: in a
+ * Delaunay triangulation they are not negative, but for rounding.
+ */
+constexpr double LargestWeight = 1e6;
+constexpr double LeastWeight = 1e-12;
+
+/** The cotangent of the angle at @a c. */
+double Cotangent(const Point2& a, const Point2& b, const Point2& c)
+{
+  const double ux = a.X - c.X;
+  const double uy = a.Y - c.Y;
+  const double vx = b.X - c.X;
+  const double vy = b.Y - c.Y;
+  const double dot = ux * vx + uy * vy;
+  const double cross = std::fabs(ux * vy - uy * vx);
+  return std::fabs(dot) < LargestWeight * cross ? dot / cross : std::copysign(LargestWeight, dot);
+}
+
 bool AllFinite(const std::vector<double>& values)
 {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -138,7 +175,8 @@ bool AllFinite(const std::vector<double>& values)
 void Arrange(PatchMesh& patch, const Progress& progress)
 {
   const Progress counting = Part(progress, 0.0, 0.3);
-  const Progress gathering = Part(progress, 0.3, 0.7);
+  const Progress gathering = Part(progress, 0.3, 0.5);
+  const Progress weighing = Part(progress, 0.5, 0.7);
   const Progress layering = Part(progress, 0.7, 1.0);
   const Index boundary = patch.NumberOfBoundaryVertices();
   const Index count = patch.NumberOfNewVertices();
@@ -173,6 +211,40 @@ void Arrange(PatchMesh& patch, const Progress& progress)
           patch.Triangles[static_cast<std::size_t>(Mesh::Next(static_cast<Index>(h)))];
       }
     }
+  }
+
+  // The weight of an edge is half the sum of the cotangents of the two angles that face it. Each
+  // half-edge gives its own to both ends.
+  std::vector<double>& weights = patch.Neighbours.Weights;
+  weights.assign(neighbours.size(), 0.0);
+  const auto add = [&](Index from, Index to, double weight) {
+    if (from >= boundary)
+    {
+      std::size_t k = offsets[from - boundary];
+      while (neighbours[k] != to)
+      {
+        ++k;
+      }
+      weights[k] += weight;
+    }
+  };
+  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+  {
+    ReportStep(weighing, h, patch.Triangles.size());
+    const Index edge = static_cast<Index>(h);
+    const Index a = patch.Triangles[h];
+    const Index b = patch.Triangles[static_cast<std::size_t>(Mesh::Next(edge))];
+    if (a >= boundary || b >= boundary)
+    {
+      const Index c = patch.Triangles[static_cast<std::size_t>(Mesh::Previous(edge))];
+      const double weight = 0.5 * Cotangent(patch.At(a), patch.At(b), patch.At(c));
+      add(a, b, weight);
+      add(b, a, weight);
+    }
+  }
+  for (double& weight : weights)
+  {
+    weight = std::max(weight, LeastWeight);
   }
 
   constexpr Index unknown = std::numeric_limits<Index>::max();
@@ -235,6 +307,7 @@ Heights::Heights(const Mesh& surface, const Fans* fans, const PatchMesh& patch,
     this->Centre = { low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
     this->Scale = 2.0 / std::max(high.X - low.X, high.Y - low.Y);
     this->CollectRing(*fans);
+    this->CollectSlopes(*fans);
   }
   for (const Index id : this->Known)
   {
@@ -244,22 +317,29 @@ Heights::Heights(const Mesh& surface, const Fans* fans, const PatchMesh& patch,
       return;
     }
   }
-  if (NeedsSurroundings(wanted))
+  if (wanted == Interpolation::Adaptive)
   {
     this->ChooseCentres();
-    if (wanted == Interpolation::Adaptive)
-    {
-      this->Flat = std::make_unique<Membrane>(patch.Neighbours, Part(progress, 0.0, 0.3));
-      this->Choose(*fans, values, Part(progress, 0.3, 1.0));
-    }
-    else
-    {
-      this->Smooth = this->MakeSpline(
-        wanted == Interpolation::Cubic ? Spline::Kernel::Cubic : Spline::Kernel::ThinPlate);
-      this->Method = this->Smooth ? wanted : Interpolation::Membrane;
-    }
+    this->Flat = std::make_unique<Membrane>(patch.Neighbours, Part(progress, 0.0, 0.3));
+    this->Choose(*fans, values, Part(progress, 0.3, 1.0));
   }
-  if (!this->Flat && (!this->Smooth || !this->AllBoundaryIsCentre))
+  else if (wanted != Interpolation::Membrane)
+  {
+    this->ChooseCentres();
+    const int k = wanted == Interpolation::Cubic ? 1 : 0;
+    this->Splines[k] = this->MakeSpline(Kernels[k]);
+    this->Method = this->Splines[k] ? wanted : Interpolation::Membrane;
+    this->Shares[k + 1] = 1.0;
+  }
+  if (!this->HasSpline())
+  {
+    this->Shares[0] = 1.0;
+  }
+  if (!this->NeedsFlat())
+  {
+    this->Flat.reset();
+  }
+  else if (!this->Flat)
   {
     this->Flat = std::make_unique<Membrane>(patch.Neighbours, progress);
   }
@@ -273,7 +353,6 @@ void Heights::CollectRing(const Fans& fans)
     fans.Visit(this->Surface, vertex, [&](Index h) {
       ring.push_back(this->Surface.Destination(h));
       ring.push_back(this->Surface.Apex(h));
-      this->Edges.push_back({ vertex, this->Surface.Destination(h) });
       return true;
     });
   }
@@ -281,6 +360,51 @@ void Heights::CollectRing(const Fans& fans)
   ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
   std::set_difference(ring.begin(), ring.end(), this->Patch.BoundaryIds.begin(),
     this->Patch.BoundaryIds.end(), std::back_inserter(this->Known));
+}
+
+/** From each point of the last ring to the point of the boundary that it was reached from. */
+void Heights::CollectSlopes(const Fans& fans)
+{
+  const auto isBefore = [](const Pair& a, const Pair& b) { return a.Away < b.Away; };
+  std::vector<Pair> before;
+  std::vector<Pair> last;
+  for (const Index id : this->Patch.BoundaryIds)
+  {
+    last.push_back({ id, id });
+  }
+  const Index depth =
+    this->Patch.Layers[this->Patch.Order.back() - this->Patch.NumberOfBoundaryVertices()];
+  const Index rings = std::max<Index>(1, std::min<Index>(depth / 2, MostRings));
+  for (Index ring = 0; ring < rings; ++ring)
+  {
+    std::vector<Pair> found;
+    for (const Pair& pair : last)
+    {
+      fans.Visit(this->Surface, pair.Away, [&](Index h) {
+        found.push_back({ pair.Boundary, this->Surface.Destination(h) });
+        found.push_back({ pair.Boundary, this->Surface.Apex(h) });
+        return true;
+      });
+    }
+    std::stable_sort(found.begin(), found.end(), isBefore);
+    found.erase(std::unique(found.begin(), found.end(),
+                  [](const Pair& a, const Pair& b) { return a.Away == b.Away; }),
+      found.end());
+    // A neighbour is in the same ring, the one before or the next.
+    std::vector<Pair> next;
+    std::set_difference(
+      found.begin(), found.end(), last.begin(), last.end(), std::back_inserter(next), isBefore);
+    found.clear();
+    std::set_difference(
+      next.begin(), next.end(), before.begin(), before.end(), std::back_inserter(found), isBefore);
+    if (found.empty())
+    {
+      break;
+    }
+    before = std::move(last);
+    last = std::move(found);
+    this->Slopes = last;
+  }
 }
 
 /** Always the point that is farthest from those chosen; first on the boundary, then anywhere. */
@@ -350,8 +474,8 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
   const Index count = this->Patch.NumberOfNewVertices();
   this->Method = Interpolation::Membrane;
-  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(Spline::Kernel::ThinPlate),
-    this->MakeSpline(Spline::Kernel::Cubic) };
+  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(Kernels[0]),
+    this->MakeSpline(Kernels[1]) };
   if (!splines[0])
   {
     return;
@@ -387,8 +511,9 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
     normalized.push_back(this->Normalized(p));
   }
 
-  // Sums over the places of the logarithms of the methods' errors there.
-  double errors[3] = { 0.0, 0.0, 0.0 };
+  // The logarithms of the methods' shares, but for a common term.
+  double scores[3];
+  std::copy_n(LogarithmOfPrior, 3, scores);
   std::vector<double> moved(points.size());
   const auto tryAt = [&](double angle, double size, const Progress& here) {
     const Point2 direction{ std::cos(angle), std::sin(angle) };
@@ -482,33 +607,46 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
     for (int i = 0; i < 3; ++i)
     {
       // What is exact but for rounding must not outweigh all other places.
-      errors[i] += 0.5 * std::log(squares[i] + std::pow(LeastError * range, 2) + LeastSquare);
+      const double error =
+        0.5 * std::log(squares[i] + std::pow(LeastError * range, 2) + LeastSquare);
+      scores[i] -=
+        ObservationsPerPlace * (error - PenaltyOfHalfSize[i] * std::log(size) / std::log(2.0));
     }
     return true;
   };
   const int number = this->Flat->IsLarge() ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
   int places = 0;
-  for (const double size : { 1.0, 0.5 })
+  double begun = 0.0;
+  for (const double size : { 1.0, 0.5, 0.25 })
   {
-    for (int k = 0; k < number && (size == 1.0 || places < EnoughPlaces); ++k)
+    const int enough = size == 1.0 ? number : EnoughPlaces;
+    for (int k = 0; k < number && places < enough; ++k)
     {
-      const double done = size == 1.0 ? 0.9 * k / number : 0.9 + 0.1 * k / number;
+      const double done = begun + (1.0 - begun) * 0.8 * k / number;
       Report(progress, done);
       const double angle = 2.0 * 3.14159265358979323846 * k / number;
       places += tryAt(angle, size, Part(progress, done, done)) ? 1 : 0;
     }
+    begun += (1.0 - begun) * 0.8;
   }
-  // The mean of logarithms: one rough place shall not decide for all.
-  const double advantage = -std::log(Advantage) * places;
-  const double other = splines[1] ? errors[2] : std::numeric_limits<double>::infinity();
-  const bool isMembrane = errors[0] < std::min(errors[1] - advantage, other);
-  if (isMembrane)
+  const int methods = splines[1] ? 3 : 2;
+  const int best = static_cast<int>(std::max_element(scores, scores + methods) - scores);
+  double sum = 0.0;
+  for (int i = 0; i < methods; ++i)
   {
-    return;
+    const double share = std::exp(scores[i] - scores[best]);
+    this->Shares[i] = share < LeastShare ? 0.0 : share;
+    sum += this->Shares[i];
   }
-  const int s = other < errors[1] - advantage ? 1 : 0;
-  this->Method = s == 0 ? Interpolation::ThinPlate : Interpolation::Cubic;
-  this->Smooth = std::move(splines[s]);
+  for (int i = 0; i < methods; ++i)
+  {
+    this->Shares[i] /= sum;
+    if (i > 0 && this->Shares[i] > 0.0)
+    {
+      this->Splines[i - 1] = std::move(splines[i - 1]);
+    }
+  }
+  this->Method = Methods[best];
 }
 
 std::vector<double> Heights::Mean(const Values& values, const Progress& progress) const
@@ -549,7 +687,7 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   }
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = static_cast<std::size_t>(this->Patch.NumberOfNewVertices());
-  std::vector<double> known(this->Smooth ? this->Known.size() : boundary);
+  std::vector<double> known(this->HasSpline() ? this->Known.size() : boundary);
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (std::size_t i = 0; i < known.size(); ++i)
@@ -574,20 +712,39 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
     value = (value - middle) / unit;
   }
 
-  std::vector<double> result;
+  std::vector<double> result(count, 0.0);
   std::vector<double> rim(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(boundary));
   double slope = 0.0;
-  if (this->Smooth)
+  if (this->HasSpline())
   {
     std::vector<double> atCentres;
     for (const Index place : this->Centres)
     {
       atCentres.push_back(known[place]);
     }
-    const Spline::Weights weights = this->Smooth->Interpolate(atCentres);
-    const Progress adding = Part(progress, 0.0, this->AllBoundaryIsCentre ? 1.0 : 0.3);
+    Spline::Weights weights[2];
+    for (int s = 0; s < 2; ++s)
+    {
+      if (this->Splines[s])
+      {
+        weights[s] = this->Splines[s]->Interpolate(atCentres);
+        for (double& weight : weights[s])
+        {
+          weight *= this->Shares[s + 1];
+        }
+      }
+    }
+    const auto add = [&](const Point2* points, std::size_t size, double* sums) {
+      for (int s = 0; s < 2; ++s)
+      {
+        if (this->Splines[s])
+        {
+          this->Splines[s]->Add(weights[s], points, size, sums);
+        }
+      }
+    };
+    const Progress adding = Part(progress, 0.0, this->Flat ? 0.3 : 1.0);
     std::vector<Point2> points(PointsPerReport);
-    result.assign(count, 0.0);
     for (std::size_t begin = 0; begin < count; begin += PointsPerReport)
     {
       Report(adding, static_cast<double>(begin) / static_cast<double>(count));
@@ -596,9 +753,9 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
       {
         points[i] = this->Normalized(this->Patch.At(static_cast<Index>(boundary + begin + i)));
       }
-      this->Smooth->Add(weights, points.data(), size, &result[begin]);
+      add(points.data(), size, &result[begin]);
     }
-    if (!this->AllBoundaryIsCentre)
+    if (this->Flat)
     {
       std::vector<Point2> ends;
       for (const Index id : this->Patch.BoundaryIds)
@@ -606,38 +763,36 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
         ends.push_back(this->Normalized(this->Surface.PointOf(id)));
       }
       std::vector<double> there(boundary, 0.0);
-      this->Smooth->Add(weights, ends.data(), boundary, there.data());
+      add(ends.data(), boundary, there.data());
       for (std::size_t i = 0; i < boundary; ++i)
       {
         rim[i] -= there[i];
       }
     }
     double squares = 0.0;
-    for (const Edge& edge : this->Edges)
+    double number = 0.0;
+    for (const Pair& pair : this->Slopes)
     {
-      const Point2& a = this->Surface.PointOf(edge.A);
-      const Point2& b = this->Surface.PointOf(edge.B);
-      const double rise =
-        (values(edge.B) - values(edge.A)) / unit / (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
-      squares += rise * rise;
-    }
-    slope = SlopeLimit * this->Scale *
-      std::sqrt(squares / std::max<double>(1.0, static_cast<double>(this->Edges.size())));
-  }
-  if (!this->Smooth || !this->AllBoundaryIsCentre)
-  {
-    const std::vector<double> flat =
-      this->Flat->Solve(rim, 1e-10, Part(progress, this->Smooth ? 0.3 : 0.0, 1.0));
-    if (this->Smooth)
-    {
-      for (std::size_t i = 0; i < count; ++i)
+      const Point2& a = this->Surface.PointOf(pair.Boundary);
+      const Point2& b = this->Surface.PointOf(pair.Away);
+      const double rise = (values(pair.Away) - values(pair.Boundary)) / unit /
+        (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
+      if (std::isfinite(rise))
       {
-        result[i] += flat[i];
+        squares += rise * rise;
+        number += 1.0;
       }
     }
-    else
+    slope = SlopeLimit * this->Scale * std::sqrt(squares / std::max(1.0, number));
+  }
+  if (this->Flat)
+  {
+    // What the splines miss of the boundary; without any, all of it.
+    const std::vector<double> flat =
+      this->Flat->Solve(rim, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 1.0));
+    for (std::size_t i = 0; i < count; ++i)
     {
-      result = flat;
+      result[i] += flat[i];
     }
   }
   for (std::size_t i = 0; i < count; ++i)

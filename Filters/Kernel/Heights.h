@@ -13,25 +13,36 @@
  *   ThinPlate     continues slope and curvature of the surface: a spline (Spline.h) through the
  *                 hole's boundary and the ring of points around it;
  *   Cubic         the same with the smoother spline of r^3;
- *   Adaptive      for each hole the one of the last three that predicts the surface around it best.
+ *   Adaptive      for each hole the one of the last three that predicts the surface around it best;
+ *                 methods that predict it about equally well are mixed.
+ *
+ * The membrane's means are weighted by the cotangents of the angles that face an edge, which makes
+ * it the discrete Laplace equation [Pinkall, Polthier]: on the nodes of a lattice of right angles
+ * the mean of the four neighbours along the axes, as eq. 2 has it, whichever way the diagonals run.
  *
  * Splines. Of many points around a hole, 300 are chosen evenly. Where the spline so misses
  * the boundary, the difference is continued by the membrane and added: patches always meet
  * their boundary.
  *
  * Adaptive leaves out what is like the hole: its boundary, its ring and some of its new points are
- * moved to eight places (four for very large holes) around it, where the surface is known, and each
+ * moved to 16 places (four for very large holes) around it, where the surface is known, and each
  * method predicts there the points inside from those around. Splines and membrane depend on where
  * points lie to each other alone, so the factors of the hole serve at all places. A place counts
  * when surface is at each of the moved points; where a hole has less than two such places, points
- * at half the size are tried; without any, the thin plate is taken. The least error wins (the
- * geometric mean over the places of root mean squares); but the thin plate stays where another is
- * not better by 15 %.
+ * at half the size are tried, then at a quarter.
+ * Each place is worth four observations of a normal error: a method's share in the result is its
+ * prior share (thin plate 0.76, membrane 0.17, cubic 0.06) divided by the fourth power of its root
+ * mean square error at each place. With 16 places one that errs 10 % more than another has a 400th
+ * of its share; with one or two the thin plate keeps most. Shares below 3 % of the largest are left
+ * out. At reduced size the smoother methods' errors count more, as the surface is flat between its
+ * points: by 22 % (thin plate) and 82 % (cubic) for each halving.
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
  * Splines may leave the range of boundary and ring, as a summit that was lost rises above all that
- * is left of it; but by no more than the distance from the nearest boundary point times twice
- * the slope of the surface, its root mean square over the surface's edges at the boundary.
+ * is left of it; but by no more than the distance from the nearest boundary point times
+ * the slope of the surface. This is the root mean square of slopes from the boundary to points
+ * half as many edges away from it as the middle of the hole is, 16 at most: what is rough near by
+ * need not be steep.
  *
  * What a method cannot do, a simpler one does, and Used() tells: splines that points do not
  * determine (all nearly in one line) become the membrane; values that are not finite at the
@@ -41,6 +52,7 @@
  * depends on the order of holes. Splines and Adaptive continue planes exactly, to rounding.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
+ * [Pinkall, Polthier] Computing discrete minimal surfaces and their conjugates, 1993.
  */
 #ifndef elevation_Heights_h
 #define elevation_Heights_h
@@ -94,7 +106,7 @@ public:
   Heights(const Mesh& surface, const Fans* fans, const PatchMesh& patch, Interpolation wanted,
     const Values& values, const Progress& progress = Progress());
 
-  /** The method; never Adaptive. */
+  /** The method, of several that are mixed the one with the largest share; never Adaptive. */
   Interpolation Used() const { return this->Method; }
 
   /**
@@ -110,8 +122,14 @@ private:
   }
 
   void CollectRing(const Fans& fans);
+  void CollectSlopes(const Fans& fans);
   void ChooseCentres();
   std::unique_ptr<Spline> MakeSpline(Spline::Kernel kernel) const;
+  bool HasSpline() const { return this->Splines[0] || this->Splines[1]; }
+  bool NeedsFlat() const
+  {
+    return !this->AllBoundaryIsCentre || this->Shares[0] > 0.0 || !this->HasSpline();
+  }
   void Choose(const Fans& fans, const Values& values, const Progress& progress);
   std::vector<double> Mean(const Values& values, const Progress& progress) const;
 
@@ -122,16 +140,17 @@ private:
   double Scale = 1.0;
 
   std::vector<Index> Known; ///< ids: boundary, then the ring around it
-  struct Edge
+  struct Pair
   {
-    Index A;
-    Index B;
+    Index Boundary;
+    Index Away;
   };
-  std::vector<Edge> Edges;    ///< of the surface, from boundary points
+  std::vector<Pair> Slopes;   ///< points between which the surface's slope is measured
   std::vector<Index> Centres; ///< of the splines, places in Known
   bool AllBoundaryIsCentre = true;
   std::unique_ptr<Membrane> Flat;
-  std::unique_ptr<Spline> Smooth;
+  std::unique_ptr<Spline> Splines[2];   ///< thin plate and cubic; those with a share
+  double Shares[3] = { 0.0, 0.0, 0.0 }; ///< of the membrane and the splines, 1 together
 };
 
 } // namespace elevation

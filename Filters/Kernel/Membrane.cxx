@@ -291,19 +291,21 @@ Membrane::Membrane(const Adjacency& graph, const Progress& progress)
   a.Diagonal.resize(size);
   a.Offsets.reserve(static_cast<std::size_t>(size) + 1);
   a.Columns.reserve(graph.Neighbours.size());
+  a.Values.reserve(graph.Neighbours.size());
   for (Index i = 0; i < size; ++i)
   {
-    a.Diagonal[i] = static_cast<double>(graph.Offsets[i + 1] - graph.Offsets[i]);
+    a.Diagonal[i] = 0.0;
     for (std::size_t k = graph.Offsets[i]; k < graph.Offsets[i + 1]; ++k)
     {
+      a.Diagonal[i] += graph.Weights[k];
       if (graph.Neighbours[k] >= graph.NumberOfKnown)
       {
         a.Columns.push_back(graph.Neighbours[k] - graph.NumberOfKnown);
+        a.Values.push_back(-graph.Weights[k]);
       }
     }
     a.Offsets.push_back(a.Columns.size());
   }
-  a.Values.assign(a.Columns.size(), -1.0);
   for (;;)
   {
     // How many levels there will be is not known; that the work goes on is told.
@@ -401,7 +403,7 @@ std::vector<double> Membrane::Solve(
     {
       if (this->Graph.Neighbours[k] < this->Graph.NumberOfKnown)
       {
-        right[i] += known[this->Graph.Neighbours[k]];
+        right[i] += this->Graph.Weights[k] * known[this->Graph.Neighbours[k]];
       }
     }
   }

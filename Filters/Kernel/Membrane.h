@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Harmonic values on a graph: every unknown is the mean of its neighbours, the known ones keep
- * their values. This is the state that eq. 2 of [Nguyen] tends to when it is repeated, a stretched
- * membrane. Values stay between the least and the greatest known one.
+ * Harmonic values on a graph: every unknown is the weighted mean of its neighbours, the known ones
+ * keep their values. This is the state that eq. 2 of [Nguyen] tends to when it is repeated, a
+ * stretched membrane. Values stay between the least and the greatest known one.
  *
  * Two ways, by the work that the first would take:
  *   - a Cholesky factorisation in the order of a breadth-first search, in which the entries
@@ -38,6 +38,7 @@ struct Adjacency
   std::vector<std::size_t> Offsets{ 0 };
   /** Below NumberOfKnown: a vertex with a known value; else this number plus the unknown's. */
   std::vector<Index> Neighbours;
+  std::vector<double> Weights; ///< one a neighbour, positive; symmetric among unknowns
   Index NumberOfKnown = 0;
 
   Index NumberOfUnknowns() const { return static_cast<Index>(this->Offsets.size()) - 1; }

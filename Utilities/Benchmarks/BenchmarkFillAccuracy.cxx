@@ -4,6 +4,7 @@
 // Cuts holes out of surfaces that are known, fills them with vtkFillElevationHoles and with what
 // else there is, and compares with what was cut out. See README.md.
 #include "Arguments.h"
+#include "GDALFill.h"
 #ifdef ES_BENCHMARK_CGAL
 #include "CGALFill.h"
 #endif
@@ -13,6 +14,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkFieldData.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkFillHolesFilter.h"
 #include "vtkGridDelaunay2D.h"
@@ -40,14 +42,15 @@ const char* const Usage = R"(Usage: BenchmarkFillAccuracy [options]
 Cuts holes out of surfaces, fills them, and compares with what was cut out: root mean square and
 greatest error at the lost points.
 
-  --file FILE       a surface's points, .vtp or .f64; may be given several times
-  --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA
+  --file FILE       a surface's points: .vtp, .f64, .csv or .xyz; may be given several times
+  --extra           all .vtp and .f64 files of the folder ELEVATION_SURFACE_EXTRA_DATA
   --made            surfaces that are made: dome, ridges, noise
-  --shapes LIST     of disc,strip,blob,island; default disc,strip,blob
+  --shapes LIST     of disc,strip,blob,island; default all four
   --points LIST     lost points of a hole; default 10,50,200,1000,5000
   --holes N         holes of each shape and size; default 6
   --seed N          of their places; default 1
   --details         also a table for each shape and size
+  --csv FILE        writes the errors of every hole by every method
   --help            shows this text
 
 Without --file, --extra and --made: --made. The exit code is 1 when a hole was left open by
@@ -59,7 +62,8 @@ struct Options
   std::vector<std::string> Files;
   bool Made = false;
   bool Details = false;
-  std::vector<std::string> Shapes{ "disc", "strip", "blob" };
+  std::string Csv;
+  std::vector<std::string> Shapes{ "disc", "strip", "blob", "island" };
   std::vector<Index> Points{ 10, 50, 200, 1000, 5000 };
   int Holes = 6;
   std::uint64_t Seed = 1;
@@ -105,6 +109,10 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     if (option == "--file")
     {
       options.Files.push_back(value);
+    }
+    else if (option == "--csv")
+    {
+      options.Csv = value;
     }
     else if (option == "--shapes")
     {
@@ -204,6 +212,9 @@ struct Surface
   Coordinates Points;
   Mesh Triangles;       ///< without those that bridge gaps
   double Spacing = 0.0; ///< side of the square that a point has to itself
+  bool HasLattice = false;
+  Point2 Steps[2] = { { 0.0, 0.0 }, { 0.0, 0.0 } }; ///< of the lattice, or of squares
+  Point2 Origin{ 0.0, 0.0 };
   std::vector<char> OnBorder;
 };
 
@@ -253,6 +264,15 @@ Surface MakeSurface(Coordinates points)
   }
   surface.Triangles.ConnectTwins();
   surface.Spacing = std::sqrt(area / (0.5 * surface.Triangles.NumberOfTriangles()));
+  surface.Steps[0].X = surface.Steps[1].Y = surface.Spacing;
+  surface.Origin = surface.Triangles.Points.front();
+  if (vtkDataArray* lattice = delaunay->GetOutput()->GetFieldData()->GetArray("Lattice"))
+  {
+    surface.HasLattice = true;
+    surface.Origin = { lattice->GetComponent(0, 0), lattice->GetComponent(0, 1) };
+    surface.Steps[0] = { lattice->GetComponent(0, 2), lattice->GetComponent(0, 3) };
+    surface.Steps[1] = { lattice->GetComponent(0, 4), lattice->GetComponent(0, 5) };
+  }
   surface.OnBorder.assign(surface.Triangles.NumberOfPoints(), 1);
   for (const Index v : surface.Triangles.Triangles)
   {
@@ -581,20 +601,160 @@ Filled FillByCGAL(const Hole& hole, double left, double right, double low, doubl
 }
 #endif
 
+/** The nodes of the surface's lattice, or of squares as large as its spacing, around a hole. */
+class HoleRaster
+{
+public:
+  HoleRaster(const Surface& surface, const Hole& hole)
+    : Steps(surface.Steps)
+    , Origin(surface.Origin)
+  {
+    double low[2] = { 1e300, 1e300 };
+    double high[2] = { -1e300, -1e300 };
+    for (std::size_t i = 0; i < hole.Lost.size(); i += 3)
+    {
+      const Point2 at = this->ToNodes(&hole.Lost[i]);
+      low[0] = std::min(low[0], at.X);
+      low[1] = std::min(low[1], at.Y);
+      high[0] = std::max(high[0], at.X);
+      high[1] = std::max(high[1], at.Y);
+    }
+    // GDAL looks no farther than to the nearest points with a value.
+    constexpr double beyond = 4.0;
+    this->First = { std::floor(low[0]) - beyond, std::floor(low[1]) - beyond };
+    this->Nodes.Width = static_cast<int>(std::ceil(high[0]) + beyond - this->First.X) + 1;
+    this->Nodes.Height = static_cast<int>(std::ceil(high[1]) + beyond - this->First.Y) + 1;
+    this->Nodes.Values.assign(std::size_t(this->Nodes.Width) * this->Nodes.Height, std::nan(""));
+    for (std::size_t i = 0; i < hole.Triangles.size(); i += 3)
+    {
+      this->Draw(&hole.Points[3 * std::size_t(hole.Triangles[i])],
+        &hole.Points[3 * std::size_t(hole.Triangles[i + 1])],
+        &hole.Points[3 * std::size_t(hole.Triangles[i + 2])]);
+    }
+  }
+
+  /** Values at the lost points, between nodes by bilinear interpolation. */
+  Errors Compare(const Coordinates& lost) const
+  {
+    Errors errors;
+    for (std::size_t i = 0; i < lost.size(); i += 3)
+    {
+      Point2 at = this->ToNodes(&lost[i]);
+      at = { at.X - this->First.X, at.Y - this->First.Y };
+      // A point of a lattice lies on its node but for rounding.
+      const double nearest[2] = { std::round(at.X), std::round(at.Y) };
+      at.X = std::fabs(at.X - nearest[0]) < 0.02 ? nearest[0] : at.X;
+      at.Y = std::fabs(at.Y - nearest[1]) < 0.02 ? nearest[1] : at.Y;
+      const int x = static_cast<int>(at.X);
+      const int y = static_cast<int>(at.Y);
+      double value = 0.0;
+      for (int k = 0; k < 4; ++k)
+      {
+        const double share =
+          (k % 2 ? at.X - x : 1.0 - at.X + x) * (k / 2 ? at.Y - y : 1.0 - at.Y + y);
+        value += share > 0.0 ? share * this->Nodes.Values[this->Place(x + k % 2, y + k / 2)] : 0.0;
+      }
+      if (std::isnan(value))
+      {
+        ++errors.Uncovered;
+        continue;
+      }
+      ++errors.Count;
+      errors.Squares += (value - lost[i + 2]) * (value - lost[i + 2]);
+      errors.Greatest = std::max(errors.Greatest, std::fabs(value - lost[i + 2]));
+    }
+    return errors;
+  }
+
+  Raster Nodes; ///< NaN where no triangle is
+
+private:
+  std::size_t Place(int x, int y) const { return std::size_t(y) * this->Nodes.Width + x; }
+
+  Point2 ToNodes(const double* p) const
+  {
+    const Point2& u = this->Steps[0];
+    const Point2& v = this->Steps[1];
+    const double x = p[0] - this->Origin.X;
+    const double y = p[1] - this->Origin.Y;
+    const double area = u.X * v.Y - u.Y * v.X;
+    return { (x * v.Y - y * v.X) / area, (u.X * y - u.Y * x) / area };
+  }
+
+  void Draw(const double* a, const double* b, const double* c)
+  {
+    Point2 p[3];
+    int k = 0;
+    for (const double* corner : { a, b, c })
+    {
+      p[k] = this->ToNodes(corner);
+      p[k] = { p[k].X - this->First.X, p[k].Y - this->First.Y };
+      ++k;
+    }
+    constexpr double tolerance = 0.02;
+    const auto x = std::minmax({ p[0].X, p[1].X, p[2].X });
+    const auto y = std::minmax({ p[0].Y, p[1].Y, p[2].Y });
+    const double area =
+      (p[1].X - p[0].X) * (p[2].Y - p[0].Y) - (p[1].Y - p[0].Y) * (p[2].X - p[0].X);
+    const int left = std::max(0, static_cast<int>(std::ceil(x.first - tolerance)));
+    const int right = std::min(this->Nodes.Width - 1.0, std::floor(x.second + tolerance));
+    const int bottom = std::max(0, static_cast<int>(std::ceil(y.first - tolerance)));
+    const int top = std::min(this->Nodes.Height - 1.0, std::floor(y.second + tolerance));
+    for (int j = bottom; j <= top; ++j)
+    {
+      for (int i = left; i <= right; ++i)
+      {
+        const double u = ((p[1].X - i) * (p[2].Y - j) - (p[1].Y - j) * (p[2].X - i)) / area;
+        const double v = ((p[2].X - i) * (p[0].Y - j) - (p[2].Y - j) * (p[0].X - i)) / area;
+        const double w = 1.0 - u - v;
+        if (u > -tolerance && v > -tolerance && w > -tolerance)
+        {
+          this->Nodes.Values[this->Place(i, j)] = u * a[2] + v * b[2] + w * c[2];
+        }
+      }
+    }
+  }
+
+  const Point2* Steps;
+  Point2 Origin;
+  Point2 First{ 0.0, 0.0 }; ///< node of the raster's corner
+};
+
 // ---- tables -------------------------------------------------------------------------------------
 
 const std::vector<std::string>& Methods()
 {
-  static const std::vector<std::string> methods = {
+  static const std::vector<std::string> methods = [] {
+    std::vector<std::string> names;
 #ifdef ES_BENCHMARK_CGAL
-    "CGAL",
+    names.push_back("CGAL");
 #endif
-    "vtkFillHoles", "linear", "NeighborMean", "Membrane", "ThinPlate", "CubicSpline", "Adaptive"
-  };
+    if (HasGDAL())
+    {
+      names.push_back("GDAL");
+    }
+    for (const char* name : { "vtkFillHoles", "linear", "NeighborMean", "Membrane", "ThinPlate",
+           "CubicSpline", "Adaptive", "best" })
+    {
+      names.push_back(name);
+    }
+    return names;
+  }();
   return methods;
 }
 
 using Row = std::map<std::string, Errors>;
+
+/** Times that Adaptive used each Interpolation. */
+using Uses = std::array<int, 5>;
+
+struct Result
+{
+  std::string Shape;
+  Index Points = 0; ///< asked for
+  Row Methods;
+  int Used = -1; ///< by Adaptive
+};
 
 void PrintHeader(const char* first)
 {
@@ -603,10 +763,15 @@ void PrintHeader(const char* first)
   {
     std::printf(" %12s", method.c_str());
   }
-  std::printf("  chosen M/T/C  ratio\n");
+  std::printf("  chosen M/T/C  ratio  of best\n");
 }
 
-void PrintRow(const std::string& name, Row& row, const std::array<int, 5>& used)
+double Ratio(Row& row, const char* method, const char* to)
+{
+  return row[method].RootMeanSquare() / row[to].RootMeanSquare();
+}
+
+void PrintRow(const std::string& name, Row& row, const Uses& used)
 {
   std::printf("%-28s %6zu", name.c_str(), row["linear"].Count + row["linear"].Uncovered);
   for (const std::string& method : Methods())
@@ -616,25 +781,104 @@ void PrintRow(const std::string& name, Row& row, const std::array<int, 5>& used)
   std::printf("  %4d/%3d/%3d", used[1], used[2], used[4]);
   if (row.count("CGAL"))
   {
-    std::printf("  %.3f", row["Adaptive"].RootMeanSquare() / row["CGAL"].RootMeanSquare());
+    std::printf("  %.3f  %.3f", Ratio(row, "Adaptive", "CGAL"), Ratio(row, "best", "CGAL"));
   }
   std::printf("\n");
 }
 
-bool Run(const PointSource& source, const Options& options, std::vector<double>& ratios)
+/** What all surfaces gave. */
+struct Summary
+{
+  std::vector<double> Ratios;
+  std::vector<double> RatiosWithoutIslands;
+  std::vector<std::string> Better; ///< peers that were better than Adaptive, with the surface
+  bool IsWhole = true;
+};
+
+/** The sums of those results that a condition takes. @return whether there is one */
+bool Sum(const std::vector<Result>& results, const std::function<bool(const Result&)>& takes,
+  Row& row, Uses& used)
+{
+  row.clear();
+  used = Uses{};
+  for (const Result& result : results)
+  {
+    if (takes(result))
+    {
+      for (const auto& entry : result.Methods)
+      {
+        row[entry.first].Add(entry.second);
+      }
+      used[std::max(0, result.Used)] += 1;
+    }
+  }
+  return !row.empty();
+}
+
+void WriteCsv(std::FILE* file, const std::string& surface, const std::vector<Result>& results)
+{
+  int number = 0;
+  for (const Result& result : results)
+  {
+    for (const auto& entry : result.Methods)
+    {
+      const Errors& errors = entry.second;
+      std::fprintf(file, "%s,%s,%d,%d,%s,%zu,%zu,%.9g,%.9g\n", surface.c_str(),
+        result.Shape.c_str(), int(result.Points), number, entry.first.c_str(), errors.Count,
+        errors.Uncovered, errors.Squares, errors.Greatest);
+    }
+    ++number;
+  }
+}
+
+/** Cuts one hole and fills it by all methods but GDAL, which follows for all holes at once. */
+Result FillOne(const Hole& hole, const Point2& at, double around, bool& isWhole)
+{
+  Result result;
+  Row& row = result.Methods;
+  const Filled flat = FillWithUs(hole, -1);
+  row["linear"] = Compare(flat.Points, flat.Patch, hole.Lost);
+  const char* const names[] = { "NeighborMean", "Membrane", "ThinPlate", "Adaptive",
+    "CubicSpline" };
+  for (int i = 0; i < 5; ++i)
+  {
+    const Filled filled = FillWithUs(hole, i);
+    const Errors errors = Compare(filled.Points, filled.Patch, hole.Lost);
+    isWhole = isWhole && errors.Uncovered == 0;
+    row[names[i]] = errors;
+    if (i == vtkFillElevationHoles::ADAPTIVE)
+    {
+      result.Used = filled.Used;
+    }
+  }
+  row["best"] = row["Membrane"];
+  for (const char* name : { "ThinPlate", "CubicSpline" })
+  {
+    row["best"] = row[name].Squares < row["best"].Squares ? row[name] : row["best"];
+  }
+  const Filled byVTK = FillWithVTK(hole, 2.0 * around);
+  row["vtkFillHoles"] = Compare(byVTK.Points, byVTK.Patch, hole.Lost);
+#ifdef ES_BENCHMARK_CGAL
+  const Filled byCGAL =
+    FillByCGAL(hole, at.X - around, at.X + around, at.Y - around, at.Y + around);
+  row["CGAL"] = Compare(byCGAL.Points, byCGAL.Patch, hole.Lost);
+#else
+  static_cast<void>(at);
+#endif
+  return result;
+}
+
+void Run(const PointSource& source, const Options& options, std::FILE* csv, Summary& summary)
 {
   const Surface surface = MakeSurface(source.Make());
-  Row all;
-  std::array<int, 5> allUsed{};
-  bool isWhole = true;
   Random random(options.Seed);
-  std::size_t lost = 0;
+  std::vector<Result> results;
+  std::vector<HoleRaster> rasters;
+  std::vector<Coordinates> lost;
   for (const std::string& shapeName : options.Shapes)
   {
     for (const Index size : options.Points)
     {
-      Row row;
-      std::array<int, 5> used{};
       int done = 0;
       for (int attempt = 0; attempt < 40 * options.Holes && done < options.Holes; ++attempt)
       {
@@ -649,70 +893,98 @@ bool Run(const PointSource& source, const Options& options, std::vector<double>&
           continue;
         }
         ++done;
-        lost += hole.Lost.size() / 3;
-        const double around = (reach + 4.0) * surface.Spacing;
-        row["linear"].Add([&] {
-          const Filled filled = FillWithUs(hole, -1);
-          return Compare(filled.Points, filled.Patch, hole.Lost);
-        }());
-        const char* const names[] = { "NeighborMean", "Membrane", "ThinPlate", "Adaptive",
-          "CubicSpline" };
-        for (int i = 0; i < 5; ++i)
+        results.push_back(FillOne(hole, at, (reach + 4.0) * surface.Spacing, summary.IsWhole));
+        results.back().Shape = shapeName;
+        results.back().Points = size;
+        if (HasGDAL())
         {
-          const Filled filled = FillWithUs(hole, i);
-          const Errors errors = Compare(filled.Points, filled.Patch, hole.Lost);
-          isWhole = isWhole && errors.Uncovered == 0;
-          row[names[i]].Add(errors);
-          if (i == vtkFillElevationHoles::ADAPTIVE && filled.Used >= 0)
-          {
-            ++used[filled.Used];
-          }
+          rasters.emplace_back(surface, hole);
+          lost.push_back(hole.Lost);
         }
-        const Filled byVTK = FillWithVTK(hole, 2.0 * around);
-        row["vtkFillHoles"].Add(Compare(byVTK.Points, byVTK.Patch, hole.Lost));
-#ifdef ES_BENCHMARK_CGAL
-        const Filled byCGAL =
-          FillByCGAL(hole, at.X - around, at.X + around, at.Y - around, at.Y + around);
-        row["CGAL"].Add(Compare(byCGAL.Points, byCGAL.Patch, hole.Lost));
-#endif
-      }
-      if (done > 0 && options.Details)
-      {
-        PrintRow(source.Name + " " + shapeName + " " + std::to_string(size), row, used);
-      }
-      for (auto& entry : row)
-      {
-        all[entry.first].Add(entry.second);
-      }
-      for (int i = 0; i < 5; ++i)
-      {
-        allUsed[i] += used[i];
       }
     }
   }
-  if (lost == 0)
+  if (results.empty())
   {
     std::printf("%-28s no place for a hole\n", source.Name.c_str());
-    return true;
+    return;
   }
-  PrintRow(source.Name, all, allUsed);
+  std::vector<Raster*> all;
+  for (HoleRaster& raster : rasters)
+  {
+    all.push_back(&raster.Nodes);
+  }
+  FillWithGDAL(all);
+  for (std::size_t i = 0; i < rasters.size(); ++i)
+  {
+    results[i].Methods["GDAL"] = rasters[i].Compare(lost[i]);
+  }
+  if (csv)
+  {
+    WriteCsv(csv, source.Name, results);
+  }
+
+  Row row;
+  Uses used{};
+  for (const std::string& shape : options.Shapes)
+  {
+    for (const Index size : options.Points)
+    {
+      if (options.Details &&
+        Sum(
+          results, [&](const Result& r) { return r.Shape == shape && r.Points == size; }, row,
+          used))
+      {
+        PrintRow(source.Name + " " + shape + " " + std::to_string(size), row, used);
+      }
+    }
+  }
+  if (Sum(
+        results, [](const Result& r) { return r.Shape != "island"; }, row, used) &&
+    row.count("CGAL"))
+  {
+    summary.RatiosWithoutIslands.push_back(Ratio(row, "Adaptive", "CGAL"));
+  }
+  Sum(
+    results, [](const Result&) { return true; }, row, used);
+  PrintRow(source.Name, row, used);
   std::printf("%-28s %6s", "  greatest error", "");
   for (const std::string& method : Methods())
   {
-    std::printf(" %12.5g", all[method].Greatest);
+    std::printf(" %12.5g", row[method].Greatest);
   }
   std::printf("\n%-28s %6s", "  not covered", "");
   for (const std::string& method : Methods())
   {
-    std::printf(" %12zu", all[method].Uncovered);
+    std::printf(" %12zu", row[method].Uncovered);
   }
   std::printf("\n");
   std::fflush(stdout);
-  if (all.count("CGAL"))
+  if (row.count("CGAL"))
   {
-    ratios.push_back(all["Adaptive"].RootMeanSquare() / all["CGAL"].RootMeanSquare());
+    summary.Ratios.push_back(Ratio(row, "Adaptive", "CGAL"));
   }
-  return isWhole;
+  for (const char* peer : { "GDAL", "vtkFillHoles", "linear" })
+  {
+    if (row.count(peer) && !(Ratio(row, "Adaptive", peer) < 1.0))
+    {
+      summary.Better.push_back(std::string(peer) + " on " + source.Name);
+    }
+  }
+}
+
+void PrintRatios(const char* what, const std::vector<double>& ratios)
+{
+  if (!ratios.empty())
+  {
+    double sum = 0.0;
+    for (const double ratio : ratios)
+    {
+      sum += ratio;
+    }
+    std::printf("Adaptive in parts of CGAL, %s: mean %.3f, most %.3f\n", what,
+      sum / static_cast<double>(ratios.size()), *std::max_element(ratios.begin(), ratios.end()));
+  }
 }
 } // namespace
 
@@ -738,24 +1010,40 @@ int main(int argc, char* argv[])
         sources.push_back(made);
       }
     }
+    std::FILE* csv = nullptr;
+    if (!options.Csv.empty())
+    {
+      csv = std::fopen(options.Csv.c_str(), "w");
+      if (!csv)
+      {
+        throw elevation::Error(options.Csv + ": cannot be written");
+      }
+      std::fprintf(csv, "surface,shape,points,hole,method,covered,uncovered,squares,greatest\n");
+    }
+#ifndef ES_BENCHMARK_CGAL
+    std::printf("Without CGAL, which was not found when this was built.\n");
+#endif
+    if (!HasGDAL())
+    {
+      std::printf("Without GDAL: no Python with osgeo.gdal and numpy was found.\n");
+    }
     PrintHeader("surface");
-    bool isWhole = true;
-    std::vector<double> ratios;
+    Summary summary;
     for (const PointSource& source : sources)
     {
-      isWhole = Run(source, options, ratios) && isWhole;
+      Run(source, options, csv, summary);
     }
-    if (!ratios.empty())
+    if (csv && std::fclose(csv) != 0)
     {
-      double sum = 0.0;
-      for (const double ratio : ratios)
-      {
-        sum += ratio;
-      }
-      std::printf("Adaptive in parts of CGAL: mean %.3f, most %.3f\n",
-        sum / static_cast<double>(ratios.size()), *std::max_element(ratios.begin(), ratios.end()));
+      throw elevation::Error(options.Csv + ": cannot be written");
     }
-    return isWhole ? 0 : 1;
+    PrintRatios("all holes", summary.Ratios);
+    PrintRatios("without islands", summary.RatiosWithoutIslands);
+    for (const std::string& better : summary.Better)
+    {
+      std::printf("Better than Adaptive: %s\n", better.c_str());
+    }
+    return summary.IsWhole ? 0 : 1;
   }
   catch (const UsageError& error)
   {

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <sstream>
 
 namespace
 {
@@ -339,6 +340,27 @@ Coordinates ReadDoubles(const std::string& path)
   return points;
 }
 
+/** A line that names the columns x, y, z, then three numbers a line, with commas or blanks. */
+Coordinates ReadText(const std::string& path)
+{
+  std::ifstream file(path);
+  Coordinates points;
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line))
+  {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream numbers(line);
+    double p[3];
+    if (!(numbers >> p[0] >> p[1] >> p[2]))
+    {
+      throw elevation::Error(path + ": cannot be read: " + line);
+    }
+    points.insert(points.end(), p, p + 3);
+  }
+  return points;
+}
+
 Coordinates ReadPolyData(const std::string& path)
 {
   vtkNew<vtkXMLPolyDataReader> reader;
@@ -394,7 +416,11 @@ PointSource FileSource(const std::string& path)
   {
     return { name, [path]() { return Finite(ReadPolyData(path), path); } };
   }
-  throw elevation::Error(path + ": only .f64 and .vtp files can be read");
+  if (file.extension() == ".csv" || file.extension() == ".xyz")
+  {
+    return { name, [path]() { return Finite(ReadText(path), path); } };
+  }
+  throw elevation::Error(path + ": only .f64, .vtp, .csv and .xyz files can be read");
 }
 
 std::vector<std::string> FilesOf(const std::string& folder)

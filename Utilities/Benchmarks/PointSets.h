@@ -36,9 +36,10 @@ struct PointSource
 };
 
 /**
- * A source that reads a file: .f64 (little-endian doubles, x y z after one another) or .vtp.
+ * A source that reads a file: .f64 (little-endian doubles, x y z after one another), .vtp, or text
+ * (.csv, .xyz: a line of names, then x y z in each line).
  * Make leaves points out that are not finite.
- * @throws elevation::Error, at once or from Make, when the file is neither, or cannot be read
+ * @throws elevation::Error, at once or from Make, when the file is none of these, or cannot be read
  */
 PointSource FileSource(const std::string& path);
 
