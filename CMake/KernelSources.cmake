@@ -18,6 +18,7 @@ set(es_kernel_concepts
   Boundary
   Insertion
   Trim
+  QuickTrim
   Holes
   Membrane
   Spline
