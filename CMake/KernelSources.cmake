@@ -18,8 +18,8 @@ set(es_kernel_concepts
   Boundary
   Insertion
   Trim
-  QuickTrim
   Holes
+  QuickTrim
   Membrane
   Spline
   Heights

@@ -256,8 +256,7 @@ bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles)
 {
   vtkCellArray* polygons = input->GetPolys();
   const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
-  if (count == 0 || count > std::numeric_limits<Index>::max() / 3 ||
-    input->GetNumberOfStrips() > 0)
+  if (count == 0 || count > std::numeric_limits<Index>::max() / 3 || input->GetNumberOfStrips() > 0)
   {
     return false;
   }
@@ -286,9 +285,8 @@ bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles)
   triangles.Converted.Resize(3 * static_cast<std::size_t>(count));
   std::transform(polygons->GetConnectivityArray64()->GetPointer(0),
     polygons->GetConnectivityArray64()->GetPointer(0) + triangles.Converted.size(),
-    triangles.Converted.begin(), [](vtkTypeInt64 id) {
-      return id == static_cast<Index>(id) ? static_cast<Index>(id) : None;
-    });
+    triangles.Converted.begin(),
+    [](vtkTypeInt64 id) { return id == static_cast<Index>(id) ? static_cast<Index>(id) : None; });
   triangles.View.Corners = triangles.Converted.data();
   return true;
 }

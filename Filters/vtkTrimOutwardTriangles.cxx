@@ -110,8 +110,8 @@ std::vector<elevation::Point2> PlacesOf(vtkPolyData* boundary)
  * Trims along a boundary by QuickTrim.
  * @return whether it is done; if not, the outcome is of no use
  */
-bool TrimQuickly(vtkPolyData* input, vtkPolyData* given, bool recover, const Progress& progress,
-  Outcome& outcome)
+bool TrimQuickly(
+  vtkPolyData* input, vtkPolyData* given, bool recover, const Progress& progress, Outcome& outcome)
 {
   if (!elevation::ViewTriangles(input, outcome.View))
   {
@@ -126,8 +126,7 @@ bool TrimQuickly(vtkPolyData* input, vtkPolyData* given, bool recover, const Pro
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
     for (Index& vertex : lines.Lines.Vertices)
     {
-      vertex =
-        static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), vertex) - ids.begin());
+      vertex = static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), vertex) - ids.begin());
     }
     const elevation::PointsOfDataSet points = elevation::ViewPoints(given);
     for (const Index id : ids)
@@ -458,8 +457,8 @@ void AddCounts(const Outcome& outcome, vtkInformationVector* outputVector)
     vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
     elevation::AddCount(fieldData, "NumberOfOutwardTriangles", trimmed.NumberOfOutwardTriangles);
     elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
-    elevation::AddCount(fieldData, "NumberOfInsertedPoints",
-      static_cast<vtkIdType>(outcome.List.Inserted.size()));
+    elevation::AddCount(
+      fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(outcome.List.Inserted.size()));
     vtkNew<vtkDoubleArray> tolerance;
     tolerance->SetName("EffectiveGapTolerance");
     tolerance->InsertNextValue(outcome.GapTolerance);
@@ -537,10 +536,10 @@ int vtkTrimOutwardTriangles::RequestData(
     }
     if (outcome.Boundary.Count() == 0)
     {
-      vtkWarningMacro(
-        << (outcome.Count == 0 ? "The input has no triangles, so there is nothing to trim."
-                               : "No triangle is surface: all have an edge longer than "
-                                 "GapTolerance spacings. Raise GapTolerance."));
+      vtkWarningMacro(<< (outcome.Count == 0
+                          ? "The input has no triangles, so there is nothing to trim."
+                          : "No triangle is surface: all have an edge longer than "
+                            "GapTolerance spacings. Raise GapTolerance."));
     }
 
     vtkPolyData* kept = vtkPolyData::GetData(outputVector, 0);

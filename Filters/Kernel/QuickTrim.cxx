@@ -16,10 +16,16 @@ namespace elevation
 namespace
 {
 
-// ---------------------------------------------------------------------------------- edges in a sweep
+// -------------------------------------------------------------------------------- edges in a sweep
 
 /** How many corners ahead the sweep asks for what belongs to them. */
 constexpr std::size_t CornersAhead = 126;
+
+struct Corner
+{
+  Index Id;
+  Point2 Place;
+};
 
 /** A half-edge: its ends, and whether it leads from the lower to the upper, or down. */
 struct Edge
@@ -111,8 +117,7 @@ public:
       open = edge.Upper;
       return;
     }
-    const bool isNew =
-      open != edge.Upper && this->Others.insert(KeyOf(edge, edge.IsDown)).second;
+    const bool isNew = open != edge.Upper && this->Others.insert(KeyOf(edge, edge.IsDown)).second;
     ++this->Sieve[PlaceOf(edge)];
     this->HasNoOthers = false;
     this->Failed = this->Failed || !isNew || this->Others.size() > this->Most;
@@ -188,7 +193,7 @@ private:
   bool Failed = false;
 };
 
-/** Whether a triangle is counter-clockwise and has finite corners. Apart, so as to be out of the way. */
+/** Whether a triangle is counter-clockwise and has finite corners: what a filter leaves open. */
 bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
 {
   for (const double value : { a.X, a.Y, b.X, b.Y, c.X, c.Y })
@@ -222,10 +227,6 @@ bool SweepStretch(const Index* corners, Index begin, Index end, std::size_t ahea
     const Real* p = coordinates + 3 * static_cast<std::size_t>(id);
     return Point2{ static_cast<double>(p[0]), static_cast<double>(p[1]) };
   };
-  const auto heightOf = [coordinates](Index id) {
-    return static_cast<double>(coordinates[3 * static_cast<std::size_t>(id) + 2]);
-  };
-  double heights = 0.0; // times 0: 0, or not a number
   bool isRight = true;
   const Index* ids = corners + 3 * static_cast<std::size_t>(begin);
   const Index* const lastIds = corners + 3 * static_cast<std::size_t>(end);
@@ -236,7 +237,6 @@ bool SweepStretch(const Index* corners, Index begin, Index end, std::size_t ahea
     const Index right = ids[1];
     const Point2 p = placeOf(first);
     const Point2 r = placeOf(right);
-    heights += 0.0 * heightOf(first) + 0.0 * heightOf(right);
     visitor.Begin(p, r);
     Index last = right;
     Point2 b = r;
@@ -246,15 +246,15 @@ bool SweepStretch(const Index* corners, Index begin, Index end, std::size_t ahea
       {
         Prefetch(coordinates + 3 * static_cast<std::size_t>(next));
         edges.PrefetchAt(next);
+        visitor.PrefetchAt(next);
       }
       const Index before = last;
       const Point2 a = b;
       last = ids[2];
       b = placeOf(last);
-      heights += 0.0 * heightOf(last);
       isRight &= IsCounterClockwise(a, b, p);
       edges.Add(Edge(before, a, last, b));
-      visitor.Visit(t, p, a, b);
+      visitor.Visit(t, { first, p }, { before, a }, { last, b });
       ids += 3;
       ++t;
     } while (ids < lastIds && ids[0] == first && ids[1] == last);
@@ -270,7 +270,24 @@ bool SweepStretch(const Index* corners, Index begin, Index end, std::size_t ahea
       }
     }
   }
-  return isRight && heights == 0.0;
+  return isRight;
+}
+
+/** Whether all elevations are finite, also of points that are no corners. */
+template <typename Real>
+bool AreHeightsFinite(const Real* coordinates, Index count, const Progress& progress)
+{
+  double sum = 0.0; // of numbers times 0: 0, or not a number
+  InStretches(count, progress, [&](Index begin, Index end) {
+    const Real* z = coordinates + 3 * static_cast<std::size_t>(begin) + 2;
+    double sums[4] = { 0.0, 0.0, 0.0, 0.0 };
+    for (Index i = begin; i < end; ++i, z += 3)
+    {
+      sums[i % 4] += 0.0 * static_cast<double>(*z);
+    }
+    sum += (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  });
+  return sum == 0.0;
 }
 
 /**
@@ -278,7 +295,8 @@ bool SweepStretch(const Index* corners, Index begin, Index end, std::size_t ahea
  * finite, z included. Edges between triangles that follow each other around one vertex are matched
  * at once, the others by way of @a edges.
  * @param[in] visitor  Begin(p, a) is told the first corner of triangles that follow each other,
- *                     and the next; Visit(t, p, a, b) each of them
+ *                     and the next; Visit(t, p, a, b) each of them; PrefetchAt(vertex) what is soon
+ *                     to come
  * @return whether they are
  */
 template <typename Real, typename Visitor>
@@ -287,8 +305,8 @@ bool Sweep(const TriangleList& list, const Real* coordinates, OpenEdges& edges,
 {
   const std::size_t count = 3 * static_cast<std::size_t>(list.Count);
   const std::uint32_t most = static_cast<std::uint32_t>(list.Points.Count - 1);
-  bool isRight = true;
-  InStretches(list.Count, progress, [&](Index begin, Index end) {
+  bool isRight = AreHeightsFinite(coordinates, list.Points.Count, Part(progress, 0.0, 0.05));
+  InStretches(list.Count, Part(progress, 0.05, 1.0), [&](Index begin, Index end) {
     const std::size_t last = 3 * static_cast<std::size_t>(end);
     const std::size_t known = std::min(count, last + CornersAhead + 3);
     std::uint32_t sign = 0; // of numbers below 0, or beyond the last
@@ -298,8 +316,8 @@ bool Sweep(const TriangleList& list, const Real* coordinates, OpenEdges& edges,
       sign |= id | (most - id);
     }
     isRight = isRight && sign >> 31 == 0 &&
-      SweepStretch(list.Corners, begin, end, known < count ? CornersAhead : 0, coordinates, edges,
-        visitor) &&
+      SweepStretch(
+        list.Corners, begin, end, known < count ? CornersAhead : 0, coordinates, edges, visitor) &&
       !edges.HasFailed();
   });
   return isRight;
@@ -340,7 +358,7 @@ Mesh MeshOfBorder(const OpenEdges& edges, const PointView& points)
   return mesh;
 }
 
-// ------------------------------------------------------------------------------------------- raster
+// ------------------------------------------------------------------------------------------ raster
 
 /**
  * A raster over the box of rings, with some cells around it. A cell that no ring touches is inside
@@ -397,7 +415,8 @@ public:
   /** The kind of all that is not farther than Reach() from p, along x and along y. */
   Kind KindAround(Point2 p) const
   {
-    return static_cast<Kind>(this->KindsAround[this->CellAt(this->ColumnOf(p.X), this->RowOf(p.Y))]);
+    return static_cast<Kind>(
+      this->KindsAround[this->CellAt(this->ColumnOf(p.X), this->RowOf(p.Y))]);
   }
   double Reach() const { return 0.999 * Around * this->Side; }
 
@@ -567,8 +586,11 @@ struct Classifier
     this->ReachOfLast = ReachOf(p, a);
   }
 
-  void Visit(Index t, Point2 p, Point2 a, Point2 b)
+  void PrefetchAt(Index) const {}
+
+  void Visit(Index t, Corner first, Corner second, Corner third)
   {
+    const Point2 p = first.Place, a = second.Place, b = third.Place;
     const double reach = ReachOf(p, b);
     const bool isShort = (reach <= this->Reach) & (this->ReachOfLast <= this->Reach);
     this->ReachOfLast = reach;
@@ -588,7 +610,7 @@ struct Classifier
   }
 };
 
-// ---------------------------------------------------------------------------------------- near rings
+// -------------------------------------------------------------------------------------- near rings
 
 /** Some triangles of a list as a mesh of their own; ids keep their order. */
 struct NearMesh

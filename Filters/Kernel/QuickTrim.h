@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Trimming in one pass over the triangles where they lie, without twins but near the boundary.
+ * Trimming by a sweep over the triangles where they lie, with twins only near the boundary.
  *
  * In: a list of triangles, rings. Out: one flag a triangle, and what recovery and insertion change.
  * The passes:

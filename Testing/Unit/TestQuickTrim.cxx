@@ -30,10 +30,7 @@ struct Surface
     list.Points.Count = static_cast<Index>(this->Coordinates.size() / 3);
     return list;
   }
-  Point2 At(Index id) const
-  {
-    return { this->Coordinates[3 * id], this->Coordinates[3 * id + 1] };
-  }
+  Point2 At(Index id) const { return { this->Coordinates[3 * id], this->Coordinates[3 * id + 1] }; }
 };
 
 Surface SurfaceOf(const std::vector<Point2>& points)
@@ -71,8 +68,7 @@ void Remove(Surface& surface, const std::function<bool(double, double)>& isOut)
     }
     if (!isOut(x, y))
     {
-      corners.insert(
-        corners.end(), surface.Corners.begin() + h, surface.Corners.begin() + h + 3);
+      corners.insert(corners.end(), surface.Corners.begin() + h, surface.Corners.begin() + h + 3);
     }
   }
   surface.Corners = corners;
@@ -176,16 +172,15 @@ Everything TrimWithTwins(const Surface& surface, const Boundary& boundary, bool 
   Everything everything;
   everything.Corners = mesh.Triangles;
   everything.Parents = rings.Parents;
-  everything.Add(trimmed, rings.Inserted,
-    std::vector<Point2>(mesh.Points.begin() + count, mesh.Points.end()));
+  everything.Add(
+    trimmed, rings.Inserted, std::vector<Point2>(mesh.Points.begin() + count, mesh.Points.end()));
   return everything;
 }
 
 bool IsDone(const Surface& surface, const Boundary& boundary, bool recover = true)
 {
   TrimmedList list;
-  return QuickTrim(
-    surface.List(), boundary.Points, boundary.Lines, recover, Progress(), list);
+  return QuickTrim(surface.List(), boundary.Points, boundary.Lines, recover, Progress(), list);
 }
 
 Everything TrimQuickly(const Surface& surface, const Boundary& boundary, bool recover)
@@ -232,8 +227,7 @@ void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random
   list.Points.Double = nullptr;
   list.Points.Float = floats.data();
   TrimmedList fromFloats, fromDoubles;
-  ASSERT_EQ(
-    QuickTrim(list, boundary.Points, boundary.Lines, true, Progress(), fromFloats),
+  ASSERT_EQ(QuickTrim(list, boundary.Points, boundary.Lines, true, Progress(), fromFloats),
     QuickTrim(rounded.List(), boundary.Points, boundary.Lines, true, Progress(), fromDoubles));
   EXPECT_EQ(fromFloats.Trimmed.IsOutward, fromDoubles.Trimmed.IsOutward);
   EXPECT_EQ(fromFloats.Corners, fromDoubles.Corners);
