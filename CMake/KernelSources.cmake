@@ -19,6 +19,7 @@ set(es_kernel_concepts
   Insertion
   Trim
   Holes
+  QuickTrim
   Membrane
   Spline
   Heights

@@ -252,6 +252,45 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
   }
 }
 
+bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles)
+{
+  vtkCellArray* polygons = input->GetPolys();
+  const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
+  if (count == 0 || count > std::numeric_limits<Index>::max() / 3 || input->GetNumberOfStrips() > 0)
+  {
+    return false;
+  }
+  triangles.Points = ViewPoints(input);
+  triangles.View.Points = triangles.Points.View;
+  triangles.View.Count = static_cast<Index>(count);
+  const auto areTriangles = [count](auto* offsets) {
+    const auto* begins = offsets->GetPointer(0);
+    using Id = std::remove_cv_t<std::remove_reference_t<decltype(*begins)>>;
+    Id differing = 0; // some bit of it, where an offset is another one
+    for (Id i = 0; i <= static_cast<Id>(count); ++i)
+    {
+      differing |= begins[i] ^ (3 * i);
+    }
+    return differing == 0;
+  };
+  if (!polygons->IsStorage64Bit())
+  {
+    triangles.View.Corners = polygons->GetConnectivityArray32()->GetPointer(0);
+    return areTriangles(polygons->GetOffsetsArray32());
+  }
+  if (!areTriangles(polygons->GetOffsetsArray64()))
+  {
+    return false;
+  }
+  triangles.Converted.Resize(3 * static_cast<std::size_t>(count));
+  std::transform(polygons->GetConnectivityArray64()->GetPointer(0),
+    polygons->GetConnectivityArray64()->GetPointer(0) + triangles.Converted.size(),
+    triangles.Converted.begin(),
+    [](vtkTypeInt64 id) { return id == static_cast<Index>(id) ? static_cast<Index>(id) : None; });
+  triangles.View.Corners = triangles.Converted.data();
+  return true;
+}
+
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads)
 {
   triangles.Shrink();

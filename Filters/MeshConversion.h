@@ -8,6 +8,7 @@
 #define MeshConversion_h
 
 #include "Kernel/Mesh.h"
+#include "Kernel/QuickTrim.h"
 #include "Kernel/Types.h"
 
 #include "vtkSmartPointer.h"
@@ -57,6 +58,20 @@ void CheckArrays(vtkPolyData* input, const std::string& owner = "");
  *         Aborted.
  */
 void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
+
+/** Triangles of a polydata as QuickTrim reads them; the others keep the memory alive. */
+struct TrianglesOfDataSet
+{
+  TriangleList View;
+  PointsOfDataSet Points;
+  Buffer<Index> Converted;
+};
+
+/**
+ * Views the polygons in place when their ids have 32 bits, and copies ids of 64.
+ * @return whether all are triangles, and there are some; ids that do not exist may be among them
+ */
+bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles);
 
 /** The cell id of the first polygon of a polydata. */
 vtkIdType FirstPolygon(vtkPolyData* input);

@@ -6,6 +6,7 @@
 #include "Kernel/Holes.h"
 #include "Kernel/Insertion.h"
 #include "Kernel/Parallel.h"
+#include "Kernel/QuickTrim.h"
 #include "Kernel/Trim.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
@@ -41,15 +42,22 @@ using elevation::Progress;
 using elevation::Report;
 using elevation::ReportStep;
 
-/** The rings to trim along, and what output 2 shows of them. */
-struct UsedBoundary
+/** What has become of the triangles, and what output 2 shows of the boundary. */
+struct Outcome
 {
-  elevation::InsertedRings Mesh;
-  elevation::Rings Points; ///< of Source
+  const Index* Corners = nullptr; ///< of the input's triangles, three each
+  Index Count = 0;                ///< of the input's triangles
+  bool AreInput = false;          ///< whether these are the corners of the input as they lie there
+  elevation::TrimmedList List;    ///< how others differ
+  elevation::Rings Boundary;      ///< ids of the points of Source
   vtkPolyData* Source = nullptr;
   double GapTolerance = 0.0;
+  // What Corners points to:
+  elevation::TrianglesOfDataSet View;
+  Mesh Surface;
 };
 
+/** The boundary's lines; ids of its points. */
 elevation::BoundaryLines ToLines(vtkPolyData* boundary)
 {
   if (boundary->GetNumberOfStrips() > 0)
@@ -58,11 +66,6 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary)
   }
   const elevation::PointsOfDataSet points = elevation::ViewPoints(boundary);
   elevation::BoundaryLines lines;
-  lines.Points.resize(points.View.Count);
-  for (Index i = 0; i < points.View.Count; ++i)
-  {
-    lines.Points[i] = points.View.At(i);
-  }
   vtkIdType cell = boundary->GetNumberOfVerts();
   for (vtkCellArray* cells : { boundary->GetLines(), boundary->GetPolys() })
   {
@@ -70,17 +73,18 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary)
     for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
     {
       vtkIdType size = 0;
-      const vtkIdType* ids = nullptr;
-      each->GetCurrentCell(size, ids);
+      const vtkIdType* corners = nullptr;
+      each->GetCurrentCell(size, corners);
       for (vtkIdType i = 0; i < size; ++i)
       {
-        const bool exists = ids[i] >= 0 && ids[i] < points.View.Count;
-        if (!exists || !std::isfinite(points.View.Elevation(static_cast<Index>(ids[i]))))
+        const bool exists = corners[i] >= 0 && corners[i] < points.View.Count;
+        if (!exists || !std::isfinite(points.View.Elevation(static_cast<Index>(corners[i]))))
         {
-          throw elevation::Error("Point " + std::to_string(ids[i]) + " of the boundary's cell " +
-            std::to_string(cell) + (exists ? " is not finite." : " does not exist."));
+          throw elevation::Error("Point " + std::to_string(corners[i]) +
+            " of the boundary's cell " + std::to_string(cell) +
+            (exists ? " is not finite." : " does not exist."));
         }
-        lines.Lines.Vertices.push_back(static_cast<Index>(ids[i]));
+        lines.Lines.Vertices.push_back(static_cast<Index>(corners[i]));
       }
       lines.Lines.Offsets.push_back(static_cast<Index>(lines.Lines.Vertices.size()));
       lines.IsPolygon.push_back(cells == boundary->GetPolys());
@@ -90,32 +94,132 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary)
   return lines;
 }
 
-UsedBoundary FindBoundary(Mesh& mesh, vtkPolyData* input, vtkPolyData* given,
-  elevation::ExtractOptions options, bool recover)
+/** The points of the boundary. */
+std::vector<elevation::Point2> PlacesOf(vtkPolyData* boundary)
 {
-  UsedBoundary boundary;
-  if (given)
+  const elevation::PointsOfDataSet points = elevation::ViewPoints(boundary);
+  std::vector<elevation::Point2> places(points.View.Count);
+  for (Index i = 0; i < points.View.Count; ++i)
   {
-    const elevation::BoundaryLines lines = ToLines(given);
-    boundary.Points = elevation::JoinLines(lines);
-    boundary.Mesh =
-      elevation::InsertRings(mesh, lines.Points, boundary.Points, recover, options.Monitor);
-    boundary.Source = given;
-    return boundary;
+    places[i] = points.View.At(i);
   }
-  elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
-  boundary.Points = extracted.Vertices;
-  boundary.Mesh.Vertices = std::move(extracted.Vertices);
-  boundary.Source = input;
-  boundary.GapTolerance = extracted.GapTolerance;
-  return boundary;
+  return places;
+}
+
+/**
+ * Trims along a boundary by QuickTrim.
+ * @return whether it is done; if not, the outcome is of no use
+ */
+bool TrimQuickly(
+  vtkPolyData* input, vtkPolyData* given, bool recover, const Progress& progress, Outcome& outcome)
+{
+  if (!elevation::ViewTriangles(input, outcome.View))
+  {
+    return false;
+  }
+  try
+  {
+    // The boundary may be some of very many points: only those are looked at.
+    elevation::BoundaryLines lines = ToLines(given);
+    std::vector<Index> ids = lines.Lines.Vertices;
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    for (Index& vertex : lines.Lines.Vertices)
+    {
+      vertex = static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), vertex) - ids.begin());
+    }
+    const elevation::PointsOfDataSet points = elevation::ViewPoints(given);
+    for (const Index id : ids)
+    {
+      lines.Points.push_back(points.View.At(id));
+    }
+    outcome.Boundary = elevation::JoinLines(lines);
+    if (!elevation::QuickTrim(
+          outcome.View.View, lines.Points, outcome.Boundary, recover, progress, outcome.List))
+    {
+      return false;
+    }
+    for (Index& vertex : outcome.Boundary.Vertices)
+    {
+      vertex = ids[vertex];
+    }
+  }
+  catch (const elevation::Error&)
+  {
+    return false; // whose names are others here
+  }
+  outcome.Corners = outcome.View.View.Corners;
+  outcome.Count = outcome.View.View.Count;
+  outcome.AreInput = true;
+  outcome.Source = given;
+  return true;
+}
+
+/** Trims in a mesh with twins, with whatever is to be trimmed, or names what is wrong with it. */
+void TrimMesh(vtkPolyData* input, vtkPolyData* given, const elevation::ExtractOptions& extraction,
+  const elevation::TrimOptions& trimming, const Progress& progress, Outcome& outcome)
+{
+  Mesh& mesh = outcome.Surface;
+  const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
+  elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.15),
+    elevation::ResolveNumberOfThreads(extraction.NumberOfThreads));
+  mesh.ConnectTwins(firstPolygon, Part(progress, 0.15, 0.3));
+  // For its proof that nothing is covered twice.
+  elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.3, 0.4));
+
+  elevation::InsertedRings rings;
+  const Index points = mesh.NumberOfPoints();
+  outcome.Count = mesh.NumberOfTriangles();
+  outcome.Source = given ? given : input;
+  if (mesh.NumberOfTriangles() > 0)
+  {
+    const Progress finding = Part(progress, 0.4, 0.7);
+    if (given)
+    {
+      elevation::BoundaryLines lines = ToLines(given);
+      lines.Points = PlacesOf(given);
+      outcome.Boundary = elevation::JoinLines(lines);
+      rings = elevation::InsertRings(
+        mesh, lines.Points, outcome.Boundary, trimming.RecoverBoundary, finding);
+    }
+    else
+    {
+      elevation::ExtractOptions options = extraction;
+      options.Monitor = finding;
+      elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
+      outcome.Boundary = extracted.Vertices;
+      outcome.GapTolerance = extracted.GapTolerance;
+      rings.Vertices = std::move(extracted.Vertices);
+    }
+  }
+  elevation::TrimmedList& list = outcome.List;
+  if (rings.Vertices.Count() > 0)
+  {
+    elevation::TrimOptions options = trimming;
+    const Progress rest = Part(progress, 0.7, 1.0);
+    options.Monitor = rest;
+    list.Trimmed = elevation::Trim(mesh, rings.Vertices, options);
+  }
+  else
+  {
+    outcome.Source = input;
+    list.Trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
+    list.Trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
+  }
+  outcome.Corners = mesh.Triangles.data();
+  list.Corners.assign(
+    mesh.Triangles.begin() + 3 * static_cast<std::size_t>(outcome.Count), mesh.Triangles.end());
+  list.Parents = std::move(rings.Parents);
+  list.Inserted = std::move(rings.Inserted);
+  list.Places.assign(
+    mesh.Points.begin() + points, mesh.Points.begin() + points + list.Inserted.size());
 }
 
 /** The points of outputs 0 and 1 with their data: those of the input, and behind them new ones. */
-void PassPoints(vtkPolyData* input, const Mesh& mesh,
-  const std::vector<elevation::InsertedVertex>& inserted, const Progress& progress,
+void PassPoints(vtkPolyData* input, const elevation::TrimmedList& list, const Progress& progress,
   vtkPolyData* output)
 {
+  const std::vector<elevation::InsertedVertex>& inserted = list.Inserted;
   const vtkIdType count = input->GetNumberOfPoints();
   const vtkIdType more = static_cast<vtkIdType>(inserted.size());
   if (more == 0)
@@ -137,7 +241,7 @@ void PassPoints(vtkPolyData* input, const Mesh& mesh,
       {
         z += vertex.Weights[k] * points->GetPoint(vertex.Corners[k])[2];
       }
-      const elevation::Point2& p = mesh.PointOf(static_cast<Index>(count + i));
+      const elevation::Point2& p = list.Places[i];
       points->SetPoint(count + i, p.X, p.Y, z);
     }
     output->SetPoints(points);
@@ -186,48 +290,93 @@ void PassPoints(vtkPolyData* input, const Mesh& mesh,
 }
 
 /**
- * Outputs 0 and 1, which have their points: the triangles with the flag, after the first cells,
- * which are no triangles.
+ * The triangles of outputs 0 and 1.
+ * @param[out] cells  for each output, when asked for: whose cell data its triangles have
  */
-void PassTriangles(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& parents,
-  const elevation::TrimResult& trimmed, char flag, const Progress& progress, vtkPolyData* output)
+void PartTriangles(vtkPolyData* input, const Outcome& outcome, bool hasCellData,
+  const Progress& progress, vtkPolyData* kept, vtkPolyData* outward,
+  elevation::Buffer<vtkIdType> (&cells)[2])
 {
-  const Index given = mesh.NumberOfTriangles() - static_cast<Index>(parents.size());
-  const Progress choosing = Part(progress, 0.0, 0.5);
-  const Progress copying = Part(progress, 0.5, 1.0);
+  const elevation::TrimmedList& list = outcome.List;
+  const std::vector<char>& flags = list.Trimmed.IsOutward;
   const vtkIdType first = elevation::FirstPolygon(input);
-  const bool hasCellData = input->GetCellData()->GetNumberOfArrays() > 0;
-  elevation::Buffer<vtkIdType> cells; // whose data to pass
-  if (!flag)
+  const std::size_t sizes[2] = { flags.size() -
+      static_cast<std::size_t>(list.Trimmed.NumberOfOutwardTriangles),
+    static_cast<std::size_t>(list.Trimmed.NumberOfOutwardTriangles) };
+  elevation::Buffer<Index> sides[2];
+  for (const int side : { 0, 1 })
   {
-    output->SetVerts(input->GetVerts());
-    output->SetLines(input->GetLines());
-    for (vtkIdType cell = 0; cell < first && hasCellData; ++cell)
+    // One more, as each triangle is written to both sides, and stays on one.
+    sides[side].Resize(3 * (sizes[side] + 1));
+    if (hasCellData)
     {
-      cells.Append(cell);
+      cells[side].Reserve(cells[side].size() + sizes[side]);
     }
   }
-  const Index outward = trimmed.NumberOfOutwardTriangles;
-  elevation::Buffer<Index> triangles;
-  triangles.Reserve(
-    3 * static_cast<std::size_t>(flag ? outward : mesh.NumberOfTriangles() - outward));
-  elevation::InStretches(mesh.NumberOfTriangles(), choosing, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
+  Index* next[2] = { sides[0].data(), sides[1].data() };
+  const auto add = [&](const Index* corners, Index begin, Index end) {
+    Index* in = next[0];
+    Index* out = next[1];
+    for (Index t = begin; t < end; ++t, corners += 3)
     {
-      if (trimmed.IsOutward[t] == flag)
+      std::copy_n(corners, 3, in);
+      std::copy_n(corners, 3, out);
+      const std::ptrdiff_t isOutward = flags[t];
+      in += 3 - 3 * isOutward;
+      out += 3 * isOutward;
+    }
+    next[0] = in;
+    next[1] = out;
+  };
+  std::size_t changed = 0; // how many have been passed
+  elevation::InStretches(outcome.Count, progress, [&](Index begin, Index end) {
+    if (hasCellData)
+    {
+      for (Index t = begin; t < end; ++t)
       {
-        if (hasCellData)
-        {
-          cells.Append(first + (t < given ? t : parents[t - given]));
-        }
-        const std::size_t size = triangles.size();
-        triangles.Resize(size + 3);
-        std::copy_n(&mesh.Triangles[3 * static_cast<std::size_t>(t)], 3, &triangles[size]);
+        cells[static_cast<int>(flags[t])].Append(first + t);
+      }
+    }
+    while (begin < end)
+    {
+      const bool isNext = changed < list.Changed.size() && list.Changed[changed] < end;
+      const Index last = isNext ? list.Changed[changed] : end;
+      add(outcome.Corners + 3 * static_cast<std::size_t>(begin), begin, last);
+      begin = last;
+      if (isNext)
+      {
+        add(&list.Corners[3 * changed++], begin, begin + 1);
+        ++begin;
       }
     }
   });
-  output->SetPolys(elevation::ToCellArray(std::move(triangles)));
-  output->GetFieldData()->PassData(input->GetFieldData());
+  const Index all = static_cast<Index>(flags.size());
+  if (all > outcome.Count)
+  {
+    add(&list.Corners[3 * changed], outcome.Count, all);
+  }
+  for (Index t = outcome.Count; t < all && hasCellData; ++t)
+  {
+    cells[static_cast<int>(flags[t])].Append(first + list.Parents[t - outcome.Count]);
+  }
+  for (const int side : { 0, 1 })
+  {
+    vtkPolyData* output = side ? outward : kept;
+    if (outcome.AreInput && outcome.View.Converted.empty() && list.Corners.empty() &&
+      sizes[1 - side] == 0)
+    {
+      output->SetPolys(input->GetPolys());
+      continue;
+    }
+    sides[side].Resize(3 * sizes[side]);
+    output->SetPolys(elevation::ToCellArray(std::move(sides[side])));
+  }
+}
+
+/** The data of some of the input's cells. */
+void PassCellData(vtkPolyData* input, const elevation::Buffer<vtkIdType>& cells, bool areWhole,
+  const Progress& progress, vtkPolyData* output)
+{
   output->GetCellData()->CopyAllOn();
   const std::size_t count = cells.size();
   output->GetCellData()->CopyAllocate(input->GetCellData(), static_cast<vtkIdType>(count));
@@ -236,7 +385,7 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const std::vector<Index
   constexpr std::size_t block = 65536; // at a time, to report between
   for (std::size_t begin = 0; begin < count; begin += block)
   {
-    ReportStep(copying, begin, count);
+    ReportStep(progress, begin, count);
     const std::size_t size = std::min(block, count - begin);
     from->SetNumberOfIds(static_cast<vtkIdType>(size));
     to->SetNumberOfIds(static_cast<vtkIdType>(size));
@@ -244,24 +393,44 @@ void PassTriangles(vtkPolyData* input, const Mesh& mesh, const std::vector<Index
     std::iota(to->begin(), to->end(), static_cast<vtkIdType>(begin));
     output->GetCellData()->CopyData(input->GetCellData(), from, to);
   }
-  if (!parents.empty())
+  if (!areWhole)
   {
     // Pieces have what their triangle has, so the values are no global ids any more.
     output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
   }
 }
 
-/** Output 2. */
-void PassBoundary(const UsedBoundary& boundary, const Progress& progress, vtkPolyData* output)
+/** Outputs 0 and 1, but for their points: vertices and lines of the input, and the triangles. */
+void PassCells(vtkPolyData* input, const Outcome& outcome, const Progress& progress,
+  vtkPolyData* kept, vtkPolyData* outward)
 {
-  vtkPoints* from = boundary.Source->GetPoints();
+  const bool hasCellData = input->GetCellData()->GetNumberOfArrays() > 0;
+  elevation::Buffer<vtkIdType> cells[2];
+  for (vtkIdType cell = 0; cell < elevation::FirstPolygon(input) && hasCellData; ++cell)
+  {
+    cells[0].Append(cell);
+  }
+  kept->SetVerts(input->GetVerts());
+  kept->SetLines(input->GetLines());
+  PartTriangles(input, outcome, hasCellData, Part(progress, 0.0, 0.5), kept, outward, cells);
+  const bool areWhole = outcome.List.Parents.empty();
+  PassCellData(input, cells[0], areWhole, Part(progress, 0.5, 0.75), kept);
+  PassCellData(input, cells[1], areWhole, Part(progress, 0.75, 1.0), outward);
+  kept->GetFieldData()->PassData(input->GetFieldData());
+  outward->GetFieldData()->PassData(input->GetFieldData());
+}
+
+/** Output 2. */
+void PassBoundary(const Outcome& outcome, const Progress& progress, vtkPolyData* output)
+{
+  vtkPoints* from = outcome.Source->GetPoints();
   vtkNew<vtkPoints> points;
   points->SetDataType(from ? from->GetDataType() : VTK_FLOAT);
   vtkPointData* pointData = output->GetPointData();
   pointData->CopyAllOn();
-  pointData->CopyAllocate(boundary.Source->GetPointData());
+  pointData->CopyAllocate(outcome.Source->GetPointData());
   vtkNew<vtkCellArray> lines;
-  const elevation::Rings& rings = boundary.Points;
+  const elevation::Rings& rings = outcome.Boundary;
   for (Index ring = 0; ring < rings.Count(); ++ring)
   {
     const vtkIdType first = points->GetNumberOfPoints();
@@ -270,7 +439,7 @@ void PassBoundary(const UsedBoundary& boundary, const Progress& progress, vtkPol
     {
       ReportStep(progress, i, rings.Vertices.size());
       const vtkIdType id = points->InsertNextPoint(from->GetPoint(rings.Vertices[i]));
-      pointData->CopyData(boundary.Source->GetPointData(), rings.Vertices[i], id);
+      pointData->CopyData(outcome.Source->GetPointData(), rings.Vertices[i], id);
       lines->InsertCellPoint(id);
     }
     lines->InsertCellPoint(first);
@@ -280,19 +449,19 @@ void PassBoundary(const UsedBoundary& boundary, const Progress& progress, vtkPol
 }
 
 /** In the field data of all outputs. */
-void AddCounts(const elevation::TrimResult& trimmed, const UsedBoundary& boundary,
-  vtkInformationVector* outputVector)
+void AddCounts(const Outcome& outcome, vtkInformationVector* outputVector)
 {
+  const elevation::TrimResult& trimmed = outcome.List.Trimmed;
   for (int port = 0; port < 3; ++port)
   {
     vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
     elevation::AddCount(fieldData, "NumberOfOutwardTriangles", trimmed.NumberOfOutwardTriangles);
     elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
     elevation::AddCount(
-      fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(boundary.Mesh.Inserted.size()));
+      fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(outcome.List.Inserted.size()));
     vtkNew<vtkDoubleArray> tolerance;
     tolerance->SetName("EffectiveGapTolerance");
-    tolerance->InsertNextValue(boundary.GapTolerance);
+    tolerance->InsertNextValue(outcome.GapTolerance);
     fieldData->AddArray(tolerance);
   }
 }
@@ -351,60 +520,42 @@ int vtkTrimOutwardTriangles::RequestData(
     {
       elevation::CheckArrays(given, "The boundary's");
     }
-    const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
-    Mesh mesh;
-    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1),
-      elevation::ResolveNumberOfThreads(this->NumberOfThreads));
-    mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
-    // For its proof that nothing is covered twice.
-    elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
-
-    UsedBoundary boundary;
-    elevation::TrimResult trimmed;
-    if (mesh.NumberOfTriangles() > 0)
+    elevation::ExtractOptions extraction;
+    extraction.GapTolerance = this->GapTolerance;
+    extraction.NumberOfThreads = this->NumberOfThreads;
+    elevation::TrimOptions trimming;
+    trimming.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
+    trimming.RecoverBoundary = this->RecoverBoundary;
+    Outcome outcome;
+    const bool isDone = given && trimming.Test == elevation::OutwardTest::Exact &&
+      TrimQuickly(input, given, this->RecoverBoundary, Part(progress, 0.0, 0.4), outcome);
+    if (!isDone)
     {
-      elevation::ExtractOptions options;
-      options.GapTolerance = this->GapTolerance;
-      options.NumberOfThreads = this->NumberOfThreads;
-      options.Monitor = Part(progress, 0.3, 0.6);
-      boundary = FindBoundary(mesh, input, given, options, this->RecoverBoundary);
+      outcome = Outcome();
+      TrimMesh(input, given, extraction, trimming, Part(progress, 0.4, 0.8), outcome);
     }
-    if (boundary.Mesh.Vertices.Count() > 0)
+    if (outcome.Boundary.Count() == 0)
     {
-      elevation::TrimOptions options;
-      options.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
-      options.RecoverBoundary = this->RecoverBoundary;
-      options.Monitor = Part(progress, 0.6, 0.8);
-      trimmed = elevation::Trim(mesh, boundary.Mesh.Vertices, options);
-    }
-    else
-    {
-      vtkWarningMacro(
-        << (mesh.NumberOfTriangles() == 0
-               ? "The input has no triangles, so there is nothing to trim."
-               : "No triangle is surface: all have an edge longer than GapTolerance spacings. "
-                 "Raise GapTolerance."));
-      boundary.Source = input;
-      trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
-      trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
+      vtkWarningMacro(<< (outcome.Count == 0
+                          ? "The input has no triangles, so there is nothing to trim."
+                          : "No triangle is surface: all have an edge longer than "
+                            "GapTolerance spacings. Raise GapTolerance."));
     }
 
     vtkPolyData* kept = vtkPolyData::GetData(outputVector, 0);
     vtkPolyData* outward = vtkPolyData::GetData(outputVector, 1);
-    PassPoints(input, mesh, boundary.Mesh.Inserted, Part(progress, 0.8, 0.84), kept);
+    PassPoints(input, outcome.List, Part(progress, 0.8, 0.84), kept);
     outward->SetPoints(kept->GetPoints());
     outward->GetPointData()->PassData(kept->GetPointData());
-    const std::vector<Index>& parents = boundary.Mesh.Parents;
-    PassTriangles(input, mesh, parents, trimmed, 0, Part(progress, 0.84, 0.9), kept);
-    PassTriangles(input, mesh, parents, trimmed, 1, Part(progress, 0.9, 0.96), outward);
-    PassBoundary(boundary, Part(progress, 0.96, 1.0), vtkPolyData::GetData(outputVector, 2));
-    AddCounts(trimmed, boundary, outputVector);
+    PassCells(input, outcome, Part(progress, 0.84, 0.96), kept, outward);
+    PassBoundary(outcome, Part(progress, 0.96, 1.0), vtkPolyData::GetData(outputVector, 2));
+    AddCounts(outcome, outputVector);
     Report(progress, 1.0);
     // Only now, as an abort or an error leaves no counts.
-    this->EffectiveGapTolerance = boundary.GapTolerance;
-    this->NumberOfOutwardTriangles = trimmed.NumberOfOutwardTriangles;
-    this->NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;
-    this->NumberOfInsertedPoints = static_cast<vtkIdType>(boundary.Mesh.Inserted.size());
+    this->EffectiveGapTolerance = outcome.GapTolerance;
+    this->NumberOfOutwardTriangles = outcome.List.Trimmed.NumberOfOutwardTriangles;
+    this->NumberOfRecoveredEdges = outcome.List.Trimmed.NumberOfRecoveredEdges;
+    this->NumberOfInsertedPoints = static_cast<vtkIdType>(outcome.List.Inserted.size());
   });
 }
 

@@ -13,6 +13,7 @@
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkGridDelaunay2D.h"
+#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -23,6 +24,8 @@
 #include "vtkTestErrorObserver.h"
 #include "vtkTrimOutwardTriangles.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <initializer_list>
@@ -397,6 +400,98 @@ void TestExtractedBoundary()
   Check(trim->GetEffectiveGapTolerance() == 14.0, "the tolerance set is the one used");
 }
 
+/**
+ * One clockwise triangle sends the whole mesh the slow way, where it is turned: the outputs are
+ * those of the mesh without it. So are they with ids of 64 bits.
+ */
+void TestBothWaysAgree()
+{
+  vtkNew<vtkPolyData> cloud;
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 60 * 60; ++i)
+  {
+    if (std::hypot(i % 60 - 30.0, i / 60 - 20.0) > 8.0)
+    {
+      points->InsertNextPoint(i % 60 + 0.3 * std::sin(i), i / 60 + 0.3 * std::cos(3.0 * i), 1.0);
+    }
+  }
+  cloud->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  delaunay->Update();
+  vtkNew<vtkPolyData> inOrder;
+  inOrder->ShallowCopy(delaunay->GetOutput());
+  vtkNew<vtkIdTypeArray> cellIds;
+  cellIds->SetName("Cell");
+  for (vtkIdType i = 0; i < inOrder->GetNumberOfPolys(); ++i)
+  {
+    cellIds->InsertNextValue(i);
+  }
+  inOrder->GetCellData()->AddArray(cellIds);
+  vtkNew<vtkPolyData> wide;
+  wide->ShallowCopy(inOrder);
+  vtkNew<vtkCellArray> wideCells;
+  wideCells->DeepCopy(inOrder->GetPolys());
+  wideCells->ConvertTo64BitStorage();
+  wide->SetPolys(wideCells);
+  vtkNew<vtkPolyData> turned;
+  turned->ShallowCopy(inOrder);
+  vtkNew<vtkCellArray> turnedCells;
+  turnedCells->DeepCopy(inOrder->GetPolys());
+  vtkIdType size = 0;
+  const vtkIdType* ids = nullptr;
+  turnedCells->GetCellAtId(7, size, ids);
+  turnedCells->ReplaceCellAtId(7, 3, std::array<vtkIdType, 3>{ { ids[0], ids[2], ids[1] } }.data());
+  turned->SetPolys(turnedCells);
+  auto drawn = MakeRings({ { { -5, 10 }, { 20, 12.5 }, { 70, 9 }, { 50, 50 }, { 4, 44 } },
+    { { 30, 20 }, { 40, 20 }, { 35, 41 } } });
+  for (vtkPolyData* boundary : { static_cast<vtkPolyData*>(nullptr), drawn.Get() })
+  {
+    vtkNew<vtkTrimOutwardTriangles> expected;
+    expected->SetInputData(inOrder);
+    expected->SetBoundaryData(boundary);
+    expected->Update();
+    Check(expected->GetNumberOfOutwardTriangles() > 0, "there is something outward");
+    for (vtkPolyData* mesh : { wide.Get(), turned.Get() })
+    {
+      vtkNew<vtkTrimOutwardTriangles> trim;
+      trim->SetInputData(mesh);
+      trim->SetBoundaryData(boundary);
+      trim->Update();
+      Check(trim->GetEffectiveGapTolerance() == expected->GetEffectiveGapTolerance() &&
+          trim->GetNumberOfRecoveredEdges() == expected->GetNumberOfRecoveredEdges() &&
+          trim->GetNumberOfInsertedPoints() == expected->GetNumberOfInsertedPoints(),
+        "the counts are the same both ways");
+      for (int port = 0; port < 3; ++port)
+      {
+        vtkPolyData* a = expected->GetOutput(port);
+        vtkPolyData* b = trim->GetOutput(port);
+        bool isSame = a->GetNumberOfPoints() == b->GetNumberOfPoints() &&
+          a->GetNumberOfCells() == b->GetNumberOfCells();
+        for (vtkIdType i = 0; isSame && i < a->GetNumberOfPoints(); ++i)
+        {
+          double p[3], q[3];
+          a->GetPoint(i, p);
+          b->GetPoint(i, q);
+          isSame = p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+        }
+        for (vtkIdType i = 0; isSame && i < a->GetNumberOfCells(); ++i)
+        {
+          vtkNew<vtkIdList> p, q;
+          a->GetCellPoints(i, p);
+          b->GetCellPoints(i, q);
+          isSame = p->GetNumberOfIds() == q->GetNumberOfIds() &&
+            std::equal(p->begin(), p->end(), q->begin());
+          vtkDataArray* ofA = a->GetCellData()->GetArray("Cell");
+          vtkDataArray* ofB = b->GetCellData()->GetArray("Cell");
+          isSame = isSame && (port == 2 || ofA->GetTuple1(i) == ofB->GetTuple1(i));
+        }
+        Check(isSame, "the outputs are the same both ways");
+      }
+    }
+  }
+}
+
 void ExpectError(vtkPolyData* mesh, vtkPolyData* boundary, bool recover, const std::string& part)
 {
   vtkNew<vtkTest::ErrorObserver> observer;
@@ -544,6 +639,7 @@ int TestTrimOutwardTriangles(int, char*[])
   TestCellDataOfParts();
   TestOutwardTest();
   TestExtractedBoundary();
+  TestBothWaysAgree();
   TestErrors();
   TestEmptyMeshAndAbort();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -1,0 +1,393 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunayMesh.h"
+
+#include "Kernel/Holes.h"
+#include "Kernel/QuickTrim.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+using namespace elevation;
+using namespace testing_surfaces;
+
+namespace
+{
+
+struct Surface
+{
+  std::vector<double> Coordinates; ///< x, y, z
+  std::vector<Index> Corners;
+
+  TriangleList List() const
+  {
+    TriangleList list;
+    list.Corners = this->Corners.data();
+    list.Count = static_cast<Index>(this->Corners.size() / 3);
+    list.Points.Double = this->Coordinates.data();
+    list.Points.Count = static_cast<Index>(this->Coordinates.size() / 3);
+    return list;
+  }
+  Point2 At(Index id) const { return { this->Coordinates[3 * id], this->Coordinates[3 * id + 1] }; }
+};
+
+Surface SurfaceOf(const std::vector<Point2>& points)
+{
+  Surface surface;
+  for (const Point2& p : points)
+  {
+    surface.Coordinates.insert(surface.Coordinates.end(), { p.X, p.Y, 1.0 });
+  }
+  surface.Corners = Delaunay(points).Triangles;
+  return surface;
+}
+
+Surface RandomSurface(Random& random, int count)
+{
+  std::vector<Point2> points;
+  for (int i = 0; i < count; ++i)
+  {
+    points.push_back({ random.Unit(), random.Unit() });
+  }
+  return SurfaceOf(points);
+}
+
+/** Takes out the triangles with the flag. */
+void Remove(Surface& surface, const std::function<bool(double, double)>& isOut)
+{
+  std::vector<Index> corners;
+  for (std::size_t h = 0; h < surface.Corners.size(); h += 3)
+  {
+    double x = 0.0, y = 0.0;
+    for (std::size_t i = h; i < h + 3; ++i)
+    {
+      x += surface.At(surface.Corners[i]).X / 3.0;
+      y += surface.At(surface.Corners[i]).Y / 3.0;
+    }
+    if (!isOut(x, y))
+    {
+      corners.insert(corners.end(), surface.Corners.begin() + h, surface.Corners.begin() + h + 3);
+    }
+  }
+  surface.Corners = corners;
+}
+
+void Shuffle(Surface& surface, Random& random)
+{
+  std::vector<std::array<Index, 3>> triangles;
+  for (std::size_t h = 0; h < surface.Corners.size(); h += 3)
+  {
+    const Index* t = &surface.Corners[h];
+    const int first = random.Below(3);
+    triangles.push_back({ { t[first], t[(first + 1) % 3], t[(first + 2) % 3] } });
+  }
+  random.Shuffle(triangles);
+  surface.Corners.clear();
+  for (const std::array<Index, 3>& t : triangles)
+  {
+    surface.Corners.insert(surface.Corners.end(), t.begin(), t.end());
+  }
+}
+
+struct Boundary
+{
+  std::vector<Point2> Points;
+  Rings Lines;
+
+  void Add(const std::vector<Point2>& ring)
+  {
+    for (const Point2& p : ring)
+    {
+      this->Lines.Vertices.push_back(static_cast<Index>(this->Points.size()));
+      this->Points.push_back(p);
+    }
+    this->Lines.Offsets.push_back(static_cast<Index>(this->Lines.Vertices.size()));
+  }
+};
+
+std::vector<Point2> Star(Random& random, Point2 middle, double radius, int corners)
+{
+  std::vector<Point2> ring;
+  const double turn = random.Unit();
+  for (int i = 0; i < corners; ++i)
+  {
+    const double angle = 6.283185307179586 * (i + turn) / corners;
+    const double r = radius * (0.7 + 0.3 * random.Unit());
+    ring.push_back({ middle.X + r * std::cos(angle), middle.Y + r * std::sin(angle) });
+  }
+  return ring;
+}
+
+/** Everything that comes of trimming. */
+struct Everything
+{
+  std::vector<Index> Corners;
+  std::vector<char> IsOutward;
+  std::vector<Index> Counts;
+  std::vector<Index> Parents;
+  std::vector<double> Inserted;
+
+  bool operator==(const Everything& other) const
+  {
+    return this->Corners == other.Corners && this->IsOutward == other.IsOutward &&
+      this->Counts == other.Counts && this->Parents == other.Parents &&
+      this->Inserted == other.Inserted;
+  }
+
+  void Add(const TrimResult& trimmed, const std::vector<InsertedVertex>& inserted,
+    const std::vector<Point2>& places)
+  {
+    this->IsOutward = trimmed.IsOutward;
+    this->Counts = { trimmed.NumberOfOutwardTriangles, trimmed.NumberOfRecoveredEdges };
+    for (std::size_t i = 0; i < inserted.size(); ++i)
+    {
+      this->Inserted.insert(this->Inserted.end(), { places[i].X, places[i].Y });
+      for (int k = 0; k < 3; ++k)
+      {
+        this->Inserted.push_back(inserted[i].Corners[k]);
+        this->Inserted.push_back(inserted[i].Weights[k]);
+      }
+    }
+  }
+};
+
+/** @throws Error */
+Everything TrimWithTwins(const Surface& surface, const Boundary& boundary, bool recover)
+{
+  Mesh mesh;
+  mesh.Triangles = surface.Corners;
+  const Index count = surface.List().Points.Count;
+  for (Index i = 0; i < count; ++i)
+  {
+    mesh.Points.push_back(surface.At(i));
+  }
+  mesh.ConnectTwins();
+  FindHoles(mesh);
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, recover);
+  TrimOptions options;
+  options.RecoverBoundary = recover;
+  const TrimResult trimmed = Trim(mesh, rings.Vertices, options);
+  Everything everything;
+  everything.Corners = mesh.Triangles;
+  everything.Parents = rings.Parents;
+  everything.Add(
+    trimmed, rings.Inserted, std::vector<Point2>(mesh.Points.begin() + count, mesh.Points.end()));
+  return everything;
+}
+
+bool IsDone(const Surface& surface, const Boundary& boundary, bool recover = true)
+{
+  TrimmedList list;
+  return QuickTrim(surface.List(), boundary.Points, boundary.Lines, recover, Progress(), list);
+}
+
+Everything TrimQuickly(const Surface& surface, const Boundary& boundary, bool recover)
+{
+  TrimmedList list;
+  Everything everything;
+  if (!QuickTrim(surface.List(), boundary.Points, boundary.Lines, recover, Progress(), list))
+  {
+    return everything;
+  }
+  everything.Corners = surface.Corners;
+  auto next = list.Corners.begin();
+  for (const Index t : list.Changed)
+  {
+    std::copy_n(next, 3, everything.Corners.begin() + 3 * t);
+    next += 3;
+  }
+  everything.Corners.insert(everything.Corners.end(), next, list.Corners.end());
+  everything.Parents = list.Parents;
+  everything.Add(list.Trimmed, list.Inserted, list.Places);
+  return everything;
+}
+
+/**
+ * What both give is the same, in whatever order triangles and corners are. Many triangles in no
+ * order may be left alone.
+ */
+void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random)
+{
+  const Everything expected = TrimWithTwins(surface, boundary, true);
+  EXPECT_GT(expected.Counts[0], 0);
+  EXPECT_TRUE(TrimQuickly(surface, boundary, true) == expected);
+  Surface shuffled = surface;
+  Shuffle(shuffled, random);
+  if (surface.List().Count < 2000 || IsDone(shuffled, boundary))
+  {
+    EXPECT_TRUE(TrimQuickly(shuffled, boundary, true) == TrimWithTwins(shuffled, boundary, true));
+  }
+  // Single precision too: the places are others.
+  std::vector<float> floats(surface.Coordinates.begin(), surface.Coordinates.end());
+  Surface rounded = surface;
+  rounded.Coordinates.assign(floats.begin(), floats.end());
+  TriangleList list = rounded.List();
+  list.Points.Double = nullptr;
+  list.Points.Float = floats.data();
+  TrimmedList fromFloats, fromDoubles;
+  ASSERT_EQ(QuickTrim(list, boundary.Points, boundary.Lines, true, Progress(), fromFloats),
+    QuickTrim(rounded.List(), boundary.Points, boundary.Lines, true, Progress(), fromDoubles));
+  EXPECT_EQ(fromFloats.Trimmed.IsOutward, fromDoubles.Trimmed.IsOutward);
+  EXPECT_EQ(fromFloats.Corners, fromDoubles.Corners);
+}
+
+} // namespace
+
+TEST(QuickTrim, IsTheSameAsTrimmingWithTwinsAlongRingsAnywhere)
+{
+  Random random(71);
+  for (int round = 0; round < 12; ++round)
+  {
+    const Surface surface = RandomSurface(random, 200 + 400 * round);
+    Boundary boundary;
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.45, 3 + 5 * round));
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.2, 3 + round));  // a lake
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.05, 3 + round)); // an island in it
+    ExpectSame(surface, boundary, random);
+  }
+}
+
+TEST(QuickTrim, IsTheSameAlongEdgesAndVerticesOfTheMesh)
+{
+  Random random(72);
+  // Rings between nodes of a lattice: through vertices, along edges and across them, and as
+  // long as the mesh; with a lattice's ties.
+  std::vector<Point2> points = LatticePoints(random, 50, 40, 2000);
+  const Surface surface = SurfaceOf(points);
+  Boundary boundary;
+  boundary.Add({ { 3, 2 }, { 45, 2 }, { 45, 30 }, { 30, 15 }, { 3, 30 } });
+  boundary.Add({ { 10, 5 }, { 20, 5 }, { 20, 12 }, { 10, 12 } });
+  ExpectSame(surface, boundary, random);
+  Boundary all;
+  all.Add({ { 0, 0 }, { 49, 0 }, { 49, 39 }, { 24, 38 }, { 0, 39 } });
+  ExpectSame(surface, all, random);
+}
+
+TEST(QuickTrim, IsTheSameForPartsHolesAndRingsThatLeaveTheMesh)
+{
+  Random random(73);
+  for (int round = 0; round < 6; ++round)
+  {
+    Surface surface = RandomSurface(random, 3000);
+    Remove(surface, [](double x, double y) {
+      return std::fabs(x - 0.45) < 0.08 || std::hypot(x - 0.75, y - 0.6) < 0.1 ||
+        (std::hypot(x - 0.2, y - 0.3) < 0.15 && std::hypot(x - 0.2, y - 0.3) > 0.05);
+    });
+    Boundary boundary;
+    boundary.Add(Star(random, { 0.4, 0.4 }, 0.9, 9));
+    boundary.Add(Star(random, { 0.7, 0.5 }, 0.2, 7));
+    ExpectSame(surface, boundary, random);
+  }
+}
+
+TEST(QuickTrim, KeepsAllInsideAFarRing)
+{
+  Random random(74);
+  const Surface surface = RandomSurface(random, 3000);
+  Boundary boundary;
+  boundary.Add({ { -9, -9 }, { 10, -8 }, { 10, 10 }, { -9, 10 } });
+  const Everything kept = TrimQuickly(surface, boundary, false);
+  EXPECT_EQ(kept.Corners, surface.Corners);
+  EXPECT_EQ(kept.Counts, (std::vector<Index>{ 0, 0 }));
+}
+
+TEST(QuickTrim, LongTrianglesAreNotTakenForTheirCorners)
+{
+  // Few points far apart, and a ring between them that comes near no corner.
+  const Surface surface = SurfaceOf({ { 0, 0 }, { 100, 0 }, { 100, 100 }, { 0, 100 } });
+  Boundary boundary;
+  Random random(75);
+  boundary.Add({ { 45, 40 }, { 55, 40 }, { 55, 60 }, { 45, 60 } });
+  ExpectSame(surface, boundary, random);
+  // A dense mesh with a long triangle over all of it, beside a ring that it does not touch.
+  std::vector<Point2> points;
+  for (int i = 0; i < 4000; ++i)
+  {
+    points.push_back({ random.Unit(), random.Unit() });
+  }
+  points.insert(points.end(), { { -50, 0.5 }, { 60, 0.4 }, { 0.5, 70 } });
+  Boundary small;
+  small.Add(Star(random, { 0.5, 0.5 }, 0.3, 40));
+  ExpectSame(SurfaceOf(points), small, random);
+}
+
+TEST(QuickTrim, LeavesAloneWhatItCannotDoOrProve)
+{
+  Random random(76);
+  const Surface surface = RandomSurface(random, 2000);
+  Boundary boundary;
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.3, 12));
+  ASSERT_TRUE(IsDone(surface, boundary));
+  EXPECT_FALSE(IsDone(surface, boundary, false)) << "points that are no corners";
+  const std::size_t last = surface.Corners.size() - 3;
+  for (const std::size_t h : { std::size_t(0), last / 6 * 3, last })
+  {
+    for (const Index id : { -1, 2000, std::numeric_limits<Index>::max() })
+    {
+      Surface wrong = surface;
+      wrong.Corners[h + 1] = id;
+      EXPECT_FALSE(IsDone(wrong, boundary)) << "a point that does not exist";
+    }
+    Surface turned = surface;
+    std::swap(turned.Corners[h], turned.Corners[h + 1]);
+    EXPECT_FALSE(IsDone(turned, boundary)) << "a clockwise triangle";
+    Surface flat = surface;
+    flat.Corners[h] = flat.Corners[h + 1];
+    EXPECT_FALSE(IsDone(flat, boundary)) << "a flat triangle";
+    Surface twice = surface;
+    twice.Corners.insert(
+      twice.Corners.end(), surface.Corners.begin() + h, surface.Corners.begin() + h + 3);
+    EXPECT_FALSE(IsDone(twice, boundary)) << "a triangle twice";
+    for (int i = 0; i < 3; ++i)
+    {
+      for (const double value : { std::nan(""), std::numeric_limits<double>::infinity() })
+      {
+        Surface notFinite = surface;
+        notFinite.Coordinates[3 * surface.Corners[h + 2] + i] = value;
+        EXPECT_FALSE(IsDone(notFinite, boundary)) << "coordinate " << i;
+      }
+    }
+  }
+  // A triangle over others, on its own and along an edge.
+  Surface folded = surface;
+  folded.Coordinates.insert(folded.Coordinates.end(), { 0.1, 0.1, 0, 0.9, 0.1, 0, 0.5, 0.9, 0 });
+  folded.Corners.insert(folded.Corners.end(), { 2000, 2001, 2002 });
+  EXPECT_FALSE(IsDone(folded, boundary));
+  folded.Corners[last + 3] = surface.Corners[0];
+  EXPECT_FALSE(IsDone(folded, boundary));
+  // Boundaries that are errors.
+  Boundary crossing;
+  crossing.Add({ { 0.1, 0.1 }, { 0.9, 0.9 }, { 0.9, 0.1 }, { 0.1, 0.9 } });
+  EXPECT_FALSE(IsDone(surface, crossing));
+  Boundary outside;
+  outside.Add({ { 3, 3 }, { 4, 3 }, { 3, 4 } });
+  EXPECT_FALSE(IsDone(surface, outside));
+  Boundary flat;
+  flat.Add({ { 0.1, 0.1 }, { 0.9, 0.9 }, { 0.5, 0.5 } });
+  EXPECT_FALSE(IsDone(surface, flat));
+  EXPECT_FALSE(IsDone(Surface(), boundary));
+}
+
+TEST(QuickTrim, StopsWhenAsked)
+{
+  Random random(77);
+  const Surface surface = RandomSurface(random, 3000);
+  Boundary boundary;
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.3, 12));
+  for (int stop = 0; stop < 3; ++stop)
+  {
+    int reports = 0;
+    double before = 0.0;
+    TrimmedList list;
+    const Progress progress = [&](double done) {
+      EXPECT_GE(done, before);
+      EXPECT_LE(done, 1.0);
+      before = done;
+      return ++reports <= 2 * stop;
+    };
+    EXPECT_THROW(
+      QuickTrim(surface.List(), boundary.Points, boundary.Lines, true, progress, list), Aborted);
+  }
+}
