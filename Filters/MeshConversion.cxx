@@ -6,6 +6,7 @@
 #include "Kernel/Predicates.h"
 
 #include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
@@ -289,6 +290,46 @@ bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles)
     [](vtkTypeInt64 id) { return id == static_cast<Index>(id) ? static_cast<Index>(id) : None; });
   triangles.View.Corners = triangles.Converted.data();
   return true;
+}
+
+void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
+  const std::function<void(const LineOfDataSet&)>& visit)
+{
+  if (input->GetNumberOfStrips() > 0)
+  {
+    throw Error(
+      "There are triangle strips in the " + name + ", which may be lines and polygons only.");
+  }
+  const vtkIdType numberOfPoints = input->GetNumberOfPoints();
+  const std::size_t count = static_cast<std::size_t>(input->GetNumberOfCells()) + 1;
+  vtkIdType sum = 0;
+  LineOfDataSet line{ nullptr, 0, false, input->GetNumberOfVerts() };
+  for (vtkCellArray* cells : { input->GetLines(), input->GetPolys() })
+  {
+    line.IsPolygon = cells == input->GetPolys();
+    auto each = vtk::TakeSmartPointer(cells->NewIterator());
+    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++line.Cell)
+    {
+      ReportStep(progress, static_cast<std::size_t>(line.Cell), count);
+      each->GetCurrentCell(line.Size, line.Ids);
+      sum += line.Size;
+      if (sum > MaximumNumberOfPoints)
+      {
+        throw Error("The lines of the " + name + " have more than " +
+          std::to_string(MaximumNumberOfPoints) + " points.");
+      }
+      for (vtkIdType i = 0; i < line.Size; ++i)
+      {
+        if (line.Ids[i] < 0 || line.Ids[i] >= numberOfPoints)
+        {
+          throw Error("Point " + std::to_string(line.Ids[i]) + " of the " + name +
+            (name.back() == 's' ? "' cell " : "'s cell ") + std::to_string(line.Cell) +
+            " does not exist.");
+        }
+      }
+      visit(line);
+    }
+  }
 }
 
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads)

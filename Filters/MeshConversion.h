@@ -73,6 +73,24 @@ struct TrianglesOfDataSet
  */
 bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles);
 
+/** A line or polygon as it is visited: point ids, which all exist, and how many there are. */
+struct LineOfDataSet
+{
+  const vtkIdType* Ids;
+  vtkIdType Size;
+  bool IsPolygon;
+  vtkIdType Cell;
+};
+
+/**
+ * Calls visit for each line, then each polygon, of a polydata.
+ * @param name  what messages call the polydata: "boundary"
+ * @throws Error naming the cell: one with a point that does not exist; with triangle strips; with
+ *         more point ids than an Index can count
+ */
+void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
+  const std::function<void(const LineOfDataSet&)>& visit);
+
 /** The cell id of the first polygon of a polydata. */
 vtkIdType FirstPolygon(vtkPolyData* input);
 

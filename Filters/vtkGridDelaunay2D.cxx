@@ -9,7 +9,6 @@
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -44,43 +43,15 @@ using elevation::ReportStep;
 ConstraintLines ToLines(
   vtkPolyData* source, const elevation::PointsOfDataSet& points, const Progress& progress)
 {
-  if (source->GetNumberOfStrips() > 0)
-  {
-    throw elevation::Error("The constraints have triangle strips; they may be lines and polygons.");
-  }
   ConstraintLines lines;
   lines.Points = points.View;
-  vtkIdType cell = source->GetNumberOfVerts();
-  const std::size_t count = static_cast<std::size_t>(source->GetNumberOfCells()) + 1;
-  for (vtkCellArray* cells : { source->GetLines(), source->GetPolys() })
-  {
-    auto each = vtk::TakeSmartPointer(cells->NewIterator());
-    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
-    {
-      ReportStep(progress, static_cast<std::size_t>(cell), count);
-      vtkIdType size = 0;
-      const vtkIdType* ids = nullptr;
-      each->GetCurrentCell(size, ids);
-      if (lines.Vertices.size() + static_cast<std::size_t>(size) >
-        static_cast<std::size_t>(elevation::MaximumNumberOfPoints))
-      {
-        throw elevation::Error("The constraints' lines have more than " +
-          std::to_string(elevation::MaximumNumberOfPoints) + " points.");
-      }
-      for (vtkIdType i = 0; i < size; ++i)
-      {
-        if (ids[i] < 0 || ids[i] >= points.View.Count)
-        {
-          throw elevation::Error("Point " + std::to_string(ids[i]) + " of the constraints' cell " +
-            std::to_string(cell) + " does not exist.");
-        }
-        lines.Vertices.push_back(static_cast<Index>(ids[i]));
-      }
+  elevation::ForEachLine(
+    source, "constraints", progress, [&](const elevation::LineOfDataSet& line) {
+      lines.Vertices.insert(lines.Vertices.end(), line.Ids, line.Ids + line.Size);
       lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
-      lines.IsClosed.push_back(cells == source->GetPolys());
-      lines.Cells.push_back(static_cast<Index>(cell));
-    }
-  }
+      lines.IsClosed.push_back(line.IsPolygon);
+      lines.Cells.push_back(static_cast<Index>(line.Cell));
+    });
   return lines;
 }
 

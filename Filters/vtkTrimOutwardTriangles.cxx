@@ -12,7 +12,6 @@
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -58,39 +57,25 @@ struct Outcome
 };
 
 /** The boundary's lines; ids of its points. */
-elevation::BoundaryLines ToLines(vtkPolyData* boundary)
+elevation::BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress)
 {
-  if (boundary->GetNumberOfStrips() > 0)
-  {
-    throw elevation::Error("The boundary has triangle strips; it takes lines and polygons.");
-  }
   const elevation::PointsOfDataSet points = elevation::ViewPoints(boundary);
   elevation::BoundaryLines lines;
-  vtkIdType cell = boundary->GetNumberOfVerts();
-  for (vtkCellArray* cells : { boundary->GetLines(), boundary->GetPolys() })
-  {
-    auto each = vtk::TakeSmartPointer(cells->NewIterator());
-    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
+  elevation::ForEachLine(boundary, "boundary", progress, [&](const elevation::LineOfDataSet& line) {
+    for (vtkIdType i = 0; i < line.Size; ++i)
     {
-      vtkIdType size = 0;
-      const vtkIdType* corners = nullptr;
-      each->GetCurrentCell(size, corners);
-      for (vtkIdType i = 0; i < size; ++i)
+      const Index id = static_cast<Index>(line.Ids[i]);
+      if (!std::isfinite(points.View.Elevation(id)))
       {
-        const bool exists = corners[i] >= 0 && corners[i] < points.View.Count;
-        if (!exists || !std::isfinite(points.View.Elevation(static_cast<Index>(corners[i]))))
-        {
-          throw elevation::Error("Point " + std::to_string(corners[i]) +
-            " of the boundary's cell " + std::to_string(cell) +
-            (exists ? " is not finite." : " does not exist."));
-        }
-        lines.Lines.Vertices.push_back(static_cast<Index>(corners[i]));
+        throw elevation::Error("Point " + std::to_string(id) + " of the boundary's cell " +
+          std::to_string(line.Cell) + " is not finite.");
       }
-      lines.Lines.Offsets.push_back(static_cast<Index>(lines.Lines.Vertices.size()));
-      lines.IsPolygon.push_back(cells == boundary->GetPolys());
-      lines.Cells.push_back(static_cast<Index>(cell));
+      lines.Lines.Vertices.push_back(id);
     }
-  }
+    lines.Lines.Offsets.push_back(static_cast<Index>(lines.Lines.Vertices.size()));
+    lines.IsPolygon.push_back(line.IsPolygon);
+    lines.Cells.push_back(static_cast<Index>(line.Cell));
+  });
   return lines;
 }
 
@@ -120,7 +105,7 @@ bool TrimQuickly(
   try
   {
     // The boundary may be some of very many points: only those are looked at.
-    elevation::BoundaryLines lines = ToLines(given);
+    elevation::BoundaryLines lines = ToLines(given, Part(progress, 0.0, 0.02));
     std::vector<Index> ids = lines.Lines.Vertices;
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -134,8 +119,8 @@ bool TrimQuickly(
       lines.Points.push_back(points.View.At(id));
     }
     outcome.Boundary = elevation::JoinLines(lines);
-    if (!elevation::QuickTrim(
-          outcome.View.View, lines.Points, outcome.Boundary, recover, progress, outcome.List))
+    if (!elevation::QuickTrim(outcome.View.View, lines.Points, outcome.Boundary, recover,
+          Part(progress, 0.02, 1.0), outcome.List))
     {
       return false;
     }
@@ -173,10 +158,10 @@ void TrimMesh(vtkPolyData* input, vtkPolyData* given, const elevation::ExtractOp
   outcome.Source = given ? given : input;
   if (mesh.NumberOfTriangles() > 0)
   {
-    const Progress finding = Part(progress, 0.4, 0.7);
+    const Progress finding = Part(progress, 0.42, 0.7);
     if (given)
     {
-      elevation::BoundaryLines lines = ToLines(given);
+      elevation::BoundaryLines lines = ToLines(given, Part(progress, 0.4, 0.42));
       lines.Points = PlacesOf(given);
       outcome.Boundary = elevation::JoinLines(lines);
       rings = elevation::InsertRings(

@@ -261,7 +261,7 @@ void TestRefusals()
   const vtkIdType corners[3] = { 0, 1, 2 };
   strip->InsertNextCell(3, corners);
   strips->SetStrips(strip);
-  expect(strips, "The constraints have triangle strips");
+  expect(strips, "There are triangle strips in the constraints");
 
   auto arrays = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } } });
   arrays->GetPointData()->GetArray("Inline")->InsertNextTuple1(3);
