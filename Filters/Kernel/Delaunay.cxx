@@ -1296,7 +1296,7 @@ void Grow(const BinGrid& grid, const Hull& hull, const DelaunayOptions& options,
   EdgePool pool(count, hull, threads);
 
   constexpr Index fewestPerStrip = 5000;
-  const Index number = threads > 1 && options.PointsPerStrip > 0
+  const Index number = options.PointsPerStrip > 0
     ? (count - 1) / options.PointsPerStrip + 1
     : std::max(std::min(threads, count / fewestPerStrip), 1);
   std::vector<std::unique_ptr<Strip>> strips;
@@ -1447,7 +1447,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   {
     return result;
   }
-  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
   BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.2), threads,
     isLatticeAsked ? &extent : nullptr);
   SetUnusedPoints(grid.Duplicates, grid.NotFinite, result);

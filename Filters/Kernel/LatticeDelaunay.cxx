@@ -1274,13 +1274,6 @@ private:
   ApexLists Lists;
 };
 
-/** No more than there are cores: what is done at once must be done soon, for the next report. */
-int NumberOfThreads(const DelaunayOptions& options)
-{
-  const int asked = ResolveNumberOfThreads(options.NumberOfThreads);
-  return asked > 1 ? std::min(asked, ResolveNumberOfThreads(0)) : 1;
-}
-
 /** Few points fit some lattice by chance, the more easily the larger the tolerance. */
 bool IsByChance(double count, double tolerance)
 {
@@ -1295,8 +1288,8 @@ bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
-  const LatticeSearch search =
-    FindLattice(points, tolerance, NumberOfThreads(options), Part(options.Monitor, 0.0, 0.15));
+  const LatticeSearch search = FindLattice(
+    points, tolerance, ThreadsAtOnce(options.NumberOfThreads), Part(options.Monitor, 0.0, 0.15));
   extent = search;
   return search.Found && TriangulateOnLattice(points, search, options, result);
 }
@@ -1305,7 +1298,7 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   const DelaunayOptions& options, Triangulation& result)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
-  const int threads = NumberOfThreads(options);
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
   LatticeNodes nodes;
   LatticeMetric metric;
   if (!metric.Set(search.Steps) ||

@@ -31,6 +31,15 @@ inline int ResolveNumberOfThreads(int requested)
 }
 
 /**
+ * The same, but no more than there are cores: what is done at once must be done soon, for the next
+ * report.
+ */
+inline int ThreadsAtOnce(int requested)
+{
+  return std::min(ResolveNumberOfThreads(requested), ResolveNumberOfThreads(0));
+}
+
+/**
  * Calls work(0) to work(count - 1), on up to so many threads at a time; with one thread, in their
  * order on the caller's. What is done must not depend on which thread does it.
  * Where VTK runs without threads by default, as ParaView's does, its own threads are asked for.
@@ -65,7 +74,7 @@ void ForEachPiece(Index count, int threads, Work&& work)
   const std::string backend =
     current && std::string(current) != "Sequential" ? current : "STDThread";
   // More threads than cores gain nothing, and some backends complain.
-  const int used = std::min(threads, ResolveNumberOfThreads(0));
+  const int used = ThreadsAtOnce(threads);
   vtkSMPTools::LocalScope(
     vtkSMPTools::Config{ used, backend, false }, [&]() { vtkSMPTools::For(0, count, 1, run); });
   for (const std::exception_ptr& failure : failures)
@@ -89,7 +98,7 @@ template <typename Fraction, typename Work>
 void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&& work)
 {
   constexpr std::chrono::milliseconds length{ 30 };
-  const int used = threads > 1 ? std::min(threads, ResolveNumberOfThreads(0)) : 1;
+  const int used = threads > 1 ? ThreadsAtOnce(threads) : 1;
   std::atomic<bool> isMoreLeft{ true };
   while (isMoreLeft)
   {

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Delaunay.h"
+#include "Kernel/Parallel.h"
 #include "Kernel/Predicates.h"
 #include "PointSets.h"
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <set>
 
 using namespace elevation;
@@ -464,6 +466,23 @@ TEST(Delaunay, ProgressRisesAndAbortStops)
   EXPECT_EQ(last, 1.0);
   options.Monitor = [](double fraction) { return fraction < 0.5; };
   EXPECT_THROW(elevation::Triangulate(cloud.View(), options), Aborted);
+}
+
+TEST(Delaunay, ReportsAsOftenForMoreThreadsThanCores)
+{
+  std::mt19937_64 random(30);
+  const Cloud cloud = RandomCloud(random, 600000);
+  DelaunayOptions options;
+  options.Strategy = SearchStrategy::Compactness; // it takes long
+  options.NumberOfThreads = 1000;
+  std::clock_t last = std::clock(), longest = 0; // of all threads
+  options.Monitor = [&](double) {
+    longest = std::max(longest, std::clock() - last);
+    last = std::clock();
+    return true;
+  };
+  elevation::Triangulate(cloud.View(), options);
+  EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.2 * ResolveNumberOfThreads(0));
 }
 
 TEST(Delaunay, RefusesMorePointsThanAnIndexHolds)

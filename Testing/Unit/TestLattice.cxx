@@ -463,6 +463,36 @@ TEST(Lattice, IsTheSameForAnyNumberOfThreads)
   check(frames[3], GridWithHoles(700), "large with holes");
 }
 
+TEST(Lattice, LooksFarDownFromABorder)
+{
+  // Wide steps and flat rows, with holes as narrow as columns. Over the edge from (0, 20) down to
+  // (-2, 10) the node (2, 18) is on a circle of few nodes, and yet of more than 15 rows downwards,
+  // where it holds (1, 4). With that one, (1, 20) is a neighbor of (0, 20), and else (2, 18).
+  constexpr std::int64_t holes = 60, period = 16, rows = 36, left = -3, right = 3;
+  std::vector<Node> nodes;
+  for (std::int64_t x = 0; x < holes * period; x += period)
+  {
+    for (const Node& node : { Node{ 0, 20 }, { -2, 10 }, { 2, 18 }, { 1, 4 }, { 1, 20 } })
+    {
+      nodes.push_back({ x + node[0], node[1] });
+    }
+    for (std::int64_t column = right + 1; column < period + left; ++column)
+    {
+      for (std::int64_t row = 0; row < rows; ++row)
+      {
+        nodes.push_back({ x + column, row });
+      }
+    }
+  }
+  const Cloud cloud = CloudOn(MakeFrame(4.0, 1.0, 0.0), nodes);
+  for (std::int64_t border = 11; border <= 18; ++border)
+  {
+    const std::ptrdiff_t below =
+      std::count_if(nodes.begin(), nodes.end(), [&](const Node& node) { return node[1] < border; });
+    ExpectSameForAnyStrips(cloud, Automatic(), "", static_cast<Index>(below));
+  }
+}
+
 TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
 {
   // Many ranges of points; one point in four is on a node that another one takes as well.
