@@ -891,8 +891,8 @@ private:
   double FractionOf(const Vertex& vertex) const
   {
     const Point2 &p = vertex.Position, &a = this->At(vertex.From), &b = this->At(vertex.To);
-    const double largest = std::max(
-      { std::fabs(a.X), std::fabs(a.Y), std::fabs(b.X), std::fabs(b.Y) });
+    const double largest =
+      std::max({ std::fabs(a.X), std::fabs(a.Y), std::fabs(b.X), std::fabs(b.Y) });
     // Quarters, so that no difference overflows; or many times, so that none is lost.
     const double scale = largest < 1e-150 ? 0x1p600 : 0.25;
     const double dx = scale * b.X - scale * a.X, dy = scale * b.Y - scale * a.Y;
