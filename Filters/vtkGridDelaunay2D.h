@@ -62,6 +62,7 @@
  * triangle. An error leaves empty output: more points than can be handled (357,913,941), a point
  * array that has not as many tuples as there are points, constraints with triangle strips or with a
  * point that does not exist or is not finite (which is named).
+ * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
  *
  * Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
