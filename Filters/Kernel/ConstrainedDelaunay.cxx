@@ -23,9 +23,9 @@ struct Piece
 {
   Index A; ///< vertices; the same one twice: a point that no segment ends in
   Index B;
-  Index Rank;  ///< the first segment that it is part of
-  Index Count; ///< of distinct segments that it is part of
-  Units Unit;  ///< the largest of its segments
+  Index Rank;           ///< the first segment that it is part of
+  Index Count;          ///< of distinct segments that it is part of
+  Units Unit = Units(); ///< the largest of its segments
 };
 
 /** A vertex of the lines. */
