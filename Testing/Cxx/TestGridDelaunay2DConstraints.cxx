@@ -232,14 +232,15 @@ void TestPointsAreAdded()
 
 void TestNormalsAtCrossings()
 {
-  // Along the first line, from one axis to another.
+  // From one column of the lattice to the next they turn from one axis to another.
   const auto withNormals = [](vtkPolyData* data) {
     vtkNew<vtkFloatArray> normals;
     normals->SetName("Normals");
     normals->SetNumberOfComponents(3);
     for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
     {
-      normals->InsertNextTuple3(i % 2, 0.0, 1 - i % 2);
+      const int column = static_cast<int>(data->GetPoint(i)[0]) % 2;
+      normals->InsertNextTuple3(column, 0.0, 1 - column);
     }
     data->GetPointData()->AddArray(normals);
     return normals->GetName();
