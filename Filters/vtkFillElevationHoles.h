@@ -75,6 +75,7 @@
  * triangles, cells that lie over each other in x,y. So is an error that names the array the answer
  * to a point or cell array that has not as many tuples as there are points or cells. A surface
  * without holes passes; an input without triangles passes with a warning.
+ * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
  *
  * Cost: proportional to the size of the input and to the number of new points (a few microseconds
  * each), with sorting of the border.

@@ -130,11 +130,18 @@ void PassPointData(vtkPointData* input, vtkPointData* source, const std::vector<
         }
         else if (numbers)
         {
+          double squares = 0.0;
           for (int c = 0; c < numbers->GetNumberOfComponents(); ++c)
           {
             const double from = numbers->GetComponent(point.From, c);
             const double to = numbers->GetComponent(point.To, c);
-            numbers->SetComponent(id, c, from + point.Fraction * (to - from));
+            const double value = from + point.Fraction * (to - from);
+            numbers->SetComponent(id, c, value);
+            squares += value * value;
+          }
+          for (int c = 0; before == input->GetNormals() && squares > 0.0 && c < 3; ++c)
+          {
+            numbers->SetComponent(id, c, numbers->GetComponent(id, c) / std::sqrt(squares));
           }
         }
       }

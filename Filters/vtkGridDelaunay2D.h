@@ -50,8 +50,10 @@
  * - When points are added, the output has points and point data of its own. Points stay float only
  *   if the added ones are exact in it, else they are double. Arrays have at the added points the
  *   values of the constraints' array with the same name and number of components (for integers and
- *   strings also of the same type), at crossings values interpolated as z; where there are none, NaN
- *   (float and double), 0 or an empty string.
+ *   strings also of the same type), at crossings values interpolated as z, normals brought to unit
+ *   length; where there are none, NaN (float and double), 0 or an empty string. So values repeat:
+ *   an array of global ids is no longer marked as such, and pedigree ids of added points tell
+ *   nothing that the constraints' array does not.
  * - The coordinates are triangulated as they are, never as a lattice.
  * - MaximumEdgeLength applies to the constrained triangulation, also to edges of lines.
  * - Without a point on any line or polygon, everything is as without constraints.
@@ -60,6 +62,7 @@
  * triangle. An error leaves empty output: more points than can be handled (357,913,941), a point
  * array that has not as many tuples as there are points, constraints with triangle strips or with a
  * point that does not exist or is not finite (which is named).
+ * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
  *
  * Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;

@@ -23,9 +23,9 @@ struct Piece
 {
   Index A; ///< vertices; the same one twice: a point that no segment ends in
   Index B;
-  Index Rank;  ///< the first segment that it is part of
-  Index Count; ///< of distinct segments that it is part of
-  Units Unit;  ///< the largest of its segments
+  Index Rank;           ///< the first segment that it is part of
+  Index Count;          ///< of distinct segments that it is part of
+  Units Unit = Units(); ///< the largest of its segments
 };
 
 /** A vertex of the lines. */
@@ -54,8 +54,12 @@ struct Crossing
 /** The segment from a to b goes up; whether p comes before q on it, both on it but for rounding. */
 bool IsBefore(const Point2& a, const Point2& b, const Point2& p, const Point2& q)
 {
-  // Rounding keeps the order of each coordinate, but may make two of them equal.
-  return p.Y != q.Y ? p.Y < q.Y : (a.X <= b.X ? p.X < q.X : p.X > q.X);
+  // By the longer one of x and y, along which what is in reach does not change places. Rounding
+  // keeps the order of each coordinate, but may make two of them equal.
+  const bool xIsBefore = a.X <= b.X ? p.X < q.X : p.X > q.X;
+  return std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y)
+    ? (p.X != q.X ? xIsBefore : p.Y < q.Y)
+    : (p.Y != q.Y ? p.Y < q.Y : xIsBefore);
 }
 
 /** Whether p, which is neither, lies on the segment from a to b. */
@@ -887,10 +891,13 @@ private:
   double FractionOf(const Vertex& vertex) const
   {
     const Point2 &p = vertex.Position, &a = this->At(vertex.From), &b = this->At(vertex.To);
-    // Quarters, so that no difference overflows.
-    const double dx = 0.25 * b.X - 0.25 * a.X, dy = 0.25 * b.Y - 0.25 * a.Y;
-    return std::fabs(dx) > std::fabs(dy) ? (0.25 * p.X - 0.25 * a.X) / dx
-                                         : (0.25 * p.Y - 0.25 * a.Y) / dy;
+    const double largest =
+      std::max({ std::fabs(a.X), std::fabs(a.Y), std::fabs(b.X), std::fabs(b.Y) });
+    // Quarters, so that no difference overflows; or many times, so that none is lost.
+    const double scale = largest < 1e-150 ? 0x1p600 : 0.25;
+    const double dx = scale * b.X - scale * a.X, dy = scale * b.Y - scale * a.Y;
+    return std::fabs(dx) > std::fabs(dy) ? (scale * p.X - scale * a.X) / dx
+                                         : (scale * p.Y - scale * a.Y) / dy;
   }
 
   std::string NameOf(const Piece& piece) const

@@ -92,9 +92,9 @@ struct ConstrainedTriangulation
  *
  * A crossing counts for each pair of distinct segments (two ends in x,y) that have one point in
  * common which is an end of neither. Segments that meet in an end of one of them, or overlap,
- * do not cross. Where there is a vertex at the crossing or next to it, nothing is added. The elevation of a
- * crossing is interpolated along the segment that comes first in the order of the lines, between
- * the vertices next to the crossing on that segment.
+ * do not cross. Where there is a vertex at the crossing or next to it, nothing is added. The
+ * elevation of a crossing is interpolated along the segment that comes first in the order of the
+ * lines, between the vertices next to the crossing on that segment.
  *
  * @throws Error naming line and point: a point of a line that does not exist or is not finite;
  *         naming two segments: rounding makes them cross again and again (no lines are known to);

@@ -336,11 +336,17 @@ public:
   }
 
 private:
+  Index RingOf(std::size_t edge) const
+  {
+    return static_cast<Index>(std::upper_bound(this->Given.Offsets.begin(),
+                                this->Given.Offsets.end(), static_cast<Index>(edge)) -
+             this->Given.Offsets.begin()) -
+      1;
+  }
+
   std::string NameOfEdge(std::size_t edge) const
   {
-    const auto ring = std::upper_bound(this->Given.Offsets.begin(), this->Given.Offsets.end(),
-                        static_cast<Index>(edge)) -
-      1;
+    const Index* const ring = &this->Given.Offsets[this->RingOf(edge)];
     const std::size_t next =
       edge + 1 == static_cast<std::size_t>(ring[1]) ? static_cast<std::size_t>(*ring) : edge + 1;
     return "from " + NameOf(this->Points, this->Given.Vertices[edge]) + " to " +
@@ -370,11 +376,11 @@ private:
         }
       });
     }
-    this->CheckCommonPoints();
+    this->CheckCommonPoints(bins);
   }
 
-  /** Looks whether one ring changes to the other side of another one in a point of both. */
-  void CheckCommonPoints() const
+  /** Looks whether one ring changes to the other side of another one in a point of either. */
+  void CheckCommonPoints(const Bins& edges) const
   {
     struct Passage
     {
@@ -391,6 +397,14 @@ private:
       {
         passages.push_back({ this->Points[ids[i == 0 ? count - 1 : i - 1]], this->Points[ids[i]],
           this->Points[ids[i + 1 == count ? 0 : i + 1]], ids[i], ring });
+        const Point2 p = passages.back().At;
+        edges.Visit(std::array<Point2, 1>{ { p } }, [&](Index edge) {
+          const Ends& ends = this->Edges[edge];
+          if (Orientation(ends[0], ends[1], p) == Zero && IsWithin(ends, p))
+          {
+            passages.push_back({ ends[0], p, ends[1], ids[i], this->RingOf(edge) });
+          }
+        });
       }
     }
     std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
@@ -725,16 +739,18 @@ private:
       const Units around = UnitsOf({ 0.0, 0.0 }, p);
       const double reach = 2.0 * Reach * std::max(around.X, around.Y);
       Index border = None;
+      bool isAlone = true; // where two run along each other, one would move into the other
       bins.Visit(
         Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
           const Ends& segment = segments[i];
-          if ((border == None || i < border) &&
+          if (i != border &&
             IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), Reach, p))
           {
+            isAlone = isAlone && border == None;
             border = i;
           }
         });
-      if (border != None)
+      if (border != None && isAlone)
       {
         taken.push_back({ border, point });
       }
@@ -815,7 +831,13 @@ private:
         }
         else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsWithin(edge, segment[0]))
         {
-          this->OnTheWay.push_back({ i, mesh.Origin(borders[border]) });
+          this->AddStop(i, edge, borders[border], mesh.Origin(borders[border]));
+        }
+        else if (Orientation(segment[0], segment[1], edge[0]) == Zero &&
+          IsWithin(segment, edge[0]) && this->MayInsert)
+        {
+          // Otherwise it would have become a vertex of this border.
+          this->RefuseDoubleBorder(i, edge[0]);
         }
       });
     }
@@ -868,7 +890,7 @@ private:
         h = this->CutEdge(h, vertex);
       }
       last = vertex;
-      this->OnTheWay.push_back({ crossing.Piece, vertex });
+      this->AddStop(crossing.Piece, pieces[crossing.Piece], h, vertex);
       this->IsCut.push_back(crossing.Piece);
       this->EdgeOfCut = this->Pieces[crossing.Piece].Edge;
     }
@@ -889,8 +911,8 @@ private:
     {
       if (IsInReach(edge[0], edge[1], units, Reach, segment[end]))
       {
-        this->OnTheWay.push_back(
-          { piece, end == 0 ? this->Surface.Origin(h) : this->Surface.Destination(h) });
+        this->AddStop(
+          piece, edge, h, end == 0 ? this->Surface.Origin(h) : this->Surface.Destination(h));
         isInReach = true;
       }
     }
@@ -900,6 +922,44 @@ private:
       this->EdgeOfCut = this->Pieces[piece].Edge;
     }
     return isInReach;
+  }
+
+  /** A vertex on the way of a piece that has these ends; it is an end of h. */
+  void AddStop(std::size_t piece, const Ends& ends, Index h, Index vertex)
+  {
+    h = this->Surface.Origin(h) == vertex ? h : Mesh::Next(h);
+    this->OnTheWay.push_back(
+      { piece, vertex, this->IsInFan(h, ends[0]), this->IsInFan(h, ends[1]) });
+  }
+
+  /** Whether the way from the origin of h to a point begins in a triangle of the fan around it. */
+  bool IsInFan(Index h, const Point2& p) const
+  {
+    const Mesh& mesh = this->Surface;
+    const Point2& from = mesh.PointOf(mesh.Origin(h));
+    const auto isIn = [&](Index k) {
+      return Orientation(from, mesh.PointOf(mesh.Destination(k)), p) != Negative &&
+        Orientation(from, p, mesh.PointOf(mesh.Apex(k))) != Negative;
+    };
+    Index k = h;
+    do
+    {
+      if (isIn(k))
+      {
+        return true;
+      }
+      k = mesh.Twin(Mesh::Next(Mesh::Next(k)));
+    } while (k != Mesh::Border && k != h);
+    // The rest, the other way.
+    while (k == Mesh::Border && !mesh.IsBorder(h))
+    {
+      h = Mesh::Next(mesh.Twin(h));
+      if (isIn(h))
+      {
+        return true;
+      }
+    }
+    return false;
   }
 
   /** From each of the rings' vertices to the next. */
@@ -968,7 +1028,7 @@ private:
           isOn[v] = 0;
           for (const Index i : segmentsThrough.at(v))
           {
-            this->OnTheWay.push_back({ this->IsCut[i], v });
+            this->AddStop(this->IsCut[i], segments[i], h, v);
           }
         }
       }
@@ -987,7 +1047,10 @@ private:
       const IsBeforeAlong before(pieces[a.Piece]);
       const Point2& p = mesh.PointOf(a.Vertex);
       const Point2& q = mesh.PointOf(b.Vertex);
-      return before(p, q) || (!before(q, p) && a.Vertex < b.Vertex);
+      // At one place a part of the mesh is left before another one is entered.
+      return before(p, q) ||
+        (!before(q, p) &&
+          std::make_tuple(a.Into - a.From, a.Vertex) < std::make_tuple(b.Into - b.From, b.Vertex));
     });
     std::vector<Piece> cut;
     cut.reserve(this->Pieces.size() + this->OnTheWay.size());
@@ -996,28 +1059,49 @@ private:
     const std::vector<Index>& before = this->Result.Vertices.Offsets;
     for (std::size_t ring = 0; ring + 1 < before.size(); ++ring)
     {
-      const auto add = [&](const Piece& piece) {
-        if (cut.size() > static_cast<std::size_t>(offsets.back()) &&
-          cut.back().Vertex == piece.Vertex)
+      const Stop* last = nullptr; // none: a vertex of the ring before
+      const auto add = [&](const Piece& piece, const Stop* at) {
+        if (cut.size() > static_cast<std::size_t>(offsets.back()))
         {
-          cut.pop_back(); // it leads nowhere
+          const Index vertex = cut.back().Vertex;
+          if (vertex == piece.Vertex)
+          {
+            cut.pop_back(); // it leads nowhere
+          }
+          else if ((last || at) && vertex >= 0 && piece.Vertex >= 0 &&
+            mesh.PointOf(vertex) == mesh.PointOf(piece.Vertex) &&
+            (!last || !at || last->Into || at->From))
+          {
+            this->RefuseDoubleBorder(piece.Edge, mesh.PointOf(vertex));
+          }
         }
         cut.push_back(piece);
+        last = at;
       };
       for (Index i = before[ring]; i < before[ring + 1]; ++i)
       {
         Piece piece = this->Pieces[i];
-        add(piece);
+        add(piece, nullptr);
         for (; stop != this->OnTheWay.end() && stop->Piece == static_cast<std::size_t>(i); ++stop)
         {
           piece.Vertex = stop->Vertex;
-          add(piece);
+          add(piece, &*stop);
         }
       }
       offsets.push_back(static_cast<Index>(cut.size()));
     }
     this->Pieces = std::move(cut);
     this->Result.Vertices.Offsets = std::move(offsets);
+  }
+
+  [[noreturn]] void RefuseDoubleBorder(std::size_t edge, const Point2& p) const
+  {
+    const std::string name = NameOf(std::vector<Point2>{ p }, 0);
+    throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes" +
+      name.substr(name.find(" (")) +
+      ", where borders of the mesh lie on each other without points in common. Merge the points, "
+      "as "
+      "vtkStaticCleanPolyData does.");
   }
 
   /** The points outside the mesh become its last ones. */
@@ -1284,6 +1368,8 @@ private:
   {
     std::size_t Piece;
     Index Vertex;
+    bool From; ///< whether it comes to the vertex in triangles of it,
+    bool Into; ///< and goes on in such
   };
 
   Mesh& Surface;

@@ -7,15 +7,18 @@
  *
  * In: a mesh with Twins, rings of points in the plane. Out: the mesh with more vertices, and the
  * rings through these. The passes:
- *   1. Look whether edges of the rings cross each other.
+ *   1. Look whether edges of the rings cross each other, or rings in a point of one of them.
  *   2. Match the rings' points to corners of the mesh with the same x,y. One that the border passes
- *      within rounding (Reach.h) becomes a vertex of the border, which moves by as little.
+ *      within rounding (Reach.h) becomes a vertex of the border, which moves by as little; but not
+ *      where two borders do, which must not move into each other.
  *   3. Locate the others: they are binned, and one sweep over the triangles looks into the bins
  *      that each one touches. A point inside a triangle cuts it in three; one on an edge cuts the
  *      two triangles beside it, or the one, at the border.
  *   4. Where an edge of the rings crosses the border, or runs through a vertex of the border, or
- *      crosses it beside such a vertex within rounding, it gets a vertex; again and again until none crosses, as the place of a crossing is rounded. So
- *      each edge of the new rings lies within the mesh or outside, apart from its ends.
+ *      crosses it beside such a vertex within rounding, it gets a vertex; again and again until none
+ *      crosses, as the place of a crossing is rounded. So each edge of the new rings lies within the
+ *      mesh or outside, apart from its ends. Where borders lie on each other it goes from a vertex of
+ *      the one to a vertex of the other at the same place.
  *
  * Guarantees: exact, but for the place of a crossing, which is rounded to doubles, and moved by
  * some units in the last place where a triangle is too thin for that, and for what lies within four
@@ -58,9 +61,10 @@ struct InsertedRings
  * @param[in]     points  finite
  * @param[in]     rings   ids of the points, at least three a ring
  * @param[in]     insert  off: nothing changes, and what would have to is an Error
- * @throws Error naming the points: two edges of the rings that cross; a place where two corners of
- *         the mesh lie; a crossing with a triangle so thin that it cannot be cut there; with
- *         insert off, a point or a crossing that the mesh does not have. Aborted; std::bad_alloc.
+ * @throws Error naming the points: two edges of the rings, or two rings, that cross; a ring's point
+ *         where two corners of the mesh lie, or a way of it along borders that lie on each other; a
+ *         crossing with a triangle so thin that it cannot be cut there; with insert off, a point or
+ *         a crossing that the mesh does not have. Aborted; std::bad_alloc.
  */
 InsertedRings InsertRings(Mesh& mesh, const std::vector<Point2>& points, const Rings& rings,
   bool insert, const Progress& progress = Progress());

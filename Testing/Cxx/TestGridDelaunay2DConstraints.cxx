@@ -230,6 +230,47 @@ void TestPointsAreAdded()
     "the edge limit applies to edges of lines");
 }
 
+void TestNormalsAtCrossings()
+{
+  // From one column of the lattice to the next they turn from one axis to another.
+  const auto withNormals = [](vtkPolyData* data) {
+    vtkNew<vtkFloatArray> normals;
+    normals->SetName("Normals");
+    normals->SetNumberOfComponents(3);
+    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+    {
+      const int column = static_cast<int>(data->GetPoint(i)[0]) % 2;
+      normals->InsertNextTuple3(column, 0.0, 1 - column);
+    }
+    data->GetPointData()->AddArray(normals);
+    return normals->GetName();
+  };
+  auto input = MakeInput(VTK_DOUBLE);
+  auto lines =
+    MakeLines({ { { 1.5, 1.5, 0 }, { 3.5, 3.5, 0 } }, { { 1.5, 3.5, 0 }, { 3.5, 2.0, 0 } } });
+  withNormals(lines);
+  const char* name = withNormals(input);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+  delaunay->SetSourceData(lines);
+  for (const bool areActive : { false, true })
+  {
+    input->GetPointData()->SetActiveAttribute(
+      areActive ? name : nullptr, vtkDataSetAttributes::NORMALS);
+    input->Modified();
+    delaunay->Update();
+    vtkPolyData* output = delaunay->GetOutput();
+    const vtkIdType last = output->GetNumberOfPoints() - 1;
+    double normal[3];
+    output->GetPointData()->GetArray(name)->GetTuple(last, normal);
+    const double length = std::hypot(normal[0], normal[2]);
+    Check(delaunay->GetNumberOfConstraintCrossings() == 1 && normal[0] > 0 && normal[2] > 0,
+      "normals are interpolated at crossings");
+    Check(areActive == (std::fabs(length - 1.0) < 1e-6),
+      "those that are active normals have unit length, other arrays are left as they are");
+  }
+}
+
 void TestRefusals()
 {
   const auto messageOf = [](vtkPolyData* source) {
@@ -325,6 +366,7 @@ int TestGridDelaunay2DConstraints(int, char*[])
 {
   TestNothingIsAdded();
   TestPointsAreAdded();
+  TestNormalsAtCrossings();
   TestRefusals();
   TestProgressAndAbort();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -867,6 +867,22 @@ TEST(ConstrainedDelaunay, OfExtremeCoordinatesKeepsAllRules)
   }
 }
 
+TEST(ConstrainedDelaunay, CrossingsTakeElevationsAtAnyScale)
+{
+  // From the smallest doubles there are, of which no half is left, to differences beyond all.
+  for (const double unit : { 0x1p-1074, 0x1p-1000, 0x1p-500, 1.0, 0x1p500, 0x1.fp1022 })
+  {
+    const Cloud cloud;
+    Lines lines;
+    lines.AddPoints({ { -unit, -unit, 4 }, { unit, unit, 10 } });
+    lines.AddPoints({ { -unit, unit, 5 }, { unit, -unit, 7 } });
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+    ASSERT_EQ(constrained.Added.size(), 5u) << unit;
+    EXPECT_EQ(constrained.Added[4].Elevation, 7.0) << unit;
+    ExpectRules(cloud, constrained);
+  }
+}
+
 TEST(ConstrainedDelaunay, StopsWhenAsked)
 {
   Random random(61);

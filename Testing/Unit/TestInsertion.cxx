@@ -598,6 +598,13 @@ TEST(InsertRings, RefusesRingsThatCrossInPointsOfBoth)
   // At the square's corner, where its turn is sharp.
   EXPECT_HAS(messageOf(square, { { 3, 3 }, { 4, 4 }, { 5, 5 }, { 1, 6 }, { 2, 4 } }),
     "Two rings of the boundary cross in point");
+  // Where only one of them has a point.
+  EXPECT_HAS(
+    messageOf(square, { { 2, 1 }, { 4, 1 }, { 6, 1 }, { 6, 6 }, { 3, 6 }, { 3, 4 }, { 2, 3 } }),
+    "Two rings of the boundary cross in point");
+  EXPECT_EQ(messageOf(square, { { 4, 1 }, { 6, 0.5 }, { 6, 1.5 } }), "");
+  EXPECT_EQ(messageOf(square, { { 4, 1 }, { 1, 0.5 }, { 1, 1.5 } }), "");
+  EXPECT_EQ(messageOf(square, { { 4, 0.5 }, { 6, 0.5 }, { 6, 1.5 }, { 4, 1.5 } }), "");
   // Touching from inside and outside, in a point, a corner and along edges.
   EXPECT_EQ(messageOf(square, { { 4, 2 }, { 6, 1 }, { 6, 3 } }), "");
   EXPECT_EQ(messageOf(square, { { 4, 4 }, { 6, 4 }, { 6, 6 } }), "");
@@ -735,6 +742,7 @@ TEST(InsertRings, OnLatticesWithHolesNeverFailsAndDecidesEveryTriangle)
     {
       const std::string message = error.what();
       ASSERT_TRUE(message.find("crosses its edge") != std::string::npos ||
+        message.find("rings of the boundary cross in") != std::string::npos ||
         message.find("encloses no triangle") != std::string::npos)
         << message;
       continue;
@@ -836,4 +844,71 @@ TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
   }
   EXPECT_GT(inserted, 300);
   EXPECT_EQ(refused, 0);
+}
+
+TEST(InsertRings, AcrossBordersThatLieOnEachOther)
+{
+  // Two tiles side by side, which have no vertices in common.
+  std::vector<Point2> left, right;
+  for (int i = 0; i < 49; ++i)
+  {
+    left.push_back({ static_cast<double>(i % 7), static_cast<double>(i / 7) });
+    right.push_back({ 6.0 + i % 7, static_cast<double>(i / 7) });
+  }
+  for (const bool isLeftFirst : { false, true })
+  {
+    Mesh both = Delaunay(isLeftFirst ? left : right);
+    const Mesh other = Delaunay(isLeftFirst ? right : left);
+    for (const Index v : other.Triangles)
+    {
+      both.Triangles.push_back(v + both.NumberOfPoints());
+    }
+    both.Points.insert(both.Points.end(), other.Points.begin(), other.Points.end());
+    both.ConnectTwins();
+    const auto keptOf = [&](const std::vector<Point2>& ring) {
+      Boundary boundary;
+      boundary.Add(ring);
+      Mesh mesh = both;
+      const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+      double kept = 0.0;
+      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+      {
+        kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t);
+      }
+      return kept;
+    };
+    // Between corners, through corners, and both; one way and the other.
+    for (const std::vector<Point2>& ring :
+      std::vector<std::vector<Point2>>{ { { 3, 1.5 }, { 9, 1.5 }, { 9, 4.5 }, { 3, 4.5 } },
+        { { 3, 1 }, { 9, 1 }, { 9, 4 }, { 3, 4 } },
+        { { 4, 1 }, { 8, 3 }, { 9, 5.5 }, { 2, 4.5 } } })
+    {
+      double twice = 0.0;
+      for (std::size_t i = 0; i < ring.size(); ++i)
+      {
+        const Point2 &p = ring[i], &q = ring[(i + 1) % ring.size()];
+        twice += p.X * q.Y - p.Y * q.X;
+      }
+      EXPECT_NEAR(keptOf(ring), twice, 1e-9);
+      EXPECT_NEAR(keptOf({ ring.rbegin(), ring.rend() }), twice, 1e-9);
+    }
+    // A place of the ring cannot be two vertices.
+    const auto messageOf = [&](const std::vector<Point2>& ring) {
+      try
+      {
+        keptOf(ring);
+      }
+      catch (const Error& error)
+      {
+        return std::string(error.what());
+      }
+      return std::string("no error");
+    };
+    EXPECT_HAS(messageOf({ { 3, 1 }, { 6, 1 }, { 9, 4 }, { 3, 4 } }), "have the same x,y");
+    EXPECT_HAS(messageOf({ { 3, 1 }, { 6, 1.5 }, { 9, 4 }, { 3, 4 } }),
+      "passes (6, 1.5), where borders of the mesh lie on each other");
+    EXPECT_HAS(
+      messageOf({ { 6, -1 }, { 9, 4 }, { 6, 7 } }), "where borders of the mesh lie on each other");
+  }
 }
