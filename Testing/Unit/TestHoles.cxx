@@ -225,7 +225,12 @@ TEST(Holes, TurnedByAnyAngleAreTheSame)
 
 TEST(Holes, BeginWithTheLowestEdgeOfEachWalk)
 {
-  const Mesh mesh = Draw({ "#########", "#       #", "# # # # #", "#       #", "#########" });
+  Mesh mesh = Draw({ "#########", "#       #", "# # # # #", "#       #", "#########" });
+  // Turned by half a circle it looks the same, but the highest points come first.
+  for (Point2& p : mesh.Points)
+  {
+    p = { 9.0 - p.X, 5.0 - p.Y };
+  }
   const Holes holes = FindHoles(mesh);
   ASSERT_EQ(holes.Count(), 1);
   ASSERT_EQ(holes.Loops.size(), 4u);
