@@ -56,7 +56,8 @@
  * 4. The z of new points is found from the surface around the hole, see Interpolation.
  *
  * What can be relied on: a patch covers its hole exactly and overlaps nothing; every boundary edge
- * gets its second triangle and no edge a third one; patches are constrained Delaunay.
+ * gets its second triangle and no edge a third one; patches are constrained Delaunay. New points
+ * and triangles do not depend on the order of the input's points and cells, only their ids do.
  *
  * A hole is left open, with status FAILED and a warning that says why, when
  * - it would take more new points than there is memory for (about 500 bytes a point), or than leave

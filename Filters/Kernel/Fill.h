@@ -12,6 +12,8 @@
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole, none is split. Nothing else of the surface is touched.
+ * What is put into a hole depends on the positions of the surface's points and its triangles alone,
+ * to the last bit, and not on their order; where points lie in the same place, on their order too.
  *
  * Cost: expected linear in the points of a hole (n log n in its boundary), holes are
  * independent, and filled on several threads.
@@ -92,8 +94,7 @@ struct FillResult
   /** The new points of hole i are PointOffsets[i] to PointOffsets[i+1] - 1; likewise triangles. */
   std::vector<Index> PointOffsets{ 0 };
   std::vector<Index> TriangleOffsets{ 0 };
-  /** One a new point: the nearest point of its hole's boundary; of equally near ones the least id.
-   */
+  /** One a new point: the nearest point of its hole's boundary; of equally near ones the lowest. */
   std::vector<Index> NearestBoundaryPoints;
   std::vector<std::vector<double>> Attributes; ///< as in the options, one value a new point
   std::vector<HoleReport> Reports;

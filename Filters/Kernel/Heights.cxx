@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 namespace elevation
 {
@@ -69,7 +68,10 @@ constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kerne
 constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
   Interpolation::Cubic };
 
-/** Finds the triangle of a mesh that a point lies in, by a walk from a triangle near it. */
+/**
+ * Finds the triangle of a mesh that a point lies in, by a walk from a triangle near it. Corners are
+ * taken from the lowest on, so that the way and all roundings depend on positions alone.
+ */
 class Walk
 {
 public:
@@ -86,9 +88,10 @@ public:
     Index t = this->Triangle;
     for (int step = 0; step < mostSteps; ++step)
     {
-      const Point2& a = this->Surface.PointOf(this->Surface.Triangles[3 * t]);
-      const Point2& b = this->Surface.PointOf(this->Surface.Triangles[3 * t + 1]);
-      const Point2& c = this->Surface.PointOf(this->Surface.Triangles[3 * t + 2]);
+      const Index first = this->Lowest(t);
+      const Point2& a = this->Surface.PointOf(this->Surface.Origin(first));
+      const Point2& b = this->Surface.PointOf(this->Surface.Destination(first));
+      const Point2& c = this->Surface.PointOf(this->Surface.Apex(first));
       // Twice the areas that p makes with the three edges.
       const double area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
       const double tolerance = -1e-9 * area;
@@ -112,7 +115,7 @@ public:
         this->Triangle = t;
         return true;
       }
-      const Index twin = this->Surface.Twin(3 * t + across);
+      const Index twin = this->Surface.Twin(HalfEdge(first, across));
       if (twin == Mesh::Border)
       {
         return false;
@@ -128,7 +131,7 @@ public:
     double value = 0.0;
     for (int k = 0; k < 3; ++k)
     {
-      value += this->Shares[k] * values(this->Surface.Triangles[3 * this->Triangle + k]);
+      value += this->Shares[k] * values(this->CornerOf(k));
     }
     return value;
   }
@@ -138,10 +141,34 @@ public:
   {
     int k = this->Shares[1] > this->Shares[0] ? 1 : 0;
     k = this->Shares[2] > this->Shares[k] ? 2 : k;
-    return this->Surface.Triangles[3 * this->Triangle + k];
+    return this->CornerOf(k);
   }
 
 private:
+  static Index HalfEdge(Index first, int steps)
+  {
+    return steps == 0 ? first : steps == 1 ? Mesh::Next(first) : Mesh::Previous(first);
+  }
+
+  /** The half-edge of a triangle that leaves its lowest corner. */
+  Index Lowest(Index t) const
+  {
+    Index lowest = 3 * t;
+    for (Index h = 3 * t + 1; h < 3 * t + 3; ++h)
+    {
+      lowest = IsLower(this->Surface.PointOf(this->Surface.Origin(h)),
+                 this->Surface.PointOf(this->Surface.Origin(lowest)))
+        ? h
+        : lowest;
+    }
+    return lowest;
+  }
+
+  Index CornerOf(int k) const
+  {
+    return this->Surface.Origin(HalfEdge(this->Lowest(this->Triangle), k));
+  }
+
   const Mesh& Surface;
   Index Triangle;
   double Shares[3] = { 1.0, 0.0, 0.0 };
@@ -356,16 +383,18 @@ void Heights::CollectRing(const Fans& fans)
       return true;
     });
   }
-  std::sort(ring.begin(), ring.end());
+  const IsLowerPoint isLower{ this->Surface };
+  std::sort(ring.begin(), ring.end(), isLower);
   ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
   std::set_difference(ring.begin(), ring.end(), this->Patch.BoundaryIds.begin(),
-    this->Patch.BoundaryIds.end(), std::back_inserter(this->Known));
+    this->Patch.BoundaryIds.end(), std::back_inserter(this->Known), isLower);
 }
 
 /** From each point of the last ring to the point of the boundary that it was reached from. */
 void Heights::CollectSlopes(const Fans& fans)
 {
-  const auto isBefore = [](const Pair& a, const Pair& b) { return a.Away < b.Away; };
+  const IsLowerPoint isLower{ this->Surface };
+  const auto isBefore = [&](const Pair& a, const Pair& b) { return isLower(a.Away, b.Away); };
   std::vector<Pair> before;
   std::vector<Pair> last;
   for (const Index id : this->Patch.BoundaryIds)
@@ -412,20 +441,11 @@ void Heights::ChooseCentres()
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = this->Known.size();
-  // From the lowest to the highest, so that the order of points does not decide.
-  std::vector<Index> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(boundary);
-  const auto isLower = [this](Index i, Index j) {
-    return IsLower(this->Surface.PointOf(this->Known[i]), this->Surface.PointOf(this->Known[j]));
-  };
-  std::sort(order.begin(), middle, isLower);
-  std::sort(middle, order.end(), isLower);
   std::vector<double> x(count);
   std::vector<double> y(count);
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Point2 p = this->Normalized(this->Surface.PointOf(this->Known[order[i]]));
+    const Point2 p = this->Normalized(this->Surface.PointOf(this->Known[i]));
     x[i] = p.X;
     y[i] = p.Y;
   }
@@ -441,7 +461,7 @@ void Heights::ChooseCentres()
       {
         return;
       }
-      this->Centres.push_back(order[best]);
+      this->Centres.push_back(static_cast<Index>(best));
       for (std::size_t i = 0; i < count; ++i)
       {
         const double square =
@@ -526,20 +546,21 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
       near = std::min(near, along(normalized[i]));
       far = std::max(far, along(normalized[i]));
       const double ahead = along(normalized[i]) - along(normalized[end]);
-      end = i < static_cast<std::size_t>(boundary) &&
-          (ahead > 0.0 || (ahead == 0.0 && IsLower(points[i], points[end])))
-        ? static_cast<Index>(i)
-        : end;
+      end = i < static_cast<std::size_t>(boundary) && ahead > 0.0 ? static_cast<Index>(i) : end;
     }
     // Just beyond the rings; by a step from point to point, as lattices repeat themselves.
     const double distance = size * (far - near) / this->Scale + this->Patch.Spacing;
     const Point2 origin = points[end];
     Index start = None;
-    fans.Visit(this->Surface, this->Patch.BoundaryIds[end], [&start](Index h) {
-      start = Mesh::Triangle(h);
-      return false;
+    fans.Visit(this->Surface, this->Patch.BoundaryIds[end], [&](Index h) {
+      start = start == None ||
+          IsLower(this->Surface.PointOf(this->Surface.Destination(h)),
+            this->Surface.PointOf(this->Surface.Destination(start)))
+        ? h
+        : start;
+      return true;
     });
-    Walk walk(this->Surface, start);
+    Walk walk(this->Surface, Mesh::Triangle(start));
     if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
     {
       return false;

@@ -49,7 +49,9 @@
  * boundary or the ring are left to NeighborMean, which leaves NaN out.
  *
  * Guarantees: only points of the surface are used, never those of other patches, so that nothing
- * depends on the order of holes. Splines and Adaptive continue planes exactly, to rounding.
+ * depends on the order of holes; and everything is taken in the order of positions, so that nothing
+ * depends on the order of points and triangles either. Splines and Adaptive continue planes exactly,
+ * to rounding.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  * [Pinkall, Polthier] Computing discrete minimal surfaces and their conjugates, 1993.

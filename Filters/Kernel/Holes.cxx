@@ -14,6 +14,32 @@ namespace elevation
 
 namespace
 {
+/** The order of half-edges by their origins; those of a pinched vertex by where they lead. */
+struct IsLowerEdge
+{
+  const Mesh& Surface;
+
+  bool operator()(Index g, Index h) const
+  {
+    const IsLowerPoint isLower{ this->Surface };
+    const Index a = this->Surface.Origin(g);
+    const Index b = this->Surface.Origin(h);
+    return a == b ? isLower(this->Surface.Destination(g), this->Surface.Destination(h))
+                  : isLower(a, b);
+  }
+};
+
+/** Lets each walk begin with its lowest edge, so that the order of cells does not decide where. */
+void StartAtLowest(const Mesh& mesh, Rings& walks)
+{
+  for (Index walk = 0; walk < walks.Count(); ++walk)
+  {
+    const auto begin = walks.Vertices.begin() + walks.Offsets[walk];
+    const auto end = walks.Vertices.begin() + walks.Offsets[walk + 1];
+    std::rotate(begin, std::min_element(begin, end, IsLowerEdge{ mesh }), end);
+  }
+}
+
 /** A border edge from its lower to its higher end. */
 struct Segment
 {
@@ -376,7 +402,7 @@ private:
     }
   }
 
-  /** The regions with their walks, the rim first. */
+  /** The regions with their walks, the rim first, then islands from the lowest on. */
   void MakeHoles()
   {
     const Index count = static_cast<Index>(this->Rims.size());
@@ -407,6 +433,14 @@ private:
         this->Result.Loops[next[region]++] = walk;
       }
     }
+    const IsLowerEdge isLower{ this->Surface };
+    for (Index hole = 0; hole < count; ++hole)
+    {
+      std::sort(this->Result.Loops.begin() + offsets[hole] + 1,
+        this->Result.Loops.begin() + offsets[hole + 1], [&](Index a, Index b) {
+          return isLower(*this->Result.Walks.Begin(a), *this->Result.Walks.Begin(b));
+        });
+    }
   }
 
   const Mesh& Surface;
@@ -426,6 +460,7 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
   Holes holes;
   holes.Walks = TraceBorder(mesh, Part(progress, 0.0, 0.5));
+  StartAtLowest(mesh, holes.Walks);
   Sweep(mesh, firstCell, holes).Run(Part(progress, 0.5, 1.0));
   return holes;
 }

@@ -38,11 +38,15 @@ namespace elevation
 
 struct Holes
 {
-  /** All walks of the border, as TraceBorder gives them: half-edges, the surface on their left. */
+  /**
+   * All walks of the border, as TraceBorder gives them: half-edges, the surface on their left. Each
+   * begins with its lowest half-edge.
+   */
   Rings Walks;
   /**
    * Hole i is bounded by the walks Loops[Offsets[i]] (its rim, clockwise) to Loops[Offsets[i+1] -
-   * 1] (the outsides of its islands, counter-clockwise). Holes are in the order of their rims.
+   * 1] (the outsides of its islands, counter-clockwise, from the lowest on). Holes are in the order
+   * of their rims.
    */
   std::vector<Index> Offsets{ 0 };
   std::vector<Index> Loops;

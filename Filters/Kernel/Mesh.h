@@ -63,6 +63,19 @@ public:
   void ConnectTwins(Index firstCell = 0, const Progress& progress = Progress());
 };
 
+/** The order of vertices from the lowest on; only where two are at the same place their ids count. */
+struct IsLowerPoint
+{
+  const Mesh& Surface;
+
+  bool operator()(Index a, Index b) const
+  {
+    const Point2& p = this->Surface.PointOf(a);
+    const Point2& q = this->Surface.PointOf(b);
+    return IsLower(p, q) || (a < b && p == q);
+  }
+};
+
 /** How many half-edges ahead loops over all of them ask for what belongs to their origins. */
 constexpr std::size_t HalfEdgesAhead = 64;
 

@@ -791,10 +791,11 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
     patch.Edges.push_back({ mesh.Origin(h), mesh.Destination(h) });
   });
   std::vector<Index>& ids = patch.BoundaryIds;
-  std::sort(ids.begin(), ids.end());
+  const IsLowerPoint isLower{ mesh };
+  std::sort(ids.begin(), ids.end(), isLower);
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  const auto vertexOf = [&ids](Index id) {
-    return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
+  const auto vertexOf = [&](Index id) {
+    return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id, isLower) - ids.begin());
   };
   for (Segment& edge : patch.Edges)
   {

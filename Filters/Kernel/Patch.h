@@ -114,7 +114,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
 /** A hole with its vertices numbered from 0: first those of the boundary, then new ones. */
 struct PatchMesh
 {
-  std::vector<Index> BoundaryIds; ///< vertex -> id in the surface, increasing
+  std::vector<Index> BoundaryIds; ///< vertex -> id in the surface; from the lowest point on
   std::vector<double> Points;     ///< x, y and room for z of all vertices
   std::vector<Index> Triangles;   ///< inside the hole
   double Spacing = 0.0;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace elevation;
@@ -181,10 +182,31 @@ TEST(Holes, OfThousandsAreAllFound)
   }
 }
 
+namespace
+{
+/** With walks that begin at their least half-edge and islands in the order of walks. */
+Holes ById(Holes holes)
+{
+  std::vector<Index>& edges = holes.Walks.Vertices;
+  for (Index walk = 0; walk < holes.Walks.Count(); ++walk)
+  {
+    const auto begin = edges.begin() + holes.Walks.Offsets[walk];
+    const auto end = edges.begin() + holes.Walks.Offsets[walk + 1];
+    std::rotate(begin, std::min_element(begin, end), end);
+  }
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    std::sort(
+      holes.Loops.begin() + holes.Offsets[hole] + 1, holes.Loops.begin() + holes.Offsets[hole + 1]);
+  }
+  return holes;
+}
+} // namespace
+
 TEST(Holes, TurnedByAnyAngleAreTheSame)
 {
   const Mesh mesh = Draw({ "######", "#  # #", "## ###", "#  # #", "# #  #", "#    #", "######" });
-  const Holes expected = FindHoles(mesh);
+  const Holes expected = ById(FindHoles(mesh));
   for (int step = 1; step < 60; ++step)
   {
     Mesh turned = mesh;
@@ -194,11 +216,31 @@ TEST(Holes, TurnedByAnyAngleAreTheSame)
       p = { std::cos(angle) * p.X - std::sin(angle) * p.Y,
         std::sin(angle) * p.X + std::cos(angle) * p.Y };
     }
-    const Holes holes = FindHoles(turned);
+    const Holes holes = ById(FindHoles(turned));
     ASSERT_EQ(holes.Offsets, expected.Offsets) << step;
     ASSERT_EQ(holes.Walks.Vertices, expected.Walks.Vertices) << step;
     ASSERT_EQ(holes.Loops, expected.Loops) << step;
   }
+}
+
+TEST(Holes, BeginWithTheLowestEdgeOfEachWalk)
+{
+  Mesh mesh = Draw({ "#########", "#       #", "# # # # #", "#       #", "#########" });
+  // Turned by half a circle it looks the same, but the highest points come first.
+  for (Point2& p : mesh.Points)
+  {
+    p = { 9.0 - p.X, 5.0 - p.Y };
+  }
+  const Holes holes = FindHoles(mesh);
+  ASSERT_EQ(holes.Count(), 1);
+  ASSERT_EQ(holes.Loops.size(), 4u);
+  const auto startOf = [&](Index loop) {
+    return mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Loops[loop])));
+  };
+  EXPECT_EQ(startOf(0), (Point2{ 1.0, 1.0 }));
+  EXPECT_EQ(startOf(1), (Point2{ 2.0, 2.0 }));
+  EXPECT_EQ(startOf(2), (Point2{ 4.0, 2.0 }));
+  EXPECT_EQ(startOf(3), (Point2{ 6.0, 2.0 }));
 }
 
 TEST(Holes, RefuseASurfaceFoldedOverItself)
