@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The picture of a short example, as reconstruct.py draws it; with or without a screen."""
 
+import contextlib
 import os
 import sys
 
@@ -9,14 +10,21 @@ import surface_picture
 from virtual_display import VirtualDisplay
 
 
-def draw(surface, path, title, subtitle, **options):
-    """Draws a surface into a PNG file, or ends the program with the reason why it cannot."""
+@contextlib.contextmanager
+def screen_for(path):
+    """A screen to draw a picture on, or ends the program with the reason why there is none."""
     display = VirtualDisplay()
     try:
         reason = None if os.environ.get("DISPLAY") else display.open()
         reason = reason or surface_picture.why_no_picture()
         if reason:
             sys.exit(f"{path}: cannot be drawn: {reason}")
-        surface_picture.draw(surface, path, title, subtitle, **options)
+        yield
     finally:
         display.close()
+
+
+def draw(surface, path, title, subtitle, **options):
+    """Draws a surface into a PNG file, or ends the program with the reason why it cannot."""
+    with screen_for(path):
+        surface_picture.draw(surface, path, title, subtitle, **options)

@@ -15,6 +15,7 @@ Needs the module on PYTHONPATH, and a display or Xvfb for the picture.
 import os
 import sys
 
+import surface_picture
 from virtual_display import VirtualDisplay
 from vtkelevationsurface import vtkGridDelaunay2D
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -23,7 +24,6 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersCore import vtkElevationFilter
 from vtkmodules.vtkFiltersGeneral import vtkTransformPolyDataFilter
-from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
 from vtkmodules.vtkRenderingCore import (
     vtkActor,
@@ -31,7 +31,6 @@ from vtkmodules.vtkRenderingCore import (
     vtkRenderer,
     vtkRenderWindow,
     vtkTextActor,
-    vtkWindowToImageFilter,
 )
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  text
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  drawing
@@ -153,15 +152,7 @@ def main(picture, surface=None):
         window.SetSize(1600, 1200)
         panel(window, "points alone", 0.502, 1.0, plain.GetOutput(), faults)
         panel(window, "with the fault's lines", 0.0, 0.498, constrained.GetOutput(), faults)
-        window.Render()
-        grab = vtkWindowToImageFilter()
-        grab.SetInput(window)
-        grab.ReadFrontBufferOff()
-        writer = vtkPNGWriter()
-        writer.SetInputConnection(grab.GetOutputPort())
-        writer.SetFileName(picture)
-        writer.Write()
-        window.Finalize()
+        surface_picture.save(window, picture)
     finally:
         display.close()
     if surface:

@@ -20,9 +20,9 @@ import os
 import sys
 
 import numpy
+from example_picture import screen_for
 import surface_files
 import surface_picture as look
-from virtual_display import VirtualDisplay
 from vtkelevationsurface import (
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
@@ -30,8 +30,7 @@ from vtkelevationsurface import (
 )
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkIOImage import vtkPNGWriter
-from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderWindow
 
 HEAD, FOOT, EDGE, GAP = 76, 70, 24, 24
 MOST_WIDTH, MOST_HEIGHT = 1560, 1040
@@ -196,15 +195,7 @@ def draw(path, chain, title, panels, legend):
     look.add_strokes(frame, [bar])
     look.add_text(frame, look.round_text(length), right - 0.5 * length * pixels, 40, 19, "centre")
 
-    window.Render()
-    grab = vtkWindowToImageFilter()
-    grab.SetInput(window)
-    grab.ReadFrontBufferOff()
-    writer = vtkPNGWriter()
-    writer.SetInputConnection(grab.GetOutputPort())
-    writer.SetFileName(path)
-    writer.Write()
-    window.Finalize()
+    look.save(window, path)
 
 
 def outline(chain, path, title):
@@ -241,16 +232,9 @@ def main(what, cloud, path, *options):
     values = dict(DEFAULTS, **dict(zip(options[0::2], options[1::2])))
     region = values["--window"] and [float(x) for x in values["--window"].split(",")]
     chain = Chain(read(cloud), float(values["--maximum-edge-length"]), values["--interpolation"], region)
-    display = VirtualDisplay()
-    try:
-        reason = None if os.environ.get("DISPLAY") else display.open()
-        reason = reason or look.why_no_picture()
-        if reason:
-            sys.exit(f"{path}: cannot be drawn: {reason}")
-        draw_it = outline if what == "outline" else voids
+    draw_it = outline if what == "outline" else voids
+    with screen_for(path):
         draw_it(chain, path, values["--title"] or os.path.basename(cloud))
-    finally:
-        display.close()
 
 
 if __name__ == "__main__":

@@ -468,6 +468,12 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
         pixels *= max(abs(across[0] * math.sin(b) + across[1] * math.cos(b)), 0.05)
     add_map_signs(renderer, width, pixels, bearing, height, frame.widen)
 
+    save(window, path)
+    return {"bearing": bearing, "height": height, "exaggeration": exaggeration}
+
+
+def save(window, path):
+    """Renders a window into a PNG file, and closes it."""
     window.Render()
     grab = vtkWindowToImageFilter()
     grab.SetInput(window)
@@ -482,7 +488,6 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     window.Finalize()
     with open(path, "wb") as stream:
         stream.write(vtk_to_numpy(writer.GetResult()).tobytes())
-    return {"bearing": bearing, "height": height, "exaggeration": exaggeration}
 
 
 def place_camera(renderer, points, floor, bearing, height):

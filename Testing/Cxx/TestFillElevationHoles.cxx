@@ -3,6 +3,7 @@
 //
 // The pipeline side of vtkFillElevationHoles, by numbers: what comes first and unchanged, what
 // arrays get at new points and triangles, the report, the limits, refusals, warnings and aborts.
+#include "Check.h"
 #include "MeshRules.h"
 #include "SheetOfSquares.h"
 #include "vtkCallbackCommand.h"
@@ -29,17 +30,6 @@
 
 namespace
 {
-int failures = 0;
-
-void Check(bool isTrue, const std::string& claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
-
 const std::vector<std::string> OneHole = { "######", "#   ##", "#   ##", "#   ##", "######" };
 // Areas 9 with a rim of 12; 12 - 2 with 14 + 6; 1 with 4 edges.
 const std::vector<std::string> ThreeHoles = { "##############", "#   ##     ###", "#   ## ##  ###",

@@ -3,6 +3,7 @@
 //
 // What new points and triangles get of arrays of every kind: all attributes of VTK, types of
 // several widths and memory layouts, several components, and arrays without a name.
+#include "Check.h"
 #include "SheetOfSquares.h"
 #include "vtkBitArray.h"
 #include "vtkCellData.h"
@@ -25,17 +26,6 @@
 
 namespace
 {
-int failures = 0;
-
-void Check(bool isTrue, const std::string& claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
-
 /** Component c of a linear array at a place: what all methods but the mean continue exactly. */
 double Linear(double x, double y, int c)
 {

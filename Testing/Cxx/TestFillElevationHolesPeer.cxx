@@ -3,6 +3,7 @@
 //
 // Two surfaces on which vtkFillHolesFilter fails, and what vtkFillElevationHoles makes of them: a
 // sheet whose outer border is not a hole, and a hole with an island in it.
+#include "Check.h"
 #include "MeshRules.h"
 #include "SheetOfSquares.h"
 #include "vtkCellData.h"
@@ -16,17 +17,6 @@
 
 namespace
 {
-int failures = 0;
-
-void Check(bool isTrue, const char* claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
-
 struct Numbers
 {
   double Area;

@@ -3,6 +3,7 @@
 //
 // The pipeline side of vtkGridDelaunay2D, by numbers: what passes, what is counted and listed, what
 // errors and aborts leave behind, and that the input is never written.
+#include "Check.h"
 #include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -30,17 +31,6 @@
 
 namespace
 {
-int failures = 0;
-
-void Check(bool isTrue, const char* claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
-
 /** A 5 x 4 lattice, one node twice, one point not finite, with arrays of several kinds. */
 vtkSmartPointer<vtkPolyData> MakeInput(int precision)
 {

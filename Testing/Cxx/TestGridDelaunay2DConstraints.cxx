@@ -3,6 +3,7 @@
 //
 // The second input of vtkGridDelaunay2D, by numbers: what is added, what stays shared, what arrays
 // hold at added points, what is counted, and which constraints are refused.
+#include "Check.h"
 #include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -27,17 +28,6 @@
 
 namespace
 {
-int failures = 0;
-
-void Check(bool isTrue, const std::string& claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
-
 /** A lattice of 9 x 9 nodes with arrays. */
 vtkSmartPointer<vtkPolyData> MakeInput(int precision)
 {

@@ -6,6 +6,7 @@
 // that lie on the lines, as a part of that of the lines, tells who is right: 1 is right, less are
 // missing edges, more are edges that lie on each other. And no triangle of ours may cover what
 // another one covers.
+#include "Check.h"
 #include "MeshRules.h"
 #include "vtkCellArray.h"
 #include "vtkDelaunay2D.h"
@@ -25,17 +26,6 @@
 
 namespace
 {
-int failures = 0;
-
-void Check(bool isTrue, const char* claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
-
 /** A lattice of size x size; some points moved off their nodes, so that no two circles are equal. */
 vtkSmartPointer<vtkPolyData> MakeInput(int size, double shift)
 {

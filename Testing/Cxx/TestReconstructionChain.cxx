@@ -5,6 +5,7 @@
 // has a bay in its outline and three voids. The triangulation spans them as far as the limit on
 // the length of edges lets it, trimming opens them again, filling closes the voids. Numbers
 // first, then a picture.
+#include "Check.h"
 #include "MeshRules.h"
 #include "PictureFromAbove.h"
 #include "SheetOfSquares.h"
@@ -52,16 +53,6 @@ vtkSmartPointer<vtkPolyData> MakeCloud()
   return cloud;
 }
 
-int failures = 0;
-
-void Check(bool isTrue, const char* claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
 } // namespace
 
 int TestReconstructionChain(int argc, char* argv[])

@@ -4,6 +4,7 @@
 // The pipeline side of vtkTrimOutwardTriangles, by numbers: which triangles go where, what
 // passes with them, what is counted, what errors and aborts leave behind, and that the
 // inputs are never written.
+#include "Check.h"
 #include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -35,17 +36,6 @@
 namespace
 {
 constexpr int Size = 9;
-int failures = 0;
-
-void Check(bool isTrue, const std::string& claim)
-{
-  if (!isTrue)
-  {
-    std::cerr << "Not true: " << claim << "\n";
-    ++failures;
-  }
-}
-
 vtkIdType At(int x, int y)
 {
   return x + Size * y;
