@@ -473,19 +473,25 @@ ELEVATION_WIDE_INLINE std::uint64_t Surroundings::Window::LanesOf(Index slot) co
 /** The points around the leaf that holds a slot. */
 const Surroundings::Neighborhood& Surroundings::Around(Index slot)
 {
-  const Index eights = (this->Grid.NumberOfPoints() - 1) / 8 + 1;
   if (this->Neighborhoods.empty())
   {
     // A line of equal y runs through about as many leaves as the root of their number: vertices of
     // these come in turn.
     const double leaves = this->Grid.NumberOfPoints() / 16.0;
     this->Neighborhoods.resize(static_cast<std::size_t>(16.0 + 2.0 * std::sqrt(leaves)));
-    this->Known.assign(eights, 0);
+    // So many places that leaves whose vertices come in turn seldom share one.
+    std::size_t places = 1024;
+    while (places < this->Neighborhoods.size() * 64)
+    {
+      places *= 2;
+    }
+    this->Known.assign(places, 0);
   }
-  const Index eight = slot / 8;
-  for (Index at : { eight, std::max(eight - 1, 0), std::min(eight + 1, eights - 1) })
+  const std::size_t mask = this->Known.size() - 1;
+  const std::size_t eight = static_cast<std::size_t>(slot) / 8;
+  for (const std::size_t at : { eight, eight - 1, eight + 1 })
   {
-    const Neighborhood& known = this->Neighborhoods[this->Known[at]];
+    const Neighborhood& known = this->Neighborhoods[this->Known[at & mask]];
     if (known.First <= slot && slot < known.End)
     {
       return known;
@@ -495,8 +501,10 @@ const Surroundings::Neighborhood& Surroundings::Around(Index slot)
   this->Oldest = (oldest + 1) % this->Neighborhoods.size();
   Neighborhood& made = this->Neighborhoods[oldest];
   this->GatherNeighborhood(made, slot);
-  std::fill(this->Known.begin() + made.First / 8, this->Known.begin() + (made.End + 7) / 8,
-    static_cast<Index>(oldest));
+  for (Index at = made.First / 8; at < (made.End + 7) / 8; ++at)
+  {
+    this->Known[static_cast<std::size_t>(at) & mask] = static_cast<Index>(oldest);
+  }
   return made;
 }
 

@@ -198,7 +198,8 @@ private:
   std::int32_t TopBounds[NumberOfShapes]; ///< of the windows of the current row's vertices
   Bounds OfBox;                           ///< of all boxes, whose unit is their side
   std::vector<Neighborhood> Neighborhoods;
-  std::vector<Index> Known; ///< for eight slots after eight, where their leaf's neighborhood was
+  /** For eight slots, by their number modulo the size, where their leaf's neighborhood was. */
+  std::vector<Index> Known;
   std::size_t Oldest = 0;
 };
 
