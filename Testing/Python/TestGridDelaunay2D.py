@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """vtkGridDelaunay2D from Python: names, defaults, and a triangulation through NumPy."""
+import os
+import subprocess
+import sys
 import unittest
 
 import numpy
@@ -8,6 +11,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
+import vtkelevationsurface
 from vtkelevationsurface import vtkGridDelaunay2D
 
 
@@ -21,6 +25,18 @@ def cloud(coordinates):
 
 def triangles(data):
     return vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+class TestPackage(unittest.TestCase):
+    def test_a_python_without_vtk_is_told_which_one_has_it(self):
+        folder = os.path.dirname(os.path.dirname(vtkelevationsurface.__file__))
+        # Without -S, Python finds the packages that are installed.
+        done = subprocess.run(
+            [sys.executable, "-S", "-c", "import vtkelevationsurface"], capture_output=True,
+            encoding="utf-8", env=dict(os.environ, PYTHONPATH=folder))
+        self.assertNotEqual(done.returncode, 0)
+        last = done.stderr.strip().splitlines()[-1]
+        self.assertRegex(last, "^ImportError: .*which .* does not find .* was built for /.*: use that")
 
 
 class TestGridDelaunay2D(unittest.TestCase):
