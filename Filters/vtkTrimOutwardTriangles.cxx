@@ -92,15 +92,31 @@ std::vector<elevation::Point2> PlacesOf(vtkPolyData* boundary)
 }
 
 /**
- * Trims along a boundary by QuickTrim.
+ * Trims by QuickTrim, along the boundary that is given or that is extracted.
  * @return whether it is done; if not, the outcome is of no use
  */
-bool TrimQuickly(
-  vtkPolyData* input, vtkPolyData* given, bool recover, const Progress& progress, Outcome& outcome)
+bool TrimQuickly(vtkPolyData* input, vtkPolyData* given,
+  const elevation::ExtractOptions& extraction, bool recover, const Progress& progress,
+  Outcome& outcome)
 {
   if (!elevation::ViewTriangles(input, outcome.View))
   {
     return false;
+  }
+  outcome.Corners = outcome.View.View.Corners;
+  outcome.Count = outcome.View.View.Count;
+  outcome.AreInput = true;
+  outcome.Source = given ? given : input;
+  if (!given)
+  {
+    elevation::ExtractOptions options = extraction;
+    options.Monitor = progress;
+    elevation::ExtractedBoundary extracted;
+    const bool isDone =
+      elevation::QuickExtract(outcome.View.View, options, outcome.List, extracted);
+    outcome.Boundary = std::move(extracted.Vertices);
+    outcome.GapTolerance = extracted.GapTolerance;
+    return isDone;
   }
   try
   {
@@ -133,10 +149,6 @@ bool TrimQuickly(
   {
     return false; // whose names are others here
   }
-  outcome.Corners = outcome.View.View.Corners;
-  outcome.Count = outcome.View.View.Count;
-  outcome.AreInput = true;
-  outcome.Source = given;
   return true;
 }
 
@@ -512,8 +524,9 @@ int vtkTrimOutwardTriangles::RequestData(
     trimming.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
     trimming.RecoverBoundary = this->RecoverBoundary;
     Outcome outcome;
-    const bool isDone = given && trimming.Test == elevation::OutwardTest::Exact &&
-      TrimQuickly(input, given, this->RecoverBoundary, Part(progress, 0.0, 0.4), outcome);
+    const bool isDone = trimming.Test == elevation::OutwardTest::Exact &&
+      TrimQuickly(
+        input, given, extraction, this->RecoverBoundary, Part(progress, 0.0, 0.4), outcome);
     if (!isDone)
     {
       outcome = Outcome();

@@ -13,8 +13,10 @@
 #define elevation_Boundary_h
 
 #include "Mesh.h"
+#include "NearMesh.h"
 #include "Predicates.h"
 
+#include <limits>
 #include <vector>
 
 namespace elevation
@@ -97,29 +99,103 @@ struct ExtractOptions
 struct ExtractedBoundary
 {
   Rings Vertices; ///< mesh vertices; counter-clockwise around surface, clockwise around a lake
-  double GapTolerance = 0.0; ///< the one used
+  double GapTolerance = 0.0;   ///< the one used
+  std::vector<char> IsSurface; ///< one flag a triangle: the surface that the rings go around
 };
+
+/** A half-edge without a twin. */
+struct BorderEdge
+{
+  Index Origin;
+  Index Destination;
+
+  bool operator<(const BorderEdge& other) const
+  {
+    return this->Origin < other.Origin ||
+      (this->Origin == other.Origin && this->Destination < other.Destination);
+  }
+};
+
+/** The four shortest edges at each vertex. */
+class ShortEdges
+{
+public:
+  ShortEdges() = default;
+  explicit ShortEdges(Index numberOfVertices)
+  {
+    this->Shortest.Resize(numberOfVertices);
+    constexpr double nothing = Four::Nothing;
+    std::fill(
+      this->Shortest.begin(), this->Shortest.end(), Four{ { nothing, nothing, nothing, nothing } });
+  }
+
+  /** An edge of a vertex, each once, in any order. */
+  void Add(Index vertex, double squaredLength) { this->Shortest[vertex].Add(squaredLength); }
+  void PrefetchAt(Index vertex) const { Prefetch(&this->Shortest[vertex]); }
+
+  /** At each corner: their mean length (of all edges if fewer), at most twice the second one's. */
+  Buffer<double> Spacings(int threads, const Progress& progress) const;
+
+private:
+  static constexpr int Considered = 4;
+  /** The squares of the shortest, in their order. */
+  struct Four
+  {
+    static constexpr double Nothing = std::numeric_limits<double>::infinity();
+    double Squared[Considered];
+
+    void Add(double squared)
+    {
+      // Without branches: where it belongs cannot be predicted.
+      for (int i = Considered - 1; i > 0; --i)
+      {
+        this->Squared[i] = std::min(this->Squared[i], std::max(this->Squared[i - 1], squared));
+      }
+      this->Squared[0] = std::min(this->Squared[0], squared);
+    }
+  };
+  Buffer<Four> Shortest;
+};
+
+/** Triangles, and what a pass over them has told. */
+struct MeasuredTriangles
+{
+  TriangleList List;
+  Buffer<double> Longest;         ///< one a triangle: the square of its longest edge
+  ShortEdges Edges;               ///< each edge told to both its ends
+  std::vector<BorderEdge> Border; ///< all
+};
+
+inline double SquaredLength(Point2 p, Point2 q)
+{
+  return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
+}
+
+// Coordinates beyond these are taken at another scale: their squares leave the range of double.
+constexpr double LargestUnscaled = 1e100;
+constexpr double LeastUnscaled = 1e-100;
+
+/** ExtractBoundary() for triangles that have been measured. @throws Aborted, std::bad_alloc */
+ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options);
 
 /**
  * The outline of the surface that the vertices of a mesh (with Twins) sample, with lakes and
  * islands. Every edge of the outline is an edge of the mesh.
  *
  * The rule:
- *   - The spacing at a vertex is half the distance of its 6th nearest vertex. So it follows the
- *     density. At the rim of a gap, where vertices are on one side only, it is one step on a square
- *     lattice and 0.98 of the mean spacing of random points; away from gaps 0.7 of that. The
- *     spacing of a triangle is the middle one of its corners', but at most twice the least.
+ *   - The spacing at a vertex is the mean length of its four shortest edges (of all when there are
+ *     fewer). So it follows the density: it is one step on a square lattice, 1.1 at the rim of a
+ *     gap there, and about 0.8 of the mean spacing of random points. The spacing of a triangle is
+ *     the mean of the lower two of its corners', but at most 1.6 times the least.
  *   - A triangle is surface when its longest edge is at most GapTolerance times its spacing.
- *     0 chooses 2.25 times what the typical (median) triangle of the mesh measures: 4.5 on a square
- *     lattice, about 4.6 for random points, more where points lie dense along lines.
+ *     0 chooses 2.2 times what the typical (median) triangle of the mesh measures: 3.1 on a square
+ *     lattice, about 4 for random points, more where points lie dense along lines.
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
- *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,
- *     unless all pieces are as small.
+ *   - A piece with 6 vertices or fewer is not surface, unless all pieces are as small.
  * Nothing depends on the order of points or triangles. Rings are simple and start at their lowest
  * vertex; they are in the order of these.
- * Cost: linear (the rings are sorted by their first vertices); about 20 neighbours a vertex are
- * looked at.
+ * Cost: linear (the rings are sorted by their first vertices).
  * @return no ring when no triangle is surface
  * @throws Aborted, std::bad_alloc
  */
