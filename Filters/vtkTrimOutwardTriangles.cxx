@@ -164,6 +164,7 @@ void TrimMesh(vtkPolyData* input, vtkPolyData* given, const elevation::ExtractOp
   // For its proof that nothing is covered twice.
   elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.3, 0.4));
 
+  elevation::TrimmedList& list = outcome.List;
   elevation::InsertedRings rings;
   const Index points = mesh.NumberOfPoints();
   outcome.Count = mesh.NumberOfTriangles();
@@ -183,25 +184,24 @@ void TrimMesh(vtkPolyData* input, vtkPolyData* given, const elevation::ExtractOp
     {
       elevation::ExtractOptions options = extraction;
       options.Monitor = finding;
-      elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
-      outcome.Boundary = extracted.Vertices;
+      const elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
+      list.Trimmed = elevation::TrimExtracted(extracted);
+      outcome.Boundary = rings.Vertices = extracted.Vertices;
       outcome.GapTolerance = extracted.GapTolerance;
-      rings.Vertices = std::move(extracted.Vertices);
     }
   }
-  elevation::TrimmedList& list = outcome.List;
-  if (rings.Vertices.Count() > 0)
+  if (rings.Vertices.Count() == 0)
+  {
+    outcome.Source = input;
+    list.Trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
+    list.Trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
+  }
+  else if (given || trimming.Test != elevation::OutwardTest::Exact)
   {
     elevation::TrimOptions options = trimming;
     const Progress rest = Part(progress, 0.7, 1.0);
     options.Monitor = rest;
     list.Trimmed = elevation::Trim(mesh, rings.Vertices, options);
-  }
-  else
-  {
-    outcome.Source = input;
-    list.Trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
-    list.Trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
   }
   outcome.Corners = mesh.Triangles.data();
   list.Corners.assign(

@@ -294,7 +294,8 @@ constexpr double LargestSpacingInTriangle = 2.0;
 constexpr std::size_t NeighborsOfHub = 64;
 // Of the tolerance, in spacings by short edges: what is beyond doubt. In the same trials, and with
 // clusters and real surveys, one triangle in 30,000 of those was not surface by the sixth neighbor.
-constexpr double BeyondDoubt = 0.55;
+constexpr double BeyondDoubt = 0.52;
+constexpr double SmallGroup = 0.75;
 // At least so many triangles tell the typical one; half as many when there are more.
 constexpr Index LargestSample = 4096;
 // Smaller ones, whose squares leave the range of double, are taken as this: no spacing is 0.
@@ -310,52 +311,48 @@ public:
   static constexpr std::uint32_t Group =
     4; ///< at a time, for an end of loops that can be predicted
 
-  /** @param[in] border  these edges are known to one end by the triangles */
-  Neighbors(const TriangleList& list, const std::vector<BorderEdge>& border, const Progress& progress)
+  explicit Neighbors(const MeasuredTriangles& measured, const Progress& progress)
   {
+    const TriangleList& list = measured.List;
     const Index count = list.Points.Count;
     this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
-    std::fill(this->Offsets.begin(), this->Offsets.end(), 0);
-    const auto forEach = [&](const Progress& part, auto&& visit) {
-      const std::size_t last = 3 * static_cast<std::size_t>(list.Count) - 1;
-      InStretches(list.Count, part, [&](Index begin, Index end) {
-        for (Index h = 3 * begin; h < 3 * end; h += 3)
-        {
-          const Index* ids = list.Corners + h;
-          const Index* ahead = list.Corners + std::min(h + 2 * HalfEdgesAhead, last - 2);
-          for (int i = 0; i < 3; ++i)
-          {
-            Prefetch(&this->Offsets[ahead[i]]);
-          }
-          visit(ids[0], ids[1]);
-          visit(ids[1], ids[2]);
-          visit(ids[2], ids[0]);
-        }
-      });
-      for (const BorderEdge& edge : border)
-      {
-        visit(edge.Destination, edge.Origin);
-      }
-    };
-    forEach(Part(progress, 0.0, 0.4), [&](Index a, Index) { ++this->Offsets[a]; });
+    // Where the vertex's end: they are filled in from there.
     std::uint32_t sum = 0; // stays below 9 for each point
-    for (std::uint32_t& offset : this->Offsets)
+    for (Index v = 0; v < count; ++v)
     {
-      const std::uint32_t size = offset;
-      offset += sum;
+      const std::uint32_t size = measured.Edges.DegreeOf(v);
+      this->Offsets[v] = sum + size;
       sum += (size + Group - 1) / Group * Group;
     }
+    this->Offsets[count] = sum;
     this->Ids.Resize(sum);
     for (Index v = 0; v < count; ++v)
     {
-      // Where the next one's begin is not known yet: they are filled in from their end.
       for (std::uint32_t i = this->Offsets[v]; i % Group != 0; ++i)
       {
         this->Ids[i] = v;
       }
     }
-    forEach(Part(progress, 0.4, 1.0),
-      [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; });
+    const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
+    InStretches(list.Count, progress, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
+        Prefetch(&this->Offsets[ahead[1]]);
+        Prefetch(&this->Offsets[ahead[2]]);
+        const Index* soon = list.CornersOf(std::min(t + 20, list.Count - 1));
+        Prefetch(&this->Ids[this->Offsets[soon[1]] - 1]);
+        Prefetch(&this->Ids[this->Offsets[soon[2]] - 1]);
+        const Index* corners = list.CornersOf(t);
+        add(corners[0], corners[1]);
+        add(corners[1], corners[2]);
+        add(corners[2], corners[0]);
+      }
+    });
+    for (const BorderEdge& edge : measured.Border)
+    {
+      add(edge.Destination, edge.Origin);
+    }
   }
 };
 
@@ -367,7 +364,7 @@ public:
  * @param[in]  wanted    best in an order in which neighbours are near each other
  * @param[out] spacings  at the place of each vertex; the others stay as they are
  */
-void FindSpacings(const PointView& view, const Neighbors& neighbors,
+void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
   const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings)
 {
   struct Candidate
@@ -388,18 +385,28 @@ void FindSpacings(const PointView& view, const Neighbors& neighbors,
     {
       const Index v = wanted[place];
       const auto keyOf = [v](Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); };
-      const Index ahead = wanted[std::min(place + 16, end - 1)];
-      const std::size_t first = 3 * static_cast<std::size_t>(ahead);
-      view.Double ? Prefetch(view.Double + first) : Prefetch(view.Float + first);
-      Prefetch(ids + neighbors.Offsets[ahead]);
+      const auto wantedAhead = [&](Index steps) { return wanted[std::min(place + steps, end - 1)]; };
+      Prefetch(&neighbors.Offsets[wantedAhead(16)]);
+      Prefetch(ids + neighbors.Offsets[wantedAhead(12)]);
+      const Index next = wantedAhead(8);
+      list.PrefetchPoint(next);
+      const Index soon = wantedAhead(4);
+      for (std::uint32_t i = 0; i < 8; ++i)
+      {
+        const std::uint32_t j = std::min(neighbors.Offsets[next] + i, neighbors.Offsets[next + 1] - 1);
+        list.PrefetchPoint(ids[j]);
+        Prefetch(&neighbors.Offsets[ids[j]]);
+        const std::uint32_t k = std::min(neighbors.Offsets[soon] + i, neighbors.Offsets[soon + 1] - 1);
+        Prefetch(ids + neighbors.Offsets[ids[k]]);
+      }
 
       // The nearest vertices found: those passed in the order in which they were, then the next
       // ones by distance. No more are needed than will be passed.
       Candidate nearest[NeighborOfSpacing];
       std::fill_n(nearest, NeighborOfSpacing, nothing);
-      const Point2 p = view.At(v);
+      const Point2 p = list.Points.At(v);
       const auto squaredTo = [&](Index w) {
-        const Point2 q = view.At(w);
+        const Point2 q = list.Points.At(w);
         return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
       };
       known[static_cast<std::uint32_t>(v) % places] = keyOf(v);
@@ -682,22 +689,22 @@ std::vector<Index> TrianglesAt(
 }
 
 /** The corners of triangles, in the order in which those name them. */
-std::vector<Index> CornersOf(const TriangleList& list, const std::vector<Index>& triangles)
+std::vector<Index> CornersOf(
+  const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
 {
   VertexSet known(list.Points.Count);
   std::vector<Index> corners;
-  for (const Index t : triangles)
-  {
-    for (int i = 0; i < 3; ++i)
+  InStretches(static_cast<Index>(triangles.size()), progress, [&](Index begin, Index end) {
+    for (Index i = 3 * begin; i < 3 * end; ++i)
     {
-      const Index vertex = list.CornersOf(t)[i];
+      const Index vertex = list.CornersOf(triangles[i / 3])[i % 3];
       if (!known.Has(vertex))
       {
         known.Add(vertex);
         corners.push_back(vertex);
       }
     }
-  }
+  });
   return corners;
 }
 
@@ -705,14 +712,15 @@ std::vector<Index> CornersOf(const TriangleList& list, const std::vector<Index>&
  * The spacing of a triangle: the middle one of its corners' three, which the spacing of a point that
  * lies alone is not, nor of two that lie alone; but not far above the least.
  */
-double SpacingOf(const double* spacings, const Index* corners)
+template <typename Real>
+double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
 {
-  const double a = spacings[corners[0]];
-  const double b = spacings[corners[1]];
-  const double c = spacings[corners[2]];
-  const double least = std::min({ a, b, c });
-  const double middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
-  return std::max(LeastSpacing, std::min(middle, LargestSpacingInTriangle * least));
+  const Real a = spacings[corners[0]];
+  const Real b = spacings[corners[1]];
+  const Real c = spacings[corners[2]];
+  const Real least = std::min({ a, b, c });
+  const Real middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+  return std::max<double>(LeastSpacing, std::min<double>(middle, LargestSpacingInTriangle * least));
 }
 
 /** Whether a vertex is among a share of all, 1 in 2 to the power of @a bits, by its place alone. */
@@ -756,6 +764,74 @@ std::vector<Index> SampleOf(const TriangleList& list, const Progress& progress)
     std::iota(triangles.begin(), triangles.end(), 0);
   }
   return triangles;
+}
+
+/**
+ * Takes triangles out of a list that are surface in any case: those of a group, connected by
+ * corners and apart from the border, in which there is no room for a lake.
+ * @param[in]     shareOf  shareOf(t): the area of a triangle in parts of the least lake's
+ * @param[in,out] keep     is set for those taken out
+ * @return the others
+ */
+template <typename ShareOf>
+std::vector<Index> DropSmallGroups(const TriangleList& list, const VertexSet& atBorder,
+  const std::vector<Index>& triangles, ShareOf&& shareOf, std::vector<char>& keep,
+  const Progress& progress)
+{
+  // Where a vertex has been joined to; to itself where it has not.
+  Buffer<Index> joined;
+  joined.Resize(list.Points.Count);
+  std::iota(joined.begin(), joined.end(), 0);
+  const auto find = [&joined](Index v) {
+    while (joined[v] != v)
+    {
+      v = joined[v] = joined[joined[v]];
+    }
+    return v;
+  };
+  // In whole numbers, so that the sum does not depend on the order of the triangles.
+  constexpr std::int64_t whole = std::int64_t(1) << 30;
+  Buffer<std::int64_t> sums;
+  sums.Resize(list.Points.Count);
+  std::fill(sums.begin(), sums.end(), 0);
+  const Index count = static_cast<Index>(triangles.size());
+  InStretches(count, Part(progress, 0.0, 0.7), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
+      const Index* corners = list.CornersOf(triangles[i]);
+      const bool isAtBorder = atBorder.HasAny(corners);
+      const double share = isAtBorder ? 1.0 : std::min(1.0, shareOf(triangles[i]));
+      Index root = find(corners[0]);
+      sums[root] += static_cast<std::int64_t>(share * static_cast<double>(whole));
+      for (int k = 0; k < 3; ++k)
+      {
+        list.PrefetchPoint(ahead[k]);
+        Prefetch(&joined[ahead[k]]);
+        Prefetch(&sums[ahead[k]]);
+        const Index other = find(corners[k]);
+        if (other != root)
+        {
+          joined[std::max(root, other)] = std::min(root, other);
+          sums[std::min(root, other)] += sums[std::max(root, other)];
+          root = std::min(root, other);
+        }
+      }
+    }
+  });
+  std::vector<Index> others;
+  InStretches(count, Part(progress, 0.7, 1.0), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index t = triangles[i];
+      keep[t] = sums[find(list.CornersOf(t)[0])] < whole;
+      if (!keep[t])
+      {
+        others.push_back(t);
+      }
+    }
+  });
+  return others;
 }
 
 /** Triangles as a mesh with Twins. A half-edge that is its own twin leads to one that is not here. */
@@ -807,33 +883,6 @@ public:
 
 } // namespace
 
-Buffer<double> ShortEdges::Spacings(int threads, const Progress& progress) const
-{
-  const Index count = static_cast<Index>(this->Shortest.size());
-  Buffer<double> spacings;
-  spacings.Resize(count);
-  constexpr Index pieceVertices = 1 << 14;
-  ForEachPiece((count + pieceVertices - 1) / pieceVertices, threads, progress, [&](Index piece) {
-    const Index begin = piece * pieceVertices;
-    const Index end = begin + std::min(pieceVertices, count - begin);
-    for (Index v = begin; v < end; ++v)
-    {
-      const Four& shortest = this->Shortest[v];
-      const double second = std::sqrt(shortest.Squared[1]);
-      double sum = std::sqrt(shortest.Squared[0]) + second;
-      double number = 2.0; // that every corner has
-      for (int i = 2; i < Considered; ++i)
-      {
-        const bool isThere = shortest.Squared[i] < Four::Nothing;
-        sum += isThere ? std::sqrt(shortest.Squared[i]) : 0.0;
-        number += isThere;
-      }
-      spacings[v] = std::min(sum / number, 2.0 * second);
-    }
-  });
-  return spacings;
-}
-
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options)
 {
   const TriangleList& list = measured.List;
@@ -851,16 +900,36 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     atBorder.Add(edge.Destination);
   }
 
-  const Neighbors neighbors(list, border, Part(progress, 0.0, 0.3));
+  constexpr Index atOnce = 1 << 13;
+  const auto inPieces = [&](Index count, const Progress& part, const auto& work) {
+    ForEachPiece((count + atOnce - 1) / atOnce, threads, part, [&](Index piece) {
+      const Index begin = piece * atOnce;
+      work(begin, begin + std::min(atOnce, count - begin));
+    });
+  };
+  Buffer<float> shortSpacings;
+  shortSpacings.Resize(list.Points.Count);
+  inPieces(list.Points.Count, Part(progress, 0.0, 0.05), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+    {
+      shortSpacings[v] = measured.Edges.ShortSpacingOf(v);
+    }
+  });
+  const Neighbors neighbors(measured, Part(progress, 0.05, 0.25));
+  measured.Edges = EdgesAtVertices();
   Buffer<double> spacings; // of those vertices for which they are asked
   spacings.Resize(list.Points.Count);
-  const auto spacingOf = [&](Index t) { return SpacingOf(spacings.data(), list.CornersOf(t)); };
+  const auto findSpacings = [&](const std::vector<Index>& triangles, const Progress& part) {
+    const std::vector<Index> corners = CornersOf(list, triangles, Part(part, 0.0, 0.1));
+    FindSpacings(list, neighbors, corners, threads, Part(part, 0.1, 1.0), spacings.data());
+  };
+  const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
   const auto ratioOf = [&](Index t) { return std::sqrt(measured.Longest[t]) / spacingOf(t); };
   if (!(result.GapTolerance > 0.0))
   {
-    const std::vector<Index> sample = SampleOf(list, Part(progress, 0.3, 0.35));
-    FindSpacings(list.Points, neighbors, CornersOf(list, sample), threads,
-      Part(progress, 0.35, 0.4), spacings.data());
+    const std::vector<Index> sample = SampleOf(list, Part(progress, 0.25, 0.3));
+    const Progress finding = Part(progress, 0.3, 0.35);
+    findSpacings(sample, finding);
     std::vector<double> ratios;
     for (const Index t : sample)
     {
@@ -871,39 +940,37 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     result.GapTolerance = ToleranceOfTypicalTriangle * *median;
   }
 
-  // What is beyond doubt, by short edges.
-  const Buffer<double> shortEdges = measured.Edges.Spacings(threads, Part(progress, 0.4, 0.45));
-  measured.Edges = ShortEdges();
   std::vector<char>& keep = result.IsSurface;
   keep.resize(list.Count);
   const double limit = BeyondDoubt * result.GapTolerance;
-  constexpr Index pieceTriangles = 1 << 13;
-  const Index pieces = (list.Count + pieceTriangles - 1) / pieceTriangles;
-  ForEachPiece(pieces, threads, Part(progress, 0.45, 0.6), [&](Index piece) {
-    const Index begin = piece * pieceTriangles;
-    const Index end = begin + std::min(pieceTriangles, list.Count - begin);
+  inPieces(list.Count, Part(progress, 0.35, 0.5), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       const Index* ahead = list.CornersOf(std::min(t + 40, end - 1));
-      Prefetch(&shortEdges[ahead[1]]);
-      Prefetch(&shortEdges[ahead[2]]);
-      keep[t] = measured.Longest[t] <= squareOf(limit * SpacingOf(shortEdges.data(), list.CornersOf(t)));
+      Prefetch(&shortSpacings[ahead[1]]);
+      Prefetch(&shortSpacings[ahead[2]]);
+      keep[t] =
+        measured.Longest[t] <= squareOf(limit * SpacingOf(shortSpacings, list.CornersOf(t)));
     }
   });
-  const auto others = [&keep]() {
-    std::vector<Index> triangles;
-    for (std::size_t t = 0; t < keep.size(); ++t)
+  std::vector<Index> doubtful;
+  InStretches(list.Count, Part(progress, 0.5, 0.52), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
     {
       if (!keep[t])
       {
-        triangles.push_back(static_cast<Index>(t));
+        doubtful.push_back(t);
       }
     }
-    return triangles;
+  });
+  const auto shortShareOf = [&](Index t) {
+    const double spacing = SpacingOf(shortSpacings, list.CornersOf(t));
+    return list.ShareOfSquare(t, SmallGroup * result.GapTolerance * spacing);
   };
-  const std::vector<Index> doubtful = others();
-  FindSpacings(list.Points, neighbors, CornersOf(list, doubtful), threads,
-    Part(progress, 0.6, 0.75), spacings.data());
+  doubtful =
+    DropSmallGroups(list, atBorder, doubtful, shortShareOf, keep, Part(progress, 0.52, 0.6));
+  const Progress finding = Part(progress, 0.6, 0.75);
+  findSpacings(doubtful, finding);
   for (const Index t : doubtful)
   {
     keep[t] = ratioOf(t) <= result.GapTolerance;
@@ -925,13 +992,8 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     std::vector<char> keepHere = mesh.FlagsOf(keep);
     // In parts of a square of the size that the tolerance bridges.
     const auto shareOf = [&](Index i) {
-      const Index* corners = mesh.Surface.Triangles.data() + 3 * static_cast<std::size_t>(i);
-      const Point2 a = mesh.Surface.PointOf(corners[0]);
-      const Point2 b = mesh.Surface.PointOf(corners[1]);
-      const Point2 c = mesh.Surface.PointOf(corners[2]);
-      const double area = 0.5 * ((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X));
-      const double square = squareOf(result.GapTolerance * spacingOf(mesh.Triangles[i]));
-      return square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
+      const Index t = mesh.Triangles[i];
+      return list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
     };
     CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(progress, 0.85, 0.9));
     isDone = DropSmallPieces(mesh.Surface, keepHere, Part(progress, 0.9, 0.95));
@@ -984,7 +1046,7 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
   measured.List.Count = count;
   measured.List.Points.Double = coordinates.data();
   measured.List.Points.Count = mesh.NumberOfPoints();
-  measured.Edges = ShortEdges(mesh.NumberOfPoints());
+  measured.Edges = EdgesAtVertices(mesh.NumberOfPoints());
   measured.Longest.Resize(count);
   InStretches(count, Part(options.Monitor, 0.0, 0.4), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)

@@ -16,6 +16,8 @@
 #include "NearMesh.h"
 #include "Predicates.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -116,45 +118,57 @@ struct BorderEdge
   }
 };
 
-/** The four shortest edges at each vertex. */
-class ShortEdges
+/** The four shortest edges at each vertex, and how many it has; in few bytes a vertex. */
+class EdgesAtVertices
 {
 public:
-  ShortEdges() = default;
-  explicit ShortEdges(Index numberOfVertices)
+  EdgesAtVertices() = default;
+  explicit EdgesAtVertices(Index numberOfVertices)
   {
-    this->Shortest.Resize(numberOfVertices);
-    constexpr double nothing = Four::Nothing;
-    std::fill(
-      this->Shortest.begin(), this->Shortest.end(), Four{ { nothing, nothing, nothing, nothing } });
+    this->Vertices.Resize(numberOfVertices);
+    constexpr float none = std::numeric_limits<float>::infinity();
+    std::fill(this->Vertices.begin(), this->Vertices.end(), Vertex{ { none, none, none, none }, 0, {} });
   }
 
   /** An edge of a vertex, each once, in any order. */
-  void Add(Index vertex, double squaredLength) { this->Shortest[vertex].Add(squaredLength); }
-  void PrefetchAt(Index vertex) const { Prefetch(&this->Shortest[vertex]); }
+  void Add(Index vertex, double squaredLength)
+  {
+    Vertex& at = this->Vertices[vertex];
+    ++at.Degree;
+    // Without branches: where it belongs cannot be predicted.
+    const float squared = static_cast<float>(squaredLength);
+    for (int i = Shortest - 1; i > 0; --i)
+    {
+      at.Squared[i] = std::min(at.Squared[i], std::max(at.Squared[i - 1], squared));
+    }
+    at.Squared[0] = std::min(at.Squared[0], squared);
+  }
+  void PrefetchAt(Index vertex) const { Prefetch(&this->Vertices[vertex]); }
 
-  /** At each corner: their mean length (of all edges if fewer), at most twice the second one's. */
-  Buffer<double> Spacings(int threads, const Progress& progress) const;
+  std::uint32_t DegreeOf(Index vertex) const { return this->Vertices[vertex].Degree; }
+  /** Of a corner: their mean length (of all edges if fewer), but at most twice the second one's. */
+  float ShortSpacingOf(Index vertex) const
+  {
+    const Vertex& at = this->Vertices[vertex];
+    const float second = std::sqrt(at.Squared[1]);
+    float sum = std::sqrt(at.Squared[0]) + second;
+    for (int i = 2; i < Shortest; ++i)
+    {
+      sum += static_cast<std::uint32_t>(i) < at.Degree ? std::sqrt(at.Squared[i]) : 0.0f;
+    }
+    const float number = static_cast<float>(std::min<std::uint32_t>(at.Degree, Shortest));
+    return std::min(sum / number, 2.0f * second);
+  }
 
 private:
-  static constexpr int Considered = 4;
-  /** The squares of the shortest, in their order. */
-  struct Four
+  static constexpr int Shortest = 4;
+  struct Vertex
   {
-    static constexpr double Nothing = std::numeric_limits<double>::infinity();
-    double Squared[Considered];
-
-    void Add(double squared)
-    {
-      // Without branches: where it belongs cannot be predicted.
-      for (int i = Considered - 1; i > 0; --i)
-      {
-        this->Squared[i] = std::min(this->Squared[i], std::max(this->Squared[i - 1], squared));
-      }
-      this->Squared[0] = std::min(this->Squared[0], squared);
-    }
+    float Squared[Shortest]; ///< in their order
+    std::uint32_t Degree;
+    std::uint32_t Unused[3]; ///< so that none lies in two lines of the cache
   };
-  Buffer<Four> Shortest;
+  Buffer<Vertex> Vertices;
 };
 
 /** Triangles, and what a pass over them has told. */
@@ -162,7 +176,7 @@ struct MeasuredTriangles
 {
   TriangleList List;
   Buffer<double> Longest;         ///< one a triangle: the square of its longest edge
-  ShortEdges Edges;               ///< each edge told to both its ends
+  EdgesAtVertices Edges;          ///< each edge told to both its ends
   std::vector<BorderEdge> Border; ///< all
 };
 
@@ -171,9 +185,10 @@ inline double SquaredLength(Point2 p, Point2 q)
   return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
 }
 
-// Coordinates beyond these are taken at another scale: their squares leave the range of double.
-constexpr double LargestUnscaled = 1e100;
-constexpr double LeastUnscaled = 1e-100;
+// Coordinates of which the largest is beyond these are taken at another scale: squares of lengths
+// leave the range of float.
+constexpr double LargestUnscaled = 1e15;
+constexpr double LeastUnscaled = 1e-12;
 
 /** ExtractBoundary() for triangles that have been measured. @throws Aborted, std::bad_alloc */
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options);

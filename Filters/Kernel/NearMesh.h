@@ -23,6 +23,21 @@ struct TriangleList
   PointView Points;
 
   const Index* CornersOf(Index t) const { return this->Corners + 3 * static_cast<std::size_t>(t); }
+  void PrefetchPoint(Index vertex) const
+  {
+    const std::size_t k = 3 * static_cast<std::size_t>(vertex);
+    this->Points.Double ? Prefetch(this->Points.Double + k) : Prefetch(this->Points.Float + k);
+  }
+  /** The area of a triangle in parts of a square. */
+  double ShareOfSquare(Index t, double side) const
+  {
+    const Point2 a = this->Points.At(this->CornersOf(t)[0]);
+    const Point2 b = this->Points.At(this->CornersOf(t)[1]);
+    const Point2 c = this->Points.At(this->CornersOf(t)[2]);
+    const double area = 0.5 * ((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X));
+    const double square = side * side;
+    return square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
+  }
 };
 
 /** A set of vertices, one bit each: small enough to be asked for any vertex at any time. */

@@ -676,7 +676,7 @@ void TrimNear(const TriangleList& list, const std::vector<Index>& near,
 /** Finds the longest edge of each triangle, and tells each vertex its edges. */
 struct Measurer
 {
-  ShortEdges& Edges;
+  EdgesAtVertices& Edges;
   double* Longest;      ///< its square, one a triangle
   double Largest = 0.0; ///< coordinate
   double ToLast = 0.0;  ///< square of the length, from the first corner to the last
@@ -759,7 +759,7 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
   }
   MeasuredTriangles measured;
   measured.List = triangles;
-  measured.Edges = ShortEdges(points.Count);
+  measured.Edges = EdgesAtVertices(points.Count);
   measured.Longest.Resize(count);
   {
     OpenEdges edges(points.Count, 1024 + static_cast<std::size_t>(count) / 64);
@@ -787,13 +787,7 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
   const Progress finding = Part(progress, 0.45, 0.95);
   rest.Monitor = finding;
   boundary = FindOutline(std::move(measured), rest);
-  std::vector<char>& isOutward = result.Trimmed.IsOutward;
-  isOutward.resize(count);
-  for (Index t = 0; t < count; ++t)
-  {
-    isOutward[t] = !boundary.IsSurface[t];
-    result.Trimmed.NumberOfOutwardTriangles += isOutward[t];
-  }
+  result.Trimmed = TrimExtracted(boundary);
   Report(progress, 1.0);
   return true;
 }
