@@ -14,8 +14,7 @@
  *   4. Insert and trim the near triangles (Insertion.h, Trim.h), as a mesh of their own: whatever a
  *      ring does to the mesh, it does to triangles that it touches.
  *
- * Extraction (Boundary.h) takes the same sweep to find the spacings. Then the near triangles are those
- * that are too long for surface, and those at their corners and at the border.
+ * Extraction takes the same sweep to measure edges, and is then that of Boundary.h.
  *
  * Guarantee: exactly what InsertRings and Trim, or ExtractBoundary, give for the whole mesh, or
  * nothing: whatever is not as the passes need it, or would be an error, is left to those.
