@@ -319,7 +319,7 @@ public:
     const TriangleList& list = measured.List;
     const Index count = list.Points.Count;
     this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
-    // Where the vertex's end: they are filled in from there.
+    // At first where those of each vertex end: they are filled in from there.
     std::uint32_t sum = 0; // stays below 9 for each point
     for (Index v = 0; v < count; ++v)
     {
@@ -388,7 +388,8 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
     {
       const Index v = wanted[place];
       const auto keyOf = [v](Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); };
-      const auto wantedAhead = [&](
+      // What lies ahead is soon reached, but not in order: ids by way of offsets, and so on.
+      const auto wantedAhead = [&wanted, place, end](
                                  Index steps) { return wanted[std::min(place + steps, end - 1)]; };
       Prefetch(&neighbors.Offsets[wantedAhead(16)]);
       Prefetch(ids + neighbors.Offsets[wantedAhead(12)]);
@@ -714,8 +715,8 @@ std::vector<Index> CornersOf(
 }
 
 /**
- * The spacing of a triangle: the middle one of its corners' three, which the spacing of a point that
- * lies alone is not, nor of two that lie alone; but not far above the least.
+ * The spacing of a triangle: the middle one of its corners' three, which the spacing of a point
+ * that lies alone is not, nor of two that lie alone; but not far above the least.
  */
 template <typename Real>
 double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
@@ -735,7 +736,7 @@ bool IsChosen(Point2 p, int bits)
   p = { p.X + 0.0, p.Y + 0.0 }; // -0.0 is 0.0
   std::memcpy(&x, &p.X, sizeof(x));
   std::memcpy(&y, &p.Y, sizeof(y));
-  // The finalizer of MurmurHash3, twice.
+  // Steps that spread every bit over all others, as at the end of Appleby's MurmurHash3.
   const auto mix = [](std::uint64_t h) {
     h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDull;
     h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53ull;
@@ -839,17 +840,17 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const VertexSet& at
   return others;
 }
 
-/** Triangles as a mesh with Twins. A half-edge that is its own twin leads to one that is not here. */
+/** Triangles as a mesh with Twins. A half-edge that is its own leads to one that is not here. */
 class PartialMesh : public NearMesh
 {
 public:
   /** @param[in] border  sorted */
   PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
     const VertexSet& atBorder, std::vector<Index> triangles, const Progress& progress)
-    : NearMesh(list, triangles)
+    : NearMesh(list, triangles, Part(progress, 0.0, 0.5))
     , Triangles(std::move(triangles))
   {
-    this->Surface.ConnectTwins(0, progress);
+    this->Surface.ConnectTwins(0, Part(progress, 0.5, 1.0));
     for (Index h = 0; h < this->Surface.NumberOfHalfEdges(); ++h)
     {
       if (this->Surface.IsBorder(h))

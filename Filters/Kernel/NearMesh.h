@@ -103,16 +103,16 @@ struct NearMesh
   Mesh Surface;
   std::vector<Index> Ids; ///< of its points in the list
 
-  NearMesh(const TriangleList& list, const std::vector<Index>& triangles)
+  NearMesh(const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
   {
+    const Index count = static_cast<Index>(triangles.size());
     VertexSet corners(list.Points.Count);
-    for (const Index t : triangles)
-    {
-      for (int i = 0; i < 3; ++i)
+    InStretches(count, Part(progress, 0.0, 0.4), [&](Index begin, Index end) {
+      for (Index i = 3 * begin; i < 3 * end; ++i)
       {
-        corners.Add(list.CornersOf(t)[i]);
+        corners.Add(list.CornersOf(triangles[i / 3])[i % 3]);
       }
-    }
+    });
     this->Ids = corners.Number();
     this->Surface.Points.reserve(this->Ids.size());
     for (const Index id : this->Ids)
@@ -120,13 +120,13 @@ struct NearMesh
       this->Surface.Points.push_back(list.Points.At(id));
     }
     this->Surface.Triangles.reserve(3 * triangles.size());
-    for (const Index t : triangles)
-    {
-      for (int i = 0; i < 3; ++i)
+    InStretches(count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
+      for (Index i = 3 * begin; i < 3 * end; ++i)
       {
-        this->Surface.Triangles.push_back(corners.NumberOf(list.CornersOf(t)[i]));
+        this->Surface.Triangles.push_back(
+          corners.NumberOf(list.CornersOf(triangles[i / 3])[i % 3]));
       }
-    }
+    });
   }
 };
 

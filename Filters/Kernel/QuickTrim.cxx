@@ -617,10 +617,10 @@ void TrimNear(const TriangleList& list, const std::vector<Index>& near,
   const std::vector<Point2>& points, const Rings& rings, bool recover, const Progress& progress,
   TrimmedList& result)
 {
-  NearMesh mesh(list, near);
+  NearMesh mesh(list, near, Part(progress, 0.0, 0.1));
   const std::vector<Index> before = mesh.Surface.Triangles;
   const Index pointsBefore = mesh.Surface.NumberOfPoints();
-  mesh.Surface.ConnectTwins(0, Part(progress, 0.0, 0.2));
+  mesh.Surface.ConnectTwins(0, Part(progress, 0.1, 0.2));
   InsertedRings inserted =
     InsertRings(mesh.Surface, points, rings, recover, Part(progress, 0.2, 0.6));
   const Progress trimming = Part(progress, 0.6, 1.0);

@@ -59,7 +59,7 @@ bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points,
 
 /**
  * Trims along the boundary that ExtractBoundary would find.
- * @param[out] boundary  its rings are ids of the list's points; no rings when no triangle is surface
+ * @param[out] boundary  its rings are ids of the list's points; none when no triangle is surface
  * @return as QuickTrim()
  * @throws Aborted; std::bad_alloc
  */
