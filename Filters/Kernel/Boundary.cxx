@@ -319,23 +319,19 @@ public:
     const TriangleList& list = measured.List;
     const Index count = list.Points.Count;
     this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
+    this->Ids.Resize(3 * static_cast<std::size_t>(list.Count) + measured.Border.size() +
+      (Group - 1) * (static_cast<std::size_t>(count) + 1));
     // At first where those of each vertex end: they are filled in from there.
     std::uint32_t sum = 0; // stays below 9 for each point
     for (Index v = 0; v < count; ++v)
     {
       const std::uint32_t size = measured.Edges.DegreeOf(v);
       this->Offsets[v] = sum + size;
+      // More than are needed, as how many cannot be predicted; what comes next overwrites them.
+      std::fill_n(&this->Ids[sum + size], Group - 1, v);
       sum += (size + Group - 1) / Group * Group;
     }
     this->Offsets[count] = sum;
-    this->Ids.Resize(sum);
-    for (Index v = 0; v < count; ++v)
-    {
-      for (std::uint32_t i = this->Offsets[v]; i % Group != 0; ++i)
-      {
-        this->Ids[i] = v;
-      }
-    }
     const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
     InStretches(list.Count, progress, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
