@@ -305,16 +305,15 @@ constexpr Index LargestSample = 4096;
 constexpr double LeastSpacing = 1e-150;
 
 /** The neighbours of each vertex. */
-class Neighbors
+struct Neighbors
 {
-public:
   Buffer<std::uint32_t> Offsets;
   /** Of each vertex a multiple of Group, filled up with the vertex itself. */
   Buffer<Index> Ids;
   static constexpr std::uint32_t Group =
     4; ///< at a time, for an end of loops that can be predicted
 
-  explicit Neighbors(const MeasuredTriangles& measured, const Progress& progress)
+  Neighbors(const MeasuredTriangles& measured, const Progress& progress)
   {
     const TriangleList& list = measured.List;
     const Index count = list.Points.Count;
@@ -434,8 +433,9 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
             {
               const Index w = group[j];
               *next = w;
-              next += (squaredTo(w) < limit) &
-                (known[static_cast<std::uint32_t>(w) % places] != keyOf(w));
+              const int isNear = squaredTo(w) < limit;
+              const int isNew = known[static_cast<std::uint32_t>(w) % places] != keyOf(w);
+              next += isNear & isNew;
             }
           }
           const std::size_t numberFound = next - found.data();
