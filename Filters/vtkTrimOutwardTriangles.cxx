@@ -92,15 +92,31 @@ std::vector<elevation::Point2> PlacesOf(vtkPolyData* boundary)
 }
 
 /**
- * Trims along a boundary by QuickTrim.
+ * Trims by QuickTrim, along the boundary that is given or that is extracted.
  * @return whether it is done; if not, the outcome is of no use
  */
-bool TrimQuickly(
-  vtkPolyData* input, vtkPolyData* given, bool recover, const Progress& progress, Outcome& outcome)
+bool TrimQuickly(vtkPolyData* input, vtkPolyData* given,
+  const elevation::ExtractOptions& extraction, bool recover, const Progress& progress,
+  Outcome& outcome)
 {
   if (!elevation::ViewTriangles(input, outcome.View))
   {
     return false;
+  }
+  outcome.Corners = outcome.View.View.Corners;
+  outcome.Count = outcome.View.View.Count;
+  outcome.AreInput = true;
+  outcome.Source = given ? given : input;
+  if (!given)
+  {
+    elevation::ExtractOptions options = extraction;
+    options.Monitor = progress;
+    elevation::ExtractedBoundary extracted;
+    const bool isDone =
+      elevation::QuickExtract(outcome.View.View, options, outcome.List, extracted);
+    outcome.Boundary = std::move(extracted.Vertices);
+    outcome.GapTolerance = extracted.GapTolerance;
+    return isDone;
   }
   try
   {
@@ -133,10 +149,6 @@ bool TrimQuickly(
   {
     return false; // whose names are others here
   }
-  outcome.Corners = outcome.View.View.Corners;
-  outcome.Count = outcome.View.View.Count;
-  outcome.AreInput = true;
-  outcome.Source = given;
   return true;
 }
 
@@ -152,6 +164,7 @@ void TrimMesh(vtkPolyData* input, vtkPolyData* given, const elevation::ExtractOp
   // For its proof that nothing is covered twice.
   elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.3, 0.4));
 
+  elevation::TrimmedList& list = outcome.List;
   elevation::InsertedRings rings;
   const Index points = mesh.NumberOfPoints();
   outcome.Count = mesh.NumberOfTriangles();
@@ -171,25 +184,24 @@ void TrimMesh(vtkPolyData* input, vtkPolyData* given, const elevation::ExtractOp
     {
       elevation::ExtractOptions options = extraction;
       options.Monitor = finding;
-      elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
-      outcome.Boundary = extracted.Vertices;
+      const elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
+      list.Trimmed = elevation::TrimExtracted(extracted);
+      outcome.Boundary = rings.Vertices = extracted.Vertices;
       outcome.GapTolerance = extracted.GapTolerance;
-      rings.Vertices = std::move(extracted.Vertices);
     }
   }
-  elevation::TrimmedList& list = outcome.List;
-  if (rings.Vertices.Count() > 0)
+  if (rings.Vertices.Count() == 0)
+  {
+    outcome.Source = input;
+    list.Trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
+    list.Trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
+  }
+  else if (given || trimming.Test != elevation::OutwardTest::Exact)
   {
     elevation::TrimOptions options = trimming;
     const Progress rest = Part(progress, 0.7, 1.0);
     options.Monitor = rest;
     list.Trimmed = elevation::Trim(mesh, rings.Vertices, options);
-  }
-  else
-  {
-    outcome.Source = input;
-    list.Trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
-    list.Trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
   }
   outcome.Corners = mesh.Triangles.data();
   list.Corners.assign(
@@ -512,8 +524,9 @@ int vtkTrimOutwardTriangles::RequestData(
     trimming.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
     trimming.RecoverBoundary = this->RecoverBoundary;
     Outcome outcome;
-    const bool isDone = given && trimming.Test == elevation::OutwardTest::Exact &&
-      TrimQuickly(input, given, this->RecoverBoundary, Part(progress, 0.0, 0.4), outcome);
+    const bool isDone = trimming.Test == elevation::OutwardTest::Exact &&
+      TrimQuickly(
+        input, given, extraction, this->RecoverBoundary, Part(progress, 0.0, 0.4), outcome);
     if (!isDone)
     {
       outcome = Outcome();

@@ -40,6 +40,9 @@
  *   gap, where points are on one side only, one step of a square lattice, or the mean spacing
  *   of random points. The spacing of a triangle is the middle one of its three points', but
  *   at most twice the least.
+ * - Only triangles that are in doubt are measured so: those whose longest edge is more than about
+ *   half of GapTolerance times the mean of the four shortest edges at their points, and which lie
+ *   together where there could be room for a lake, or at the border.
  * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance
  *   spacings. A smaller one is surface.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
@@ -141,8 +144,9 @@ public:
   ///@{
   /**
    * For the extracted boundary: how many spacings an empty stretch may measure and still be
-   * surface. 0 (default): 2.25 times what the typical (median) triangle's longest edge measures,
-   * which is 4.5 on a square lattice and about 4.6 on random points; see GetEffectiveGapTolerance.
+   * surface. 0 (default): 2.25 times what the typical (median) triangle's longest edge measures (in
+   * a sample, where there are many), which is 4.5 on a square lattice and about 4.6 on random
+   * points; see GetEffectiveGapTolerance.
    * Negative values are taken as 0. Not used when a boundary is given.
    */
   vtkSetClampMacro(GapTolerance, double, 0.0, VTK_DOUBLE_MAX);

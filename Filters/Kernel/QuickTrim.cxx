@@ -3,10 +3,10 @@
 #include "QuickTrim.h"
 
 #include "Holes.h"
+#include "Parallel.h"
 #include "Predicates.h"
 
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <unordered_set>
 
@@ -612,65 +612,15 @@ struct Classifier
 
 // -------------------------------------------------------------------------------------- near rings
 
-/** Some triangles of a list as a mesh of their own; ids keep their order. */
-struct NearMesh
-{
-  Mesh Surface;
-  std::vector<Index> Ids; ///< of its points in the list
-
-  NearMesh(const TriangleList& list, const std::vector<Index>& triangles)
-  {
-    // One bit a point, and how many are set before each word.
-    const std::size_t words = static_cast<std::size_t>(list.Points.Count) / 64 + 1;
-    std::vector<std::uint64_t> bits(words, 0);
-    for (const Index t : triangles)
-    {
-      for (int i = 0; i < 3; ++i)
-      {
-        const std::uint32_t id = list.Corners[3 * static_cast<std::size_t>(t) + i];
-        bits[id / 64] |= std::uint64_t(1) << id % 64;
-      }
-    }
-    std::vector<Index> before(words);
-    for (std::size_t word = 0; word < words; ++word)
-    {
-      before[word] = static_cast<Index>(this->Ids.size());
-      Index id = static_cast<Index>(64 * word);
-      for (std::uint64_t left = bits[word]; left != 0; left >>= 1, ++id)
-      {
-        if (left & 1)
-        {
-          this->Ids.push_back(id);
-        }
-      }
-    }
-    for (const Index id : this->Ids)
-    {
-      this->Surface.Points.push_back(list.Points.At(id));
-    }
-    this->Surface.Triangles.reserve(3 * triangles.size());
-    for (const Index t : triangles)
-    {
-      for (int i = 0; i < 3; ++i)
-      {
-        const Index id = list.Corners[3 * static_cast<std::size_t>(t) + i];
-        const std::uint64_t lower = bits[id / 64] & ((std::uint64_t(1) << id % 64) - 1);
-        this->Surface.Triangles.push_back(
-          before[id / 64] + static_cast<Index>(std::bitset<64>(lower).count()));
-      }
-    }
-  }
-};
-
 /** Trims the near triangles, and adds what comes of it to the result. */
 void TrimNear(const TriangleList& list, const std::vector<Index>& near,
   const std::vector<Point2>& points, const Rings& rings, bool recover, const Progress& progress,
   TrimmedList& result)
 {
-  NearMesh mesh(list, near);
+  NearMesh mesh(list, near, Part(progress, 0.0, 0.1));
   const std::vector<Index> before = mesh.Surface.Triangles;
   const Index pointsBefore = mesh.Surface.NumberOfPoints();
-  mesh.Surface.ConnectTwins(0, Part(progress, 0.0, 0.2));
+  mesh.Surface.ConnectTwins(0, Part(progress, 0.1, 0.2));
   InsertedRings inserted =
     InsertRings(mesh.Surface, points, rings, recover, Part(progress, 0.2, 0.6));
   const Progress trimming = Part(progress, 0.6, 1.0);
@@ -723,6 +673,36 @@ void TrimNear(const TriangleList& list, const std::vector<Index>& near,
   }
 }
 
+/** Finds the longest edge of each triangle, and tells each vertex its edges. */
+struct Measurer
+{
+  EdgesAtVertices& Edges;
+  double* Longest;      ///< its square, one a triangle
+  double Largest = 0.0; ///< coordinate
+  double ToLast = 0.0;  ///< square of the length, from the first corner to the last
+
+  void Begin(Point2 p, Point2 a)
+  {
+    this->Largest =
+      std::max({ this->Largest, std::fabs(p.X), std::fabs(p.Y), std::fabs(a.X), std::fabs(a.Y) });
+    this->ToLast = SquaredLength(p, a);
+  }
+
+  void PrefetchAt(Index vertex) const { this->Edges.PrefetchAt(vertex); }
+
+  void Visit(Index t, Corner p, Corner a, Corner b)
+  {
+    this->Largest = std::max({ this->Largest, std::fabs(b.Place.X), std::fabs(b.Place.Y) });
+    const double right = this->ToLast;
+    const double opposite = SquaredLength(a.Place, b.Place);
+    this->ToLast = SquaredLength(b.Place, p.Place);
+    this->Longest[t] = std::max(std::max(right, opposite), this->ToLast);
+    this->Edges.Add(p.Id, right);
+    this->Edges.Add(a.Id, opposite);
+    this->Edges.Add(b.Id, this->ToLast);
+  }
+};
+
 } // namespace
 
 bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points, const Rings& rings,
@@ -763,6 +743,53 @@ bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points,
   Report(progress, 1.0);
   return result.Trimmed.NumberOfOutwardTriangles < static_cast<Index>(flags.size()) &&
     points.size() + result.Inserted.size() + triangles.Points.Count <= MaximumNumberOfPoints;
+}
+
+bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, TrimmedList& result,
+  ExtractedBoundary& boundary)
+{
+  const Progress& progress = options.Monitor;
+  result = TrimmedList();
+  boundary = ExtractedBoundary();
+  const Index count = triangles.Count;
+  const PointView& points = triangles.Points;
+  if (count == 0)
+  {
+    return false;
+  }
+  MeasuredTriangles measured;
+  measured.List = triangles;
+  measured.Edges = EdgesAtVertices(points.Count);
+  measured.Longest.Resize(count);
+  {
+    OpenEdges edges(points.Count, 1024 + static_cast<std::size_t>(count) / 64);
+    Measurer measurer{ measured.Edges, measured.Longest.data() };
+    if (!Sweep(triangles, edges, Part(progress, 0.0, 0.4), measurer) ||
+      measurer.Largest > LargestUnscaled || measurer.Largest < LeastUnscaled)
+    {
+      return false;
+    }
+    try
+    {
+      // For its proof that nothing is covered twice.
+      FindHoles(MeshOfBorder(edges, points), 0, Part(progress, 0.4, 0.45));
+    }
+    catch (const Error&)
+    {
+      return false; // whose names are others here
+    }
+    edges.Visit([&](Index origin, Index destination) {
+      measured.Border.push_back({ origin, destination });
+      measured.Edges.Add(destination, SquaredLength(points.At(origin), points.At(destination)));
+    });
+  }
+  ExtractOptions rest = options;
+  const Progress finding = Part(progress, 0.45, 0.95);
+  rest.Monitor = finding;
+  boundary = FindOutline(std::move(measured), rest);
+  result.Trimmed = TrimExtracted(boundary);
+  Report(progress, 1.0);
+  return true;
 }
 
 } // namespace elevation

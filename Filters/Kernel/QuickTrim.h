@@ -14,8 +14,10 @@
  *   4. Insert and trim the near triangles (Insertion.h, Trim.h), as a mesh of their own: whatever a
  *      ring does to the mesh, it does to triangles that it touches.
  *
- * Guarantee: exactly what InsertRings and Trim give for the whole mesh, or nothing: whatever is not
- * as the passes need it, or would be an error, is left to those.
+ * Extraction takes the same sweep to measure edges, and is then that of Boundary.h.
+ *
+ * Guarantee: exactly what InsertRings and Trim, or ExtractBoundary, give for the whole mesh, or
+ * nothing: whatever is not as the passes need it, or would be an error, is left to those.
  *
  * Cost: linear; about as much as reading triangles and points, when triangles come in the order in
  * which a sweep over the plane makes them, as those of this kernel do. The edges that are open at a
@@ -32,14 +34,6 @@
 
 namespace elevation
 {
-
-/** Triangles as they lie in a cell array, and the points that they name; not owned. */
-struct TriangleList
-{
-  const Index* Corners = nullptr; ///< three a triangle
-  Index Count = 0;
-  PointView Points;
-};
 
 /** What has become of a list of triangles; those not named are as they were. */
 struct TrimmedList
@@ -62,6 +56,15 @@ struct TrimmedList
  */
 bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points, const Rings& rings,
   bool recover, const Progress& progress, TrimmedList& result);
+
+/**
+ * Trims along the boundary that ExtractBoundary would find.
+ * @param[out] boundary  its rings are ids of the list's points; none when no triangle is surface
+ * @return as QuickTrim()
+ * @throws Aborted; std::bad_alloc
+ */
+bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, TrimmedList& result,
+  ExtractedBoundary& boundary);
 
 } // namespace elevation
 

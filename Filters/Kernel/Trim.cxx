@@ -205,4 +205,16 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
   return result;
 }
 
+TrimResult TrimExtracted(const ExtractedBoundary& boundary)
+{
+  TrimResult result;
+  result.IsOutward = boundary.IsSurface;
+  for (char& flag : result.IsOutward)
+  {
+    flag = !flag;
+    result.NumberOfOutwardTriangles += flag;
+  }
+  return result;
+}
+
 } // namespace elevation

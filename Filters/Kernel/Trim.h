@@ -71,6 +71,9 @@ struct TrimResult
  */
 TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options);
 
+/** Trims along a boundary that was extracted, which tells the triangles outside it. */
+TrimResult TrimExtracted(const ExtractedBoundary& boundary);
+
 } // namespace elevation
 
 #endif

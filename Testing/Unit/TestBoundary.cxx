@@ -157,6 +157,204 @@ double ErrorOfOutline(const std::vector<Point2>& points, const Mask& coast,
   return between / near;
 }
 
+/** The rule of ExtractBoundary(), step by step and by looking at everything. */
+struct RuleByTheLetter
+{
+  std::vector<char> Keep;
+  double Tolerance;
+  Index NumberOfDoubtful = 0; ///< by short edges
+  Index NumberOfOthers = 0;   ///< of these, those that no small group has
+
+  RuleByTheLetter(const Mesh& mesh, double tolerance)
+    : Tolerance(tolerance)
+    , Surface(mesh)
+  {
+    const Index count = mesh.NumberOfTriangles();
+    std::vector<double> sixth, shortEdges, ratios;
+    std::vector<char> atBorder(mesh.Points.size(), 0);
+    for (Index v = 0; v < mesh.NumberOfPoints(); ++v)
+    {
+      std::vector<double> all, edges;
+      for (Index w = 0; w < mesh.NumberOfPoints(); ++w)
+      {
+        all.push_back(this->Squared(v, w));
+      }
+      std::sort(all.begin(), all.end());
+      sixth.push_back(0.5 * std::sqrt(all[6]));
+      for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+      {
+        const bool isBorder = mesh.IsBorder(h);
+        if (mesh.Origin(h) == v || (isBorder && mesh.Destination(h) == v))
+        {
+          edges.push_back(this->Squared(mesh.Origin(h), mesh.Destination(h)));
+          atBorder[v] |= isBorder;
+        }
+      }
+      std::sort(edges.begin(), edges.end());
+      float sum = 0.0f;
+      const int number = static_cast<int>(std::min<std::size_t>(4, edges.size()));
+      for (int i = 0; i < number; ++i)
+      {
+        sum += std::sqrt(static_cast<float>(edges[i]));
+      }
+      shortEdges.push_back(
+        std::min(sum / static_cast<float>(number), 2.0f * std::sqrt(static_cast<float>(edges[1]))));
+    }
+    for (Index t = 0; t < count; ++t)
+    {
+      ratios.push_back(this->Longest(t) / this->SpacingOf(sixth, t));
+    }
+    if (tolerance == 0.0)
+    {
+      std::vector<double> sorted = ratios;
+      std::sort(sorted.begin(), sorted.end());
+      this->Tolerance = 2.25 * sorted[sorted.size() / 2];
+    }
+    for (Index t = 0; t < count; ++t)
+    {
+      this->Keep.push_back(
+        this->Longest(t) <= 0.52 * this->Tolerance * this->SpacingOf(shortEdges, t));
+      this->NumberOfDoubtful += !this->Keep[t];
+    }
+    const auto shareNorm = [&](const std::vector<double>& spacings, double part) {
+      return [this, &spacings, part](Index t) {
+        const double side = part * this->Tolerance * this->SpacingOf(spacings, t);
+        const Mesh& m = this->Surface;
+        const Point2 a = m.PointOf(m.Origin(3 * t)), b = m.PointOf(m.Origin(3 * t + 1)),
+                     c = m.PointOf(m.Origin(3 * t + 2));
+        return 0.5 * ((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X)) / (side * side);
+      };
+    };
+    // Groups by corners.
+    const auto shareACorner = [&](Index s, Index t) {
+      for (Index h = 3 * s; h < 3 * s + 3; ++h)
+      {
+        for (Index g = 3 * t; g < 3 * t + 3; ++g)
+        {
+          if (mesh.Origin(h) == mesh.Origin(g))
+          {
+            return true;
+          }
+        }
+      }
+      return false;
+    };
+    this->CloseGroups(shareACorner, shareNorm(shortEdges, 0.7), [&](Index t) {
+      return atBorder[mesh.Origin(3 * t)] || atBorder[mesh.Origin(3 * t + 1)] ||
+        atBorder[mesh.Origin(3 * t + 2)];
+    });
+    for (Index t = 0; t < count; ++t)
+    {
+      this->NumberOfOthers += !this->Keep[t];
+      this->Keep[t] = this->Keep[t] || ratios[t] <= this->Tolerance;
+    }
+    // Openings, by edges.
+    const auto shareAnEdge = [&](Index s, Index t) {
+      for (Index h = 3 * s; h < 3 * s + 3; ++h)
+      {
+        if (!mesh.IsBorder(h) && Mesh::Triangle(mesh.Twin(h)) == t)
+        {
+          return true;
+        }
+      }
+      return false;
+    };
+    this->CloseGroups(shareAnEdge, shareNorm(sixth, 1.0), [&](Index t) {
+      return mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
+    });
+    // Small pieces.
+    for (const std::vector<Index>& piece : this->Groups(shareAnEdge, 1))
+    {
+      std::set<Index> vertices;
+      for (const Index t : piece)
+      {
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        {
+          vertices.insert(mesh.Origin(h));
+        }
+      }
+      for (const Index t : piece)
+      {
+        this->Keep[t] = vertices.size() > 6;
+      }
+    }
+  }
+
+private:
+  double Squared(Index v, Index w) const
+  {
+    const Point2 p = this->Surface.PointOf(v), q = this->Surface.PointOf(w);
+    return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
+  }
+  double Longest(Index t) const
+  {
+    double longest = 0.0;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      longest =
+        std::max(longest, this->Squared(this->Surface.Origin(h), this->Surface.Destination(h)));
+    }
+    return std::sqrt(longest);
+  }
+  double SpacingOf(const std::vector<double>& spacings, Index t) const
+  {
+    std::vector<double> of;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      of.push_back(spacings[this->Surface.Origin(h)]);
+    }
+    std::sort(of.begin(), of.end());
+    return std::min(of[1], 2.0 * of[0]);
+  }
+
+  template <typename Connected>
+  std::vector<std::vector<Index>> Groups(Connected&& connected, char kept) const
+  {
+    std::vector<std::vector<Index>> groups;
+    std::vector<Index> left;
+    for (Index t = 0; t < this->Surface.NumberOfTriangles(); ++t)
+    {
+      if (this->Keep[t] == kept)
+      {
+        left.push_back(t);
+      }
+    }
+    while (!left.empty())
+    {
+      groups.push_back({ left.back() });
+      left.pop_back();
+      for (std::size_t i = 0; i < groups.back().size(); ++i)
+      {
+        const Index t = groups.back()[i];
+        const auto others = std::partition(
+          left.begin(), left.end(), [&](Index other) { return !connected(t, other); });
+        groups.back().insert(groups.back().end(), others, left.end());
+        left.erase(others, left.end());
+      }
+    }
+    return groups;
+  }
+
+  template <typename Connected, typename Share, typename AtBorder>
+  void CloseGroups(Connected&& connected, Share&& share, AtBorder&& isAtBorder)
+  {
+    for (const std::vector<Index>& group : this->Groups(connected, 0))
+    {
+      double sum = 0.0;
+      for (const Index t : group)
+      {
+        sum += isAtBorder(t) ? 1.0 : share(t);
+      }
+      for (const Index t : group)
+      {
+        this->Keep[t] = sum < 1.0;
+      }
+    }
+  }
+
+  const Mesh& Surface;
+};
+
 } // namespace
 
 TEST(RingLocator, FollowsTheEvenOddRule)
@@ -333,6 +531,50 @@ TEST(ExtractBoundary, OfAFullLatticeIsItsOutline)
   EXPECT_NEAR(boundary.GapTolerance, 4.5, 1e-12);
 }
 
+TEST(ExtractBoundary, TakesTheToleranceOfALargeLatticeFromASample)
+{
+  const ExtractedBoundary boundary = ExtractBoundary(
+    Delaunay(MaskedLattice(120, 90, [](double, double) { return true; })), ExtractOptions());
+  EXPECT_EQ(boundary.GapTolerance, 4.5);
+  EXPECT_EQ(boundary.Vertices.Vertices.size(), 2u * (119 + 89));
+}
+
+TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
+{
+  Random random(17);
+  Index numberOfDoubtful = 0, numberOfOthers = 0, numberOfOutward = 0;
+  for (int round = 0; round < 4; ++round)
+  {
+    // Few enough that all triangles tell the typical one; dense on one side.
+    std::vector<Point2> points;
+    while (points.size() < 1000)
+    {
+      const Point2 p{ random.Unit(), random.Unit() };
+      if (Coast(p.X, p.Y) && (round % 2 == 0 || random.Unit() < 0.1 + 0.9 * p.X * p.X))
+      {
+        points.push_back(p);
+      }
+    }
+    const Mesh mesh = Delaunay(points);
+    for (const double tolerance : { 0.0, 2.5, 7.0 })
+    {
+      const RuleByTheLetter rule(mesh, tolerance);
+      numberOfDoubtful += rule.NumberOfDoubtful;
+      numberOfOthers += rule.NumberOfOthers;
+      numberOfOutward += static_cast<Index>(std::count(rule.Keep.begin(), rule.Keep.end(), 0));
+      ExtractOptions options;
+      options.GapTolerance = tolerance;
+      const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
+      EXPECT_EQ(boundary.GapTolerance, rule.Tolerance);
+      EXPECT_EQ(boundary.IsSurface, rule.Keep) << round << " " << tolerance;
+    }
+  }
+  // All parts of the rule have had something to say.
+  EXPECT_GT(numberOfDoubtful, numberOfOthers + 100);
+  EXPECT_GT(numberOfOthers, numberOfOutward + 100);
+  EXPECT_GT(numberOfOutward, 100);
+}
+
 TEST(ExtractBoundary, IsTheSameForAnyNumberOfThreads)
 {
   std::mt19937_64 random(71);
@@ -497,12 +739,25 @@ TEST(ExtractBoundary, DoesNotDependOnTheOrderOfPoints)
     }
     return rings;
   };
-  const auto expected = ringsOf(points);
-  EXPECT_GT(expected.size(), 20u);
-  for (int round = 0; round < 5; ++round)
+  // Of the random ones, a sample tells the tolerance.
+  std::vector<Point2> scattered;
+  while (scattered.size() < 5000)
   {
-    random.Shuffle(points);
-    EXPECT_EQ(ringsOf(points), expected);
+    const Point2 p{ random.Unit(), random.Unit() };
+    if (Coast(p.X, p.Y))
+    {
+      scattered.push_back(p);
+    }
+  }
+  for (std::vector<Point2>* cloud : { &points, &scattered })
+  {
+    const auto expected = ringsOf(*cloud);
+    EXPECT_GT(expected.size(), 20u);
+    for (int round = 0; round < 5; ++round)
+    {
+      random.Shuffle(*cloud);
+      EXPECT_EQ(ringsOf(*cloud), expected);
+    }
   }
 }
 

@@ -233,6 +233,54 @@ void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random
   EXPECT_EQ(fromFloats.Corners, fromDoubles.Corners);
 }
 
+Mesh MeshOf(const Surface& surface)
+{
+  Mesh mesh;
+  mesh.Triangles = surface.Corners;
+  for (Index i = 0; i < surface.List().Points.Count; ++i)
+  {
+    mesh.Points.push_back(surface.At(i));
+  }
+  mesh.ConnectTwins();
+  return mesh;
+}
+
+/** What ExtractBoundary and QuickExtract find is the same, and so is what is trimmed by it. */
+Rings ExpectSameOutline(const Surface& surface, double tolerance)
+{
+  Mesh mesh = MeshOf(surface);
+  ExtractOptions options;
+  options.GapTolerance = tolerance;
+  const ExtractedBoundary expected = ExtractBoundary(mesh, options);
+  for (const int threads : { 1, 3 })
+  {
+    options.NumberOfThreads = threads;
+    TrimmedList list;
+    ExtractedBoundary boundary;
+    EXPECT_TRUE(QuickExtract(surface.List(), options, list, boundary));
+    EXPECT_EQ(boundary.GapTolerance, expected.GapTolerance);
+    EXPECT_EQ(boundary.IsSurface, expected.IsSurface);
+    EXPECT_EQ(boundary.Vertices.Offsets, expected.Vertices.Offsets);
+    EXPECT_EQ(boundary.Vertices.Vertices, expected.Vertices.Vertices);
+    EXPECT_TRUE(list.Changed.empty() && list.Corners.empty() && list.Inserted.empty());
+    if (expected.Vertices.Count() > 0)
+    {
+      const TrimResult trimmed = Trim(mesh, expected.Vertices, TrimOptions());
+      EXPECT_EQ(list.Trimmed.IsOutward, trimmed.IsOutward);
+      EXPECT_EQ(list.Trimmed.NumberOfOutwardTriangles, trimmed.NumberOfOutwardTriangles);
+      EXPECT_EQ(trimmed.NumberOfRecoveredEdges, 0);
+    }
+  }
+  return expected.Vertices;
+}
+
+bool IsExtracted(const Surface& surface)
+{
+  TrimmedList list;
+  ExtractedBoundary boundary;
+  return QuickExtract(surface.List(), ExtractOptions(), list, boundary);
+}
+
 } // namespace
 
 TEST(QuickTrim, IsTheSameAsTrimmingWithTwinsAlongRingsAnywhere)
@@ -370,6 +418,93 @@ TEST(QuickTrim, LeavesAloneWhatItCannotDoOrProve)
   EXPECT_FALSE(IsDone(Surface(), boundary));
 }
 
+TEST(QuickExtract, FindsTheSameOutlineAsExtractBoundary)
+{
+  Random random(78);
+  const auto isSea = [](double x, double y) {
+    return x < 0.1 + 0.05 * std::sin(20 * y) || std::hypot(x - 0.5, y - 0.4) < 0.15 ||
+      std::fabs(x - y) < 0.04;
+  };
+  for (int round = 0; round < 8; ++round)
+  {
+    // Random points, then the nodes of a lattice; with islands and lone points at sea.
+    std::vector<Point2> points;
+    for (const Point2& p : LatticePoints(random, 90, 90, 3000 + 400 * round))
+    {
+      const Point2 q =
+        round % 2 ? Point2{ p.X / 90, p.Y / 90 } : Point2{ random.Unit(), random.Unit() };
+      if (!isSea(q.X, q.Y) || random.Below(40) == 0)
+      {
+        points.push_back(q);
+      }
+    }
+    Surface surface = SurfaceOf(points);
+    for (const double tolerance : { 0.0, 1.5, 2.5, 8.0, 1e-9, 1e9 })
+    {
+      ExpectSameOutline(surface, tolerance);
+    }
+    EXPECT_GT(ExpectSameOutline(surface, 0.0).Count(), 1);
+    Remove(surface, [](double x, double y) {
+      return std::hypot(x - 0.7, y - 0.8) < 0.1 || std::fabs(x - 0.4) < 0.02;
+    });
+    ExpectSameOutline(surface, 0.0);
+    if (round < 2)
+    {
+      Surface shuffled = surface;
+      Shuffle(shuffled, random);
+      if (IsExtracted(shuffled))
+      {
+        ExpectSameOutline(shuffled, 0.0);
+      }
+    }
+  }
+}
+
+TEST(QuickExtract, SeesAllOfASmallPiece)
+{
+  // A lattice, and apart from it six points: a triangle in another one. The inner one is not near
+  // the border, but the piece is too small.
+  std::vector<Point2> points;
+  for (int i = 0; i < 900; ++i)
+  {
+    points.push_back({ static_cast<double>(i % 30), static_cast<double>(i / 30) });
+  }
+  Surface surface = SurfaceOf(points);
+  const Index first = 900;
+  surface.Coordinates.insert(surface.Coordinates.end(), { 100, 0, 0, 102, 0, 0, 101, 1.8, 0 });
+  surface.Coordinates.insert(
+    surface.Coordinates.end(), { 100.8, 0.5, 0, 101.2, 0.5, 0, 101, 0.8, 0 });
+  for (const Index corner : { 0, 1, 3, 1, 4, 3, 1, 2, 4, 2, 5, 4, 2, 0, 5, 0, 3, 5, 3, 4, 5 })
+  {
+    surface.Corners.push_back(first + corner);
+  }
+  EXPECT_EQ(ExpectSameOutline(surface, 0.0).Count(), 1);
+  // Without the inner one, all is near the border.
+  surface.Corners.resize(surface.Corners.size() - 3);
+  EXPECT_EQ(ExpectSameOutline(surface, 0.0).Count(), 1);
+}
+
+TEST(QuickExtract, LeavesAloneWhatItCannotProve)
+{
+  Random random(79);
+  const Surface surface = RandomSurface(random, 500);
+  EXPECT_TRUE(IsExtracted(surface));
+  Surface folded = surface;
+  folded.Coordinates.insert(folded.Coordinates.end(), { 0.1, 0.1, 0, 0.9, 0.1, 0, 0.5, 0.9, 0 });
+  folded.Corners.insert(folded.Corners.end(), { 500, 501, 502 });
+  EXPECT_FALSE(IsExtracted(folded));
+  Surface turned = surface;
+  std::swap(turned.Corners[0], turned.Corners[1]);
+  EXPECT_FALSE(IsExtracted(turned));
+  Surface large = surface;
+  for (double& value : large.Coordinates)
+  {
+    value *= 1e120;
+  }
+  EXPECT_FALSE(IsExtracted(large));
+  EXPECT_FALSE(IsExtracted(Surface()));
+}
+
 TEST(QuickTrim, StopsWhenAsked)
 {
   Random random(77);
@@ -389,5 +524,11 @@ TEST(QuickTrim, StopsWhenAsked)
     };
     EXPECT_THROW(
       QuickTrim(surface.List(), boundary.Points, boundary.Lines, true, progress, list), Aborted);
+    reports = 0;
+    before = 0.0;
+    ExtractOptions options;
+    options.Monitor = progress;
+    ExtractedBoundary extracted;
+    EXPECT_THROW(QuickExtract(surface.List(), options, list, extracted), Aborted);
   }
 }

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Lists of triangles that are no mesh yet, and some of their triangles as a mesh of their own.
+ */
+#ifndef elevation_NearMesh_h
+#define elevation_NearMesh_h
+
+#include "Mesh.h"
+
+#include <bitset>
+#include <vector>
+
+namespace elevation
+{
+
+/** Triangles as they lie in a cell array, and the points that they name; not owned. */
+struct TriangleList
+{
+  const Index* Corners = nullptr; ///< three a triangle
+  Index Count = 0;
+  PointView Points;
+
+  const Index* CornersOf(Index t) const { return this->Corners + 3 * static_cast<std::size_t>(t); }
+  void PrefetchPoint(Index vertex) const
+  {
+    const std::size_t k = 3 * static_cast<std::size_t>(vertex);
+    this->Points.Double ? Prefetch(this->Points.Double + k) : Prefetch(this->Points.Float + k);
+  }
+  /** The area of a triangle in parts of a square. */
+  double ShareOfSquare(Index t, double side) const
+  {
+    const Point2 a = this->Points.At(this->CornersOf(t)[0]);
+    const Point2 b = this->Points.At(this->CornersOf(t)[1]);
+    const Point2 c = this->Points.At(this->CornersOf(t)[2]);
+    const double area = 0.5 * ((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X));
+    const double square = side * side;
+    return square > 0.0 ? area / square : std::numeric_limits<double>::infinity();
+  }
+};
+
+/** A set of vertices, one bit each: small enough to be asked for any vertex at any time. */
+class VertexSet
+{
+public:
+  /** Empty; for vertices below @a count. */
+  explicit VertexSet(Index count)
+    : Bits(static_cast<std::size_t>(count) / 64 + 1, 0)
+  {
+  }
+
+  void Add(Index vertex) { this->Bits[WordOf(vertex)] |= BitOf(vertex); }
+  bool Has(Index vertex) const { return (this->Bits[WordOf(vertex)] & BitOf(vertex)) != 0; }
+  /** Whether any of three is in it; without branches. */
+  bool HasAny(const Index* three) const
+  {
+    const std::uint32_t a = three[0], b = three[1], c = three[2];
+    return ((this->Bits[a / 64] >> a % 64) | (this->Bits[b / 64] >> b % 64) |
+             (this->Bits[c / 64] >> c % 64)) &
+      1;
+  }
+
+  /** Its vertices, increasing; from then on NumberOf() tells where in them a vertex is. */
+  std::vector<Index> Number()
+  {
+    std::vector<Index> ids;
+    this->Before.resize(this->Bits.size());
+    for (std::size_t word = 0; word < this->Bits.size(); ++word)
+    {
+      this->Before[word] = static_cast<Index>(ids.size());
+      Index id = static_cast<Index>(64 * word);
+      for (std::uint64_t left = this->Bits[word]; left != 0; left >>= 1, ++id)
+      {
+        if (left & 1)
+        {
+          ids.push_back(id);
+        }
+      }
+    }
+    return ids;
+  }
+  Index NumberOf(Index vertex) const
+  {
+    const std::uint64_t lower = this->Bits[WordOf(vertex)] & (BitOf(vertex) - 1);
+    return this->Before[WordOf(vertex)] + static_cast<Index>(std::bitset<64>(lower).count());
+  }
+
+private:
+  static std::size_t WordOf(Index vertex) { return static_cast<std::uint32_t>(vertex) / 64; }
+  static std::uint64_t BitOf(Index vertex)
+  {
+    return std::uint64_t(1) << static_cast<std::uint32_t>(vertex) % 64;
+  }
+
+  std::vector<std::uint64_t> Bits;
+  std::vector<Index> Before; ///< how many are set before each word
+};
+
+/** Some triangles of a list as a mesh, without Twins; its points keep their order. */
+struct NearMesh
+{
+  Mesh Surface;
+  std::vector<Index> Ids; ///< of its points in the list
+
+  NearMesh(const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
+  {
+    const Index count = static_cast<Index>(triangles.size());
+    VertexSet corners(list.Points.Count);
+    InStretches(count, Part(progress, 0.0, 0.4), [&](Index begin, Index end) {
+      for (Index i = 3 * begin; i < 3 * end; ++i)
+      {
+        corners.Add(list.CornersOf(triangles[i / 3])[i % 3]);
+      }
+    });
+    this->Ids = corners.Number();
+    this->Surface.Points.reserve(this->Ids.size());
+    for (const Index id : this->Ids)
+    {
+      this->Surface.Points.push_back(list.Points.At(id));
+    }
+    this->Surface.Triangles.reserve(3 * triangles.size());
+    InStretches(count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
+      for (Index i = 3 * begin; i < 3 * end; ++i)
+      {
+        this->Surface.Triangles.push_back(
+          corners.NumberOf(list.CornersOf(triangles[i / 3])[i % 3]));
+      }
+    });
+  }
+};
+
+} // namespace elevation
+
+#endif
