@@ -4,10 +4,10 @@
 #include "Kernel/Parallel.h"
 #include "Kernel/Predicates.h"
 #include "PointSets.h"
+#include "Silence.h"
 
 #include <gtest/gtest.h>
 
-#include <ctime>
 #include <set>
 
 using namespace elevation;
@@ -475,14 +475,10 @@ TEST(Delaunay, ReportsAsOftenForMoreThreadsThanCores)
   DelaunayOptions options;
   options.Strategy = SearchStrategy::Compactness; // it takes long
   options.NumberOfThreads = 1000;
-  std::clock_t last = std::clock(), longest = 0; // of all threads
-  options.Monitor = [&](double) {
-    longest = std::max(longest, std::clock() - last);
-    last = std::clock();
-    return true;
-  };
+  testing_time::Silence silence;
+  options.Monitor = silence.Monitor();
   elevation::Triangulate(cloud.View(), options);
-  EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.2 * ResolveNumberOfThreads(0));
+  EXPECT_LT(silence.Longest, 0.2 * ResolveNumberOfThreads(0));
 }
 
 TEST(Delaunay, RefusesMorePointsThanAnIndexHolds)

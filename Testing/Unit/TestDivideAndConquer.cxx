@@ -3,10 +3,10 @@
 #include "Kernel/Delaunay.h"
 #include "Kernel/DivideAndConquer.h"
 #include "PointSets.h"
+#include "Silence.h"
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <numeric>
 
 using namespace elevation;
@@ -280,10 +280,9 @@ TEST(DivideAndConquer, TakesNoLongOnACircle)
   const Cloud cloud = CircleCloud(random, 100000);
   DelaunayOptions options;
   options.DivideAtOnce = true;
-  const auto start = std::chrono::steady_clock::now();
+  const testing_time::Stopwatch stopwatch;
   const Triangulation triangulation = Triangulate(cloud.View(), options);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  EXPECT_LT(seconds.count(), 15.0);
+  EXPECT_LT(stopwatch.Seconds(), 15.0);
   const std::size_t used = cloud.Coordinates.size() / 3 - triangulation.UnusedPoints.size();
   EXPECT_EQ(triangulation.Triangles.size(), 3 * (2 * used - 2 - triangulation.NumberOfHullPoints));
 }
@@ -297,10 +296,9 @@ TEST(DivideAndConquer, TakesOverWhereGrowingTakesLong)
   options.DivideAtOnce = true;
   const Ids expected = Triangulated(cloud, options);
   options.DivideAtOnce = false;
-  const auto start = std::chrono::steady_clock::now();
+  const testing_time::Stopwatch stopwatch;
   EXPECT_TRUE(Triangulated(cloud, options) == expected);
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  EXPECT_LT(seconds.count(), 20.0); // on a slow or busy machine; else a twentieth of it
+  EXPECT_LT(stopwatch.Seconds(), 20.0); // on a slow machine; else a twentieth of it
 
   const Cloud smaller = CircleCloud(random, 5000);
   options.MaximumEdgeLength = 0.01;
@@ -325,23 +323,20 @@ TEST(DivideAndConquer, ReportsOftenAndStops)
   std::mt19937_64 random(90);
   DelaunayOptions options;
   options.DivideAtOnce = true;
-  using Clock = std::chrono::steady_clock;
   for (const Cloud& cloud : { RandomCloud(random, 50000), DecadesCloud(random, 1000, 308.0) })
   {
     double last = 0.0;
-    Clock::time_point then = Clock::now();
-    std::chrono::duration<double> longest(0.0);
+    testing_time::Silence silence;
+    const Progress listen = silence.Monitor();
     options.Monitor = [&](double fraction) {
       EXPECT_GE(fraction, last);
       EXPECT_LE(fraction, 1.0);
-      longest = std::max(longest, std::chrono::duration<double>(Clock::now() - then));
       last = fraction;
-      then = Clock::now();
-      return true;
+      return listen(fraction);
     };
     Triangulate(cloud.View(), options);
     EXPECT_EQ(last, 1.0);
-    EXPECT_LT(longest.count(), 0.4); // on a busy machine; else a tenth of it
+    EXPECT_LT(silence.Longest, 0.4); // on a slow machine; else a tenth of it
     options.Monitor = [](double fraction) { return fraction < 0.5; };
     EXPECT_THROW(Triangulate(cloud.View(), options), Aborted);
   }

@@ -4,11 +4,11 @@
 #include "Kernel/LatticeNodes.h"
 #include "Kernel/Predicates.h"
 #include "PointSets.h"
+#include "Silence.h"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <ostream>
@@ -565,14 +565,10 @@ TEST(Lattice, ReportsWithinLongRows)
     {
       DelaunayOptions options = Automatic();
       options.NumberOfThreads = threads;
-      std::clock_t last = std::clock(), longest = 0;
-      options.Monitor = [&](double) {
-        longest = std::max(longest, std::clock() - last);
-        last = std::clock();
-        return true;
-      };
+      testing_time::Silence silence;
+      options.Monitor = silence.Monitor();
       EXPECT_TRUE(Triangulate(cloud.View(), options).LatticeFound);
-      EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.25 * threads);
+      EXPECT_LT(silence.Longest, 0.25 * threads);
     }
   }
 }
@@ -664,19 +660,13 @@ TEST(Lattice, TakesNoLongAlongAFlatArc)
   {
     DelaunayOptions options = Automatic();
     options.NumberOfThreads = threads;
-    int reports = 0;
-    std::clock_t last = std::clock(), longest = 0;
-    options.Monitor = [&](double) {
-      ++reports;
-      longest = std::max(longest, std::clock() - last);
-      last = std::clock();
-      return true;
-    };
-    const std::clock_t begin = std::clock();
+    testing_time::Silence silence;
+    options.Monitor = silence.Monitor();
+    const testing_time::Stopwatch stopwatch;
     const Triangulation triangulation = Triangulate(arc.View(), options);
-    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 2.0);
-    EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.4 * threads);
-    EXPECT_GT(reports, 100);
+    EXPECT_LT(stopwatch.Seconds(), 2.0);
+    EXPECT_LT(silence.Longest, 0.4 * threads);
+    EXPECT_GT(silence.Reports, 100);
     EXPECT_TRUE(triangulation.LatticeFound);
     EXPECT_EQ(FindingsOf(arc, triangulation), "");
   }

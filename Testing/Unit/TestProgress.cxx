@@ -10,11 +10,11 @@
 #include "Kernel/Trim.h"
 #include "LatticeSurface.h"
 #include "PointSets.h"
+#include "Silence.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ctime>
 #include <string>
 #include <vector>
 
@@ -182,18 +182,12 @@ TEST(Progress, OfTriangulatingPointsThatAreSlowIsNotSilent)
     for (const SearchStrategy strategy :
       { SearchStrategy::VoxelTraversal, SearchStrategy::Compactness })
     {
-      std::clock_t last = std::clock(), longest = 0;
+      testing_time::Silence silence;
       DelaunayOptions options;
       options.Strategy = strategy;
-      options.Monitor = [&](double) {
-        const std::clock_t now = std::clock();
-        longest = std::max(longest, now - last);
-        last = now;
-        return true;
-      };
+      options.Monitor = silence.Monitor();
       Triangulate(cloud->View(), options);
-      EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 0.4)
-        << (cloud == &circle ? "circle" : "range");
+      EXPECT_LT(silence.Longest, 0.4) << (cloud == &circle ? "circle" : "range");
     }
   }
 }
