@@ -972,7 +972,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   doubtful =
     DropSmallGroups(list, atBorder, doubtful, shortShareOf, keep, Part(progress, 0.52, 0.6));
   const Progress finding = Part(progress, 0.6, 0.75);
+  Report(finding, 0.0);
   findSpacings(doubtful, finding);
+  Report(finding, 1.0);
   for (const Index t : doubtful)
   {
     keep[t] = ratioOf(t) <= result.GapTolerance;
