@@ -307,8 +307,7 @@ TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
 
 TEST(JoinLines, DoesNotLetRingsCrossWhereManyLinesEnd)
 {
-  // Edges of some cells of a lattice, each there once or as often as there are cells beside it. In
-  // which way they are joined, no ring may cross another one or itself.
+  // Edges of triangles of a lattice, each there once or as often as there are triangles beside it.
   Mesh mesh;
   mesh.Points = { { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } };
   mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
@@ -328,15 +327,14 @@ TEST(JoinLines, DoesNotLetRingsCrossWhereManyLinesEnd)
       }
       edges.push_back(edge);
     };
-    for (Index cell = 0; cell < 9; ++cell)
+    for (Index triangle = 0; triangle < 18; ++triangle)
     {
-      const Index p = cell % 3 + 4 * (cell / 3);
+      const Index p = triangle / 2 % 3 + 4 * (triangle / 6), q = triangle % 2 ? p + 1 : p + 4;
       if (random.Below(2))
       {
-        add(p, p + 1);
-        add(p + 1, p + 5);
-        add(p + 5, p + 4);
-        add(p + 4, p);
+        add(p, q);
+        add(q, p + 5);
+        add(p + 5, p);
       }
     }
     if (edges.empty())

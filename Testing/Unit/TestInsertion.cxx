@@ -683,12 +683,19 @@ TEST(InsertRings, RefusesARingThatCrossesItself)
   EXPECT_EQ(
     messageOf({ { 1, 1 }, { 2, 1 }, { 2, 2 }, { 1, 2 }, { 1, 1 }, { 0, 1 }, { 0, 0 }, { 1, 0 } }),
     "no error");
-  EXPECT_EQ(messageOf({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 }, { 0, 0 }, { 1, 1 }, { 1, 2 },
-              { 2, 1 }, { 1, 1 } }),
-    "no error");
-  EXPECT_EQ(messageOf({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 }, { 0, 0 }, { 1, 1 }, { 2, 1 },
-              { 1, 2 }, { 1, 1 } }),
-    "no error");
+  std::vector<Point2> ring{ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 }, { 0, 0 }, { 1, 1 }, { 1, 2 },
+    { 2, 1 }, { 1, 1 } };
+  for (std::size_t i = 0; i < 2 * ring.size(); ++i)
+  {
+    EXPECT_EQ(messageOf(ring), "no error") << i;
+    std::rotate(ring.begin(), ring.begin() + 1, ring.end());
+    if (i == ring.size())
+    {
+      const auto hole = std::find(ring.begin(), ring.end(), Point2{ 1, 2 });
+      ASSERT_NE(hole + 1, ring.end());
+      std::swap(*hole, hole[1]);
+    }
+  }
   EXPECT_EQ(messageOf({ { 0, 0 }, { 4, 0 }, { 6, -1 }, { 4, 0 }, { 4, 4 } }), "no error");
 }
 
