@@ -596,7 +596,7 @@ public:
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      isCut = this->CutAtBorder(Part(progress, 1.0, 1.0));
+      isCut = this->CutAtEachOther() || this->CutAtBorder(Part(progress, 1.0, 1.0));
     }
     this->FinishRings();
   }
@@ -1029,6 +1029,7 @@ private:
       Index Border; // of borders
       Point2 Place;
       std::size_t Piece;
+      bool IsBeyond; // the apex of the border's triangle
     };
     std::vector<Crossing> crossings;
     std::vector<std::size_t> lastSeen(segments.size(), pieces.size());
@@ -1048,8 +1049,9 @@ private:
         {
           if (!this->PassEnds(i, edge, segment, borders[border]))
           {
-            crossings.push_back(
-              { border, RoundedCrossing(segment[0], segment[1], edge[0], edge[1]), i });
+            const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
+            const Point2& apex = mesh.PointOf(mesh.Apex(borders[border]));
+            crossings.push_back({ border, place, i, IsBeforeAlong(segment)(apex, place) });
           }
         }
         else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsWithin(edge, segment[0]))
@@ -1060,7 +1062,7 @@ private:
           IsWithin(segment, edge[0]) && this->MayInsert)
         {
           // Otherwise it would have become a vertex of this border.
-          this->RefuseDoubleBorder(i, edge[0]);
+          this->RefuseDoubleBorder(this->Pieces[i].Edge, edge[0]);
         }
       });
     }
@@ -1072,54 +1074,94 @@ private:
     }
     this->Reserve(crossings.size());
 
-    // Along each border from its first end, so that its last part is the one to cut next.
+    // Along each border from both its ends to the apex: then the part to cut next is the one that
+    // is beside the apex, and however thin its triangle is, outwards is room.
     std::sort(crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) {
       const IsBeforeAlong before(segments[a.Border]);
-      return a.Border != b.Border
-        ? a.Border < b.Border
-        : before(a.Place, b.Place) || (!before(b.Place, a.Place) && a.Piece < b.Piece);
+      return a.Border != b.Border  ? a.Border < b.Border
+        : a.IsBeyond != b.IsBeyond ? b.IsBeyond
+        : a.Place != b.Place       ? before(a.Place, b.Place) != a.IsBeyond
+                                   : a.Piece < b.Piece;
     });
     Index h = None, last = None; // and the vertex of the crossing before
+    struct Uncut
+    {
+      Index From, To;
+      std::size_t Edge;
+    };
+    std::vector<Uncut> uncut;
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
       const Crossing& crossing = crossings[i];
-      const bool isSamePlace = i > 0 && crossings[i - 1].Border == crossing.Border &&
-        crossings[i - 1].Place == crossing.Place;
       if (i == 0 || crossings[i - 1].Border != crossing.Border)
       {
         h = this->NowOf(borders[crossing.Border]);
+        last = None;
       }
-      Index vertex = mesh.Origin(h);
-      if (isSamePlace)
+      const bool isSamePlace = last != None && crossings[i - 1].Place == crossing.Place;
+      const Index from = mesh.Origin(h), to = mesh.Destination(h);
+      Index vertex = isSamePlace               ? last
+        : crossing.Place == mesh.PointOf(from) ? from
+        : crossing.Place == mesh.PointOf(to)   ? to
+                                               : None;
+      Point2 place = crossing.Place;
+      if (vertex == None && !this->MoveToCut(h, place))
       {
-        vertex = last;
+        // Perhaps not any more when others have been cut.
+        uncut.push_back({ from, to, this->Pieces[crossing.Piece].Edge });
+        last = None;
+        continue;
       }
-      else if (crossing.Place == mesh.PointOf(mesh.Destination(h)))
+      if (vertex == None)
       {
-        vertex = mesh.Destination(h);
-      }
-      else if (crossing.Place != mesh.PointOf(vertex))
-      {
-        const Index end = mesh.Destination(h);
-        Point2 place = crossing.Place;
-        if (!this->MoveToCut(h, place))
-        {
-          throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
-            " leaves the mesh across a triangle too thin to be cut there, between " +
-            this->NameOfVertex(vertex) + " and " + this->NameOfVertex(end) +
-            ". Let the boundary pass through one of them.");
-        }
-        vertex = this->AddVertex(place, this->WeightsBetween(vertex, end, place));
-        h = this->CutEdge(h, vertex);
+        vertex = this->AddVertex(place, this->WeightsBetween(from, to, place));
+        const Index after = this->CutEdge(h, vertex);
+        h = crossing.IsBeyond ? h : after;
       }
       last = vertex;
       this->AddStop(crossing.Piece, pieces[crossing.Piece], h, vertex);
       this->IsCut.push_back(crossing.Piece);
       this->EdgeOfCut = this->Pieces[crossing.Piece].Edge;
     }
+    if (!uncut.empty() && this->IsCut.empty())
+    {
+      throw Error("The boundary's edge " + this->NameOfEdge(uncut[0].Edge) +
+        " leaves the mesh across a triangle too thin to be cut there, between " +
+        this->NameOfVertex(uncut[0].From) + " and " + this->NameOfVertex(uncut[0].To) +
+        ". Let the boundary pass through one of them.");
+    }
     this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
     this->CutPieces(pieces);
     return !this->IsCut.empty();
+  }
+
+  /**
+   * Pieces that moved may cross others that run along them within rounding: leads them through an
+   * end of these. @return whether there were such
+   */
+  bool CutAtEachOther()
+  {
+    const std::vector<Ends> pieces = this->EndsOfPieces();
+    const Bins bins = BinSegments(pieces);
+    this->OnTheWay.clear();
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+    {
+      const Units units = UnitsOf(pieces[i][0], pieces[i][1]);
+      bins.Visit(pieces[i], [&](Index j) {
+        for (const int end : { 0, 1 })
+        {
+          if (Cross(pieces[i], pieces[j]) &&
+            IsInReach(pieces[i][0], pieces[i][1], units, Reach, pieces[j][end]))
+          {
+            this->OnTheWay.push_back(
+              { i, this->Pieces[end == 0 ? j : this->NextOf(j)].Vertex, true, true });
+            this->EdgeOfCut = this->Pieces[i].Edge;
+          }
+        }
+      });
+    }
+    this->CutPieces(pieces);
+    return !this->OnTheWay.empty();
   }
 
   /**
@@ -1185,20 +1227,23 @@ private:
     return false;
   }
 
+  /** The piece after a piece on its ring. */
+  Index NextOf(Index piece) const
+  {
+    const std::vector<Index>& offsets = this->Result.Vertices.Offsets;
+    const auto end = std::upper_bound(offsets.begin(), offsets.end(), piece);
+    return piece + 1 == *end ? *(end - 1) : piece + 1;
+  }
+
   /** From each of the rings' vertices to the next. */
   std::vector<Ends> EndsOfPieces() const
   {
     std::vector<Ends> ends;
     ends.reserve(this->Pieces.size());
-    const Rings& rings = this->Result.Vertices; // its offsets
-    for (Index ring = 0; ring < rings.Count(); ++ring)
+    for (Index i = 0; i < static_cast<Index>(this->Pieces.size()); ++i)
     {
-      for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
-      {
-        const Index next = i + 1 == rings.Offsets[ring + 1] ? rings.Offsets[ring] : i + 1;
-        ends.push_back(
-          { this->PlaceOf(this->Pieces[i].Vertex), this->PlaceOf(this->Pieces[next].Vertex) });
-      }
+      ends.push_back({ this->PlaceOf(this->Pieces[i].Vertex),
+        this->PlaceOf(this->Pieces[this->NextOf(i)].Vertex) });
     }
     return ends;
   }
@@ -1268,8 +1313,7 @@ private:
         return a.Piece < b.Piece;
       }
       const IsBeforeAlong before(pieces[a.Piece]);
-      const Point2& p = mesh.PointOf(a.Vertex);
-      const Point2& q = mesh.PointOf(b.Vertex);
+      const Point2 p = this->PlaceOf(a.Vertex), q = this->PlaceOf(b.Vertex);
       // At one place a part of the mesh is left before another one is entered.
       return before(p, q) ||
         (!before(q, p) &&

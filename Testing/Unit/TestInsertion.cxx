@@ -1021,6 +1021,86 @@ TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
   EXPECT_EQ(refused, 0);
 }
 
+TEST(InsertRings, AcrossABorderOfTrianglesAsThinAsRounding)
+{
+  // A comb that crosses the border of a turned lattice many times beside each of its nodes, which
+  // are corners of triangles far thinner than the distance of doubles.
+  Random random(42);
+  for (int round = 0; round < 300; ++round)
+  {
+    const double angle = 6.28 * random.Unit();
+    const Point2 u{ 25 * std::cos(angle), 25 * std::sin(angle) };
+    const auto node = [&](double i, double j) {
+      return Point2{ 460838.3 + i * u.X - j * u.Y, 6215400.7 + i * u.Y + j * u.X };
+    };
+    std::vector<Point2> points;
+    for (int i = 0; i < 16; ++i)
+    {
+      points.push_back(node(i % 4, i / 4));
+    }
+    std::vector<Point2> comb{ node(3, -1), node(0, -1) };
+    for (int tooth = 0; tooth < 6; ++tooth)
+    {
+      const double left = 0.5 * tooth + 0.1, right = left + 0.25;
+      for (const Point2& p :
+        { node(left, -0.5), node(left, 0.5), node(right, 0.5), node(right, -0.5) })
+      {
+        comb.push_back(p);
+      }
+    }
+    Boundary boundary;
+    boundary.Add(comb);
+    Mesh mesh = Delaunay(points);
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+    ASSERT_EQ(FindingsOf(mesh), "") << round;
+    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    double kept = 0.0;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t) / 625;
+    }
+    ASSERT_NEAR(kept, 2.0 * 6 * 0.25 * 0.5, 1e-6) << round;
+  }
+}
+
+TEST(InsertRings, ThatRunAlongThemselvesWithinRounding)
+{
+  // A strip between three nodes on one line of a turned lattice, and back: it crosses itself once
+  // it goes through the node between.
+  Random random(43);
+  int moved = 0;
+  for (int round = 0; round < 400; ++round)
+  {
+    const double angle = 6.28 * random.Unit();
+    const Point2 u{ 25 * std::cos(angle), 25 * std::sin(angle) };
+    const auto node = [&](double i, double j) {
+      return Point2{ 460838.3 + i * u.X - j * u.Y, 6215400.7 + i * u.Y + j * u.X };
+    };
+    std::vector<Point2> points;
+    for (int i = 0; i < 16; ++i)
+    {
+      points.push_back(node(i % 4, i / 4));
+    }
+    Boundary boundary;
+    boundary.Add({ node(0, 1), node(1, 1), node(1, 2), node(4, 2), node(4, 1) });
+    Mesh mesh = Delaunay(points);
+    std::string message;
+    try
+    {
+      const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      moved += !rings.Inserted.empty();
+      Trim(mesh, rings.Vertices, TrimOptions());
+    }
+    catch (const Error& error)
+    {
+      message = error.what();
+    }
+    ASSERT_TRUE(message.empty() || message.find("crosses its edge") != std::string::npos)
+      << message;
+  }
+  EXPECT_GT(moved, 100);
+}
+
 TEST(InsertRings, AcrossBordersThatLieOnEachOther)
 {
   // Two tiles side by side, which have no vertices in common.
