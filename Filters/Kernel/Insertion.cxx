@@ -1084,12 +1084,6 @@ private:
                                    : a.Piece < b.Piece;
     });
     Index h = None, last = None; // and the vertex of the crossing before
-    struct Uncut
-    {
-      Index From, To;
-      std::size_t Edge;
-    };
-    std::vector<Uncut> uncut;
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
       const Crossing& crossing = crossings[i];
@@ -1107,10 +1101,10 @@ private:
       Point2 place = crossing.Place;
       if (vertex == None && !this->MoveToCut(h, place))
       {
-        // Perhaps not any more when others have been cut.
-        uncut.push_back({ from, to, this->Pieces[crossing.Piece].Edge });
-        last = None;
-        continue;
+        throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
+          " leaves the mesh across a triangle too thin to be cut there, between " +
+          this->NameOfVertex(from) + " and " + this->NameOfVertex(to) +
+          ". Let the boundary pass through one of them.");
       }
       if (vertex == None)
       {
@@ -1122,13 +1116,6 @@ private:
       this->AddStop(crossing.Piece, pieces[crossing.Piece], h, vertex);
       this->IsCut.push_back(crossing.Piece);
       this->EdgeOfCut = this->Pieces[crossing.Piece].Edge;
-    }
-    if (!uncut.empty() && this->IsCut.empty())
-    {
-      throw Error("The boundary's edge " + this->NameOfEdge(uncut[0].Edge) +
-        " leaves the mesh across a triangle too thin to be cut there, between " +
-        this->NameOfVertex(uncut[0].From) + " and " + this->NameOfVertex(uncut[0].To) +
-        ". Let the boundary pass through one of them.");
     }
     this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
     this->CutPieces(pieces);
