@@ -51,17 +51,6 @@ struct Crossing
   Index Q;
 };
 
-/** The segment from a to b goes up; whether p comes before q on it, both on it but for rounding. */
-bool IsBefore(const Point2& a, const Point2& b, const Point2& p, const Point2& q)
-{
-  // By the longer one of x and y, along which what is in reach does not change places. Rounding
-  // keeps the order of each coordinate, but may make two of them equal.
-  const bool xIsBefore = a.X <= b.X ? p.X < q.X : p.X > q.X;
-  return std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y)
-    ? (p.X != q.X ? xIsBefore : p.Y < q.Y)
-    : (p.Y != q.Y ? p.Y < q.Y : xIsBefore);
-}
-
 /** Whether p, which is neither, lies on the segment from a to b. */
 bool IsWithin(const Point2& a, const Point2& b, const Point2& p)
 {
@@ -440,7 +429,9 @@ private:
     this->Vertices.resize(count);
     if (!this->Settle(0.0, false, Part(progress, 0.9, 1.0)))
     {
-      throw Error(this->Unsettled);
+      throw Error(this->NameOf(this->Unsettled[0]) + " and t" +
+        this->NameOf(this->Unsettled[1]).substr(1) +
+        " cross again and again where rounding moves them.");
     }
   }
 
@@ -474,9 +465,7 @@ private:
         }
         this->CutAtCrossings(grid, crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
         haveCounted = true;
-        this->Unsettled = this->NameOf(this->Pieces[crossings[0].P]) + " and t" +
-          this->NameOf(this->Pieces[crossings[0].Q]).substr(1) +
-          " cross again and again where rounding moves them.";
+        this->Unsettled = { this->Pieces[crossings[0].P].Rank, this->Pieces[crossings[0].Q].Rank };
       }
       this->Apply(cuts, Part(ofRound, 0.9, 1.0));
     }
@@ -900,15 +889,14 @@ private:
                                          : (scale * p.Y - scale * a.Y) / dy;
   }
 
-  std::string NameOf(const Piece& piece) const
+  std::string NameOf(Index rank) const
   {
-    const Segment& segment = this->Segments[piece.Rank];
+    const Segment& segment = this->Segments[rank];
     const auto name = [&](Index vertex) {
       return "point " + std::to_string(this->Vertices[vertex].Source);
     };
     return "The segment from " + name(segment.A) + " to " + name(segment.B) +
-      " of the constraints' cell " +
-      std::to_string(this->Lines.Cells[this->SegmentLines[piece.Rank]]);
+      " of the constraints' cell " + std::to_string(this->Lines.Cells[this->SegmentLines[rank]]);
   }
 
   const PointView& Points;
@@ -919,8 +907,8 @@ private:
   std::vector<Segment> Segments;   ///< by rank, which is the order of the lines
   std::vector<Index> SegmentLines; ///< by rank
   std::int64_t Crossings = 0;
-  double Reach = 0.0;    ///< see Settle()
-  std::string Unsettled; ///< two segments that still cross
+  double Reach = 0.0;                               ///< see Settle()
+  std::array<Index, 2> Unsettled{ { None, None } }; ///< two segments that still cross
 };
 
 /** Input points and added ones in one array; empty when nothing is added. */

@@ -220,26 +220,6 @@ bool IsWithin(const Ends& s, const Point2& p)
                              : IsLower(p, s[0]) && IsLower(s[1], p);
 }
 
-/** Sorts points of a segment, or near it, from its first end to its second. */
-struct IsBeforeAlong
-{
-  explicit IsBeforeAlong(const Ends& segment)
-    : AlongX(std::fabs(segment[1].X - segment[0].X) > std::fabs(segment[1].Y - segment[0].Y))
-    , XRises(segment[1].X > segment[0].X)
-    , YRises(segment[1].Y > segment[0].Y)
-  {
-  }
-  bool operator()(const Point2& p, const Point2& q) const
-  {
-    const bool xIsLess = this->XRises ? p.X < q.X : p.X > q.X;
-    const bool yIsLess = this->YRises ? p.Y < q.Y : p.Y > q.Y;
-    return this->AlongX ? xIsLess || (p.X == q.X && yIsLess) : yIsLess || (p.Y == q.Y && xIsLess);
-  }
-  bool AlongX;
-  bool XRises;
-  bool YRises;
-};
-
 /**
  * The rings as walks from place to place, cut wherever a point of one lies on an edge. So two steps
  * are along the same edge, or have no more in common than ends. What a ring runs along forth and
@@ -271,8 +251,9 @@ public:
       });
     }
     std::sort(cuts.begin(), cuts.end(), [&](const Cut& p, const Cut& q) {
+      const Ends& edge = edges[p.Edge];
       return p.Edge != q.Edge ? p.Edge < q.Edge
-                              : IsBeforeAlong(edges[p.Edge])(points[p.Point], points[q.Point]);
+                              : IsBefore(edge[0], edge[1], points[p.Point], points[q.Point]);
     });
     auto cut = cuts.begin();
     for (Index ring = 0; ring < rings.Count(); ++ring)
@@ -949,6 +930,12 @@ private:
       return;
     }
     const Bins bins = BinSegments(segments);
+    double reach = 0.0; // of the longest coordinates
+    for (const Ends& segment : segments)
+    {
+      const Units units = UnitsOf(segment[0], segment[1]);
+      reach = std::max({ reach, 2.0 * Reach * units.X, 2.0 * Reach * units.Y });
+    }
     struct Taken
     {
       Index Border; // of borders
@@ -959,8 +946,6 @@ private:
     for (const Index point : open)
     {
       const Point2 p = this->Points[point];
-      const Units around = UnitsOf({ 0.0, 0.0 }, p);
-      const double reach = 2.0 * Reach * std::max(around.X, around.Y);
       Index border = None;
       bool isAlone = true; // where two run along each other, one would move into the other
       bins.Visit(
@@ -985,9 +970,10 @@ private:
     this->Reserve(taken.size());
     // Along each border from its first end, as in CutAtBorder.
     std::sort(taken.begin(), taken.end(), [&](const Taken& a, const Taken& b) {
+      const Ends& border = segments[a.Border];
       return a.Border != b.Border
         ? a.Border < b.Border
-        : IsBeforeAlong(segments[a.Border])(this->Points[a.Point], this->Points[b.Point]);
+        : IsBefore(border[0], border[1], this->Points[a.Point], this->Points[b.Point]);
     });
     Index h = None;
     for (std::size_t i = 0; i < taken.size(); ++i)
@@ -1051,7 +1037,8 @@ private:
           {
             const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
             const Point2& apex = mesh.PointOf(mesh.Apex(borders[border]));
-            crossings.push_back({ border, place, i, IsBeforeAlong(segment)(apex, place) });
+            crossings.push_back(
+              { border, place, i, IsBefore(segment[0], segment[1], apex, place) });
           }
         }
         else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsWithin(edge, segment[0]))
@@ -1077,10 +1064,10 @@ private:
     // Along each border from both its ends to the apex: then the part to cut next is the one that
     // is beside the apex, and however thin its triangle is, outwards is room.
     std::sort(crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) {
-      const IsBeforeAlong before(segments[a.Border]);
+      const Ends& border = segments[a.Border];
       return a.Border != b.Border  ? a.Border < b.Border
         : a.IsBeyond != b.IsBeyond ? b.IsBeyond
-        : a.Place != b.Place       ? before(a.Place, b.Place) != a.IsBeyond
+        : a.Place != b.Place       ? IsBefore(border[0], border[1], a.Place, b.Place) != a.IsBeyond
                                    : a.Piece < b.Piece;
     });
     Index h = None, last = None; // and the vertex of the crossing before
@@ -1299,11 +1286,11 @@ private:
       {
         return a.Piece < b.Piece;
       }
-      const IsBeforeAlong before(pieces[a.Piece]);
+      const Ends& piece = pieces[a.Piece];
       const Point2 p = this->PlaceOf(a.Vertex), q = this->PlaceOf(b.Vertex);
       // At one place a part of the mesh is left before another one is entered.
-      return before(p, q) ||
-        (!before(q, p) &&
+      return IsBefore(piece[0], piece[1], p, q) ||
+        (p == q &&
           std::make_tuple(a.Into - a.From, a.Vertex) < std::make_tuple(b.Into - b.From, b.Vertex));
     });
     std::vector<Piece> cut;
@@ -1405,15 +1392,16 @@ private:
   bool MoveToCut(Index h, Point2& place) const
   {
     const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
-    const Point2& to = this->Surface.PointOf(this->Surface.Destination(h));
-    const double length = std::hypot(to.X - from.X, to.Y - from.Y);
+    const Point2 way = Around(
+      from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
+    const double length = std::hypot(way.X, way.Y);
     const double step =
       std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
-    const Point2 outwards{ step * ((to.Y - from.Y) / length), step * ((from.X - to.X) / length) };
+    const Point2 outwards{ step * (way.Y / length), -step * (way.X / length) };
     const Point2 first = place;
     const auto isFound = [&](double dx, double dy) {
       place = { first.X + dx, first.Y + dy };
-      return this->CanCut(h, place);
+      return std::isfinite(place.X) && std::isfinite(place.Y) && this->CanCut(h, place);
     };
     // The nearest ones, from the middle out, then further outwards.
     for (int ring = 0; ring <= 3; ++ring)
@@ -1439,20 +1427,37 @@ private:
     return false;
   }
 
+  /** Of points, from one of them, at a scale where products and sums stay in the range of double. */
+  template <std::size_t Count>
+  static std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> points)
+  {
+    double largest = std::max(std::fabs(from.X), std::fabs(from.Y));
+    for (const Point2& p : points)
+    {
+      largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+    }
+    const double scale =
+      largest > 0.0 ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest)))) : 1.0;
+    for (Point2& p : points)
+    {
+      p = { p.X * scale - from.X * scale, p.Y * scale - from.Y * scale };
+    }
+    return points;
+  }
+
   /** The weights of a place in a triangle, of which corners may be new vertices themselves. */
   InsertedVertex WeightsIn(Index t, const Point2& p) const
   {
-    const std::array<Point2, 3> corners = this->CornersOf(t);
+    const std::array<Point2, 3> corners = this->CornersOf(t), around = Around(p, corners);
     std::array<std::pair<Index, double>, 3> shares;
     for (int i = 0; i < 3; ++i)
     {
-      const Point2& a = corners[(i + 1) % 3];
-      const Point2& b = corners[(i + 2) % 3];
+      const int next = (i + 1) % 3, last = (i + 2) % 3;
       // On an edge, rounding must not bring in the corner beyond.
       shares[i] = { this->Surface.Origin(3 * t + i),
-        Orientation(a, b, p) == Zero
+        Orientation(corners[next], corners[last], p) == Zero
           ? 0.0
-          : std::fabs((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)) };
+          : std::fabs(around[next].X * around[last].Y - around[next].Y * around[last].X) };
     }
     return this->WeightsOf(shares.data(), shares.size());
   }
@@ -1460,11 +1465,10 @@ private:
   /** The weights of a place on an edge, or so near that it is made one of it. */
   InsertedVertex WeightsBetween(Index a, Index b, const Point2& p) const
   {
-    const Point2& from = this->Surface.PointOf(a);
-    const Point2& to = this->Surface.PointOf(b);
-    const std::array<std::pair<Index, double>, 2> shares{
-      { { a, std::hypot(to.X - p.X, to.Y - p.Y) }, { b, std::hypot(p.X - from.X, p.Y - from.Y) } }
-    };
+    const std::array<Point2, 2> ends =
+      Around(p, Ends{ { this->Surface.PointOf(a), this->Surface.PointOf(b) } });
+    const std::array<std::pair<Index, double>, 2> shares{ { { a, std::hypot(ends[1].X, ends[1].Y) },
+      { b, std::hypot(ends[0].X, ends[0].Y) } } };
     return this->WeightsOf(shares.data(), shares.size());
   }
 
@@ -1512,7 +1516,7 @@ private:
     const bool isUsable = sum > 0.0 && sum < std::numeric_limits<double>::infinity();
     for (double& weight : vertex.Weights)
     {
-      // What leaves the range of double has no ratios.
+      // A triangle too thin for the range of double has no ratios.
       weight = isUsable ? weight / sum : 1.0 / 3.0;
     }
     return vertex;

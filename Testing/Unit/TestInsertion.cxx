@@ -1063,6 +1063,53 @@ TEST(InsertRings, AcrossABorderOfTrianglesAsThinAsRounding)
   }
 }
 
+TEST(InsertRings, TakesInABorderFarLongerThanItsPointsCoordinates)
+{
+  // What rounding may do to a border follows from its ends, also next to the origin.
+  Mesh mesh;
+  mesh.Points = { { 0, 0 }, { 1e6, 3e5 }, { 0, 1e6 } };
+  mesh.Triangles = { 0, 1, 2 };
+  mesh.ConnectTwins();
+  Boundary boundary;
+  boundary.Add({ { 3e-10, -1e-10 }, { 1, 2 }, { 0.5, 3 } });
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+  EXPECT_EQ(rings.Vertices.Vertices.size(), 3u);
+  EXPECT_EQ(rings.Inserted.size(), 3u);
+  EXPECT_EQ(FindingsOf(mesh), "");
+}
+
+TEST(InsertRings, InterpolatesAlikeAtAnyScale)
+{
+  const Mesh before = LatticeMesh(4);
+  Boundary boundary; // within triangles, on edges, and across the border
+  boundary.Add({ { 0.3, 0.45 }, { 5.0, 0.7 }, { 2.5, 2.25 }, { 1.5, 2.0 } });
+  std::vector<InsertedVertex> expected;
+  for (const int exponent : { 0, 1000, -1000, 1020 })
+  {
+    const auto scaled = [&](std::vector<Point2> points) {
+      for (Point2& p : points)
+      {
+        p = { std::ldexp(p.X, exponent), std::ldexp(p.Y, exponent) };
+      }
+      return points;
+    };
+    Mesh mesh = before;
+    mesh.Points = scaled(mesh.Points);
+    const std::vector<InsertedVertex> inserted =
+      InsertRings(mesh, scaled(boundary.Points), boundary.Lines, true).Inserted;
+    ASSERT_EQ(inserted.size(), 5u);
+    expected = expected.empty() ? inserted : expected;
+    for (std::size_t i = 0; i < inserted.size(); ++i)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        EXPECT_EQ(inserted[i].Corners[k], expected[i].Corners[k]) << exponent;
+        EXPECT_EQ(inserted[i].Weights[k], expected[i].Weights[k]) << exponent;
+      }
+    }
+  }
+}
+
 TEST(InsertRings, ThatRunAlongThemselvesWithinRounding)
 {
   // A strip between three nodes on one line of a turned lattice, and back: it crosses itself once
