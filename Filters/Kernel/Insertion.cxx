@@ -3,6 +3,7 @@
 #include "Insertion.h"
 
 #include "Boundary.h"
+#include "CellGrid.h"
 #include "Predicates.h"
 #include "Reach.h"
 
@@ -20,188 +21,11 @@ namespace elevation
 namespace
 {
 
-// ------------------------------------------------------------------------------------------- bins
-
-/**
- * Points, segments or triangles in the cells of a grid. What touches a cell is found there, and
- * perhaps some more: bins answer nothing, they only leave out.
- */
-class Bins
-{
-public:
-  /** A grid over the box of points, with about as many cells as @a count. */
-  template <typename PointOf>
-  Bins(Index numberOfPoints, std::size_t count, PointOf&& pointOf)
-  {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Point2 low{ infinity, infinity };
-    Point2 high{ -infinity, -infinity };
-    for (Index i = 0; i < numberOfPoints; ++i)
-    {
-      const Point2 p = pointOf(i);
-      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-    }
-    this->Low = low;
-    this->High = high;
-    // Where rounding would be as large as cells, or the box too large to tell, one cell is left.
-    const auto isWide = [](double from, double to) {
-      return to - from < infinity &&
-        to - from > 1e-9 * std::max({ std::fabs(from), std::fabs(to), 1e-300 });
-    };
-    const bool hasWidth = isWide(low.X, high.X);
-    const bool hasHeight = isWide(low.Y, high.Y);
-    double width = hasWidth ? high.X - low.X : 1.0;
-    double height = hasHeight ? high.Y - low.Y : 1.0;
-    const double most = std::min(1e6, static_cast<double>(std::max<std::size_t>(count, 1)));
-    const double columns = !hasWidth ? 1.0
-      : hasHeight ? std::min(most, std::max(1.0, std::sqrt(most * (width / height))))
-                  : most;
-    const double rows = !hasHeight ? 1.0 : std::min(most, std::max(1.0, most / columns));
-    this->Columns = static_cast<Index>(std::min(columns, 4096.0));
-    this->Rows = static_cast<Index>(std::min(rows, 4096.0));
-    this->ColumnsPerUnit = hasWidth ? this->Columns / width : 0.0;
-    this->RowsPerUnit = hasHeight ? this->Rows / height : 0.0;
-  }
-
-  /** Puts things 0 to count - 1 into their cells; cornersOf(i) are one to three points. */
-  template <typename CornersOf>
-  void Fill(Index count, CornersOf&& cornersOf)
-  {
-    this->Offsets.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
-    for (const bool fill : { false, true })
-    {
-      for (Index i = 0; i < count; ++i)
-      {
-        this->VisitCells(cornersOf(i), [&](std::size_t cell) {
-          if (fill)
-          {
-            this->Things[--this->Offsets[cell]] = i;
-          }
-          else
-          {
-            ++this->Offsets[cell];
-          }
-        });
-      }
-      if (!fill)
-      {
-        std::size_t sum = 0;
-        for (std::size_t& offset : this->Offsets)
-        {
-          sum += offset;
-          offset = sum;
-        }
-        this->Things.resize(sum);
-      }
-    }
-  }
-
-  /** Calls visit for all things that may touch a point, segment or triangle; perhaps repeatedly. */
-  template <std::size_t Count, typename Visitor>
-  void Visit(const std::array<Point2, Count>& corners, Visitor&& visit) const
-  {
-    this->VisitCells(corners, [&](std::size_t cell) {
-      for (std::size_t i = this->Offsets[cell]; i < this->Offsets[cell + 1]; ++i)
-      {
-        visit(this->Things[i]);
-      }
-    });
-  }
-
-private:
-  // Monotone, so that what lies between two points lies between their cells.
-  Index ColumnOf(double x) const
-  {
-    return CellOf((x - this->Low.X) * this->ColumnsPerUnit, this->Columns);
-  }
-  Index RowOf(double y) const { return CellOf((y - this->Low.Y) * this->RowsPerUnit, this->Rows); }
-  static Index CellOf(double position, Index count)
-  {
-    return position > 0.0 ? (position < count ? static_cast<Index>(position) : count - 1) : 0;
-  }
-
-  template <std::size_t Count, typename Visitor>
-  void VisitCells(const std::array<Point2, Count>& corners, Visitor&& visit) const
-  {
-    Point2 low = corners[0];
-    Point2 high = corners[0];
-    for (std::size_t i = 1; i < Count; ++i)
-    {
-      low = { std::min(low.X, corners[i].X), std::min(low.Y, corners[i].Y) };
-      high = { std::max(high.X, corners[i].X), std::max(high.Y, corners[i].Y) };
-    }
-    if (high.X < this->Low.X || low.X > this->High.X || high.Y < this->Low.Y ||
-      low.Y > this->High.Y)
-    {
-      return;
-    }
-    const Index firstColumn = this->ColumnOf(low.X);
-    const Index lastColumn = this->ColumnOf(high.X);
-    const Index firstRow = this->RowOf(low.Y);
-    const Index lastRow = this->RowOf(high.Y);
-    for (Index row = firstRow; row <= lastRow; ++row)
-    {
-      Index begin = firstColumn;
-      Index end = lastColumn;
-      if (firstRow < lastRow && lastColumn > firstColumn + 2)
-      {
-        // What of it lies in the row; a column more on either side makes up for rounding.
-        Point2 range{ high.X, low.X };
-        const double bottom = this->Low.Y + (row - 1e-3) / this->RowsPerUnit;
-        const double top = this->Low.Y + (row + 1 + 1e-3) / this->RowsPerUnit;
-        for (std::size_t i = 0; i < Count; ++i)
-        {
-          Widen(corners[i], corners[(i + 1) % Count], bottom, top, range);
-        }
-        begin = std::max(begin, this->ColumnOf(range.X) - 1);
-        end = std::min(end, this->ColumnOf(range.Y) + 1);
-      }
-      for (Index column = begin; column <= end; ++column)
-      {
-        visit(static_cast<std::size_t>(row) * this->Columns + column);
-      }
-    }
-  }
-
-  /** Widens a range of x by what of a segment lies between two heights. */
-  static void Widen(Point2 a, Point2 b, double bottom, double top, Point2& range)
-  {
-    if (b.Y < a.Y)
-    {
-      std::swap(a, b);
-    }
-    if (b.Y < bottom || a.Y > top)
-    {
-      return;
-    }
-    const auto at = [&](double y) {
-      const double x = a.X + (y - a.Y) / (b.Y - a.Y) * (b.X - a.X);
-      return std::max(std::min(a.X, b.X), std::min(std::max(a.X, b.X), x));
-    };
-    const double from = a.Y < bottom ? at(bottom) : a.X;
-    const double to = b.Y > top ? at(top) : b.X;
-    range = { std::min({ range.X, from, to }), std::max({ range.Y, from, to }) };
-  }
-
-  Point2 Low;
-  Point2 High;
-  Index Columns = 1;
-  Index Rows = 1;
-  double ColumnsPerUnit = 0.0;
-  double RowsPerUnit = 0.0;
-  std::vector<std::size_t> Offsets;
-  std::vector<Index> Things;
-};
-
 using Ends = std::array<Point2, 2>;
 
-Bins BinSegments(const std::vector<Ends>& segments)
+CellGrid GridOf(const std::vector<Ends>& segments)
 {
-  const Index count = static_cast<Index>(segments.size());
-  Bins bins(2 * count, segments.size(), [&](Index i) { return segments[i / 2][i % 2]; });
-  bins.Fill(count, [&](Index i) { return segments[i]; });
-  return bins;
+  return CellGrid(segments.size(), [&](std::size_t i) { return segments[i]; });
 }
 
 // ---------------------------------------------------------------------------------------- crossing
@@ -228,9 +52,9 @@ bool IsWithin(const Ends& s, const Point2& p)
 class RingWalks
 {
 public:
-  /** @param[in] edges  of all rings, one from each of their points, and their bins */
+  /** @param[in] edges  of all rings, one from each of their points, and a grid of them */
   RingWalks(const std::vector<Point2>& points, const Rings& rings, const std::vector<Ends>& edges,
-    const Bins& bins, const Progress& progress)
+    const CellGrid& grid, const Progress& progress)
   {
     struct Cut
     {
@@ -242,7 +66,7 @@ public:
     {
       ReportStep(progress, i, edges.size(), 1024);
       const Point2& p = edges[i][0];
-      bins.Visit(std::array<Point2, 1>{ { p } }, [&](Index edge) {
+      grid.Visit(p, [&](Index edge) {
         const Ends& ends = edges[edge];
         if (IsWithin(ends, p) && Orientation(ends[0], ends[1], p) == Zero)
         {
@@ -610,11 +434,11 @@ private:
 
   void CheckCrossings(const Progress& progress) const
   {
-    const Bins bins = BinSegments(this->Edges);
+    const CellGrid grid = GridOf(this->Edges);
     for (std::size_t i = 0; i < this->Edges.size(); ++i)
     {
       ReportStep(progress, i, 2 * this->Edges.size(), 1024);
-      bins.Visit(this->Edges[i], [&](Index other) {
+      grid.Visit(this->Edges[i], [&](Index other) {
         const std::size_t j = static_cast<std::size_t>(other);
         if (j > i && Cross(this->Edges[i], this->Edges[j]))
         {
@@ -623,11 +447,11 @@ private:
         }
       });
     }
-    this->CheckCommonPoints(bins, Part(progress, 0.5, 1.0));
+    this->CheckCommonPoints(grid, Part(progress, 0.5, 1.0));
   }
 
   /** Looks whether rings change sides where they meet: in a point, or along edges. */
-  void CheckCommonPoints(const Bins& edges, const Progress& progress) const
+  void CheckCommonPoints(const CellGrid& edges, const Progress& progress) const
   {
     const RingWalks walks(this->Points, this->Given, this->Edges, edges, Part(progress, 0.0, 0.5));
     RingWalks::Meeting crossing;
@@ -714,8 +538,8 @@ private:
     }
     const Index count = static_cast<Index>(open.size());
     const auto pointOf = [&](Index i) { return this->Points[open[i]]; };
-    Bins bins(count, open.size(), pointOf);
-    bins.Fill(count, [&](Index i) { return std::array<Point2, 1>{ { pointOf(i) } }; });
+    const CellGrid grid(open.size(),
+      [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
     const Progress looking = Part(progress, 0.2, 1.0);
     InStretches(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
@@ -729,7 +553,7 @@ private:
           Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
         }
         const std::array<Point2, 3> corners = this->CornersOf(t);
-        bins.Visit(corners, [&](Index i) {
+        grid.Visit(corners, [&](Index i) {
           if (triangles[i] == None && this->Holds(t, pointOf(i)))
           {
             triangles[i] = t;
@@ -929,7 +753,7 @@ private:
     {
       return;
     }
-    const Bins bins = BinSegments(segments);
+    const CellGrid grid = GridOf(segments);
     double reach = 0.0; // of the longest coordinates
     for (const Ends& segment : segments)
     {
@@ -948,7 +772,7 @@ private:
       const Point2 p = this->Points[point];
       Index border = None;
       bool isAlone = true; // where two run along each other, one would move into the other
-      bins.Visit(
+      grid.Visit(
         Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
           const Ends& segment = segments[i];
           if (i != border &&
@@ -1009,7 +833,7 @@ private:
     this->Moved.clear();
     std::vector<Index> borders;
     const std::vector<Ends> segments = this->FindBorder(borders, Part(progress, 0.0, 0.3));
-    const Bins bins = BinSegments(segments);
+    const CellGrid grid = GridOf(segments);
     struct Crossing
     {
       Index Border; // of borders
@@ -1024,7 +848,7 @@ private:
     {
       ReportStep(looking, i, pieces.size(), 1024);
       const Ends& edge = pieces[i];
-      bins.Visit(edge, [&](Index border) {
+      grid.Visit(edge, [&](Index border) {
         if (lastSeen[border] == i)
         {
           return;
@@ -1116,12 +940,12 @@ private:
   bool CutAtEachOther()
   {
     const std::vector<Ends> pieces = this->EndsOfPieces();
-    const Bins bins = BinSegments(pieces);
+    const CellGrid grid = GridOf(pieces);
     this->OnTheWay.clear();
     for (std::size_t i = 0; i < pieces.size(); ++i)
     {
       const Units units = UnitsOf(pieces[i][0], pieces[i][1]);
-      bins.Visit(pieces[i], [&](Index j) {
+      grid.Visit(pieces[i], [&](Index j) {
         for (const int end : { 0, 1 })
         {
           if (Cross(pieces[i], pieces[j]) &&
@@ -1240,14 +1064,14 @@ private:
     {
       segments.push_back(pieces[piece]);
     }
-    const Bins bins = BinSegments(segments);
+    const CellGrid grid = GridOf(segments);
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
     InStretches(mesh.NumberOfPoints(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
         const Point2& p = mesh.PointOf(v);
-        bins.Visit(std::array<Point2, 1>{ { p } }, [&](Index i) {
+        grid.Visit(p, [&](Index i) {
           if (Orientation(segments[i][0], segments[i][1], p) == Zero && IsWithin(segments[i], p))
           {
             isOn[v] = 1;
