@@ -235,9 +235,10 @@ Rings JoinLines(const BoundaryLines& lines)
   // Where more than two end, each goes on in one beside it, so that no rings cross there; and two
   // that begin alike in each other, as what they have in common cancels out.
   std::vector<std::size_t> partners(2 * pieces.size());
-  for (auto& [at, ends] : endsAt)
+  for (auto& meeting : endsAt)
   {
-    const Point2& place = at;
+    const Point2& place = meeting.first;
+    std::vector<std::size_t>& ends = meeting.second;
     const auto comesBefore = [&](std::size_t e, std::size_t f) {
       const Point2 p = nextOfEnd(e), q = nextOfEnd(f);
       return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
