@@ -279,7 +279,7 @@ private:
     return false;
   }
 
-  /** Whether walks that come together, go on as p goes after and q in its way, and part do cross. */
+  /** Whether walks that come together, go on, p after and q in its way, and part do cross. */
   bool ChangeSides(Index p, Index q, int way, Meeting& crossing) const
   {
     crossing = { this->Nodes[p].Point, None, this->Nodes[p].Ring == this->Nodes[q].Ring };
@@ -1251,7 +1251,7 @@ private:
     return false;
   }
 
-  /** Of points, from one of them, at a scale where products and sums stay in the range of double. */
+  /** Points as seen from one, at a scale where products and sums stay in the range of double. */
   template <std::size_t Count>
   static std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> points)
   {

@@ -224,7 +224,7 @@ Mesh WithLake(double points, double jitter, std::vector<double>& coordinates)
   return mesh;
 }
 
-/** Fills such a lake, and checks what any patch must be; the number of its points within a share. */
+/** Fills such a lake, checks what any patch must be, and its number of points within a share. */
 Outcome FillLake(double points, double jitter, double fit, double share)
 {
   std::vector<double> coordinates;
