@@ -54,7 +54,9 @@
  *   length; where there are none, NaN (float and double), 0 or an empty string. So values repeat:
  *   an array of global ids is no longer marked as such, and pedigree ids of added points tell
  *   nothing that the constraints' array does not.
- * - The coordinates are triangulated as they are, never as a lattice.
+ * - The coordinates are triangulated as they are, never as a lattice: far from lines the triangles
+ *   are those of LatticeMode Off without constraints. So on a lattice that rounding has moved, its
+ *   cells are cut another way than without lines, each by its own rounding, also far from them.
  * - MaximumEdgeLength applies to the constrained triangulation, also to edges of lines.
  * - Without a point on any line or polygon, everything is as without constraints.
  *

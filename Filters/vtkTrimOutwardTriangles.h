@@ -15,7 +15,8 @@
  * - polygons.
  * A place is inside when an odd number of rings goes around it, so rings may nest (a lake, an
  * island in it), in any order and direction. They may touch; edges that two rings share cancel out,
- * so that two parcels side by side are one surface. They may not cross.
+ * so that two parcels side by side are one surface. They may not cross, also not in a point or
+ * along edges that they share; nor may one ring cross itself there.
  *
  * The boundary may be drawn anywhere, and its z plays no part. It becomes edges of the mesh:
  * - A point of it with exactly the x,y of a corner of the mesh is that corner.

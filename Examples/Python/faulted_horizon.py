@@ -15,8 +15,8 @@ Needs the module on PYTHONPATH, and a display or Xvfb for the picture.
 import os
 import sys
 
+import example_picture
 import surface_picture
-from virtual_display import VirtualDisplay
 from vtkelevationsurface import vtkGridDelaunay2D
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
@@ -140,12 +140,7 @@ def main(picture, surface=None):
         f"{constrained.GetNumberOfConstraintCrossings()} crossings"
     )
 
-    display = VirtualDisplay()
-    reason = None if os.environ.get("DISPLAY") else display.open()
-    if reason:
-        print(f"no picture: {reason}", file=sys.stderr)
-        return 1
-    try:
+    with example_picture.screen_for(picture):
         window = vtkRenderWindow()
         window.SetOffScreenRendering(1)
         window.SetMultiSamples(8)
@@ -153,8 +148,6 @@ def main(picture, surface=None):
         panel(window, "points alone", 0.502, 1.0, plain.GetOutput(), faults)
         panel(window, "with the fault's lines", 0.0, 0.498, constrained.GetOutput(), faults)
         surface_picture.save(window, picture)
-    finally:
-        display.close()
     if surface:
         writer = vtkXMLPolyDataWriter()
         writer.SetInputData(constrained.GetOutput())

@@ -351,6 +351,20 @@ def reconstruct(run, cloud, breaklines, boundary):
     return delaunay, trim, fill
 
 
+def check_spacing(points, options):
+    """Refuses a spacing that no hole could be filled at, before any work is done."""
+    xy = vtk_to_numpy(points.GetPoints().GetData())[:, :2]
+    xy = xy[numpy.isfinite(xy).all(axis=1)]
+    if options.spacing and len(xy):
+        # The filter needs four steps between points that can be told apart.
+        step = float(numpy.spacing(numpy.abs(xy).max(axis=1).min()))
+        if options.spacing < 4 * step:
+            raise WrongOption(
+                f"--spacing: {options.spacing:g} is less than x and y of {options.file} can tell "
+                f"apart, which are in steps of {step:.3g}"
+            )
+
+
 def why_no_triangle(points, options):
     """The reason in words when the triangulation is empty."""
     xyz = vtk_to_numpy(points.GetPoints().GetData())
@@ -757,6 +771,7 @@ def work(options, results):
             "reading",
             lambda: files.read_points(options.file, options.columns, options.no_data),
         )
+        check_spacing(cloud.points, options)
         breaklines = files.read_breaklines(options.breaklines) if options.breaklines else None
         boundary = files.read_boundary(options.boundary) if options.boundary else None
         delaunay, trim, fill = reconstruct(run, cloud, breaklines, boundary)

@@ -8,6 +8,7 @@ there before a reader sees the file. Reading twice costs less than a second for 
 some seconds for as many lines of text.
 """
 
+import math
 import os
 import re
 import struct
@@ -32,6 +33,9 @@ def why_damaged(path):
         ".vtk": check_legacy_vtk,
         ".vtp": check_xml,
         ".vtu": check_xml,
+        ".vti": check_xml_grid,
+        ".vtr": check_xml_grid,
+        ".vts": check_xml_grid,
     }.get(os.path.splitext(path)[1].lower())
     if check is None:
         return None
@@ -50,7 +54,7 @@ def count_of(word, what):
     return int(word)
 
 
-# ---- .vtp, .vtu -------------------------------------------------------------------------------
+# ---- .vtp, .vtu, .vti, .vtr, .vts -------------------------------------------------------------
 
 # Equal numbers can be packed to some thousandth of their size.
 PACKED = 10000
@@ -62,6 +66,49 @@ def check_xml(data):
     for what, count in counts.findall(data[:65536]):
         if int(count) > PACKED * len(data):
             raise Damage(f"is damaged: it cannot hold {int(count):,} {what.decode().lower()}")
+
+
+def extent_of(text):
+    """The six numbers of an extent, first and last along x, y and z."""
+    words = text.split()
+    try:
+        numbers = [int(word) for word in words]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 6 or any(a > b for a, b in zip(numbers[::2], numbers[1::2])):
+        raise Damage(f"is damaged: '{text.decode('latin-1')[:60]}' is no extent of a grid")
+    return numbers
+
+
+def check_xml_grid(data):
+    """VTK's readers of grids leave nodes as they are in memory that no piece of the file covers."""
+    header = data[: data.find(b"<AppendedData") if b"<AppendedData" in data else len(data)]
+    whole = re.search(rb"""\bWholeExtent\s*=\s*["']([^"']*)["']""", header)
+    if whole is None:
+        return
+    whole = extent_of(whole.group(1))
+    nodes = math.prod(b - a + 1 for a, b in zip(whole[::2], whole[1::2]))
+    if nodes > PACKED * len(data):
+        raise Damage(f"is damaged: it cannot hold {nodes:,} nodes")
+
+    def cells(extent):
+        return math.prod(max(b - a, 1) for a, b in zip(extent[::2], extent[1::2]))
+
+    covered = 0
+    for text in re.findall(rb"""<Piece\b[^>]*\bExtent\s*=\s*["']([^"']*)["']""", header):
+        piece = extent_of(text)
+        for i in range(0, 6, 2):
+            if piece[i] < whole[i] or piece[i + 1] > whole[i + 1]:
+                raise Damage(
+                    f"is damaged: a piece of extent {' '.join(map(str, piece))} "
+                    f"is not within the whole extent {' '.join(map(str, whole))}"
+                )
+        covered += cells(piece)
+    if covered < cells(whole):
+        raise Damage(
+            f"{CUT}: its whole extent {' '.join(map(str, whole))} has {cells(whole):,} cells, "
+            f"its pieces only {covered:,}"
+        )
 
 
 # ---- .ply -------------------------------------------------------------------------------------
@@ -323,6 +370,14 @@ CELLS = (b"vertices", b"lines", b"polygons", b"triangle_strips", b"cells")
 ONE_LINE = (b"dataset", b"dimensions", b"origin", b"spacing", b"aspect_ratio", b"extent")
 ATTRIBUTES = {b"vectors": 3, b"normals": 3, b"tensors": 9, b"tensors6": 6}
 IDS = (b"global_ids", b"pedigree_ids", b"edge_flags")
+
+
+def may_lack_digits(path):
+    """Whether a text .vtk file ends with its last number, which a cut may have shortened."""
+    with open(path, "rb") as stream:
+        is_text = b"ascii" in b"".join(stream.readline(300).lower() for _ in range(3)).split()
+        stream.seek(-1, os.SEEK_END)
+        return is_text and not stream.read().isspace()
 
 
 class LegacyFile:

@@ -255,6 +255,8 @@ def read_with_vtk(path, no_data):
     vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
     if data.GetNumberOfCells() > vertices:
         cloud.notes.append("only the points are used, not the file's cells")
+    if suffix_of(path) == ".vtk" and surface_checks.may_lack_digits(path):
+        cloud.notes.append("the last line has no end, so the last number may be cut off")
     if suffix_of(path) in (".ply", ".stl", ".obj"):
         note = rounding_note(vtk_to_numpy(data.GetPoints().GetData()))
         if note:

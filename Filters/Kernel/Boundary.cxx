@@ -203,67 +203,93 @@ Rings JoinLines(const BoundaryLines& lines)
     throw Error("The boundary has no line and no polygon.");
   }
 
-  // The open pieces that end in a place, in their order.
+  // The ends of open pieces in a place: the front of piece i is 2 i, its back 2 i + 1.
+  const auto placeOfEnd = [&](std::size_t end) {
+    const std::vector<Index>& points = pieces[end / 2].Points;
+    return placeOf(end % 2 == 0 ? points.front() : points.back());
+  };
+  const auto nextOfEnd = [&](std::size_t end) {
+    const std::vector<Index>& points = pieces[end / 2].Points;
+    return placeOf(end % 2 == 0 ? points[1] : points[points.size() - 2]);
+  };
   std::unordered_map<Point2, std::vector<std::size_t>, HashOfPoint> endsAt;
-  for (std::size_t i = 0; i < pieces.size(); ++i)
+  for (std::size_t end = 0; end < 2 * pieces.size(); ++end)
   {
-    if (!pieces[i].IsClosed)
+    if (!pieces[end / 2].IsClosed)
     {
-      endsAt[placeOf(pieces[i].Points.front())].push_back(i);
-      endsAt[placeOf(pieces[i].Points.back())].push_back(i);
+      endsAt[placeOfEnd(end)].push_back(end);
     }
   }
-  for (const Piece& piece : pieces)
+  for (std::size_t end = 0; end < 2 * pieces.size(); ++end)
   {
-    for (const Index end : { piece.Points.front(), piece.Points.back() })
+    const auto meeting = endsAt.find(placeOfEnd(end));
+    if (!pieces[end / 2].IsClosed && meeting->second.size() % 2 != 0)
     {
-      const auto meeting = endsAt.find(placeOf(end));
-      if (!piece.IsClosed && meeting->second.size() % 2 != 0)
-      {
-        throw Error("The boundary is not closed: " + NameOfLine(lines, piece.Line) + " ends at " +
-          NameOf(lines.Points, end) +
-          (meeting->second.size() == 1 ? ", where no other line goes on."
-                                       : ", where " + std::to_string(meeting->second.size()) +
-                " lines end, which cannot be paired."));
-      }
+      const std::vector<Index>& points = pieces[end / 2].Points;
+      throw Error("The boundary is not closed: " + NameOfLine(lines, pieces[end / 2].Line) +
+        " ends at " + NameOf(lines.Points, end % 2 == 0 ? points.front() : points.back()) +
+        (meeting->second.size() == 1 ? ", where no other line goes on."
+                                     : ", where " + std::to_string(meeting->second.size()) +
+              " lines end, which cannot be paired."));
     }
   }
 
-  // An even number of lines ends everywhere, so a walk along lines not yet used comes back.
+  // Where more than two end, each goes on in one beside it, so that no rings cross there; and two
+  // that begin alike in each other, as what they have in common cancels out.
+  std::vector<std::size_t> partners(2 * pieces.size());
+  for (auto& meeting : endsAt)
+  {
+    const Point2& place = meeting.first;
+    std::vector<std::size_t>& ends = meeting.second;
+    const auto comesBefore = [&](std::size_t e, std::size_t f) {
+      const Point2 p = nextOfEnd(e), q = nextOfEnd(f);
+      return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
+                                                    : Orientation(place, p, q) == Positive;
+    };
+    std::stable_sort(ends.begin(), ends.end(), comesBefore);
+    std::vector<std::size_t> others;
+    const auto pairAll = [&](bool areAlike) {
+      others.clear();
+      for (const std::size_t end : ends)
+      {
+        if (others.empty() || (areAlike && comesBefore(others.back(), end)))
+        {
+          others.push_back(end);
+          continue;
+        }
+        partners[end] = others.back();
+        partners[others.back()] = end;
+        others.pop_back();
+      }
+      ends = others;
+    };
+    pairAll(true);
+    pairAll(false);
+  }
   Rings joined;
   std::vector<char> used(pieces.size(), 0);
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
-    if (used[i])
-    {
-      continue;
-    }
-    used[i] = 1;
     if (pieces[i].IsClosed)
     {
       Append(joined, pieces[i].Points);
       continue;
     }
-    std::vector<Index> ring = pieces[i].Points;
-    while (placeOf(ring.back()) != placeOf(ring.front()))
+    std::vector<Index> ring;
+    for (std::size_t end = 2 * i; !used[end / 2]; end = partners[end ^ 1])
     {
-      const std::vector<std::size_t>& meeting = endsAt[placeOf(ring.back())];
-      const std::size_t next =
-        *std::find_if(meeting.begin(), meeting.end(), [&](std::size_t j) { return !used[j]; });
-      used[next] = 1;
-      const std::vector<Index>& points = pieces[next].Points;
-      if (placeOf(points.front()) == placeOf(ring.back()))
+      used[end / 2] = 1;
+      const std::vector<Index>& points = pieces[end / 2].Points;
+      if (end % 2 == 0)
       {
-        ring.insert(ring.end(), points.begin() + 1, points.end());
+        ring.insert(ring.end(), points.begin(), points.end() - 1);
       }
       else
       {
-        ring.insert(ring.end(), points.rbegin() + 1, points.rend());
+        ring.insert(ring.end(), points.rbegin(), points.rend() - 1);
       }
     }
-    ring.pop_back();
-    // Two lines along one edge, as of two parcels that share it, cancel out. Whether they meet here
-    // or in two larger rings depends on the order of the lines alone.
+    // Two lines along one edge, as of two parcels that share it, cancel out.
     if (ring.size() > 2)
     {
       Append(joined, ring);

@@ -78,8 +78,9 @@ struct BoundaryLines
 
 /**
  * Joins lines to rings. A line is a ring when it returns to its first point (the same id or the
- * same x,y); other lines are chained with each other where their ends meet. Two lines that lie on
- * each other and close a ring of two points are left out: they cancel out.
+ * same x,y); other lines are chained with each other where their ends meet, so that rings do not
+ * cross where more than two do. Two lines that lie on each other and close a ring of two points are
+ * left out: they cancel out.
  * @return rings of ids of the lines' points; no two that follow each other have the same x,y
  * @throws Error naming the line and the point: a point not finite; an end where no other line goes
  *         on; a line that is a ring of fewer than three points; no line at all, or only lines that

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ConstrainedDelaunay.h"
 
+#include "CellGrid.h"
 #include "Predicates.h"
 #include "Reach.h"
 
@@ -51,17 +52,6 @@ struct Crossing
   Index Q;
 };
 
-/** The segment from a to b goes up; whether p comes before q on it, both on it but for rounding. */
-bool IsBefore(const Point2& a, const Point2& b, const Point2& p, const Point2& q)
-{
-  // By the longer one of x and y, along which what is in reach does not change places. Rounding
-  // keeps the order of each coordinate, but may make two of them equal.
-  const bool xIsBefore = a.X <= b.X ? p.X < q.X : p.X > q.X;
-  return std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y)
-    ? (p.X != q.X ? xIsBefore : p.Y < q.Y)
-    : (p.Y != q.Y ? p.Y < q.Y : xIsBefore);
-}
-
 /** Whether p, which is neither, lies on the segment from a to b. */
 bool IsWithin(const Point2& a, const Point2& b, const Point2& p)
 {
@@ -81,153 +71,6 @@ bool AreCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2
   return Orientation(a, b, c) * Orientation(a, b, d) < 0 &&
     Orientation(c, d, a) * Orientation(c, d, b) < 0;
 }
-
-/**
- * Cells of equal size over the pieces, each with the pieces that touch it, and perhaps some that
- * pass it by within a millionth of a cell. Columns and rows follow how far pieces reach along x
- * and along y, so that lines that all run one way share few cells.
- */
-class PieceGrid
-{
-public:
-  PieceGrid(
-    const std::vector<Vertex>& vertices, const std::vector<Piece>& pieces, const Progress& progress)
-  {
-    this->SetExtent(vertices, pieces);
-    // Count, sum, fill.
-    this->Begins.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-    {
-      ReportStep(progress, i, 2 * pieces.size());
-      this->ForEachCell(vertices[pieces[i].A].Position, vertices[pieces[i].B].Position,
-        [&](std::size_t cell) { ++this->Begins[cell + 1]; });
-    }
-    for (std::size_t cell = 1; cell < this->Begins.size(); ++cell)
-    {
-      this->Begins[cell] += this->Begins[cell - 1];
-    }
-    this->Entries.resize(this->Begins.back());
-    std::vector<std::size_t> next(this->Begins.begin(), this->Begins.end() - 1);
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-    {
-      ReportStep(progress, pieces.size() + i, 2 * pieces.size());
-      this->ForEachCell(vertices[pieces[i].A].Position, vertices[pieces[i].B].Position,
-        [&](std::size_t cell) { this->Entries[next[cell]++] = static_cast<Index>(i); });
-    }
-  }
-
-  std::size_t NumberOfCells() const { return this->Begins.size() - 1; }
-  const Index* Begin(std::size_t cell) const { return this->Entries.data() + this->Begins[cell]; }
-  const Index* End(std::size_t cell) const { return this->Begin(cell + 1); }
-
-  /** The cell of a point; false when no piece touches the point. */
-  bool FindCell(const Point2& p, std::size_t& cell) const
-  {
-    // Not a number is outside, too.
-    if (!(p.X >= this->Low.X && p.X <= this->High.X && p.Y >= this->Low.Y && p.Y <= this->High.Y))
-    {
-      return false;
-    }
-    const Point2 at = this->InCells(p);
-    cell = static_cast<std::size_t>(this->RowOf(at.Y)) * this->Columns + this->ColumnOf(at.X);
-    return true;
-  }
-
-private:
-  void SetExtent(const std::vector<Vertex>& vertices, const std::vector<Piece>& pieces)
-  {
-    this->Low = this->High = vertices[pieces[0].A].Position;
-    for (const Piece& piece : pieces)
-    {
-      for (const Index end : { piece.A, piece.B })
-      {
-        const Point2& p = vertices[end].Position;
-        this->Low = { std::min(this->Low.X, p.X), std::min(this->Low.Y, p.Y) };
-        this->High = { std::max(this->High.X, p.X), std::max(this->High.Y, p.Y) };
-      }
-    }
-    // Differences must not leave the range of double.
-    const double largest = std::max({ std::fabs(this->Low.X), std::fabs(this->Low.Y),
-      std::fabs(this->High.X), std::fabs(this->High.Y) });
-    this->Scale = largest > 1e150 ? 0x1p-600 : (largest < 1e-150 ? 0x1p600 : 1.0);
-    const double width = this->High.X * this->Scale - this->Low.X * this->Scale;
-    const double height = this->High.Y * this->Scale - this->Low.Y * this->Scale;
-
-    // How many pieces it takes to reach from one side to the other, at least one.
-    double alongX = 1.0, alongY = 1.0;
-    for (const Piece& piece : pieces)
-    {
-      const Point2& a = vertices[piece.A].Position;
-      const Point2& b = vertices[piece.B].Position;
-      alongX += width > 0.0 ? std::fabs(b.X * this->Scale - a.X * this->Scale) / width : 0.0;
-      alongY += height > 0.0 ? std::fabs(b.Y * this->Scale - a.Y * this->Scale) / height : 0.0;
-    }
-    // Two cells a piece; fewer where pieces would be in more than some 30 cells each.
-    const double count = static_cast<double>(pieces.size());
-    const double most = 30.0 * count;
-    const double cells =
-      std::min({ 2.0 * count, most * most / (4.0 * alongX * alongY), 100000000.0 });
-    const double columns =
-      std::min(std::max(std::sqrt(cells * alongY / alongX), 1.0), std::max(cells, 1.0));
-    this->Columns = static_cast<int>(columns);
-    this->Rows = static_cast<int>(std::max(cells / columns, 1.0));
-    // An extent of which cells would be too small for their inverse is one column or row.
-    this->PerX = width > 1e-290 ? this->Columns / width : 0.0;
-    this->PerY = height > 1e-290 ? this->Rows / height : 0.0;
-  }
-
-  /** A position in columns and rows; differences from the corner lose next to nothing. */
-  Point2 InCells(const Point2& p) const
-  {
-    return { (p.X * this->Scale - this->Low.X * this->Scale) * this->PerX,
-      (p.Y * this->Scale - this->Low.Y * this->Scale) * this->PerY };
-  }
-  int ColumnOf(double x) const
-  {
-    return std::min(std::max(static_cast<int>(x), 0), this->Columns - 1);
-  }
-  int RowOf(double y) const { return std::min(std::max(static_cast<int>(y), 0), this->Rows - 1); }
-
-  /** Calls visit(cell) for every cell that the segment touches, row by row. */
-  template <typename Visit>
-  void ForEachCell(const Point2& a, const Point2& b, Visit&& visit) const
-  {
-    constexpr double margin = 1e-6; // of a cell; rounding is far below
-    Point2 low = this->InCells(a), high = this->InCells(b);
-    if (high.Y < low.Y)
-    {
-      std::swap(low, high);
-    }
-    const int first = this->RowOf(low.Y - margin), last = this->RowOf(high.Y + margin);
-    // Infinite or not a number where the segment is in all its rows with its whole length.
-    const double slope = (high.X - low.X) / (high.Y - low.Y);
-    const double leftEnd = std::min(low.X, high.X), rightEnd = std::max(low.X, high.X);
-    for (int row = first; row <= last; ++row)
-    {
-      double left = leftEnd, right = rightEnd;
-      if (first != last && std::isfinite(slope))
-      {
-        const double x0 = low.X + (row - margin - low.Y) * slope;
-        const double x1 = low.X + (row + 1.0 + margin - low.Y) * slope;
-        left = std::max(left, std::min(x0, x1));
-        right = std::min(right, std::max(x0, x1));
-      }
-      const std::size_t begin = static_cast<std::size_t>(row) * this->Columns;
-      const int end = this->ColumnOf(right + margin);
-      for (int column = this->ColumnOf(left - margin); column <= end; ++column)
-      {
-        visit(begin + column);
-      }
-    }
-  }
-
-  Point2 Low, High;
-  double Scale = 1.0;
-  double PerX = 0.0, PerY = 0.0;
-  int Columns = 1, Rows = 1;
-  std::vector<std::size_t> Begins;
-  std::vector<Index> Entries;
-};
 
 /** Passes 1 to 3: from lines to pieces that do not cross, and what points they add. */
 class Splitting
@@ -304,6 +147,16 @@ public:
 
 private:
   const Point2& At(Index vertex) const { return this->Vertices[vertex].Position; }
+
+  CellGrid GridOf(const std::vector<Piece>& pieces, const Progress& progress) const
+  {
+    return CellGrid(
+      pieces.size(),
+      [&](std::size_t i) {
+        return std::array<Point2, 2>{ { this->At(pieces[i].A), this->At(pieces[i].B) } };
+      },
+      progress);
+  }
 
   /** Pass 1. */
   void Collect(const Progress& progress)
@@ -420,7 +273,7 @@ private:
   void Split(const Progress& progress)
   {
     {
-      const PieceGrid grid(this->Vertices, this->Pieces, Part(progress, 0.0, 0.1));
+      const CellGrid grid = this->GridOf(this->Pieces, Part(progress, 0.0, 0.1));
       std::vector<Cut> cuts;
       this->CutAtVertices(grid, cuts, Part(progress, 0.1, 0.2));
       this->CutAtInputPoints(grid, cuts, Part(progress, 0.2, 0.45));
@@ -440,7 +293,9 @@ private:
     this->Vertices.resize(count);
     if (!this->Settle(0.0, false, Part(progress, 0.9, 1.0)))
     {
-      throw Error(this->Unsettled);
+      throw Error(this->NameOf(this->Unsettled[0]) + " and t" +
+        this->NameOf(this->Unsettled[1]).substr(1) +
+        " cross again and again where rounding moves them.");
     }
   }
 
@@ -461,7 +316,7 @@ private:
       // Half of what is left for each.
       const Progress ofRound =
         Part(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
-      const PieceGrid grid(this->Vertices, this->Pieces, Part(ofRound, 0.0, 0.2));
+      const CellGrid grid = this->GridOf(this->Pieces, Part(ofRound, 0.0, 0.2));
       std::vector<Cut> cuts;
       this->CutAtVertices(grid, cuts, Part(ofRound, 0.2, 0.4));
       std::vector<Crossing> crossings;
@@ -474,9 +329,7 @@ private:
         }
         this->CutAtCrossings(grid, crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
         haveCounted = true;
-        this->Unsettled = this->NameOf(this->Pieces[crossings[0].P]) + " and t" +
-          this->NameOf(this->Pieces[crossings[0].Q]).substr(1) +
-          " cross again and again where rounding moves them.";
+        this->Unsettled = { this->Pieces[crossings[0].P].Rank, this->Pieces[crossings[0].Q].Rank };
       }
       this->Apply(cuts, Part(ofRound, 0.9, 1.0));
     }
@@ -487,7 +340,7 @@ private:
    * Finds the input points that are vertices of the lines, and cuts at those that are on segments,
    * which become vertices.
    */
-  void CutAtInputPoints(const PieceGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
+  void CutAtInputPoints(const CellGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
   {
     std::vector<Cut> found; // input points as yet
     InStretches(this->Points.Count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
@@ -554,7 +407,7 @@ private:
   }
 
   /** Cuts pieces at the vertices that are on them. */
-  void CutAtVertices(const PieceGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
+  void CutAtVertices(const CellGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
   {
     const std::size_t count = this->Vertices.size();
     for (std::size_t v = 0; v < count; ++v)
@@ -605,7 +458,7 @@ private:
   }
 
   void FindCrossings(
-    const PieceGrid& grid, std::vector<Crossing>& crossings, const Progress& progress) const
+    const CellGrid& grid, std::vector<Crossing>& crossings, const Progress& progress) const
   {
     const Progress searching = Part(progress, 0.0, 0.8);
     std::size_t pairs = 0;
@@ -669,8 +522,8 @@ private:
     return isCut;
   }
 
-  void CutAtCrossings(const PieceGrid& grid, const std::vector<Crossing>& crossings,
-    bool areToCount, std::vector<Cut>& cuts, const Progress& progress)
+  void CutAtCrossings(const CellGrid& grid, const std::vector<Crossing>& crossings, bool areToCount,
+    std::vector<Cut>& cuts, const Progress& progress)
   {
     struct Place
     {
@@ -743,7 +596,7 @@ private:
     Index First;                                 ///< the first of all
   };
 
-  Index AddVertex(const PieceGrid& grid, NewVertices& added, const Point2& position)
+  Index AddVertex(const CellGrid& grid, NewVertices& added, const Point2& position)
   {
     const Index vertex = static_cast<Index>(this->Vertices.size());
     this->Vertices.emplace_back();
@@ -757,8 +610,8 @@ private:
   }
 
   /** The vertex next to where two pieces cross that both can pass through; None: none in reach. */
-  Index FindVertexInReach(const PieceGrid& grid, const NewVertices& added, const Point2& p,
-    const Crossing& crossing) const
+  Index FindVertexInReach(
+    const CellGrid& grid, const NewVertices& added, const Point2& p, const Crossing& crossing) const
   {
     const Piece& one = this->Pieces[crossing.P];
     const Piece& other = this->Pieces[crossing.Q];
@@ -866,7 +719,7 @@ private:
     {
       return;
     }
-    const PieceGrid grid(this->Vertices, places, Part(progress, 0.0, 0.1));
+    const CellGrid grid = this->GridOf(places, Part(progress, 0.0, 0.1));
     InStretches(this->Points.Count, Part(progress, 0.1, 1.0), [&](Index begin, Index end) {
       for (Index id = begin; id < end; ++id)
       {
@@ -900,15 +753,14 @@ private:
                                          : (scale * p.Y - scale * a.Y) / dy;
   }
 
-  std::string NameOf(const Piece& piece) const
+  std::string NameOf(Index rank) const
   {
-    const Segment& segment = this->Segments[piece.Rank];
+    const Segment& segment = this->Segments[rank];
     const auto name = [&](Index vertex) {
       return "point " + std::to_string(this->Vertices[vertex].Source);
     };
     return "The segment from " + name(segment.A) + " to " + name(segment.B) +
-      " of the constraints' cell " +
-      std::to_string(this->Lines.Cells[this->SegmentLines[piece.Rank]]);
+      " of the constraints' cell " + std::to_string(this->Lines.Cells[this->SegmentLines[rank]]);
   }
 
   const PointView& Points;
@@ -919,8 +771,8 @@ private:
   std::vector<Segment> Segments;   ///< by rank, which is the order of the lines
   std::vector<Index> SegmentLines; ///< by rank
   std::int64_t Crossings = 0;
-  double Reach = 0.0;    ///< see Settle()
-  std::string Unsettled; ///< two segments that still cross
+  double Reach = 0.0;                               ///< see Settle()
+  std::array<Index, 2> Unsettled{ { None, None } }; ///< two segments that still cross
 };
 
 /** Input points and added ones in one array; empty when nothing is added. */

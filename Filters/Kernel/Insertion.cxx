@@ -3,6 +3,7 @@
 #include "Insertion.h"
 
 #include "Boundary.h"
+#include "CellGrid.h"
 #include "Predicates.h"
 #include "Reach.h"
 
@@ -20,188 +21,11 @@ namespace elevation
 namespace
 {
 
-// ------------------------------------------------------------------------------------------- bins
-
-/**
- * Points, segments or triangles in the cells of a grid. What touches a cell is found there, and
- * perhaps some more: bins answer nothing, they only leave out.
- */
-class Bins
-{
-public:
-  /** A grid over the box of points, with about as many cells as @a count. */
-  template <typename PointOf>
-  Bins(Index numberOfPoints, std::size_t count, PointOf&& pointOf)
-  {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Point2 low{ infinity, infinity };
-    Point2 high{ -infinity, -infinity };
-    for (Index i = 0; i < numberOfPoints; ++i)
-    {
-      const Point2 p = pointOf(i);
-      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-    }
-    this->Low = low;
-    this->High = high;
-    // Where rounding would be as large as cells, or the box too large to tell, one cell is left.
-    const auto isWide = [](double from, double to) {
-      return to - from < infinity &&
-        to - from > 1e-9 * std::max({ std::fabs(from), std::fabs(to), 1e-300 });
-    };
-    const bool hasWidth = isWide(low.X, high.X);
-    const bool hasHeight = isWide(low.Y, high.Y);
-    double width = hasWidth ? high.X - low.X : 1.0;
-    double height = hasHeight ? high.Y - low.Y : 1.0;
-    const double most = std::min(1e6, static_cast<double>(std::max<std::size_t>(count, 1)));
-    const double columns = !hasWidth ? 1.0
-      : hasHeight ? std::min(most, std::max(1.0, std::sqrt(most * (width / height))))
-                  : most;
-    const double rows = !hasHeight ? 1.0 : std::min(most, std::max(1.0, most / columns));
-    this->Columns = static_cast<Index>(std::min(columns, 4096.0));
-    this->Rows = static_cast<Index>(std::min(rows, 4096.0));
-    this->ColumnsPerUnit = hasWidth ? this->Columns / width : 0.0;
-    this->RowsPerUnit = hasHeight ? this->Rows / height : 0.0;
-  }
-
-  /** Puts things 0 to count - 1 into their cells; cornersOf(i) are one to three points. */
-  template <typename CornersOf>
-  void Fill(Index count, CornersOf&& cornersOf)
-  {
-    this->Offsets.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
-    for (const bool fill : { false, true })
-    {
-      for (Index i = 0; i < count; ++i)
-      {
-        this->VisitCells(cornersOf(i), [&](std::size_t cell) {
-          if (fill)
-          {
-            this->Things[--this->Offsets[cell]] = i;
-          }
-          else
-          {
-            ++this->Offsets[cell];
-          }
-        });
-      }
-      if (!fill)
-      {
-        std::size_t sum = 0;
-        for (std::size_t& offset : this->Offsets)
-        {
-          sum += offset;
-          offset = sum;
-        }
-        this->Things.resize(sum);
-      }
-    }
-  }
-
-  /** Calls visit for all things that may touch a point, segment or triangle; perhaps repeatedly. */
-  template <std::size_t Count, typename Visitor>
-  void Visit(const std::array<Point2, Count>& corners, Visitor&& visit) const
-  {
-    this->VisitCells(corners, [&](std::size_t cell) {
-      for (std::size_t i = this->Offsets[cell]; i < this->Offsets[cell + 1]; ++i)
-      {
-        visit(this->Things[i]);
-      }
-    });
-  }
-
-private:
-  // Monotone, so that what lies between two points lies between their cells.
-  Index ColumnOf(double x) const
-  {
-    return CellOf((x - this->Low.X) * this->ColumnsPerUnit, this->Columns);
-  }
-  Index RowOf(double y) const { return CellOf((y - this->Low.Y) * this->RowsPerUnit, this->Rows); }
-  static Index CellOf(double position, Index count)
-  {
-    return position > 0.0 ? (position < count ? static_cast<Index>(position) : count - 1) : 0;
-  }
-
-  template <std::size_t Count, typename Visitor>
-  void VisitCells(const std::array<Point2, Count>& corners, Visitor&& visit) const
-  {
-    Point2 low = corners[0];
-    Point2 high = corners[0];
-    for (std::size_t i = 1; i < Count; ++i)
-    {
-      low = { std::min(low.X, corners[i].X), std::min(low.Y, corners[i].Y) };
-      high = { std::max(high.X, corners[i].X), std::max(high.Y, corners[i].Y) };
-    }
-    if (high.X < this->Low.X || low.X > this->High.X || high.Y < this->Low.Y ||
-      low.Y > this->High.Y)
-    {
-      return;
-    }
-    const Index firstColumn = this->ColumnOf(low.X);
-    const Index lastColumn = this->ColumnOf(high.X);
-    const Index firstRow = this->RowOf(low.Y);
-    const Index lastRow = this->RowOf(high.Y);
-    for (Index row = firstRow; row <= lastRow; ++row)
-    {
-      Index begin = firstColumn;
-      Index end = lastColumn;
-      if (firstRow < lastRow && lastColumn > firstColumn + 2)
-      {
-        // What of it lies in the row; a column more on either side makes up for rounding.
-        Point2 range{ high.X, low.X };
-        const double bottom = this->Low.Y + (row - 1e-3) / this->RowsPerUnit;
-        const double top = this->Low.Y + (row + 1 + 1e-3) / this->RowsPerUnit;
-        for (std::size_t i = 0; i < Count; ++i)
-        {
-          Widen(corners[i], corners[(i + 1) % Count], bottom, top, range);
-        }
-        begin = std::max(begin, this->ColumnOf(range.X) - 1);
-        end = std::min(end, this->ColumnOf(range.Y) + 1);
-      }
-      for (Index column = begin; column <= end; ++column)
-      {
-        visit(static_cast<std::size_t>(row) * this->Columns + column);
-      }
-    }
-  }
-
-  /** Widens a range of x by what of a segment lies between two heights. */
-  static void Widen(Point2 a, Point2 b, double bottom, double top, Point2& range)
-  {
-    if (b.Y < a.Y)
-    {
-      std::swap(a, b);
-    }
-    if (b.Y < bottom || a.Y > top)
-    {
-      return;
-    }
-    const auto at = [&](double y) {
-      const double x = a.X + (y - a.Y) / (b.Y - a.Y) * (b.X - a.X);
-      return std::max(std::min(a.X, b.X), std::min(std::max(a.X, b.X), x));
-    };
-    const double from = a.Y < bottom ? at(bottom) : a.X;
-    const double to = b.Y > top ? at(top) : b.X;
-    range = { std::min({ range.X, from, to }), std::max({ range.Y, from, to }) };
-  }
-
-  Point2 Low;
-  Point2 High;
-  Index Columns = 1;
-  Index Rows = 1;
-  double ColumnsPerUnit = 0.0;
-  double RowsPerUnit = 0.0;
-  std::vector<std::size_t> Offsets;
-  std::vector<Index> Things;
-};
-
 using Ends = std::array<Point2, 2>;
 
-Bins BinSegments(const std::vector<Ends>& segments)
+CellGrid GridOf(const std::vector<Ends>& segments)
 {
-  const Index count = static_cast<Index>(segments.size());
-  Bins bins(2 * count, segments.size(), [&](Index i) { return segments[i / 2][i % 2]; });
-  bins.Fill(count, [&](Index i) { return segments[i]; });
-  return bins;
+  return CellGrid(segments.size(), [&](std::size_t i) { return segments[i]; });
 }
 
 // ---------------------------------------------------------------------------------------- crossing
@@ -220,24 +44,271 @@ bool IsWithin(const Ends& s, const Point2& p)
                              : IsLower(p, s[0]) && IsLower(s[1], p);
 }
 
-/** Sorts points of a segment, or near it, from its first end to its second. */
-struct IsBeforeAlong
+/**
+ * The rings as walks from place to place, cut wherever a point of one lies on an edge. So two steps
+ * are along the same edge, or have no more in common than ends. What a ring runs along forth and
+ * straight back is left out.
+ */
+class RingWalks
 {
-  explicit IsBeforeAlong(const Ends& segment)
-    : AlongX(std::fabs(segment[1].X - segment[0].X) > std::fabs(segment[1].Y - segment[0].Y))
-    , XRises(segment[1].X > segment[0].X)
-    , YRises(segment[1].Y > segment[0].Y)
+public:
+  /** @param[in] edges  of all rings, one from each of their points, and a grid of them */
+  RingWalks(const std::vector<Point2>& points, const Rings& rings, const std::vector<Ends>& edges,
+    const CellGrid& grid, const Progress& progress)
   {
+    struct Cut
+    {
+      std::size_t Edge;
+      Index Point;
+    };
+    std::vector<Cut> cuts;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+    {
+      ReportStep(progress, i, edges.size(), 1024);
+      const Point2& p = edges[i][0];
+      grid.Visit(p, [&](Index edge) {
+        const Ends& ends = edges[edge];
+        if (IsWithin(ends, p) && Orientation(ends[0], ends[1], p) == Zero)
+        {
+          cuts.push_back({ static_cast<std::size_t>(edge), rings.Vertices[i] });
+        }
+      });
+    }
+    std::sort(cuts.begin(), cuts.end(), [&](const Cut& p, const Cut& q) {
+      const Ends& edge = edges[p.Edge];
+      return p.Edge != q.Edge ? p.Edge < q.Edge
+                              : IsBefore(edge[0], edge[1], points[p.Point], points[q.Point]);
+    });
+    auto cut = cuts.begin();
+    for (Index ring = 0; ring < rings.Count(); ++ring)
+    {
+      const Index first = static_cast<Index>(this->Nodes.size());
+      const auto append = [&](Index point) {
+        const Index node = static_cast<Index>(this->Nodes.size());
+        if (node == first || this->At(node - 1) != points[point])
+        {
+          this->Nodes.push_back({ points[point], point, ring, { node - 1, node + 1 } });
+        }
+      };
+      for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
+      {
+        append(rings.Vertices[i]);
+        for (; cut != cuts.end() && cut->Edge == static_cast<std::size_t>(i); ++cut)
+        {
+          append(cut->Point);
+        }
+      }
+      if (this->At(first) == this->Nodes.back().Position && this->Nodes.size() > first + 1u)
+      {
+        this->Nodes.pop_back();
+      }
+      const Index last = static_cast<Index>(this->Nodes.size()) - 1;
+      this->Nodes[first].Neighbors[Before] = last;
+      this->Nodes[last].Neighbors[After] = first;
+    }
+    for (Index node = 0; node < static_cast<Index>(this->Nodes.size()); ++node)
+    {
+      this->LeaveOutSpur(node);
+    }
   }
-  bool operator()(const Point2& p, const Point2& q) const
+
+  struct Meeting
   {
-    const bool xIsLess = this->XRises ? p.X < q.X : p.X > q.X;
-    const bool yIsLess = this->YRises ? p.Y < q.Y : p.Y > q.Y;
-    return this->AlongX ? xIsLess || (p.X == q.X && yIsLess) : yIsLess || (p.Y == q.Y && xIsLess);
+    Index First; ///< of the points: where two walks come together,
+    Index Last;  ///< and where they part; the same one, if they have no edge in common
+    bool IsOfOneRing;
+  };
+
+  /**
+   * Finds a place where two walks, or two parts of one, come together and leave for the other side
+   * of each other. What one walk runs along in both directions, as a bridge from its outside to
+   * a hole, is nothing to cross, as it cancels out.
+   * @return whether there is one
+   */
+  bool FindCrossing(Meeting& crossing, const Progress& progress) const
+  {
+    std::vector<Index> order; // so that nodes of one place are neighbours
+    for (Index node = 0; node < static_cast<Index>(this->Nodes.size()); ++node)
+    {
+      if (this->Nodes[node].Neighbors[After] != None)
+      {
+        order.push_back(node);
+      }
+    }
+    Sort(
+      order.begin(), order.end(),
+      [&](Index p, Index q) {
+        return this->At(p) != this->At(q) ? IsLower(this->At(p), this->At(q)) : p < q;
+      },
+      Part(progress, 0.0, 0.5));
+    const Progress looking = Part(progress, 0.5, 1.0);
+    for (std::size_t i = 0, end = 0; i < order.size(); i = end)
+    {
+      ReportStep(looking, i, order.size(), 1024);
+      while (end < order.size() && this->At(order[end]) == this->At(order[i]))
+      {
+        ++end;
+      }
+      if (end > i + 1 && this->FindCrossingAt(&order[i], &order[0] + end, crossing))
+      {
+        return true;
+      }
+    }
+    return false;
   }
-  bool AlongX;
-  bool XRises;
-  bool YRises;
+
+private:
+  static constexpr int Before = 0;
+  static constexpr int After = 1;
+
+  struct Node
+  {
+    Point2 Position;
+    Index Point;
+    Index Ring;
+    Index Neighbors[2]; ///< Before and After; None when it is left out
+  };
+  /** A way from a place to the next one of a walk. */
+  struct Strand
+  {
+    Index Node;
+    int Way;
+    Index Direction; ///< a number that all in this direction have, increasing counter-clockwise
+  };
+
+  const Point2& At(Index node) const { return this->Nodes[node].Position; }
+  Index Step(Index node, int way) const { return this->Nodes[node].Neighbors[way]; }
+
+  void LeaveOutSpur(Index node)
+  {
+    while (this->Step(node, After) != None &&
+      this->At(this->Step(node, Before)) == this->At(this->Step(node, After)))
+    {
+      const Index before = this->Step(node, Before);
+      const Index same = this->Step(node, After); // at the same place
+      const Index after = this->Step(same, After);
+      this->Nodes[before].Neighbors[After] = after;
+      this->Nodes[after].Neighbors[Before] = before;
+      for (const Index gone : { node, same })
+      {
+        this->Nodes[gone].Neighbors[Before] = this->Nodes[gone].Neighbors[After] = None;
+      }
+      node = before;
+    }
+  }
+
+  bool FindCrossingAt(const Index* begin, const Index* end, Meeting& crossing) const
+  {
+    // All strands here, around the place.
+    const Point2& at = this->At(*begin);
+    std::vector<Strand> strands;
+    for (const Index* node = begin; node < end; ++node)
+    {
+      strands.push_back({ *node, Before, 0 });
+      strands.push_back({ *node, After, 0 });
+    }
+    const auto to = [&](const Strand& s) { return this->At(this->Step(s.Node, s.Way)); };
+    std::sort(strands.begin(), strands.end(), [&](const Strand& s, const Strand& t) {
+      const bool isUp = IsLower(at, to(s));
+      if (isUp != IsLower(at, to(t)))
+      {
+        return isUp;
+      }
+      const Sign turn = Orientation(at, to(s), to(t));
+      return turn != Zero ? turn == Positive : s.Node < t.Node;
+    });
+    // From each node here: the directions of both its strands.
+    std::vector<std::array<Index, 2>> passages(end - begin);
+    const auto passageOf = [&](Index node) -> std::array<Index, 2>& {
+      return passages[std::lower_bound(begin, end, node) - begin];
+    };
+    for (std::size_t i = 0; i < strands.size(); ++i)
+    {
+      const bool isSame = i > 0 && to(strands[i]) == to(strands[i - 1]);
+      strands[i].Direction = i == 0 ? 0 : strands[i - 1].Direction + (isSame ? 0 : 1);
+      passageOf(strands[i].Node)[strands[i].Way] = strands[i].Direction;
+    }
+
+    // Walks that meet here alone: like brackets, they must be beside or within each other.
+    struct Span
+    {
+      Index From, To;
+      Index Node;
+    };
+    std::vector<Span> spans, open;
+    for (const Index* node = begin; node < end; ++node)
+    {
+      const auto [from, last] = std::minmax(passageOf(*node)[Before], passageOf(*node)[After]);
+      spans.push_back({ from, last, *node });
+    }
+    std::sort(spans.begin(), spans.end(), [](const Span& s, const Span& t) {
+      return s.From != t.From ? s.From < t.From : s.To != t.To ? s.To > t.To : s.Node < t.Node;
+    });
+    for (const Span& span : spans)
+    {
+      while (!open.empty() && open.back().To <= span.From)
+      {
+        open.pop_back();
+      }
+      if (!open.empty() && open.back().To < span.To)
+      {
+        crossing = { this->Nodes[span.Node].Point, this->Nodes[span.Node].Point,
+          this->Nodes[span.Node].Ring == this->Nodes[open.back().Node].Ring };
+        return true;
+      }
+      open.push_back(span);
+    }
+
+    // Walks that go on together from here, each pair along the one that comes first.
+    for (std::size_t i = 0; i < strands.size(); ++i)
+    {
+      for (std::size_t j = i + 1;
+           j < strands.size() && strands[j].Direction == strands[i].Direction; ++j)
+      {
+        const bool isFirst = strands[i].Node < strands[j].Node;
+        const Strand& p = isFirst ? strands[i] : strands[j];
+        const Strand& q = isFirst ? strands[j] : strands[i];
+        if (p.Way == After &&
+          passageOf(p.Node)[Before] != passageOf(q.Node)[After + Before - q.Way] &&
+          this->ChangeSides(p.Node, q.Node, q.Way, crossing))
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /** Whether walks that come together, go on, p after and q in its way, and part do cross. */
+  bool ChangeSides(Index p, Index q, int way, Meeting& crossing) const
+  {
+    crossing = { this->Nodes[p].Point, None, this->Nodes[p].Ring == this->Nodes[q].Ring };
+    if (crossing.IsOfOneRing && way == Before)
+    {
+      return false;
+    }
+    const bool fromLeft = this->IsLeftOf(p, this->At(this->Step(q, After + Before - way)));
+    // It does end: going on and on, both would come to where they were not together yet.
+    do
+    {
+      p = this->Step(p, After);
+      q = this->Step(q, way);
+    } while (this->At(this->Step(p, After)) == this->At(this->Step(q, way)));
+    crossing.Last = this->Nodes[p].Point;
+    return fromLeft != this->IsLeftOf(p, this->At(this->Step(q, way)));
+  }
+
+  /** Whether the way to a point, which is not that of the walk, is on the left of the walk. */
+  bool IsLeftOf(Index node, const Point2& p) const
+  {
+    const Point2 &before = this->At(this->Step(node, Before)), &at = this->At(node),
+                 &after = this->At(this->Step(node, After));
+    const Sign first = Orientation(before, at, p), second = Orientation(at, after, p);
+    return Orientation(before, at, after) == Positive ? first == Positive && second == Positive
+                                                      : first != Negative || second != Negative;
+  }
+
+  std::vector<Node> Nodes;
 };
 
 // ---------------------------------------------------------------------------------------- matching
@@ -330,7 +401,7 @@ public:
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      isCut = this->CutAtBorder(Part(progress, 1.0, 1.0));
+      isCut = this->CutAtEachOther() || this->CutAtBorder(Part(progress, 1.0, 1.0));
     }
     this->FinishRings();
   }
@@ -363,11 +434,11 @@ private:
 
   void CheckCrossings(const Progress& progress) const
   {
-    const Bins bins = BinSegments(this->Edges);
+    const CellGrid grid = GridOf(this->Edges);
     for (std::size_t i = 0; i < this->Edges.size(); ++i)
     {
-      ReportStep(progress, i, this->Edges.size(), 1024);
-      bins.Visit(this->Edges[i], [&](Index other) {
+      ReportStep(progress, i, 2 * this->Edges.size(), 1024);
+      grid.Visit(this->Edges[i], [&](Index other) {
         const std::size_t j = static_cast<std::size_t>(other);
         if (j > i && Cross(this->Edges[i], this->Edges[j]))
         {
@@ -376,67 +447,24 @@ private:
         }
       });
     }
-    this->CheckCommonPoints(bins);
+    this->CheckCommonPoints(grid, Part(progress, 0.5, 1.0));
   }
 
-  /** Looks whether one ring changes to the other side of another one in a point of either. */
-  void CheckCommonPoints(const Bins& edges) const
+  /** Looks whether rings change sides where they meet: in a point, or along edges. */
+  void CheckCommonPoints(const CellGrid& edges, const Progress& progress) const
   {
-    struct Passage
+    const RingWalks walks(this->Points, this->Given, this->Edges, edges, Part(progress, 0.0, 0.5));
+    RingWalks::Meeting crossing;
+    if (!walks.FindCrossing(crossing, Part(progress, 0.5, 1.0)))
     {
-      Point2 Before, At, After;
-      Index Point;
-      Index Ring;
-    };
-    std::vector<Passage> passages;
-    for (Index ring = 0; ring < this->Given.Count(); ++ring)
-    {
-      const Index count = this->Given.Size(ring);
-      const Index* const ids = this->Given.Begin(ring);
-      for (Index i = 0; i < count; ++i)
-      {
-        passages.push_back({ this->Points[ids[i == 0 ? count - 1 : i - 1]], this->Points[ids[i]],
-          this->Points[ids[i + 1 == count ? 0 : i + 1]], ids[i], ring });
-        const Point2 p = passages.back().At;
-        edges.Visit(std::array<Point2, 1>{ { p } }, [&](Index edge) {
-          const Ends& ends = this->Edges[edge];
-          if (Orientation(ends[0], ends[1], p) == Zero && IsWithin(ends, p))
-          {
-            passages.push_back({ ends[0], p, ends[1], ids[i], this->RingOf(edge) });
-          }
-        });
-      }
+      return;
     }
-    std::sort(passages.begin(), passages.end(), [](const Passage& a, const Passage& b) {
-      return a.At != b.At ? IsLower(a.At, b.At) : a.Ring < b.Ring;
-    });
-    // Positive: to the left of a passage; Zero: on it, or it turns back on itself.
-    const auto sideOf = [](const Passage& of, const Point2& p) {
-      const Sign turn = Orientation(of.Before, of.At, of.After);
-      const Sign first = Orientation(of.Before, of.At, p), second = Orientation(of.At, of.After, p);
-      if (turn == Zero && !IsWithin({ of.Before, of.After }, of.At))
-      {
-        return Zero;
-      }
-      const Sign sharp = turn == Negative ? Negative : Positive; // on the inside of the turn
-      const Sign other = sharp == Positive ? Negative : Positive;
-      return first == sharp && second == sharp ? sharp
-        : first == other || second == other    ? other
-                                               : Zero;
-    };
-    for (std::size_t i = 0; i < passages.size(); ++i)
-    {
-      const Passage& a = passages[i];
-      for (std::size_t j = i + 1; j < passages.size() && passages[j].At == a.At; ++j)
-      {
-        const Passage& b = passages[j];
-        if (a.Ring != b.Ring && sideOf(a, b.Before) * sideOf(a, b.After) < 0)
-        {
-          throw Error("Two rings of the boundary cross in " + NameOf(this->Points, a.Point) +
-            ". Rings may touch and nest, but not cross.");
-        }
-      }
-    }
+    throw Error((crossing.IsOfOneRing ? "A ring of the boundary crosses itself "
+                                      : "Two rings of the boundary cross ") +
+      (crossing.First == crossing.Last ? "in " + NameOf(this->Points, crossing.First)
+                                       : "where they run together from " +
+            NameOf(this->Points, crossing.First) + " to " + NameOf(this->Points, crossing.Last)) +
+      ". Rings may touch and nest, but not cross.");
   }
 
   /** Finds the corner of the mesh at each point of the rings. */
@@ -510,8 +538,8 @@ private:
     }
     const Index count = static_cast<Index>(open.size());
     const auto pointOf = [&](Index i) { return this->Points[open[i]]; };
-    Bins bins(count, open.size(), pointOf);
-    bins.Fill(count, [&](Index i) { return std::array<Point2, 1>{ { pointOf(i) } }; });
+    const CellGrid grid(open.size(),
+      [&](std::size_t i) { return std::array<Point2, 1>{ { this->Points[open[i]] } }; });
     std::vector<Index> triangles(open.size(), None);
     const Progress looking = Part(progress, 0.2, 1.0);
     InStretches(mesh.NumberOfTriangles(), looking, [&](Index begin, Index end) {
@@ -525,7 +553,7 @@ private:
           Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
         }
         const std::array<Point2, 3> corners = this->CornersOf(t);
-        bins.Visit(corners, [&](Index i) {
+        grid.Visit(corners, [&](Index i) {
           if (triangles[i] == None && this->Holds(t, pointOf(i)))
           {
             triangles[i] = t;
@@ -725,7 +753,13 @@ private:
     {
       return;
     }
-    const Bins bins = BinSegments(segments);
+    const CellGrid grid = GridOf(segments);
+    double reach = 0.0; // of the longest coordinates
+    for (const Ends& segment : segments)
+    {
+      const Units units = UnitsOf(segment[0], segment[1]);
+      reach = std::max({ reach, 2.0 * Reach * units.X, 2.0 * Reach * units.Y });
+    }
     struct Taken
     {
       Index Border; // of borders
@@ -736,11 +770,9 @@ private:
     for (const Index point : open)
     {
       const Point2 p = this->Points[point];
-      const Units around = UnitsOf({ 0.0, 0.0 }, p);
-      const double reach = 2.0 * Reach * std::max(around.X, around.Y);
       Index border = None;
       bool isAlone = true; // where two run along each other, one would move into the other
-      bins.Visit(
+      grid.Visit(
         Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
           const Ends& segment = segments[i];
           if (i != border &&
@@ -762,9 +794,10 @@ private:
     this->Reserve(taken.size());
     // Along each border from its first end, as in CutAtBorder.
     std::sort(taken.begin(), taken.end(), [&](const Taken& a, const Taken& b) {
+      const Ends& border = segments[a.Border];
       return a.Border != b.Border
         ? a.Border < b.Border
-        : IsBeforeAlong(segments[a.Border])(this->Points[a.Point], this->Points[b.Point]);
+        : IsBefore(border[0], border[1], this->Points[a.Point], this->Points[b.Point]);
     });
     Index h = None;
     for (std::size_t i = 0; i < taken.size(); ++i)
@@ -800,12 +833,13 @@ private:
     this->Moved.clear();
     std::vector<Index> borders;
     const std::vector<Ends> segments = this->FindBorder(borders, Part(progress, 0.0, 0.3));
-    const Bins bins = BinSegments(segments);
+    const CellGrid grid = GridOf(segments);
     struct Crossing
     {
       Index Border; // of borders
       Point2 Place;
       std::size_t Piece;
+      bool IsBeyond; // the apex of the border's triangle
     };
     std::vector<Crossing> crossings;
     std::vector<std::size_t> lastSeen(segments.size(), pieces.size());
@@ -814,7 +848,7 @@ private:
     {
       ReportStep(looking, i, pieces.size(), 1024);
       const Ends& edge = pieces[i];
-      bins.Visit(edge, [&](Index border) {
+      grid.Visit(edge, [&](Index border) {
         if (lastSeen[border] == i)
         {
           return;
@@ -825,8 +859,10 @@ private:
         {
           if (!this->PassEnds(i, edge, segment, borders[border]))
           {
+            const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
+            const Point2& apex = mesh.PointOf(mesh.Apex(borders[border]));
             crossings.push_back(
-              { border, RoundedCrossing(segment[0], segment[1], edge[0], edge[1]), i });
+              { border, place, i, IsBefore(segment[0], segment[1], apex, place) });
           }
         }
         else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsWithin(edge, segment[0]))
@@ -837,7 +873,7 @@ private:
           IsWithin(segment, edge[0]) && this->MayInsert)
         {
           // Otherwise it would have become a vertex of this border.
-          this->RefuseDoubleBorder(i, edge[0]);
+          this->RefuseDoubleBorder(this->Pieces[i].Edge, edge[0]);
         }
       });
     }
@@ -849,45 +885,43 @@ private:
     }
     this->Reserve(crossings.size());
 
-    // Along each border from its first end, so that its last part is the one to cut next.
+    // Along each border from both its ends to the apex: then the part to cut next is the one that
+    // is beside the apex, and however thin its triangle is, outwards is room.
     std::sort(crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) {
-      const IsBeforeAlong before(segments[a.Border]);
-      return a.Border != b.Border
-        ? a.Border < b.Border
-        : before(a.Place, b.Place) || (!before(b.Place, a.Place) && a.Piece < b.Piece);
+      const Ends& border = segments[a.Border];
+      return a.Border != b.Border  ? a.Border < b.Border
+        : a.IsBeyond != b.IsBeyond ? b.IsBeyond
+        : a.Place != b.Place       ? IsBefore(border[0], border[1], a.Place, b.Place) != a.IsBeyond
+                                   : a.Piece < b.Piece;
     });
     Index h = None, last = None; // and the vertex of the crossing before
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
       const Crossing& crossing = crossings[i];
-      const bool isSamePlace = i > 0 && crossings[i - 1].Border == crossing.Border &&
-        crossings[i - 1].Place == crossing.Place;
       if (i == 0 || crossings[i - 1].Border != crossing.Border)
       {
         h = this->NowOf(borders[crossing.Border]);
+        last = None;
       }
-      Index vertex = mesh.Origin(h);
-      if (isSamePlace)
+      const bool isSamePlace = last != None && crossings[i - 1].Place == crossing.Place;
+      const Index from = mesh.Origin(h), to = mesh.Destination(h);
+      Index vertex = isSamePlace               ? last
+        : crossing.Place == mesh.PointOf(from) ? from
+        : crossing.Place == mesh.PointOf(to)   ? to
+                                               : None;
+      Point2 place = crossing.Place;
+      if (vertex == None && !this->MoveToCut(h, place))
       {
-        vertex = last;
+        throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
+          " leaves the mesh across a triangle too thin to be cut there, between " +
+          this->NameOfVertex(from) + " and " + this->NameOfVertex(to) +
+          ". Let the boundary pass through one of them.");
       }
-      else if (crossing.Place == mesh.PointOf(mesh.Destination(h)))
+      if (vertex == None)
       {
-        vertex = mesh.Destination(h);
-      }
-      else if (crossing.Place != mesh.PointOf(vertex))
-      {
-        const Index end = mesh.Destination(h);
-        Point2 place = crossing.Place;
-        if (!this->MoveToCut(h, place))
-        {
-          throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
-            " leaves the mesh across a triangle too thin to be cut there, between " +
-            this->NameOfVertex(vertex) + " and " + this->NameOfVertex(end) +
-            ". Let the boundary pass through one of them.");
-        }
-        vertex = this->AddVertex(place, this->WeightsBetween(vertex, end, place));
-        h = this->CutEdge(h, vertex);
+        vertex = this->AddVertex(place, this->WeightsBetween(from, to, place));
+        const Index after = this->CutEdge(h, vertex);
+        h = crossing.IsBeyond ? h : after;
       }
       last = vertex;
       this->AddStop(crossing.Piece, pieces[crossing.Piece], h, vertex);
@@ -897,6 +931,35 @@ private:
     this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
     this->CutPieces(pieces);
     return !this->IsCut.empty();
+  }
+
+  /**
+   * Pieces that moved may cross others that run along them within rounding: leads them through an
+   * end of these. @return whether there were such
+   */
+  bool CutAtEachOther()
+  {
+    const std::vector<Ends> pieces = this->EndsOfPieces();
+    const CellGrid grid = GridOf(pieces);
+    this->OnTheWay.clear();
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+    {
+      const Units units = UnitsOf(pieces[i][0], pieces[i][1]);
+      grid.Visit(pieces[i], [&](Index j) {
+        for (const int end : { 0, 1 })
+        {
+          if (Cross(pieces[i], pieces[j]) &&
+            IsInReach(pieces[i][0], pieces[i][1], units, Reach, pieces[j][end]))
+          {
+            this->OnTheWay.push_back(
+              { i, this->Pieces[end == 0 ? j : this->NextOf(j)].Vertex, true, true });
+            this->EdgeOfCut = this->Pieces[i].Edge;
+          }
+        }
+      });
+    }
+    this->CutPieces(pieces);
+    return !this->OnTheWay.empty();
   }
 
   /**
@@ -962,20 +1025,23 @@ private:
     return false;
   }
 
+  /** The piece after a piece on its ring. */
+  Index NextOf(Index piece) const
+  {
+    const std::vector<Index>& offsets = this->Result.Vertices.Offsets;
+    const auto end = std::upper_bound(offsets.begin(), offsets.end(), piece);
+    return piece + 1 == *end ? *(end - 1) : piece + 1;
+  }
+
   /** From each of the rings' vertices to the next. */
   std::vector<Ends> EndsOfPieces() const
   {
     std::vector<Ends> ends;
     ends.reserve(this->Pieces.size());
-    const Rings& rings = this->Result.Vertices; // its offsets
-    for (Index ring = 0; ring < rings.Count(); ++ring)
+    for (Index i = 0; i < static_cast<Index>(this->Pieces.size()); ++i)
     {
-      for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
-      {
-        const Index next = i + 1 == rings.Offsets[ring + 1] ? rings.Offsets[ring] : i + 1;
-        ends.push_back(
-          { this->PlaceOf(this->Pieces[i].Vertex), this->PlaceOf(this->Pieces[next].Vertex) });
-      }
+      ends.push_back({ this->PlaceOf(this->Pieces[i].Vertex),
+        this->PlaceOf(this->Pieces[this->NextOf(i)].Vertex) });
     }
     return ends;
   }
@@ -998,14 +1064,14 @@ private:
     {
       segments.push_back(pieces[piece]);
     }
-    const Bins bins = BinSegments(segments);
+    const CellGrid grid = GridOf(segments);
     std::unordered_map<Index, std::vector<Index>> segmentsThrough;
     std::vector<char> isOn(mesh.Points.size(), 0);
     InStretches(mesh.NumberOfPoints(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
         const Point2& p = mesh.PointOf(v);
-        bins.Visit(std::array<Point2, 1>{ { p } }, [&](Index i) {
+        grid.Visit(p, [&](Index i) {
           if (Orientation(segments[i][0], segments[i][1], p) == Zero && IsWithin(segments[i], p))
           {
             isOn[v] = 1;
@@ -1044,12 +1110,11 @@ private:
       {
         return a.Piece < b.Piece;
       }
-      const IsBeforeAlong before(pieces[a.Piece]);
-      const Point2& p = mesh.PointOf(a.Vertex);
-      const Point2& q = mesh.PointOf(b.Vertex);
+      const Ends& piece = pieces[a.Piece];
+      const Point2 p = this->PlaceOf(a.Vertex), q = this->PlaceOf(b.Vertex);
       // At one place a part of the mesh is left before another one is entered.
-      return before(p, q) ||
-        (!before(q, p) &&
+      return IsBefore(piece[0], piece[1], p, q) ||
+        (p == q &&
           std::make_tuple(a.Into - a.From, a.Vertex) < std::make_tuple(b.Into - b.From, b.Vertex));
     });
     std::vector<Piece> cut;
@@ -1151,15 +1216,16 @@ private:
   bool MoveToCut(Index h, Point2& place) const
   {
     const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
-    const Point2& to = this->Surface.PointOf(this->Surface.Destination(h));
-    const double length = std::hypot(to.X - from.X, to.Y - from.Y);
+    const Point2 way = Around(
+      from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
+    const double length = std::hypot(way.X, way.Y);
     const double step =
       std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
-    const Point2 outwards{ step * ((to.Y - from.Y) / length), step * ((from.X - to.X) / length) };
+    const Point2 outwards{ step * (way.Y / length), -step * (way.X / length) };
     const Point2 first = place;
     const auto isFound = [&](double dx, double dy) {
       place = { first.X + dx, first.Y + dy };
-      return this->CanCut(h, place);
+      return std::isfinite(place.X) && std::isfinite(place.Y) && this->CanCut(h, place);
     };
     // The nearest ones, from the middle out, then further outwards.
     for (int ring = 0; ring <= 3; ++ring)
@@ -1185,20 +1251,37 @@ private:
     return false;
   }
 
+  /** Points as seen from one, at a scale where products and sums stay in the range of double. */
+  template <std::size_t Count>
+  static std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> points)
+  {
+    double largest = std::max(std::fabs(from.X), std::fabs(from.Y));
+    for (const Point2& p : points)
+    {
+      largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+    }
+    const double scale =
+      largest > 0.0 ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest)))) : 1.0;
+    for (Point2& p : points)
+    {
+      p = { p.X * scale - from.X * scale, p.Y * scale - from.Y * scale };
+    }
+    return points;
+  }
+
   /** The weights of a place in a triangle, of which corners may be new vertices themselves. */
   InsertedVertex WeightsIn(Index t, const Point2& p) const
   {
-    const std::array<Point2, 3> corners = this->CornersOf(t);
+    const std::array<Point2, 3> corners = this->CornersOf(t), around = Around(p, corners);
     std::array<std::pair<Index, double>, 3> shares;
     for (int i = 0; i < 3; ++i)
     {
-      const Point2& a = corners[(i + 1) % 3];
-      const Point2& b = corners[(i + 2) % 3];
+      const int next = (i + 1) % 3, last = (i + 2) % 3;
       // On an edge, rounding must not bring in the corner beyond.
       shares[i] = { this->Surface.Origin(3 * t + i),
-        Orientation(a, b, p) == Zero
+        Orientation(corners[next], corners[last], p) == Zero
           ? 0.0
-          : std::fabs((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)) };
+          : std::fabs(around[next].X * around[last].Y - around[next].Y * around[last].X) };
     }
     return this->WeightsOf(shares.data(), shares.size());
   }
@@ -1206,11 +1289,10 @@ private:
   /** The weights of a place on an edge, or so near that it is made one of it. */
   InsertedVertex WeightsBetween(Index a, Index b, const Point2& p) const
   {
-    const Point2& from = this->Surface.PointOf(a);
-    const Point2& to = this->Surface.PointOf(b);
-    const std::array<std::pair<Index, double>, 2> shares{
-      { { a, std::hypot(to.X - p.X, to.Y - p.Y) }, { b, std::hypot(p.X - from.X, p.Y - from.Y) } }
-    };
+    const std::array<Point2, 2> ends =
+      Around(p, Ends{ { this->Surface.PointOf(a), this->Surface.PointOf(b) } });
+    const std::array<std::pair<Index, double>, 2> shares{ { { a, std::hypot(ends[1].X, ends[1].Y) },
+      { b, std::hypot(ends[0].X, ends[0].Y) } } };
     return this->WeightsOf(shares.data(), shares.size());
   }
 
@@ -1258,7 +1340,7 @@ private:
     const bool isUsable = sum > 0.0 && sum < std::numeric_limits<double>::infinity();
     for (double& weight : vertex.Weights)
     {
-      // What leaves the range of double has no ratios.
+      // A triangle too thin for the range of double has no ratios.
       weight = isUsable ? weight / sum : 1.0 / 3.0;
     }
     return vertex;

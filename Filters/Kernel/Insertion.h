@@ -7,7 +7,9 @@
  *
  * In: a mesh with Twins, rings of points in the plane. Out: the mesh with more vertices, and the
  * rings through these. The passes:
- *   1. Look whether edges of the rings cross each other, or rings in a point of one of them.
+ *   1. Look whether edges of the rings cross each other; or rings, or one ring itself, where they
+ *      meet in a point, or run along the same edges and part on the other side. (Edges that one
+ *      ring runs along in both directions, as a bridge to a hole, cancel out: nothing to cross.)
  *   2. Match the rings' points to corners of the mesh with the same x,y. One that the border passes
  *      within rounding (Reach.h) becomes a vertex of the border, which moves by as little; but not
  *      where two borders do, which must not move into each other.
@@ -61,10 +63,10 @@ struct InsertedRings
  * @param[in]     points  finite
  * @param[in]     rings   ids of the points, at least three a ring
  * @param[in]     insert  off: nothing changes, and what would have to is an Error
- * @throws Error naming the points: two edges of the rings, or two rings, that cross; a ring's point
- *         where two corners of the mesh lie, or a way of it along borders that lie on each other; a
- *         crossing with a triangle so thin that it cannot be cut there; with insert off, a point or
- *         a crossing that the mesh does not have. Aborted; std::bad_alloc.
+ * @throws Error naming the points: two edges of the rings, two rings or parts of one that cross; a
+ *         ring's point where two corners of the mesh lie, or a way of it along borders that lie on
+ *         each other; a crossing with a triangle so thin that it cannot be cut there; with insert
+ *         off, a point or a crossing that the mesh does not have. Aborted; std::bad_alloc.
  */
 InsertedRings InsertRings(Mesh& mesh, const std::vector<Point2>& points, const Rings& rings,
   bool insert, const Progress& progress = Progress());

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Whether a point is so near a segment that rounding alone may keep it off. What is, may be taken as
- * a vertex of the segment, as in snap rounding: then no vertices pile up beside others.
+ * Whether a point is so near a segment that rounding alone may keep it off, and the order of such
+ * points along it. What is in reach may be taken as a vertex of the segment, as in snap rounding:
+ * then no vertices pile up beside others.
  * Nothing here decides what lies where; that is for Predicates.h.
  */
 #ifndef elevation_Reach_h
@@ -52,12 +53,32 @@ inline Units UnitsOf(const Point2& a, const Point2& b)
   return { std::max(x, std::min(y, part * width)), std::max(y, std::min(x, part * height)) };
 }
 
+/** Whether the segment is longer along x than along y. */
+inline bool IsAlongX(const Point2& a, const Point2& b)
+{
+  // Halves, so that no difference overflows.
+  return std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y);
+}
+
 /** Whether p comes after a and before b along the longer of the segment's x and y. */
 inline bool IsBetween(const Point2& a, const Point2& b, const Point2& p)
 {
-  const bool isAlongX = std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y);
-  return isAlongX ? std::min(a.X, b.X) < p.X && p.X < std::max(a.X, b.X)
-                  : std::min(a.Y, b.Y) < p.Y && p.Y < std::max(a.Y, b.Y);
+  return IsAlongX(a, b) ? std::min(a.X, b.X) < p.X && p.X < std::max(a.X, b.X)
+                        : std::min(a.Y, b.Y) < p.Y && p.Y < std::max(a.Y, b.Y);
+}
+
+/**
+ * Whether p comes before q on the way from a to b, both on the segment but for rounding: by
+ * the longer of x and y, along which what is in reach does not change places; where that is equal,
+ * by the other one. From b to a it is the other way round.
+ */
+inline bool IsBefore(const Point2& a, const Point2& b, const Point2& p, const Point2& q)
+{
+  const bool xRises = a.X != b.X ? a.X < b.X : a.Y < b.Y;
+  const bool xIsBefore = xRises ? p.X < q.X : p.X > q.X;
+  const bool yIsBefore = IsLower(a, b) ? p.Y < q.Y : p.Y > q.Y;
+  return IsAlongX(a, b) ? (p.X != q.X ? xIsBefore : yIsBefore)
+                        : (p.Y != q.Y ? yIsBefore : xIsBefore);
 }
 
 /**
@@ -77,7 +98,7 @@ inline bool IsInReach(
   double dx = 0.25 * to.X - 0.25 * from.X, dy = 0.25 * to.Y - 0.25 * from.Y;
   double px = 0.25 * p.X - 0.25 * from.X, py = 0.25 * p.Y - 0.25 * from.Y;
   double unitX = units.X, unitY = units.Y;
-  if (std::fabs(dx) < std::fabs(dy))
+  if (!IsAlongX(from, to))
   {
     std::swap(dx, dy);
     std::swap(px, py);

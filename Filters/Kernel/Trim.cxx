@@ -50,8 +50,8 @@ std::vector<Segment> SegmentsOf(const Mesh& mesh, const Fans& fans, const Rings&
         throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
           NameOf(mesh.Points, segment.B) +
           " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
-          "pass "
-          "through points of the mesh there.");
+          "pass through points of the mesh there; or merge points of the mesh, as "
+          "vtkStaticCleanPolyData does, if borders of it lie on each other there.");
       }
       if (isInside)
       {

@@ -174,6 +174,16 @@ class Report(Program):
         coarse, fine = (self.report(*common, s)["holes"]["inserted_points"] for s in ("2", "0.5"))
         self.assertGreater(fine, 2 * coarse)
 
+    def test_a_spacing_below_the_steps_of_the_coordinates_is_refused_at_once(self):
+        rows = [(4000000.0 + x, 5000000.0 + y, z) for x, y, z in HOLED]
+        name = self.file("far.xyz", text_of(rows))
+        self.assert_refused(
+            "--spacing: 1e-09 is less than x and y of far.xyz can tell apart, which are in steps of "
+            "9.31e-10",
+            name, "--spacing", "1e-9", code=2,
+        )
+        self.report(name, "--spacing", "2")
+
     def test_steps_can_be_left_out(self):
         name = self.file("holed.xyz", text_of(HOLED))
         report = self.report(name, "--maximum-edge-length", "1.5", "--no-trim", "--no-fill")

@@ -303,7 +303,8 @@ class VtkFormats(InFolder):
 
     def test_a_file_that_is_cut_off_is_refused_or_has_all_its_points(self):
         # Where nothing but what follows the points is missing, the points are all there. A cut
-        # within the last number of a text cannot be seen, so this number is not compared.
+        # within the last number of a text cannot be told from its end, so this number is not
+        # compared, but there is a note.
         for what, suffix, content in self.whole_files():
             path = self.file("cut." + suffix, content)
             expected = coordinates(files.read_points(path)).ravel()[:-1].tolist()
@@ -312,13 +313,65 @@ class VtkFormats(InFolder):
                 with self.subTest(what=what, size=size):
                     path = self.file("cut." + suffix, content[:size])
                     try:
-                        found = coordinates(files.read_points(path)).ravel()[:-1].tolist()
+                        cloud = files.read_points(path)
                     except files.FileError:
                         refused += 1
                         continue
-                    self.assertEqual(found, expected)
+                    self.assertEqual(coordinates(cloud).ravel()[:-1].tolist(), expected)
+                    if what.startswith("text") and suffix == "vtk":
+                        may_lack = any("may be cut off" in note for note in cloud.notes)
+                        self.assertEqual(may_lack, not content[size - 1 : size].isspace())
             with self.subTest(what=what):
                 self.assertGreater(refused, 0.9 * len(content) / 7)
+
+    def test_a_grid_of_false_extents_is_refused(self):
+        from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid, vtkStructuredGrid
+        from vtkmodules.vtkIOXML import (
+            vtkXMLImageDataWriter,
+            vtkXMLRectilinearGridWriter,
+            vtkXMLStructuredGridWriter,
+        )
+
+        places = numpy.array([(i % 3, i // 3, 0.5 * i) for i in range(6)])
+        image, rectilinear, structured = vtkImageData(), vtkRectilinearGrid(), vtkStructuredGrid()
+        for grid in (image, rectilinear, structured):
+            grid.SetDimensions(3, 2, 1)
+            values = numpy_to_vtk(places[:, 2], deep=True)
+            values.SetName("Depth")
+            grid.GetPointData().SetScalars(values)
+        for name, count in (("X", 3), ("Y", 2), ("Z", 1)):
+            along = numpy_to_vtk(numpy.arange(float(count)), deep=True)
+            getattr(rectilinear, f"Set{name}Coordinates")(along)
+        structured.SetPoints(files.make_points(places).GetPoints())
+        for writer, grid, suffix in (
+            (vtkXMLImageDataWriter(), image, ".vti"),
+            (vtkXMLRectilinearGridWriter(), rectilinear, ".vtr"),
+            (vtkXMLStructuredGridWriter(), structured, ".vts"),
+        ):
+            for mode in (writer.SetDataModeToAscii, writer.SetDataModeToAppended):
+                mode()
+                with open(self.write(writer, grid, "whole" + suffix), "rb") as stream:
+                    content = stream.read()
+                self.assert_rows(self.read(content, "a" + suffix), places.tolist())
+                whole, piece = b'WholeExtent="0 2 0 1 0 0"', b'<Piece Extent="0 2 0 1 0 0"'
+                self.assertIn(whole, content)
+                self.assertIn(piece, content)
+                for extent, words in (
+                    (b"0 5 0 4 0 0", "has 20 cells, its pieces only 2"),
+                    (b"5 7 5 6 0 0", "a piece of extent 0 2 0 1 0 0 is not within"),
+                    (b"0 1 0 1 0 0", "is not within the whole extent 0 1 0 1 0 0"),
+                    (b"0 2000000000 0 1 0 0", "cannot hold 4,000,000,002 nodes"),
+                    (b"2 0 0 1 0 0", "'2 0 0 1 0 0' is no extent"),
+                    (b"0 2 0 1 0", "'0 2 0 1 0' is no extent"),
+                ):
+                    with self.subTest(suffix=suffix, mode=mode.__name__, extent=extent):
+                        lie = content.replace(whole, b'WholeExtent="' + extent + b'"')
+                        self.assert_refused(words, lie, "lie" + suffix)
+                with self.subTest(suffix=suffix, mode=mode.__name__):
+                    lie = content.replace(piece, b'<Piece Extent="0 1 0 1 0 0"')
+                    self.assert_refused("has 2 cells, its pieces only 1", lie, "lie" + suffix)
+                    lie = content.replace(piece, b'<Piece Extent="0 9 0 1 0 0"')
+                    self.assert_refused("is not within", lie, "lie" + suffix)
 
     def test_a_header_that_announces_too_much_is_refused(self):
         for what, suffix, content in self.whole_files():

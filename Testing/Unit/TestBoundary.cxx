@@ -4,10 +4,12 @@
 #include "Location.h"
 
 #include "Kernel/Boundary.h"
+#include "Kernel/Insertion.h"
 #include "Kernel/Predicates.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -498,6 +500,49 @@ TEST(JoinLines, TakesLooseEdgesOfParcelsInAnyOrder)
       (std::set<std::pair<Index, Index>>{
         { 8, 9 }, { 0, 8 }, { 0, 1 }, { 1, 3 }, { 3, 11 }, { 9, 11 } }));
     random.Shuffle(edges);
+  }
+}
+
+TEST(JoinLines, DoesNotLetRingsCrossWhereManyLinesEnd)
+{
+  // Edges of triangles of a lattice, each there once or as often as there are triangles beside it.
+  Mesh mesh;
+  mesh.Points = { { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } };
+  mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
+  mesh.ConnectTwins();
+  const std::vector<Point2> points = Lattice4().Points;
+  Random random(18);
+  for (int round = 0; round < 2000; ++round)
+  {
+    std::vector<std::vector<Index>> edges;
+    const auto add = [&](Index a, Index b) {
+      const std::vector<Index> edge{ std::min(a, b), std::max(a, b) };
+      const auto same = std::find(edges.begin(), edges.end(), edge);
+      if (round % 2 && same != edges.end())
+      {
+        edges.erase(same);
+        return;
+      }
+      edges.push_back(edge);
+    };
+    for (Index triangle = 0; triangle < 18; ++triangle)
+    {
+      const Index p = triangle / 2 % 3 + 4 * (triangle / 6), q = triangle % 2 ? p + 1 : p + 4;
+      if (random.Below(2))
+      {
+        add(p, q);
+        add(q, p + 5);
+        add(p + 5, p);
+      }
+    }
+    if (edges.empty())
+    {
+      continue;
+    }
+    random.Shuffle(edges);
+    const Rings joined = JoinLines(MakeLines(points, edges, false));
+    Mesh cut = mesh;
+    ASSERT_NO_THROW(InsertRings(cut, points, joined, true)) << round;
   }
 }
 

@@ -15,9 +15,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 using namespace elevation;
@@ -616,6 +618,52 @@ TEST(ConstrainedDelaunay, OfRandomLinesKeepsAllRulesAndIsUnique)
     const ConstrainedTriangulation threads = Triangulate(cloud, lines, options);
     EXPECT_EQ(std::vector<Index>(threads.Result.Triangles.begin(), threads.Result.Triangles.end()),
       std::vector<Index>(constrained.Result.Triangles.begin(), constrained.Result.Triangles.end()));
+  }
+}
+
+TEST(ConstrainedDelaunay, FarFromLinesIsTheTriangulationOfTheCoordinates)
+{
+  // Squares of an exact lattice, and of a turned one with decimals, of which the lattice's own
+  // triangulation is another one.
+  for (const bool isTurned : { false, true })
+  {
+    Cloud cloud;
+    for (int i = 0; i < 900; ++i)
+    {
+      const double x = i % 30, y = i / 30;
+      cloud.Add(isTurned ? std::round(5e7 + 2000 * x - 1500 * y) / 100 : x,
+        isTurned ? std::round(4e6 + 1500.4 * x + 2000.3 * y) / 100 : y, 0.0);
+    }
+    const auto node = [&](double x, double y) -> std::array<double, 3> {
+      return { isTurned ? 5e5 + 20 * x - 15 * y : x, isTurned ? 4e4 + 15.004 * x + 20.003 * y : y,
+        1 };
+    };
+    Lines lines;
+    lines.AddPoints({ node(3.3, 4.7), node(12.6, 9.2), node(14.2, 5.1) });
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+    ExpectRules(cloud, constrained);
+    const auto farOf = [&](const Triangulation& triangulation) {
+      std::set<std::array<Index, 3>> triangles;
+      for (std::size_t i = 0; i < triangulation.Triangles.size(); i += 3)
+      {
+        const std::array<Index, 3> corners{ triangulation.Triangles[i],
+          triangulation.Triangles[i + 1], triangulation.Triangles[i + 2] };
+        if (std::all_of(corners.begin(), corners.end(), [](Index v) {
+              return v < 900 && (v % 30 < 1 || v % 30 > 16 || v / 30 < 2 || v / 30 > 11);
+            }))
+        {
+          triangles.insert(corners);
+        }
+      }
+      return triangles;
+    };
+    DelaunayOptions options;
+    options.UseLattice = LatticeMode::Off;
+    const auto expected = farOf(elevation::Triangulate(cloud.View(), options));
+    EXPECT_GT(expected.size(), 1200u);
+    EXPECT_EQ(farOf(constrained.Result), expected);
+    options.UseLattice = LatticeMode::Automatic;
+    EXPECT_EQ(farOf(elevation::Triangulate(cloud.View(), options)) == expected, !isTurned);
   }
 }
 

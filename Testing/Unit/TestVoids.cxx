@@ -223,6 +223,18 @@ Mesh WithLake(double points, double jitter, std::vector<double>& coordinates)
   coordinates = cloud.Coordinates;
   return mesh;
 }
+
+/** Fills such a lake, checks what any patch must be, and its number of points within a share. */
+Outcome FillLake(double points, double jitter, double fit, double share)
+{
+  std::vector<double> coordinates;
+  const Mesh mesh = WithLake(points, jitter, coordinates);
+  const Outcome run = Fill(mesh, coordinates, FillOptions());
+  EXPECT_EQ(run.Found.Count(), 1);
+  ExpectPatchesFit(run, fit);
+  EXPECT_NEAR(run.Patches.NumberOfPoints(), points, share * points);
+  return run;
+}
 } // namespace
 
 TEST_P(ExtraVoids, AreFilled)
@@ -251,12 +263,7 @@ TEST(LargeHoles, OnALatticeGetTheirNodesBack)
 {
   for (const double points : { 5000.0, 100000.0 })
   {
-    std::vector<double> coordinates;
-    const Mesh mesh = WithLake(points, 0.0, coordinates);
-    const Outcome run = Fill(mesh, coordinates, FillOptions());
-    ASSERT_EQ(run.Found.Count(), 1);
-    ExpectPatchesFit(run, 1e-12);
-    EXPECT_NEAR(run.Patches.NumberOfPoints(), points, 0.02 * points);
+    const Outcome run = FillLake(points, 0.0, 1e-12, 0.02);
     for (std::size_t i = 0; i < run.Patches.Points.size(); i += 3)
     {
       ASSERT_EQ(run.Patches.Points[i], std::round(run.Patches.Points[i]));
@@ -273,13 +280,8 @@ TEST(LargeHoles, AmongScatteredPointsGetGoodTriangles)
 {
   for (const double points : { 5000.0, 100000.0 })
   {
-    std::vector<double> coordinates;
-    const Mesh mesh = WithLake(points, 0.8, coordinates);
-    const Outcome run = Fill(mesh, coordinates, FillOptions());
-    ASSERT_EQ(run.Found.Count(), 1);
-    ExpectPatchesFit(run, 1e-11);
+    const Outcome run = FillLake(points, 0.8, 1e-11, 0.05);
     const Quality quality = Judge(run);
-    EXPECT_NEAR(run.Patches.NumberOfPoints(), points, 0.05 * points);
     EXPECT_EQ(quality.Unforced, 0);
     EXPECT_EQ(quality.BadInside, 0);
     EXPECT_LE(quality.Bad, quality.Triangles / 1000);
