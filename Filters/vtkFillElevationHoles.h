@@ -17,9 +17,11 @@
  * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
- *   (floating-point numbers), 0 (integers), or nothing (strings). When points (triangles) were
- *   added, an array of global ids stays in the point (cell) data, but is no longer marked as global
- *   ids, because new ones repeat. Arrays of the input called FilledPoint or HoleId are replaced.
+ *   (floating-point numbers), 0 (integers), or nothing (strings). Arrays of the input called
+ *   FilledPoint or HoleId are replaced.
+ * - Global and pedigree ids: new points and triangles have none, which is -1 (of unsigned types the
+ *   largest number, NaN, nothing of strings). When points (triangles) were added, an array of
+ *   global ids is no longer marked as such, because this repeats; pedigree ids stay what they are.
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
  *   before they are triangulated, so that the result stays exact.
  *
@@ -188,7 +190,7 @@ public:
    * as z is, by the method that was chosen for z (where values around the hole are not finite, by
    * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and
    * other arrays get the value of the nearest point of the hole's boundary. Off: NaN, 0, or
-   * nothing. New points are never marked as ghosts.
+   * nothing. New points are never marked as ghosts, and never have ids, see above.
    */
   vtkSetMacro(InterpolatePointData, bool);
   vtkGetMacro(InterpolatePointData, bool);
