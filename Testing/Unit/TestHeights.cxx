@@ -378,6 +378,27 @@ TEST(Heights, AdaptiveDoubtsWhatIsCalmAtHalfSize)
   EXPECT_EQ(used(Sheet(38, Disc(19, 19, 8)), 0.01), Interpolation::Membrane);
 }
 
+TEST(Heights, AdaptiveDoubtsWhatIsCalmBetweenPoints)
+{
+  // Moved from its lattice, a hole is compared with values between points, which are calmer.
+  Mesh mesh = Sheet(60, Disc(30, 30, 6));
+  std::mt19937 engine(5);
+  for (Point2& p : mesh.Points)
+  {
+    p.X += 0.3 * (static_cast<double>(engine()) / 4294967296.0 - 0.5);
+    p.Y += 0.3 * (static_cast<double>(engine()) / 4294967296.0 - 0.5);
+  }
+  const auto used = [&mesh](double noise) {
+    const Elevation hills = [noise](const Point2& p) {
+      return std::sin(0.2 * p.X) * std::cos(0.15 * p.Y) + noise * Noise(p);
+    };
+    return Fill(mesh, hills, Interpolation::Adaptive).Patches.Reports[0].Method;
+  };
+  // Else these would be the cubic spline and the thin plate.
+  EXPECT_EQ(used(0.015), Interpolation::ThinPlate);
+  EXPECT_EQ(used(0.32), Interpolation::Membrane);
+}
+
 TEST(Heights, DoNotOvershootSteepRims)
 {
   // The hole lies in a plain, and walls as steep as they can be stand around it.
