@@ -37,7 +37,7 @@ constexpr int EnoughPlaces = 2;
  * rough one must not decide.
  */
 constexpr double LogarithmOfPrior[3] = { 0.0, 1.5, -1.0 };
-constexpr double ObservationsPerPlace = 4.0;
+constexpr double ObservationsPerPlace = 2.0;
 
 /**
  * What is added to the logarithm of an error that was found at half the size; half of that where

@@ -30,11 +30,11 @@
  * on where points lie to each other alone, so the factors of the hole serve at all places. A place
  * counts when surface is at each of the moved points; where a hole has less than two such places,
  * points at half the size are tried, then at a quarter.
- * Each place is worth four observations of a normal error: a method's share in the result is its
- * prior share (thin plate 0.76, membrane 0.17, cubic 0.06) divided by the fourth power of its root
- * mean square error at each place. With 32 places one that errs 5 % more than another has a 500th
- * of its share; with one or two the thin plate keeps most. Shares below 3 % of the largest are left
- * out. At reduced size the smoother methods' errors count more, as the surface is flat between its
+ * Each place is worth two observations of a normal error, as neighbouring ones overlap: a method's
+ * share in the result is its prior share (thin plate 0.76, membrane 0.17, cubic 0.06) divided by
+ * the square of its root mean square error at each place. With 32 places one that errs 10 % more
+ * than another has a 400th of its share; with one or two the thin plate keeps most. Shares below
+ * 3 % of the largest are left out. At reduced size the smoother methods' errors count more, as the surface is flat between its
  * points: by 22 % (thin plate) and 82 % (cubic) for each halving. So they do where points that are
  * moved do not meet points, off lattices: by up to half as much, in logarithms.
  *

@@ -368,14 +368,19 @@ TEST(Heights, AdaptiveTakesTheThinPlateWhereItCannotTry)
 TEST(Heights, AdaptiveDoubtsWhatIsCalmAtHalfSize)
 {
   // There is room for a hole of half the size only, where surfaces look calmer than they are.
-  const auto used = [](const Mesh& mesh, double noise) {
-    const Elevation hills = [noise](const Point2& p) {
-      return std::sin(0.1 * p.X) * std::cos(0.08 * p.Y) + noise * Noise(p);
+  const auto used = [](int size, double frequency) {
+    const Elevation hills = [frequency](const Point2& p) {
+      return std::sin(frequency * p.X) * std::cos(0.8 * frequency * p.Y);
     };
+    const double middle = 0.5 * size;
+    const Mesh mesh = Sheet(size, Disc(middle, middle, 12));
     return Fill(mesh, hills, Interpolation::Adaptive).Patches.Reports[0].Method;
   };
-  EXPECT_EQ(used(Sheet(80, Disc(40, 40, 8)), 0.01), Interpolation::ThinPlate);
-  EXPECT_EQ(used(Sheet(38, Disc(19, 19, 8)), 0.01), Interpolation::Membrane);
+  for (const double frequency : { 0.172, 0.242, 0.381 })
+  {
+    EXPECT_EQ(used(57, frequency), Interpolation::ThinPlate) << frequency;
+  }
+  EXPECT_EQ(used(120, 0.242), Interpolation::Cubic);
 }
 
 TEST(Heights, AdaptiveDoubtsWhatIsCalmBetweenPoints)
