@@ -17,6 +17,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTypeInt32Array.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <cmath>
@@ -366,11 +367,17 @@ bool IsGhostArray(vtkAbstractArray* array)
   return array->GetName() && !std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName());
 }
 
+bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array)
+{
+  return array == data->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) ||
+    array == data->GetAbstractAttribute(vtkDataSetAttributes::PEDIGREEIDS);
+}
+
 namespace
 {
-/** The tuples of @a input, and behind them as many as are missing: NaN, 0 or nothing. */
+/** The tuples of @a input, and behind them as many as are missing, without a value. */
 vtkSmartPointer<vtkAbstractArray> Extend(
-  vtkAbstractArray* input, vtkIdType more, const Progress& progress)
+  vtkAbstractArray* input, vtkIdType more, bool areIds, const Progress& progress)
 {
   const vtkIdType count = input->GetNumberOfTuples();
   auto output = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(input->GetDataType()));
@@ -394,16 +401,16 @@ vtkSmartPointer<vtkAbstractArray> Extend(
     ReportStep(progress, static_cast<std::size_t>(i), all);
     output->InsertTuples(i, std::min(block, count - i), i, input);
   }
-  if (vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(output.Get()))
+  if (vtkArrayDownCast<vtkDataArray>(output.Get()))
   {
-    const double value = IsFloatingPoint(output) ? vtkMath::Nan() : 0.0;
-    for (vtkIdType i = count; i < count + more; ++i)
+    // In ids 0 names something. As an unsigned number -1 is the largest.
+    const vtkVariant value =
+      IsFloatingPoint(output) ? vtkVariant(vtkMath::Nan()) : vtkVariant(areIds ? -1 : 0);
+    const vtkIdType components = output->GetNumberOfComponents();
+    for (vtkIdType i = components * count; i < components * (count + more); ++i)
     {
-      ReportStep(progress, static_cast<std::size_t>(i), all);
-      for (int c = 0; c < output->GetNumberOfComponents(); ++c)
-      {
-        numbers->SetComponent(i, c, value);
-      }
+      ReportStep(progress, static_cast<std::size_t>(i / components), all);
+      output->SetVariantValue(i, value);
     }
   }
   return output;
@@ -424,7 +431,8 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttribu
     vtkAbstractArray* before = input->GetAbstractArray(i);
     const double count = input->GetNumberOfArrays();
     const Progress ofArray = Part(progress, i / count, (i + 1) / count);
-    const vtkSmartPointer<vtkAbstractArray> after = Extend(before, more, Part(ofArray, 0.0, 0.5));
+    const vtkSmartPointer<vtkAbstractArray> after =
+      Extend(before, more, IsIdArray(input, before), Part(ofArray, 0.0, 0.5));
     fill(before, after, Part(ofArray, 0.5, 1.0));
     const int index = output->AddArray(after);
     for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)

@@ -106,9 +106,13 @@ bool IsFloatingPoint(vtkAbstractArray* array);
 /** Whether the array holds the flags of ghost points or cells. */
 bool IsGhostArray(vtkAbstractArray* array);
 
+/** Whether an array of @a data is one of global or pedigree ids: what names a point or cell. */
+bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array);
+
 /**
- * All arrays of the input, extended by @a more tuples (NaN, 0 or nothing), which fill(input array,
- * output array, progress) sets. The input's own arrays when there are no more.
+ * All arrays of the input, extended by @a more tuples (NaN, 0 or nothing; for ids NaN, -1, the
+ * largest number of an unsigned type, or nothing), which fill(input array, output array, progress)
+ * sets. The input's own arrays when there are no more.
  */
 void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttributes* output,
   const Progress& progress,

@@ -72,9 +72,10 @@ Index PointsThatFit()
 }
 
 /** Whether new points get values of an array as they get their z. */
-bool IsInterpolated(vtkAbstractArray* array)
+bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
 {
-  return elevation::IsFloatingPoint(array) && !elevation::IsGhostArray(array);
+  return elevation::IsFloatingPoint(array) && !elevation::IsGhostArray(array) &&
+    !elevation::IsIdArray(pointData, array);
 }
 
 /** The components of all such arrays, one after another. */
@@ -84,7 +85,9 @@ std::vector<elevation::Values> AttributesOf(vtkPointData* pointData)
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* numbers = pointData->GetArray(i);
-    for (int c = 0; numbers && IsInterpolated(numbers) && c < numbers->GetNumberOfComponents(); ++c)
+    const int count =
+      numbers && IsInterpolated(pointData, numbers) ? numbers->GetNumberOfComponents() : 0;
+    for (int c = 0; c < count; ++c)
     {
       attributes.push_back([numbers, c](Index id) { return numbers->GetComponent(id, c); });
     }
@@ -121,11 +124,11 @@ void PassPointData(vtkPointData* input, const FillResult& patches, bool interpol
   std::size_t attribute = 0;
   elevation::PassExtended(input, patches.NumberOfPoints(), output, progress,
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
-      if (!interpolate || elevation::IsGhostArray(before))
+      if (!interpolate || elevation::IsGhostArray(before) || elevation::IsIdArray(input, before))
       {
         return;
       }
-      if (IsInterpolated(before))
+      if (IsInterpolated(input, before))
       {
         SetInterpolated(patches, attribute, before == input->GetNormals(),
           vtkArrayDownCast<vtkDataArray>(after), ofArray);

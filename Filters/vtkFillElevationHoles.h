@@ -17,9 +17,11 @@
  * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
- *   (floating-point numbers), 0 (integers), or nothing (strings). When points (triangles) were
- *   added, an array of global ids stays in the point (cell) data, but is no longer marked as global
- *   ids, because new ones repeat. Arrays of the input called FilledPoint or HoleId are replaced.
+ *   (floating-point numbers), 0 (integers), or nothing (strings). Arrays of the input called
+ *   FilledPoint or HoleId are replaced.
+ * - Global and pedigree ids: new points and triangles have none, which is -1 (of unsigned types the
+ *   largest number, NaN, nothing of strings). When points (triangles) were added, an array of
+ *   global ids is no longer marked as such, because this repeats; pedigree ids stay what they are.
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
  *   before they are triangulated, so that the result stays exact.
  *
@@ -133,7 +135,7 @@ public:
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
-   *   surface around it best. The hole's boundary is moved to up to 16 places around it, where the
+   *   surface around it best. The hole's boundary is moved to up to 32 places beside it, where the
    *   surface is known, and the methods predict there what is inside. Methods that predict it
    *   about equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred.
    *   Output 1 tells the one with the largest share.
@@ -188,7 +190,7 @@ public:
    * as z is, by the method that was chosen for z (where values around the hole are not finite, by
    * NEIGHBOR_MEAN, which leaves NaN out; normals are brought to unit length); integers, strings and
    * other arrays get the value of the nearest point of the hole's boundary. Off: NaN, 0, or
-   * nothing. New points are never marked as ghosts.
+   * nothing. New points are never marked as ghosts, and never have ids, see above.
    */
   vtkSetMacro(InterpolatePointData, bool);
   vtkGetMacro(InterpolatePointData, bool);

@@ -51,9 +51,10 @@
  *   if the added ones are exact in it, else they are double. Arrays have at the added points the
  *   values of the constraints' array with the same name and number of components (for integers and
  *   strings also of the same type), at crossings values interpolated as z, normals brought to unit
- *   length; where there are none, NaN (float and double), 0 or an empty string. So values repeat:
- *   an array of global ids is no longer marked as such, and pedigree ids of added points tell
- *   nothing that the constraints' array does not.
+ *   length; where there are none, NaN (float and double), 0 (in global and pedigree ids -1, or the
+ *   largest number of an unsigned type) or an empty string. So values repeat: an array of global
+ *   ids is no longer marked as such, and pedigree ids of added points tell nothing that the
+ *   constraints' array does not.
  * - The coordinates are triangulated as they are, never as a lattice: far from lines the triangles
  *   are those of LatticeMode Off without constraints. So on a lattice that rounding has moved, its
  *   cells are cut another way than without lines, each by its own rounding, also far from them.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 namespace elevation
 {
@@ -19,15 +20,19 @@ namespace
 constexpr double LeastLength = 1e-150;
 constexpr double LargestLength = 1e150;
 
-/** Patches of more points are made one by one and report progress; others several at a time. */
-constexpr double PointsPerReport = 10000.0;
+/**
+ * Patches of more points are made one by one and report progress, on one thread those of a quarter
+ * of that; others together, up to so many points a thread.
+ */
+constexpr double PointsAlone = 10000.0;
+constexpr double PointsTogether = 50000.0;
 
 /** What any patch costs, as so many points; trying methods takes about a millisecond. */
 constexpr double PointsPerPatch = 10.0;
 constexpr double PointsPerTrial = 150.0;
 
-/** Patches are made together until they have so many points, on one thread. */
-constexpr double PointsPerPiece = 1000.0;
+/** What a thread takes at a time: patches that have so many points, or one. */
+constexpr double PointsPerPiece = 250.0;
 
 /** Distance between neighbouring numbers at the size of @a x, as the points are stored. */
 double StepAt(double x, bool singlePrecision)
@@ -399,49 +404,59 @@ FillResult FillHoles(
     });
   };
 
-  // Patches are made several at a time, which must not take long, as only between them progress is
-  // reported. A large one is made alone. They are appended in the order of holes.
+  // A large patch is made alone and reports progress; others are made together, so many that
+  // threads seldom wait for each other. They are appended in the order of holes.
+  const double alone = threads > 1 ? PointsAlone : PointsAlone / 4.0;
   result.Attributes.resize(options.Attributes.size());
   double done = 0.0;
   for (Index begin = 0; begin < holes.Count();)
   {
     const double before = done;
     Index end = begin;
-    std::vector<Index> pieces{ begin };
-    double ofPiece = 0.0;
     do
     {
-      const double share = workOf(end++);
-      done += share;
-      ofPiece += share;
-      if (ofPiece > PointsPerPiece)
+      done += workOf(end++);
+    } while (end < holes.Count() && end - begin < 4096 &&
+      done - before + workOf(end) <= PointsTogether * threads && workOf(end) <= alone &&
+      workOf(begin) <= alone);
+    // From the largest on, as what ends last should not take long.
+    std::vector<std::pair<double, Index>> order;
+    for (Index hole = begin; hole < end; ++hole)
+    {
+      if (result.Reports[hole].Status == FillStatus::Filled)
       {
-        pieces.push_back(end);
+        order.emplace_back(-workOf(hole), hole);
+      }
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<std::size_t> pieces{ 0 };
+    double ofPiece = 0.0;
+    for (std::size_t k = 0; k < order.size(); ++k)
+    {
+      ofPiece -= order[k].first;
+      if (ofPiece > PointsPerPiece || k + 1 == order.size())
+      {
+        pieces.push_back(k + 1);
         ofPiece = 0.0;
       }
-    } while (end < holes.Count() && end - begin < 4096 &&
-      done - before + workOf(end) <= PointsPerReport * threads && workOf(end) <= PointsPerReport);
-    if (pieces.back() < end)
-    {
-      pieces.push_back(end);
     }
     std::vector<FilledHole> filled(end - begin);
     const double all = work > 0.0 ? work : 1.0;
     const Progress ofBatch = Part(filling, std::min(1.0, before / all), std::min(1.0, done / all));
     Report(ofBatch, 0.0);
-    if (end - begin == 1)
+    const bool isAlone = end - begin == 1;
+    if (isAlone)
     {
       plans[begin].NumberOfThreads = threads;
     }
-    ForEachPiece(static_cast<Index>(pieces.size()) - 1, threads, [&](Index piece) {
-      for (Index hole = pieces[piece]; hole < pieces[piece + 1]; ++hole)
-      {
-        if (result.Reports[hole].Status == FillStatus::Filled)
+    ForEachPiece(static_cast<Index>(pieces.size()) - 1, isAlone ? 1 : threads,
+      isAlone ? Progress() : ofBatch, [&](Index piece) {
+        for (std::size_t k = pieces[piece]; k < pieces[piece + 1]; ++k)
         {
-          fill(hole, end - begin == 1 ? ofBatch : Progress(), filled[hole - begin]);
+          const Index hole = order[k].second;
+          fill(hole, isAlone ? ofBatch : Progress(), filled[hole - begin]);
         }
-      }
-    });
+      });
     for (Index hole = begin; hole < end; ++hole)
     {
       HoleReport& report = result.Reports[hole];

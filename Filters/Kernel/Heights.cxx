@@ -24,7 +24,7 @@ constexpr std::size_t MostCentres = 300;
 constexpr double LeastDistance = 0.02;
 
 /** Places where Adaptive tries the methods, new points it compares there, places that suffice. */
-constexpr int NumberOfPlaces = 16;
+constexpr int NumberOfPlaces = 32;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr Index LeastProbes = 32;
 constexpr Index MostProbes = 100;
@@ -37,11 +37,12 @@ constexpr int EnoughPlaces = 2;
  * rough one must not decide.
  */
 constexpr double LogarithmOfPrior[3] = { 0.0, 1.5, -1.0 };
-constexpr double ObservationsPerPlace = 4.0;
+constexpr double ObservationsPerPlace = 2.0;
 
 /**
- * What is added to the logarithm of an error that was found at half the size. Between its points a
- * surface is taken to be flat, so that the smoother methods look better there than they are.
+ * What is added to the logarithm of an error that was found at half the size; half of that where
+ * the moved points lie anywhere in triangles. Between its points a surface is taken to be flat, so
+ * that the smoother methods look better there than they are.
  */
 constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.6 };
 
@@ -134,6 +135,13 @@ public:
       value += this->Shares[k] * values(this->CornerOf(k));
     }
     return value;
+  }
+
+  /** How much of what is rough from point to point the interpolation takes away; 0 at a point. */
+  double Smoothing() const
+  {
+    return 1.0 - this->Shares[0] * this->Shares[0] - this->Shares[1] * this->Shares[1] -
+      this->Shares[2] * this->Shares[2];
   }
 
   /** The corner that counts the most there. */
@@ -539,17 +547,16 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
     const Point2 direction{ std::cos(angle), std::sin(angle) };
     const auto along = [&](const Point2& p) { return p.X * direction.X + p.Y * direction.Y; };
     double near = std::numeric_limits<double>::infinity();
-    double far = -near;
     Index end = 0;
     for (std::size_t i = 0; i < firstProbe; ++i)
     {
       near = std::min(near, along(normalized[i]));
-      far = std::max(far, along(normalized[i]));
       const double ahead = along(normalized[i]) - along(normalized[end]);
       end = i < static_cast<std::size_t>(boundary) && ahead > 0.0 ? static_cast<Index>(i) : end;
     }
-    // Just beyond the rings; by a step from point to point, as lattices repeat themselves.
-    const double distance = size * (far - near) / this->Scale + this->Patch.Spacing;
+    // As near as can be: what is moved touches the hole with its ring. By a step from point to
+    // point, as lattices repeat themselves.
+    const double distance = size * (along(normalized[end]) - near) / this->Scale;
     const Point2 origin = points[end];
     Index start = None;
     fans.Visit(this->Surface, this->Patch.BoundaryIds[end], [&](Index h) {
@@ -566,6 +573,7 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
       return false;
     }
     const Point2 target = this->Surface.PointOf(walk.Corner());
+    double smoothing = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i)
     {
       if (!walk.To({ target.X + size * (points[i].X - origin.X),
@@ -574,6 +582,7 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
         return false;
       }
       moved[i] = walk.ValueOf(values);
+      smoothing += walk.Smoothing() / static_cast<double>(points.size());
     }
     if (!AllFinite(moved))
     {
@@ -625,13 +634,14 @@ void Heights::Choose(const Fans& fans, const Values& values, const Progress& pro
         squares[1 + s] += error * error;
       }
     }
+    // Anywhere in triangles, one half on the mean.
+    const double halvings = std::max(smoothing, -std::log(size) / std::log(2.0));
     for (int i = 0; i < 3; ++i)
     {
       // What is exact but for rounding must not outweigh all other places.
       const double error =
         0.5 * std::log(squares[i] + std::pow(LeastError * range, 2) + LeastSquare);
-      scores[i] -=
-        ObservationsPerPlace * (error - PenaltyOfHalfSize[i] * std::log(size) / std::log(2.0));
+      scores[i] -= ObservationsPerPlace * (error + PenaltyOfHalfSize[i] * halvings);
     }
     return true;
   };

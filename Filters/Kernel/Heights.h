@@ -25,17 +25,18 @@
  * their boundary.
  *
  * Adaptive leaves out what is like the hole: its boundary, its ring and some of its new points are
- * moved to 16 places (four for very large holes) around it, where the surface is known, and each
- * method predicts there the points inside from those around. Splines and membrane depend on where
- * points lie to each other alone, so the factors of the hole serve at all places. A place counts
- * when surface is at each of the moved points; where a hole has less than two such places, points
- * at half the size are tried, then at a quarter.
- * Each place is worth four observations of a normal error: a method's share in the result is its
- * prior share (thin plate 0.76, membrane 0.17, cubic 0.06) divided by the fourth power of its root
- * mean square error at each place. With 16 places one that errs 10 % more than another has a 400th
- * of its share; with one or two the thin plate keeps most. Shares below 3 % of the largest are left
- * out. At reduced size the smoother methods' errors count more, as the surface is flat between its
- * points: by 22 % (thin plate) and 82 % (cubic) for each halving.
+ * moved to 32 places (four for very large holes) around it, as near as the surface is known there,
+ * and each method predicts there the points inside from those around. Splines and membrane depend
+ * on where points lie to each other alone, so the factors of the hole serve at all places. A place
+ * counts when surface is at each of the moved points; where a hole has less than two such places,
+ * points at half the size are tried, then at a quarter.
+ * Each place is worth two observations of a normal error, as neighbouring ones overlap: a method's
+ * share in the result is its prior share (thin plate 0.76, membrane 0.17, cubic 0.06) divided by
+ * the square of its root mean square error at each place. With 32 places one that errs 10 % more
+ * than another has a 400th of its share; with one or two the thin plate keeps most. Shares below
+ * 3 % of the largest are left out. At reduced size the smoother methods' errors count more, as the surface is flat between its
+ * points: by 22 % (thin plate) and 82 % (cubic) for each halving. So they do where points that are
+ * moved do not meet points, off lattices: by up to half as much, in logarithms.
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
  * Splines may leave the range of boundary and ring, as a summit that was lost rises above all that

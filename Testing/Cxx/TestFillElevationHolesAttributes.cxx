@@ -18,6 +18,7 @@
 #include "vtkShortArray.h"
 #include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnsignedLongLongArray.h"
 #include "vtkVariantArray.h"
 
 #include <cmath>
@@ -206,7 +207,7 @@ void TestPoints(vtkPolyData* input, vtkPolyData* output)
         "colours");
     }
     Check(data->GetArray("Bit")->GetComponent(i, 0) == static_cast<double>(nearest % 2), "bits");
-    Check(names->GetValue(i) == "n" + std::to_string(nearest), "pedigree ids");
+    Check(names->GetValue(i).empty(), "new points have no pedigree ids");
     Check(twoNames->GetValue(2 * i + 1) == "n" + std::to_string(2 * nearest + 1), "two strings");
     Check(variants->GetValue(i).ToInt() == nearest, "variants");
   }
@@ -223,12 +224,44 @@ void TestCells(vtkPolyData* input, vtkPolyData* output)
   auto* names = vtkStringArray::SafeDownCast(data->GetAbstractArray("CellOrigin"));
   for (vtkIdType i = input->GetNumberOfCells(); i < output->GetNumberOfCells(); ++i)
   {
-    Check(data->GetArray("CellIds")->GetComponent(i, 0) == 0.0, "0 for ids of new triangles");
+    Check(data->GetArray("CellIds")->GetComponent(i, 0) == -1.0, "-1 for ids of new triangles");
     Check(names->GetValue(i).empty(), "no name for new triangles");
     Check(std::isnan(data->GetArray("Flow")->GetComponent(i, 2)), "NaN for floating point");
     Check(data->GetArray("CellColors")->GetComponent(i, 3) == 0.0, "0 for colours");
     Check(data->GetArray(vtkDataSetAttributes::GhostArrayName())->GetComponent(i, 0) == 0.0,
       "new triangles are no ghosts");
+  }
+}
+
+/** New points and triangles have no ids, whatever the type; ids are not interpolated. */
+void TestIds()
+{
+  auto input = MakeInput();
+  const vtkIdType points = input->GetNumberOfPoints();
+  const vtkIdType cells = input->GetNumberOfCells();
+  input->GetPointData()->SetGlobalIds(MakeNumbered<vtkUnsignedLongLongArray>(points, "Large", 1));
+  input->GetPointData()->SetPedigreeIds(MakeNumbered<vtkDoubleArray>(points, "Real", 1));
+  input->GetCellData()->SetPedigreeIds(MakeNumbered<vtkUnsignedCharArray>(cells, "Small", 1));
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->Update();
+  vtkPolyData* output = fill->GetOutput();
+  vtkPointData* ofPoints = output->GetPointData();
+  auto* large = vtkUnsignedLongLongArray::SafeDownCast(ofPoints->GetArray("Large"));
+  Check(!ofPoints->GetGlobalIds(), "repeated point ids are no global ids");
+  Check(ofPoints->GetPedigreeIds() == ofPoints->GetArray("Real"), "pedigree ids of a point");
+  for (vtkIdType i = points; i < output->GetNumberOfPoints(); ++i)
+  {
+    Check(large->GetValue(i) == ~0ull, "the largest number for unsigned ids");
+    Check(std::isnan(ofPoints->GetArray("Real")->GetComponent(i, 0)), "NaN for real ids");
+    double p[3];
+    output->GetPoint(i, p);
+    const double wind = ofPoints->GetArray("Wind")->GetComponent(i, 1);
+    Check(std::fabs(wind - Linear(p[0], p[1], 1)) < 1e-4, "other arrays get their own values");
+  }
+  for (vtkIdType i = cells; i < output->GetNumberOfCells(); ++i)
+  {
+    Check(output->GetCellData()->GetArray("Small")->GetComponent(i, 0) == 255.0, "also of a byte");
   }
 }
 } // namespace
@@ -242,6 +275,7 @@ int TestFillElevationHolesAttributes(int, char*[])
   Check(fill->GetNumberOfFilledHoles() == 1, "the hole is filled");
   TestPoints(input, fill->GetOutput());
   TestCells(input, fill->GetOutput());
+  TestIds();
   // The rims of the second output have the arrays of points.
   vtkPolyData* rims = fill->GetOutput(1);
   Check(rims->GetPointData()->GetAbstractArray("Origin") != nullptr &&

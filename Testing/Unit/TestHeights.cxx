@@ -302,7 +302,7 @@ TEST(Heights, AdaptiveMixesWhatPredictsAboutEquallyWell)
   // A little noise: neither spline is much better than the other at most places.
   const Mesh mesh = Sheet(60, Disc(30, 30, 8));
   int mixed = 0;
-  for (const double noise : { 0.0, 0.001, 0.002, 0.003, 0.2, 0.3, 0.4, 1.0 })
+  for (const double noise : { 0.0, 0.001, 0.01, 0.0175, 0.1, 0.25, 0.275, 1.0 })
   {
     const Elevation hills = [noise](const Point2& p) {
       return std::sin(0.2 * p.X) * std::cos(0.15 * p.Y) + noise * Noise(p);
@@ -368,14 +368,40 @@ TEST(Heights, AdaptiveTakesTheThinPlateWhereItCannotTry)
 TEST(Heights, AdaptiveDoubtsWhatIsCalmAtHalfSize)
 {
   // There is room for a hole of half the size only, where surfaces look calmer than they are.
-  const auto used = [](const Mesh& mesh, double noise) {
+  const auto used = [](int size, double frequency) {
+    const Elevation hills = [frequency](const Point2& p) {
+      return std::sin(frequency * p.X) * std::cos(0.8 * frequency * p.Y);
+    };
+    const double middle = 0.5 * size;
+    const Mesh mesh = Sheet(size, Disc(middle, middle, 12));
+    return Fill(mesh, hills, Interpolation::Adaptive).Patches.Reports[0].Method;
+  };
+  for (const double frequency : { 0.172, 0.242, 0.381 })
+  {
+    EXPECT_EQ(used(57, frequency), Interpolation::ThinPlate) << frequency;
+  }
+  EXPECT_EQ(used(120, 0.242), Interpolation::Cubic);
+}
+
+TEST(Heights, AdaptiveDoubtsWhatIsCalmBetweenPoints)
+{
+  // Moved from its lattice, a hole is compared with values between points, which are calmer.
+  Mesh mesh = Sheet(60, Disc(30, 30, 6));
+  std::mt19937 engine(5);
+  for (Point2& p : mesh.Points)
+  {
+    p.X += 0.3 * (static_cast<double>(engine()) / 4294967296.0 - 0.5);
+    p.Y += 0.3 * (static_cast<double>(engine()) / 4294967296.0 - 0.5);
+  }
+  const auto used = [&mesh](double noise) {
     const Elevation hills = [noise](const Point2& p) {
-      return std::sin(0.1 * p.X) * std::cos(0.08 * p.Y) + noise * Noise(p);
+      return std::sin(0.2 * p.X) * std::cos(0.15 * p.Y) + noise * Noise(p);
     };
     return Fill(mesh, hills, Interpolation::Adaptive).Patches.Reports[0].Method;
   };
-  EXPECT_EQ(used(Sheet(80, Disc(40, 40, 8)), 0.01), Interpolation::ThinPlate);
-  EXPECT_EQ(used(Sheet(38, Disc(19, 19, 8)), 0.01), Interpolation::Membrane);
+  // Else these would be the cubic spline and the thin plate.
+  EXPECT_EQ(used(0.015), Interpolation::ThinPlate);
+  EXPECT_EQ(used(0.32), Interpolation::Membrane);
 }
 
 TEST(Heights, DoNotOvershootSteepRims)
