@@ -11,6 +11,7 @@
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkGridDelaunay2D.h"
+#include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -261,6 +262,36 @@ void TestNormalsAtCrossings()
   }
 }
 
+/** Ids name input points; those of the constraints are theirs, and crossings have none. */
+void TestIds()
+{
+  auto input = MakeInput(VTK_DOUBLE);
+  input->GetPointData()->SetPedigreeIds(input->GetPointData()->GetArray("Inline"));
+  vtkNew<vtkIdTypeArray> own;
+  own->SetName("Own");
+  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
+  {
+    own->InsertNextValue(i);
+  }
+  input->GetPointData()->SetGlobalIds(own);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+  delaunay->SetSourceData(
+    MakeLines({ { { 1.5, 1.5, 0 }, { 3.5, 3.5, 0 } }, { { 1.5, 3.5, 0 }, { 3.5, 2.0, 0 } } }));
+  delaunay->Update();
+  vtkPointData* data = delaunay->GetOutput()->GetPointData();
+  const vtkIdType last = delaunay->GetOutput()->GetNumberOfPoints() - 1;
+  Check(delaunay->GetNumberOfConstraintCrossings() == 1 && data->GetPedigreeIds() &&
+      data->GetPedigreeIds() == data->GetArray("Inline") &&
+      data->GetArray("Inline")->GetTuple1(80) == 80 &&
+      data->GetArray("Inline")->GetTuple1(81) == 7 &&
+      data->GetArray("Inline")->GetTuple1(last) == -1,
+    "a crossing has no pedigree id");
+  Check(!data->GetGlobalIds() && data->GetArray("Own")->GetTuple1(80) == 80 &&
+      data->GetArray("Own")->GetTuple1(81) == -1 && data->GetArray("Own")->GetTuple1(last) == -1,
+    "added points have no global ids, which then are no longer one for each point");
+}
+
 void TestRefusals()
 {
   const auto messageOf = [](vtkPolyData* source) {
@@ -357,6 +388,7 @@ int TestGridDelaunay2DConstraints(int, char*[])
   TestNothingIsAdded();
   TestPointsAreAdded();
   TestNormalsAtCrossings();
+  TestIds();
   TestRefusals();
   TestProgressAndAbort();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
