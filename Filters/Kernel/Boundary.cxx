@@ -358,7 +358,9 @@ struct Neighbors
  * The spacing at some vertices: half the distance of the 6th nearest vertex.
  * In a Delaunay triangulation the next nearest vertex is always a neighbour of the vertex or of one
  * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
- * with very many neighbours, which would make it quadratic.
+ * with very many neighbours, which would make it quadratic. In other meshes it finds the 6th of
+ * those that it comes across, which are the same in any order of vertices: it passes all that are
+ * equally near at once, and none as far as the 6th.
  * @param[in]  wanted    best in an order in which neighbours are near each other
  * @param[out] spacings  at the place of each vertex; the others stay as they are
  */
@@ -369,10 +371,11 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
   {
     double Squared;
     Index Vertex;
+    bool IsPassed;
   };
   const Index* ids = neighbors.Ids.data();
   constexpr int last = NeighborOfSpacing - 1;
-  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None };
+  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None, false };
   const auto find = [&](Index begin, Index end) {
     std::vector<Index> found;
     // Vertices that the one at hand has had among its nearest. One may have taken the place of
@@ -402,8 +405,7 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
         Prefetch(ids + neighbors.Offsets[ids[k]]);
       }
 
-      // The nearest vertices found: those passed in the order in which they were, then the next
-      // ones by distance. No more are needed than will be passed.
+      // The nearest vertices found.
       Candidate nearest[NeighborOfSpacing];
       std::fill_n(nearest, NeighborOfSpacing, nothing);
       const Point2 p = list.Points.At(v);
@@ -412,59 +414,78 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
         return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
       };
       known[static_cast<std::uint32_t>(v) % places] = keyOf(v);
-      Index passed = v;
-      for (int k = 0;; ++k)
-      {
+      const auto pass = [&](Index passed) {
         const std::uint32_t first = neighbors.Offsets[passed];
         const std::uint32_t size = neighbors.Offsets[passed + 1] - first;
-        if (k == 0 || size <= NeighborsOfHub)
+        if (passed != v && size > NeighborsOfHub)
         {
-          if (found.size() < size)
+          return;
+        }
+        if (found.size() < size)
+        {
+          found.resize(size);
+        }
+        // Those that are near enough, without branches, for which they are cannot be predicted.
+        const double limit = nearest[last].Squared;
+        Index* next = found.data();
+        const Index* groupsEnd = ids + first + size;
+        for (const Index* group = ids + first; group != groupsEnd; group += Neighbors::Group)
+        {
+          for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
           {
-            found.resize(size);
-          }
-          // Those that are near enough, without branches, for which they are cannot be predicted.
-          const double limit = nearest[last].Squared;
-          Index* next = found.data();
-          const Index* groupsEnd = ids + first + size;
-          for (const Index* group = ids + first; group != groupsEnd; group += Neighbors::Group)
-          {
-            for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
-            {
-              const Index w = group[j];
-              *next = w;
-              const int isNear = squaredTo(w) < limit;
-              const int isNew = known[static_cast<std::uint32_t>(w) % places] != keyOf(w);
-              next += isNear & isNew;
-            }
-          }
-          const std::size_t numberFound = next - found.data();
-          for (std::size_t i = 0; i < numberFound; ++i)
-          {
-            const Candidate candidate{ squaredTo(found[i]), found[i] };
-            bool isKnown = candidate.Vertex == v;
-            for (const Candidate& other : nearest)
-            {
-              isKnown |= other.Vertex == candidate.Vertex;
-            }
-            if (isKnown || !(candidate.Squared < nearest[last].Squared))
-            {
-              continue;
-            }
-            known[static_cast<std::uint32_t>(candidate.Vertex) % places] = keyOf(candidate.Vertex);
-            int at = last;
-            for (; at > k && candidate.Squared < nearest[at - 1].Squared; --at)
-            {
-              nearest[at] = nearest[at - 1];
-            }
-            nearest[at] = candidate;
+            const Index w = group[j];
+            *next = w;
+            const int isNear = squaredTo(w) < limit;
+            const int isNew = known[static_cast<std::uint32_t>(w) % places] != keyOf(w);
+            next += isNear & isNew;
           }
         }
-        if (k == last || nearest[k].Vertex == None)
+        const std::size_t numberFound = next - found.data();
+        for (std::size_t i = 0; i < numberFound; ++i)
         {
-          break;
+          const Candidate candidate{ squaredTo(found[i]), found[i], false };
+          bool isKnown = candidate.Vertex == v;
+          for (const Candidate& other : nearest)
+          {
+            isKnown |= other.Vertex == candidate.Vertex;
+          }
+          if (isKnown || !(candidate.Squared < nearest[last].Squared))
+          {
+            continue;
+          }
+          known[static_cast<std::uint32_t>(candidate.Vertex) % places] = keyOf(candidate.Vertex);
+          int at = last;
+          for (; at > 0 && candidate.Squared < nearest[at - 1].Squared; --at)
+          {
+            nearest[at] = nearest[at - 1];
+          }
+          nearest[at] = candidate;
         }
-        passed = nearest[k].Vertex;
+      };
+      pass(v);
+      for (Candidate* next = nearest; next != nearest + last;)
+      {
+        if (next->IsPassed || !(next->Squared < nearest[last].Squared))
+        {
+          ++next;
+          continue;
+        }
+        Index equal[NeighborOfSpacing];
+        int numberOfEqual = 0;
+        const double squared = next->Squared;
+        for (; next != nearest + last && next->Squared == squared; ++next)
+        {
+          if (!next->IsPassed)
+          {
+            equal[numberOfEqual++] = next->Vertex;
+            next->IsPassed = true;
+          }
+        }
+        for (int i = 0; i < numberOfEqual; ++i)
+        {
+          pass(equal[i]);
+        }
+        next = nearest; // nearer ones may have come
       }
       int k = last;
       while (k > 0 && nearest[k].Vertex == None)
@@ -620,8 +641,20 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
   for (Index walk = 0; walk < walks.Count(); ++walk)
   {
     auto cutRing = [&](std::size_t first) {
-      auto lowest = std::min_element(path.begin() + first, path.end(),
-        [&](Index v, Index w) { return IsLower(mesh.PointOf(v), mesh.PointOf(w)); });
+      auto lowest = path.begin() + first;
+      for (auto v = lowest + 1; v != path.end(); ++v)
+      {
+        // Two vertices may be at one place: then the next ones tell.
+        const auto nextTo = [&](const auto& w) {
+          return mesh.PointOf(w + 1 == path.end() ? path[first] : w[1]);
+        };
+        const Point2& p = mesh.PointOf(*v);
+        const Point2& q = mesh.PointOf(*lowest);
+        if (IsLower(p, q) || (p == q && IsLower(nextTo(v), nextTo(lowest))))
+        {
+          lowest = v;
+        }
+      }
       std::rotate(path.begin() + first, lowest, path.end());
       rings.emplace_back(path.begin() + first, path.end());
     };
@@ -657,7 +690,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
     rings.begin(), rings.end(), [&](const std::vector<Index>& r, const std::vector<Index>& s) {
       for (std::size_t i = 0; i < std::min(r.size(), s.size()); ++i)
       {
-        if (r[i] != s[i])
+        if (mesh.PointOf(r[i]) != mesh.PointOf(s[i]))
         {
           return IsLower(mesh.PointOf(r[i]), mesh.PointOf(s[i]));
         }
@@ -988,17 +1021,19 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     }
   }
   std::vector<Index> triangles = TrianglesAt(list, near, Part(progress, 0.75, 0.8));
-  for (bool isDone = false; !isDone;)
+  double begin = 0.8; // of the progress that is left
+  for (bool isDone = false; !isDone; begin = 0.9)
   {
-    const PartialMesh mesh(list, border, atBorder, std::move(triangles), Part(progress, 0.8, 0.85));
+    const Progress round = Part(progress, begin, begin + 0.1);
+    const PartialMesh mesh(list, border, atBorder, std::move(triangles), Part(round, 0.0, 0.3));
     std::vector<char> keepHere = mesh.FlagsOf(keep);
     // In parts of a square of the size that the tolerance bridges.
     const auto shareOf = [&](Index i) {
       const Index t = mesh.Triangles[i];
       return list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
     };
-    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(progress, 0.85, 0.9));
-    isDone = DropSmallPieces(mesh.Surface, keepHere, Part(progress, 0.9, 0.95));
+    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.3, 0.5));
+    isDone = DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.5, 0.8));
     if (!isDone)
     {
       // A small piece is seen as a whole only when all are.
@@ -1007,7 +1042,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
       continue;
     }
     mesh.PutFlags(keepHere, keep);
-    result.Vertices = BorderOf(mesh.Surface, keepHere, Part(progress, 0.95, 1.0));
+    result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
     for (Index& vertex : result.Vertices.Vertices)
     {
       vertex = mesh.Ids[vertex];
