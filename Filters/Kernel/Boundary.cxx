@@ -575,7 +575,8 @@ void CloseSmallOpenings(
  * Takes out pieces with too few vertices to have a spacing of their own, if others have more.
  * @return the vertices of pieces that look small, but go on beyond the mesh; if any, nothing is done
  */
-std::vector<Index> DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
+std::vector<Index> DropSmallPieces(
+  const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
   const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
   // More triangles than so few vertices can have.
