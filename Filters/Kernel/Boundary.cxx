@@ -348,17 +348,19 @@ struct Neighbors
       (Group - 1) * (static_cast<std::size_t>(count) + 1));
     // At first where those of each vertex end: they are filled in from there.
     std::uint32_t sum = 0; // stays below 9 for each point
-    for (Index v = 0; v < count; ++v)
-    {
-      const std::uint32_t size = measured.Edges.DegreeOf(v);
-      this->Offsets[v] = sum + size;
-      // More than are needed, as how many cannot be predicted; what comes next overwrites them.
-      std::fill_n(&this->Ids[sum + size], Group - 1, v);
-      sum += (size + Group - 1) / Group * Group;
-    }
+    InStretches(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v)
+      {
+        const std::uint32_t size = measured.Edges.DegreeOf(v);
+        this->Offsets[v] = sum + size;
+        // More than are needed, as how many cannot be predicted; what comes next overwrites them.
+        std::fill_n(&this->Ids[sum + size], Group - 1, v);
+        sum += (size + Group - 1) / Group * Group;
+      }
+    });
     this->Offsets[count] = sum;
     const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
-    InStretches(list.Count, progress, [&](Index begin, Index end) {
+    InStretches(list.Count, Part(progress, 0.3, 1.0), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
@@ -384,7 +386,9 @@ struct Neighbors
  * The spacing at some vertices: half the distance of the 6th nearest vertex.
  * In a Delaunay triangulation the next nearest vertex is always a neighbour of the vertex or of one
  * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
- * with very many neighbours, which would make it quadratic.
+ * with very many neighbours, which would make it quadratic. In other meshes it finds the 6th of
+ * those that it comes across, which are the same in any order of vertices: it passes all that are
+ * equally near at once, and none as far as the 6th.
  * @param[in]  wanted    best in an order in which neighbours are near each other
  * @param[out] spacings  at the place of each vertex; the others stay as they are
  */
@@ -395,10 +399,11 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
   {
     double Squared;
     Index Vertex;
+    bool IsPassed;
   };
   const Index* ids = neighbors.Ids.data();
   constexpr int last = NeighborOfSpacing - 1;
-  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None };
+  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None, false };
   const auto find = [&](Index begin, Index end) {
     std::vector<Index> found;
     // Vertices that the one at hand has had among its nearest. One may have taken the place of
@@ -428,8 +433,7 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
         Prefetch(ids + neighbors.Offsets[ids[k]]);
       }
 
-      // The nearest vertices found: those passed in the order in which they were, then the next
-      // ones by distance. No more are needed than will be passed.
+      // The nearest vertices found.
       Candidate nearest[NeighborOfSpacing];
       std::fill_n(nearest, NeighborOfSpacing, nothing);
       const Point2 p = list.Points.At(v);
@@ -438,59 +442,78 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
         return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
       };
       known[static_cast<std::uint32_t>(v) % places] = keyOf(v);
-      Index passed = v;
-      for (int k = 0;; ++k)
-      {
+      const auto pass = [&](Index passed) {
         const std::uint32_t first = neighbors.Offsets[passed];
         const std::uint32_t size = neighbors.Offsets[passed + 1] - first;
-        if (k == 0 || size <= NeighborsOfHub)
+        if (passed != v && size > NeighborsOfHub)
         {
-          if (found.size() < size)
+          return;
+        }
+        if (found.size() < size)
+        {
+          found.resize(size);
+        }
+        // Those that are near enough, without branches, for which they are cannot be predicted.
+        const double limit = nearest[last].Squared;
+        Index* next = found.data();
+        const Index* groupsEnd = ids + first + size;
+        for (const Index* group = ids + first; group != groupsEnd; group += Neighbors::Group)
+        {
+          for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
           {
-            found.resize(size);
-          }
-          // Those that are near enough, without branches, for which they are cannot be predicted.
-          const double limit = nearest[last].Squared;
-          Index* next = found.data();
-          const Index* groupsEnd = ids + first + size;
-          for (const Index* group = ids + first; group != groupsEnd; group += Neighbors::Group)
-          {
-            for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
-            {
-              const Index w = group[j];
-              *next = w;
-              const int isNear = squaredTo(w) < limit;
-              const int isNew = known[static_cast<std::uint32_t>(w) % places] != keyOf(w);
-              next += isNear & isNew;
-            }
-          }
-          const std::size_t numberFound = next - found.data();
-          for (std::size_t i = 0; i < numberFound; ++i)
-          {
-            const Candidate candidate{ squaredTo(found[i]), found[i] };
-            bool isKnown = candidate.Vertex == v;
-            for (const Candidate& other : nearest)
-            {
-              isKnown |= other.Vertex == candidate.Vertex;
-            }
-            if (isKnown || !(candidate.Squared < nearest[last].Squared))
-            {
-              continue;
-            }
-            known[static_cast<std::uint32_t>(candidate.Vertex) % places] = keyOf(candidate.Vertex);
-            int at = last;
-            for (; at > k && candidate.Squared < nearest[at - 1].Squared; --at)
-            {
-              nearest[at] = nearest[at - 1];
-            }
-            nearest[at] = candidate;
+            const Index w = group[j];
+            *next = w;
+            const int isNear = squaredTo(w) < limit;
+            const int isNew = known[static_cast<std::uint32_t>(w) % places] != keyOf(w);
+            next += isNear & isNew;
           }
         }
-        if (k == last || nearest[k].Vertex == None)
+        const std::size_t numberFound = next - found.data();
+        for (std::size_t i = 0; i < numberFound; ++i)
         {
-          break;
+          const Candidate candidate{ squaredTo(found[i]), found[i], false };
+          bool isKnown = candidate.Vertex == v;
+          for (const Candidate& other : nearest)
+          {
+            isKnown |= other.Vertex == candidate.Vertex;
+          }
+          if (isKnown || !(candidate.Squared < nearest[last].Squared))
+          {
+            continue;
+          }
+          known[static_cast<std::uint32_t>(candidate.Vertex) % places] = keyOf(candidate.Vertex);
+          int at = last;
+          for (; at > 0 && candidate.Squared < nearest[at - 1].Squared; --at)
+          {
+            nearest[at] = nearest[at - 1];
+          }
+          nearest[at] = candidate;
         }
-        passed = nearest[k].Vertex;
+      };
+      pass(v);
+      for (Candidate* next = nearest; next != nearest + last;)
+      {
+        if (next->IsPassed || !(next->Squared < nearest[last].Squared))
+        {
+          ++next;
+          continue;
+        }
+        Index equal[NeighborOfSpacing];
+        int numberOfEqual = 0;
+        const double squared = next->Squared;
+        for (; next != nearest + last && next->Squared == squared; ++next)
+        {
+          if (!next->IsPassed)
+          {
+            equal[numberOfEqual++] = next->Vertex;
+            next->IsPassed = true;
+          }
+        }
+        for (int i = 0; i < numberOfEqual; ++i)
+        {
+          pass(equal[i]);
+        }
+        next = nearest; // nearer ones may have come
       }
       int k = last;
       while (k > 0 && nearest[k].Vertex == None)
@@ -576,9 +599,10 @@ void CloseSmallOpenings(
 
 /**
  * Takes out pieces with too few vertices to have a spacing of their own, if others have more.
- * @return false when a piece that goes on beyond the mesh looks small
+ * @return the vertices of pieces that look small, but go on beyond the mesh; if any, nothing is done
  */
-bool DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
+std::vector<Index> DropSmallPieces(
+  const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
   const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
   // More triangles than so few vertices can have.
@@ -611,24 +635,25 @@ bool DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& 
     corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(), Part(progress, 0.9, 1.0));
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   std::vector<char> isSmall(parts.Count(), 0);
+  std::vector<Index> unknown;
   for (auto first = corners.begin(); first != corners.end();)
   {
     const auto last = std::find_if(first, corners.end(),
       [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
     const bool isFew = last - first <= NeighborOfSpacing;
-    if (isFew && goesOn[first->first])
+    for (auto corner = first; isFew && goesOn[first->first] && corner != last; ++corner)
     {
-      return false;
+      unknown.push_back(corner->second);
     }
     isSmall[first->first] = isFew;
     anyLarge = anyLarge || !isFew;
     first = last;
   }
-  for (Index t = 0; anyLarge && t < count; ++t)
+  for (Index t = 0; anyLarge && unknown.empty() && t < count; ++t)
   {
     keep[t] = keep[t] && !isSmall[parts.PartOf(t)];
   }
-  return true;
+  return unknown;
 }
 
 /**
@@ -636,18 +661,30 @@ bool DropSmallPieces(const Mesh& mesh, std::vector<char>& keep, const Progress& 
  */
 Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
-  const Progress cutting = Part(progress, 0.95, 1.0);
+  const Progress cutting = Part(progress, 0.6, 0.8);
 
   // A walk that comes back to a vertex it has passed has closed a ring.
-  const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.95), keep);
+  const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.6), keep);
   std::vector<std::vector<Index>> rings;
   std::vector<Index> path;
   std::vector<char> isOnPath(mesh.Points.size(), 0);
   for (Index walk = 0; walk < walks.Count(); ++walk)
   {
     auto cutRing = [&](std::size_t first) {
-      auto lowest = std::min_element(path.begin() + first, path.end(),
-        [&](Index v, Index w) { return IsLower(mesh.PointOf(v), mesh.PointOf(w)); });
+      auto lowest = path.begin() + first;
+      for (auto v = lowest + 1; v != path.end(); ++v)
+      {
+        // Two vertices may be at one place: then the next ones tell.
+        const auto nextTo = [&](const auto& w) {
+          return mesh.PointOf(w + 1 == path.end() ? path[first] : w[1]);
+        };
+        const Point2& p = mesh.PointOf(*v);
+        const Point2& q = mesh.PointOf(*lowest);
+        if (IsLower(p, q) || (p == q && IsLower(nextTo(v), nextTo(lowest))))
+        {
+          lowest = v;
+        }
+      }
       std::rotate(path.begin() + first, lowest, path.end());
       rings.emplace_back(path.begin() + first, path.end());
     };
@@ -679,17 +716,17 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
     cutRing(0);
     path.clear();
   }
-  std::sort(
-    rings.begin(), rings.end(), [&](const std::vector<Index>& r, const std::vector<Index>& s) {
-      for (std::size_t i = 0; i < std::min(r.size(), s.size()); ++i)
+  const auto isBefore = [&](const std::vector<Index>& r, const std::vector<Index>& s) {
+    for (std::size_t i = 0; i < std::min(r.size(), s.size()); ++i)
+    {
+      if (mesh.PointOf(r[i]) != mesh.PointOf(s[i]))
       {
-        if (r[i] != s[i])
-        {
-          return IsLower(mesh.PointOf(r[i]), mesh.PointOf(s[i]));
-        }
+        return IsLower(mesh.PointOf(r[i]), mesh.PointOf(s[i]));
       }
-      return r.size() < s.size();
-    });
+    }
+    return r.size() < s.size();
+  };
+  Sort(rings.begin(), rings.end(), isBefore, Part(progress, 0.8, 1.0));
   Rings result;
   for (const std::vector<Index>& ring : rings)
   {
@@ -767,8 +804,12 @@ bool IsChosen(Point2 p, int bits)
   return bits == 0 || mix(mix(x) + y) >> (64 - bits) == 0;
 }
 
-/** Triangles from everywhere: those at some vertices, or all when they are few. */
-std::vector<Index> SampleOf(const TriangleList& list, const Progress& progress)
+/**
+ * Triangles from everywhere: those at some vertices, or all when they are few. Not those of a vertex
+ * with very many neighbours, which would outvote all others.
+ */
+std::vector<Index> SampleOf(
+  const TriangleList& list, const Neighbors& neighbors, const Progress& progress)
 {
   int bits = 0;
   while (list.Count >> bits > LargestSample)
@@ -779,7 +820,8 @@ std::vector<Index> SampleOf(const TriangleList& list, const Progress& progress)
   InStretches(list.Points.Count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
-      if (IsChosen(list.Points.At(v), bits))
+      if (IsChosen(list.Points.At(v), bits) &&
+        (bits == 0 || neighbors.Offsets[v + 1] - neighbors.Offsets[v] <= NeighborsOfHub))
       {
         chosen.Add(v);
       }
@@ -872,20 +914,27 @@ public:
     : NearMesh(list, triangles, Part(progress, 0.0, 0.5))
     , Triangles(std::move(triangles))
   {
-    this->Surface.ConnectTwins(0, Part(progress, 0.5, 1.0));
-    for (Index h = 0; h < this->Surface.NumberOfHalfEdges(); ++h)
+    this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));
+    if (static_cast<Index>(this->Triangles.size()) == list.Count)
     {
-      if (this->Surface.IsBorder(h))
-      {
-        const BorderEdge edge{ this->Ids[this->Surface.Origin(h)],
-          this->Ids[this->Surface.Destination(h)] };
-        if (!atBorder.Has(edge.Origin) || !atBorder.Has(edge.Destination) ||
-          !std::binary_search(border.begin(), border.end(), edge))
-        {
-          this->Surface.Twins[h] = h;
-        }
-      }
+      return; // nothing goes on beyond all
     }
+    InStretches(
+      this->Surface.NumberOfHalfEdges(), Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+        for (Index h = begin; h < end; ++h)
+        {
+          if (this->Surface.IsBorder(h))
+          {
+            const BorderEdge edge{ this->Ids[this->Surface.Origin(h)],
+              this->Ids[this->Surface.Destination(h)] };
+            if (!atBorder.Has(edge.Origin) || !atBorder.Has(edge.Destination) ||
+              !std::binary_search(border.begin(), border.end(), edge))
+            {
+              this->Surface.Twins[h] = h;
+            }
+          }
+        }
+      });
   }
 
   const std::vector<Index> Triangles; ///< their ids in the list
@@ -920,7 +969,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   ExtractedBoundary result;
   result.GapTolerance = options.GapTolerance;
   std::vector<BorderEdge>& border = measured.Border;
-  std::sort(border.begin(), border.end());
+  Sort(border.begin(), border.end(), std::less<BorderEdge>(), Part(progress, 0.0, 0.02));
   VertexSet atBorder(list.Points.Count);
   for (const BorderEdge& edge : border)
   {
@@ -937,7 +986,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   };
   Buffer<float> shortSpacings;
   shortSpacings.Resize(list.Points.Count);
-  inPieces(list.Points.Count, Part(progress, 0.0, 0.05), [&](Index begin, Index end) {
+  inPieces(list.Points.Count, Part(progress, 0.02, 0.05), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       shortSpacings[v] = measured.Edges.ShortSpacingOf(v);
@@ -955,7 +1004,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   const auto ratioOf = [&](Index t) { return std::sqrt(measured.Longest[t]) / spacingOf(t); };
   if (!(result.GapTolerance > 0.0))
   {
-    const std::vector<Index> sample = SampleOf(list, Part(progress, 0.25, 0.3));
+    const std::vector<Index> sample = SampleOf(list, neighbors, Part(progress, 0.25, 0.3));
     const Progress finding = Part(progress, 0.3, 0.35);
     findSpacings(sample, finding);
     std::vector<double> ratios;
@@ -997,45 +1046,59 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   };
   doubtful =
     DropSmallGroups(list, atBorder, doubtful, shortShareOf, keep, Part(progress, 0.52, 0.6));
-  const Progress finding = Part(progress, 0.6, 0.75);
+  const Progress finding = Part(progress, 0.6, 0.74);
   Report(finding, 0.0);
   findSpacings(doubtful, finding);
   Report(finding, 1.0);
-  for (const Index t : doubtful)
-  {
-    keep[t] = ratioOf(t) <= result.GapTolerance;
-  }
-
   // All that the last steps need are triangles near the border of the surface.
   VertexSet near = atBorder;
-  for (const Index t : doubtful)
-  {
-    for (int i = 0; i < 3 && !keep[t]; ++i)
+  const Index numberOfDoubtful = static_cast<Index>(doubtful.size());
+  InStretches(numberOfDoubtful, Part(progress, 0.74, 0.75), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
     {
-      near.Add(list.CornersOf(t)[i]);
+      const Index t = doubtful[i];
+      keep[t] = ratioOf(t) <= result.GapTolerance;
+      for (int k = 0; k < 3 && !keep[t]; ++k)
+      {
+        near.Add(list.CornersOf(t)[k]);
+      }
     }
-  }
-  std::vector<Index> triangles = TrianglesAt(list, near, Part(progress, 0.75, 0.8));
+  });
+  double begin = 0.75; // of the progress that is left
   for (bool isDone = false; !isDone;)
   {
-    const PartialMesh mesh(list, border, atBorder, std::move(triangles), Part(progress, 0.8, 0.85));
+    // Few need a second round, and hardly any a third.
+    const double end = 0.5 * (1.0 + begin);
+    const Progress round = Part(progress, begin, end);
+    begin = end;
+    std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
+    if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
+    {
+      // With all of them, this is the last round.
+      triangles.resize(list.Count);
+      std::iota(triangles.begin(), triangles.end(), 0);
+    }
+    const PartialMesh mesh(list, border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
     std::vector<char> keepHere = mesh.FlagsOf(keep);
     // In parts of a square of the size that the tolerance bridges.
     const auto shareOf = [&](Index i) {
       const Index t = mesh.Triangles[i];
       return list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
     };
-    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(progress, 0.85, 0.9));
-    isDone = DropSmallPieces(mesh.Surface, keepHere, Part(progress, 0.9, 0.95));
+    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.3, 0.5));
+    const std::vector<Index> unknown =
+      DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.5, 0.8));
+    for (const Index vertex : unknown)
+    {
+      near.Add(mesh.Ids[vertex]);
+    }
+    isDone = unknown.empty();
     if (!isDone)
     {
-      // A small piece is seen as a whole only when all are.
-      triangles.resize(list.Count);
-      std::iota(triangles.begin(), triangles.end(), 0);
-      continue;
+      continue; // and see more of these pieces
     }
     mesh.PutFlags(keepHere, keep);
-    result.Vertices = BorderOf(mesh.Surface, keepHere, Part(progress, 0.95, 1.0));
+    result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
     for (Index& vertex : result.Vertices.Vertices)
     {
       vertex = mesh.Ids[vertex];

@@ -208,7 +208,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     0 chooses 2.25 times what the typical (median) triangle of the mesh measures: 4.5 on a square
  *     lattice, about 4.6 for random points, more where points lie dense along lines. The typical
  *     one of a large mesh is that of its triangles at a thousand or two of its vertices, which a
- *     hash of their places chooses.
+ *     hash of their places chooses; none with more than 64 neighbours.
  *   - What leaves no doubt is not measured so, which would take most of the time. The short spacing
  *     at a vertex is the mean length of its four shortest edges (in float; of all edges if fewer),
  *     but at most twice that of the second. A triangle is surface as well when its longest edge is

@@ -124,8 +124,8 @@ public:
 
   void Run(const Progress& progress)
   {
-    this->MakeSegments();
-    this->FindTurns(Part(progress, 0.0, 0.1));
+    this->MakeSegments(Part(progress, 0.0, 0.05));
+    this->FindTurns(Part(progress, 0.05, 0.1));
     Sort(
       this->Events.begin(), this->Events.end(),
       [](const Event& a, const Event& b) {
@@ -159,7 +159,7 @@ private:
   static constexpr Index NotLocated = -2;
   static constexpr Index Outside = None; ///< the empty region around everything
 
-  void MakeSegments()
+  void MakeSegments(const Progress& progress)
   {
     const Rings& walks = this->Result.Walks;
     this->Segments.reserve(walks.Vertices.size());
@@ -168,6 +168,7 @@ private:
     {
       for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
       {
+        ReportStep(progress, this->Segments.size(), walks.Vertices.size());
         const Point2& origin = this->Surface.PointOf(this->Surface.Origin(*h));
         const Point2& destination = this->Surface.PointOf(this->Surface.Destination(*h));
         const bool isUp = IsLower(origin, destination);

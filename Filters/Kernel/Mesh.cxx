@@ -138,6 +138,25 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
     });
   });
 
+  // At a vertex with very many neighbours they are searched in order.
+  constexpr Index many = 64;
+  const auto isBefore = [](const Rising& edge, Index destination) {
+    return edge.Destination < destination;
+  };
+  for (Index v = 0, first = 0; v < used; first = ends[v++])
+  {
+    if (ends[v] - first > many)
+    {
+      Sort(
+        rising.begin() + first, rising.begin() + ends[v],
+        [](const Rising& p, const Rising& q) {
+          return p.Destination != q.Destination ? p.Destination < q.Destination
+                                                : p.HalfEdge < q.HalfEdge;
+        },
+        Part(progress, 0.5, 0.5));
+    }
+  }
+
   // Every other half-edge looks for the one that rises the other way. Two of them in one place are
   // found here, but for those without a twin.
   bool isManifold = true;
@@ -160,8 +179,15 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
       const Falling& edge = falling[i];
       Index twin = 0;
       Index matches = 0;
-      const Index first = edge.Destination == 0 ? 0 : ends[edge.Destination - 1];
-      const Index last = ends[edge.Destination];
+      Index first = edge.Destination == 0 ? 0 : ends[edge.Destination - 1];
+      Index last = ends[edge.Destination];
+      if (last - first > many)
+      {
+        first = static_cast<Index>(
+          std::lower_bound(rising.begin() + first, rising.begin() + last, edge.Origin, isBefore) -
+          rising.begin());
+        last = std::min(last, first + atOnce);
+      }
       const auto look = [&](Index k) {
         const bool matching = (rising[k].Destination == edge.Origin) & (k < last);
         twin |= rising[k].HalfEdge & -static_cast<Index>(matching);
@@ -287,19 +313,55 @@ Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<
       further.emplace_back(vertex, i);
     }
   }
-  std::sort(further.begin(), further.end());
+  Sort(further.begin(), further.end(), std::less<std::pair<Index, Index>>(),
+    Part(progress, 0.95, 0.95));
+  const auto firstAt = [&further](Index vertex) {
+    return std::lower_bound(further.begin(), further.end(), std::make_pair(vertex, Index(0)));
+  };
+  const auto endOf = [&](Index place) -> const Point2& {
+    return mesh.PointOf(mesh.Destination(borders[place]));
+  };
+  // Where very many meet they are searched in the order of turning from the one in leaving.
+  constexpr std::ptrdiff_t many = 16;
+  for (auto first = further.begin(); first != further.end();)
+  {
+    const Index b = first->first;
+    const auto last = firstAt(b + 1);
+    if (last - first > many)
+    {
+      Sort(
+        first, last,
+        [&](const std::pair<Index, Index>& u, const std::pair<Index, Index>& v) {
+          const Point2& from = endOf(leaving[b]);
+          const Point2& p = mesh.PointOf(b);
+          return TurnsToFirst(p, from, endOf(u.second), endOf(v.second)) ||
+            (u.second < v.second && !TurnsToFirst(p, from, endOf(v.second), endOf(u.second)));
+        },
+        Part(progress, 0.95, 0.95));
+    }
+    first = last;
+  }
 
   // Behind a border a->b the empty wedge at b opens counter-clockwise from b->a; the walk goes on
   // with the border that closes this wedge.
   const auto follow = [&](Index h) {
     const Index b = mesh.Destination(h);
+    const Point2& p = mesh.PointOf(b);
+    const Point2& from = mesh.PointOf(mesh.Origin(h));
     Index best = leaving[b];
-    for (auto other = std::lower_bound(further.begin(), further.end(), std::make_pair(b, Index(0)));
-         other != further.end() && other->first == b; ++other)
+    auto other = firstAt(b);
+    if (further.end() - other > many && other[many].first == b)
     {
-      if (TurnsToFirst(mesh.PointOf(b), mesh.PointOf(mesh.Origin(h)),
-            mesh.PointOf(mesh.Destination(borders[other->second])),
-            mesh.PointOf(mesh.Destination(borders[best]))))
+      const auto last = firstAt(b + 1);
+      const Point2& start = endOf(best);
+      other = std::partition_point(other, last, [&](const std::pair<Index, Index>& u) {
+        return TurnsToFirst(p, start, endOf(u.second), from);
+      });
+      return other == last || TurnClass(p, start, from) < 0 ? best : other->second;
+    }
+    for (; other != further.end() && other->first == b; ++other)
+    {
+      if (TurnsToFirst(p, from, endOf(other->second), endOf(best)))
       {
         best = other->second;
       }

@@ -28,12 +28,19 @@ struct TriangleList
     const std::size_t k = 3 * static_cast<std::size_t>(vertex);
     this->Points.Double ? Prefetch(this->Points.Double + k) : Prefetch(this->Points.Float + k);
   }
-  /** The area of a triangle in parts of a square. */
+  /** The area of a triangle in parts of a square; to the bit the same from any first corner. */
   double ShareOfSquare(Index t, double side) const
   {
-    const Point2 a = this->Points.At(this->CornersOf(t)[0]);
-    const Point2 b = this->Points.At(this->CornersOf(t)[1]);
-    const Point2 c = this->Points.At(this->CornersOf(t)[2]);
+    Point2 a = this->Points.At(this->CornersOf(t)[0]);
+    Point2 b = this->Points.At(this->CornersOf(t)[1]);
+    Point2 c = this->Points.At(this->CornersOf(t)[2]);
+    while (IsLower(b, a) || IsLower(c, a))
+    {
+      const Point2 first = a;
+      a = b;
+      b = c;
+      c = first;
+    }
     const double area = 0.5 * ((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X));
     const double square = side * side;
     return square > 0.0 ? area / square : std::numeric_limits<double>::infinity();

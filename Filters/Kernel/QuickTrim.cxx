@@ -331,7 +331,7 @@ bool Sweep(const TriangleList& list, OpenEdges& edges, const Progress& progress,
 }
 
 /** The border as a mesh of which nothing else is true: half-edge 3i is its i-th. */
-Mesh MeshOfBorder(const OpenEdges& edges, const PointView& points)
+Mesh MeshOfBorder(const OpenEdges& edges, const PointView& points, const Progress& progress)
 {
   Mesh mesh;
   std::vector<Index> ids;
@@ -340,17 +340,19 @@ Mesh MeshOfBorder(const OpenEdges& edges, const PointView& points)
     ids.push_back(destination);
   });
   std::vector<Index> used = ids;
-  std::sort(used.begin(), used.end());
+  Sort(used.begin(), used.end(), std::less<Index>(), Part(progress, 0.0, 0.5));
   used.erase(std::unique(used.begin(), used.end()), used.end());
   for (const Index id : used)
   {
     mesh.Points.push_back(points.At(id));
   }
+  const Progress finding = Part(progress, 0.5, 1.0);
   for (std::size_t i = 0; i < ids.size(); i += 2)
   {
     const auto numberOf = [&used](Index id) {
       return static_cast<Index>(std::lower_bound(used.begin(), used.end(), id) - used.begin());
     };
+    ReportStep(finding, i, ids.size());
     const Index origin = numberOf(ids[i]);
     mesh.Triangles.insert(mesh.Triangles.end(), { origin, numberOf(ids[i + 1]), origin });
     mesh.Twins.insert(mesh.Twins.end(), { Mesh::Border, 0, 0 });
@@ -725,7 +727,8 @@ bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points,
   try
   {
     // For its proof that nothing is covered twice.
-    FindHoles(MeshOfBorder(edges, triangles.Points), 0, Part(progress, 0.7, 0.8));
+    FindHoles(MeshOfBorder(edges, triangles.Points, Part(progress, 0.7, 0.75)), 0,
+      Part(progress, 0.75, 0.8));
     if (!classifier.Near.empty())
     {
       TrimNear(
@@ -772,7 +775,8 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
     try
     {
       // For its proof that nothing is covered twice.
-      FindHoles(MeshOfBorder(edges, points), 0, Part(progress, 0.4, 0.45));
+      FindHoles(
+        MeshOfBorder(edges, points, Part(progress, 0.4, 0.42)), 0, Part(progress, 0.42, 0.45));
     }
     catch (const Error&)
     {

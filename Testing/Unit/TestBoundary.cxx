@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <functional>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -802,6 +804,190 @@ TEST(ExtractBoundary, DoesNotDependOnTheOrderOfPoints)
     {
       random.Shuffle(*cloud);
       EXPECT_EQ(ringsOf(*cloud), expected);
+    }
+  }
+}
+
+TEST(ExtractBoundary, DoesNotDependOnTheOrderOfAnyMesh)
+{
+  // Not Delaunay, with holes, with several vertices at one place: ties of all kinds.
+  Random random(15);
+  std::size_t numberOfRings = 0;
+  for (int round = 0; round < 60; ++round)
+  {
+    std::vector<Point2> points = LatticePoints(random, 25, 25, 450);
+    for (Point2& p : points)
+    {
+      p = { 0.1 * p.X, 0.1 * p.Y };
+    }
+    Mesh mesh = Delaunay(points);
+    const bool isApart = round % 3 == 0;
+    mesh = Without(mesh, [&](Index) { return random.Unit() < (isApart ? 0.7 : 0.05); });
+    for (int flip = 0; flip < 60; ++flip)
+    {
+      const Index h = random.Below(mesh.NumberOfHalfEdges());
+      const Index twin = mesh.Twin(h);
+      if (twin == Mesh::Border)
+      {
+        continue;
+      }
+      const Index a = mesh.Origin(h), b = mesh.Destination(h), c = mesh.Apex(h),
+                  d = mesh.Apex(twin);
+      if (Orientation(mesh.PointOf(a), mesh.PointOf(d), mesh.PointOf(c)) == Positive &&
+        Orientation(mesh.PointOf(d), mesh.PointOf(b), mesh.PointOf(c)) == Positive)
+      {
+        const Index ofOne[] = { a, d, c }, ofOther[] = { d, b, c };
+        std::copy_n(ofOne, 3, &mesh.Triangles[h / 3 * 3]);
+        std::copy_n(ofOther, 3, &mesh.Triangles[twin / 3 * 3]);
+        mesh.ConnectTwins();
+      }
+    }
+    for (Index& corner : mesh.Triangles)
+    {
+      if (isApart) // each corner is a vertex of its own
+      {
+        mesh.Points.push_back(mesh.PointOf(corner));
+        corner = mesh.NumberOfPoints() - 1;
+      }
+    }
+    const double tolerance = isApart ? 1e9 : round % 3 == 1 ? 4.0 : 2.25;
+    std::vector<std::vector<double>> expected;
+    for (int order = 0; order < 4; ++order)
+    {
+      std::vector<Index> ids(mesh.Points.size());
+      std::iota(ids.begin(), ids.end(), 0);
+      std::vector<Index> triangles(mesh.NumberOfTriangles());
+      std::iota(triangles.begin(), triangles.end(), 0);
+      if (order > 0)
+      {
+        random.Shuffle(ids);
+        random.Shuffle(triangles);
+      }
+      Mesh shuffled;
+      shuffled.Points.resize(mesh.Points.size());
+      for (std::size_t i = 0; i < ids.size(); ++i)
+      {
+        shuffled.Points[ids[i]] = mesh.Points[i];
+      }
+      for (const Index t : triangles)
+      {
+        for (Index i = 0; i < 3; ++i)
+        {
+          shuffled.Triangles.push_back(ids[mesh.Origin(3 * t + (i + order) % 3)]);
+        }
+      }
+      shuffled.ConnectTwins();
+      ExtractOptions options;
+      options.GapTolerance = tolerance;
+      const ExtractedBoundary boundary = ExtractBoundary(shuffled, options);
+      std::vector<std::vector<double>> rings;
+      for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)
+      {
+        rings.emplace_back();
+        for (const Index* v = boundary.Vertices.Begin(ring); v != boundary.Vertices.End(ring); ++v)
+        {
+          rings.back().push_back(shuffled.PointOf(*v).X);
+          rings.back().push_back(shuffled.PointOf(*v).Y);
+        }
+      }
+      expected = order == 0 ? rings : expected;
+      EXPECT_EQ(rings, expected) << round << " " << order;
+      numberOfRings += rings.size();
+    }
+  }
+  EXPECT_GT(numberOfRings, 1000u);
+}
+
+TEST(ExtractBoundary, AHubDoesNotTellTheTolerance)
+{
+  // A lattice, and a fan of very many triangles, thousands of spacings long. Wherever its middle
+  // is: whether a vertex is in the sample depends on that.
+  Mesh mesh;
+  for (Index y = 0; y < 150; ++y)
+  {
+    for (Index x = 0; x < 150; ++x)
+    {
+      const Index v = mesh.NumberOfPoints();
+      mesh.Points.push_back({ static_cast<double>(x), static_cast<double>(y) });
+      if (x > 0 && y > 0)
+      {
+        mesh.Triangles.insert(mesh.Triangles.end(), { v - 151, v - 150, v, v - 151, v, v - 1 });
+      }
+    }
+  }
+  const Index hub = mesh.NumberOfPoints();
+  constexpr Index count = 30000;
+  mesh.Points.push_back({ 0, 0 });
+  for (Index i = 0; i < count; ++i)
+  {
+    const double angle = 6.283185307179586 * i / count;
+    mesh.Points.push_back({ 5000 + 1000 * std::cos(angle), 1000 * std::sin(angle) });
+    mesh.Triangles.insert(mesh.Triangles.end(), { hub, hub + 1 + i, hub + 1 + (i + 1) % count });
+  }
+  mesh.ConnectTwins();
+  for (int place = 0; place < 100; ++place)
+  {
+    mesh.Points[hub] = { 5000 + 0.001 * place, 0 };
+    EXPECT_EQ(ExtractBoundary(mesh, ExtractOptions()).GapTolerance, 4.5) << place;
+  }
+}
+
+TEST(ExtractBoundary, ReportsRiseWhenMoreOfASmallPieceMustBeSeen)
+{
+  // An opening of one triangle in a piece of six vertices, far from the border of another piece:
+  // seen from the opening, the piece goes on.
+  Random random(16);
+  int numberOfRounds = 0;
+  for (int round = 0; round < 4000; ++round)
+  {
+    std::vector<Point2> points = LatticePoints(random, 12, 12, 6 + round % 3);
+    if (Delaunay(points).Triangles.empty())
+    {
+      continue;
+    }
+    const Mesh mesh = Delaunay(points);
+    ExtractOptions options;
+    options.GapTolerance = 1.0 + round % 10;
+    double last = 0.0;
+    options.Monitor = [&](double fraction) {
+      EXPECT_GE(fraction, last) << round;
+      last = fraction;
+      ++numberOfRounds;
+      return true;
+    };
+    ExtractBoundary(mesh, options);
+  }
+  EXPECT_GT(numberOfRounds, 4000);
+}
+
+TEST(ExtractBoundary, TakesTimeInProportionToAHubsNeighbors)
+{
+  // Every other triangle of a fan: borders meet at its middle 100,000 times. And all of them.
+  for (const Index step : { 1, 2 })
+  {
+    Mesh mesh;
+    constexpr Index count = 200000;
+    mesh.Points.push_back({ 0, 0 });
+    for (Index i = 0; i < count; ++i)
+    {
+      const double angle = 6.283185307179586 * i / count;
+      mesh.Points.push_back({ std::cos(angle), std::sin(angle) });
+      if (i % step == 0)
+      {
+        mesh.Triangles.insert(mesh.Triangles.end(), { 0, 1 + i, 1 + (i + 1) % count });
+      }
+    }
+    const std::clock_t begin = std::clock();
+    mesh.ConnectTwins();
+    ExtractOptions options;
+    options.GapTolerance = 1e9;
+    const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
+    EXPECT_LT(
+      static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5.0); // a square of them: 25
+    ASSERT_EQ(boundary.Vertices.Count(), step == 1 ? 1 : count / 2);
+    for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)
+    {
+      EXPECT_EQ(boundary.Vertices.Size(ring), step == 1 ? count : 3);
     }
   }
 }
