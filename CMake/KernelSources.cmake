@@ -16,6 +16,7 @@ set(es_kernel_concepts
   Constraints
   ConstrainedDelaunay
   Boundary
+  Outline
   Insertion
   Trim
   Holes

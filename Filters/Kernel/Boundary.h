@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Closed rings around a surface: joined from lines, asked what they enclose, or extracted from a
- * mesh.
+ * Closed rings around a surface: joined from lines, and asked what they enclose.
  *
  * Several rings bound a region by the even-odd rule: a place is inside when an odd number of rings
  * goes around it. So rings may nest (lake, island in the lake), in any direction and order, and may
@@ -13,12 +12,8 @@
 #define elevation_Boundary_h
 
 #include "Mesh.h"
-#include "NearMesh.h"
 #include "Predicates.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <vector>
 
 namespace elevation
@@ -87,146 +82,6 @@ struct BoundaryLines
  *         cancel each other
  */
 Rings JoinLines(const BoundaryLines& lines);
-
-struct ExtractOptions
-{
-  /**
-   * How many local spacings an empty stretch may measure and still be surface; 0: from the data.
-   */
-  double GapTolerance = 0.0;
-  /** Threads to use; 0: one a core. The result is the same. */
-  int NumberOfThreads = 1;
-  Progress Monitor;
-};
-
-struct ExtractedBoundary
-{
-  Rings Vertices; ///< mesh vertices; counter-clockwise around surface, clockwise around a lake
-  double GapTolerance = 0.0;   ///< the one used
-  std::vector<char> IsSurface; ///< one flag a triangle: the surface that the rings go around
-};
-
-/** A half-edge without a twin. */
-struct BorderEdge
-{
-  Index Origin;
-  Index Destination;
-
-  bool operator<(const BorderEdge& other) const
-  {
-    return this->Origin < other.Origin ||
-      (this->Origin == other.Origin && this->Destination < other.Destination);
-  }
-};
-
-/** The four shortest edges at each vertex, and how many it has; in few bytes a vertex. */
-class EdgesAtVertices
-{
-public:
-  EdgesAtVertices() = default;
-  explicit EdgesAtVertices(Index numberOfVertices)
-  {
-    this->Vertices.Resize(numberOfVertices);
-    constexpr float none = std::numeric_limits<float>::infinity();
-    std::fill(
-      this->Vertices.begin(), this->Vertices.end(), Vertex{ { none, none, none, none }, 0, {} });
-  }
-
-  /** An edge of a vertex, each once, in any order. */
-  void Add(Index vertex, double squaredLength)
-  {
-    Vertex& at = this->Vertices[vertex];
-    ++at.Degree;
-    // Without branches: where it belongs cannot be predicted.
-    const float squared = static_cast<float>(squaredLength);
-    for (int i = Shortest - 1; i > 0; --i)
-    {
-      at.Squared[i] = std::min(at.Squared[i], std::max(at.Squared[i - 1], squared));
-    }
-    at.Squared[0] = std::min(at.Squared[0], squared);
-  }
-  void PrefetchAt(Index vertex) const { Prefetch(&this->Vertices[vertex]); }
-
-  std::uint32_t DegreeOf(Index vertex) const { return this->Vertices[vertex].Degree; }
-  /** Of a corner: their mean length (of all edges if fewer), but at most twice the second one's. */
-  float ShortSpacingOf(Index vertex) const
-  {
-    const Vertex& at = this->Vertices[vertex];
-    const float second = std::sqrt(at.Squared[1]);
-    float sum = std::sqrt(at.Squared[0]) + second;
-    for (int i = 2; i < Shortest; ++i)
-    {
-      sum += static_cast<std::uint32_t>(i) < at.Degree ? std::sqrt(at.Squared[i]) : 0.0f;
-    }
-    const float number = static_cast<float>(std::min<std::uint32_t>(at.Degree, Shortest));
-    return std::min(sum / number, 2.0f * second);
-  }
-
-private:
-  static constexpr int Shortest = 4;
-  struct Vertex
-  {
-    float Squared[Shortest]; ///< in their order
-    std::uint32_t Degree;
-    std::uint32_t Unused[3]; ///< so that none lies in two lines of the cache
-  };
-  Buffer<Vertex> Vertices;
-};
-
-/** Triangles, and what a pass over them has told. */
-struct MeasuredTriangles
-{
-  TriangleList List;
-  Buffer<double> Longest;         ///< one a triangle: the square of its longest edge
-  EdgesAtVertices Edges;          ///< each edge told to both its ends
-  std::vector<BorderEdge> Border; ///< all
-};
-
-inline double SquaredLength(Point2 p, Point2 q)
-{
-  return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
-}
-
-// Coordinates of which the largest is beyond these are taken at another scale: squares of lengths
-// leave the range of float.
-constexpr double LargestUnscaled = 1e15;
-constexpr double LeastUnscaled = 1e-12;
-
-/** ExtractBoundary() for triangles, at least one, that have been measured. */
-ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options);
-
-/**
- * The outline of the surface that the vertices of a mesh (with Twins) sample, with lakes and
- * islands. Every edge of the outline is an edge of the mesh.
- *
- * The rule:
- *   - The spacing at a vertex is half the distance of its 6th nearest vertex. So it follows the
- *     density. At the rim of a gap, where vertices are on one side only, it is one step on a square
- *     lattice and 0.98 of the mean spacing of random points; away from gaps 0.7 of that. The
- *     spacing of a triangle is the middle one of its corners', but at most twice the least.
- *   - A triangle is surface when its longest edge is at most GapTolerance times its spacing.
- *     0 chooses 2.25 times what the typical (median) triangle of the mesh measures: 4.5 on a square
- *     lattice, about 4.6 for random points, more where points lie dense along lines. The typical
- *     one of a large mesh is that of its triangles at a thousand or two of its vertices, which a
- *     hash of their places chooses; none with more than 64 neighbours.
- *   - What leaves no doubt is not measured so, which would take most of the time. The short spacing
- *     at a vertex is the mean length of its four shortest edges (in float; of all edges if fewer),
- *     but at most twice that of the second. A triangle is surface as well when its longest edge is
- *     at most 0.52 GapTolerance times its short spacing. So are all triangles of a group,
- *     connected by corners, none of them at the border of the mesh, if the group is smaller
- *     than a square with a side of 0.7 GapTolerance short spacings: no lake has room in it.
- *   - An opening between surface triangles is a lake only if it is larger than a square with a side
- *     of GapTolerance spacings; a smaller one is closed.
- *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,
- *     unless all pieces are as small.
- * Nothing depends on the order of points or triangles. Rings are simple and start at their lowest
- * vertex; they are in the order of these.
- * Cost: linear (the rings are sorted by their first vertices); for a small part of the vertices
- * about 20 neighbours each are looked at, for all of them when GapTolerance is small.
- * @return no ring when no triangle is surface
- * @throws Aborted, std::bad_alloc
- */
-ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options);
 
 } // namespace elevation
 

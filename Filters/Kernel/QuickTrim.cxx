@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "QuickTrim.h"
 
+#include "Boundary.h"
 #include "Holes.h"
 #include "Parallel.h"
 #include "Predicates.h"

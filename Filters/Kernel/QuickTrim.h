@@ -14,7 +14,7 @@
  *   4. Insert and trim the near triangles (Insertion.h, Trim.h), as a mesh of their own: whatever a
  *      ring does to the mesh, it does to triangles that it touches.
  *
- * Extraction takes the same sweep to measure edges, and is then that of Boundary.h.
+ * Extraction takes the same sweep to measure edges, and is then that of Outline.h.
  *
  * Guarantee: exactly what InsertRings and Trim, or ExtractBoundary, give for the whole mesh, or
  * nothing: whatever is not as the passes need it, or would be an error, is left to those.
@@ -26,8 +26,8 @@
 #ifndef elevation_QuickTrim_h
 #define elevation_QuickTrim_h
 
-#include "Boundary.h"
 #include "Insertion.h"
+#include "Outline.h"
 #include "Trim.h"
 
 #include <vector>

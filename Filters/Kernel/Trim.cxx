@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Trim.h"
 
+#include "Boundary.h"
 #include "Constraints.h"
 #include "Predicates.h"
 

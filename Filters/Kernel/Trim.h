@@ -21,8 +21,7 @@
 #ifndef elevation_Trim_h
 #define elevation_Trim_h
 
-#include "Boundary.h"
-#include "Mesh.h"
+#include "Outline.h"
 
 #include <vector>
 

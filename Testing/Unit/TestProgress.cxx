@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Progress rises, and no step of a long computation is silent, so that an abort is heard soon.
-#include "Kernel/Boundary.h"
 #include "Kernel/Constraints.h"
 #include "Kernel/Delaunay.h"
 #include "Kernel/Fill.h"
 #include "Kernel/Holes.h"
+#include "Kernel/Outline.h"
 #include "Kernel/Trim.h"
 #include "LatticeSurface.h"
 #include "PointSets.h"

@@ -3,6 +3,7 @@
 #include "DelaunayMesh.h"
 #include "Location.h"
 
+#include "Kernel/Boundary.h"
 #include "Kernel/Predicates.h"
 #include "Kernel/Trim.h"
 

@@ -3,10 +3,10 @@
 //
 // Voids of real surfaces, through the whole chain, and holes larger than real ones.
 #include "FilledSurface.h"
-#include "Kernel/Boundary.h"
 #include "Kernel/Delaunay.h"
 #include "Kernel/Fill.h"
 #include "Kernel/Lattice.h"
+#include "Kernel/Outline.h"
 #include "Kernel/Patch.h"
 #include "Kernel/Trim.h"
 #include "PatchQuality.h"
