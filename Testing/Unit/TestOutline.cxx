@@ -516,6 +516,56 @@ TEST(ExtractBoundary, FollowsMaskedLatticesAndThinnedGradedAndScannedPoints)
   EXPECT_LE(ErrorOfOutline(scanned, Coast, even(0.01)), 0.25);
 }
 
+TEST(ExtractBoundary, KeepsLakesAndNecksOfThreeSpacings)
+{
+  // On a lattice, on one thinned to a ninth at random, and on random points; a spacing is 1.
+  Random random(15);
+  constexpr int size = 40;
+  const auto cloud = [&](int kind, const Mask& isLand) {
+    std::vector<Point2> points;
+    const auto add = [&](double x, double y) {
+      if (isLand(x, y))
+      {
+        points.push_back({ x, y });
+      }
+    };
+    for (int i = 0; i < (kind == 1 ? 9 : 1) * size * size; ++i)
+    {
+      const int width = kind == 1 ? 3 * size : size;
+      if (kind == 2)
+      {
+        const double x = size * random.Unit();
+        add(x, size * random.Unit());
+      }
+      else if (kind == 0 || random.Below(9) == 0)
+      {
+        const double step = static_cast<double>(size) / width;
+        add(step * (i % width), step * (i / width));
+      }
+    }
+    return points;
+  };
+  for (const int kind : { 0, 1, 2 })
+  {
+    for (int round = 0; round < 20; ++round)
+    {
+      const double u = 19.0 + random.Unit(), v = 19.0 + random.Unit();
+      const auto besideLake = [&](double x, double y) { return std::hypot(x - u, y - v) >= 3.0; };
+      const auto alongNeck = [&](double x, double y) {
+        return std::fabs(x - 20.0) > 6.0 || std::fabs(y - v) <= 1.5;
+      };
+      EXPECT_GE(
+        ExtractBoundary(Delaunay(cloud(kind, besideLake)), ExtractOptions()).Vertices.Count(), 2)
+        << "a lake with a radius of three, " << kind;
+      const std::vector<Point2> points = cloud(kind, alongNeck);
+      const Rings outline = ExtractBoundary(Delaunay(points), ExtractOptions()).Vertices;
+      EXPECT_EQ(outline.Count(), 1) << "a neck three wide, " << kind;
+      // Not by taking all for surface.
+      EXPECT_LT(TwiceArea(points, outline) / 2, size * size - 0.8 * 12.0 * (size - 3.0)) << kind;
+    }
+  }
+}
+
 TEST(ExtractBoundary, DoesNotDependOnTheOrderOfPoints)
 {
   Random random(14);
