@@ -1260,8 +1260,7 @@ private:
     {
       largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
     }
-    const double scale =
-      largest > 0.0 ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest)))) : 1.0;
+    const double scale = ScaleToOne(largest);
     for (Point2& p : points)
     {
       p = { p.X * scale - from.X * scale, p.Y * scale - from.Y * scale };

@@ -144,10 +144,7 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
       Candidate nearest[NeighborOfSpacing];
       std::fill_n(nearest, NeighborOfSpacing, nothing);
       const Point2 p = list.Points.At(v);
-      const auto squaredTo = [&](Index w) {
-        const Point2 q = list.Points.At(w);
-        return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
-      };
+      const auto squaredTo = [&](Index w) { return SquaredLength(p, list.Points.At(w)); };
       known[static_cast<std::uint32_t>(v) % places] = keyOf(v);
       const auto pass = [&](Index passed) {
         const std::uint32_t first = neighbors.Offsets[passed];
@@ -460,6 +457,13 @@ std::vector<Index> TrianglesAt(
   return triangles;
 }
 
+std::vector<Index> AllTriangles(const TriangleList& list)
+{
+  std::vector<Index> triangles(list.Count);
+  std::iota(triangles.begin(), triangles.end(), 0);
+  return triangles;
+}
+
 /** The corners of triangles, in the order in which those name them. */
 std::vector<Index> CornersOf(
   const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
@@ -534,13 +538,8 @@ std::vector<Index> SampleOf(
       }
     }
   });
-  std::vector<Index> triangles = TrianglesAt(list, chosen, Part(progress, 0.3, 1.0));
-  if (triangles.empty())
-  {
-    triangles.resize(list.Count);
-    std::iota(triangles.begin(), triangles.end(), 0);
-  }
-  return triangles;
+  const std::vector<Index> triangles = TrianglesAt(list, chosen, Part(progress, 0.3, 1.0));
+  return triangles.empty() ? AllTriangles(list) : triangles;
 }
 
 /**
@@ -772,7 +771,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     }
   });
   double begin = 0.75; // of the progress that is left
-  for (bool isDone = false; !isDone;)
+  for (;;)
   {
     // Few need a second round, and hardly any a third.
     const double end = 0.5 * (1.0 + begin);
@@ -782,8 +781,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
     {
       // With all of them, this is the last round.
-      triangles.resize(list.Count);
-      std::iota(triangles.begin(), triangles.end(), 0);
+      triangles = AllTriangles(list);
     }
     const PartialMesh mesh(list, border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
     std::vector<char> keepHere = mesh.FlagsOf(keep);
@@ -795,24 +793,23 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.3, 0.5));
     const std::vector<Index> unknown =
       DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.5, 0.8));
+    if (unknown.empty())
+    {
+      mesh.PutFlags(keepHere, keep);
+      result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
+      for (Index& vertex : result.Vertices.Vertices)
+      {
+        vertex = mesh.Ids[vertex];
+      }
+      Report(progress, 1.0);
+      return result;
+    }
+    // To see more of these pieces.
     for (const Index vertex : unknown)
     {
       near.Add(mesh.Ids[vertex]);
     }
-    isDone = unknown.empty();
-    if (!isDone)
-    {
-      continue; // and see more of these pieces
-    }
-    mesh.PutFlags(keepHere, keep);
-    result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
-    for (Index& vertex : result.Vertices.Vertices)
-    {
-      vertex = mesh.Ids[vertex];
-    }
   }
-  Report(progress, 1.0);
-  return result;
 }
 
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)
@@ -830,9 +827,8 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
   {
     largest = std::max({ largest, std::fabs(mesh.PointOf(v).X), std::fabs(mesh.PointOf(v).Y) });
   }
-  const double scale = largest > LargestUnscaled || largest < LeastUnscaled
-    ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))))
-    : 1.0;
+  const double scale =
+    largest > LargestUnscaled || largest < LeastUnscaled ? ScaleToOne(largest) : 1.0;
   Buffer<double> coordinates;
   coordinates.Reserve(3 * mesh.Points.size());
   for (const Point2& p : mesh.Points)

@@ -50,12 +50,11 @@ struct Edge
 class OpenEdges
 {
 public:
-  /** @param[in] most  how many may be in the map */
-  OpenEdges(Index numberOfPoints, std::size_t most)
+  explicit OpenEdges(const TriangleList& list)
     : Sieve(SieveSize, 0)
-    , Most(most)
+    , Most(1024 + static_cast<std::size_t>(list.Count) / 64)
   {
-    this->AtLower.Resize(numberOfPoints);
+    this->AtLower.Resize(list.Points.Count);
     std::fill(this->AtLower.begin(), this->AtLower.end(), Pair{ { None, None } });
   }
 
@@ -335,30 +334,40 @@ bool Sweep(const TriangleList& list, OpenEdges& edges, const Progress& progress,
 Mesh MeshOfBorder(const OpenEdges& edges, const PointView& points, const Progress& progress)
 {
   Mesh mesh;
-  std::vector<Index> ids;
+  std::vector<BorderEdge> border;
+  VertexSet used(points.Count);
   edges.Visit([&](Index origin, Index destination) {
-    ids.push_back(origin);
-    ids.push_back(destination);
+    border.push_back({ origin, destination });
+    used.Add(origin);
+    used.Add(destination);
   });
-  std::vector<Index> used = ids;
-  Sort(used.begin(), used.end(), std::less<Index>(), Part(progress, 0.0, 0.5));
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  for (const Index id : used)
+  for (const Index id : used.Number())
   {
     mesh.Points.push_back(points.At(id));
   }
-  const Progress finding = Part(progress, 0.5, 1.0);
-  for (std::size_t i = 0; i < ids.size(); i += 2)
+  for (std::size_t i = 0; i < border.size(); ++i)
   {
-    const auto numberOf = [&used](Index id) {
-      return static_cast<Index>(std::lower_bound(used.begin(), used.end(), id) - used.begin());
-    };
-    ReportStep(finding, i, ids.size());
-    const Index origin = numberOf(ids[i]);
-    mesh.Triangles.insert(mesh.Triangles.end(), { origin, numberOf(ids[i + 1]), origin });
+    ReportStep(progress, i, border.size());
+    const Index origin = used.NumberOf(border[i].Origin);
+    mesh.Triangles.insert(
+      mesh.Triangles.end(), { origin, used.NumberOf(border[i].Destination), origin });
     mesh.Twins.insert(mesh.Twins.end(), { Mesh::Border, 0, 0 });
   }
   return mesh;
+}
+
+/** Whether the border proves that nothing is covered twice. */
+bool IsCoveredOnce(const OpenEdges& edges, const PointView& points, const Progress& progress)
+{
+  try
+  {
+    FindHoles(MeshOfBorder(edges, points, Part(progress, 0.0, 0.5)), 0, Part(progress, 0.5, 1.0));
+    return true;
+  }
+  catch (const Error&)
+  {
+    return false; // whose names are others here
+  }
 }
 
 // ------------------------------------------------------------------------------------------ raster
@@ -720,16 +729,14 @@ bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points,
   std::vector<char>& flags = result.Trimmed.IsOutward;
   flags.resize(triangles.Count);
   Classifier classifier{ raster, flags.data(), {}, raster.Reach(), 0.0, RingRaster::Near };
-  OpenEdges edges(triangles.Points.Count, 1024 + static_cast<std::size_t>(triangles.Count) / 64);
-  if (!Sweep(triangles, edges, Part(progress, 0.0, 0.7), classifier))
+  OpenEdges edges(triangles);
+  if (!Sweep(triangles, edges, Part(progress, 0.0, 0.7), classifier) ||
+    !IsCoveredOnce(edges, triangles.Points, Part(progress, 0.7, 0.8)))
   {
     return false;
   }
   try
   {
-    // For its proof that nothing is covered twice.
-    FindHoles(MeshOfBorder(edges, triangles.Points, Part(progress, 0.7, 0.75)), 0,
-      Part(progress, 0.75, 0.8));
     if (!classifier.Near.empty())
     {
       TrimNear(
@@ -766,22 +773,13 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
   measured.Edges = EdgesAtVertices(points.Count);
   measured.Longest.Resize(count);
   {
-    OpenEdges edges(points.Count, 1024 + static_cast<std::size_t>(count) / 64);
+    OpenEdges edges(triangles);
     Measurer measurer{ measured.Edges, measured.Longest.data() };
     if (!Sweep(triangles, edges, Part(progress, 0.0, 0.4), measurer) ||
-      measurer.Largest > LargestUnscaled || measurer.Largest < LeastUnscaled)
+      measurer.Largest > LargestUnscaled || measurer.Largest < LeastUnscaled ||
+      !IsCoveredOnce(edges, points, Part(progress, 0.4, 0.45)))
     {
       return false;
-    }
-    try
-    {
-      // For its proof that nothing is covered twice.
-      FindHoles(
-        MeshOfBorder(edges, points, Part(progress, 0.4, 0.42)), 0, Part(progress, 0.42, 0.45));
-    }
-    catch (const Error&)
-    {
-      return false; // whose names are others here
     }
     edges.Visit([&](Index origin, Index destination) {
       measured.Border.push_back({ origin, destination });

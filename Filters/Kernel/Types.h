@@ -66,6 +66,16 @@ inline bool IsLower(const Point2& p, const Point2& q)
 }
 
 /**
+ * A power of two that brings coordinates near 1, of which the largest is given: there products and
+ * squares stay in the range of double. 1 for 0.
+ */
+inline double ScaleToOne(double largest)
+{
+  return largest > 0.0 ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))))
+                       : 1.0;
+}
+
+/**
  * Points as a caller holds them: x, y, z interleaved, float or double, not owned.
  * Exactly one of the two pointers is set (none when Count is 0).
  */

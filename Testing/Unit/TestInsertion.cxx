@@ -80,6 +80,33 @@ std::string FindingsOf(Mesh mesh)
   return text + (twins == mesh.Twins ? "" : "twins are wrong\n");
 }
 
+/** A lattice with steps of 25, turned at random, in map coordinates. */
+struct TurnedLattice
+{
+  explicit TurnedLattice(Random& random)
+  {
+    const double angle = 6.28 * random.Unit();
+    this->Step = { 25 * std::cos(angle), 25 * std::sin(angle) };
+  }
+  Point2 operator()(double i, double j) const
+  {
+    return { 460838.3 + i * this->Step.X - j * this->Step.Y,
+      6215400.7 + i * this->Step.Y + j * this->Step.X };
+  }
+  /** The nodes of so many columns and rows. */
+  std::vector<Point2> Square(int size) const
+  {
+    std::vector<Point2> points;
+    for (int i = 0; i < size * size; ++i)
+    {
+      points.push_back((*this)(i % size, i / size));
+    }
+    return points;
+  }
+
+  Point2 Step;
+};
+
 Mesh LatticeMesh(int size)
 {
   std::vector<Point2> points;
@@ -974,16 +1001,8 @@ TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
   int refused = 0;
   for (int round = 0; round < 400; ++round)
   {
-    const double angle = 6.28 * random.Unit();
-    const Point2 u{ 25 * std::cos(angle), 25 * std::sin(angle) };
-    const auto node = [&](double i, double j) {
-      return Point2{ 460838.3 + i * u.X - j * u.Y, 6215400.7 + i * u.Y + j * u.X };
-    };
-    std::vector<Point2> points;
-    for (int i = 0; i < 400; ++i)
-    {
-      points.push_back(node(i % 20, i / 20));
-    }
+    const TurnedLattice node(random);
+    const std::vector<Point2> points = node.Square(20);
     const Mesh before = Delaunay(points);
     Boundary boundary;
     const double beyond = std::array<double, 4>{ 0.0, 1e-6, 1e-3, 0.3 }[round % 4];
@@ -1028,16 +1047,8 @@ TEST(InsertRings, AcrossABorderOfTrianglesAsThinAsRounding)
   Random random(42);
   for (int round = 0; round < 300; ++round)
   {
-    const double angle = 6.28 * random.Unit();
-    const Point2 u{ 25 * std::cos(angle), 25 * std::sin(angle) };
-    const auto node = [&](double i, double j) {
-      return Point2{ 460838.3 + i * u.X - j * u.Y, 6215400.7 + i * u.Y + j * u.X };
-    };
-    std::vector<Point2> points;
-    for (int i = 0; i < 16; ++i)
-    {
-      points.push_back(node(i % 4, i / 4));
-    }
+    const TurnedLattice node(random);
+    const std::vector<Point2> points = node.Square(4);
     std::vector<Point2> comb{ node(3, -1), node(0, -1) };
     for (int tooth = 0; tooth < 6; ++tooth)
     {
@@ -1118,16 +1129,8 @@ TEST(InsertRings, ThatRunAlongThemselvesWithinRounding)
   int moved = 0;
   for (int round = 0; round < 400; ++round)
   {
-    const double angle = 6.28 * random.Unit();
-    const Point2 u{ 25 * std::cos(angle), 25 * std::sin(angle) };
-    const auto node = [&](double i, double j) {
-      return Point2{ 460838.3 + i * u.X - j * u.Y, 6215400.7 + i * u.Y + j * u.X };
-    };
-    std::vector<Point2> points;
-    for (int i = 0; i < 16; ++i)
-    {
-      points.push_back(node(i % 4, i / 4));
-    }
+    const TurnedLattice node(random);
+    const std::vector<Point2> points = node.Square(4);
     Boundary boundary;
     boundary.Add({ node(0, 1), node(1, 1), node(1, 2), node(4, 2), node(4, 1) });
     Mesh mesh = Delaunay(points);
