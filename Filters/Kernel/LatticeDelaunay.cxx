@@ -226,6 +226,20 @@ public:
 
   double Left = 0.0, Right = 0.0, Bottom = 0.0, Top = 0.0;
 
+  /** Whether rows of the disc, from begin to end, certainly have none of a range of columns. */
+  bool MissesRows(double begin, double end, double left, double right) const
+  {
+    const double low = begin - this->CenterY, high = end - this->CenterY;
+    // The middles of these rows lie between two columns.
+    const double middle = this->CenterX - this->Slant * low;
+    const double other = this->CenterX - this->Slant * high;
+    const double beside =
+      std::max(left - std::max(middle, other), std::min(middle, other) - right) - Slack;
+    const double nearest = std::max(std::max(low, -high), 0.0);
+    const double squared = this->WidthSquared - this->PerRow * nearest * nearest;
+    return !this->IsHalfPlane && (squared < 0.0 || (beside > 0.0 && beside * beside > squared));
+  }
+
   /** Leaves of a range of columns what a row of the disc has, a little more rather than less.
    * @return false when no column is left */
   bool ClipRow(double y, double& left, double& right) const
@@ -238,31 +252,6 @@ public:
     left = std::max(left, low);
     right = std::min(right, high);
     return std::ceil(left) <= std::floor(right);
-  }
-
-  /** The same of the rows from @a begin to @a end. */
-  bool ClipRows(double begin, double end, double& left, double& right) const
-  {
-    double low = this->Left - Slack, high = this->Right + Slack;
-    if (!this->IsHalfPlane)
-    {
-      // The columns of the outermost two rows, unless the disc is at its widest between them.
-      double lows[2], highs[2];
-      const bool begins = this->ColumnsOf(begin, lows[0], highs[0]);
-      const bool ends = this->ColumnsOf(end, lows[1], highs[1]);
-      const double halfWidth = std::sqrt(this->RadiusSquared * this->C) / this->Root;
-      const double above = this->B / this->C * halfWidth; // the leftmost point over the center
-      if (begins && ends)
-      {
-        const auto isBetween = [&](double y) { return y > begin - 1.0 && y < end + 1.0; };
-        low = isBetween(this->CenterY + above) ? low : std::max(low, std::min(lows[0], lows[1]));
-        high =
-          isBetween(this->CenterY - above) ? high : std::min(high, std::max(highs[0], highs[1]));
-      }
-    }
-    left = std::max(left, low);
-    right = std::min(right, high);
-    return left <= right;
   }
 
 private:
@@ -590,38 +579,49 @@ private:
   Index FirstRankOf(Index row) const { return this->Nodes.Before[this->FirstWordOf(row)]; }
 
   /**
-   * Strips of about as many points each, all of them with points: several a thread, as they do not
-   * take equally long, but not so many that the walks below them count.
+   * Strips of about as much work each, all of them with points: several a thread, as what they take
+   * is but guessed, unless the walks below them would count. The first one has no walk below it.
    */
   std::vector<Strip> MakeStrips(int threads) const
   {
     const LatticeNodes& nodes = this->Nodes;
-    double perStrip = this->Count; // points
-    if (this->Options.PointsPerStrip > 0)
+    // In nanoseconds or so; where there are few gaps most points are of full cells.
+    constexpr double perPoint = 6.0, perGap = 9.0, mostGaps = 10.0, perPointOfWalk = 500.0,
+                     least = 20000.0;
+    const auto workOf = [&](double points, double gaps) {
+      return perPoint * points + perGap * std::min(gaps, mostGaps * points);
+    };
+    const double gapsPerPoint = static_cast<double>(this->Gaps) / this->Count;
+    const double all = workOf(this->Count, static_cast<double>(this->Gaps));
+    const double walk = perPointOfWalk * nodes.Columns / std::sqrt(1.0 + gapsPerPoint);
+    double perStrip = Infinity;
+    if (threads > 1)
     {
-      perStrip = this->Options.PointsPerStrip;
-    }
-    else if (threads > 1)
-    {
-      // In nanoseconds or so; where there are few gaps most points are of full cells.
-      constexpr double perFullCell = 6.0, perOther = 80.0, perPointOfWalk = 500.0, fewest = 2000.0;
-      const double gaps = static_cast<double>(this->Gaps) / this->Count;
-      const double all = this->Count * (perFullCell + perOther * std::min(gaps, 1.0));
-      const double walk = perPointOfWalk * nodes.Columns / std::sqrt(1.0 + gaps);
       const double perThread =
         std::min(std::max(std::floor(all / (8.0 * walk * threads)), 1.0), 8.0);
-      perStrip = std::max(std::ceil(this->Count / (perThread * threads)), fewest);
+      const double strips = perThread * threads;
+      perStrip = std::max((all + (strips - 1.0) * walk) / strips, std::max(2.0 * walk, least));
     }
+    const double pointsPerStrip =
+      this->Options.PointsPerStrip > 0 ? this->Options.PointsPerStrip : Infinity;
     std::vector<Strip> strips;
     Strip strip;
     strip.FirstWord = strip.Word = this->FirstWordOf(0);
-    for (Index row = 1; row <= nodes.Rows; ++row)
+    Index rankOfRow = 0;
+    double work = 0.0;
+    for (Index row = 0; row < nodes.Rows; ++row)
     {
-      const bool isLast = row == nodes.Rows;
-      const Index rank = isLast ? this->Count : this->FirstRankOf(row);
-      if (rank - strip.FirstRank >= perStrip || isLast)
+      const bool isLast = row + 1 == nodes.Rows;
+      const Index rank = isLast ? this->Count : this->FirstRankOf(row + 1);
+      const double points = rank - rankOfRow;
+      const RowEnds& ends = this->Ends[0][row];
+      work += points > 0.0 ? workOf(points, ends.Right - ends.Left + 1.0 - points) : 0.0;
+      rankOfRow = rank;
+      const bool isFull =
+        pointsPerStrip < Infinity ? rank - strip.FirstRank >= pointsPerStrip : work >= perStrip;
+      if (isFull || isLast)
       {
-        strip.EndWord = this->FirstWordOf(row);
+        strip.EndWord = this->FirstWordOf(row + 1);
         // No points for one more: these rows are empty.
         if (rank == strip.FirstRank)
         {
@@ -632,6 +632,7 @@ private:
         strips.push_back(strip);
         strip.FirstWord = strip.Word = strip.EndWord;
         strip.FirstRank = rank;
+        work = walk;
       }
     }
     return strips;
@@ -1179,7 +1180,7 @@ private:
       double left = ends.Left - column, right = ends.Right - column;
       right = e.Y > 0 ? std::min(right, std::max(y * slope, top * slope)) : right;
       left = e.Y < 0 ? std::max(left, std::min(y * slope, top * slope)) : left;
-      return left > right || !disc.ClipRows(y, top, left, right);
+      return left > right || disc.MissesRows(y, top, left, right);
     };
     for (; row + y < nodes.Rows && y <= disc.Top + 1e-6; ++y)
     {
@@ -1206,7 +1207,7 @@ private:
       right = e.Y > 0 ? std::min(right, y * slope - 4e-7) : right;
       left = e.Y < 0 ? std::max(left, y * slope + 4e-7) : left;
       work += 5;
-      if (!(left <= right) || !disc.ClipRow(y, left, right))
+      if (!(left <= right) || disc.MissesRows(y, y, left, right) || !disc.ClipRow(y, left, right))
       {
         continue;
       }
@@ -1266,8 +1267,8 @@ private:
   {
     Index Left = LatticeNodes::MaximumSide, Right = -1; ///< first and last occupied column
   };
-  static constexpr int BandBits = 5; ///< a band is 32 rows, or 32 bands
-  static constexpr int MostBands = 3;
+  static constexpr int BandBits = 4; ///< a band is 32 rows, or 32 bands
+  static constexpr int MostBands = 4;
   std::array<std::vector<RowEnds>, MostBands + 1> Ends; ///< of each row, band, band of bands ...
   std::vector<Index> RightChain, LeftChain;             ///< nodes
   Buffer<Index> First, Last; ///< first and last neighbour of the fan above a vertex, by rank

@@ -39,7 +39,7 @@ namespace
 using namespace benchmark;
 
 constexpr int MaximumRepeats = 101;
-constexpr std::size_t MaximumCompetitors = 5;
+constexpr std::size_t MaximumCompetitors = 6;
 constexpr Index MostPointsOfVTK = 20000;
 
 // ---- options -----------------------------------------------------------------------------------
@@ -52,7 +52,8 @@ one process and in turn, measures peak memory, and checks the results against ea
 
   --sets LIST       generated data sets, or "all"; default L,D,U where no file is named
   --points LIST     numbers of points of the generated sets; default 886639
-  --threads N       threads of vtkGridDelaunay2D, 0: one a core; the others have one; default 1
+  --threads N       threads of vtkGridDelaunay2D, 0: one a core; the others have one; default 1.
+                    Unless it is 1, vtkGridDelaunay2D is also timed with one thread, in turn
   --seed N          seed of the generators; default 1
   --file FILE       a .f64 (little-endian doubles x y z) or .vtp file; may be given several times
   --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA, where that is set
@@ -75,6 +76,7 @@ Examples
   BenchmarkDelaunay --points 100000,886639
   BenchmarkDelaunay --sets U,clustered,tracks,voids --no-vtk
   BenchmarkDelaunay --searches --no-cgal --no-vtk
+  BenchmarkDelaunay --points 4000000 --threads 2 --no-cgal --no-vtk
   BenchmarkDelaunay --file Data/jacksboro_fault.vtp --json figures.json
 
 The exit code is 1 when a result of vtkGridDelaunay2D is wrong or missing, 2 for a wrong option.
@@ -270,6 +272,10 @@ Competitors MakeCompetitors(const Options& options)
 {
   Competitors competitors;
   competitors.push_back(NewGridDelaunay(options.Threads));
+  if (options.Threads != 1)
+  {
+    competitors.push_back(NewGridDelaunayOneThread());
+  }
   if (options.UseSearches)
   {
     competitors.push_back(NewGridDelaunaySearch(options.Threads, false));
@@ -710,7 +716,8 @@ int Run(const Options& options)
     const Results results = Measure(sources[i], options, competitors);
     PrintRows(sources[i].Name, competitors, results, options.TimeLimit);
     isRight = isRight && results[0].Runs > 0;
-    for (std::size_t k = 0; k < (options.UseSearches ? 3 : 1); ++k)
+    const std::size_t ours = 1 + (options.Threads != 1 ? 1 : 0) + (options.UseSearches ? 2 : 0);
+    for (std::size_t k = 0; k < ours; ++k)
     {
       isRight = isRight && results[k].Checked != Verdict::Wrong;
     }

@@ -63,6 +63,9 @@ public:
 /** vtkGridDelaunay2D: vtkPolyData in, vtkPolyData out, a fresh filter each time. 0 threads: all. */
 std::unique_ptr<Competitor> NewGridDelaunay(int threads);
 
+/** The same on one thread, to tell what threads are worth. */
+std::unique_ptr<Competitor> NewGridDelaunayOneThread();
+
 /** The same by the coordinates, without a lattice, with one of its search strategies. */
 std::unique_ptr<Competitor> NewGridDelaunaySearch(int threads, bool isCompactness);
 

@@ -136,6 +136,12 @@ std::unique_ptr<Competitor> NewGridDelaunay(int threads)
     [threads](vtkGridDelaunay2D* filter) { filter->SetNumberOfThreads(threads); });
 }
 
+std::unique_ptr<Competitor> NewGridDelaunayOneThread()
+{
+  return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>(
+    "- one thread", [](vtkGridDelaunay2D* filter) { filter->SetNumberOfThreads(1); });
+}
+
 std::unique_ptr<Competitor> NewGridDelaunaySearch(int threads, bool isCompactness)
 {
   return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>(
