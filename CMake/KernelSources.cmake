@@ -30,7 +30,7 @@ set(es_kernel_concepts
 
 # Kernel headers without a source file.
 set(es_kernel_headers Kernel/Types.h Kernel/Parallel.h Kernel/Extent.h Kernel/Reach.h
-    Kernel/CellGrid.h Kernel/NearMesh.h Kernel/Dot.h)
+    Kernel/CellGrid.h Kernel/NearMesh.h Kernel/Sweep.h Kernel/Dot.h)
 set(es_kernel_sources)
 foreach (es_concept IN LISTS es_kernel_concepts)
   list(APPEND es_kernel_headers "Kernel/${es_concept}.h")

@@ -136,7 +136,7 @@ bool TrimQuickly(vtkPolyData* input, vtkPolyData* given,
     }
     outcome.Boundary = elevation::JoinLines(lines);
     if (!elevation::QuickTrim(outcome.View.View, lines.Points, outcome.Boundary, recover,
-          Part(progress, 0.02, 1.0), outcome.List))
+          extraction.NumberOfThreads, Part(progress, 0.02, 1.0), outcome.List))
     {
       return false;
     }

@@ -47,6 +47,19 @@ struct TriangleList
   }
 };
 
+/** A half-edge without a twin. */
+struct BorderEdge
+{
+  Index Origin;
+  Index Destination;
+
+  bool operator<(const BorderEdge& other) const
+  {
+    return this->Origin < other.Origin ||
+      (this->Origin == other.Origin && this->Destination < other.Destination);
+  }
+};
+
 /** A set of vertices, one bit each: small enough to be asked for any vertex at any time. */
 class VertexSet
 {

@@ -31,8 +31,6 @@ constexpr std::size_t NeighborsOfHub = 64;
 // worse; the mean length not limited by the second edge took gaps between scan lines for surface.
 constexpr double BeyondDoubt = 0.52;
 constexpr double SmallGroup = 0.7;
-// For the typical triangle one vertex in 1, 2, 4 and so on is chosen: as many as are chosen when no
-// more than so many triangles would be.
 constexpr Index LargestSample = 4096;
 // Smaller ones, whose squares leave the range of double, are taken as this: no spacing is 0.
 constexpr double LeastSpacing = 1e-150;
@@ -58,7 +56,7 @@ struct Neighbors
     InStretches(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
-        const std::uint32_t size = measured.Edges.DegreeOf(v);
+        const std::uint32_t size = measured.Degrees[v];
         this->Offsets[v] = sum + size;
         // More than are needed, as how many cannot be predicted; what comes next overwrites them.
         std::fill_n(&this->Ids[sum + size], Group - 1, v);
@@ -499,47 +497,27 @@ double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
   return std::max<double>(LeastSpacing, std::min<double>(middle, LargestSpacingInTriangle * least));
 }
 
-/** Whether a vertex is among a share of all, 1 in 2 to the power of @a bits, by its place alone. */
-bool IsChosen(Point2 p, int bits)
-{
-  std::uint64_t x, y;
-  p = { p.X + 0.0, p.Y + 0.0 }; // -0.0 is 0.0
-  std::memcpy(&x, &p.X, sizeof(x));
-  std::memcpy(&y, &p.Y, sizeof(y));
-  // Steps that spread every bit over all others, as at the end of Appleby's MurmurHash3.
-  const auto mix = [](std::uint64_t h) {
-    h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDull;
-    h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53ull;
-    return h ^ (h >> 33);
-  };
-  return bits == 0 || mix(mix(x) + y) >> (64 - bits) == 0;
-}
-
 /**
  * Triangles from everywhere: those at some vertices, or all when they are few. Not those of a vertex
  * with very many neighbours, which would outvote all others.
  */
-std::vector<Index> SampleOf(
-  const TriangleList& list, const Neighbors& neighbors, const Progress& progress)
+std::vector<Index> SampleOf(const MeasuredTriangles& measured)
 {
-  int bits = 0;
-  while (list.Count >> bits > LargestSample)
+  const TriangleList& list = measured.List;
+  const int bits = SampleBitsOf(list.Count);
+  std::vector<Index> sample;
+  for (const Index t : measured.Sample)
   {
-    ++bits;
-  }
-  VertexSet chosen(list.Points.Count);
-  InStretches(list.Points.Count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v)
+    const Index* corners = list.CornersOf(t);
+    if (bits == 0 || std::any_of(corners, corners + 3, [&](Index v) {
+          return measured.Degrees[v] <= NeighborsOfHub &&
+            IsChosenForSample(list.Points.At(v), bits);
+        }))
     {
-      if (IsChosen(list.Points.At(v), bits) &&
-        (bits == 0 || neighbors.Offsets[v + 1] - neighbors.Offsets[v] <= NeighborsOfHub))
-      {
-        chosen.Add(v);
-      }
+      sample.push_back(t);
     }
-  });
-  const std::vector<Index> triangles = TrianglesAt(list, chosen, Part(progress, 0.3, 1.0));
-  return triangles.empty() ? AllTriangles(list) : triangles;
+  }
+  return sample.empty() ? AllTriangles(list) : sample;
 }
 
 /**
@@ -666,6 +644,35 @@ public:
 
 } // namespace
 
+int SampleBitsOf(Index numberOfTriangles)
+{
+  int bits = 0;
+  while (numberOfTriangles >> bits > LargestSample)
+  {
+    ++bits;
+  }
+  return bits;
+}
+
+bool IsChosenForSample(Point2 place, int sampleBits)
+{
+  if (sampleBits == 0)
+  {
+    return true;
+  }
+  std::uint64_t x, y;
+  place = { place.X + 0.0, place.Y + 0.0 }; // -0.0 is 0.0
+  std::memcpy(&x, &place.X, sizeof(x));
+  std::memcpy(&y, &place.Y, sizeof(y));
+  // Steps that spread every bit over all others, as at the end of Appleby's MurmurHash3.
+  const auto mix = [](std::uint64_t h) {
+    h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDull;
+    h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53ull;
+    return h ^ (h >> 33);
+  };
+  return mix(mix(x) + y) >> (64 - sampleBits) == 0;
+}
+
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options)
 {
   const TriangleList& list = measured.List;
@@ -690,16 +697,8 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
       work(begin, begin + std::min(atOnce, count - begin));
     });
   };
-  Buffer<float> shortSpacings;
-  shortSpacings.Resize(list.Points.Count);
-  inPieces(list.Points.Count, Part(progress, 0.02, 0.05), [&](Index begin, Index end) {
-    for (Index v = begin; v < end; ++v)
-    {
-      shortSpacings[v] = measured.Edges.ShortSpacingOf(v);
-    }
-  });
-  const Neighbors neighbors(measured, Part(progress, 0.05, 0.25));
-  measured.Edges = EdgesAtVertices();
+  const Buffer<float>& shortSpacings = measured.ShortSpacings;
+  const Neighbors neighbors(measured, Part(progress, 0.02, 0.25));
   Buffer<double> spacings; // of those vertices for which they are asked
   spacings.Resize(list.Points.Count);
   const auto findSpacings = [&](const std::vector<Index>& triangles, const Progress& part) {
@@ -710,8 +709,8 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   const auto ratioOf = [&](Index t) { return std::sqrt(measured.Longest[t]) / spacingOf(t); };
   if (!(result.GapTolerance > 0.0))
   {
-    const std::vector<Index> sample = SampleOf(list, neighbors, Part(progress, 0.25, 0.3));
-    const Progress finding = Part(progress, 0.3, 0.35);
+    const std::vector<Index> sample = SampleOf(measured);
+    const Progress finding = Part(progress, 0.25, 0.35);
     findSpacings(sample, finding);
     std::vector<double> ratios;
     for (const Index t : sample)
@@ -837,33 +836,44 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     coordinates.Append(scale * p.Y);
     coordinates.Append(0.0);
   }
-  MeasuredTriangles measured;
-  measured.List.Corners = mesh.Triangles.data();
-  measured.List.Count = count;
-  measured.List.Points.Double = coordinates.data();
-  measured.List.Points.Count = mesh.NumberOfPoints();
-  measured.Edges = EdgesAtVertices(mesh.NumberOfPoints());
-  measured.Longest.Resize(count);
+  TriangleList list;
+  list.Corners = mesh.Triangles.data();
+  list.Count = count;
+  list.Points.Double = coordinates.data();
+  list.Points.Count = mesh.NumberOfPoints();
+  MeasuredTriangles measured(list);
+  std::vector<EdgesAtVertex> edges(mesh.Points.size());
+  const int bits = SampleBitsOf(count);
   InStretches(count, Part(options.Monitor, 0.0, 0.4), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       measured.Longest[t] = 0.0;
+      bool isInSample = false;
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const BorderEdge edge{ mesh.Origin(h), mesh.Destination(h) };
-        const double squared = SquaredLength(
-          measured.List.Points.At(edge.Origin), measured.List.Points.At(edge.Destination));
+        const Point2 origin = list.Points.At(edge.Origin);
+        const double squared = SquaredLength(origin, list.Points.At(edge.Destination));
         measured.Longest[t] = std::max(measured.Longest[t], squared);
-        measured.Edges.Add(edge.Origin, squared);
+        edges[edge.Origin].Add(squared);
+        isInSample = isInSample || IsChosenForSample(origin, bits);
         if (mesh.IsBorder(h))
         {
           // No half-edge leaves its other end.
-          measured.Edges.Add(edge.Destination, squared);
+          edges[edge.Destination].Add(squared);
           measured.Border.push_back(edge);
         }
       }
+      if (isInSample)
+      {
+        measured.Sample.push_back(t);
+      }
     }
   });
+  for (Index v = 0; v < list.Points.Count; ++v)
+  {
+    measured.Set(v, edges[v]);
+  }
   ExtractOptions rest = options;
   const Progress finding = Part(options.Monitor, 0.4, 1.0);
   rest.Monitor = finding;

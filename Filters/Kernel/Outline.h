@@ -38,81 +38,75 @@ struct ExtractedBoundary
   std::vector<char> IsSurface; ///< one flag a triangle: the surface that the rings go around
 };
 
-/** A half-edge without a twin. */
-struct BorderEdge
+/** The four shortest edges at a vertex, and how many it has. */
+struct EdgesAtVertex
 {
-  Index Origin;
-  Index Destination;
-
-  bool operator<(const BorderEdge& other) const
+  /** An edge, each once, in any order. */
+  void Add(double squaredLength)
   {
-    return this->Origin < other.Origin ||
-      (this->Origin == other.Origin && this->Destination < other.Destination);
-  }
-};
-
-/** The four shortest edges at each vertex, and how many it has; in few bytes a vertex. */
-class EdgesAtVertices
-{
-public:
-  EdgesAtVertices() = default;
-  explicit EdgesAtVertices(Index numberOfVertices)
-  {
-    this->Vertices.Resize(numberOfVertices);
-    constexpr float none = std::numeric_limits<float>::infinity();
-    std::fill(
-      this->Vertices.begin(), this->Vertices.end(), Vertex{ { none, none, none, none }, 0, {} });
-  }
-
-  /** An edge of a vertex, each once, in any order. */
-  void Add(Index vertex, double squaredLength)
-  {
-    Vertex& at = this->Vertices[vertex];
-    ++at.Degree;
+    ++this->Degree;
     // Without branches: where it belongs cannot be predicted.
     const float squared = static_cast<float>(squaredLength);
     for (int i = Shortest - 1; i > 0; --i)
     {
-      at.Squared[i] = std::min(at.Squared[i], std::max(at.Squared[i - 1], squared));
+      this->Squared[i] = std::min(this->Squared[i], std::max(this->Squared[i - 1], squared));
     }
-    at.Squared[0] = std::min(at.Squared[0], squared);
+    this->Squared[0] = std::min(this->Squared[0], squared);
   }
-  void PrefetchAt(Index vertex) const { Prefetch(&this->Vertices[vertex]); }
 
-  std::uint32_t DegreeOf(Index vertex) const { return this->Vertices[vertex].Degree; }
   /** Of a corner: their mean length (of all edges if fewer), but at most twice the second one's. */
-  float ShortSpacingOf(Index vertex) const
+  float ShortSpacing() const
   {
-    const Vertex& at = this->Vertices[vertex];
-    const float second = std::sqrt(at.Squared[1]);
-    float sum = std::sqrt(at.Squared[0]) + second;
+    const float second = std::sqrt(this->Squared[1]);
+    float sum = std::sqrt(this->Squared[0]) + second;
     for (int i = 2; i < Shortest; ++i)
     {
-      sum += static_cast<std::uint32_t>(i) < at.Degree ? std::sqrt(at.Squared[i]) : 0.0f;
+      sum += static_cast<std::uint32_t>(i) < this->Degree ? std::sqrt(this->Squared[i]) : 0.0f;
     }
-    const float number = static_cast<float>(std::min<std::uint32_t>(at.Degree, Shortest));
+    const float number = static_cast<float>(std::min<std::uint32_t>(this->Degree, Shortest));
     return std::min(sum / number, 2.0f * second);
   }
 
-private:
   static constexpr int Shortest = 4;
-  struct Vertex
-  {
-    float Squared[Shortest]; ///< in their order
-    std::uint32_t Degree;
-    std::uint32_t Unused[3]; ///< so that none lies in two lines of the cache
-  };
-  Buffer<Vertex> Vertices;
+  std::uint32_t Degree = 0;
+  float Squared[Shortest] = { std::numeric_limits<float>::infinity(),
+    std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+    std::numeric_limits<float>::infinity() }; ///< in their order
 };
 
 /** Triangles, and what a pass over them has told. */
 struct MeasuredTriangles
 {
+  explicit MeasuredTriangles(const TriangleList& list)
+    : List(list)
+  {
+    this->Longest.Resize(list.Count);
+    this->Degrees.Resize(list.Points.Count);
+    this->ShortSpacings.Resize(list.Points.Count);
+  }
+
+  /** When all edges of a vertex are known. */
+  void Set(Index vertex, const EdgesAtVertex& edges)
+  {
+    this->Degrees[vertex] = edges.Degree;
+    this->ShortSpacings[vertex] = edges.ShortSpacing();
+  }
+
   TriangleList List;
   Buffer<double> Longest;         ///< one a triangle: the square of its longest edge
-  EdgesAtVertices Edges;          ///< each edge told to both its ends
+  Buffer<std::uint32_t> Degrees;  ///< one a vertex: how many edges it has
+  Buffer<float> ShortSpacings;    ///< one a vertex
   std::vector<BorderEdge> Border; ///< all
+  std::vector<Index> Sample;      ///< triangles with a vertex chosen for the sample; increasing
 };
+
+/**
+ * For the typical triangle one vertex in 1, 2, 4 and so on is chosen: as many as are chosen when no
+ * more than a few thousand triangles would be. It is 2 to the power of this.
+ */
+int SampleBitsOf(Index numberOfTriangles);
+/** Whether a vertex is chosen, by its place alone. */
+bool IsChosenForSample(Point2 place, int sampleBits);
 
 inline double SquaredLength(Point2 p, Point2 q)
 {

@@ -4,12 +4,10 @@
 
 #include "Boundary.h"
 #include "Holes.h"
-#include "Parallel.h"
-#include "Predicates.h"
+#include "Sweep.h"
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
 
 namespace elevation
 {
@@ -17,330 +15,17 @@ namespace elevation
 namespace
 {
 
-// -------------------------------------------------------------------------------- edges in a sweep
-
-/** How many corners ahead the sweep asks for what belongs to them. */
-constexpr std::size_t CornersAhead = 126;
-
-struct Corner
-{
-  Index Id;
-  Point2 Place;
-};
-
-/** A half-edge: its ends, and whether it leads from the lower to the upper, or down. */
-struct Edge
-{
-  Edge(Index a, Point2 placeOfA, Index b, Point2 placeOfB)
-    : IsDown(IsLower(placeOfB, placeOfA))
-    , Lower(a ^ ((a ^ b) & -this->IsDown)) // without branches: which way it leads is by chance
-    , Upper(a ^ b ^ this->Lower)
-  {
-  }
-  Index IsDown;
-  Index Lower;
-  Index Upper;
-};
-
-/**
- * The half-edges that have come without their twins so far. Each is known to the lower end of its
- * edge, which has room for one that leads up and one that leads down to it: more are not open at a
- * time when triangles come by their lowest vertices. Others go to a map.
- */
-class OpenEdges
-{
-public:
-  explicit OpenEdges(const TriangleList& list)
-    : Sieve(SieveSize, 0)
-    , Most(1024 + static_cast<std::size_t>(list.Count) / 64)
-  {
-    this->AtLower.Resize(list.Points.Count);
-    std::fill(this->AtLower.begin(), this->AtLower.end(), Pair{ { None, None } });
-  }
-
-  /** A half-edge has come: it finds its twin, or stays open. */
-  void Add(const Edge& edge)
-  {
-    // Most stay open. One that is open already is found in the slow way.
-    Pair& at = this->AtLower[edge.Lower];
-    if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
-      this->HasNoOthers)
-    {
-      at.Upper[edge.IsDown] = edge.Upper;
-    }
-    else if (!this->Match(edge))
-    {
-      this->Open(edge);
-    }
-  }
-
-  /**
-   * Whether both half-edges have found their twins: one up from a vertex to @a right, one down to
-   * it from @a left. If not, nothing is changed.
-   */
-  bool MatchBoth(Index vertex, Index right, Index left)
-  {
-    Pair& at = this->AtLower[vertex];
-    const bool areTwins = (at.Upper[1] == right) & (at.Upper[0] == left);
-    if (areTwins)
-    {
-      at = Pair{ { None, None } };
-    }
-    return areTwins;
-  }
-
-  /** Whether the half-edge has found its twin, which then is no longer open. */
-  bool Match(const Edge& edge)
-  {
-    Index& twin = this->AtLower[edge.Lower].Upper[1 - edge.IsDown];
-    if (twin == edge.Upper)
-    {
-      twin = None;
-      return true;
-    }
-    // Few of those asked for are there.
-    Index& count = this->Sieve[PlaceOf(edge)];
-    if (count == 0 || this->Others.erase(KeyOf(edge, 1 - edge.IsDown)) == 0)
-    {
-      return false;
-    }
-    --count;
-    this->HasNoOthers = this->Others.empty();
-    return true;
-  }
-
-  void Open(const Edge& edge)
-  {
-    Index& open = this->AtLower[edge.Lower].Upper[edge.IsDown];
-    if (open == None)
-    {
-      open = edge.Upper;
-      return;
-    }
-    const bool isNew = open != edge.Upper && this->Others.insert(KeyOf(edge, edge.IsDown)).second;
-    ++this->Sieve[PlaceOf(edge)];
-    this->HasNoOthers = false;
-    this->Failed = this->Failed || !isNew || this->Others.size() > this->Most;
-  }
-
-  void PrefetchAt(Index vertex) const { Prefetch(&this->AtLower[vertex]); }
-
-  /** Too many for the map, or one twice: not an order, or not a surface, for this. */
-  bool HasFailed() const { return this->Failed; }
-
-  /** Calls visit(origin, destination) for each open half-edge; in an order of vertices. */
-  template <typename Visitor>
-  void Visit(Visitor&& visit) const
-  {
-    const Index count = static_cast<Index>(this->AtLower.size());
-    constexpr Index atOnce = 64;
-    for (Index begin = 0; begin < count; begin += atOnce)
-    {
-      const Index end = std::min(begin + atOnce, count);
-      Index all = None;
-      for (Index v = begin; v < end; ++v)
-      {
-        all &= this->AtLower[v].Upper[0] & this->AtLower[v].Upper[1];
-      }
-      for (Index v = begin; all != None && v < end; ++v)
-      {
-        const Pair& open = this->AtLower[v];
-        if (open.Upper[0] != None)
-        {
-          visit(v, open.Upper[0]);
-        }
-        if (open.Upper[1] != None)
-        {
-          visit(open.Upper[1], v);
-        }
-      }
-    }
-    std::vector<std::uint64_t> others;
-    for (const auto& other : this->Others)
-    {
-      others.push_back(other);
-    }
-    std::sort(others.begin(), others.end());
-    for (const std::uint64_t key : others)
-    {
-      visit(static_cast<Index>(key >> 32), static_cast<Index>(key & 0xFFFFFFFFu));
-    }
-  }
-
-private:
-  struct Pair
-  {
-    Index Upper[2]; ///< where one leads up to, and where one leads down from
-  };
-
-  static std::uint64_t KeyOf(const Edge& edge, int isDown)
-  {
-    return isDown ? std::uint64_t(edge.Upper) << 32 | std::uint32_t(edge.Lower)
-                  : std::uint64_t(edge.Lower) << 32 | std::uint32_t(edge.Upper);
-  }
-  static std::size_t PlaceOf(const Edge& edge)
-  {
-    return (static_cast<std::size_t>(edge.Lower) * 31 + static_cast<std::size_t>(edge.Upper)) %
-      SieveSize;
-  }
-
-  static constexpr std::size_t SieveSize = 4096;
-  std::vector<Index> Sieve; ///< how many others there are at each place
-  Buffer<Pair> AtLower;
-  std::unordered_set<std::uint64_t> Others; ///< origin and destination
-  const std::size_t Most;
-  bool HasNoOthers = true;
-  bool Failed = false;
-};
-
-/** Whether a triangle is counter-clockwise and has finite corners: what a filter leaves open. */
-bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
-{
-  for (const double value : { a.X, a.Y, b.X, b.Y, c.X, c.Y })
-  {
-    if (!std::isfinite(value))
-    {
-      return false;
-    }
-  }
-  return Orientation(a, b, c) == Positive;
-}
-
-inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
-{
-  // The filter of Orientation(), which nothing that is not finite passes.
-  const double left = (a.X - c.X) * (b.Y - c.Y);
-  const double right = (a.Y - c.Y) * (b.X - c.X);
-  return left - right > 1e-15 * (std::fabs(left) + std::fabs(right)) + 1e-290 ||
-    IsExactlyCounterClockwise(a, b, c);
-}
-
-/**
- * Sweeps over some of the triangles, whose corners exist.
- * @param[in] ahead  so many corners further on exist as well
- */
-template <typename Real, typename Visitor>
-bool SweepStretch(const Index* corners, Index begin, Index end, std::size_t ahead,
-  const Real* coordinates, OpenEdges& edges, Visitor& visitor)
-{
-  const auto placeOf = [coordinates](Index id) {
-    const Real* p = coordinates + 3 * static_cast<std::size_t>(id);
-    return Point2{ static_cast<double>(p[0]), static_cast<double>(p[1]) };
-  };
-  bool isRight = true;
-  const Index* ids = corners + 3 * static_cast<std::size_t>(begin);
-  const Index* const lastIds = corners + 3 * static_cast<std::size_t>(end);
-  Index t = begin;
-  while (ids < lastIds)
-  {
-    const Index first = ids[0];
-    const Index right = ids[1];
-    const Point2 p = placeOf(first);
-    const Point2 r = placeOf(right);
-    visitor.Begin(p, r);
-    Index last = right;
-    Point2 b = r;
-    do
-    {
-      for (const Index next : { ids[ahead + 1], ids[ahead + 2] })
-      {
-        Prefetch(coordinates + 3 * static_cast<std::size_t>(next));
-        edges.PrefetchAt(next);
-        visitor.PrefetchAt(next);
-      }
-      const Index before = last;
-      const Point2 a = b;
-      last = ids[2];
-      b = placeOf(last);
-      isRight &= IsCounterClockwise(a, b, p);
-      edges.Add(Edge(before, a, last, b));
-      visitor.Visit(t, { first, p }, { before, a }, { last, b });
-      ids += 3;
-      ++t;
-    } while (ids < lastIds && ids[0] == first && ids[1] == last);
-    if (!edges.MatchBoth(first, right, last))
-    {
-      // Both may find their twins before one that has none takes the room of one of these.
-      const Edge firstEdge(first, p, right, r);
-      const bool hasTwin = edges.Match(firstEdge);
-      edges.Add(Edge(last, b, first, p));
-      if (!hasTwin)
-      {
-        edges.Open(firstEdge);
-      }
-    }
-  }
-  return isRight;
-}
-
-/** Whether all elevations are finite, also of points that are no corners. */
-template <typename Real>
-bool AreHeightsFinite(const Real* coordinates, Index count, const Progress& progress)
-{
-  double sum = 0.0; // of numbers times 0: 0, or not a number
-  InStretches(count, progress, [&](Index begin, Index end) {
-    const Real* z = coordinates + 3 * static_cast<std::size_t>(begin) + 2;
-    double sums[4] = { 0.0, 0.0, 0.0, 0.0 };
-    for (Index i = begin; i < end; ++i, z += 3)
-    {
-      sums[i % 4] += 0.0 * static_cast<double>(*z);
-    }
-    sum += (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  });
-  return sum == 0.0;
-}
-
-/**
- * One pass over the triangles: all must be counter-clockwise, with corners that exist and are
- * finite, z included. Edges between triangles that follow each other around one vertex are matched
- * at once, the others by way of @a edges.
- * @param[in] visitor  Begin(p, a) is told the first corner of triangles that follow each other,
- *                     and the next; Visit(t, p, a, b) each of them; PrefetchAt(vertex) what is soon
- *                     to come
- * @return whether they are
- */
-template <typename Real, typename Visitor>
-bool Sweep(const TriangleList& list, const Real* coordinates, OpenEdges& edges,
-  const Progress& progress, Visitor& visitor)
-{
-  const std::size_t count = 3 * static_cast<std::size_t>(list.Count);
-  const std::uint32_t most = static_cast<std::uint32_t>(list.Points.Count - 1);
-  bool isRight = AreHeightsFinite(coordinates, list.Points.Count, Part(progress, 0.0, 0.05));
-  InStretches(list.Count, Part(progress, 0.05, 1.0), [&](Index begin, Index end) {
-    const std::size_t last = 3 * static_cast<std::size_t>(end);
-    const std::size_t known = std::min(count, last + CornersAhead + 3);
-    std::uint32_t sign = 0; // of numbers below 0, or beyond the last
-    for (std::size_t h = 3 * static_cast<std::size_t>(begin); h < known; ++h)
-    {
-      const std::uint32_t id = static_cast<std::uint32_t>(list.Corners[h]);
-      sign |= id | (most - id);
-    }
-    isRight = isRight && sign >> 31 == 0 &&
-      SweepStretch(
-        list.Corners, begin, end, known < count ? CornersAhead : 0, coordinates, edges, visitor) &&
-      !edges.HasFailed();
-  });
-  return isRight;
-}
-
-template <typename Visitor>
-bool Sweep(const TriangleList& list, OpenEdges& edges, const Progress& progress, Visitor& visitor)
-{
-  return list.Points.Double ? Sweep(list, list.Points.Double, edges, progress, visitor)
-                            : Sweep(list, list.Points.Float, edges, progress, visitor);
-}
-
 /** The border as a mesh of which nothing else is true: half-edge 3i is its i-th. */
-Mesh MeshOfBorder(const OpenEdges& edges, const PointView& points, const Progress& progress)
+Mesh MeshOfBorder(
+  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   Mesh mesh;
-  std::vector<BorderEdge> border;
   VertexSet used(points.Count);
-  edges.Visit([&](Index origin, Index destination) {
-    border.push_back({ origin, destination });
-    used.Add(origin);
-    used.Add(destination);
-  });
+  for (const BorderEdge& edge : border)
+  {
+    used.Add(edge.Origin);
+    used.Add(edge.Destination);
+  }
   for (const Index id : used.Number())
   {
     mesh.Points.push_back(points.At(id));
@@ -357,11 +42,12 @@ Mesh MeshOfBorder(const OpenEdges& edges, const PointView& points, const Progres
 }
 
 /** Whether the border proves that nothing is covered twice. */
-bool IsCoveredOnce(const OpenEdges& edges, const PointView& points, const Progress& progress)
+bool IsCoveredOnce(
+  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
   try
   {
-    FindHoles(MeshOfBorder(edges, points, Part(progress, 0.0, 0.5)), 0, Part(progress, 0.5, 1.0));
+    FindHoles(MeshOfBorder(border, points, Part(progress, 0.0, 0.5)), 0, Part(progress, 0.5, 1.0));
     return true;
   }
   catch (const Error&)
@@ -580,6 +266,8 @@ private:
 /** Tells the triangles that no ring touches, and lists the others. */
 struct Classifier
 {
+  using Vertex = SweptVertex;
+
   const RingRaster& Raster;
   char* Flags;
   std::vector<Index> Near;
@@ -592,15 +280,15 @@ struct Classifier
     return std::max(std::fabs(q.X - p.X), std::fabs(q.Y - p.Y));
   }
 
-  void Begin(Point2 p, Point2 a)
+  void Start(Vertex&) const {}
+
+  void Begin(const Vertex& p, const Vertex& a)
   {
-    this->Around = this->Raster.KindAround(p);
-    this->ReachOfLast = ReachOf(p, a);
+    this->Around = this->Raster.KindAround(p.Place);
+    this->ReachOfLast = ReachOf(p.Place, a.Place);
   }
 
-  void PrefetchAt(Index) const {}
-
-  void Visit(Index t, Corner first, Corner second, Corner third)
+  void Visit(Index t, const Vertex& first, const Vertex& second, const Vertex& third)
   {
     const Point2 p = first.Place, a = second.Place, b = third.Place;
     const double reach = ReachOf(p, b);
@@ -685,40 +373,55 @@ void TrimNear(const TriangleList& list, const std::vector<Index>& near,
   }
 }
 
-/** Finds the longest edge of each triangle, and tells each vertex its edges. */
+/** Finds the longest edge of each triangle, tells each vertex its edges, and takes the sample. */
 struct Measurer
 {
-  EdgesAtVertices& Edges;
-  double* Longest;      ///< its square, one a triangle
-  double Largest = 0.0; ///< coordinate
-  double ToLast = 0.0;  ///< square of the length, from the first corner to the last
-
-  void Begin(Point2 p, Point2 a)
+  struct Vertex : SweptVertex
   {
-    this->Largest =
-      std::max({ this->Largest, std::fabs(p.X), std::fabs(p.Y), std::fabs(a.X), std::fabs(a.Y) });
-    this->ToLast = SquaredLength(p, a);
+    bool IsChosen = false;
+    EdgesAtVertex Edges;
+    std::uint32_t Unused[3]; ///< so that none lies in two lines of the cache
+  };
+
+  const int SampleBits;
+  double* Longest;           ///< its square, one a triangle
+  std::vector<Index> Sample; ///< triangles
+  double Largest = 0.0;      ///< coordinate
+  double ToLast = 0.0;       ///< square of the length, from the first corner to the last
+
+  void Start(Vertex& vertex) const
+  {
+    vertex.IsChosen = IsChosenForSample(vertex.Place, this->SampleBits);
   }
 
-  void PrefetchAt(Index vertex) const { this->Edges.PrefetchAt(vertex); }
+  void Begin(const Vertex& p, const Vertex& a)
+  {
+    this->Largest = std::max({ this->Largest, std::fabs(p.Place.X), std::fabs(p.Place.Y),
+      std::fabs(a.Place.X), std::fabs(a.Place.Y) });
+    this->ToLast = SquaredLength(p.Place, a.Place);
+  }
 
-  void Visit(Index t, Corner p, Corner a, Corner b)
+  void Visit(Index t, Vertex& p, Vertex& a, Vertex& b)
   {
     this->Largest = std::max({ this->Largest, std::fabs(b.Place.X), std::fabs(b.Place.Y) });
     const double right = this->ToLast;
     const double opposite = SquaredLength(a.Place, b.Place);
     this->ToLast = SquaredLength(b.Place, p.Place);
     this->Longest[t] = std::max(std::max(right, opposite), this->ToLast);
-    this->Edges.Add(p.Id, right);
-    this->Edges.Add(a.Id, opposite);
-    this->Edges.Add(b.Id, this->ToLast);
+    p.Edges.Add(right);
+    a.Edges.Add(opposite);
+    b.Edges.Add(this->ToLast);
+    if (p.IsChosen | a.IsChosen | b.IsChosen)
+    {
+      this->Sample.push_back(t);
+    }
   }
 };
 
 } // namespace
 
 bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points, const Rings& rings,
-  bool recover, const Progress& progress, TrimmedList& result)
+  bool recover, int threads, const Progress& progress, TrimmedList& result)
 {
   result = TrimmedList();
   const RingRaster raster(points, rings, triangles.Count);
@@ -728,19 +431,27 @@ bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points,
   }
   std::vector<char>& flags = result.Trimmed.IsOutward;
   flags.resize(triangles.Count);
-  Classifier classifier{ raster, flags.data(), {}, raster.Reach(), 0.0, RingRaster::Near };
-  OpenEdges edges(triangles);
-  if (!Sweep(triangles, edges, Part(progress, 0.0, 0.7), classifier) ||
-    !IsCoveredOnce(edges, triangles.Points, Part(progress, 0.7, 0.8)))
+  std::vector<Index> near;
   {
-    return false;
+    Sweep<Classifier> sweep(triangles, threads,
+      Classifier{ raster, flags.data(), {}, raster.Reach(), 0.0, RingRaster::Near });
+    if (!sweep.Run(Part(progress, 0.0, 0.65)) ||
+      !IsCoveredOnce(sweep.Border(Part(progress, 0.65, 0.7), [](Index, const SweptVertex&) {}),
+        triangles.Points, Part(progress, 0.7, 0.8)))
+    {
+      return false;
+    }
+    for (const Classifier* classifier : sweep.Visitors())
+    {
+      near.insert(near.end(), classifier->Near.begin(), classifier->Near.end());
+    }
+    std::sort(near.begin(), near.end());
   }
   try
   {
-    if (!classifier.Near.empty())
+    if (!near.empty())
     {
-      TrimNear(
-        triangles, classifier.Near, points, rings, recover, Part(progress, 0.8, 1.0), result);
+      TrimNear(triangles, near, points, rings, recover, Part(progress, 0.8, 1.0), result);
     }
   }
   catch (const Error&)
@@ -763,28 +474,40 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
   result = TrimmedList();
   boundary = ExtractedBoundary();
   const Index count = triangles.Count;
-  const PointView& points = triangles.Points;
   if (count == 0)
   {
     return false;
   }
-  MeasuredTriangles measured;
-  measured.List = triangles;
-  measured.Edges = EdgesAtVertices(points.Count);
-  measured.Longest.Resize(count);
+  MeasuredTriangles measured(triangles);
   {
-    OpenEdges edges(triangles);
-    Measurer measurer{ measured.Edges, measured.Longest.data() };
-    if (!Sweep(triangles, edges, Part(progress, 0.0, 0.4), measurer) ||
-      measurer.Largest > LargestUnscaled || measurer.Largest < LeastUnscaled ||
-      !IsCoveredOnce(edges, points, Part(progress, 0.4, 0.45)))
+    Sweep<Measurer> sweep(triangles, options.NumberOfThreads,
+      Measurer{ SampleBitsOf(count), measured.Longest.data(), {}, 0.0, 0.0 });
+    if (!sweep.Run(Part(progress, 0.0, 0.35)))
     {
       return false;
     }
-    edges.Visit([&](Index origin, Index destination) {
-      measured.Border.push_back({ origin, destination });
-      measured.Edges.Add(destination, SquaredLength(points.At(origin), points.At(destination)));
-    });
+    double largest = 0.0;
+    for (const Measurer* measurer : sweep.Visitors())
+    {
+      largest = std::max(largest, measurer->Largest);
+      measured.Sample.insert(
+        measured.Sample.end(), measurer->Sample.begin(), measurer->Sample.end());
+    }
+    std::sort(measured.Sample.begin(), measured.Sample.end());
+    measured.Border = sweep.Border(Part(progress, 0.35, 0.4),
+      [&](Index v, const Measurer::Vertex& vertex) { measured.Set(v, vertex.Edges); });
+    if (largest > LargestUnscaled || largest < LeastUnscaled ||
+      !IsCoveredOnce(measured.Border, triangles.Points, Part(progress, 0.4, 0.45)))
+    {
+      return false;
+    }
+    for (const BorderEdge& edge : measured.Border)
+    {
+      EdgesAtVertex& edges = sweep.At(edge.Destination).Edges;
+      edges.Add(
+        SquaredLength(triangles.Points.At(edge.Origin), triangles.Points.At(edge.Destination)));
+      measured.Set(edge.Destination, edges);
+    }
   }
   ExtractOptions rest = options;
   const Progress finding = Part(progress, 0.45, 0.95);

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Trimming by a sweep over the triangles where they lie, with twins only near the boundary.
+ * Trimming by a sweep over the triangles where they lie (Sweep.h), with twins only near the boundary.
  *
  * In: a list of triangles, rings. Out: one flag a triangle, and what recovery and insertion change.
  * The passes:
  *   1. Draw the rings into a raster of cells. Every other cell is inside or outside as a whole.
- *   2. Sweep over the triangles, once, in their order: each must be counter-clockwise. Edges
- *      are matched as they come (OpenEdges); what stays open is the border. A triangle that touches
- *      no cell of a ring is as its cells are; the others are near.
+ *   2. Sweep over the triangles, once. A triangle that touches no cell of a ring is as its cells
+ *      are; the others are near.
  *   3. Prove by the border alone that nothing is covered twice (Holes.h).
  *   4. Insert and trim the near triangles (Insertion.h, Trim.h), as a mesh of their own: whatever a
  *      ring does to the mesh, it does to triangles that it touches.
@@ -19,9 +18,7 @@
  * Guarantee: exactly what InsertRings and Trim, or ExtractBoundary, give for the whole mesh, or
  * nothing: whatever is not as the passes need it, or would be an error, is left to those.
  *
- * Cost: linear; about as much as reading triangles and points, when triangles come in the order in
- * which a sweep over the plane makes them, as those of this kernel do. The edges that are open at a
- * time then have room beside their vertices. Where too many have not, the pass is given up.
+ * Cost: that of the sweep, and of the rings.
  */
 #ifndef elevation_QuickTrim_h
 #define elevation_QuickTrim_h
@@ -51,11 +48,12 @@ struct TrimmedList
  * @param[in]  points   finite
  * @param[in]  rings    of the points, at least three a ring
  * @param[in]  recover  as TrimOptions::RecoverBoundary, and the insert of InsertRings()
+ * @param[in]  threads  for the sweep; 0: one a core
  * @return whether it is done: if not, the result is of no use
  * @throws Aborted; std::bad_alloc
  */
 bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points, const Rings& rings,
-  bool recover, const Progress& progress, TrimmedList& result);
+  bool recover, int threads, const Progress& progress, TrimmedList& result);
 
 /**
  * Trims along the boundary that ExtractBoundary would find.

@@ -180,14 +180,16 @@ Everything TrimWithTwins(const Surface& surface, const Boundary& boundary, bool 
 bool IsDone(const Surface& surface, const Boundary& boundary, bool recover = true)
 {
   TrimmedList list;
-  return QuickTrim(surface.List(), boundary.Points, boundary.Lines, recover, Progress(), list);
+  return QuickTrim(surface.List(), boundary.Points, boundary.Lines, recover, 1, Progress(), list);
 }
 
-Everything TrimQuickly(const Surface& surface, const Boundary& boundary, bool recover)
+Everything TrimQuickly(
+  const Surface& surface, const Boundary& boundary, bool recover, int threads = 1)
 {
   TrimmedList list;
   Everything everything;
-  if (!QuickTrim(surface.List(), boundary.Points, boundary.Lines, recover, Progress(), list))
+  if (!QuickTrim(
+        surface.List(), boundary.Points, boundary.Lines, recover, threads, Progress(), list))
   {
     return everything;
   }
@@ -227,8 +229,8 @@ void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random
   list.Points.Double = nullptr;
   list.Points.Float = floats.data();
   TrimmedList fromFloats, fromDoubles;
-  ASSERT_EQ(QuickTrim(list, boundary.Points, boundary.Lines, true, Progress(), fromFloats),
-    QuickTrim(rounded.List(), boundary.Points, boundary.Lines, true, Progress(), fromDoubles));
+  ASSERT_EQ(QuickTrim(list, boundary.Points, boundary.Lines, true, 1, Progress(), fromFloats),
+    QuickTrim(rounded.List(), boundary.Points, boundary.Lines, true, 1, Progress(), fromDoubles));
   EXPECT_EQ(fromFloats.Trimmed.IsOutward, fromDoubles.Trimmed.IsOutward);
   EXPECT_EQ(fromFloats.Corners, fromDoubles.Corners);
 }
@@ -359,6 +361,51 @@ TEST(QuickTrim, LongTrianglesAreNotTakenForTheirCorners)
   Boundary small;
   small.Add(Star(random, { 0.5, 0.5 }, 0.3, 40));
   ExpectSame(SurfaceOf(points), small, random);
+}
+
+TEST(QuickTrim, IsTheSameOnSeveralThreads)
+{
+  Random random(81);
+  Boundary boundary;
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.45, 60));
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.1, 30));
+  Surface surface = RandomSurface(random, 12000);
+  // As they are, threads share the vertices of one row; dealt out in turns, those of many.
+  for (const std::size_t dealt : { 1, 2, 40 })
+  {
+    const std::vector<Index> corners = surface.Corners;
+    const std::size_t count = corners.size() / 3, piece = count / dealt / 10 + 1;
+    surface.Corners.clear();
+    for (std::size_t first = 0; first < dealt; ++first)
+    {
+      for (std::size_t begin = first * piece; begin < count; begin += dealt * piece)
+      {
+        surface.Corners.insert(surface.Corners.end(), corners.begin() + 3 * begin,
+          corners.begin() + 3 * std::min(begin + piece, count));
+      }
+    }
+    ASSERT_EQ(surface.Corners.size(), corners.size());
+    const Everything expected = TrimWithTwins(surface, boundary, true);
+    for (const int threads : { 1, 2, 4 })
+    {
+      EXPECT_TRUE(TrimQuickly(surface, boundary, true, threads) == expected);
+    }
+    ExpectSameOutline(surface, 0.0);
+    surface.Corners = corners;
+  }
+  // What is wrong is seen by any of them.
+  for (const std::size_t t : { std::size_t(0), surface.Corners.size() / 3 - 1 })
+  {
+    Surface turned = surface;
+    std::swap(turned.Corners[3 * t], turned.Corners[3 * t + 1]);
+    TrimmedList list;
+    EXPECT_FALSE(
+      QuickTrim(turned.List(), boundary.Points, boundary.Lines, true, 2, Progress(), list));
+    turned = surface;
+    turned.Corners[3 * t] = 12000;
+    EXPECT_FALSE(
+      QuickTrim(turned.List(), boundary.Points, boundary.Lines, true, 2, Progress(), list));
+  }
 }
 
 TEST(QuickTrim, LeavesAloneWhatItCannotDoOrProve)
@@ -523,7 +570,7 @@ TEST(QuickTrim, StopsWhenAsked)
       return ++reports <= 2 * stop;
     };
     EXPECT_THROW(
-      QuickTrim(surface.List(), boundary.Points, boundary.Lines, true, progress, list), Aborted);
+      QuickTrim(surface.List(), boundary.Points, boundary.Lines, true, 1, progress, list), Aborted);
     reports = 0;
     before = 0.0;
     ExtractOptions options;
