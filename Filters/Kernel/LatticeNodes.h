@@ -23,49 +23,8 @@
 
 #include <atomic>
 
-#if defined(_MSC_VER)
-#include <intrin.h>
-#endif
-
 namespace elevation
 {
-
-/** Number of bits that are set. */
-inline int CountBits(std::uint64_t bits)
-{
-  bits -= (bits >> 1) & 0x5555555555555555u;
-  bits = (bits & 0x3333333333333333u) + ((bits >> 2) & 0x3333333333333333u);
-  bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu;
-  return static_cast<int>((bits * 0x0101010101010101u) >> 56);
-}
-
-/** Position of the lowest bit that is set; there must be one. */
-inline int LowestBit(std::uint64_t bits)
-{
-#if defined(__GNUC__) || defined(__clang__)
-  return __builtin_ctzll(bits);
-#elif defined(_MSC_VER) && (defined(_M_X64) || defined(_M_ARM64))
-  unsigned long position;
-  _BitScanForward64(&position, bits);
-  return static_cast<int>(position);
-#else
-  return CountBits((bits & (~bits + 1)) - 1);
-#endif
-}
-
-/** Position of the highest bit that is set; there must be one. */
-inline int HighestBit(std::uint64_t bits)
-{
-#if defined(__GNUC__) || defined(__clang__)
-  return 63 - __builtin_clzll(bits);
-#else
-  for (int shift : { 1, 2, 4, 8, 16, 32 })
-  {
-    bits |= bits >> shift;
-  }
-  return CountBits(bits) - 1;
-#endif
-}
 
 class LatticeNodes
 {

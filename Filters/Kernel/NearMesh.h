@@ -9,7 +9,6 @@
 
 #include "Mesh.h"
 
-#include <bitset>
 #include <vector>
 
 namespace elevation
@@ -71,6 +70,15 @@ public:
   }
 
   void Add(Index vertex) { this->Bits[WordOf(vertex)] |= BitOf(vertex); }
+  /** Adds the vertices of another set; those that it has already, to @a common as well. */
+  void Add(const VertexSet& other, VertexSet& common)
+  {
+    for (std::size_t word = 0; word < this->Bits.size(); ++word)
+    {
+      common.Bits[word] |= this->Bits[word] & other.Bits[word];
+      this->Bits[word] |= other.Bits[word];
+    }
+  }
   bool Has(Index vertex) const { return (this->Bits[WordOf(vertex)] & BitOf(vertex)) != 0; }
   /** Whether any of three is in it; without branches. */
   bool HasAny(const Index* three) const
@@ -89,13 +97,9 @@ public:
     for (std::size_t word = 0; word < this->Bits.size(); ++word)
     {
       this->Before[word] = static_cast<Index>(ids.size());
-      Index id = static_cast<Index>(64 * word);
-      for (std::uint64_t left = this->Bits[word]; left != 0; left >>= 1, ++id)
+      for (std::uint64_t left = this->Bits[word]; left != 0; left &= left - 1)
       {
-        if (left & 1)
-        {
-          ids.push_back(id);
-        }
+        ids.push_back(static_cast<Index>(64 * word) + LowestBit(left));
       }
     }
     return ids;
@@ -103,7 +107,7 @@ public:
   Index NumberOf(Index vertex) const
   {
     const std::uint64_t lower = this->Bits[WordOf(vertex)] & (BitOf(vertex) - 1);
-    return this->Before[WordOf(vertex)] + static_cast<Index>(std::bitset<64>(lower).count());
+    return this->Before[WordOf(vertex)] + CountBits(lower);
   }
 
 private:

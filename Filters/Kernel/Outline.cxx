@@ -836,12 +836,14 @@ ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& option
     coordinates.Append(scale * p.Y);
     coordinates.Append(0.0);
   }
-  TriangleList list;
+  MeasuredTriangles measured;
+  TriangleList& list = measured.List;
   list.Corners = mesh.Triangles.data();
   list.Count = count;
   list.Points.Double = coordinates.data();
   list.Points.Count = mesh.NumberOfPoints();
-  MeasuredTriangles measured(list);
+  measured.Longest.Resize(count);
+  measured.SetNumberOfVertices(list.Points.Count);
   std::vector<EdgesAtVertex> edges(mesh.Points.size());
   const int bits = SampleBitsOf(count);
   InStretches(count, Part(options.Monitor, 0.0, 0.4), [&](Index begin, Index end) {

@@ -77,12 +77,10 @@ struct EdgesAtVertex
 /** Triangles, and what a pass over them has told. */
 struct MeasuredTriangles
 {
-  explicit MeasuredTriangles(const TriangleList& list)
-    : List(list)
+  void SetNumberOfVertices(Index count)
   {
-    this->Longest.Resize(list.Count);
-    this->Degrees.Resize(list.Points.Count);
-    this->ShortSpacings.Resize(list.Points.Count);
+    this->Degrees.Resize(count);
+    this->ShortSpacings.Resize(count);
   }
 
   /** When all edges of a vertex are known. */
@@ -94,7 +92,7 @@ struct MeasuredTriangles
 
   TriangleList List;
   Buffer<double> Longest;         ///< one a triangle: the square of its longest edge
-  Buffer<std::uint32_t> Degrees;  ///< one a vertex: how many edges it has
+  Buffer<std::uint32_t> Degrees;  ///< one a vertex: how many edges it has; it may have none
   Buffer<float> ShortSpacings;    ///< one a vertex
   std::vector<BorderEdge> Border; ///< all
   std::vector<Index> Sample;      ///< triangles with a vertex chosen for the sample; increasing

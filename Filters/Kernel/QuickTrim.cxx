@@ -373,36 +373,77 @@ void TrimNear(const TriangleList& list, const std::vector<Index>& near,
   }
 }
 
-/** Finds the longest edge of each triangle, tells each vertex its edges, and takes the sample. */
+/** What is measured of a list of triangles, with vertices by numbers of their own. */
+struct NumberedTriangles
+{
+  Buffer<Index> Corners;      ///< by number
+  Buffer<double> Coordinates; ///< of the vertices by number
+  Buffer<Index> Ids;          ///< of the vertices in the list; None where there is no such number
+  std::atomic<Index> Count{ 0 };        ///< of numbers
+  static constexpr Index AtOnce = 1024; ///< numbers that one visitor takes
+};
+
+/**
+ * Finds the longest edge of each triangle, tells each vertex its edges, and takes the sample.
+ * Vertices are numbered as they come: what comes next is then near in memory as well, wherever the
+ * points lie.
+ */
 struct Measurer
 {
   struct Vertex : SweptVertex
   {
-    bool IsChosen = false;
+    Index Number = None;
     EdgesAtVertex Edges;
-    std::uint32_t Unused[3]; ///< so that none lies in two lines of the cache
+    bool IsChosen = false;
   };
 
   const int SampleBits;
-  double* Longest;           ///< its square, one a triangle
-  std::vector<Index> Sample; ///< triangles
-  double Largest = 0.0;      ///< coordinate
-  double ToLast = 0.0;       ///< square of the length, from the first corner to the last
+  const Vertex* Vertices; ///< of the list
+  NumberedTriangles* Numbered;
+  double* Longest;                ///< its square, one a triangle
+  std::vector<Index> Sample = {}; ///< triangles
+  Index Next = 0, End = 0;        ///< numbers to give
+  Index First = None;             ///< number of the first corner
+  Index Last = None;              ///< of the last one
+  double Largest = 0.0;           ///< coordinate
+  double ToLast = 0.0;            ///< square of the length, from the first corner to the last
 
   void Start(Vertex& vertex) const
   {
     vertex.IsChosen = IsChosenForSample(vertex.Place, this->SampleBits);
   }
 
-  void Begin(const Vertex& p, const Vertex& a)
+  Index NumberOf(Vertex& vertex)
+  {
+    if (vertex.Number == None)
+    {
+      if (this->Next == this->End)
+      {
+        this->Next = this->Numbered->Count.fetch_add(NumberedTriangles::AtOnce);
+        this->End = this->Next + NumberedTriangles::AtOnce;
+        std::fill_n(this->Numbered->Ids.data() + this->Next, NumberedTriangles::AtOnce, None);
+      }
+      this->Numbered->Ids[this->Next] = static_cast<Index>(&vertex - this->Vertices);
+      vertex.Number = this->Next++;
+    }
+    return vertex.Number;
+  }
+
+  void Begin(Vertex& p, Vertex& a)
   {
     this->Largest = std::max({ this->Largest, std::fabs(p.Place.X), std::fabs(p.Place.Y),
       std::fabs(a.Place.X), std::fabs(a.Place.Y) });
     this->ToLast = SquaredLength(p.Place, a.Place);
+    this->First = this->NumberOf(p);
+    this->Last = this->NumberOf(a);
   }
 
   void Visit(Index t, Vertex& p, Vertex& a, Vertex& b)
   {
+    Index* corners = this->Numbered->Corners.data() + 3 * static_cast<std::size_t>(t);
+    corners[0] = this->First;
+    corners[1] = this->Last;
+    corners[2] = this->Last = this->NumberOf(b);
     this->Largest = std::max({ this->Largest, std::fabs(b.Place.X), std::fabs(b.Place.Y) });
     const double right = this->ToLast;
     const double opposite = SquaredLength(a.Place, b.Place);
@@ -433,10 +474,12 @@ bool QuickTrim(const TriangleList& triangles, const std::vector<Point2>& points,
   flags.resize(triangles.Count);
   std::vector<Index> near;
   {
-    Sweep<Classifier> sweep(triangles, threads,
-      Classifier{ raster, flags.data(), {}, raster.Reach(), 0.0, RingRaster::Near });
-    if (!sweep.Run(Part(progress, 0.0, 0.65)) ||
-      !IsCoveredOnce(sweep.Border(Part(progress, 0.65, 0.7), [](Index, const SweptVertex&) {}),
+    Sweep<Classifier> sweep(triangles, threads);
+    if (!sweep.Run(Classifier{ raster, flags.data(), {}, raster.Reach(), 0.0, RingRaster::Near },
+          Part(progress, 0.0, 0.65)) ||
+      !IsCoveredOnce(sweep.Border(
+                       triangles.Points.Count, Part(progress, 0.65, 0.7),
+                       [](Index id) { return id; }, [](Index, const SweptVertex*) {}),
         triangles.Points, Part(progress, 0.7, 0.8)))
     {
       return false;
@@ -478,11 +521,17 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
   {
     return false;
   }
-  MeasuredTriangles measured(triangles);
+  NumberedTriangles numbered;
+  MeasuredTriangles measured;
+  numbered.Corners.Resize(3 * static_cast<std::size_t>(count));
+  measured.Longest.Resize(count);
   {
-    Sweep<Measurer> sweep(triangles, options.NumberOfThreads,
-      Measurer{ SampleBitsOf(count), measured.Longest.data(), {}, 0.0, 0.0 });
-    if (!sweep.Run(Part(progress, 0.0, 0.35)))
+    Sweep<Measurer> sweep(triangles, options.NumberOfThreads);
+    numbered.Ids.Resize(static_cast<std::size_t>(triangles.Points.Count) +
+      static_cast<std::size_t>(sweep.NumberOfRanges()) * NumberedTriangles::AtOnce);
+    if (!sweep.Run(
+          Measurer{ SampleBitsOf(count), &sweep.At(0), &numbered, measured.Longest.data() },
+          Part(progress, 0.0, 0.35)))
     {
       return false;
     }
@@ -494,25 +543,46 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
         measured.Sample.end(), measurer->Sample.begin(), measurer->Sample.end());
     }
     std::sort(measured.Sample.begin(), measured.Sample.end());
-    measured.Border = sweep.Border(Part(progress, 0.35, 0.4),
-      [&](Index v, const Measurer::Vertex& vertex) { measured.Set(v, vertex.Edges); });
+    const Index numbers = numbered.Count;
+    numbered.Coordinates.Resize(3 * static_cast<std::size_t>(numbers));
+    measured.SetNumberOfVertices(numbers);
+    measured.Border = sweep.Border(
+      numbers, Part(progress, 0.35, 0.4), [&](Index number) { return numbered.Ids[number]; },
+      [&](Index number, const Measurer::Vertex* vertex) {
+        const Measurer::Vertex nobody{};
+        vertex = vertex ? vertex : &nobody;
+        measured.Set(number, vertex->Edges);
+        double* p = numbered.Coordinates.data() + 3 * static_cast<std::size_t>(number);
+        p[0] = vertex->Place.X;
+        p[1] = vertex->Place.Y;
+        p[2] = 0.0;
+      });
     if (largest > LargestUnscaled || largest < LeastUnscaled ||
       !IsCoveredOnce(measured.Border, triangles.Points, Part(progress, 0.4, 0.45)))
     {
       return false;
     }
-    for (const BorderEdge& edge : measured.Border)
+    for (BorderEdge& edge : measured.Border)
     {
-      EdgesAtVertex& edges = sweep.At(edge.Destination).Edges;
-      edges.Add(
-        SquaredLength(triangles.Points.At(edge.Origin), triangles.Points.At(edge.Destination)));
-      measured.Set(edge.Destination, edges);
+      Measurer::Vertex& origin = sweep.At(edge.Origin);
+      Measurer::Vertex& destination = sweep.At(edge.Destination);
+      destination.Edges.Add(SquaredLength(origin.Place, destination.Place));
+      measured.Set(destination.Number, destination.Edges);
+      edge = { origin.Number, destination.Number };
     }
+    measured.List.Corners = numbered.Corners.data();
+    measured.List.Count = count;
+    measured.List.Points.Double = numbered.Coordinates.data();
+    measured.List.Points.Count = numbers;
   }
   ExtractOptions rest = options;
   const Progress finding = Part(progress, 0.45, 0.95);
   rest.Monitor = finding;
   boundary = FindOutline(std::move(measured), rest);
+  for (Index& vertex : boundary.Vertices.Vertices)
+  {
+    vertex = numbered.Ids[vertex];
+  }
   result.Trimmed = TrimExtracted(boundary);
   Report(progress, 1.0);
   return true;

@@ -7,14 +7,13 @@
  *
  * What is kept of a vertex is read into one place at first, so that a triangle costs one access to
  * memory for each corner, wherever the points lie. Edges are matched as they come; what stays open
- * is the border. Threads sweep over a range of triangles each. A vertex belongs to the range that
- * comes to it first; triangles with a vertex of another range are put off to the end. Which they are
- * is by chance, what comes of it is not.
+ * is the border. Threads sweep over a range of triangles each; triangles with a vertex that another
+ * range has as well are put off to the end.
  *
  * Cost: linear; about as much as reading triangles and points, when triangles come in the order in
  * which a sweep over the plane makes them, as those of this kernel do. The edges that are open at a
  * time then have room beside their vertices. Where too many have not, the sweep is given up.
- * Memory: one Visitor::Vertex a point.
+ * Memory: one Visitor::Vertex a point, and a bit for each range.
  */
 #ifndef elevation_Sweep_h
 #define elevation_Sweep_h
@@ -38,8 +37,8 @@ namespace elevation
 struct SweptVertex
 {
   Point2 Place{ 0.0, 0.0 };
-  Index Upper[2] = { None, None };  ///< of open half-edges: where one leads up to, and down from
-  std::atomic<Index> Range{ None }; ///< whose it is
+  Index Upper[2] = { None, None }; ///< of open half-edges: where one leads up to, and down from
+  Index Unused[2] = { 0, 0 };      ///< so that none lies in two lines of the cache
 };
 
 /** A half-edge: its ends, and whether it leads from the lower to the upper, or down. */
@@ -152,34 +151,29 @@ public:
   /** Too many for the map, or one twice: not an order, or not a surface, for this. */
   bool HasFailed() const { return this->Failed; }
 
-  /** Adds what is open: between the vertices from @a begin to @a end ... */
-  void AddBeside(Index begin, Index end, std::vector<BorderEdge>& border) const
+  /** Adds what is open: beside a vertex ... */
+  void AddBeside(Index vertex, std::vector<BorderEdge>& border) const
   {
-    for (Index v = begin; v < end; ++v)
+    const Vertex& at = this->Vertices[vertex];
+    if ((at.Upper[0] & at.Upper[1]) != None)
     {
-      const Vertex& at = this->Vertices[v];
-      if ((at.Upper[0] & at.Upper[1]) != None)
+      if (at.Upper[0] != None)
       {
-        if (at.Upper[0] != None)
-        {
-          border.push_back({ v, at.Upper[0] });
-        }
-        if (at.Upper[1] != None)
-        {
-          border.push_back({ at.Upper[1], v });
-        }
+        border.push_back({ vertex, at.Upper[0] });
+      }
+      if (at.Upper[1] != None)
+      {
+        border.push_back({ at.Upper[1], vertex });
       }
     }
   }
   /** ... and in the map. */
   void AddOthers(std::vector<BorderEdge>& border) const
   {
-    const std::size_t first = border.size();
     for (const std::uint64_t key : this->Others)
     {
       border.push_back({ static_cast<Index>(key >> 32), static_cast<Index>(key & 0xFFFFFFFFu) });
     }
-    std::sort(border.begin() + first, border.end());
   }
 
 private:
@@ -238,24 +232,21 @@ class Sweep
 public:
   using Vertex = typename Visitor::Vertex;
 
-  Sweep(const TriangleList& list, int threads, const Visitor& visitor)
+  Sweep(const TriangleList& list, int threads)
     : List(list)
     , Threads(threads)
+    , Shared(list.Points.Count)
   {
     static_assert(std::is_trivially_destructible<Vertex>::value, "nobody destroys them");
     this->Memory.Resize(static_cast<std::size_t>(list.Points.Count));
     this->Vertices = reinterpret_cast<Vertex*>(this->Memory.data());
-    constexpr Index fewest = 1 << 12;
-    const Index number = std::max(1, std::min(ThreadsAtOnce(threads), list.Count / fewest));
-    for (Index i = 0; i < number; ++i)
-    {
-      const auto at = [&](Index k) {
-        return static_cast<Index>(static_cast<std::int64_t>(list.Count) * k / number);
-      };
-      this->Ranges.emplace_back(Range{ at(i), at(i + 1),
-        OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(list.Count) / 64),
-        visitor, {} });
-    }
+  }
+
+  /** That there will be. */
+  Index NumberOfRanges() const
+  {
+    constexpr Index fewest = 1 << 12; // triangles
+    return std::max(1, std::min(ThreadsAtOnce(this->Threads), this->List.Count / fewest));
   }
 
   /**
@@ -264,34 +255,36 @@ public:
    *         matched. If not, nothing else is of use.
    * @throws Aborted, std::bad_alloc
    */
-  bool Run(const Progress& progress)
+  bool Run(const Visitor& visitor, const Progress& progress)
   {
-    if (!this->Read(Part(progress, 0.0, 0.1)))
+    const Index number = this->NumberOfRanges();
+    for (Index i = 0; i < number; ++i)
+    {
+      const auto at = [&](Index k) {
+        return static_cast<Index>(static_cast<std::int64_t>(this->List.Count) * k / number);
+      };
+      this->Ranges.emplace_back(Range{ at(i), at(i + 1), at(i),
+        OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
+        visitor, VertexSet(number > 1 ? this->List.Points.Count : 0), {} });
+    }
+    if (!this->Read(visitor, Part(progress, 0.0, 0.1)))
     {
       return false;
     }
-    const Index number = static_cast<Index>(this->Ranges.size());
-    std::atomic<bool> isRight{ true };
-    const auto fraction = [&]() {
-      double left = 0.0;
-      for (const Range& range : this->Ranges)
+    bool isRight = true;
+    if (number > 1)
+    {
+      isRight = this->InRanges(
+        Part(progress, 0.1, 0.2), [this](Range& range) { return this->Mark(range); });
+      VertexSet all(this->List.Points.Count);
+      for (Range& range : this->Ranges)
       {
-        left += range.End - range.Next;
+        all.Add(range.Corners, this->Shared);
+        range.Corners = VertexSet(0);
       }
-      return 1.0 - left / this->List.Count;
-    };
-    const Progress sweeping = Part(progress, 0.1, number > 1 ? 0.9 : 1.0);
-    InRounds(number, sweeping, fraction, [&](Index i, const RoundClock::time_point& end) {
-      Range& range = this->Ranges[i];
-      do
-      {
-        if (!(number > 1 ? this->Go<true>(i, range) : this->Go<false>(i, range)))
-        {
-          isRight = false;
-        }
-      } while (isRight && range.Next < range.End && RoundClock::now() < end);
-      return isRight && range.Next < range.End;
-    });
+    }
+    isRight = isRight &&
+      this->InRanges(Part(progress, 0.2, 0.9), [this](Range& range) { return this->Go(range); });
     return isRight && this->Join(Part(progress, 0.9, 1.0));
   }
 
@@ -309,20 +302,27 @@ public:
   Vertex& At(Index vertex) { return this->Vertices[vertex]; }
 
   /**
-   * The half-edges without twins.
-   * @param[in] visit  visit(id, vertex) is called for all vertices, on several threads
+   * The half-edges without twins; increasing.
+   * @param[in] count, idOf  among idOf(0) ... idOf(count - 1) are all corners, once each, and None
+   * @param[in] visit        visit(i, vertex) is called for all of them, on several threads; with
+   *                         null for None
    */
-  template <typename Visit>
-  std::vector<BorderEdge> Border(const Progress& progress, Visit&& visit)
+  template <typename IdOf, typename Visit>
+  std::vector<BorderEdge> Border(Index count, const Progress& progress, IdOf&& idOf, Visit&& visit)
   {
     const OpenEdges<Vertex>& edges = this->Ranges[0].Edges;
-    std::vector<std::vector<BorderEdge>> pieces(this->NumberOfPieces());
-    this->InPieces(progress, [&](Index piece, Index begin, Index end) {
+    std::vector<std::vector<BorderEdge>> pieces(NumberOfPieces(count));
+    this->InPieces(count, progress, [&](Index piece, Index begin, Index end) {
       std::vector<BorderEdge> here;
-      edges.AddBeside(begin, end, here);
-      for (Index v = begin; v < end; ++v)
+      for (Index i = begin; i < end; ++i)
       {
-        visit(v, this->Vertices[v]);
+        Prefetch(this->Vertices + std::max(0, idOf(std::min(i + 32, end - 1))));
+        const Index id = idOf(i);
+        if (id != None)
+        {
+          edges.AddBeside(id, here);
+        }
+        visit(i, id != None ? this->Vertices + id : nullptr);
       }
       pieces[piece] = std::move(here);
     });
@@ -332,15 +332,17 @@ public:
       border.insert(border.end(), piece.begin(), piece.end());
     }
     edges.AddOthers(border);
+    Sort(border.begin(), border.end(), std::less<BorderEdge>(), Part(progress, 1.0, 1.0));
     return border;
   }
 
 private:
   struct Range
   {
-    Index Next, End;
+    Index Begin, End, Next;
     OpenEdges<Vertex> Edges;
     Visitor Seen;
+    VertexSet Corners;
     std::vector<Index> PutOff; ///< triangles with a vertex of another range
   };
   struct alignas(Vertex) Storage
@@ -350,34 +352,33 @@ private:
 
   static constexpr Index AtOnce = 1 << 14;
 
-  Index NumberOfPieces() const
+  static Index NumberOfPieces(Index count)
   {
-    const Index count = this->List.Points.Count;
     return count / AtOnce + (count % AtOnce != 0 ? 1 : 0);
   }
 
   template <typename Work>
-  void InPieces(const Progress& progress, Work&& work)
+  void InPieces(Index count, const Progress& progress, Work&& work)
   {
-    ForEachPiece(this->NumberOfPieces(), this->Threads, progress, [&](Index piece) {
+    ForEachPiece(NumberOfPieces(count), this->Threads, progress, [&](Index piece) {
       const Index begin = piece * AtOnce;
-      work(piece, begin, begin + std::min(AtOnce, this->List.Points.Count - begin));
+      work(piece, begin, begin + std::min(AtOnce, count - begin));
     });
   }
 
   /** Makes the vertices. @return whether all elevations are finite */
-  bool Read(const Progress& progress)
+  bool Read(const Visitor& visitor, const Progress& progress)
   {
     std::atomic<bool> areFinite{ true };
     const auto read = [&](const auto* coordinates) {
-      this->InPieces(progress, [&](Index, Index begin, Index end) {
+      this->InPieces(this->List.Points.Count, progress, [&](Index, Index begin, Index end) {
         const auto* p = coordinates + 3 * static_cast<std::size_t>(begin);
         double sum = 0.0; // of numbers times 0: 0, or not a number
         for (Index v = begin; v < end; ++v, p += 3)
         {
           Vertex* vertex = new (this->Vertices + v) Vertex;
           vertex->Place = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
-          this->Ranges[0].Seen.Start(*vertex);
+          visitor.Start(*vertex);
           sum += 0.0 * static_cast<double>(p[2]);
         }
         if (!(sum == 0.0))
@@ -390,45 +391,88 @@ private:
     return areFinite;
   }
 
-  /** Goes on for a while. @return whether all is right so far */
-  template <bool AreSeveral>
-  bool Go(Index number, Range& range)
+  /** Goes on with go(range) in all ranges. @return whether all is right */
+  template <typename GoOn>
+  bool InRanges(const Progress& progress, GoOn&& goOn)
   {
-    // So many corners further on vertices are asked for.
-    constexpr std::size_t ahead = 126;
-    const std::size_t count = 3 * static_cast<std::size_t>(this->List.Count);
-    const Index begin = range.Next;
-    const Index end = begin + std::min(AtOnce, range.End - begin);
-    const std::size_t known = std::min(count, 3 * static_cast<std::size_t>(end) + ahead + 3);
+    for (Range& range : this->Ranges)
+    {
+      range.Next = range.Begin;
+    }
+    const auto fraction = [&]() {
+      double left = 0.0;
+      for (const Range& range : this->Ranges)
+      {
+        left += range.End - range.Next;
+      }
+      return 1.0 - left / this->List.Count;
+    };
+    std::atomic<bool> isRight{ true };
+    InRounds(static_cast<int>(this->Ranges.size()), progress, fraction,
+      [&](Index i, const RoundClock::time_point& end) {
+        Range& range = this->Ranges[i];
+        do
+        {
+          if (!goOn(range))
+          {
+            isRight = false;
+          }
+        } while (isRight && range.Next < range.End && RoundClock::now() < end);
+        return isRight && range.Next < range.End;
+      });
+    return isRight;
+  }
+
+  /** Whether corners exist. */
+  bool Exist(std::size_t begin, std::size_t end) const
+  {
     const std::uint32_t most = static_cast<std::uint32_t>(this->List.Points.Count - 1);
     std::uint32_t sign = 0; // of numbers below 0, or beyond the last
-    for (std::size_t h = 3 * static_cast<std::size_t>(begin); h < known; ++h)
+    for (std::size_t h = begin; h < end; ++h)
     {
       const std::uint32_t id = static_cast<std::uint32_t>(this->List.Corners[h]);
       sign |= id | (most - id);
     }
-    if (sign >> 31 != 0)
+    return sign >> 31 == 0;
+  }
+
+  /** Goes on with marking the corners of a range. @return whether they exist */
+  bool Mark(Range& range)
+  {
+    const Index begin = range.Next;
+    range.Next += std::min(AtOnce, range.End - begin);
+    const std::size_t first = 3 * static_cast<std::size_t>(begin);
+    const std::size_t end = 3 * static_cast<std::size_t>(range.Next);
+    const bool exist = this->Exist(first, end);
+    for (std::size_t h = first; exist && h < end; ++h)
+    {
+      range.Corners.Add(this->List.Corners[h]);
+    }
+    return exist;
+  }
+
+  /** Goes on with sweeping over a range. @return whether all is right so far */
+  bool Go(Range& range)
+  {
+    constexpr std::size_t ahead = 126; // so many corners further on vertices are asked for
+    const std::size_t count = 3 * static_cast<std::size_t>(this->List.Count);
+    const Index begin = range.Next;
+    const Index end = range.Next += std::min(AtOnce, range.End - begin);
+    const std::size_t known = std::min(count, 3 * static_cast<std::size_t>(end) + ahead + 3);
+    const std::size_t reach = known < count ? ahead : 0;
+    if (!this->Exist(3 * static_cast<std::size_t>(begin), known))
     {
       return false;
     }
-    const auto isOurs = [number](Vertex& vertex) {
-      if (!AreSeveral)
-      {
-        return true;
-      }
-      Index owner = vertex.Range.load(std::memory_order_relaxed);
-      return owner == number ||
-        (owner == None &&
-          vertex.Range.compare_exchange_strong(owner, number, std::memory_order_relaxed));
-    };
-    range.Next = end;
-    return this->Stretch(begin, end, known < count ? ahead : 0, range, isOurs);
+    return this->Ranges.size() == 1
+      ? this->Stretch(begin, end, reach, range, [](Index) { return true; })
+      : this->Stretch(begin, end, reach, range, [this](Index v) { return !this->Shared.Has(v); });
   }
 
   /**
    * Sweeps over some of the triangles, whose corners exist.
    * @param[in] ahead   so many corners further on exist as well
-   * @param[in] isOurs  isOurs(vertex): whether triangles may have it; with others they are put off
+   * @param[in] isOurs  isOurs(id): whether triangles may have it; with others they are put off
    * @return whether all is right so far
    */
   template <typename IsOurs>
@@ -445,15 +489,15 @@ private:
     {
       const Index first = ids[0];
       const Index right = ids[1];
-      Vertex& p = vertices[first];
-      Vertex& r = vertices[right];
-      if (!isOurs(p) || !isOurs(r) || !isOurs(vertices[ids[2]]))
+      if (!isOurs(first) || !isOurs(right) || !isOurs(ids[2]))
       {
         range.PutOff.push_back(t);
         ids += 3;
         ++t;
         continue;
       }
+      Vertex& p = vertices[first];
+      Vertex& r = vertices[right];
       visitor.Begin(p, r);
       Index last = right;
       Vertex* b = &r;
@@ -470,7 +514,7 @@ private:
         visitor.Visit(t, p, a, *b);
         ids += 3;
         ++t;
-      } while (ids < lastIds && ids[0] == first && ids[1] == last && isOurs(vertices[ids[2]]));
+      } while (ids < lastIds && ids[0] == first && ids[1] == last && isOurs(ids[2]));
       if (!edges.MatchBoth(p, right, last))
       {
         // Both may find their twins before one that has none takes the room of one of these.
@@ -510,7 +554,7 @@ private:
       {
         ++end;
       }
-      isRight = this->Stretch(first, end, 0, all, [](const Vertex&) { return true; });
+      isRight = this->Stretch(first, end, 0, all, [](Index) { return true; });
     }
     return isRight;
   }
@@ -520,6 +564,7 @@ private:
   Buffer<Storage> Memory;
   Vertex* Vertices;
   std::vector<Range> Ranges;
+  VertexSet Shared; ///< corners in more than one range
 };
 
 } // namespace elevation
