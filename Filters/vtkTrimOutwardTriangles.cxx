@@ -26,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -288,75 +289,78 @@ void PassPoints(vtkPolyData* input, const elevation::TrimmedList& list, const Pr
 
 /**
  * The triangles of outputs 0 and 1.
- * @param[out] cells  for each output, when asked for: whose cell data its triangles have
+ * @param[out] cells  for each output, when asked for: behind what is there, whose cell data its
+ *                    triangles have
  */
-void PartTriangles(vtkPolyData* input, const Outcome& outcome, bool hasCellData,
+void PartTriangles(vtkPolyData* input, const Outcome& outcome, bool hasCellData, int threads,
   const Progress& progress, vtkPolyData* kept, vtkPolyData* outward,
   elevation::Buffer<vtkIdType> (&cells)[2])
 {
   const elevation::TrimmedList& list = outcome.List;
   const std::vector<char>& flags = list.Trimmed.IsOutward;
-  const vtkIdType first = elevation::FirstPolygon(input);
-  const std::size_t sizes[2] = { flags.size() -
-      static_cast<std::size_t>(list.Trimmed.NumberOfOutwardTriangles),
-    static_cast<std::size_t>(list.Trimmed.NumberOfOutwardTriangles) };
-  elevation::Buffer<Index> sides[2];
-  for (const int side : { 0, 1 })
-  {
-    // One more, as each triangle is written to both sides, and stays on one.
-    sides[side].Resize(3 * (sizes[side] + 1));
-    if (hasCellData)
-    {
-      cells[side].Reserve(cells[side].size() + sizes[side]);
-    }
-  }
-  Index* next[2] = { sides[0].data(), sides[1].data() };
-  const auto add = [&](const Index* corners, Index begin, Index end) {
-    Index* in = next[0];
-    Index* out = next[1];
-    for (Index t = begin; t < end; ++t, corners += 3)
-    {
-      std::copy_n(corners, 3, in);
-      std::copy_n(corners, 3, out);
-      const std::ptrdiff_t isOutward = flags[t];
-      in += 3 - 3 * isOutward;
-      out += 3 * isOutward;
-    }
-    next[0] = in;
-    next[1] = out;
+  const vtkIdType firstCell = elevation::FirstPolygon(input);
+  const Index all = static_cast<Index>(flags.size());
+  // All triangles, and before each piece of them those of each side.
+  constexpr Index atOnce = 1 << 13;
+  const Index pieces = all / atOnce + 1;
+  const auto endOf = [all, atOnce](Index piece) {
+    return piece * atOnce + std::min(atOnce, all - piece * atOnce);
   };
-  std::size_t changed = 0; // how many have been passed
-  elevation::InStretches(outcome.Count, progress, [&](Index begin, Index end) {
-    if (hasCellData)
+  std::vector<std::size_t> outwardBefore(pieces + 1, 0);
+  elevation::ForEachPiece(pieces, threads, [&](Index piece) {
+    outwardBefore[piece + 1] =
+      std::count(flags.begin() + piece * atOnce, flags.begin() + endOf(piece), char(1));
+  });
+  std::partial_sum(outwardBefore.begin(), outwardBefore.end(), outwardBefore.begin());
+
+  elevation::Buffer<Index> sides[2];
+  const std::size_t sizes[2] = { all - outwardBefore[pieces], outwardBefore[pieces] };
+  const std::size_t firstOfCells[2] = { cells[0].size(), cells[1].size() };
+  for (const std::size_t side : { 0, 1 })
+  {
+    sides[side].Resize(3 * sizes[side]);
+    cells[side].Resize(firstOfCells[side] + (hasCellData ? sizes[side] : 0));
+  }
+  elevation::ForEachPiece(pieces, threads, progress, [&](Index piece) {
+    const std::size_t begin = static_cast<std::size_t>(piece) * atOnce;
+    std::size_t next[2] = { begin - outwardBefore[piece], outwardBefore[piece] };
+    auto changed = std::lower_bound(list.Changed.begin(), list.Changed.end(), piece * atOnce);
+    for (Index t = piece * atOnce; t < endOf(piece);)
     {
-      for (Index t = begin; t < end; ++t)
+      // Triangles of one side that follow each other.
+      const std::size_t side = flags[t];
+      const char* const first = flags.data() + t;
+      const void* other =
+        std::memchr(first, 1 - flags[t], static_cast<std::size_t>(endOf(piece) - t));
+      const Index end =
+        other ? t + static_cast<Index>(static_cast<const char*>(other) - first) : endOf(piece);
+      Index* corners = sides[side].data() + 3 * next[side];
+      const Index last = std::min(end, outcome.Count);
+      if (t < last)
       {
-        cells[static_cast<int>(flags[t])].Append(first + t);
+        std::copy(outcome.Corners + 3 * static_cast<std::size_t>(t),
+          outcome.Corners + 3 * static_cast<std::size_t>(last), corners);
       }
-    }
-    while (begin < end)
-    {
-      const bool isNext = changed < list.Changed.size() && list.Changed[changed] < end;
-      const Index last = isNext ? list.Changed[changed] : end;
-      add(outcome.Corners + 3 * static_cast<std::size_t>(begin), begin, last);
-      begin = last;
-      if (isNext)
+      for (; changed != list.Changed.end() && *changed < end; ++changed)
       {
-        add(&list.Corners[3 * changed++], begin, begin + 1);
-        ++begin;
+        std::copy_n(list.Corners.begin() + 3 * (changed - list.Changed.begin()), 3,
+          corners + 3 * (*changed - t));
       }
+      for (Index i = std::max(t, outcome.Count); i < end; ++i)
+      {
+        std::copy_n(list.Corners.begin() + 3 * (list.Changed.size() + i - outcome.Count), 3,
+          corners + 3 * (i - t));
+      }
+      for (Index i = t; i < end && hasCellData; ++i)
+      {
+        cells[side][firstOfCells[side] + next[side] + (i - t)] =
+          firstCell + (i < outcome.Count ? i : list.Parents[i - outcome.Count]);
+      }
+      next[side] += end - t;
+      t = end;
     }
   });
-  const Index all = static_cast<Index>(flags.size());
-  if (all > outcome.Count)
-  {
-    add(&list.Corners[3 * changed], outcome.Count, all);
-  }
-  for (Index t = outcome.Count; t < all && hasCellData; ++t)
-  {
-    cells[static_cast<int>(flags[t])].Append(first + list.Parents[t - outcome.Count]);
-  }
-  for (const int side : { 0, 1 })
+  for (const std::size_t side : { 0, 1 })
   {
     vtkPolyData* output = side ? outward : kept;
     if (outcome.AreInput && outcome.View.Converted.empty() && list.Corners.empty() &&
@@ -365,8 +369,7 @@ void PartTriangles(vtkPolyData* input, const Outcome& outcome, bool hasCellData,
       output->SetPolys(input->GetPolys());
       continue;
     }
-    sides[side].Resize(3 * sizes[side]);
-    output->SetPolys(elevation::ToCellArray(std::move(sides[side])));
+    output->SetPolys(elevation::ToCellArray(std::move(sides[side]), threads));
   }
 }
 
@@ -398,7 +401,7 @@ void PassCellData(vtkPolyData* input, const elevation::Buffer<vtkIdType>& cells,
 }
 
 /** Outputs 0 and 1, but for their points: vertices and lines of the input, and the triangles. */
-void PassCells(vtkPolyData* input, const Outcome& outcome, const Progress& progress,
+void PassCells(vtkPolyData* input, const Outcome& outcome, int threads, const Progress& progress,
   vtkPolyData* kept, vtkPolyData* outward)
 {
   const bool hasCellData = input->GetCellData()->GetNumberOfArrays() > 0;
@@ -409,7 +412,8 @@ void PassCells(vtkPolyData* input, const Outcome& outcome, const Progress& progr
   }
   kept->SetVerts(input->GetVerts());
   kept->SetLines(input->GetLines());
-  PartTriangles(input, outcome, hasCellData, Part(progress, 0.0, 0.5), kept, outward, cells);
+  PartTriangles(
+    input, outcome, hasCellData, threads, Part(progress, 0.0, 0.5), kept, outward, cells);
   const bool areWhole = outcome.List.Parents.empty();
   PassCellData(input, cells[0], areWhole, Part(progress, 0.5, 0.75), kept);
   PassCellData(input, cells[1], areWhole, Part(progress, 0.75, 1.0), outward);
@@ -545,7 +549,8 @@ int vtkTrimOutwardTriangles::RequestData(
     PassPoints(input, outcome.List, Part(progress, 0.8, 0.84), kept);
     outward->SetPoints(kept->GetPoints());
     outward->GetPointData()->PassData(kept->GetPointData());
-    PassCells(input, outcome, Part(progress, 0.84, 0.96), kept, outward);
+    PassCells(input, outcome, elevation::ResolveNumberOfThreads(this->NumberOfThreads),
+      Part(progress, 0.84, 0.96), kept, outward);
     PassBoundary(outcome, Part(progress, 0.96, 1.0), vtkPolyData::GetData(outputVector, 2));
     AddCounts(outcome, outputVector);
     Report(progress, 1.0);

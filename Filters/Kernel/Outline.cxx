@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 namespace elevation
@@ -652,25 +651,6 @@ int SampleBitsOf(Index numberOfTriangles)
     ++bits;
   }
   return bits;
-}
-
-bool IsChosenForSample(Point2 place, int sampleBits)
-{
-  if (sampleBits == 0)
-  {
-    return true;
-  }
-  std::uint64_t x, y;
-  place = { place.X + 0.0, place.Y + 0.0 }; // -0.0 is 0.0
-  std::memcpy(&x, &place.X, sizeof(x));
-  std::memcpy(&y, &place.Y, sizeof(y));
-  // Steps that spread every bit over all others, as at the end of Appleby's MurmurHash3.
-  const auto mix = [](std::uint64_t h) {
-    h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDull;
-    h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53ull;
-    return h ^ (h >> 33);
-  };
-  return mix(mix(x) + y) >> (64 - sampleBits) == 0;
 }
 
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options)

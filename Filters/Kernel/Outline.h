@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -104,7 +105,20 @@ struct MeasuredTriangles
  */
 int SampleBitsOf(Index numberOfTriangles);
 /** Whether a vertex is chosen, by its place alone. */
-bool IsChosenForSample(Point2 place, int sampleBits);
+inline bool IsChosenForSample(Point2 place, int sampleBits)
+{
+  std::uint64_t x, y;
+  place = { place.X + 0.0, place.Y + 0.0 }; // -0.0 is 0.0
+  std::memcpy(&x, &place.X, sizeof(x));
+  std::memcpy(&y, &place.Y, sizeof(y));
+  // Steps that spread every bit over all others, as at the end of Appleby's MurmurHash3.
+  const auto mix = [](std::uint64_t h) {
+    h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDull;
+    h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53ull;
+    return h ^ (h >> 33);
+  };
+  return sampleBits == 0 || mix(mix(x) + y) >> (64 - sampleBits) == 0;
+}
 
 inline double SquaredLength(Point2 p, Point2 q)
 {

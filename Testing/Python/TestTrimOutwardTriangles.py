@@ -216,6 +216,36 @@ class TestTrimOutwardTriangles(unittest.TestCase):
                          trim.GetEffectiveGapTolerance())
         self.assertGreater(trim.GetEffectiveGapTolerance(), 4.0)
 
+    def test_every_triangle_is_on_one_side_with_its_data_on_any_number_of_threads(self):
+        mesh = triangulate(numpy.random.RandomState(3).rand(20000, 2))
+        cell = numpy_to_vtk(numpy.arange(mesh.GetNumberOfPolys()), deep=True)
+        cell.SetName("Cell")
+        mesh.GetCellData().AddArray(cell)
+        angle = numpy.linspace(0.0, 2.0 * numpy.pi, 40, endpoint=False)
+        wave = numpy.column_stack([(0.4 + 0.05 * numpy.sin(5.0 * angle)) * numpy.cos(angle),
+                                   (0.4 + 0.05 * numpy.sin(5.0 * angle)) * numpy.sin(angle)])
+        for boundary in (polygons(0.5 + wave, 0.5 + 0.2 * wave), None):
+            before = None
+            for threads in (1, 2, 5):
+                trim = vtkTrimOutwardTriangles()
+                trim.SetInputData(mesh)
+                trim.SetBoundaryData(boundary)
+                trim.SetNumberOfThreads(threads)
+                trim.Update()
+                sides = [trim.GetOutput(0), trim.GetOutput(1)]
+                cells = [vtk_to_numpy(side.GetCellData().GetArray("Cell")) for side in sides]
+                # The pieces of each triangle have its area; most are there as they were.
+                sums = numpy.zeros(mesh.GetNumberOfPolys())
+                for side, ids in zip(sides, cells):
+                    numpy.add.at(sums, ids, areas(side, 0.0))
+                    self.assertTrue((ids[:100] == numpy.sort(ids[:100])).all())
+                numpy.testing.assert_allclose(sums, areas(mesh, 0.0), rtol=0.0, atol=1e-15)
+                self.assertGreater(min(len(ids) for ids in cells), 20)
+                bytes_now = [vtk_to_numpy(side.GetPolys().GetConnectivityArray()).tobytes()
+                             for side in sides] + [ids.tobytes() for ids in cells]
+                self.assertEqual(bytes_now, before or bytes_now)
+                before = bytes_now
+
 
 if __name__ == "__main__":
     unittest.main(argv=["TestTrimOutwardTriangles"])
