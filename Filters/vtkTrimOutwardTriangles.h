@@ -169,8 +169,9 @@ public:
   /**
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
    * without threads by default, as in ParaView. The output is the same, byte for byte, for any
-   * number. Several threads read the triangles and measure the spacing of the points for the
-   * boundary that is extracted; the rest has one. Range: 0 to 1024.
+   * number. Several threads read the triangles, measure the spacing of the points for the
+   * boundary that is extracted, and write the outputs; what lies near the boundary has one. Range:
+   * 0 to 1024.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
