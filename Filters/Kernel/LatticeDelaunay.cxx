@@ -1267,7 +1267,7 @@ private:
   {
     Index Left = LatticeNodes::MaximumSide, Right = -1; ///< first and last occupied column
   };
-  static constexpr int BandBits = 4; ///< a band is 32 rows, or 32 bands
+  static constexpr int BandBits = 4; ///< a band is 16 rows, or 16 bands
   static constexpr int MostBands = 4;
   std::array<std::vector<RowEnds>, MostBands + 1> Ends; ///< of each row, band, band of bands ...
   std::vector<Index> RightChain, LeftChain;             ///< nodes

@@ -234,7 +234,8 @@ public:
 
   Sweep(const TriangleList& list, int threads)
     : List(list)
-    , Threads(threads)
+    , Threads(ResolveNumberOfThreads(threads))
+    , Number(std::max(1, std::min(ThreadsAtOnce(threads), list.Count / FewestInRange)))
     , Shared(list.Points.Count)
   {
     static_assert(std::is_trivially_destructible<Vertex>::value, "nobody destroys them");
@@ -242,12 +243,7 @@ public:
     this->Vertices = reinterpret_cast<Vertex*>(this->Memory.data());
   }
 
-  /** That there will be. */
-  Index NumberOfRanges() const
-  {
-    constexpr Index fewest = 1 << 12; // triangles
-    return std::max(1, std::min(ThreadsAtOnce(this->Threads), this->List.Count / fewest));
-  }
+  Index NumberOfRanges() const { return this->Number; }
 
   /**
    * @return whether all triangles are counter-clockwise, with corners that exist and are finite,
@@ -257,7 +253,7 @@ public:
    */
   bool Run(const Visitor& visitor, const Progress& progress)
   {
-    const Index number = this->NumberOfRanges();
+    const Index number = this->Number;
     for (Index i = 0; i < number; ++i)
     {
       const auto at = [&](Index k) {
@@ -337,7 +333,7 @@ public:
   }
 
 private:
-  struct Range
+  struct alignas(64) Range // not where other threads write next to
   {
     Index Begin, End, Next;
     OpenEdges<Vertex> Edges;
@@ -350,7 +346,8 @@ private:
     unsigned char Bytes[sizeof(Vertex)];
   };
 
-  static constexpr Index AtOnce = 1 << 14;
+  static constexpr Index FewestInRange = 1 << 12; ///< triangles
+  static constexpr Index AtOnce = 1 << 14;        ///< of triangles, or of vertices
 
   static Index NumberOfPieces(Index count)
   {
@@ -420,7 +417,9 @@ private:
         } while (isRight && range.Next < range.End && RoundClock::now() < end);
         return isRight && range.Next < range.End;
       });
-    return isRight;
+    return isRight && std::all_of(this->Ranges.begin(), this->Ranges.end(), [](const Range& range) {
+      return range.Next == range.End;
+    });
   }
 
   /** Whether corners exist. */
@@ -523,7 +522,7 @@ private:
         edges.Add(SweptEdge(last, b->Place, first, p.Place));
         if (!hasTwin)
         {
-          edges.Open(firstEdge);
+          edges.Add(firstEdge); // where the fan is closed, the last edge is its twin
         }
       }
     }
@@ -545,12 +544,17 @@ private:
       }
     }
     bool isRight = !all.Edges.HasFailed();
+    std::size_t reported = 0;
     for (std::size_t i = 0; i < triangles.size() && isRight;)
     {
-      ReportStep(progress, i, triangles.size());
+      if (i >= reported)
+      {
+        Report(progress, static_cast<double>(i) / static_cast<double>(triangles.size()));
+        reported = i + AtOnce;
+      }
       const Index first = triangles[i];
       Index end = first;
-      for (; i < triangles.size() && triangles[i] == end; ++i)
+      for (; i < triangles.size() && triangles[i] == end && end - first < AtOnce; ++i)
       {
         ++end;
       }
@@ -561,6 +565,7 @@ private:
 
   const TriangleList& List;
   const int Threads;
+  const Index Number; ///< of ranges
   Buffer<Storage> Memory;
   Vertex* Vertices;
   std::vector<Range> Ranges;

@@ -4,6 +4,7 @@
 
 #include "Kernel/Holes.h"
 #include "Kernel/QuickTrim.h"
+#include "Kernel/Sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -505,6 +506,131 @@ TEST(QuickExtract, FindsTheSameOutlineAsExtractBoundary)
       }
     }
   }
+}
+
+/** Lists triangles, as far as possible, by closed fans. @return how many of these there are */
+int DealOutStars(Surface& surface)
+{
+  const Index count = surface.List().Count;
+  std::vector<std::vector<Index>> at(surface.List().Points.Count); // half-edges that leave a vertex
+  for (Index h = 0; h < 3 * count; ++h)
+  {
+    at[surface.Corners[h]].push_back(h);
+  }
+  std::vector<char> isListed(count, 0);
+  std::vector<Index> corners;
+  int stars = 0;
+  for (Index v = 0; v < surface.List().Points.Count; ++v)
+  {
+    std::vector<Index> star;
+    const auto cornerAfter = [&](Index h, int steps) {
+      return surface.Corners[Mesh::Triangle(h) * 3 + (h + steps) % 3];
+    };
+    Index next = at[v].empty() ? None : cornerAfter(at[v][0], 1);
+    for (std::size_t i = 0; i < at[v].size() && next != None; ++i)
+    {
+      const auto h = std::find_if(at[v].begin(), at[v].end(), [&](Index other) {
+        return cornerAfter(other, 1) == next && !isListed[Mesh::Triangle(other)];
+      });
+      next = h == at[v].end() ? None : cornerAfter(*h, 2);
+      if (next != None)
+      {
+        star.push_back(*h);
+      }
+    }
+    if (star.size() == at[v].size() && !star.empty() && next == cornerAfter(star[0], 1))
+    {
+      ++stars;
+      for (const Index h : star)
+      {
+        isListed[Mesh::Triangle(h)] = 1;
+        corners.insert(corners.end(), { v, cornerAfter(h, 1), cornerAfter(h, 2) });
+      }
+    }
+  }
+  for (Index t = 0; t < count; ++t)
+  {
+    if (!isListed[t])
+    {
+      corners.insert(
+        corners.end(), surface.Corners.begin() + 3 * t, surface.Corners.begin() + 3 * t + 3);
+    }
+  }
+  surface.Corners = corners;
+  return stars;
+}
+
+/** A visitor of a sweep that only looks. */
+struct Nobody
+{
+  using Vertex = SweptVertex;
+  void Start(Vertex&) const {}
+  void Begin(const Vertex&, const Vertex&) {}
+  void Visit(Index, const Vertex&, const Vertex&, const Vertex&) {}
+};
+
+TEST(Sweep, ClosedFansLeaveNoSlit)
+{
+  Surface surface;
+  surface.Coordinates = { 0, 0, 0 };
+  for (int i = 0; i < 6; ++i)
+  {
+    const double angle = 1.0471975511965976 * i;
+    surface.Coordinates.insert(
+      surface.Coordinates.end(), { std::cos(angle), std::sin(angle), 0.0 });
+    surface.Corners.insert(surface.Corners.end(), { 0, 1 + i, 1 + (i + 1) % 6 });
+  }
+  const TriangleList list = surface.List();
+  Sweep<Nobody> sweep(list, 1);
+  ASSERT_TRUE(sweep.Run(Nobody(), Progress()));
+  EXPECT_EQ(sweep
+              .Border(
+                7, Progress(), [](Index id) { return id; }, [](Index, const SweptVertex*) {})
+              .size(),
+    6u);
+
+  Random random(84);
+  for (int round = 0; round < 12; ++round)
+  {
+    surface = RandomSurface(random, 1000);
+    EXPECT_GT(DealOutStars(surface), 100);
+    for (const double tolerance : { 0.0, 2.0, 6.0 })
+    {
+      ExpectSameOutline(surface, tolerance);
+    }
+  }
+}
+
+TEST(Sweep, ReportsWhileItGoesThroughWhatIsPutOff)
+{
+  // Every other row of squares first, so that both halves of the list share all vertices.
+  constexpr Index side = 300;
+  Surface surface;
+  for (Index i = 0; i < (side + 1) * (side + 1); ++i)
+  {
+    surface.Coordinates.insert(surface.Coordinates.end(),
+      { static_cast<double>(i % (side + 1)), static_cast<double>(i / (side + 1)), 0.0 });
+  }
+  for (Index i = 0; i < side * side; ++i)
+  {
+    const Index row = i / side < side / 2 ? 2 * (i / side) : 2 * (i / side - side / 2) + 1;
+    const Index v = row * (side + 1) + i % side, above = v + side + 1;
+    surface.Corners.insert(surface.Corners.end(), { v, v + 1, above + 1, v, above + 1, above });
+  }
+  const TriangleList list = surface.List();
+  Sweep<Nobody> sweep(list, 2);
+  int reports = 0; // in the last tenth, where that is
+  ASSERT_TRUE(sweep.Run(Nobody(), [&reports](double done) {
+    reports += done >= 0.9;
+    return true;
+  }));
+  EXPECT_GE(reports, sweep.NumberOfRanges() > 1 ? list.Count / 20000 : 0);
+  EXPECT_EQ(sweep
+              .Border(
+                list.Points.Count, Progress(), [](Index id) { return id; },
+                [](Index, const SweptVertex*) {})
+              .size(),
+    4u * side);
 }
 
 TEST(QuickExtract, SeesAllOfASmallPiece)
