@@ -602,8 +602,7 @@ private:
       const double strips = perThread * threads;
       perStrip = std::max((all + (strips - 1.0) * walk) / strips, std::max(2.0 * walk, least));
     }
-    const double pointsPerStrip =
-      this->Options.PointsPerStrip > 0 ? this->Options.PointsPerStrip : Infinity;
+    const Index pointsPerStrip = this->Options.PointsPerStrip; // 0: as the work says
     std::vector<Strip> strips;
     Strip strip;
     strip.FirstWord = strip.Word = this->FirstWordOf(0);
@@ -618,7 +617,7 @@ private:
       work += points > 0.0 ? workOf(points, ends.Right - ends.Left + 1.0 - points) : 0.0;
       rankOfRow = rank;
       const bool isFull =
-        pointsPerStrip < Infinity ? rank - strip.FirstRank >= pointsPerStrip : work >= perStrip;
+        pointsPerStrip > 0 ? rank - strip.FirstRank >= pointsPerStrip : work >= perStrip;
       if (isFull || isLast)
       {
         strip.EndWord = this->FirstWordOf(row + 1);

@@ -18,6 +18,7 @@
 #ifndef elevation_Sweep_h
 #define elevation_Sweep_h
 
+#include "Extent.h"
 #include "NearMesh.h"
 #include "Parallel.h"
 #include "Predicates.h"
@@ -298,7 +299,7 @@ public:
   Vertex& At(Index vertex) { return this->Vertices[vertex]; }
 
   /**
-   * The half-edges without twins; increasing.
+   * The half-edges without twins, in no order.
    * @param[in] count, idOf  among idOf(0) ... idOf(count - 1) are all corners, once each, and None
    * @param[in] visit        visit(i, vertex) is called for all of them, on several threads; with
    *                         null for None
@@ -307,8 +308,8 @@ public:
   std::vector<BorderEdge> Border(Index count, const Progress& progress, IdOf&& idOf, Visit&& visit)
   {
     const OpenEdges<Vertex>& edges = this->Ranges[0].Edges;
-    std::vector<std::vector<BorderEdge>> pieces(NumberOfPieces(count));
-    this->InPieces(count, progress, [&](Index piece, Index begin, Index end) {
+    std::vector<std::vector<BorderEdge>> pieces(elevation::NumberOfRanges(count));
+    ForEachRange(count, this->Threads, progress, [&](Index piece, Index begin, Index end) {
       std::vector<BorderEdge> here;
       for (Index i = begin; i < end; ++i)
       {
@@ -328,7 +329,6 @@ public:
       border.insert(border.end(), piece.begin(), piece.end());
     }
     edges.AddOthers(border);
-    Sort(border.begin(), border.end(), std::less<BorderEdge>(), Part(progress, 1.0, 1.0));
     return border;
   }
 
@@ -347,48 +347,35 @@ private:
   };
 
   static constexpr Index FewestInRange = 1 << 12; ///< triangles
-  static constexpr Index AtOnce = 1 << 14;        ///< of triangles, or of vertices
-
-  static Index NumberOfPieces(Index count)
-  {
-    return count / AtOnce + (count % AtOnce != 0 ? 1 : 0);
-  }
-
-  template <typename Work>
-  void InPieces(Index count, const Progress& progress, Work&& work)
-  {
-    ForEachPiece(NumberOfPieces(count), this->Threads, progress, [&](Index piece) {
-      const Index begin = piece * AtOnce;
-      work(piece, begin, begin + std::min(AtOnce, count - begin));
-    });
-  }
+  static constexpr Index AtOnce = 1 << 14;        ///< triangles
 
   /** Makes the vertices. @return whether all elevations are finite */
   bool Read(const Visitor& visitor, const Progress& progress)
   {
     std::atomic<bool> areFinite{ true };
     const auto read = [&](const auto* coordinates) {
-      this->InPieces(this->List.Points.Count, progress, [&](Index, Index begin, Index end) {
-        const auto* p = coordinates + 3 * static_cast<std::size_t>(begin);
-        double sum = 0.0; // of numbers times 0: 0, or not a number
-        for (Index v = begin; v < end; ++v, p += 3)
-        {
-          Vertex* vertex = new (this->Vertices + v) Vertex;
-          vertex->Place = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
-          visitor.Start(*vertex);
-          sum += 0.0 * static_cast<double>(p[2]);
-        }
-        if (!(sum == 0.0))
-        {
-          areFinite = false;
-        }
-      });
+      ForEachRange(
+        this->List.Points.Count, this->Threads, progress, [&](Index, Index begin, Index end) {
+          const auto* p = coordinates + 3 * static_cast<std::size_t>(begin);
+          double sum = 0.0; // of numbers times 0: 0, or not a number
+          for (Index v = begin; v < end; ++v, p += 3)
+          {
+            Vertex* vertex = new (this->Vertices + v) Vertex;
+            vertex->Place = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
+            visitor.Start(*vertex);
+            sum += 0.0 * static_cast<double>(p[2]);
+          }
+          if (!(sum == 0.0))
+          {
+            areFinite = false;
+          }
+        });
     };
     this->List.Points.Double ? read(this->List.Points.Double) : read(this->List.Points.Float);
     return areFinite;
   }
 
-  /** Goes on with go(range) in all ranges. @return whether all is right */
+  /** Calls goOn(range) for all ranges until their ends. @return whether all is right */
   template <typename GoOn>
   bool InRanges(const Progress& progress, GoOn&& goOn)
   {
