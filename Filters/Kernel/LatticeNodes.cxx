@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 namespace elevation
 {
@@ -14,6 +15,9 @@ namespace
 {
 /** What a point may be too far from its node, in steps: rounding is no reason to refuse. */
 constexpr double Roundoff = 1e-8;
+
+/** Work that waits for memory asks for it so many points ahead. */
+constexpr Index Few = 32;
 
 /** The node of a point, relative to the lower left one. */
 class NodeOfPoint
@@ -99,7 +103,116 @@ private:
   Point2 Origin;
   double IX, IY, JX, JY;
 };
+
+/**
+ * Whether there are more points than a core has near in memory, and they come in no order. In rows,
+ * columns and along paths most points go on with the step of the one before, or with a short one.
+ */
+bool AreScattered(
+  const PointView& points, const std::vector<Index>& notFinite, const NodeOfPoint& nodeOf)
+{
+  constexpr Index fewest = 1 << 20, samples = 1024, shortStep = 256;
+  Index scattered = 0;
+  for (Index sample = 0; points.Count >= fewest && sample < samples; ++sample)
+  {
+    std::array<Index, 3> column{}, row{};
+    Index count = 0;
+    const Index first = sample * (points.Count / samples);
+    ForEachPoint(points, first, first + 3, notFinite, [&](Index, const Point2& p) {
+      nodeOf(p, column[count], row[count]);
+      ++count;
+    });
+    const auto isNew = [](const std::array<Index, 3>& at) {
+      const Index step = at[2] - at[1], before = at[1] - at[0];
+      return std::abs(step) > shortStep && std::abs(step - before) > shortStep;
+    };
+    scattered += count == 3 && (isNew(column) || isNew(row));
+  }
+  return 2 * scattered > samples;
+}
 } // namespace
+
+/** Sorts the nodes in Room. That memory is then the ids' by rank, and the stretches' nodes' later. */
+LatticeNodes::Stretches LatticeNodes::SortIntoStretches(int threads, const Progress& progress)
+{
+  // What belongs to a stretch fits in a core's own memory, and so does the end of each one.
+  constexpr Index pointsPerStretch = 1 << 14, mostStretches = 512;
+  const Index count = static_cast<Index>(this->Room.size());
+  const Index last = static_cast<Index>(this->Memory.size() * 64 - 1); // node
+  int shift = 6;                                                       // words stay whole
+  while (last >> shift >= std::min(mostStretches, count / pointsPerStretch + 1))
+  {
+    ++shift;
+  }
+  const Index stretches = (last >> shift) + 1;
+  const Index ranges = NumberOfRanges(count);
+  std::vector<Index> numbers(static_cast<std::size_t>(ranges) * stretches, 0);
+  const auto numbersOf = [&](Index range) {
+    return numbers.data() + static_cast<std::size_t>(range) * stretches;
+  };
+  const auto forEachNode = [&](const Progress& part, auto&& visit) {
+    ForEachRange(count, threads, part, [&](Index range, Index begin, Index end) {
+      Index* const here = numbersOf(range);
+      for (Index id = begin; id < end; ++id)
+      {
+        if (this->Room[id] != None)
+        {
+          visit(here[this->Room[id] >> shift]++, id);
+        }
+      }
+    });
+  };
+  forEachNode(Part(progress, 0.0, 0.3), [](Index, Index) {});
+  Stretches sorted;
+  Index sum = 0;
+  for (Index stretch = 0; stretch < stretches; ++stretch)
+  {
+    sorted.Begins.push_back(sum);
+    for (Index range = 0; range < ranges; ++range)
+    {
+      sum += std::exchange(numbersOf(range)[stretch], sum);
+    }
+  }
+  sorted.Begins.push_back(sum);
+  sorted.Second.resize(stretches);
+  sorted.Nodes.Resize(static_cast<std::size_t>(count));
+  sorted.Ids.Resize(static_cast<std::size_t>(count));
+  forEachNode(Part(progress, 0.3, 1.0), [&](Index place, Index id) {
+    sorted.Nodes[place] = this->Room[id];
+    sorted.Ids[place] = id;
+  });
+  this->Ids = std::move(this->Room);
+  return sorted;
+}
+
+/** As Occupy(), for points and words that are near. */
+void LatticeNodes::OccupyStretch(Stretches& stretches, Index stretch)
+{
+  std::vector<Index> second; // not in memory that other threads write next to
+  for (Index i = stretches.Begins[stretch]; i < stretches.Begins[stretch + 1]; ++i)
+  {
+    Index& node = stretches.Nodes[i];
+    const std::uint64_t bit = std::uint64_t(1) << (node & 63);
+    if (this->SetBits(node >> 6, bit, false) & bit)
+    {
+      second.push_back(stretches.Ids[i]);
+      node = None;
+    }
+  }
+  stretches.Second[stretch] = std::move(second);
+}
+
+/** Writes each id to its place. */
+void LatticeNodes::PlaceStretch(const Stretches& stretches, Index stretch)
+{
+  for (Index i = stretches.Begins[stretch]; i < stretches.Begins[stretch + 1]; ++i)
+  {
+    if (stretches.Nodes[i] != None)
+    {
+      this->Ids[this->RankOf(stretches.Nodes[i])] = stretches.Ids[i];
+    }
+  }
+}
 
 /** Sets bits of a word. @return what was set before */
 std::uint64_t LatticeNodes::SetBits(Index word, std::uint64_t bits, bool isShared)
@@ -181,6 +294,37 @@ void LatticeNodes::CountBefore(int threads)
   this->Ids.Resize(sums.back());
 }
 
+/** Writes the ids of some points to their places. */
+void LatticeNodes::PlaceIds(Index begin, Index end)
+{
+  const Index* const nodes = this->Room.data();
+  Index* const ids = this->Ids.data();
+  std::array<Index, Few> ranks;
+  for (; begin < end; begin += Few)
+  {
+    const Index size = std::min(Few, end - begin);
+    const Index* const here = nodes + begin;
+    for (Index i = 0; i < size; ++i)
+    {
+      Prefetch(this->Words + (here[i] >> 6));
+      Prefetch(this->Before.data() + (here[i] >> 6));
+    }
+    for (Index i = 0; i < size; ++i)
+    {
+      const bool isNext = i > 0 && ranks[i - 1] != None && here[i] == here[i - 1] + 1;
+      ranks[i] = isNext ? ranks[i - 1] + 1 : here[i] != None ? this->RankOf(here[i]) : None;
+      Prefetch(ids + ranks[i]);
+    }
+    for (Index i = 0; i < size; ++i)
+    {
+      if (ranks[i] != None)
+      {
+        ids[ranks[i]] = begin + i;
+      }
+    }
+  }
+}
+
 bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, double tolerance,
   DuplicatePolicy policy, int threads, const Progress& progress)
 {
@@ -241,8 +385,7 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
     }
   });
 
-  // Nodes are told a few dozen points ahead of what has to wait for memory.
-  constexpr Index few = 32;
+  const bool areScattered = AreScattered(points, search.NotFinite, nodeOf);
   this->Room.Resize(static_cast<std::size_t>(points.Count));
   Index* const nodes = this->Room.data(); // of each point, or None
   std::atomic<bool> fits{ true };
@@ -254,9 +397,9 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
       }
       Gathered here; // not in memory that other threads write next to
       double largest = 0.0;
-      for (; begin < end; begin += few)
+      for (; begin < end; begin += Few)
       {
-        const Index last = std::min(begin + few, end);
+        const Index last = std::min(begin + Few, end);
         if (!search.NotFinite.empty())
         {
           std::fill(nodes + begin, nodes + last, None);
@@ -267,7 +410,10 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
           nodes[id] = this->NodeAt(row, column);
           Prefetch(this->Words + (nodes[id] >> 6));
         });
-        this->Occupy(begin, last, nodes, threads > 1, here.Second);
+        if (!areScattered)
+        {
+          this->Occupy(begin, last, nodes, threads > 1, here.Second);
+        }
       }
       if (!(largest <= tolerance + Roundoff))
       {
@@ -287,44 +433,37 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   }
   this->LargestOffset = largest + std::max(Roundoff, nodeOf.Roundoff(low, high));
 
-  this->CountBefore(threads);
-  Index* const ids = this->Ids.data();
-  ForEachRange(
-    points.Count, threads, Part(progress, 0.5, 0.95), [&](Index, Index begin, Index end) {
-      std::array<Index, few> ranks;
-      for (; begin < end; begin += few)
-      {
-        const Index size = std::min(few, end - begin);
-        const Index* const here = nodes + begin;
-        for (Index i = 0; i < size; ++i)
-        {
-          Prefetch(this->Words + (here[i] >> 6));
-          Prefetch(this->Before.data() + (here[i] >> 6));
-        }
-        for (Index i = 0; i < size; ++i)
-        {
-          const bool isNext = i > 0 && ranks[i - 1] != None && here[i] == here[i - 1] + 1;
-          ranks[i] = isNext ? ranks[i - 1] + 1 : here[i] != None ? this->RankOf(here[i]) : None;
-          Prefetch(ids + ranks[i]);
-        }
-        for (Index i = 0; i < size; ++i)
-        {
-          if (ranks[i] != None)
-          {
-            ids[ranks[i]] = begin + i;
-          }
-        }
-      }
-    });
-  std::size_t steps = 0;
-  for (const Gathered& piece : pieces)
+  std::vector<std::vector<Index>> second;
+  if (areScattered)
   {
-    for (Index id : piece.Second)
+    Stretches sorted = this->SortIntoStretches(threads, Part(progress, 0.5, 0.7));
+    ForEachPiece(sorted.Count(), threads, Part(progress, 0.7, 0.8),
+      [&](Index stretch) { this->OccupyStretch(sorted, stretch); });
+    this->CountBefore(threads);
+    ForEachPiece(sorted.Count(), threads, Part(progress, 0.8, 0.95),
+      [&](Index stretch) { this->PlaceStretch(sorted, stretch); });
+    this->Room = std::move(sorted.Nodes);
+    second = std::move(sorted.Second);
+  }
+  else
+  {
+    this->CountBefore(threads);
+    ForEachRange(points.Count, threads, Part(progress, 0.5, 0.95),
+      [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
+    for (Gathered& piece : pieces)
+    {
+      second.push_back(std::move(piece.Second));
+    }
+  }
+  std::size_t steps = 0;
+  for (const std::vector<Index>& piece : second)
+  {
+    for (Index id : piece)
     {
       ReportStep(Part(progress, 0.95, 0.97), steps++, points.Count);
       Index column, row;
       nodeOf(points.At(id), column, row);
-      Index& kept = ids[this->RankOf(this->NodeAt(row, column))];
+      Index& kept = this->Ids[this->RankOf(this->NodeAt(row, column))];
       if (points.At(kept) != points.At(id))
       {
         return false;

@@ -6,14 +6,16 @@
  *
  * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
  * in the order of their nodes (by row, then column), which the number of bits before a node tells;
- * or the answer that a point does not fit. No sorting: one pass over the points sets the bits and
- * keeps the nodes, one over these writes each id to its place; both on several threads.
+ * or the answer that a point does not fit. One pass over the points sets the bits and keeps the
+ * nodes, one over these writes each id to its place; both on several threads. Many points that come
+ * scattered are sorted into stretches of nodes in between: bits and places are then near in memory,
+ * and one thread's alone.
  *
  * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
  * the last row are rows of zeros, so that neighbours may be looked at without a check.
  *
  * Memory: at most 24 bytes a point for the bitmap (two words and two counts), 4 for the ids, and 4
- * for the nodes, which are left for other use.
+ * for the nodes, which are left for other use; 4 more while scattered points are placed.
  */
 #ifndef elevation_LatticeNodes_h
 #define elevation_LatticeNodes_h
@@ -89,10 +91,24 @@ public:
   std::vector<Index> Duplicates; ///< ids, increasing
 
 private:
+  /** Points by stretches of nodes. */
+  struct Stretches
+  {
+    std::vector<Index> Begins;              ///< in the others; and the end of the last
+    Buffer<Index> Nodes;                    ///< None for points on a node that is taken
+    Buffer<Index> Ids;                      ///< of the points
+    std::vector<std::vector<Index>> Second; ///< those points' ids
+    Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
+  };
+
+  Stretches SortIntoStretches(int threads, const Progress& progress);
+  void OccupyStretch(Stretches& stretches, Index stretch);
+  void PlaceStretch(const Stretches& stretches, Index stretch);
   std::uint64_t SetBits(Index word, std::uint64_t bits, bool isShared);
   /** Sets the bits of points' nodes; those on a node that is taken lose theirs, and are listed. */
   void Occupy(Index begin, Index end, Index* nodes, bool isShared, std::vector<Index>& second);
   void CountBefore(int threads);
+  void PlaceIds(Index begin, Index end);
 
   using AtomicWord = std::atomic<std::uint64_t>; // several threads set bits
   static_assert(sizeof(AtomicWord) == sizeof(std::uint64_t) &&

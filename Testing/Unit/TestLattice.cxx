@@ -495,10 +495,11 @@ TEST(Lattice, LooksFarDownFromABorder)
 
 TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
 {
-  // Many ranges of points; one point in four is on a node that another one takes as well.
+  // Many ranges of points, and so many points that those in no order are sorted; one in four is on
+  // a node that another one takes as well.
   std::mt19937_64 random(55);
   const Frame frame = MakeFrame(25.0, 30.0, 10.0, 110.0, { 612000.0, 6073000.0 });
-  Cloud cloud = CloudOn(frame, RandomNodes(random, 900, 1000, 0.4));
+  Cloud cloud = CloudOn(frame, RandomNodes(random, 1200, 1500, 0.5));
   const Index distinct = cloud.Count();
   for (Index i = 0; i < distinct / 3; ++i)
   {
@@ -515,6 +516,7 @@ TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
   const auto search = [&](int threads) {
     return FindLattice(cloud.View(), 0.01, threads, Progress());
   };
+  std::vector<Point2> byRank;
   for (const bool isShuffled : { false, true })
   {
     cloud = isShuffled ? cloud.Shuffled(random) : cloud;
@@ -523,7 +525,29 @@ TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
     EXPECT_EQ(found.NotFinite.size(), static_cast<std::size_t>(distinct / 3 + 999) / 1000);
     LatticeNodes one;
     ASSERT_TRUE(one.Place(cloud.View(), found, 0.01, DuplicatePolicy::KeepLast, 1, Progress()));
-    EXPECT_EQ(one.NumberOfPoints(), distinct);
+    ASSERT_EQ(one.NumberOfPoints(), distinct);
+    const PointView view = cloud.View();
+    std::vector<Index> sorted(one.Ids.begin(), one.Ids.end());
+    sorted.insert(sorted.end(), one.Duplicates.begin(), one.Duplicates.end());
+    std::sort(sorted.begin(), sorted.end(), [&](Index a, Index b) {
+      const Point2 p = view.At(a), q = view.At(b);
+      return p == q ? a < b : IsLower(p, q);
+    });
+    std::vector<bool> isLast(view.Count, false);
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+    {
+      isLast[sorted[i]] = i + 1 == sorted.size() || view.At(sorted[i]) != view.At(sorted[i + 1]);
+    }
+    for (Index rank = 0; rank < distinct; ++rank)
+    {
+      ASSERT_TRUE(isLast[one.Ids[rank]]);
+      const Point2 p = view.At(one.Ids[rank]);
+      if (!isShuffled)
+      {
+        byRank.push_back(p);
+      }
+      ASSERT_TRUE(p == byRank[rank]);
+    }
     for (const int threads : { 2, 4 })
     {
       const LatticeSearch other = search(threads);
