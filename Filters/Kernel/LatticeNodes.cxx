@@ -132,7 +132,7 @@ bool AreScattered(
 }
 } // namespace
 
-/** Sorts the nodes in Room. That memory is then the ids' by rank, and the stretches' nodes' later. */
+/** Sorts the nodes in Room, whose memory becomes that of Ids. */
 LatticeNodes::Stretches LatticeNodes::SortIntoStretches(int threads, const Progress& progress)
 {
   // What belongs to a stretch fits in a core's own memory, and so does the end of each one.
