@@ -39,7 +39,7 @@ namespace
 using namespace benchmark;
 
 constexpr int MaximumRepeats = 101;
-constexpr std::size_t MaximumCompetitors = 6;
+constexpr std::size_t MaximumCompetitors = 7;
 constexpr Index MostPointsOfVTK = 20000;
 
 // ---- options -----------------------------------------------------------------------------------
@@ -53,7 +53,8 @@ one process and in turn, measures peak memory, and checks the results against ea
   --sets LIST       generated data sets, or "all"; default L,D,U where no file is named
   --points LIST     numbers of points of the generated sets; default 886639
   --threads N       threads of vtkGridDelaunay2D, 0: one a core; the others have one; default 1.
-                    Unless it is 1, vtkGridDelaunay2D is also timed with one thread, in turn
+                    Unless it is 1, vtkGridDelaunay2D is also timed with one thread, in turn, and
+                    so are N copies of it, at once: what the machine gives to so many threads
   --seed N          seed of the generators; default 1
   --file FILE       a .f64 (little-endian doubles x y z) or .vtp file; may be given several times
   --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA, where that is set
@@ -275,6 +276,7 @@ Competitors MakeCompetitors(const Options& options)
   if (options.Threads != 1)
   {
     competitors.push_back(NewGridDelaunayOneThread());
+    competitors.push_back(NewGridDelaunayCopies(options.Threads));
   }
   if (options.UseSearches)
   {
@@ -299,7 +301,7 @@ bool IsVTK(const Competitor& competitor)
   return competitor.Name().compare(0, 13, "vtkDelaunay2D") == 0;
 }
 
-/** Time on the clock, and time that processors spent on this process. */
+/** Time on the clock, and time that processors spent on this process, for one of the copies. */
 struct Duration
 {
   double Seconds;
@@ -313,7 +315,9 @@ Duration TimeOf(Competitor& competitor)
   const Clock::time_point start = Clock::now();
   competitor.Run();
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  return { seconds, static_cast<double>(std::clock() - processorStart) / CLOCKS_PER_SEC };
+  const double processorSeconds =
+    static_cast<double>(std::clock() - processorStart) / CLOCKS_PER_SEC;
+  return { seconds / competitor.Copies(), processorSeconds / competitor.Copies() };
 }
 
 /**
@@ -341,9 +345,9 @@ void Try(Competitor& competitor, const PointSource& source, const Options& optio
   LimitTime(options.TimeLimit);
   const PeakMemory peak;
   result.TrialSeconds = TimeOf(competitor).Seconds;
-  result.PeakBytes = peak.Growth();
+  result.PeakBytes = peak.Growth() / competitor.Copies();
   LimitTime(0);
-  result.OutputBytes = static_cast<double>(competitor.OutputBytes());
+  result.OutputBytes = static_cast<double>(competitor.OutputBytes()) / competitor.Copies();
   result.TakesPart = true;
 }
 
@@ -716,7 +720,7 @@ int Run(const Options& options)
     const Results results = Measure(sources[i], options, competitors);
     PrintRows(sources[i].Name, competitors, results, options.TimeLimit);
     isRight = isRight && results[0].Runs > 0;
-    const std::size_t ours = 1 + (options.Threads != 1 ? 1 : 0) + (options.UseSearches ? 2 : 0);
+    const std::size_t ours = 1 + (options.Threads != 1 ? 2 : 0) + (options.UseSearches ? 2 : 0);
     for (std::size_t k = 0; k < ours; ++k)
     {
       isRight = isRight && results[k].Checked != Verdict::Wrong;

@@ -47,6 +47,9 @@ public:
    */
   virtual bool RunWithoutLattice() { return false; }
 
+  /** How many times Run triangulates the points, at once: time and memory are shared by so many. */
+  virtual int Copies() const { return 1; }
+
   /** Frees the result of Run, and all that was kept with it (not timed). */
   virtual void Release() = 0;
 
@@ -65,6 +68,9 @@ std::unique_ptr<Competitor> NewGridDelaunay(int threads);
 
 /** The same on one thread, to tell what threads are worth. */
 std::unique_ptr<Competitor> NewGridDelaunayOneThread();
+
+/** That several times at once, one a thread: what the machine gives to threads with nothing in common. */
+std::unique_ptr<Competitor> NewGridDelaunayCopies(int threads);
 
 /** The same by the coordinates, without a lattice, with one of its search strategies. */
 std::unique_ptr<Competitor> NewGridDelaunaySearch(int threads, bool isCompactness);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Competitor.h"
 
+#include "Kernel/Parallel.h"
 #include "vtkGridDelaunay2D.h"
 
 #include "vtkCellArray.h"
@@ -17,6 +18,7 @@
 #include "vtkVersion.h"
 
 #include <functional>
+#include <future>
 
 namespace
 {
@@ -126,6 +128,62 @@ private:
   vtkNew<vtkPolyData> Input;
   vtkSmartPointer<vtkPolyData> Output;
 };
+
+/** One code several times, each on a thread of its own. The result is the first one's. */
+class CopiesOfCompetitor : public benchmark::Competitor
+{
+public:
+  CopiesOfCompetitor(int count, const std::function<std::unique_ptr<Competitor>()>& make)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      this->Each.push_back(make());
+    }
+  }
+
+  std::string Name() const override { return "- " + std::to_string(this->Copies()) + " copies"; }
+  int Copies() const override { return static_cast<int>(this->Each.size()); }
+
+  void SetPoints(const benchmark::Coordinates& points) override
+  {
+    for (const std::unique_ptr<Competitor>& copy : this->Each)
+    {
+      copy->SetPoints(points);
+    }
+  }
+
+  void Run() override
+  {
+    std::vector<std::future<void>> others;
+    for (std::size_t i = 1; i < this->Each.size(); ++i)
+    {
+      others.push_back(std::async(std::launch::async, [this, i]() { this->Each[i]->Run(); }));
+    }
+    this->Each[0]->Run();
+    for (std::future<void>& other : others)
+    {
+      other.get();
+    }
+  }
+
+  void Release() override
+  {
+    for (const std::unique_ptr<Competitor>& copy : this->Each)
+    {
+      copy->Release();
+    }
+  }
+
+  std::size_t OutputBytes() const override
+  {
+    return this->Each.size() * this->Each[0]->OutputBytes();
+  }
+  std::vector<Index> Triangles() const override { return this->Each[0]->Triangles(); }
+  std::vector<Index> UnusedPoints() const override { return this->Each[0]->UnusedPoints(); }
+
+private:
+  std::vector<std::unique_ptr<Competitor>> Each;
+};
 } // namespace
 
 namespace benchmark
@@ -140,6 +198,12 @@ std::unique_ptr<Competitor> NewGridDelaunayOneThread()
 {
   return std::make_unique<VTKCompetitor<vtkGridDelaunay2D>>(
     "- one thread", [](vtkGridDelaunay2D* filter) { filter->SetNumberOfThreads(1); });
+}
+
+std::unique_ptr<Competitor> NewGridDelaunayCopies(int threads)
+{
+  return std::make_unique<CopiesOfCompetitor>(
+    elevation::ResolveNumberOfThreads(threads), NewGridDelaunayOneThread);
 }
 
 std::unique_ptr<Competitor> NewGridDelaunaySearch(int threads, bool isCompactness)
