@@ -17,6 +17,7 @@ set(es_kernel_concepts
   ConstrainedDelaunay
   Boundary
   Outline
+  Crossings
   Insertion
   Trim
   Holes

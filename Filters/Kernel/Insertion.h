@@ -7,9 +7,7 @@
  *
  * In: a mesh with Twins, rings of points in the plane. Out: the mesh with more vertices, and the
  * rings through these. The passes:
- *   1. Look whether edges of the rings cross each other; or rings, or one ring itself, where they
- *      meet in a point, or run along the same edges and part on the other side. (Edges that one
- *      ring runs along in both directions, as a bridge to a hole, cancel out: nothing to cross.)
+ *   1. Look whether the rings cross each other (Crossings.h).
  *   2. Match the rings' points to corners of the mesh with the same x,y. One that the border passes
  *      within rounding (Reach.h) becomes a vertex of the border, which moves by as little; but not
  *      where two borders do, which must not move into each other.
