@@ -3,9 +3,8 @@
 /**
  * @file
  * Whether rings cross: two edges between their ends; two rings, or parts of one, where they meet in
- * a point, or run along the same edges and part on the other side. Touching and nesting is allowed,
- * and what one ring runs along in both directions, as a bridge to a hole, cancels out: nothing to
- * cross.
+ * a point, or run along the same edges and part on the other side. They may touch and nest; and what
+ * one ring runs along in both directions, as a bridge to a hole, cancels out: nothing to cross.
  *
  * Exact. Cost: linear in the edges and the pairs of them that are near each other, and a sort of the
  * points.

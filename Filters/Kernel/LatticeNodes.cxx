@@ -132,10 +132,13 @@ bool AreScattered(
 }
 } // namespace
 
-/** Sorts the nodes in Room, whose memory becomes that of Ids. */
-LatticeNodes::Stretches LatticeNodes::SortIntoStretches(int threads, const Progress& progress)
+/**
+ * Sorts the nodes in Room, whose memory becomes that of Ids.
+ * @return whether points are spread over the stretches; if not, they stay as they are
+ */
+bool LatticeNodes::SortIntoStretches(Stretches& sorted, int threads, const Progress& progress)
 {
-  // What belongs to a stretch fits in a core's own memory, and so does the end of each one.
+  // What belongs to a stretch should fit in a core's own memory, and so should the end of each one.
   constexpr Index pointsPerStretch = 1 << 14, mostStretches = 512;
   const Index count = static_cast<Index>(this->Room.size());
   const Index last = static_cast<Index>(this->Memory.size() * 64 - 1); // node
@@ -147,59 +150,65 @@ LatticeNodes::Stretches LatticeNodes::SortIntoStretches(int threads, const Progr
   const Index stretches = (last >> shift) + 1;
   const Index ranges = NumberOfRanges(count);
   std::vector<Index> numbers(static_cast<std::size_t>(ranges) * stretches, 0);
-  const auto numbersOf = [&](Index range) {
-    return numbers.data() + static_cast<std::size_t>(range) * stretches;
-  };
-  const auto forEachNode = [&](const Progress& part, auto&& visit) {
-    ForEachRange(count, threads, part, [&](Index range, Index begin, Index end) {
-      Index* const here = numbersOf(range);
-      for (Index id = begin; id < end; ++id)
+  const auto forEachNode = [&](Index range, Index begin, Index end, auto&& visit) {
+    Index* const here = numbers.data() + static_cast<std::size_t>(range) * stretches;
+    for (Index id = begin; id < end; ++id)
+    {
+      if (this->Room[id] != None)
       {
-        if (this->Room[id] != None)
-        {
-          visit(here[this->Room[id] >> shift]++, id);
-        }
+        visit(here[this->Room[id] >> shift]++, id);
       }
-    });
+    }
   };
-  forEachNode(Part(progress, 0.0, 0.3), [](Index, Index) {});
-  Stretches sorted;
-  Index sum = 0;
+  sorted.Nodes.Resize(static_cast<std::size_t>(count));
+  sorted.Ids.Resize(static_cast<std::size_t>(count));
+  ForEachRange(count, threads, Part(progress, 0.0, 0.5), [&](Index range, Index begin, Index end) {
+    // Pages are taken here one after the other, not all at once by the first that are sorted.
+    constexpr Index indicesInPage = 1024;
+    for (Index i = begin; i < end; i += indicesInPage)
+    {
+      sorted.Nodes[i] = sorted.Ids[i] = None;
+    }
+    forEachNode(range, begin, end, [](Index, Index) {});
+  });
+  Index sum = 0, longest = 0;
   for (Index stretch = 0; stretch < stretches; ++stretch)
   {
     sorted.Begins.push_back(sum);
     for (Index range = 0; range < ranges; ++range)
     {
-      sum += std::exchange(numbersOf(range)[stretch], sum);
+      sum += std::exchange(numbers[static_cast<std::size_t>(range) * stretches + stretch], sum);
     }
+    longest = std::max(longest, sum - sorted.Begins.back());
   }
   sorted.Begins.push_back(sum);
-  sorted.Second.resize(stretches);
-  sorted.Nodes.Resize(static_cast<std::size_t>(count));
-  sorted.Ids.Resize(static_cast<std::size_t>(count));
-  forEachNode(Part(progress, 0.3, 1.0), [&](Index place, Index id) {
-    sorted.Nodes[place] = this->Room[id];
-    sorted.Ids[place] = id;
+  // Else a thread would have too much of it, without a report.
+  if (longest / 16 > std::max(pointsPerStretch, count / stretches))
+  {
+    return false;
+  }
+  ForEachRange(count, threads, Part(progress, 0.5, 1.0), [&](Index range, Index begin, Index end) {
+    forEachNode(range, begin, end, [&](Index place, Index id) {
+      sorted.Nodes[place] = this->Room[id];
+      sorted.Ids[place] = id;
+    });
   });
   this->Ids = std::move(this->Room);
-  return sorted;
+  return true;
 }
 
 /** As Occupy(), for points and words that are near. */
 void LatticeNodes::OccupyStretch(Stretches& stretches, Index stretch)
 {
-  std::vector<Index> second; // not in memory that other threads write next to
   for (Index i = stretches.Begins[stretch]; i < stretches.Begins[stretch + 1]; ++i)
   {
     Index& node = stretches.Nodes[i];
     const std::uint64_t bit = std::uint64_t(1) << (node & 63);
     if (this->SetBits(node >> 6, bit, false) & bit)
     {
-      second.push_back(stretches.Ids[i]);
       node = None;
     }
   }
-  stretches.Second[stretch] = std::move(second);
 }
 
 /** Writes each id to its place. */
@@ -433,50 +442,81 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   }
   this->LargestOffset = largest + std::max(Roundoff, nodeOf.Roundoff(low, high));
 
-  std::vector<std::vector<Index>> second;
-  if (areScattered)
+  // Of the points on one node one is kept. The others are marked, so that they come in order.
+  std::vector<std::uint64_t> isDuplicate;
+  const auto settle = [&](Index id) {
+    isDuplicate.resize(static_cast<std::size_t>(points.Count) / 64 + 1);
+    Index column, row;
+    nodeOf(points.At(id), column, row);
+    Index& kept = this->Ids[this->RankOf(this->NodeAt(row, column))];
+    const bool isSamePlace = points.At(kept) == points.At(id);
+    if (isSamePlace && IsPreferred(points, policy, id, kept))
+    {
+      std::swap(id, kept);
+    }
+    isDuplicate[id / 64] |= std::uint64_t(1) << id % 64;
+    return isSamePlace;
+  };
+  const Progress settling = Part(progress, 0.95, 0.99);
+  Stretches sorted;
+  if (areScattered && this->SortIntoStretches(sorted, threads, Part(progress, 0.5, 0.7)))
   {
-    Stretches sorted = this->SortIntoStretches(threads, Part(progress, 0.5, 0.7));
     ForEachPiece(sorted.Count(), threads, Part(progress, 0.7, 0.8),
       [&](Index stretch) { this->OccupyStretch(sorted, stretch); });
     this->CountBefore(threads);
     ForEachPiece(sorted.Count(), threads, Part(progress, 0.8, 0.95),
       [&](Index stretch) { this->PlaceStretch(sorted, stretch); });
-    this->Room = std::move(sorted.Nodes);
-    second = std::move(sorted.Second);
-  }
-  else
-  {
-    this->CountBefore(threads);
-    ForEachRange(points.Count, threads, Part(progress, 0.5, 0.95),
-      [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
-    for (Gathered& piece : pieces)
+    const Index placed = sorted.Begins.back();
+    for (Index i = 0; i < placed && this->NumberOfPoints() < placed; ++i)
     {
-      second.push_back(std::move(piece.Second));
-    }
-  }
-  std::size_t steps = 0;
-  for (const std::vector<Index>& piece : second)
-  {
-    for (Index id : piece)
-    {
-      ReportStep(Part(progress, 0.95, 0.97), steps++, points.Count);
-      Index column, row;
-      nodeOf(points.At(id), column, row);
-      Index& kept = this->Ids[this->RankOf(this->NodeAt(row, column))];
-      if (points.At(kept) != points.At(id))
+      ReportStep(settling, static_cast<std::size_t>(i), static_cast<std::size_t>(placed));
+      if (sorted.Nodes[i] == None && !settle(sorted.Ids[i]))
       {
         return false;
       }
-      if (IsPreferred(points, policy, id, kept))
+    }
+    this->Room = std::move(sorted.Nodes);
+  }
+  else
+  {
+    if (areScattered)
+    {
+      ForEachRange(
+        points.Count, threads, Part(progress, 0.7, 0.8), [&](Index piece, Index begin, Index end) {
+          std::vector<Index> second;
+          for (; begin < end; begin += Few)
+          {
+            const Index last = std::min(begin + Few, end);
+            this->Occupy(begin, last, nodes, threads > 1, second);
+          }
+          pieces[piece].Second = std::move(second);
+        });
+    }
+    this->CountBefore(threads);
+    ForEachRange(points.Count, threads, Part(progress, 0.8, 0.95),
+      [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
+    std::size_t steps = 0;
+    for (const Gathered& piece : pieces)
+    {
+      for (const Index id : piece.Second)
       {
-        std::swap(id, kept);
+        ReportStep(settling, steps++, static_cast<std::size_t>(points.Count));
+        if (!settle(id))
+        {
+          return false;
+        }
       }
-      this->Duplicates.push_back(id);
     }
   }
-  Sort(this->Duplicates.begin(), this->Duplicates.end(), std::less<Index>(),
-    Part(progress, 0.97, 1.0));
+  const Progress listing = Part(progress, 0.99, 1.0);
+  for (std::size_t word = 0; word < isDuplicate.size(); ++word)
+  {
+    ReportStep(listing, word, isDuplicate.size());
+    for (std::uint64_t left = isDuplicate[word]; left; left &= left - 1)
+    {
+      this->Duplicates.push_back(static_cast<Index>(64 * word) + LowestBit(left));
+    }
+  }
 
   Index word = 0;
   while (this->Word(word) == 0)

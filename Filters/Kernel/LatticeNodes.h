@@ -7,9 +7,9 @@
  * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
  * in the order of their nodes (by row, then column), which the number of bits before a node tells;
  * or the answer that a point does not fit. One pass over the points sets the bits and keeps the
- * nodes, one over these writes each id to its place; both on several threads. Many points that come
- * scattered are sorted into stretches of nodes in between: bits and places are then near in memory,
- * and one thread's alone.
+ * nodes, one over these writes each id to its place; both on several threads. Where many points come
+ * scattered, their nodes are sorted into stretches before bits are set: bits and places are then
+ * near in memory, and one thread's alone.
  *
  * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
  * the last row are rows of zeros, so that neighbours may be looked at without a check.
@@ -94,14 +94,13 @@ private:
   /** Points by stretches of nodes. */
   struct Stretches
   {
-    std::vector<Index> Begins;              ///< in the others; and the end of the last
-    Buffer<Index> Nodes;                    ///< None for points on a node that is taken
-    Buffer<Index> Ids;                      ///< of the points
-    std::vector<std::vector<Index>> Second; ///< those points' ids
+    std::vector<Index> Begins; ///< where each begins in Nodes and Ids; then the end of the last
+    Buffer<Index> Nodes;       ///< None for points on a node that is taken
+    Buffer<Index> Ids;         ///< of the points
     Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
   };
 
-  Stretches SortIntoStretches(int threads, const Progress& progress);
+  bool SortIntoStretches(Stretches& sorted, int threads, const Progress& progress);
   void OccupyStretch(Stretches& stretches, Index stretch);
   void PlaceStretch(const Stretches& stretches, Index stretch);
   std::uint64_t SetBits(Index word, std::uint64_t bits, bool isShared);

@@ -493,26 +493,10 @@ TEST(Lattice, LooksFarDownFromABorder)
   }
 }
 
-TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
+/** Expects the last of the points on each node, the same on any number of threads, in any order. */
+static void ExpectPlaced(
+  Cloud cloud, Index distinct, std::size_t notFinite, std::mt19937_64& random)
 {
-  // Many ranges of points, and so many points that those in no order are sorted; one in four is on
-  // a node that another one takes as well.
-  std::mt19937_64 random(55);
-  const Frame frame = MakeFrame(25.0, 30.0, 10.0, 110.0, { 612000.0, 6073000.0 });
-  Cloud cloud = CloudOn(frame, RandomNodes(random, 1200, 1500, 0.5));
-  const Index distinct = cloud.Count();
-  for (Index i = 0; i < distinct / 3; ++i)
-  {
-    const std::size_t id = random() % static_cast<std::size_t>(distinct);
-    for (Index times = i % 7 == 0 ? 2 : 1; times > 0; --times) // also one right after the other
-    {
-      cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
-    }
-    if (i % 1000 == 0)
-    {
-      cloud.Add(0.0, INFINITY);
-    }
-  }
   const auto search = [&](int threads) {
     return FindLattice(cloud.View(), 0.01, threads, Progress());
   };
@@ -522,7 +506,7 @@ TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
     cloud = isShuffled ? cloud.Shuffled(random) : cloud;
     const LatticeSearch found = search(1);
     ASSERT_TRUE(found.Found);
-    EXPECT_EQ(found.NotFinite.size(), static_cast<std::size_t>(distinct / 3 + 999) / 1000);
+    EXPECT_EQ(found.NotFinite.size(), notFinite);
     LatticeNodes one;
     ASSERT_TRUE(one.Place(cloud.View(), found, 0.01, DuplicatePolicy::KeepLast, 1, Progress()));
     ASSERT_EQ(one.NumberOfPoints(), distinct);
@@ -565,6 +549,43 @@ TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
       EXPECT_EQ(one.LargestOffset, nodes.LargestOffset);
     }
   }
+}
+
+TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
+{
+  // Many ranges of points, and so many points that those in no order are sorted; one in four is on
+  // a node that another one takes as well.
+  std::mt19937_64 random(55);
+  const Frame frame = MakeFrame(25.0, 30.0, 10.0, 110.0, { 612000.0, 6073000.0 });
+  Cloud cloud = CloudOn(frame, RandomNodes(random, 1200, 1500, 0.5));
+  const Index distinct = cloud.Count();
+  for (Index i = 0; i < distinct / 3; ++i)
+  {
+    const std::size_t id = random() % static_cast<std::size_t>(distinct);
+    for (Index times = i % 7 == 0 ? 2 : 1; times > 0; --times) // also one right after the other
+    {
+      cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
+    }
+    if (i % 1000 == 0)
+    {
+      cloud.Add(0.0, INFINITY);
+    }
+  }
+  ExpectPlaced(cloud, distinct, static_cast<std::size_t>(distinct / 3 + 999) / 1000, random);
+}
+
+TEST(Lattice, IsPlacedWhereMostPointsAreOnFewNodes)
+{
+  std::mt19937_64 random(56);
+  const Frame frame = MakeFrame(25.0, 25.0, 0.0);
+  Cloud cloud = CloudOn(frame, RandomNodes(random, 700, 700, 0.5));
+  const Index distinct = cloud.Count();
+  while (cloud.Count() < 3 << 20)
+  {
+    const std::size_t id = random() % 4;
+    cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
+  }
+  ExpectPlaced(cloud, distinct, 0, random);
 }
 
 TEST(Lattice, ReportsWithinLongRows)

@@ -69,7 +69,7 @@ std::unique_ptr<Competitor> NewGridDelaunay(int threads);
 /** The same on one thread, to tell what threads are worth. */
 std::unique_ptr<Competitor> NewGridDelaunayOneThread();
 
-/** That several times at once, one a thread: what the machine gives to threads with nothing in common. */
+/** That several times at once, one a thread: what the machine gives to so many threads. */
 std::unique_ptr<Competitor> NewGridDelaunayCopies(int threads);
 
 /** The same by the coordinates, without a lattice, with one of its search strategies. */

@@ -166,6 +166,8 @@ public:
     }
   }
 
+  bool RunWithoutLattice() override { return this->Each[0]->RunWithoutLattice(); }
+
   void Release() override
   {
     for (const std::unique_ptr<Competitor>& copy : this->Each)
