@@ -513,6 +513,7 @@ static void ExpectPlaced(
     const PointView view = cloud.View();
     std::vector<Index> sorted(one.Ids.begin(), one.Ids.end());
     sorted.insert(sorted.end(), one.Duplicates.begin(), one.Duplicates.end());
+    ASSERT_EQ(sorted.size() + notFinite, static_cast<std::size_t>(view.Count));
     std::sort(sorted.begin(), sorted.end(), [&](Index a, Index b) {
       const Point2 p = view.At(a), q = view.At(b);
       return p == q ? a < b : IsLower(p, q);
