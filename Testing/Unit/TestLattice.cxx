@@ -579,11 +579,11 @@ TEST(Lattice, IsPlacedWhereMostPointsAreOnFewNodes)
 {
   std::mt19937_64 random(56);
   const Frame frame = MakeFrame(25.0, 25.0, 0.0);
-  Cloud cloud = CloudOn(frame, RandomNodes(random, 700, 700, 0.5));
+  Cloud cloud = CloudOn(frame, RandomNodes(random, 1500, 1500, 0.1));
   const Index distinct = cloud.Count();
   while (cloud.Count() < 3 << 20)
   {
-    const std::size_t id = random() % 4;
+    const std::size_t id = random() % 4 * (distinct / 4); // far from each other
     cloud.Add(cloud.Coordinates[3 * id], cloud.Coordinates[3 * id + 1]);
   }
   ExpectPlaced(cloud, distinct, 0, random);
