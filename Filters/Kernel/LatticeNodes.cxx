@@ -5,7 +5,6 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -185,6 +184,7 @@ bool LatticeNodes::SortIntoStretches(Stretches& sorted, int threads, const Progr
   // Else a thread would have too much of it, without a report.
   if (longest / 16 > std::max(pointsPerStretch, count / stretches))
   {
+    sorted = Stretches(); // gives its memory back
     return false;
   }
   ForEachRange(count, threads, Part(progress, 0.5, 1.0), [&](Index range, Index begin, Index end) {
@@ -484,11 +484,7 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
       ForEachRange(
         points.Count, threads, Part(progress, 0.7, 0.8), [&](Index piece, Index begin, Index end) {
           std::vector<Index> second;
-          for (; begin < end; begin += Few)
-          {
-            const Index last = std::min(begin + Few, end);
-            this->Occupy(begin, last, nodes, threads > 1, second);
-          }
+          this->Occupy(begin, end, nodes, threads > 1, second);
           pieces[piece].Second = std::move(second);
         });
     }
