@@ -148,16 +148,22 @@ void PassPointData(vtkPointData* input, vtkPointData* source, const std::vector<
     });
 }
 
-void AddUnusedPoints(const elevation::Triangulation& triangulation, vtkFieldData* fieldData)
+void AddUnusedPoints(const elevation::Triangulation& triangulation,
+  const elevation::Progress& progress, vtkFieldData* fieldData)
 {
+  const std::size_t count = triangulation.UnusedPoints.size();
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName("UnusedPointIds");
+  ids->SetNumberOfValues(static_cast<vtkIdType>(count));
   vtkNew<vtkUnsignedCharArray> reasons;
   reasons->SetName("UnusedPointReasons");
-  for (std::size_t i = 0; i < triangulation.UnusedPoints.size(); ++i)
+  reasons->SetNumberOfValues(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i)
   {
-    ids->InsertNextValue(triangulation.UnusedPoints[i]);
-    reasons->InsertNextValue(static_cast<unsigned char>(triangulation.UnusedReasons[i]));
+    elevation::ReportStep(progress, i, count, 1 << 18);
+    const vtkIdType at = static_cast<vtkIdType>(i);
+    ids->SetValue(at, triangulation.UnusedPoints[i]);
+    reasons->SetValue(at, static_cast<unsigned char>(triangulation.UnusedReasons[i]));
   }
   fieldData->AddArray(ids);
   fieldData->AddArray(reasons);
@@ -272,7 +278,7 @@ int vtkGridDelaunay2D::RequestData(
     const vtkIdType added = static_cast<vtkIdType>(constrained.Added.size());
     const vtkIdType crossings = static_cast<vtkIdType>(constrained.NumberOfCrossings);
     output->GetFieldData()->PassData(input->GetFieldData());
-    AddUnusedPoints(triangulation, output->GetFieldData());
+    AddUnusedPoints(triangulation, Part(progress, 1.0, 1.0), output->GetFieldData());
     elevation::AddCount(output->GetFieldData(), "NumberOfConstraintCrossings", crossings);
     elevation::AddCount(output->GetFieldData(), "NumberOfAddedPoints", added);
     output->GetFieldData()->RemoveArray("Lattice"); // an input's, of other points

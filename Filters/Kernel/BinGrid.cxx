@@ -30,6 +30,28 @@ constexpr Index BlockPoints = 1 << 14;
 // Blocks are made of at most so many groups of rows.
 constexpr Index MaximumGroups = 4096;
 
+/**
+ * Calls visit(i) for all of [begin, end), and report(fraction) between stretches of them: one row,
+ * or one bin, may hold all points.
+ */
+template <typename Tell, typename Visit>
+void InStretches(Index begin, Index end, Tell&& report, Visit&& visit)
+{
+  constexpr Index stretch = 1 << 16;
+  for (Index i = begin;;)
+  {
+    for (const Index stop = i + std::min(end - i, stretch); i < stop; ++i)
+    {
+      visit(i);
+    }
+    if (i >= end)
+    {
+      return;
+    }
+    report(static_cast<double>(i - begin) / (end - begin));
+  }
+}
+
 /** Bins along both sides of a box for so many points, as square as its proportions allow. */
 void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
 {
@@ -121,10 +143,10 @@ struct Rows
   double* X;
   double* Y;
   Index* Ids;
-  std::vector<Index> Starts;
+  Buffer<Index> Starts;
   Index Columns;
 
-  Index Count() const { return this->Starts.back(); }
+  Index Count() const { return this->Starts[this->Starts.size() - 1]; }
   std::pair<Index, Index> Slots(Index row, Index firstColumn, Index lastColumn) const
   {
     const Index* starts = this->Starts.data() + static_cast<std::size_t>(row) * this->Columns;
@@ -286,11 +308,10 @@ private:
   Child BuildFullBin(std::pair<Index, Index> slots)
   {
     Heap heap{ slots.first, slots.second, Box() };
-    for (Index slot = slots.first; slot < slots.second; ++slot)
-    {
+    this->ForEach(slots, [&](Index slot) {
       this->Points[slot] = { this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot], 0 };
       heap.Bounds.Add(this->Grid.X[slot], this->Grid.Y[slot]);
-    }
+    });
     return this->BuildHeap(heap);
   }
 
@@ -298,18 +319,13 @@ private:
   {
     if (whole.IsLeaf())
     {
-      for (Index slot = whole.Begin; slot < whole.End; ++slot)
-      {
+      this->ForEach({ whole.Begin, whole.End }, [&](Index slot) {
         const Placed& p = this->Points[slot];
         this->Grid.X[slot] = p.X;
         this->Grid.Y[slot] = p.Y;
         this->Grid.Ids[slot] = p.Id;
-      }
+      });
       return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
-    }
-    if (whole.Size() > 65536)
-    {
-      this->ReportProgress(0);
     }
     // What fits into one node stays together, so that the lowest nodes are full.
     constexpr Index fitting = BinGrid::Node::Places * FullBin;
@@ -363,45 +379,55 @@ private:
       sample[i] = key(begin[static_cast<std::int64_t>(i) * size / samples]);
     }
     std::nth_element(sample, sample + samples / 2, sample + samples);
-    Placed* middle = Divide(begin, end, key, sample[samples / 2], heap.Bounds, isWide);
+    Placed* middle = this->Divide(heap, key, sample[samples / 2], isWide);
     if (std::min(middle - begin, end - middle) < size / 8)
     {
-      std::nth_element(begin, begin + size / 2, end,
-        [&key](const Placed& p, const Placed& q) { return key(p) < key(q); });
-      middle = Divide(begin, end, key, key(begin[size / 2]), heap.Bounds, isWide);
+      std::size_t comparisons = 0;
+      std::nth_element(begin, begin + size / 2, end, [&](const Placed& p, const Placed& q) {
+        if (++comparisons % 65536 == 0)
+        {
+          this->ReportProgress(0);
+        }
+        return key(p) < key(q);
+      });
+      middle = this->Divide(heap, key, key(begin[size / 2]), isWide);
     }
 
     other.Begin = heap.Begin + static_cast<Index>(middle - begin);
     other.End = heap.End;
     heap.End = other.Begin;
-    heap.Bounds = other.Bounds = Box();
-    for (const Placed* p = begin; p < middle; ++p)
+    for (Heap* half : { &heap, &other })
     {
-      heap.Bounds.Add(p->X, p->Y);
-    }
-    for (const Placed* p = middle; p < end; ++p)
-    {
-      other.Bounds.Add(p->X, p->Y);
+      Box bounds;
+      this->ForEach({ half->Begin, half->End },
+        [&](Index slot) { bounds.Add(this->Points[slot].X, this->Points[slot].Y); });
+      half->Bounds = bounds;
     }
   }
 
   /** Points before the value first, or up to the value when none is before: both parts have some. */
   template <typename Key>
-  static Placed* Divide(
-    Placed* begin, Placed* end, const Key& key, double value, const Box& bounds, bool isWide)
+  Placed* Divide(const Heap& heap, const Key& key, double value, bool isWide)
   {
-    const bool hasBefore = (isWide ? bounds.LowX : bounds.LowY) < value;
-    Placed* middle = begin;
-    for (Placed* p = begin; p < end; ++p)
-    {
+    const bool hasBefore = (isWide ? heap.Bounds.LowX : heap.Bounds.LowY) < value;
+    Placed* end = this->Points + heap.Begin; // of those before
+    this->ForEach({ heap.Begin, heap.End }, [&](Index slot) {
       // Without a branch, which could not be predicted.
-      const Placed moved = *p;
+      Placed& there = this->Points[slot];
+      const Placed moved = there;
       const bool isBefore = hasBefore ? key(moved) < value : key(moved) <= value;
-      *p = *middle;
-      *middle = moved;
-      middle += isBefore;
-    }
-    return middle;
+      there = *end;
+      *end = moved;
+      end += isBefore;
+    });
+    return end;
+  }
+
+  template <typename Work>
+  void ForEach(std::pair<Index, Index> slots, Work&& work)
+  {
+    InStretches(
+      slots.first, slots.second, [this](double) { this->ReportProgress(0); }, work);
   }
 
   void ReportProgress(Index visited)
@@ -420,6 +446,7 @@ private:
   const Progress& Monitor;
   std::int64_t Visited = 0, NextReport = 0;
 };
+
 /**
  * Orders the slots of a row by (y, x). Spread over the row's height first, they are nearly ordered,
  * which insertion finishes in linear time. Where many are close to each other, these are spread
@@ -451,10 +478,7 @@ public:
         return Entry{ y[i], first + i };
       },
       this->Entries, room, count, low, high, 0);
-    for (Index i = 0; i < count; ++i)
-    {
-      order[i] = this->Entries[i].Slot;
-    }
+    this->ForEach(0, count, [&](Index i) { order[i] = this->Entries[i].Slot; });
   }
 
 private:
@@ -481,10 +505,16 @@ private:
     return p.Y < q.Y || (p.Y == q.Y && this->Grid.X[p.Slot] < this->Grid.X[q.Slot]);
   }
 
+  template <typename Work>
+  void ForEach(Index begin, Index end, Work&& work) const
+  {
+    InStretches(
+      begin, end, [this](double) { Report(this->Monitor, 0.0); }, work);
+  }
+
   void Insert(Entry* entries, Index count) const
   {
-    for (Index i = 1; i < count; ++i)
-    {
+    this->ForEach(0, count, [&](Index i) {
       const Entry entry = entries[i];
       Index at = i;
       for (; at > 0 && this->IsBefore(entry, entries[at - 1]); --at)
@@ -492,7 +522,7 @@ private:
         entries[at] = entries[at - 1];
       }
       entries[at] = entry;
-    }
+    });
   }
 
   /**
@@ -508,10 +538,7 @@ private:
     const double perHeight = last / (high - low);
     if (count <= Few || depth > MaximumDepth || !(perHeight > 0.0 && perHeight <= DBL_MAX))
     {
-      for (Index i = 0; i < count; ++i)
-      {
-        sorted[i] = get(i);
-      }
+      this->ForEach(0, count, [&](Index i) { sorted[i] = get(i); });
       if (count <= Few)
       {
         return this->Insert(sorted, count);
@@ -523,34 +550,38 @@ private:
     const auto bucketOf = [=](const Entry& p) {
       return static_cast<Index>(std::max(0.0, std::min(last, (p.Y - low) * perHeight)));
     };
-    std::vector<Index>& ends = this->Ends[depth];
-    ends.assign(static_cast<std::size_t>(count) + 1, 0);
-    for (Index i = 0; i < count; ++i)
-    {
-      ++ends[bucketOf(get(i)) + 1];
-    }
+    Buffer<Index>& ends = this->Ends[depth];
+    ends.Resize(static_cast<std::size_t>(count) + 1);
+    this->ForEach(0, count + 1, [&](Index i) { ends[i] = 0; });
+    this->ForEach(0, count, [&](Index i) { ++ends[bucketOf(get(i)) + 1]; });
     Index fullest = 0;
-    for (Index bucket = 0; bucket < count; ++bucket)
-    {
+    this->ForEach(0, count, [&](Index bucket) {
       fullest = std::max(fullest, ends[bucket + 1]);
       ends[bucket + 1] += ends[bucket];
-    }
-    for (Index i = 0; i < count; ++i)
-    {
+    });
+    this->ForEach(0, count, [&](Index i) {
       const Entry entry = get(i);
       sorted[ends[bucketOf(entry)]++] = entry;
-    }
+    });
+    Index told = 0;
     for (Index begin = 0, bucket = 0; fullest > Few && begin < count; begin = ends[bucket++])
     {
+      if (begin - told > 65536)
+      {
+        Report(this->Monitor, 0.0);
+        told = begin;
+      }
       const Index size = ends[bucket] - begin;
       if (size > Few)
       {
-        const auto range = std::minmax_element(sorted + begin, sorted + begin + size,
-          [](const Entry& p, const Entry& q) { return p.Y < q.Y; });
-        const double lowest = range.first->Y, highest = range.second->Y;
+        double lowest = DBL_MAX, highest = -DBL_MAX;
+        this->ForEach(begin, begin + size, [&](Index i) {
+          const double y = sorted[i].Y;
+          lowest = y < lowest ? y : lowest;
+          highest = y > highest ? y : highest;
+        });
         Index* const from = room + begin;
-        std::transform(sorted + begin, sorted + begin + size, from,
-          [](const Entry& entry) { return entry.Slot; });
+        this->ForEach(0, size, [&](Index i) { from[i] = sorted[begin + i].Slot; });
         this->Sort(
           Listed{ from, this->Grid.Y }, sorted + begin, from, size, lowest, highest, depth + 1);
       }
@@ -561,7 +592,7 @@ private:
   const Rows& Grid;
   Entry* const Entries;
   const Progress& Monitor;
-  std::vector<Index> Ends[MaximumDepth + 1];
+  Buffer<Index> Ends[MaximumDepth + 1];
 };
 
 /** Visits the finite ones of the points [begin, end): their id and position. */
@@ -611,23 +642,31 @@ struct BinGrid::Block
   Placed* Points;     ///< first its points, then room for as many
   Child Root;
   Buffer<Node> Nodes; ///< children and slots counted from the block's first
-  std::vector<Index> Duplicates;
+  Buffer<Index> Duplicates;
+
+  /** In so many pieces what is done with all bins or points is heard of soon. */
+  Index Pieces(const Layout& layout) const
+  {
+    const Index bins = (this->EndRow - this->FirstRow) * layout.Columns; // at most as all points
+    return 1 + std::max(this->Count, bins) / (16 * BlockPoints);
+  }
 };
 
 BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
-  int threads, const Extent* known)
+  int threads, Extent* known)
 {
   const auto look = [&]() {
     return FindExtent(points, threads, Part(progress, 0.0, 0.2), [](Index, const Point2&) {});
   };
-  const Extent extent = known ? *known : look();
+  Extent extent = known ? std::move(*known) : look();
+  this->NotFinite = std::move(extent.NotFinite);
   if (!this->Lay(points, extent))
   {
     this->Starts.Append(0);
     return;
   }
   std::vector<Block> blocks = this->Fill(points, policy, Part(progress, 0.2, 0.9), threads);
-  this->Join(blocks, Part(progress, 0.9, 1.0), threads);
+  this->Join(blocks, points.Count, Part(progress, 0.9, 1.0), threads);
 }
 
 BinGrid::Step BinGrid::StepTo(Index node) const
@@ -691,7 +730,6 @@ Index BinGrid::FindLowest(Index slot) const
 
 bool BinGrid::Lay(const PointView& points, const Extent& extent)
 {
-  this->NotFinite = extent.NotFinite;
   const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
   if (count == 0)
   {
@@ -746,11 +784,14 @@ std::vector<BinGrid::Block> BinGrid::Fill(
   const std::size_t pieces =
     (static_cast<std::size_t>(points.Count) + PiecePoints - 1) / PiecePoints;
   std::vector<Index> inGroup(pieces * groups, 0);
+  Buffer<Placed> placed;
+  placed.Resize(count);
   ForEachPieceOf(
     points, threads, Part(progress, 0.0, 0.1), [&](Index piece, Index begin, Index end) {
       Index* const counts = inGroup.data() + static_cast<std::size_t>(piece) * groups;
       VisitFinite(points, begin, end, this->Scale,
         [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
+      TakePages(placed, begin, end);
     });
 
   // Blocks of groups, about as many points in each; where each piece's points of a block begin.
@@ -795,8 +836,6 @@ std::vector<BinGrid::Block> BinGrid::Fill(
     }
   }
 
-  Buffer<Placed> placed;
-  placed.Resize(count);
   for (Block& block : blocks)
   {
     block.Points = placed.data() + block.Begin;
@@ -824,7 +863,7 @@ std::vector<BinGrid::Block> BinGrid::Fill(
   this->RowHigh.assign(bins.Rows, -DBL_MAX);
 
   // The few blocks that are too large to wait for come last, and tell themselves what is done.
-  const auto isLarge = [](const Block& block) { return block.Count > 16 * BlockPoints; };
+  const auto isLarge = [&bins](const Block& block) { return block.Pieces(bins) > 1; };
   const Progress inBlocks = Part(progress, 0.3, 1.0);
   const double large = std::accumulate(blocks.begin(), blocks.end(), 0.0,
     [&](double points, const Block& block) { return points + isLarge(block) * block.Count; });
@@ -855,17 +894,20 @@ void BinGrid::FillBlock(
   const std::size_t firstBin = static_cast<std::size_t>(block.FirstRow) * this->Bins.Columns;
   const std::size_t bins = static_cast<std::size_t>(rows) * this->Bins.Columns;
   Rows local{ this->X.data() + block.Begin, this->Y.data() + block.Begin,
-    this->Ids.data() + block.Begin, std::vector<Index>(bins + 1, 0), this->Bins.Columns };
+    this->Ids.data() + block.Begin, Buffer<Index>(), this->Bins.Columns };
 
   // Count, prefix sum, fill: while filling, starts[b + 1] runs from the first slot of bin b to its
   // end, which is the first slot of the next.
+  local.Starts.Resize(bins + 1);
   Index* const starts = local.Starts.data();
-  const Placed* const begin = block.Points;
-  const Placed* const end = begin + block.Count;
-  for (const Placed* p = begin; p < end; ++p)
-  {
-    ++starts[p->Bin + 1];
-  }
+  const auto forEach = [&progress](std::size_t count, double from, double to, auto&& visit) {
+    const auto report = [&](double fraction) { Report(progress, from + fraction * (to - from)); };
+    report(0.0);
+    InStretches(0, static_cast<Index>(count), report, visit);
+  };
+  forEach(bins + 1, 0.0, 0.0, [&](Index bin) { starts[bin] = 0; });
+  const Placed* const placed = block.Points;
+  forEach(block.Count, 0.0, 0.05, [&](Index i) { ++starts[placed[i].Bin + 1]; });
   Index sum = 0;
   for (std::size_t bin = 1; bin <= bins; ++bin)
   {
@@ -873,25 +915,33 @@ void BinGrid::FillBlock(
     starts[bin] = sum;
     sum += inBin;
   }
-  Report(progress, 0.0);
-  for (const Placed* p = begin; p < end; ++p)
-  {
-    const Index slot = starts[p->Bin + 1]++;
-    local.X[slot] = p->X;
-    local.Y[slot] = p->Y;
-    local.Ids[slot] = p->Id;
-  }
+  const Progress here = Part(progress, 0.05, 0.05);
+  TakePages(this->X, block.Begin, block.Begin + block.Count, here);
+  TakePages(this->Y, block.Begin, block.Begin + block.Count, here);
+  TakePages(this->Ids, block.Begin, block.Begin + block.Count, here);
+  forEach(block.Count, 0.05, 0.1, [&](Index i) {
+    const Index slot = starts[placed[i].Bin + 1]++;
+    local.X[slot] = placed[i].X;
+    local.Y[slot] = placed[i].Y;
+    local.Ids[slot] = placed[i].Id;
+  });
 
-  block.Root = TreeBuilder(local, block.Points, block.Nodes, Part(progress, 0.0, 0.6)).Build(rows);
+  if (block.Pieces(this->Bins) > 1)
+  {
+    block.Nodes.Reserve(block.Count / 48); // to grow takes long; nobody misses what is not used
+  }
+  block.Root = TreeBuilder(local, block.Points, block.Nodes, Part(progress, 0.1, 0.6)).Build(rows);
 
   Index* const order = this->Order.data() + block.Begin;
-  const Progress inSort = Part(progress, 0.6, 0.9);
+  Progress inSort;
   RowSorter sorter(local, block.Points, inSort);
   for (Index row = 0; row < rows; ++row)
   {
     const auto slots = local.Slots(row, 0, this->Bins.Columns - 1);
     if (slots.first < slots.second)
     {
+      const double done = 0.6 + 0.3 * row / rows;
+      inSort = Part(progress, done, done);
       const double low = this->Bins.OriginY + (block.FirstRow + row) * this->Bins.BinHeight;
       sorter.Sort(slots, low, low + this->Bins.BinHeight, order + slots.first);
       this->RowLow[block.FirstRow + row] = local.Y[order[slots.first]];
@@ -901,29 +951,31 @@ void BinGrid::FillBlock(
 
   // Equal points follow each other.
   std::vector<bool> isAside;
-  for (Index i = 1, kept = 0; i < block.Count; ++i)
-  {
+  Index kept = 0;
+  forEach(block.Count, 0.9, 0.95, [&](Index i) {
     const Index first = order[kept], slot = order[i];
     if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
     {
       kept = i;
-      continue;
     }
-    if (IsPreferred(points, policy, local.Ids[slot], local.Ids[first]))
+    else if (i > kept)
     {
-      std::swap(local.Ids[slot], local.Ids[first]);
+      if (IsPreferred(points, policy, local.Ids[slot], local.Ids[first]))
+      {
+        std::swap(local.Ids[slot], local.Ids[first]);
+      }
+      isAside.resize(block.Count, false);
+      isAside[slot] = true;
+      block.Duplicates.Append(local.Ids[slot]);
     }
-    isAside.resize(block.Count, false);
-    isAside[slot] = true;
-    block.Duplicates.push_back(local.Ids[slot]);
-  }
+  });
   if (!block.Duplicates.empty())
   {
     // Close the gaps: moved[s] is the number of slots kept before s.
-    std::vector<Index> moved(static_cast<std::size_t>(block.Count) + 1);
-    Index kept = 0;
-    for (Index slot = 0; slot < block.Count; ++slot)
-    {
+    Buffer<Index> moved;
+    moved.Resize(static_cast<std::size_t>(block.Count) + 1);
+    kept = 0;
+    forEach(block.Count, 0.95, 0.97, [&](Index slot) {
       moved[slot] = kept;
       if (!isAside[slot])
       {
@@ -932,16 +984,15 @@ void BinGrid::FillBlock(
         local.Ids[kept] = local.Ids[slot];
         ++kept;
       }
-    }
+    });
     moved[block.Count] = kept;
     Index ordered = 0;
-    for (Index i = 0; i < block.Count; ++i)
-    {
+    forEach(block.Count, 0.97, 1.0, [&](Index i) {
       if (!isAside[order[i]])
       {
         order[ordered++] = moved[order[i]];
       }
-    }
+    });
     for (Index& start : local.Starts)
     {
       start = moved[start];
@@ -963,13 +1014,16 @@ void BinGrid::FillBlock(
     move(block.Root.First, block.Root.Count);
     block.Count = kept;
   }
-  std::copy(starts, starts + bins, this->Starts.begin() + firstBin);
+  Index* const to = this->Starts.data() + firstBin;
+  forEach(bins, 1.0, 1.0, [&](Index bin) { to[bin] = starts[bin]; });
 }
 
-void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int threads)
+void BinGrid::Join(std::vector<Block>& blocks, Index idLimit, const Progress& progress, int threads)
 {
-  // Where the blocks' slots and nodes go.
-  std::vector<Index> firstNodes;
+  // Where the blocks' slots and nodes go. Reports for blocks that hold most points.
+  const Progress here = Part(progress, 0.0, 0.0);
+  IdSet duplicates(idLimit);
+  std::vector<Index> firstNodes, pieces(1, 0); // a large block is worked on in several
   std::vector<Child> roots;
   Index slots = 0, nodes = 0;
   for (Block& block : blocks)
@@ -978,9 +1032,12 @@ void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int thr
     if (from != to)
     {
       std::copy_n(this->X.begin() + from, count, this->X.begin() + to);
+      Report(here, 0.0);
       std::copy_n(this->Y.begin() + from, count, this->Y.begin() + to);
+      Report(here, 0.0);
       std::copy_n(this->Ids.begin() + from, count, this->Ids.begin() + to);
       std::copy_n(this->Order.begin() + from, count, this->Order.begin() + to);
+      Report(here, 0.0);
     }
     firstNodes.push_back(nodes);
     if (block.Count > 0)
@@ -991,10 +1048,14 @@ void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int thr
     block.Begin = slots;
     slots += block.Count;
     nodes += static_cast<Index>(block.Nodes.size());
-    this->Duplicates.insert(
-      this->Duplicates.end(), block.Duplicates.begin(), block.Duplicates.end());
+    pieces.push_back(pieces.back() + block.Pieces(this->Bins));
+    for (const Index id : block.Duplicates)
+    {
+      ReportStep(here, duplicates.size(), 1);
+      duplicates.Add(id);
+    }
   }
-  std::sort(this->Duplicates.begin(), this->Duplicates.end());
+  duplicates.AppendTo(this->Duplicates, here);
   this->X.Resize(slots);
   this->Y.Resize(slots);
   this->Ids.Resize(slots);
@@ -1003,20 +1064,24 @@ void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int thr
 
   this->Nodes.Reserve(nodes + blocks.size());
   this->Nodes.Resize(nodes);
-  ForEachPiece(static_cast<Index>(blocks.size()), threads, progress, [&](Index i) {
+  ForEachPiece(pieces.back(), threads, progress, [&](Index piece) {
+    const std::size_t i =
+      std::upper_bound(pieces.begin(), pieces.end(), piece) - pieces.begin() - 1;
     Block& block = blocks[i];
-    Index* const starts = this->Starts.data();
+    const auto forEach = [&](std::size_t count, auto&& work) {
+      const std::size_t part = piece - pieces[i], parts = pieces[i + 1] - pieces[i];
+      for (std::size_t k = count * part / parts; k < count * (part + 1) / parts; ++k)
+      {
+        work(k);
+      }
+    };
     const std::size_t columns = this->Bins.Columns;
-    for (std::size_t bin = block.FirstRow * columns; bin < block.EndRow * columns; ++bin)
-    {
-      starts[bin] += block.Begin;
-    }
-    for (Index slot = block.Begin; slot < block.Begin + block.Count; ++slot)
-    {
-      this->Order[slot] += block.Begin;
-    }
-    for (std::size_t k = 0; k < block.Nodes.size(); ++k)
-    {
+    Index* const starts = this->Starts.data() + block.FirstRow * columns;
+    forEach((block.EndRow - block.FirstRow) * columns,
+      [&](std::size_t bin) { starts[bin] += block.Begin; });
+    Index* const order = this->Order.data() + block.Begin;
+    forEach(block.Count, [&](std::size_t slot) { order[slot] += block.Begin; });
+    forEach(block.Nodes.size(), [&](std::size_t k) {
       Node& node = this->Nodes[firstNodes[i] + k] = block.Nodes[k];
       for (int place = 0; place < Node::Places; ++place)
       {
@@ -1025,8 +1090,11 @@ void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int thr
           node.First[place] += node.Count[place] > 0 ? block.Begin : firstNodes[i];
         }
       }
+    });
+    if (pieces[i + 1] - pieces[i] == 1)
+    {
+      block.Nodes = Buffer<Node>();
     }
-    block.Nodes = Buffer<Node>();
   });
   // Eight blocks after eight, and so on up, until all hang from one root.
   while (roots.size() > 1 || roots.front().Count > 0)
@@ -1041,11 +1109,16 @@ void BinGrid::Join(std::vector<Block>& blocks, const Progress& progress, int thr
     roots = std::move(above);
   }
   this->Nodes.Shrink();
+  Report(progress, 1.0);
 
   this->LeafNodes.Resize((static_cast<std::size_t>(slots) + 7) / 8);
   this->Nodes[this->Nodes.size() - 1].Parent = None;
   for (std::size_t i = this->Nodes.size(); i-- > 0;)
   {
+    if (i % 65536 == 0)
+    {
+      Report(progress, 1.0);
+    }
     const Node& node = this->Nodes[i];
     for (int place = 0; place < Node::Places; ++place)
     {

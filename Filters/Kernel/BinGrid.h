@@ -94,10 +94,10 @@ public:
    * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
    * that squares of distances neither over- nor underflow; this is exact, or not done.
    * @param threads  how many to use
-   * @param known    the points' extent; null: it is looked for
+   * @param known    the points' extent, which is taken away; null: it is looked for
    */
   BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
-    int threads = 1, const Extent* known = nullptr);
+    int threads = 1, Extent* known = nullptr);
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
   Point2 PointAt(Index slot) const { return { this->X[slot], this->Y[slot] }; }
@@ -142,7 +142,8 @@ private:
     const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads);
   void FillBlock(
     Block& block, const PointView& points, DuplicatePolicy policy, const Progress& progress);
-  void Join(std::vector<Block>& blocks, const Progress& progress, int threads);
+  /** @param idLimit  the first id that no point has */
+  void Join(std::vector<Block>& blocks, Index idLimit, const Progress& progress, int threads);
 };
 
 } // namespace elevation

@@ -152,6 +152,7 @@ Buffer<Index> HullCandidates(
       const auto part = grid.Slots(row, firstColumn, lastColumn);
       for (Index slot = part.first; slot < part.second; ++slot)
       {
+        ReportStep(progress, slot - part.first, grid.X.size());
         if (!(grid.X[slot] > left && grid.X[slot] < right)) // also where a chain is not a number
         {
           candidates.Append(slot);
@@ -163,13 +164,16 @@ Buffer<Index> HullCandidates(
     {
       look(0, leftColumn);
       look(rightColumn, bins.Columns - 1);
-      std::sort(candidates.begin() + before, candidates.end(),
-        [&grid](Index p, Index q) { return IsLower(grid.PointAt(p), grid.PointAt(q)); });
+      const auto isLower = [&grid](Index p, Index q) {
+        return IsLower(grid.PointAt(p), grid.PointAt(q));
+      };
+      Sort(candidates.begin() + before, candidates.end(), isLower, progress);
     }
     else
     {
       for (Index i = slots.first; i < slots.second; ++i)
       {
+        ReportStep(progress, i, order.size());
         const double x = grid.X[order[i]];
         if (!(x > left && x < right))
         {
@@ -991,13 +995,12 @@ struct Hull
 class EdgePool
 {
 public:
-  EdgePool(Index count, const Hull& hull, int threads)
+  EdgePool(Index count, const Hull& hull, int threads, const Progress& progress)
   {
     this->Ends.Resize(2 * static_cast<std::size_t>(count));
-    ForEachPiece(threads, threads, [&](Index piece) {
-      Index* const ends = this->Ends.data();
-      const std::size_t size = this->Ends.size();
-      std::fill(ends + size * piece / threads, ends + size * (piece + 1) / threads, None);
+    ForEachRange(count, threads, progress, [&](Index, Index begin, Index end) {
+      std::fill(this->Ends.begin() + 2 * static_cast<std::size_t>(begin),
+        this->Ends.begin() + 2 * static_cast<std::size_t>(end), None);
     });
     for (std::size_t i = 0; i + 1 < hull.RightChain.size(); ++i)
     {
@@ -1293,7 +1296,7 @@ void Grow(const BinGrid& grid, const Hull& hull, const DelaunayOptions& options,
   Buffer<Index>& triangles)
 {
   const Index count = grid.NumberOfPoints();
-  EdgePool pool(count, hull, threads);
+  EdgePool pool(count, hull, threads, Part(options.Monitor, 0.2, 0.2));
 
   constexpr Index fewestPerStrip = 5000;
   const Index number = options.PointsPerStrip > 0
@@ -1363,10 +1366,12 @@ Buffer<Index> Divide(const BinGrid& grid, const DelaunayOptions& options)
   const Progress progress = Part(options.Monitor, 0.2, 1.0);
   Buffer<Index> triangles;
   {
+    const Progress begun = Part(progress, 0.0, 0.0);
     Buffer<Point2> points;
     points.Resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i)
     {
+      ReportStep(begun, i, order.size());
       points[i] = grid.PointAt(order[i]);
     }
     triangles = DivideAndConquer(points, Part(progress, 0.0, 0.95));
@@ -1403,22 +1408,25 @@ bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Inde
   return policy == DuplicatePolicy::KeepLast ? id > other : id < other;
 }
 
-void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
-  Triangulation& triangulation)
+void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& notFinite,
+  const Progress& progress, Triangulation& triangulation)
 {
   triangulation.NumberOfDuplicates = static_cast<Index>(duplicates.size());
   triangulation.NumberOfNotFinite = static_cast<Index>(notFinite.size());
-  const std::size_t count = duplicates.size() + notFinite.size();
-  triangulation.UnusedPoints.reserve(count);
-  triangulation.UnusedReasons.reserve(count);
-  auto duplicate = duplicates.begin(), other = notFinite.begin();
-  while (duplicate != duplicates.end() || other != notFinite.end())
+  std::vector<Index>& unused = triangulation.UnusedPoints;
+  unused = std::move(duplicates);
+  Report(progress, 0.0);
+  const auto middle = unused.insert(unused.end(), notFinite.begin(), notFinite.end());
+  Report(progress, 0.0);
+  std::inplace_merge(unused.begin(), middle, unused.end());
+  Report(progress, 0.0);
+  triangulation.UnusedReasons.assign(unused.size(), UnusedReason::Duplicate);
+  auto at = unused.begin();
+  for (std::size_t i = 0; i < notFinite.size(); ++i)
   {
-    const bool isDuplicate =
-      other == notFinite.end() || (duplicate != duplicates.end() && *duplicate < *other);
-    triangulation.UnusedPoints.push_back(isDuplicate ? *duplicate++ : *other++);
-    triangulation.UnusedReasons.push_back(
-      isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
+    ReportStep(progress, i, notFinite.size());
+    at = std::find(at, unused.end(), notFinite[i]);
+    triangulation.UnusedReasons[at - unused.begin()] = UnusedReason::NotFinite;
   }
 }
 
@@ -1450,7 +1458,8 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   BinGrid grid(points, options.Duplicates, Part(options.Monitor, 0.0, 0.2), threads,
     isLatticeAsked ? &extent : nullptr);
-  SetUnusedPoints(grid.Duplicates, grid.NotFinite, result);
+  SetUnusedPoints(
+    std::move(grid.Duplicates), grid.NotFinite, Part(options.Monitor, 0.2, 0.2), result);
   if (grid.NumberOfPoints() < 3)
   {
     return result;

@@ -116,8 +116,8 @@ struct Triangulation
 bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other);
 
 /** Lists the unused points of a triangulation from the two kinds of them, each increasing. */
-void SetUnusedPoints(const std::vector<Index>& duplicates, const std::vector<Index>& notFinite,
-  Triangulation& triangulation);
+void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& notFinite,
+  const Progress& progress, Triangulation& triangulation);
 
 /**
  * Triangulates.

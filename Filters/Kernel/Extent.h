@@ -133,9 +133,19 @@ Extent FindExtent(const PointView& points, int threads, const Progress& progress
     pieces[piece] = std::move(here);
   });
   Extent extent;
+  std::size_t notFinite = 0;
   for (const Extent& piece : pieces)
   {
     extent.Add(piece.Low, piece.High);
+    notFinite += piece.NotFinite.size();
+  }
+  extent.NotFinite.reserve(notFinite);
+  for (const Extent& piece : pieces)
+  {
+    if (!piece.NotFinite.empty())
+    {
+      Report(progress, 1.0);
+    }
     extent.NotFinite.insert(extent.NotFinite.end(), piece.NotFinite.begin(), piece.NotFinite.end());
   }
   return extent;

@@ -238,11 +238,45 @@ std::uint64_t HashLimit(double size, double count)
   return static_cast<std::uint64_t>(std::min(size / count, 1.0) * 0x1p32);
 }
 
-void SortUnique(std::vector<Point2>& points)
+void SortUnique(std::vector<Point2>& points, const Progress& progress = Progress())
 {
-  std::sort(points.begin(), points.end(), IsLower);
+  Sort(points.begin(), points.end(), IsLower, progress);
   points.erase(std::unique(points.begin(), points.end()), points.end());
 }
+
+/** Points gathered by one thread. Many at one place are few: equal ones are dropped on the way. */
+class alignas(64) Picked // not where other threads write next to
+{
+public:
+  /** @param few  with so many at most, equal ones do no harm */
+  explicit Picked(std::size_t few)
+    : Full(few)
+  {
+  }
+
+  void Add(const Point2& p)
+  {
+    if (this->Points.size() >= this->Full)
+    {
+      this->DropEqual();
+      this->Full = std::max(this->Full, 2 * this->Points.size());
+    }
+    this->Points.push_back(p);
+  }
+
+  void DropEqual() { SortUnique(this->Points); }
+
+  /** Moves them to others. */
+  void MoveTo(std::vector<Point2>& all)
+  {
+    all.insert(all.end(), this->Points.begin(), this->Points.end());
+    this->Points = std::vector<Point2>();
+  }
+
+private:
+  std::vector<Point2> Points;
+  std::size_t Full;
+};
 
 /** Cells over a box, to find where most points are. */
 struct Histogram
@@ -287,21 +321,15 @@ struct Histogram
 };
 
 /**
- * Keeps the points of the fullest cell of their box, again and again, until they are few enough to
- * be sorted in no time, or all at one place.
+ * Keeps those of distinct points that are in the fullest cell of their box, again and again, until
+ * few are left.
  */
 void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
 {
   constexpr std::size_t few = 1 << 16;
   while (points.size() > few)
   {
-    const Extent box = BoxOf(points);
-    if (box.Low == box.High)
-    {
-      points.resize(1);
-      return;
-    }
-    Histogram histogram(box, MostCells);
+    Histogram histogram(BoxOf(points), MostCells);
     if (!std::isfinite(histogram.PerX) || !std::isfinite(histogram.PerY))
     {
       return;
@@ -560,17 +588,15 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  struct alignas(64) Picked // not where other threads write next to
-  {
-    std::vector<Point2> Points;
-  };
-  std::vector<Picked> pieces(NumberOfRanges(points.Count));
+  // The sample as it is where few points are equal, and as much again.
+  const double few = 1024.0 + 2.0 * WideSampleSize / std::max(points.Count, 1) * PointsPerRange;
+  std::vector<Picked> pieces(NumberOfRanges(points.Count), Picked(static_cast<std::size_t>(few)));
   const std::uint64_t wideLimit = HashLimit(WideSampleSize, points.Count);
   static_cast<Extent&>(search) =
     FindExtent(points, threads, Part(progress, 0.0, 0.5), [&](Index piece, const Point2& p) {
       if (HashOf(p) < wideLimit)
       {
-        pieces[piece].Points.push_back(p);
+        pieces[piece].Add(p);
       }
     });
   const Index count = points.Count - static_cast<Index>(search.NotFinite.size());
@@ -581,16 +607,18 @@ LatticeSearch FindLattice(
   {
     return search;
   }
-  const auto takeAll = [&pieces](std::vector<Point2>& all) {
+  const auto takeAll = [&pieces](const Progress& here) {
+    std::vector<Point2> all;
+    std::size_t taken = 0;
     for (Picked& piece : pieces)
     {
-      all.insert(all.end(), piece.Points.begin(), piece.Points.end());
-      piece.Points.clear();
+      ReportStep(here, taken++, 2 * pieces.size(), 16);
+      piece.MoveTo(all);
     }
+    SortUnique(all, Part(here, 0.5, 1.0));
+    return all;
   };
-  std::vector<Point2> around, sample;
-  takeAll(sample);
-  SortUnique(sample);
+  std::vector<Point2> sample = takeAll(Part(progress, 0.5, 0.55));
 
   // The fullest place: a cell of the sample's extent, a cell of that, and so on. Where hardly any
   // points differ, everywhere.
@@ -617,23 +645,23 @@ LatticeSearch FindLattice(
     place.Add(histogram.CornerOf(fullest, 1));
   }
   ForEachRange(
-    points.Count, threads, Part(progress, 0.5, 0.9), [&](Index piece, Index begin, Index end) {
+    points.Count, threads, Part(progress, 0.55, 0.9), [&](Index piece, Index begin, Index end) {
       ForEachPoint(points, begin, end, search.NotFinite, [&](Index, const Point2& p) {
         if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
           (p.Y <= place.High.Y))
         {
-          pieces[piece].Points.push_back(p);
+          pieces[piece].Add(p);
         }
       });
+      pieces[piece].DropEqual();
     });
-  takeAll(around);
+  std::vector<Point2> around = takeAll(Part(progress, 0.9, 0.95));
   const std::uint64_t limit = HashLimit(SampleSize, points.Count);
   sample.erase(std::remove_if(sample.begin(), sample.end(),
                  [limit](const Point2& p) { return HashOf(p) >= limit; }),
     sample.end());
 
-  KeepFullestCells(around, Part(progress, 0.9, 1.0));
-  SortUnique(around);
+  KeepFullestCells(around, Part(progress, 0.95, 1.0));
   KeepFullest(around);
   // Relative to a point in the middle of the fullest place, and from there outwards.
   const Point2 middle = around[around.size() / 2];

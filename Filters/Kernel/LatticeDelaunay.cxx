@@ -1288,10 +1288,14 @@ bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
-  const LatticeSearch search = FindLattice(
+  LatticeSearch search = FindLattice(
     points, tolerance, ThreadsAtOnce(options.NumberOfThreads), Part(options.Monitor, 0.0, 0.15));
-  extent = search;
-  return search.Found && TriangulateOnLattice(points, search, options, result);
+  if (search.Found && TriangulateOnLattice(points, search, options, result))
+  {
+    return true;
+  }
+  extent = static_cast<Extent&&>(search);
+  return false;
 }
 
 bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
@@ -1311,7 +1315,8 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   }
   result.LatticeFound = true;
   result.Steps = nodes.Steps;
-  SetUnusedPoints(nodes.Duplicates, search.NotFinite, result);
+  SetUnusedPoints(
+    std::move(nodes.Duplicates), search.NotFinite, Part(options.Monitor, 1.0, 1.0), result);
   Report(options.Monitor, 1.0);
   return true;
 }

@@ -58,7 +58,7 @@ int CompareProducts(std::int64_t a, std::int64_t b, std::int64_t c, std::int64_t
  * Triangulates points on a lattice.
  * @param[in] options  LatticeTolerance is how far a point may lie from its node
  * @param[out] result  as of Triangulate, with LatticeFound; not touched when there is none
- * @param[out] extent  of the points, in any case
+ * @param[out] extent  of the points, where there is none
  * @return false when the points are on no lattice, all on one line, or too few to tell
  */
 bool TriangulateLattice(

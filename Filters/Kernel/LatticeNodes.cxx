@@ -162,12 +162,8 @@ bool LatticeNodes::SortIntoStretches(Stretches& sorted, int threads, const Progr
   sorted.Nodes.Resize(static_cast<std::size_t>(count));
   sorted.Ids.Resize(static_cast<std::size_t>(count));
   ForEachRange(count, threads, Part(progress, 0.0, 0.5), [&](Index range, Index begin, Index end) {
-    // Pages are taken here one after the other, not all at once by the first that are sorted.
-    constexpr Index indicesInPage = 1024;
-    for (Index i = begin; i < end; i += indicesInPage)
-    {
-      sorted.Nodes[i] = sorted.Ids[i] = None;
-    }
+    TakePages(sorted.Nodes, begin, end);
+    TakePages(sorted.Ids, begin, end);
     forEachNode(range, begin, end, [](Index, Index) {});
   });
   Index sum = 0, longest = 0;
@@ -442,10 +438,9 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   }
   this->LargestOffset = largest + std::max(Roundoff, nodeOf.Roundoff(low, high));
 
-  // Of the points on one node one is kept. The others are marked, so that they come in order.
-  std::vector<std::uint64_t> isDuplicate;
+  // Of the points on one node one is kept.
+  IdSet duplicates(points.Count);
   const auto settle = [&](Index id) {
-    isDuplicate.resize(static_cast<std::size_t>(points.Count) / 64 + 1);
     Index column, row;
     nodeOf(points.At(id), column, row);
     Index& kept = this->Ids[this->RankOf(this->NodeAt(row, column))];
@@ -454,7 +449,7 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
     {
       std::swap(id, kept);
     }
-    isDuplicate[id / 64] |= std::uint64_t(1) << id % 64;
+    duplicates.Add(id);
     return isSamePlace;
   };
   const Progress settling = Part(progress, 0.95, 0.99);
@@ -504,15 +499,7 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
       }
     }
   }
-  const Progress listing = Part(progress, 0.99, 1.0);
-  for (std::size_t word = 0; word < isDuplicate.size(); ++word)
-  {
-    ReportStep(listing, word, isDuplicate.size());
-    for (std::uint64_t left = isDuplicate[word]; left; left &= left - 1)
-    {
-      this->Duplicates.push_back(static_cast<Index>(64 * word) + LowestBit(left));
-    }
-  }
+  duplicates.AppendTo(this->Duplicates, Part(progress, 0.99, 1.0));
 
   Index word = 0;
   while (this->Word(word) == 0)

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <new>
@@ -235,6 +236,47 @@ inline int HighestBit(std::uint64_t bits)
 #endif
 }
 
+/** Ids below a limit, to be listed by increasing id: sooner than a list of many is sorted. */
+class IdSet
+{
+public:
+  explicit IdSet(Index limit)
+    : Limit(limit)
+  {
+  }
+
+  void Add(Index id)
+  {
+    if (this->Words.empty())
+    {
+      this->Words.resize(static_cast<std::size_t>(this->Limit) / 64 + 1);
+    }
+    std::uint64_t& word = this->Words[id / 64];
+    const std::uint64_t bit = std::uint64_t(1) << id % 64;
+    this->Count += (word & bit) == 0;
+    word |= bit;
+  }
+  std::size_t size() const { return this->Count; }
+
+  void AppendTo(std::vector<Index>& ids, const Progress& progress) const
+  {
+    ids.reserve(ids.size() + this->Count);
+    for (std::size_t word = 0; word < this->Words.size(); ++word)
+    {
+      ReportStep(progress, word, this->Words.size());
+      for (std::uint64_t left = this->Words[word]; left; left &= left - 1)
+      {
+        ids.push_back(static_cast<Index>(64 * word) + LowestBit(left));
+      }
+    }
+  }
+
+private:
+  const Index Limit;
+  std::vector<std::uint64_t> Words;
+  std::size_t Count = 0;
+};
+
 /** Asks for memory before it is needed: points in any order are spread over all of the bitmap. */
 template <typename T>
 inline void Prefetch(const T* memory)
@@ -355,6 +397,24 @@ private:
   std::size_t Length = 0;
   std::size_t Capacity = 0;
 };
+
+/**
+ * Writes into each page of memory that values [begin, end) will be stored in, as far as there are
+ * so many, with reports. The system gives a page when it is first used: where values come in any
+ * order, the first few of them would wait for all pages.
+ */
+template <typename T>
+void TakePages(Buffer<T>& values, Index begin, Index end, const Progress& progress = Progress())
+{
+  constexpr Index step = std::max<Index>(1, 4096 / sizeof(T));
+  end = std::min(end, static_cast<Index>(values.size()));
+  const std::size_t pages = begin < end ? (end - begin) / step + 1 : 0;
+  for (std::size_t page = 0; begin < end; ++page, begin += step)
+  {
+    ReportStep(progress, page, pages, 1024);
+    std::memset(static_cast<void*>(values.data() + begin), 0, sizeof(T));
+  }
+}
 
 } // namespace elevation
 

@@ -212,6 +212,42 @@ TEST(BinGrid, SurvivesManyPointsInOnePlace)
   EXPECT_EQ(grid.Duplicates.size(), 1995u);
 }
 
+TEST(BinGrid, HoldsCrowds)
+{
+  // More points, and then more bins, in a few rows than one thread works on without a report.
+  std::mt19937_64 random(6);
+  Cloud crowded = RandomCloud(random, 20000), stretched;
+  for (int i = 0; i < 300000; ++i)
+  {
+    const double x = 0.3 + 1e-3 * Uniform(random);
+    crowded.Add(x, 0.3 + 1e-3 * Uniform(random));
+    crowded.Add(0.7 + 0.01 * static_cast<double>(random() % 7), random() % 3 ? 0.8 : 0.801);
+    if (i % 500 == 0)
+    {
+      crowded.Add(x, NAN);
+    }
+    stretched.Add(Uniform(random) + (i % 2 ? 1e7 : 0.0), Uniform(random));
+  }
+  for (const Cloud* cloud : { &crowded, &stretched })
+  {
+    double last = 0.0;
+    const Progress progress = [&last](double fraction) {
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1.0);
+      last = fraction;
+      return true;
+    };
+    const BinGrid one(cloud->View(), DuplicatePolicy::KeepLast, progress);
+    ExpectAllFound(*cloud, one);
+    EXPECT_EQ(one.Duplicates.size(), cloud == &crowded ? 300000u - 14u : 0u);
+    EXPECT_TRUE(std::is_sorted(one.Duplicates.begin(), one.Duplicates.end()));
+    for (Index i = 1; i < one.NumberOfPoints(); ++i)
+    {
+      ASSERT_TRUE(IsLower(one.PointAt(one.Order[i - 1]), one.PointAt(one.Order[i])));
+    }
+  }
+}
+
 TEST(BinGrid, LeavesAsideWhatIsNotFinite)
 {
   Cloud cloud;

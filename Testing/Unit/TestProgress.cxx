@@ -191,3 +191,35 @@ TEST(Progress, OfTriangulatingPointsThatAreSlowIsNotSilent)
     }
   }
 }
+
+TEST(Progress, OfTriangulatingPointsOnFewPlacesIsNotSilent)
+{
+  std::mt19937_64 random(4);
+  testing_points::Cloud four, crowds;
+  for (int i = 0; i < 4000000; ++i)
+  {
+    four.Add(
+      1000.0 * static_cast<double>(random() % 2), 1000.0 * static_cast<double>(random() % 2));
+    if (i % 10 == 0)
+    {
+      crowds.Add(testing_points::Uniform(random), testing_points::Uniform(random));
+    }
+    else
+    {
+      crowds.Add(0.5 + 1e-6 * static_cast<double>(random() % 1000), 0.5);
+    }
+  }
+  for (const testing_points::Cloud* cloud : { &four, &crowds })
+  {
+    for (const LatticeMode mode : { LatticeMode::Automatic, LatticeMode::Off })
+    {
+      testing_time::Silence silence;
+      DelaunayOptions options;
+      options.UseLattice = mode;
+      options.Monitor = silence.Monitor();
+      const Triangulation result = Triangulate(cloud->View(), options);
+      EXPECT_LT(silence.Longest, 0.1) << (cloud == &four ? "four" : "crowds");
+      EXPECT_GT(result.NumberOfDuplicates, 3500000);
+    }
+  }
+}
