@@ -3,6 +3,7 @@
 #include "vtkTrimOutwardTriangles.h"
 
 #include "Kernel/Boundary.h"
+#include "Kernel/Extent.h"
 #include "Kernel/Holes.h"
 #include "Kernel/Insertion.h"
 #include "Kernel/Parallel.h"
@@ -300,40 +301,36 @@ void PartTriangles(vtkPolyData* input, const Outcome& outcome, bool hasCellData,
   const std::vector<char>& flags = list.Trimmed.IsOutward;
   const vtkIdType firstCell = elevation::FirstPolygon(input);
   const Index all = static_cast<Index>(flags.size());
-  // All triangles, and before each piece of them those of each side.
+  // All triangles, and before each range of them those of each side.
   constexpr Index atOnce = 1 << 13;
-  const Index pieces = all / atOnce + 1;
-  const auto endOf = [all, atOnce](Index piece) {
-    return piece * atOnce + std::min(atOnce, all - piece * atOnce);
+  const Index ranges = elevation::NumberOfRanges(all, atOnce);
+  std::vector<std::size_t> outwardBefore(ranges + 1, 0);
+  const auto number = [&](Index range, Index begin, Index end) {
+    outwardBefore[range + 1] = std::count(flags.begin() + begin, flags.begin() + end, char(1));
   };
-  std::vector<std::size_t> outwardBefore(pieces + 1, 0);
-  elevation::ForEachPiece(pieces, threads, [&](Index piece) {
-    outwardBefore[piece + 1] =
-      std::count(flags.begin() + piece * atOnce, flags.begin() + endOf(piece), char(1));
-  });
+  elevation::ForEachRange(all, threads, Part(progress, 0.0, 0.1), number, atOnce);
   std::partial_sum(outwardBefore.begin(), outwardBefore.end(), outwardBefore.begin());
 
   elevation::Buffer<Index> sides[2];
-  const std::size_t sizes[2] = { all - outwardBefore[pieces], outwardBefore[pieces] };
+  const std::size_t sizes[2] = { all - outwardBefore[ranges], outwardBefore[ranges] };
   const std::size_t firstOfCells[2] = { cells[0].size(), cells[1].size() };
   for (const std::size_t side : { 0, 1 })
   {
     sides[side].Resize(3 * sizes[side]);
     cells[side].Resize(firstOfCells[side] + (hasCellData ? sizes[side] : 0));
   }
-  elevation::ForEachPiece(pieces, threads, progress, [&](Index piece) {
-    const std::size_t begin = static_cast<std::size_t>(piece) * atOnce;
-    std::size_t next[2] = { begin - outwardBefore[piece], outwardBefore[piece] };
-    auto changed = std::lower_bound(list.Changed.begin(), list.Changed.end(), piece * atOnce);
-    for (Index t = piece * atOnce; t < endOf(piece);)
+  const auto part = [&](Index range, Index t, Index endOfRange) {
+    std::size_t next[2] = { t - outwardBefore[range], outwardBefore[range] };
+    auto changed = std::lower_bound(list.Changed.begin(), list.Changed.end(), t);
+    while (t < endOfRange)
     {
       // Triangles of one side that follow each other.
       const std::size_t side = flags[t];
       const char* const first = flags.data() + t;
       const void* other =
-        std::memchr(first, 1 - flags[t], static_cast<std::size_t>(endOf(piece) - t));
+        std::memchr(first, 1 - flags[t], static_cast<std::size_t>(endOfRange - t));
       const Index end =
-        other ? t + static_cast<Index>(static_cast<const char*>(other) - first) : endOf(piece);
+        other ? t + static_cast<Index>(static_cast<const char*>(other) - first) : endOfRange;
       Index* corners = sides[side].data() + 3 * next[side];
       const Index last = std::min(end, outcome.Count);
       if (t < last)
@@ -359,7 +356,8 @@ void PartTriangles(vtkPolyData* input, const Outcome& outcome, bool hasCellData,
       next[side] += end - t;
       t = end;
     }
-  });
+  };
+  elevation::ForEachRange(all, threads, Part(progress, 0.1, 1.0), part, atOnce);
   for (const std::size_t side : { 0, 1 })
   {
     vtkPolyData* output = side ? outward : kept;

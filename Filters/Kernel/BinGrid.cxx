@@ -35,7 +35,7 @@ constexpr Index MaximumGroups = 4096;
  * or one bin, may hold all points.
  */
 template <typename Tell, typename Visit>
-void InStretches(Index begin, Index end, Tell&& report, Visit&& visit)
+void ForEachReporting(Index begin, Index end, Tell&& report, Visit&& visit)
 {
   constexpr Index stretch = 1 << 16;
   for (Index i = begin;;)
@@ -426,7 +426,7 @@ private:
   template <typename Work>
   void ForEach(std::pair<Index, Index> slots, Work&& work)
   {
-    InStretches(
+    ForEachReporting(
       slots.first, slots.second, [this](double) { this->ReportProgress(0); }, work);
   }
 
@@ -508,13 +508,13 @@ private:
   template <typename Work>
   void ForEach(Index begin, Index end, Work&& work) const
   {
-    InStretches(
+    ForEachReporting(
       begin, end, [this](double) { Report(this->Monitor, 0.0); }, work);
   }
 
   void Insert(Entry* entries, Index count) const
   {
-    this->ForEach(0, count, [&](Index i) {
+    this->ForEach(1, count, [&](Index i) {
       const Entry entry = entries[i];
       Index at = i;
       for (; at > 0 && this->IsBefore(entry, entries[at - 1]); --at)
@@ -620,17 +620,6 @@ void VisitFinite(const PointView& points, Index begin, Index end, double scale, 
   {
     VisitFinite(points.Float, begin, end, scale, visit);
   }
-}
-
-/** Calls work(piece, begin, end) for pieces of the points. */
-template <typename Work>
-void ForEachPieceOf(const PointView& points, int threads, const Progress& progress, Work&& work)
-{
-  const Index pieces = (points.Count + PiecePoints - 1) / PiecePoints;
-  ForEachPiece(pieces, threads, progress, [&](Index piece) {
-    const Index begin = piece * PiecePoints;
-    work(piece, begin, begin + std::min(PiecePoints, points.Count - begin));
-  });
 }
 } // namespace
 
@@ -781,18 +770,19 @@ std::vector<BinGrid::Block> BinGrid::Fill(
     ++shift;
   }
   const Index groups = ((bins.Rows - 1) >> shift) + 1;
-  const std::size_t pieces =
-    (static_cast<std::size_t>(points.Count) + PiecePoints - 1) / PiecePoints;
+  const std::size_t pieces = NumberOfRanges(points.Count, PiecePoints);
   std::vector<Index> inGroup(pieces * groups, 0);
   Buffer<Placed> placed;
   placed.Resize(count);
-  ForEachPieceOf(
-    points, threads, Part(progress, 0.0, 0.1), [&](Index piece, Index begin, Index end) {
+  ForEachRange(
+    points.Count, threads, Part(progress, 0.0, 0.1),
+    [&](Index piece, Index begin, Index end) {
       Index* const counts = inGroup.data() + static_cast<std::size_t>(piece) * groups;
       VisitFinite(points, begin, end, this->Scale,
         [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
       TakePages(placed, begin, end);
-    });
+    },
+    PiecePoints);
 
   // Blocks of groups, about as many points in each; where each piece's points of a block begin.
   std::vector<Block> blocks;
@@ -840,8 +830,9 @@ std::vector<BinGrid::Block> BinGrid::Fill(
   {
     block.Points = placed.data() + block.Begin;
   }
-  ForEachPieceOf(
-    points, threads, Part(progress, 0.1, 0.3), [&](Index piece, Index begin, Index end) {
+  ForEachRange(
+    points.Count, threads, Part(progress, 0.1, 0.3),
+    [&](Index piece, Index begin, Index end) {
       Index* const to = next.data() + static_cast<std::size_t>(piece) * blocks.size();
       VisitFinite(points, begin, end, this->Scale, [&](Index id, double x, double y) {
         const Index row = bins.Row(y);
@@ -849,7 +840,8 @@ std::vector<BinGrid::Block> BinGrid::Fill(
         const Index bin = (row - blocks[block].FirstRow) * bins.Columns + bins.Column(x);
         placed[to[block]++] = { x, y, id, bin };
       });
-    });
+    },
+    PiecePoints);
 
   this->X.Reserve(static_cast<std::size_t>(count) + 8);
   this->Y.Reserve(static_cast<std::size_t>(count) + 8);
@@ -859,8 +851,8 @@ std::vector<BinGrid::Block> BinGrid::Fill(
   this->Order.Resize(count);
   this->Starts.Resize(static_cast<std::size_t>(bins.Columns) * bins.Rows + 1);
   this->Starts[this->Starts.size() - 1] = count;
-  this->RowLow.assign(bins.Rows, DBL_MAX);
-  this->RowHigh.assign(bins.Rows, -DBL_MAX);
+  this->RowLow.Resize(bins.Rows);
+  this->RowHigh.Resize(bins.Rows);
 
   // The few blocks that are too large to wait for come last, and tell themselves what is done.
   const auto isLarge = [&bins](const Block& block) { return block.Pieces(bins) > 1; };
@@ -903,18 +895,13 @@ void BinGrid::FillBlock(
   const auto forEach = [&progress](std::size_t count, double from, double to, auto&& visit) {
     const auto report = [&](double fraction) { Report(progress, from + fraction * (to - from)); };
     report(0.0);
-    InStretches(0, static_cast<Index>(count), report, visit);
+    ForEachReporting(0, static_cast<Index>(count), report, visit);
   };
   forEach(bins + 1, 0.0, 0.0, [&](Index bin) { starts[bin] = 0; });
   const Placed* const placed = block.Points;
   forEach(block.Count, 0.0, 0.05, [&](Index i) { ++starts[placed[i].Bin + 1]; });
   Index sum = 0;
-  for (std::size_t bin = 1; bin <= bins; ++bin)
-  {
-    const Index inBin = starts[bin];
-    starts[bin] = sum;
-    sum += inBin;
-  }
+  forEach(bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
   const Progress here = Part(progress, 0.05, 0.05);
   TakePages(this->X, block.Begin, block.Begin + block.Count, here);
   TakePages(this->Y, block.Begin, block.Begin + block.Count, here);
@@ -938,6 +925,8 @@ void BinGrid::FillBlock(
   for (Index row = 0; row < rows; ++row)
   {
     const auto slots = local.Slots(row, 0, this->Bins.Columns - 1);
+    this->RowLow[block.FirstRow + row] = DBL_MAX;
+    this->RowHigh[block.FirstRow + row] = -DBL_MAX;
     if (slots.first < slots.second)
     {
       const double done = 0.6 + 0.3 * row / rows;
@@ -993,10 +982,7 @@ void BinGrid::FillBlock(
         order[ordered++] = moved[order[i]];
       }
     });
-    for (Index& start : local.Starts)
-    {
-      start = moved[start];
-    }
+    forEach(bins + 1, 1.0, 1.0, [&](Index bin) { starts[bin] = moved[starts[bin]]; });
     const auto move = [&](Index& first, Index& count) {
       if (count > 0)
       {

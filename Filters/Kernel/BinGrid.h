@@ -118,11 +118,11 @@ public:
   Buffer<Index> Ids;   ///< the input's point id by slot
   double Scale = 1.0;  ///< what the input's coordinates were multiplied by
   Layout Bins;
-  Buffer<Index> Order;  ///< all slots by increasing (y, x): row after row
-  Buffer<Index> Starts; ///< first slot of each bin, row by row, and the number of slots
-  std::vector<double> RowLow, RowHigh; ///< range of y of the points in each row
-  Buffer<Node> Nodes;                  ///< the tree, children before parents: the root is the last
-  Buffer<Index> LeafNodes; ///< for eight slots after eight, a node above one of their leaves
+  Buffer<Index> Order;            ///< all slots by increasing (y, x): row after row
+  Buffer<Index> Starts;           ///< first slot of each bin, row by row, and the number of slots
+  Buffer<double> RowLow, RowHigh; ///< range of y of the points in each row
+  Buffer<Node> Nodes;             ///< the tree, children before parents: the root is the last
+  Buffer<Index> LeafNodes;        ///< for eight slots after eight, a node above one of their leaves
 
   /** Memory that binning has used and nobody uses now: as much as the triangles take. To reuse it
      is cheaper than to ask for other: the system clears what it gives. */

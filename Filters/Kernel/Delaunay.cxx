@@ -85,6 +85,7 @@ Buffer<Index> HullCandidates(
   Buffer<Index> extremes;
   for (Index row = 0; row < bins.Rows; ++row)
   {
+    ReportStep(progress, row, bins.Rows);
     const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first < slots.second)
     {
@@ -130,6 +131,7 @@ Buffer<Index> HullCandidates(
   const Point2 highest = grid.PointAt(extremes[extremes.size() - 1]);
   for (Index row = 0; row < bins.Rows; ++row)
   {
+    ReportStep(progress, row, bins.Rows);
     const auto slots = grid.Slots(row, 0, bins.Columns - 1);
     if (slots.first == slots.second)
     {
@@ -152,7 +154,7 @@ Buffer<Index> HullCandidates(
       const auto part = grid.Slots(row, firstColumn, lastColumn);
       for (Index slot = part.first; slot < part.second; ++slot)
       {
-        ReportStep(progress, slot - part.first, grid.X.size());
+        ReportStep(progress, slot, grid.X.size());
         if (!(grid.X[slot] > left && grid.X[slot] < right)) // also where a chain is not a number
         {
           candidates.Append(slot);
@@ -1414,19 +1416,25 @@ void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& 
   triangulation.NumberOfDuplicates = static_cast<Index>(duplicates.size());
   triangulation.NumberOfNotFinite = static_cast<Index>(notFinite.size());
   std::vector<Index>& unused = triangulation.UnusedPoints;
-  unused = std::move(duplicates);
-  Report(progress, 0.0);
-  const auto middle = unused.insert(unused.end(), notFinite.begin(), notFinite.end());
-  Report(progress, 0.0);
-  std::inplace_merge(unused.begin(), middle, unused.end());
-  Report(progress, 0.0);
-  triangulation.UnusedReasons.assign(unused.size(), UnusedReason::Duplicate);
-  auto at = unused.begin();
-  for (std::size_t i = 0; i < notFinite.size(); ++i)
+  std::vector<UnusedReason>& reasons = triangulation.UnusedReasons;
+  if (notFinite.empty())
   {
-    ReportStep(progress, i, notFinite.size());
-    at = std::find(at, unused.end(), notFinite[i]);
-    triangulation.UnusedReasons[at - unused.begin()] = UnusedReason::NotFinite;
+    unused = std::move(duplicates);
+    reasons.assign(unused.size(), UnusedReason::Duplicate);
+    return;
+  }
+  const std::size_t count = duplicates.size() + notFinite.size();
+  unused.reserve(count);
+  reasons.reserve(count);
+  auto duplicate = duplicates.begin();
+  auto other = notFinite.begin();
+  while (unused.size() < count)
+  {
+    ReportStep(progress, unused.size(), count);
+    const bool isDuplicate =
+      other == notFinite.end() || (duplicate != duplicates.end() && *duplicate < *other);
+    unused.push_back(isDuplicate ? *duplicate++ : *other++);
+    reasons.push_back(isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
   }
 }
 

@@ -38,22 +38,23 @@ struct Extent
 /** How many points are passed over at once: a piece of work for one thread. */
 constexpr Index PointsPerRange = 1 << 16;
 
-inline Index NumberOfRanges(Index count)
+inline Index NumberOfRanges(Index count, Index size = PointsPerRange)
 {
-  return count / PointsPerRange + (count % PointsPerRange != 0 ? 1 : 0);
+  return count / size + (count % size != 0 ? 1 : 0);
 }
 
 /**
- * Calls work(piece, begin, end) for the ranges of ids that make up [0, count), on several threads,
- * and reports between them. A piece is the same range each time, so what it gathers may be kept by
- * piece without locks.
+ * Calls work(piece, begin, end) for the ranges of so many ids that make up [0, count), on several
+ * threads, and reports between them. A piece is the same range each time, so what it gathers may be
+ * kept by piece without locks.
  */
 template <typename Work>
-void ForEachRange(Index count, int threads, const Progress& progress, Work&& work)
+void ForEachRange(
+  Index count, int threads, const Progress& progress, Work&& work, Index size = PointsPerRange)
 {
-  ForEachPiece(NumberOfRanges(count), threads, progress, [&](Index piece) {
-    const Index begin = piece * PointsPerRange;
-    work(piece, begin, begin + std::min(PointsPerRange, count - begin));
+  ForEachPiece(NumberOfRanges(count, size), threads, progress, [&](Index piece) {
+    const Index begin = piece * size;
+    work(piece, begin, begin + std::min(size, count - begin));
   });
 }
 

@@ -6,6 +6,8 @@
 #include <cfloat>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <limits>
 
 namespace elevation
 {
@@ -238,45 +240,87 @@ std::uint64_t HashLimit(double size, double count)
   return static_cast<std::uint64_t>(std::min(size / count, 1.0) * 0x1p32);
 }
 
-void SortUnique(std::vector<Point2>& points, const Progress& progress = Progress())
+void SortUnique(std::vector<Point2>& points)
 {
-  Sort(points.begin(), points.end(), IsLower, progress);
+  std::sort(points.begin(), points.end(), IsLower);
   points.erase(std::unique(points.begin(), points.end()), points.end());
 }
 
-/** Points gathered by one thread. Many at one place are few: equal ones are dropped on the way. */
-class alignas(64) Picked // not where other threads write next to
+/** Places, each once, however many points there are at it. */
+class alignas(64) PlaceSet // not where other threads write next to
 {
 public:
-  /** @param few  with so many at most, equal ones do no harm */
-  explicit Picked(std::size_t few)
-    : Full(few)
-  {
-  }
-
   void Add(const Point2& p)
   {
-    if (this->Points.size() >= this->Full)
+    if (2 * this->Count >= this->Slots.size())
     {
-      this->DropEqual();
-      this->Full = std::max(this->Full, 2 * this->Points.size());
+      this->Grow();
     }
-    this->Points.push_back(p);
+    this->Count += this->Put(p);
   }
 
-  void DropEqual() { SortUnique(this->Points); }
-
-  /** Moves them to others. */
-  void MoveTo(std::vector<Point2>& all)
+  /** In no order that matters. */
+  std::vector<Point2> Places() const
   {
-    all.insert(all.end(), this->Points.begin(), this->Points.end());
-    this->Points = std::vector<Point2>();
+    std::vector<Point2> places;
+    places.reserve(this->Count);
+    std::copy_if(this->Slots.begin(), this->Slots.end(), std::back_inserter(places), IsTaken);
+    return places;
   }
 
 private:
-  std::vector<Point2> Points;
-  std::size_t Full;
+  static bool IsTaken(const Point2& slot) { return slot.X == slot.X; } // or not a number
+
+  /** @return whether the place is new */
+  bool Put(const Point2& p)
+  {
+    // Those of a sample have a small hash: they differ in its lowest bits.
+    std::size_t at = HashOf(p) & (this->Slots.size() - 1);
+    while (IsTaken(this->Slots[at]))
+    {
+      if (this->Slots[at] == p)
+      {
+        return false;
+      }
+      at = (at + 1) & (this->Slots.size() - 1);
+    }
+    this->Slots[at] = p;
+    return true;
+  }
+
+  void Grow()
+  {
+    const std::vector<Point2> places = this->Places();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    this->Slots.assign(std::max<std::size_t>(64, 4 * this->Count), { nan, nan });
+    for (const Point2& p : places)
+    {
+      this->Put(p);
+    }
+  }
+
+  std::vector<Point2> Slots; ///< a power of two of them, at most half of them taken
+  std::size_t Count = 0;
 };
+
+/** The places of several sets, sorted. */
+std::vector<Point2> Join(std::vector<std::vector<Point2>> sets, const Progress& progress)
+{
+  PlaceSet all;
+  std::size_t joined = 0;
+  for (std::vector<Point2>& set : sets)
+  {
+    ReportStep(progress, joined++, 2 * sets.size(), 16);
+    for (const Point2& p : set)
+    {
+      all.Add(p);
+    }
+    set = std::vector<Point2>();
+  }
+  std::vector<Point2> places = all.Places();
+  Sort(places.begin(), places.end(), IsLower, Part(progress, 0.5, 1.0));
+  return places;
+}
 
 /** Cells over a box, to find where most points are. */
 struct Histogram
@@ -588,15 +632,13 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  // The sample as it is where few points are equal, and as much again.
-  const double few = 1024.0 + 2.0 * WideSampleSize / std::max(points.Count, 1) * PointsPerRange;
-  std::vector<Picked> pieces(NumberOfRanges(points.Count), Picked(static_cast<std::size_t>(few)));
+  std::vector<PlaceSet> picked(NumberOfRanges(points.Count));
   const std::uint64_t wideLimit = HashLimit(WideSampleSize, points.Count);
   static_cast<Extent&>(search) =
     FindExtent(points, threads, Part(progress, 0.0, 0.5), [&](Index piece, const Point2& p) {
       if (HashOf(p) < wideLimit)
       {
-        pieces[piece].Add(p);
+        picked[piece].Add(p);
       }
     });
   const Index count = points.Count - static_cast<Index>(search.NotFinite.size());
@@ -607,18 +649,12 @@ LatticeSearch FindLattice(
   {
     return search;
   }
-  const auto takeAll = [&pieces](const Progress& here) {
-    std::vector<Point2> all;
-    std::size_t taken = 0;
-    for (Picked& piece : pieces)
-    {
-      ReportStep(here, taken++, 2 * pieces.size(), 16);
-      piece.MoveTo(all);
-    }
-    SortUnique(all, Part(here, 0.5, 1.0));
-    return all;
-  };
-  std::vector<Point2> sample = takeAll(Part(progress, 0.5, 0.55));
+  std::vector<std::vector<Point2>> pieces;
+  for (const PlaceSet& set : picked)
+  {
+    pieces.push_back(set.Places());
+  }
+  std::vector<Point2> sample = Join(pieces, Part(progress, 0.5, 0.55));
 
   // The fullest place: a cell of the sample's extent, a cell of that, and so on. Where hardly any
   // points differ, everywhere.
@@ -646,16 +682,17 @@ LatticeSearch FindLattice(
   }
   ForEachRange(
     points.Count, threads, Part(progress, 0.55, 0.9), [&](Index piece, Index begin, Index end) {
+      PlaceSet here;
       ForEachPoint(points, begin, end, search.NotFinite, [&](Index, const Point2& p) {
         if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
           (p.Y <= place.High.Y))
         {
-          pieces[piece].Add(p);
+          here.Add(p);
         }
       });
-      pieces[piece].DropEqual();
+      pieces[piece] = here.Places();
     });
-  std::vector<Point2> around = takeAll(Part(progress, 0.9, 0.95));
+  std::vector<Point2> around = Join(std::move(pieces), Part(progress, 0.9, 0.95));
   const std::uint64_t limit = HashLimit(SampleSize, points.Count);
   sample.erase(std::remove_if(sample.begin(), sample.end(),
                  [limit](const Point2& p) { return HashOf(p) >= limit; }),

@@ -381,14 +381,13 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
   this->Memory.Resize(static_cast<std::size_t>(words));
   this->Words = reinterpret_cast<AtomicWord*>(this->Memory.data());
   const Index numberOfWords = static_cast<Index>(words);
-  ForEachPiece(NumberOfRanges(numberOfWords), threads, [&](Index piece) {
-    const Index begin = piece * PointsPerRange;
-    const Index end = begin + std::min(PointsPerRange, numberOfWords - begin);
-    for (Index word = begin; word < end; ++word)
-    {
-      new (this->Words + word) AtomicWord(0);
-    }
-  });
+  ForEachRange(
+    numberOfWords, threads, Part(progress, 0.2, 0.2), [&](Index, Index begin, Index end) {
+      for (Index word = begin; word < end; ++word)
+      {
+        new (this->Words + word) AtomicWord(0);
+      }
+    });
 
   const bool areScattered = AreScattered(points, search.NotFinite, nodeOf);
   this->Room.Resize(static_cast<std::size_t>(points.Count));

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Outline.h"
 
-#include "Parallel.h"
+#include "Extent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -225,11 +225,9 @@ void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
     }
   };
   const Index count = static_cast<Index>(wanted.size());
-  constexpr Index pieceVertices = 1 << 11;
-  ForEachPiece((count + pieceVertices - 1) / pieceVertices, threads, progress, [&](Index piece) {
-    const Index begin = piece * pieceVertices;
-    find(begin, begin + std::min(pieceVertices, count - begin));
-  });
+  constexpr Index atOnce = 1 << 11;
+  ForEachRange(
+    count, threads, progress, [&](Index, Index begin, Index end) { find(begin, end); }, atOnce);
 }
 
 /** The parts of triangles with the same flag that are connected by edges. */
@@ -670,13 +668,6 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     atBorder.Add(edge.Destination);
   }
 
-  constexpr Index atOnce = 1 << 13;
-  const auto inPieces = [&](Index count, const Progress& part, const auto& work) {
-    ForEachPiece((count + atOnce - 1) / atOnce, threads, part, [&](Index piece) {
-      const Index begin = piece * atOnce;
-      work(begin, begin + std::min(atOnce, count - begin));
-    });
-  };
   const Buffer<float>& shortSpacings = measured.ShortSpacings;
   const Neighbors neighbors(measured, Part(progress, 0.02, 0.25));
   Buffer<double> spacings; // of those vertices for which they are asked
@@ -705,7 +696,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   std::vector<char>& keep = result.IsSurface;
   keep.resize(list.Count);
   const double limit = BeyondDoubt * result.GapTolerance;
-  inPieces(list.Count, Part(progress, 0.35, 0.5), [&](Index begin, Index end) {
+  const auto isWithin = [&](Index, Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       const Index* ahead = list.CornersOf(std::min(t + 40, end - 1));
@@ -714,7 +705,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
       keep[t] =
         measured.Longest[t] <= squareOf(limit * SpacingOf(shortSpacings, list.CornersOf(t)));
     }
-  });
+  };
+  constexpr Index atOnce = 1 << 13;
+  ForEachRange(list.Count, threads, Part(progress, 0.35, 0.5), isWithin, atOnce);
   std::vector<Index> doubtful;
   InStretches(list.Count, Part(progress, 0.5, 0.52), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)

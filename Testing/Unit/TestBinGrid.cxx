@@ -286,6 +286,6 @@ TEST(BinGrid, IsTheSameForAnyNumberOfThreads)
   EXPECT_TRUE(isSame(one.X, three.X) && isSame(one.Y, three.Y) && isSame(one.Ids, three.Ids));
   EXPECT_TRUE(isSame(one.Order, three.Order) && isSame(one.Starts, three.Starts));
   EXPECT_EQ(one.Duplicates, three.Duplicates);
-  EXPECT_EQ(one.RowLow, three.RowLow);
+  EXPECT_TRUE(isSame(one.RowLow, three.RowLow) && isSame(one.RowHigh, three.RowHigh));
   EXPECT_EQ(one.Nodes.size(), three.Nodes.size());
 }

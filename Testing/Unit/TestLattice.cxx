@@ -592,6 +592,12 @@ TEST(Lattice, IsPlacedWhereMostPointsAreOnFewNodes)
 TEST(Lattice, IsFoundWhereMostPointsAreDuplicates)
 {
   std::mt19937_64 random(57);
+  Cloud few = RandomCloud(random, 50);
+  for (int i = 0; i < 4000 * 50; ++i)
+  {
+    few.Add(few.Coordinates[3 * (i % 50)], few.Coordinates[3 * (i % 50) + 1]);
+  }
+  EXPECT_FALSE(Triangulate(few.View(), Automatic()).LatticeFound);
   const Frame frame = MakeFrame(25.0, 30.0, 10.0, 110.0, { 612000.0, 6073000.0 });
   for (const std::int64_t side : { 3, 30, 300 })
   {
