@@ -102,6 +102,18 @@ void ExpectAllFound(const Cloud& cloud, const BinGrid& grid)
     ASSERT_LE(height, 40) << "the tree is not balanced";
   }
 }
+
+void ExpectSame(const BinGrid& one, const BinGrid& three)
+{
+  const auto isSame = [](const auto& p, const auto& q) {
+    return p.size() == q.size() && std::equal(p.begin(), p.end(), q.begin());
+  };
+  EXPECT_TRUE(isSame(one.X, three.X) && isSame(one.Y, three.Y) && isSame(one.Ids, three.Ids));
+  EXPECT_TRUE(isSame(one.Order, three.Order) && isSame(one.Starts, three.Starts));
+  EXPECT_EQ(one.Duplicates, three.Duplicates);
+  EXPECT_TRUE(isSame(one.RowLow, three.RowLow) && isSame(one.RowHigh, three.RowHigh));
+  EXPECT_EQ(one.Nodes.size(), three.Nodes.size());
+}
 } // namespace
 
 TEST(BinGrid, FindsEveryPointInTheBinOfItsCoordinates)
@@ -239,6 +251,7 @@ TEST(BinGrid, HoldsCrowds)
     };
     const BinGrid one(cloud->View(), DuplicatePolicy::KeepLast, progress);
     ExpectAllFound(*cloud, one);
+    ExpectSame(one, BinGrid(cloud->View(), DuplicatePolicy::KeepLast, Progress(), 3));
     EXPECT_EQ(one.Duplicates.size(), cloud == &crowded ? 300000u - 14u : 0u);
     EXPECT_TRUE(std::is_sorted(one.Duplicates.begin(), one.Duplicates.end()));
     for (Index i = 1; i < one.NumberOfPoints(); ++i)
@@ -280,12 +293,5 @@ TEST(BinGrid, IsTheSameForAnyNumberOfThreads)
     ASSERT_TRUE(IsLower(one.PointAt(one.Order[i - 1]), one.PointAt(one.Order[i])));
   }
   const BinGrid three(cloud.View(), DuplicatePolicy::KeepLast, Progress(), 3);
-  const auto isSame = [](const auto& p, const auto& q) {
-    return p.size() == q.size() && std::equal(p.begin(), p.end(), q.begin());
-  };
-  EXPECT_TRUE(isSame(one.X, three.X) && isSame(one.Y, three.Y) && isSame(one.Ids, three.Ids));
-  EXPECT_TRUE(isSame(one.Order, three.Order) && isSame(one.Starts, three.Starts));
-  EXPECT_EQ(one.Duplicates, three.Duplicates);
-  EXPECT_TRUE(isSame(one.RowLow, three.RowLow) && isSame(one.RowHigh, three.RowHigh));
-  EXPECT_EQ(one.Nodes.size(), three.Nodes.size());
+  ExpectSame(one, three);
 }
