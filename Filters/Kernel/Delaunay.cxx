@@ -39,6 +39,8 @@ constexpr std::int64_t WorkPerVertex = 300;
 constexpr std::int64_t WorkOfExact = 10;
 /** So many in one search, points are on one circle or line: growing is given up at once. */
 constexpr int MostExacts = 2000;
+// Some tenths of a second, in which nothing can be reported.
+constexpr std::int64_t MostLooks = 1 << 25;
 /** After so many looks, the time is looked at. */
 constexpr std::int64_t LooksPerClock = 10000;
 
@@ -322,6 +324,7 @@ private:
     this->LengthSquared = this->EdgeX * this->EdgeX + this->EdgeY * this->EdgeY;
     this->Best = None;
     this->Exacts = 0;
+    this->LooksBefore = this->Looks;
     this->SetDisc(Infinity);
   }
 
@@ -542,6 +545,10 @@ private:
   void LookInto(const Node& node, unsigned int places)
   {
     this->Looks += Node::Places;
+    if (this->Looks - this->LooksBefore > MostLooks)
+    {
+      throw CannotGrow();
+    }
     double distances[Node::Places];
     unsigned int left = this->Reached(node, distances) & places;
     while (left != 0)
@@ -933,6 +940,7 @@ private:
   const bool IsWide;
   std::int64_t Looks = 0;
   int Exacts = 0; ///< in the search at hand
+  std::int64_t LooksBefore = 0;
   bool HasAround = false;
   Surroundings::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
