@@ -39,7 +39,8 @@ struct SweptVertex
 {
   Point2 Place{ 0.0, 0.0 };
   Index Upper[2] = { None, None }; ///< of open half-edges: where one leads up to, and down from
-  Index Unused[2] = { 0, 0 };      ///< so that none lies in two lines of the cache
+  Index NumberOfOthers = 0; ///< open half-edges of which it is the lower end, without room here
+  Index Unused = 0;         ///< so that none lies in two lines of the cache
 };
 
 /** A half-edge: its ends, and whether it leads from the lower to the upper, or down. */
@@ -68,7 +69,6 @@ public:
   /** @param[in] most  others that the map takes */
   OpenEdges(Vertex* vertices, std::size_t most)
     : Vertices(vertices)
-    , Sieve(SieveSize, 0)
     , Most(most)
   {
   }
@@ -79,7 +79,7 @@ public:
     // Most stay open. One that is open already is found in the slow way.
     Vertex& at = this->Vertices[edge.Lower];
     if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
-      this->HasNoOthers)
+      (at.NumberOfOthers == 0))
     {
       at.Upper[edge.IsDown] = edge.Upper;
     }
@@ -106,34 +106,32 @@ public:
   /** Whether the half-edge has found its twin, which then is no longer open. */
   bool Match(const SweptEdge& edge)
   {
-    Index& twin = this->Vertices[edge.Lower].Upper[1 - edge.IsDown];
+    Vertex& at = this->Vertices[edge.Lower];
+    Index& twin = at.Upper[1 - edge.IsDown];
     if (twin == edge.Upper)
     {
       twin = None;
       return true;
     }
-    // Few of those asked for are there.
-    Index& count = this->Sieve[PlaceOf(edge.Lower, edge.Upper)];
-    if (count == 0 || this->Others.erase(KeyOf(edge, 1 - edge.IsDown)) == 0)
+    if (at.NumberOfOthers == 0 || this->Others.erase(KeyOf(edge, 1 - edge.IsDown)) == 0)
     {
       return false;
     }
-    --count;
-    this->HasNoOthers = this->Others.empty();
+    --at.NumberOfOthers;
     return true;
   }
 
   void Open(const SweptEdge& edge)
   {
-    Index& open = this->Vertices[edge.Lower].Upper[edge.IsDown];
+    Vertex& at = this->Vertices[edge.Lower];
+    Index& open = at.Upper[edge.IsDown];
     if (open == None)
     {
       open = edge.Upper;
       return;
     }
     const bool isNew = open != edge.Upper && this->Others.insert(KeyOf(edge, edge.IsDown)).second;
-    ++this->Sieve[PlaceOf(edge.Lower, edge.Upper)];
-    this->HasNoOthers = false;
+    ++at.NumberOfOthers;
     this->Failed = this->Failed || !isNew || this->Others.size() > this->Most;
   }
 
@@ -141,11 +139,6 @@ public:
   void Take(const OpenEdges& other)
   {
     this->Others.insert(other.Others.begin(), other.Others.end());
-    for (std::size_t place = 0; place < SieveSize; ++place)
-    {
-      this->Sieve[place] += other.Sieve[place];
-    }
-    this->HasNoOthers = this->Others.empty();
     this->Failed = this->Failed || other.Failed || this->Others.size() > this->Most;
   }
 
@@ -183,17 +176,10 @@ private:
     return isDown ? std::uint64_t(edge.Upper) << 32 | std::uint32_t(edge.Lower)
                   : std::uint64_t(edge.Lower) << 32 | std::uint32_t(edge.Upper);
   }
-  static std::size_t PlaceOf(Index lower, Index upper)
-  {
-    return (static_cast<std::size_t>(lower) * 31 + static_cast<std::size_t>(upper)) % SieveSize;
-  }
 
-  static constexpr std::size_t SieveSize = 4096;
   Vertex* Vertices;
-  std::vector<Index> Sieve;                 ///< how many others there are at each place
   std::unordered_set<std::uint64_t> Others; ///< origin and destination
   std::size_t Most;
-  bool HasNoOthers = true;
   bool Failed = false;
 };
 
@@ -323,10 +309,18 @@ public:
       }
       pieces[piece] = std::move(here);
     });
-    std::vector<BorderEdge> border;
+    std::size_t size = 0;
     for (const std::vector<BorderEdge>& piece : pieces)
     {
+      size += piece.size();
+    }
+    std::vector<BorderEdge> border;
+    border.reserve(size);
+    for (std::vector<BorderEdge>& piece : pieces)
+    {
+      Report(progress, 1.0);
       border.insert(border.end(), piece.begin(), piece.end());
+      piece = std::vector<BorderEdge>();
     }
     edges.AddOthers(border);
     return border;
