@@ -18,16 +18,31 @@
 #include "vtkNew.h"
 #include "vtkSetGet.h"
 
+#include <algorithm>
+#include <chrono>
 #include <new>
 
 namespace elevation
 {
 
-/** Progress of the kernel as progress and abort flag of a filter. */
+/**
+ * Progress of the kernel as progress and abort flag of a filter. The kernel reports as often as it
+ * suits its loops; observers, which may be slow, hear of each thousandth of the work, and at least
+ * every 50 ms.
+ */
 inline Progress ProgressOf(vtkAlgorithm* filter)
 {
-  return [filter](double fraction) {
-    filter->UpdateProgress(fraction);
+  using Clock = std::chrono::steady_clock;
+  return [filter, last = -1.0, next = Clock::time_point()](double fraction) mutable {
+    constexpr double step = 0.001;
+    constexpr std::chrono::milliseconds silence{ 50 };
+    const Clock::time_point now = Clock::now();
+    if (fraction >= std::min(1.0, last + step) || now >= next)
+    {
+      last = fraction;
+      next = now + silence;
+      filter->UpdateProgress(fraction);
+    }
     return filter->GetAbortExecute() == 0;
   };
 }

@@ -121,6 +121,17 @@ private:
   std::vector<Index> Before; ///< how many are set before each word
 };
 
+/** Puts in the place of each vertex its id. */
+inline void ToIds(std::vector<Index>& vertices, const Index* ids, const Progress& progress)
+{
+  InStretches(static_cast<Index>(vertices.size()), progress, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      vertices[i] = ids[vertices[i]];
+    }
+  });
+}
+
 /** Some triangles of a list as a mesh, without Twins; its points keep their order. */
 struct NearMesh
 {

@@ -364,7 +364,8 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
 
   // A walk that comes back to a vertex it has passed has closed a ring.
   const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.6), keep);
-  std::vector<std::vector<Index>> rings;
+  Rings rings;
+  rings.Vertices.reserve(walks.Vertices.size());
   std::vector<Index> path;
   std::vector<char> isOnPath(mesh.Points.size(), 0);
   for (Index walk = 0; walk < walks.Count(); ++walk)
@@ -385,7 +386,8 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
         }
       }
       std::rotate(path.begin() + first, lowest, path.end());
-      rings.emplace_back(path.begin() + first, path.end());
+      rings.Vertices.insert(rings.Vertices.end(), path.begin() + first, path.end());
+      rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
     };
     for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
     {
@@ -415,21 +417,27 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
     cutRing(0);
     path.clear();
   }
-  const auto isBefore = [&](const std::vector<Index>& r, const std::vector<Index>& s) {
-    for (std::size_t i = 0; i < std::min(r.size(), s.size()); ++i)
+  const auto isBefore = [&](Index r, Index s) {
+    for (Index i = 0; i < std::min(rings.Size(r), rings.Size(s)); ++i)
     {
-      if (mesh.PointOf(r[i]) != mesh.PointOf(s[i]))
+      const Point2& p = mesh.PointOf(rings.Begin(r)[i]);
+      const Point2& q = mesh.PointOf(rings.Begin(s)[i]);
+      if (p != q)
       {
-        return IsLower(mesh.PointOf(r[i]), mesh.PointOf(s[i]));
+        return IsLower(p, q);
       }
     }
-    return r.size() < s.size();
+    return rings.Size(r) < rings.Size(s);
   };
-  Sort(rings.begin(), rings.end(), isBefore, Part(progress, 0.8, 1.0));
+  std::vector<Index> order(rings.Count());
+  std::iota(order.begin(), order.end(), 0);
+  Sort(order.begin(), order.end(), isBefore, Part(progress, 0.8, 0.95));
   Rings result;
-  for (const std::vector<Index>& ring : rings)
+  result.Vertices.reserve(rings.Vertices.size());
+  for (const Index ring : order)
   {
-    result.Vertices.insert(result.Vertices.end(), ring.begin(), ring.end());
+    ReportStep(progress, 19 * order.size() + result.Count(), 20 * order.size());
+    result.Vertices.insert(result.Vertices.end(), rings.Begin(ring), rings.End(ring));
     result.Offsets.push_back(static_cast<Index>(result.Vertices.size()));
   }
   return result;
@@ -769,10 +777,7 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     {
       mesh.PutFlags(keepHere, keep);
       result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
-      for (Index& vertex : result.Vertices.Vertices)
-      {
-        vertex = mesh.Ids[vertex];
-      }
+      ToIds(result.Vertices.Vertices, mesh.Ids.data(), Part(round, 1.0, 1.0));
       Report(progress, 1.0);
       return result;
     }

@@ -21,18 +21,24 @@ Mesh MeshOfBorder(
 {
   Mesh mesh;
   VertexSet used(points.Count);
-  for (const BorderEdge& edge : border)
-  {
-    used.Add(edge.Origin);
-    used.Add(edge.Destination);
-  }
-  for (const Index id : used.Number())
-  {
-    mesh.Points.push_back(points.At(id));
-  }
   for (std::size_t i = 0; i < border.size(); ++i)
   {
-    ReportStep(progress, i, border.size());
+    ReportStep(progress, i, 3 * border.size());
+    used.Add(border[i].Origin);
+    used.Add(border[i].Destination);
+  }
+  const std::vector<Index> ids = used.Number();
+  mesh.Points.reserve(ids.size());
+  for (const Index id : ids)
+  {
+    ReportStep(progress, ids.size() + mesh.Points.size(), 3 * ids.size());
+    mesh.Points.push_back(points.At(id));
+  }
+  mesh.Triangles.reserve(3 * border.size());
+  mesh.Twins.reserve(3 * border.size());
+  for (std::size_t i = 0; i < border.size(); ++i)
+  {
+    ReportStep(progress, 2 * border.size() + i, 3 * border.size());
     const Index origin = used.NumberOf(border[i].Origin);
     mesh.Triangles.insert(
       mesh.Triangles.end(), { origin, used.NumberOf(border[i].Destination), origin });
@@ -562,8 +568,11 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
     {
       return false;
     }
+    const Progress numbering = Part(progress, 0.45, 0.45);
+    std::size_t done = 0;
     for (BorderEdge& edge : measured.Border)
     {
+      ReportStep(numbering, done++, measured.Border.size());
       Measurer::Vertex& origin = sweep.At(edge.Origin);
       Measurer::Vertex& destination = sweep.At(edge.Destination);
       destination.Edges.Add(SquaredLength(origin.Place, destination.Place));
@@ -579,10 +588,7 @@ bool QuickExtract(const TriangleList& triangles, const ExtractOptions& options, 
   const Progress finding = Part(progress, 0.45, 0.95);
   rest.Monitor = finding;
   boundary = FindOutline(std::move(measured), rest);
-  for (Index& vertex : boundary.Vertices.Vertices)
-  {
-    vertex = numbered.Ids[vertex];
-  }
+  ToIds(boundary.Vertices.Vertices, numbered.Ids.data(), Part(progress, 0.95, 1.0));
   result.Trimmed = TrimExtracted(boundary);
   Report(progress, 1.0);
   return true;

@@ -23,6 +23,7 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -308,6 +309,35 @@ void TestProgressAndAbort()
     "an abort at the last report leaves no counts");
 }
 
+/** The kernel reports as often as its loops like; observers, which may be slow, hear of few. */
+void TestReportsAreNotTooMany()
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataType(VTK_DOUBLE);
+  constexpr int count = 50000;
+  for (int i = 0; i < count; ++i)
+  {
+    const double x = static_cast<double>(i) / count;
+    points->InsertNextPoint(x, x * x, 0.0); // divided and conquered
+  }
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(input);
+  int reports = 0;
+  vtkNew<vtkCallbackCommand> callback;
+  callback->SetClientData(&reports);
+  callback->SetCallback(
+    [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
+  delaunay->AddObserver(vtkCommand::ProgressEvent, callback);
+  const auto start = std::chrono::steady_clock::now();
+  delaunay->Update();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  Check(delaunay->GetOutput()->GetNumberOfPolys() == count - 2, "a parabola is triangulated");
+  Check(reports > 10 && reports < 1010 + 20.0 * seconds.count(),
+    "one report for a thousandth of the work, and 20 a second");
+}
+
 void TestArraysThatDoNotFit()
 {
   vtkNew<vtkPoints> points;
@@ -340,6 +370,7 @@ int TestGridDelaunay2D(int, char*[])
   TestTooFewPoints();
   TestSearchStrategy();
   TestProgressAndAbort();
+  TestReportsAreNotTooMany();
   TestArraysThatDoNotFit();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

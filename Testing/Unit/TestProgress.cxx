@@ -7,6 +7,7 @@
 #include "Kernel/Fill.h"
 #include "Kernel/Holes.h"
 #include "Kernel/Outline.h"
+#include "Kernel/QuickTrim.h"
 #include "Kernel/Trim.h"
 #include "LatticeSurface.h"
 #include "PointSets.h"
@@ -15,6 +16,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -222,4 +225,44 @@ TEST(Progress, OfTriangulatingPointsOnFewPlacesIsNotSilent)
       EXPECT_GT(result.NumberOfDuplicates, 3500000);
     }
   }
+}
+
+TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
+{
+  // All edges are borders, and each triangle is a ring, in no order.
+  constexpr Index side = 800;
+  std::vector<Index> order(side * side);
+  std::iota(order.begin(), order.end(), 0);
+  std::mt19937 random(5);
+  std::shuffle(order.begin(), order.end(), random);
+  std::vector<double> coordinates;
+  for (const Index i : order)
+  {
+    const double x = i % side, y = i / side;
+    coordinates.insert(coordinates.end(), { x, y, 0.0, x + 0.8, y, 0.0, x, y + 0.8, 0.0 });
+  }
+  std::vector<Index> corners(coordinates.size() / 3);
+  std::iota(corners.begin(), corners.end(), 0);
+  TriangleList list;
+  list.Corners = corners.data();
+  list.Count = side * side;
+  list.Points.Double = coordinates.data();
+  list.Points.Count = 3 * list.Count;
+
+  testing_time::Silence extracting;
+  ExtractOptions options;
+  options.Monitor = extracting.Monitor();
+  TrimmedList trimmed;
+  ExtractedBoundary boundary;
+  EXPECT_TRUE(QuickExtract(list, options, trimmed, boundary));
+  EXPECT_EQ(boundary.Vertices.Count(), side * side);
+  EXPECT_LT(extracting.Longest, 0.12);
+
+  testing_time::Silence trimming;
+  const std::vector<Point2> points{ { -1.0, -1.0 }, { 500.5, -1.0 }, { 300.5, 700.5 } };
+  Rings rings;
+  rings.Vertices = { 0, 1, 2 };
+  rings.Offsets.push_back(3);
+  EXPECT_TRUE(QuickTrim(list, points, rings, true, 1, trimming.Monitor(), trimmed));
+  EXPECT_LT(trimming.Longest, 0.12);
 }
