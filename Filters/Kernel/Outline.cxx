@@ -647,6 +647,59 @@ public:
   }
 };
 
+/**
+ * The last steps: closes small openings, drops small pieces, and traces the border of what is left.
+ * @param[in]     spacings  of the corners of triangles that are not surface so far, and perhaps of
+ *                          others
+ * @param[in]     near      the corners at the border of the surface so far
+ * @param[in,out] result    which triangles are surface; its rings
+ */
+void TraceSurface(const MeasuredTriangles& measured, const VertexSet& atBorder,
+  const Buffer<double>& spacings, VertexSet near, const Progress& progress,
+  ExtractedBoundary& result)
+{
+  const TriangleList& list = measured.List;
+  const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
+  std::vector<char>& keep = result.IsSurface;
+  double begin = 0.0; // of the progress that is left
+  for (;;)
+  {
+    // Few need a second round, and hardly any a third.
+    const double end = 0.5 * (1.0 + begin);
+    const Progress round = Part(progress, begin, end);
+    begin = end;
+    std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
+    if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
+    {
+      // With all of them, this is the last round.
+      triangles = AllTriangles(list);
+    }
+    const PartialMesh mesh(
+      list, measured.Border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
+    std::vector<char> keepHere = mesh.FlagsOf(keep);
+    // In parts of a square of the size that the tolerance bridges.
+    const auto shareOf = [&](Index i) {
+      const Index t = mesh.Triangles[i];
+      return list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
+    };
+    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.3, 0.5));
+    const std::vector<Index> unknown =
+      DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.5, 0.8));
+    if (unknown.empty())
+    {
+      mesh.PutFlags(keepHere, keep);
+      result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
+      ToIds(result.Vertices.Vertices, mesh.Ids.data(), Part(round, 1.0, 1.0));
+      return;
+    }
+    // To see more of these pieces.
+    for (const Index vertex : unknown)
+    {
+      near.Add(mesh.Ids[vertex]);
+    }
+  }
+}
+
 } // namespace
 
 int SampleBitsOf(Index numberOfTriangles)
@@ -750,43 +803,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
       }
     }
   });
-  double begin = 0.75; // of the progress that is left
-  for (;;)
-  {
-    // Few need a second round, and hardly any a third.
-    const double end = 0.5 * (1.0 + begin);
-    const Progress round = Part(progress, begin, end);
-    begin = end;
-    std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
-    if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
-    {
-      // With all of them, this is the last round.
-      triangles = AllTriangles(list);
-    }
-    const PartialMesh mesh(list, border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
-    std::vector<char> keepHere = mesh.FlagsOf(keep);
-    // In parts of a square of the size that the tolerance bridges.
-    const auto shareOf = [&](Index i) {
-      const Index t = mesh.Triangles[i];
-      return list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
-    };
-    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.3, 0.5));
-    const std::vector<Index> unknown =
-      DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.5, 0.8));
-    if (unknown.empty())
-    {
-      mesh.PutFlags(keepHere, keep);
-      result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
-      ToIds(result.Vertices.Vertices, mesh.Ids.data(), Part(round, 1.0, 1.0));
-      Report(progress, 1.0);
-      return result;
-    }
-    // To see more of these pieces.
-    for (const Index vertex : unknown)
-    {
-      near.Add(mesh.Ids[vertex]);
-    }
-  }
+  TraceSurface(measured, atBorder, spacings, std::move(near), Part(progress, 0.75, 1.0), result);
+  Report(progress, 1.0);
+  return result;
 }
 
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)
