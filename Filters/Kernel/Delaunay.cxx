@@ -39,7 +39,7 @@ constexpr std::int64_t WorkPerVertex = 300;
 constexpr std::int64_t WorkOfExact = 10;
 /** So many in one search, points are on one circle or line: growing is given up at once. */
 constexpr int MostExacts = 2000;
-// Some tenths of a second, in which nothing can be reported.
+/** So many in one search take tenths of a second without a report: growing is given up as well. */
 constexpr std::int64_t MostLooks = 1 << 25;
 /** After so many looks, the time is looked at. */
 constexpr std::int64_t LooksPerClock = 10000;
@@ -939,8 +939,8 @@ private:
   const bool IsByAngle;
   const bool IsWide;
   std::int64_t Looks = 0;
-  int Exacts = 0; ///< in the search at hand
-  std::int64_t LooksBefore = 0;
+  int Exacts = 0;               ///< in the search at hand
+  std::int64_t LooksBefore = 0; ///< when the search at hand began
   bool HasAround = false;
   Surroundings::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
