@@ -143,16 +143,21 @@ struct NearMesh
     const Index count = static_cast<Index>(triangles.size());
     VertexSet corners(list.Points.Count);
     InStretches(count, Part(progress, 0.0, 0.4), [&](Index begin, Index end) {
-      for (Index i = 3 * begin; i < 3 * end; ++i)
+      for (Index i = begin; i < end; ++i)
       {
-        corners.Add(list.CornersOf(triangles[i / 3])[i % 3]);
+        Prefetch(list.CornersOf(triangles[std::min(i + 16, count - 1)]));
+        for (int k = 0; k < 3; ++k)
+        {
+          corners.Add(list.CornersOf(triangles[i])[k]);
+        }
       }
     });
     this->Ids = corners.Number();
     this->Surface.Points.reserve(this->Ids.size());
-    for (const Index id : this->Ids)
+    for (std::size_t i = 0; i < this->Ids.size(); ++i)
     {
-      this->Surface.Points.push_back(list.Points.At(id));
+      list.PrefetchPoint(this->Ids[std::min(i + 16, this->Ids.size() - 1)]);
+      this->Surface.Points.push_back(list.Points.At(this->Ids[i]));
     }
     this->Surface.Triangles.reserve(3 * triangles.size());
     InStretches(count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
