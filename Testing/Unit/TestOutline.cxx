@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
 #include "Location.h"
+#include "MaskedSurface.h"
+#include "PointSets.h"
 #include "Silence.h"
 
 #include "Kernel/Boundary.h"
@@ -49,8 +51,6 @@ double TwiceArea(const std::vector<Point2>& points, const Rings& rings)
   return area;
 }
 
-using Mask = std::function<bool(double, double)>;
-
 std::vector<Point2> MaskedLattice(int width, int height, const Mask& mask)
 {
   std::vector<Point2> points;
@@ -65,57 +65,6 @@ std::vector<Point2> MaskedLattice(int width, int height, const Mask& mask)
     }
   }
   return points;
-}
-
-/** A coast with waves, a fjord, a channel, and lakes, one with an island; in the unit square. */
-bool Coast(double x, double y)
-{
-  if (y < 0.12 + 0.03 * std::sin(14 * x) || y > 0.9 + 0.03 * std::sin(9 * x + 2) ||
-    x < 0.08 + 0.03 * std::sin(11 * y) || x > 0.93 + 0.03 * std::sin(17 * y))
-  {
-    return false;
-  }
-  const double lake = std::hypot(x - 0.3, y - 0.4);
-  return (lake > 0.08 || lake < 0.03) && std::hypot((x - 0.7) / 1.5, y - 0.65) > 0.07 &&
-    !(x > 0.55 && std::fabs(y - 0.45 - 0.03 * std::sin(12 * x)) < 0.03) &&
-    !(y > 0.6 && std::fabs(x - 0.4) < 0.025);
-}
-
-/**
- * The area between the coast and the outline that was found for points on land, as a share of the
- * area within one spacing of the coast; by samples.
- */
-double ErrorOfOutline(const std::vector<Point2>& points, const Mask& coast,
-  const std::function<double(double, double)>& spacing)
-{
-  const Mesh mesh = Delaunay(points);
-  const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
-  const RingLocator locator(mesh.Points, boundary.Vertices);
-  constexpr int samples = 300;
-  double between = 0.0;
-  double near = 0.0;
-  for (int j = 0; j < samples; ++j)
-  {
-    for (int i = 0; i < samples; ++i)
-    {
-      const double x = (i + 0.5) / samples;
-      const double y = (j + 0.5) / samples;
-      const bool isLand = coast(x, y);
-      between += isLand != locator.IsInside({ x, y }, { x + 1e-9, y }, { x, y + 1e-9 });
-      const double s = spacing(x, y);
-      bool isNear = false;
-      for (int k = 0; k < 16 && !isNear; ++k)
-      {
-        const double angle = k * 0.39269908169872414;
-        for (const double r : { 0.25 * s, 0.5 * s, 0.75 * s, s })
-        {
-          isNear = isNear || coast(x + r * std::cos(angle), y + r * std::sin(angle)) != isLand;
-        }
-      }
-      near += isNear;
-    }
-  }
-  return between / near;
 }
 
 /** The rule of ExtractBoundary(), step by step and by looking at everything. */
@@ -459,61 +408,201 @@ TEST(ExtractBoundary, ClosesSpeckle)
   EXPECT_EQ(boundary.Vertices.Count(), 1);
 }
 
-TEST(ExtractBoundary, FollowsMaskedLatticesAndThinnedGradedAndScannedPoints)
+namespace
 {
-  Random random(13);
-  std::vector<Point2> full, thinned, scattered, graded, scanned;
-  for (int j = 0; j <= 300; ++j)
+using Spacing = std::function<double(double, double)>;
+
+Spacing Even(double spacing)
+{
+  return [spacing](double, double) { return spacing; };
+}
+
+double ErrorOfExtraction(const std::vector<Point2>& points, const Mask& mask,
+  const Spacing& spacing, const Placing& placing = Placing())
+{
+  const Mesh mesh = Delaunay(points);
+  const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
+  return ErrorOfOutline(mesh.Points, boundary.Vertices, mask, spacing, placing);
+}
+
+/** The points on land of so many at random in the unit square. */
+std::vector<Point2> Scattered(
+  Random& random, int count, const Mask& mask, const Placing& placing = Placing())
+{
+  std::vector<Point2> points;
+  for (int i = 0; i < count; ++i)
   {
-    for (int i = 0; i <= 300; ++i)
+    const double x = random.Unit(), y = random.Unit();
+    if (mask(x, y))
     {
-      const Point2 p{ i / 300.0, j / 300.0 };
-      const bool isLand = Coast(p.X, p.Y);
-      if (isLand && i % 3 == 0 && j % 3 == 0)
+      points.push_back(placing.PlaceOf(x, y));
+    }
+  }
+  return points;
+}
+} // namespace
+
+// With default properties, at most a quarter of the ring of one spacing, whatever the seed: of
+// seeds 1 to 20 the largest errors were 0.21 for lattices thinned to a tenth (0.16 whole), 0.24 for
+// random points, evenly dense and graded, 0.10 for scan lines, 0.23 and 0.24 for surveys thinned
+// and graded.
+TEST(ExtractBoundary, FollowsMaskedLatticesWholeAndThinned)
+{
+  for (const Mask& mask : { Mask(Coast), Mask(Archipelago) })
+  {
+    for (int seed = 0; seed <= 5; ++seed)
+    {
+      Random random(seed);
+      const std::vector<Point2> points = MaskedLattice(401, 401, [&](double x, double y) {
+        return mask(x / 400, y / 400) && (seed == 0 || random.Below(10) == 0);
+      });
+      const double spacing = (seed == 0 ? 1.0 : std::sqrt(10.0)) / 400;
+      const Placing placing{ [](double x, double y) {
+                              return Point2{ 400 * x, 400 * y };
+                            },
+        Placing().AreaOf };
+      EXPECT_LE(ErrorOfExtraction(points, mask, Even(spacing), placing), 0.25) << seed;
+    }
+  }
+}
+
+TEST(ExtractBoundary, FollowsMaskedPointsWhoseSpacingGrowsTenfold)
+{
+  for (const Mask& mask : { Mask(Coast), Mask(Archipelago) })
+  {
+    for (int seed = 1; seed <= 3; ++seed)
+    {
+      for (const Placing& placing : { Placing(), TenfoldGrading() })
       {
-        full.push_back(p);
-      }
-      if (isLand && random.Below(10) == 0)
-      {
-        thinned.push_back(p);
+        for (const int count : { 9000, 20000 })
+        {
+          Random random(seed);
+          const std::vector<Point2> points = Scattered(random, count, mask, placing);
+          const Spacing spacing = Even(1.0 / std::sqrt(count));
+          EXPECT_LE(ErrorOfExtraction(points, mask, spacing, placing), 0.25)
+            << seed << " " << count;
+        }
       }
     }
   }
-  const auto gradedSpacing = [](double x, double) { return 0.003 * std::pow(10.0, x); };
-  for (int i = 0; i < 100000; ++i)
+}
+
+TEST(ExtractBoundary, FollowsMaskedScanLines)
+{
+  // Eight times denser along than across.
+  for (int seed = 1; seed <= 3; ++seed)
   {
-    const Point2 p{ random.Unit(), random.Unit() };
-    if (!Coast(p.X, p.Y))
+    Random random(seed);
+    std::vector<Point2> points;
+    for (int j = 0; j <= 100; ++j)
+    {
+      for (int i = 0; i <= 800; ++i)
+      {
+        const double x = i / 800.0 + 2e-4 * random.Unit();
+        const double y = j / 100.0 + 5e-4 * random.Unit();
+        if (Coast(x, y))
+        {
+          points.push_back({ x, y });
+        }
+      }
+    }
+    EXPECT_LE(ErrorOfExtraction(points, Coast, Even(0.01)), 0.25) << seed;
+  }
+}
+
+TEST(ExtractBoundary, BridgesWhatIsNarrowerThanTheToleranceWhereItGrows)
+{
+  // Of density 1 at x = 0 and a hundredth at x = 1, so that the channel is 19 spacings wide at its
+  // end and 2.4 at its mouth, where it may be closed: the error is larger than where it may not.
+  double worst = 0.0;
+  for (int seed = 1; seed <= 5; ++seed)
+  {
+    Random random(seed);
+    const double least = 1.0 / std::sqrt(100000);
+    const Spacing spacing = [least](double x, double) { return least * std::pow(10.0, x); };
+    std::vector<Point2> points;
+    for (const Point2& p : Scattered(random, 100000, Coast))
+    {
+      if (random.Unit() < std::pow(0.01, p.X))
+      {
+        points.push_back(p);
+      }
+    }
+    worst = std::max(worst, ErrorOfExtraction(points, Coast, spacing));
+  }
+  EXPECT_LE(worst, 0.3);
+}
+
+// The same on real elevation data, in x and y scaled to the unit square.
+TEST(ExtractBoundary, FollowsMaskedSurveysWholeThinnedAndGraded)
+{
+  int clouds = 0;
+  std::string reason;
+  for (const char* name : { "st_helens_after_usgs", "nankai_channels" })
+  {
+    testing_points::Cloud cloud;
+    reason = testing_points::ReadExtraData(name, cloud);
+    if (!reason.empty())
     {
       continue;
     }
-    if (i < 9000)
+    ++clouds;
+    const PointView view = cloud.View();
+    Point2 low = view.At(0), high = low;
+    for (Index i = 0; i < view.Count; ++i)
     {
-      scattered.push_back(p);
+      const Point2 p = view.At(i);
+      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
     }
-    const double relative = gradedSpacing(p.X, p.Y) / 0.003;
-    if (random.Unit() < 1.0 / (relative * relative))
+    const Placing placing{
+      [=](double x, double y) {
+        return Point2{ low.X + x * (high.X - low.X), low.Y + y * (high.Y - low.Y) };
+      },
+      Placing().AreaOf
+    };
+    const double full = 1.0 / std::sqrt(static_cast<double>(view.Count));
+    for (int seed = 1; seed <= 3; ++seed)
     {
-      graded.push_back(p);
-    }
-  }
-  for (int j = 0; j <= 100; ++j)
-  {
-    for (int i = 0; i <= 800; ++i)
-    {
-      const Point2 p{ i / 800.0 + 2e-4 * random.Unit(), j / 100.0 + 5e-4 * random.Unit() };
-      if (Coast(p.X, p.Y))
+      Random random(seed);
+      for (const bool isCoast : { true, false })
       {
-        scanned.push_back(p);
+        const Mask mask = isCoast ? Coast : Archipelago;
+        std::vector<Point2> whole, thinned, graded;
+        for (Index i = 0; i < view.Count; ++i)
+        {
+          const Point2 p = view.At(i);
+          const double x = (p.X - low.X) / (high.X - low.X);
+          const double y = (p.Y - low.Y) / (high.Y - low.Y);
+          if (mask(x, y))
+          {
+            whole.push_back(p);
+            if (random.Below(10) == 0)
+            {
+              thinned.push_back(p);
+            }
+            if (random.Unit() < std::pow(0.01, x))
+            {
+              graded.push_back(p);
+            }
+          }
+        }
+        EXPECT_LE(seed == 1 ? ErrorOfExtraction(whole, mask, Even(full), placing) : 0.0, 0.25)
+          << name;
+        EXPECT_LE(ErrorOfExtraction(thinned, mask, Even(std::sqrt(10.0) * full), placing), 0.25)
+          << name << " " << seed;
+        if (!isCoast) // whose channel is too narrow where the spacing is largest
+        {
+          const Spacing growing = [full](double x, double) { return full * std::pow(10.0, x); };
+          EXPECT_LE(ErrorOfExtraction(graded, mask, growing, placing), 0.25) << name << " " << seed;
+        }
       }
     }
   }
-  const auto even = [](double s) { return [s](double, double) { return s; }; };
-  EXPECT_LE(ErrorOfOutline(full, Coast, even(0.01)), 0.25);
-  EXPECT_LE(ErrorOfOutline(thinned, Coast, even(std::sqrt(10.0) / 300)), 0.25);
-  EXPECT_LE(ErrorOfOutline(scattered, Coast, even(1 / std::sqrt(9000.0))), 0.25);
-  EXPECT_LE(ErrorOfOutline(graded, Coast, gradedSpacing), 0.25);
-  EXPECT_LE(ErrorOfOutline(scanned, Coast, even(0.01)), 0.25);
+  if (clouds == 0)
+  {
+    GTEST_SKIP() << reason;
+  }
 }
 
 TEST(ExtractBoundary, KeepsLakesAndNecksOfThreeSpacings)

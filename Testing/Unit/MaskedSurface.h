@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Known outlines to cut clouds out by, and how far an extracted outline is from them.
+ *
+ * An empty stretch narrower than the tolerance is surface by the rule of ExtractBoundary(), 4.5
+ * spacings by default: an outline can be found again where its channels and lakes are wider.
+ */
+#ifndef testing_MaskedSurface_h
+#define testing_MaskedSurface_h
+
+#include "Kernel/Boundary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace testing_surfaces
+{
+
+/** Whether a place of the unit square is land. */
+using Mask = std::function<bool(double, double)>;
+
+/** A coast with waves, a fjord, a channel, and lakes, one with an island. All 0.05 wide or more. */
+inline bool Coast(double x, double y)
+{
+  if (y < 0.12 + 0.03 * std::sin(14 * x) || y > 0.9 + 0.03 * std::sin(9 * x + 2) ||
+    x < 0.08 + 0.03 * std::sin(11 * y) || x > 0.93 + 0.03 * std::sin(17 * y))
+  {
+    return false;
+  }
+  const double lake = std::hypot(x - 0.3, y - 0.4);
+  return (lake > 0.08 || lake < 0.03) && std::hypot((x - 0.7) / 1.5, y - 0.65) > 0.07 &&
+    !(x > 0.55 && std::fabs(y - 0.45 - 0.03 * std::sin(12 * x)) < 0.03) &&
+    !(y > 0.6 && std::fabs(x - 0.4) < 0.025);
+}
+
+/** Two round islands, one with a lake, a neck between them 0.05 wide, and two islands, one a ring. */
+inline bool Archipelago(double x, double y)
+{
+  const auto distance = [&](double p, double q) { return std::hypot(x - p, y - q); };
+  const bool isNeck = std::fabs(y - 0.5 - 0.02 * std::sin(20 * x)) < 0.025 && x > 0.2 && x < 0.8;
+  const bool isLarge = distance(0.25, 0.5) < 0.2 || distance(0.75, 0.5) < 0.2 || isNeck;
+  return (isLarge && distance(0.75, 0.5) > 0.06) || distance(0.5, 0.8) < 0.06 ||
+    (distance(0.5, 0.2) < 0.08 && distance(0.5, 0.2) > 0.04);
+}
+
+/** How the unit square lies in the plane of the cloud. */
+struct Placing
+{
+  std::function<elevation::Point2(double, double)> PlaceOf = [](double x, double y) {
+    return elevation::Point2{ x, y };
+  };
+  std::function<double(double, double)> AreaOf = [](double, double) { return 1.0; };
+};
+
+/** Conformal: what is one size everywhere in the square grows tenfold from x = 0 to x = 1. */
+inline Placing TenfoldGrading()
+{
+  const double rate = std::log(10.0);
+  return { [rate](double x, double y) {
+            const double r = std::exp(rate * x);
+            return elevation::Point2{ r * std::cos(rate * y), r * std::sin(rate * y) };
+          },
+    [rate](double x, double) { return std::exp(2.0 * rate * x); } };
+}
+
+/**
+ * The area between the mask's outline and rings, as a share of the area within one spacing of the
+ * mask's outline; by samples.
+ * @param[in] points   of the rings
+ * @param[in] spacing  of the points in the unit square
+ */
+inline double ErrorOfOutline(const std::vector<elevation::Point2>& points,
+  const elevation::Rings& rings, const Mask& mask,
+  const std::function<double(double, double)>& spacing, const Placing& placing = Placing())
+{
+  const elevation::RingLocator locator(points, rings);
+  constexpr int samples = 300;
+  double between = 0.0;
+  double near = 0.0;
+  for (int j = 0; j < samples; ++j)
+  {
+    for (int i = 0; i < samples; ++i)
+    {
+      const double x = (i + 0.5) / samples;
+      const double y = (j + 0.5) / samples;
+      const bool isLand = mask(x, y);
+      const double area = placing.AreaOf(x, y);
+      const elevation::Point2 p = placing.PlaceOf(x, y);
+      const double aside = 1e-9 * std::max(std::fabs(p.X), std::fabs(p.Y));
+      const bool isInside = locator.IsInside(p, { p.X + aside, p.Y }, { p.X, p.Y + aside });
+      between += isLand != isInside ? area : 0.0;
+      const double s = spacing(x, y);
+      bool isNear = false;
+      for (int k = 0; k < 16 && !isNear; ++k)
+      {
+        const double angle = k * 0.39269908169872414;
+        for (const double r : { 0.25 * s, 0.5 * s, 0.75 * s, s })
+        {
+          isNear = isNear || mask(x + r * std::cos(angle), y + r * std::sin(angle)) != isLand;
+        }
+      }
+      near += isNear ? area : 0.0;
+    }
+  }
+  return between / near;
+}
+
+} // namespace testing_surfaces
+
+#endif
