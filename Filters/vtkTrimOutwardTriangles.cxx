@@ -456,6 +456,7 @@ void AddCounts(const Outcome& outcome, vtkInformationVector* outputVector)
     vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
     elevation::AddCount(fieldData, "NumberOfOutwardTriangles", trimmed.NumberOfOutwardTriangles);
     elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
+    elevation::AddCount(fieldData, "NumberOfPointsLeftOut", trimmed.NumberOfPointsLeftOut);
     elevation::AddCount(
       fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(outcome.List.Inserted.size()));
     vtkNew<vtkDoubleArray> tolerance;
@@ -509,6 +510,7 @@ int vtkTrimOutwardTriangles::RequestData(
   this->EffectiveGapTolerance = 0.0;
   this->NumberOfOutwardTriangles = 0;
   this->NumberOfRecoveredEdges = 0;
+  this->NumberOfPointsLeftOut = 0;
   this->NumberOfInsertedPoints = 0;
 
   return elevation::CallKernel(this, outputVector, [&]() {
@@ -556,6 +558,7 @@ int vtkTrimOutwardTriangles::RequestData(
     this->EffectiveGapTolerance = outcome.GapTolerance;
     this->NumberOfOutwardTriangles = outcome.List.Trimmed.NumberOfOutwardTriangles;
     this->NumberOfRecoveredEdges = outcome.List.Trimmed.NumberOfRecoveredEdges;
+    this->NumberOfPointsLeftOut = outcome.List.Trimmed.NumberOfPointsLeftOut;
     this->NumberOfInsertedPoints = static_cast<vtkIdType>(outcome.List.Inserted.size());
   });
 }
@@ -575,5 +578,6 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";
   os << indent << "NumberOfOutwardTriangles: " << this->NumberOfOutwardTriangles << "\n";
   os << indent << "NumberOfRecoveredEdges: " << this->NumberOfRecoveredEdges << "\n";
+  os << indent << "NumberOfPointsLeftOut: " << this->NumberOfPointsLeftOut << "\n";
   os << indent << "NumberOfInsertedPoints: " << this->NumberOfInsertedPoints << "\n";
 }

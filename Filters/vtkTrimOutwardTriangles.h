@@ -69,8 +69,8 @@
  * interior holes of the mesh stay.
  *
  * Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
- * NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance (vtkDoubleArray, one
- * value).
+ * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance
+ * (vtkDoubleArray, one value).
  *
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
@@ -189,6 +189,13 @@ public:
    */
   vtkGetMacro(NumberOfRecoveredEdges, vtkIdType);
 
+  /**
+   * After Update(): the number of points that the extracted boundary leaves out, though triangles
+   * have them: lone points, lines of points that leave the others, and groups too small to be a
+   * surface. They are corners of output 1 alone. 0 when a boundary was given.
+   */
+  vtkGetMacro(NumberOfPointsLeftOut, vtkIdType);
+
   /** After Update(): the number of points that were inserted, for the boundary or for crossings. */
   vtkGetMacro(NumberOfInsertedPoints, vtkIdType);
 
@@ -207,6 +214,7 @@ protected:
   double EffectiveGapTolerance = 0.0;
   vtkIdType NumberOfOutwardTriangles = 0;
   vtkIdType NumberOfRecoveredEdges = 0;
+  vtkIdType NumberOfPointsLeftOut = 0;
   vtkIdType NumberOfInsertedPoints = 0;
 
 private:

@@ -481,6 +481,7 @@ def make_report(run, cloud, delaunay, trim, fill):
         }
         if not options.boundary:
             report["trim"]["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
+            report["trim"]["points_left_out"] = trim.GetNumberOfPointsLeftOut()
         report["triangles"]["trimmed"] = trim.GetOutput().GetNumberOfPolys()
     if fill:
         cells = fill.GetOutput(1).GetCellData()
@@ -638,6 +639,8 @@ def print_report(report, options):
         )
         if "effective_gap_tolerance" in trim:
             line("", f"gap tolerance {trim['effective_gap_tolerance']:.4g} spacings")
+        if trim.get("points_left_out"):
+            line("", f"{counted(trim['points_left_out'], 'point')} outside the boundary")
         if trim["recovered_edges"]:
             line("", f"{counted(trim['recovered_edges'], 'boundary edge')} recovered")
         if trim["inserted_points"]:

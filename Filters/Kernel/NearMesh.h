@@ -70,6 +70,7 @@ public:
   }
 
   void Add(Index vertex) { this->Bits[WordOf(vertex)] |= BitOf(vertex); }
+  void Remove(Index vertex) { this->Bits[WordOf(vertex)] &= ~BitOf(vertex); }
   /** Adds the vertices of another set; those that it has already, to @a common as well. */
   void Add(const VertexSet& other, VertexSet& common)
   {
@@ -87,6 +88,16 @@ public:
     return ((this->Bits[a / 64] >> a % 64) | (this->Bits[b / 64] >> b % 64) |
              (this->Bits[c / 64] >> c % 64)) &
       1;
+  }
+
+  Index Count() const
+  {
+    Index count = 0;
+    for (const std::uint64_t word : this->Bits)
+    {
+      count += CountBits(word);
+    }
+    return count;
   }
 
   /** Its vertices, increasing; from then on NumberOf() tells where in them a vertex is. */

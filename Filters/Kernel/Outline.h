@@ -35,8 +35,9 @@ struct ExtractOptions
 struct ExtractedBoundary
 {
   Rings Vertices; ///< mesh vertices; counter-clockwise around surface, clockwise around a lake
-  double GapTolerance = 0.0;   ///< the one used
-  std::vector<char> IsSurface; ///< one flag a triangle: the surface that the rings go around
+  double GapTolerance = 0.0;       ///< the one used
+  std::vector<char> IsSurface;     ///< one flag a triangle: the surface that the rings go around
+  Index NumberOfPointsLeftOut = 0; ///< corners of triangles, but of no surface triangle
 };
 
 /** The four shortest edges at a vertex, and how many it has. */
@@ -153,6 +154,10 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     at most 0.52 GapTolerance times its short spacing. So are all triangles of a group,
  *     connected by corners, none of them at the border of the mesh, if the group is smaller
  *     than a square with a side of 0.7 GapTolerance short spacings: no lake has room in it.
+ *   - A triangle at the border of the surface whose height over the edge there is less than a tenth
+ *     of its short spacing is a sliver, and not surface; so is the next one, once it is at the
+ *     border. It counts nothing in the size of an opening. So a line of points that leaves the others is left out, also where it wavers. (Unless
+ *     no triangle is left.)
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
  *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,

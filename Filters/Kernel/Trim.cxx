@@ -210,6 +210,7 @@ TrimResult TrimExtracted(const ExtractedBoundary& boundary)
 {
   TrimResult result;
   result.IsOutward = boundary.IsSurface;
+  result.NumberOfPointsLeftOut = boundary.NumberOfPointsLeftOut;
   for (char& flag : result.IsOutward)
   {
     flag = !flag;

@@ -57,6 +57,7 @@ struct TrimResult
   std::vector<char> IsOutward; ///< one a triangle
   Index NumberOfOutwardTriangles = 0;
   Index NumberOfRecoveredEdges = 0; ///< edges of the rings that were missing
+  Index NumberOfPointsLeftOut = 0;  ///< as ExtractedBoundary's
 };
 
 /**

@@ -384,6 +384,9 @@ void TestExtractedBoundary()
   Check(trim->GetOutput(2)->GetPoint(0)[2] == 3.0, "the outline has the points' elevation");
   Check(std::fabs(trim->GetEffectiveGapTolerance() - 4.5) < 1e-12, "the tolerance can be read");
   Check(trim->GetNumberOfRecoveredEdges() == 0, "nothing is recovered");
+  Check(trim->GetNumberOfPointsLeftOut() == 1 &&
+      trim->GetOutput(1)->GetFieldData()->GetArray("NumberOfPointsLeftOut")->GetTuple1(0) == 1,
+    "the lone point is reported");
   trim->SetGapTolerance(14.0);
   trim->Update();
   Check(trim->GetOutput(2)->GetNumberOfLines() == 1, "a wide tolerance bridges the gap");

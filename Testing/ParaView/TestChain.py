@@ -78,6 +78,9 @@ check(numpy.array_equal(numpy.unique(both, axis=0), sorted_triangles(meshed))
 check_equal(information(trim, "NumberOfOutwardTriangles"), outward.GetNumberOfPolys(),
             "number of outward triangles")
 check_equal(information(trim, "NumberOfRecoveredEdges"), 0, "recovered edges")
+kept_points = numpy.unique(sorted_triangles(kept))
+check_equal(information(trim, "NumberOfPointsLeftOut"),
+            len(numpy.setdiff1d(sorted_triangles(outward), kept_points)), "points left out")
 check(information(trim, "EffectiveGapTolerance") > 0, "the gap tolerance used can be read")
 check(boundary.GetNumberOfLines() > 0, "there is a boundary")
 check(all(ring[0] == ring[-1] for ring in lines(boundary)), "the boundary is closed")

@@ -95,6 +95,7 @@ class Report(Program):
         self.assertEqual(report["triangles"]["filled"], 2 * (SIZE - 1) ** 2)
         self.assertEqual(report["trim"]["outward_triangles"], 0)
         self.assertGreater(report["trim"]["effective_gap_tolerance"], 0)
+        self.assertIn("points_left_out", report["trim"])
         self.assertEqual(report["holes"]["found"], 0)
         self.assertEqual(report["distance"]["points"], SIZE * SIZE)
         self.assertLess(report["distance"]["maximum"], 1e-12)

@@ -100,7 +100,7 @@ class TestTrimOutwardTriangles(unittest.TestCase):
         text = str(vtkTrimOutwardTriangles())
         for name in ("OutwardTest", "GapTolerance", "RecoverBoundary", "NumberOfThreads",
                      "EffectiveGapTolerance", "NumberOfOutwardTriangles", "NumberOfRecoveredEdges",
-                     "NumberOfInsertedPoints"):
+                     "NumberOfPointsLeftOut", "NumberOfInsertedPoints"):
             self.assertIn(name, text)
 
     def test_a_star_has_its_area(self):
