@@ -24,6 +24,7 @@
 #include <cstring>
 #include <new>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace elevation
@@ -86,9 +87,63 @@ void CheckPointArrays(vtkPointSet* input, const std::string& owner)
     owner + (owner.empty() ? "Point" : " point"), "points");
 }
 
+namespace
+{
+bool HasSingleComponents(vtkCellArray* cells)
+{
+  return cells->GetOffsetsArray()->GetNumberOfComponents() == 1 &&
+    cells->GetConnectivityArray()->GetNumberOfComponents() == 1;
+}
+
+/**
+ * Looks whether all cell arrays are valid, which vtkCellArray defines but does not ensure. From
+ * others nothing may be read.
+ * @throws Error that names the first cell at fault
+ */
+void CheckCells(vtkPolyData* input, const std::string& owner = "", bool polygonsToo = true)
+{
+  const std::pair<vtkCellArray*, const char*> kinds[] = { { input->GetVerts(), "vertices" },
+    { input->GetLines(), "lines" }, { input->GetPolys(), "polygons" },
+    { input->GetStrips(), "triangle strips" } };
+  vtkIdType firstCell = 0;
+  for (const auto& kind : kinds)
+  {
+    vtkCellArray* const cells = kind.first;
+    const vtkIdType count = cells->GetNumberOfCells();
+    if ((cells == input->GetPolys() && !polygonsToo) || cells->IsValid())
+    {
+      firstCell += count;
+      continue;
+    }
+    const std::string name = (owner.empty() ? "The" : owner) + " " + kind.second;
+    if (!HasSingleComponents(cells))
+    {
+      throw Error(name + " have offsets or point ids of several components.");
+    }
+    const auto offset = [cells](vtkIdType i) {
+      return cells->GetOffsetsArray()->GetVariantValue(i).ToTypeInt64();
+    };
+    const vtkIdType ids = cells->GetNumberOfConnectivityIds();
+    vtkIdType i = 0;
+    while (i + 1 < count && offset(0) == 0 && offset(i) <= offset(i + 1) && offset(i + 1) <= ids)
+    {
+      ++i;
+    }
+    throw Error(name + ": " +
+      (count > 0 ? "cell " + std::to_string(firstCell + i) + " begins at " +
+            std::to_string(offset(i)) + " and ends at " + std::to_string(offset(i + 1))
+                 : "there is no cell") +
+      ", but offsets must begin with 0, never fall, and end with the number of point ids, " +
+      std::to_string(ids) + ".");
+  }
+}
+} // namespace
+
 void CheckArrays(vtkPolyData* input, const std::string& owner)
 {
   CheckPointArrays(input, owner);
+  // Polygons may be very many, and are looked at where they are read; without offsets they are -1.
+  CheckCells(input, owner, input->GetNumberOfPolys() < 0);
   CheckTuples(input->GetCellData(), input->GetNumberOfCells(),
     owner + (owner.empty() ? "Cell" : " cell"), "cells");
 }
@@ -221,6 +276,7 @@ void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int thread
   {
     throw Error("The input has triangle strips; pass it through vtkTriangleFilter first.");
   }
+  CheckCells(input);
   vtkCellArray* polygons = input->GetPolys();
   const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
   if (count > std::numeric_limits<Index>::max() / 3)
@@ -258,7 +314,9 @@ bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles)
 {
   vtkCellArray* polygons = input->GetPolys();
   const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
-  if (count == 0 || count > std::numeric_limits<Index>::max() / 3 || input->GetNumberOfStrips() > 0)
+  if (count <= 0 || count > std::numeric_limits<Index>::max() / 3 ||
+    input->GetNumberOfStrips() > 0 || polygons->GetNumberOfConnectivityIds() != 3 * count ||
+    !HasSingleComponents(polygons))
   {
     return false;
   }
@@ -301,6 +359,8 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
     throw Error(
       "There are triangle strips in the " + name + ", which may be lines and polygons only.");
   }
+  const std::string owner = name + (name.back() == 's' ? "'" : "'s");
+  CheckCells(input, "The " + owner);
   const vtkIdType numberOfPoints = input->GetNumberOfPoints();
   const std::size_t count = static_cast<std::size_t>(input->GetNumberOfCells()) + 1;
   vtkIdType sum = 0;
@@ -323,9 +383,8 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
       {
         if (line.Ids[i] < 0 || line.Ids[i] >= numberOfPoints)
         {
-          throw Error("Point " + std::to_string(line.Ids[i]) + " of the " + name +
-            (name.back() == 's' ? "' cell " : "'s cell ") + std::to_string(line.Cell) +
-            " does not exist.");
+          throw Error("Point " + std::to_string(line.Ids[i]) + " of the " + owner + " cell " +
+            std::to_string(line.Cell) + " does not exist.");
         }
       }
       visit(line);

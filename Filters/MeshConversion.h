@@ -41,9 +41,10 @@ PointsOfDataSet ViewPoints(vtkPointSet* input);
 
 /**
  * Looks whether every point (cell) array has as many tuples as there are points (cells), which
- * nothing in VTK ensures. Filters rely on it.
+ * nothing in VTK ensures. Filters rely on it. For cells, also whether the cell arrays are valid,
+ * but for the polygons, which ToMesh and ForEachLine look at.
  * @param[in] owner  what messages put before "Point array": the name of the input, if not the first
- * @throws Error that names the first array that has not
+ * @throws Error that names the first array that has not, or the cell
  */
 void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
 void CheckArrays(vtkPolyData* input, const std::string& owner = "");
@@ -54,8 +55,8 @@ void CheckArrays(vtkPolyData* input, const std::string& owner = "");
  * cells precede the polygons in the cell numbering: see FirstPolygon).
  * Twins are not filled. Linear; on up to so many threads.
  * @throws Error that names the cell: not a triangle, a point that does not exist or is not finite,
- *         flat in x,y (as is a triangle that has a point twice); or when there are triangle strips.
- *         Aborted.
+ *         flat in x,y (as is a triangle that has a point twice), of a cell array that is not valid;
+ *         or when there are triangle strips. Aborted.
  */
 void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
 
@@ -69,7 +70,8 @@ struct TrianglesOfDataSet
 
 /**
  * Views the polygons in place when their ids have 32 bits, and copies ids of 64.
- * @return whether all are triangles, and there are some; ids that do not exist may be among them
+ * @return whether all are triangles, and there are some; ids that do not exist may be among them.
+ *         Where the cell array is not valid: false
  */
 bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles);
 
@@ -85,8 +87,8 @@ struct LineOfDataSet
 /**
  * Calls visit for each line, then each polygon, of a polydata.
  * @param name  what messages call the polydata: "boundary"
- * @throws Error naming the cell: one with a point that does not exist; with triangle strips; with
- *         more point ids than an Index can count
+ * @throws Error naming the cell: one with a point that does not exist, or of a cell array that is
+ *         not valid; with triangle strips; with more point ids than an Index can count
  */
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
   const std::function<void(const LineOfDataSet&)>& visit);

@@ -76,8 +76,9 @@
  * An error that names the cell, and empty output, is the answer to an input that is no elevation
  * surface: cells other than triangles, triangles that are flat in x,y, an edge with more than two
  * triangles, cells that lie over each other in x,y. So is an error that names the array the answer
- * to a point or cell array that has not as many tuples as there are points or cells. A surface
- * without holes passes; an input without triangles passes with a warning.
+ * to a point or cell array that has not as many tuples as there are points or cells, and to a
+ * vtkCellArray that is not valid. A surface without holes passes; an input without triangles passes
+ * with a warning.
  * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
  *
  * Cost: proportional to the size of the input and to the number of new points (a few microseconds

@@ -63,8 +63,9 @@
  *
  * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
  * triangle. An error leaves empty output: more points than can be handled (357,913,941), a point
- * array that has not as many tuples as there are points, constraints with triangle strips or with a
- * point that does not exist or is not finite (which is named).
+ * array that has not as many tuples as there are points, constraints with triangle strips, with a
+ * vtkCellArray that is not valid, or with a point that does not exist or is not finite (which is
+ * named).
  * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
  *
  * Field data of the output:

@@ -76,7 +76,7 @@
  * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
  * a ring of fewer than three points, edges or rings that cross each other, a boundary that encloses
  * no triangle; also a point or cell array of an input that has not as many tuples as there are points
- * or cells. A mesh without triangles passes with a warning,
+ * or cells, and a vtkCellArray that is not valid. A mesh without triangles passes with a warning,
  * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
  * outward then).
  * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.

@@ -4,6 +4,7 @@
 // The pipeline side of vtkFillElevationHoles, by numbers: what comes first and unchanged, what
 // arrays get at new points and triangles, the report, the limits, refusals, warnings and aborts.
 #include "Check.h"
+#include "FaultyCells.h"
 #include "MeshRules.h"
 #include "SheetOfSquares.h"
 #include "vtkCallbackCommand.h"
@@ -517,6 +518,13 @@ void TestRefusals()
     names(Refusal(cells),
       "Cell array \"Picks\" has " + std::to_string(size) + " tuples, but there are 42 cells.");
   }
+
+  ForEachFaultyCells([&](const auto& spoil, const std::string& kind, const std::string& fault) {
+    auto faulty = MakeFlatSheet(OneHole);
+    spoil(faulty);
+    names(Refusal(faulty), "The " + kind);
+    names(Refusal(faulty), fault);
+  });
 }
 
 /** Arrays of the input that have the names of arrays of the output, and are active. */

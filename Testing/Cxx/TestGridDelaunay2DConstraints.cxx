@@ -4,6 +4,7 @@
 // The second input of vtkGridDelaunay2D, by numbers: what is added, what stays shared, what arrays
 // hold at added points, what is counted, and which constraints are refused.
 #include "Check.h"
+#include "FaultyCells.h"
 #include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -328,6 +329,13 @@ void TestRefusals()
   auto arrays = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } } });
   arrays->GetPointData()->GetArray("Inline")->InsertNextTuple1(3);
   expect(arrays, "The constraints' point array \"Inline\" has 3 tuples, but there are 2 points.");
+
+  ForEachFaultyCells([&](const auto& spoil, const std::string& kind, const std::string& fault) {
+    auto faulty = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 }, { 2, 0, 0 } } });
+    spoil(faulty);
+    expect(faulty, "The constraints' " + kind);
+    expect(faulty, fault);
+  });
 }
 
 void TestProgressAndAbort()

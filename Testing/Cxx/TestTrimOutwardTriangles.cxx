@@ -5,6 +5,7 @@
 // passes with them, what is counted, what errors and aborts leave behind, and that the
 // inputs are never written.
 #include "Check.h"
+#include "FaultyCells.h"
 #include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -566,6 +567,37 @@ void TestErrors()
   ExpectError(folded, nullptr, true, "Cell 1 lies over");
 }
 
+void TestFaultyCells()
+{
+  ForEachFaultyCells([](const auto& spoil, const std::string& kind, const std::string& fault) {
+    auto mesh = MakeMesh();
+    mesh->GetCellData()->Initialize(); // or it is of too many cells
+    auto rings = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 7 }, { 0, 5 } } });
+    spoil(rings);
+    ExpectError(mesh, rings, true, "The boundary's " + kind);
+    ExpectError(mesh, rings, true, fault);
+    spoil(mesh);
+    for (vtkPolyData* boundary : { rings.Get(), static_cast<vtkPolyData*>(nullptr) })
+    {
+      ExpectError(mesh, boundary, true, "The " + kind);
+      ExpectError(mesh, boundary, true, fault);
+    }
+  });
+
+  // Behind a vertex and a line; and strips, though they are refused anyway.
+  auto mesh = MakeMesh();
+  vtkNew<vtkCellArray> cells;
+  SetFaultyCells<vtkTypeInt32Array>(cells, { 0, 3, 0 }, 3, 1);
+  mesh->GetCellData()->Initialize();
+  mesh->SetPolys(cells);
+  ExpectError(mesh, nullptr, true,
+    "The polygons: cell 3 begins at 3 and ends at 0, but offsets must begin with 0, never fall, "
+    "and end with the number of point ids, 3.");
+  mesh = MakeMesh();
+  mesh->SetStrips(cells);
+  ExpectError(mesh, nullptr, true, "The triangle strips: cell 131 begins at 3");
+}
+
 void TestEmptyMeshAndAbort()
 {
   vtkNew<vtkPolyData> empty;
@@ -634,6 +666,7 @@ int TestTrimOutwardTriangles(int, char*[])
   TestExtractedBoundary();
   TestBothWaysAgree();
   TestErrors();
+  TestFaultyCells();
   TestEmptyMeshAndAbort();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
