@@ -194,7 +194,12 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
   });
   if (count > 0 && result.NumberOfOutwardTriangles == count)
   {
-    throw Error("The boundary encloses no triangle of the mesh.");
+    const std::string name =
+      boundary.Count() > 0 ? NameOf(mesh.Points, boundary.Vertices.front()) : std::string();
+    throw Error("The boundary encloses no triangle of the mesh" +
+      (name.empty() ? name : ". Its first ring begins at" + name.substr(name.find(" ("))) +
+      (boundary.Count() > 1 ? "; of rings in each other, what lies between two is enclosed."
+                            : "."));
   }
   if (options.Test == OutwardTest::InwardNormal)
   {

@@ -521,8 +521,11 @@ void TestErrors()
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 7.5, 6 }, { 7, 0 } } }), false, "point 1 (7.5, 6)");
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 9.5, 6 }, { 7, 0 } } }), false,
     "edge from point 0 (0, 0) to point 1 (9.5, 6) leaves the mesh");
-  ExpectError(
-    mesh, MakeRings({ { { 10, 10 }, { 19, 10 }, { 10, 20 } } }), true, "encloses no triangle");
+  ExpectError(mesh, MakeRings({ { { 10, 10 }, { 19, 10 }, { 10, 20 } } }), true,
+    "The boundary encloses no triangle of the mesh. Its first ring begins at (10, 10).");
+  ExpectError(mesh,
+    MakeRings({ { { 1, 1 }, { 4, 1 }, { 1, 5 } }, { { 1, 1 }, { 4, 1 }, { 1, 5 } } }), true,
+    "Its first ring begins at (1, 1); of rings in each other, what lies between two is enclosed.");
   ExpectError(mesh,
     MakeRings({ { { 0.5, 0.5 }, { 5, 1 }, { 4, 5 } }, { { 3, 0.5 }, { 7, 3 }, { 2, 4 } } }), true,
     "crosses its edge from");

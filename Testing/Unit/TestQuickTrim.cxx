@@ -263,6 +263,7 @@ Rings ExpectSameOutline(const Surface& surface, double tolerance)
     EXPECT_TRUE(QuickExtract(surface.List(), options, list, boundary));
     EXPECT_EQ(boundary.GapTolerance, expected.GapTolerance);
     EXPECT_EQ(boundary.IsSurface, expected.IsSurface);
+    EXPECT_EQ(boundary.NumberOfPointsLeftOut, expected.NumberOfPointsLeftOut);
     EXPECT_EQ(boundary.Vertices.Offsets, expected.Vertices.Offsets);
     EXPECT_EQ(boundary.Vertices.Vertices, expected.Vertices.Vertices);
     EXPECT_TRUE(list.Changed.empty() && list.Corners.empty() && list.Inserted.empty());
@@ -285,6 +286,18 @@ bool IsExtracted(const Surface& surface)
 }
 
 } // namespace
+
+TEST(QuickTrim, TakesAHundredRings)
+{
+  Random random(72);
+  const Surface surface = RandomSurface(random, 4000);
+  Boundary boundary;
+  for (int i = 0; i < 100; ++i)
+  {
+    boundary.Add(Star(random, { 0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10) }, 0.045, 3 + i % 20));
+  }
+  ExpectSame(surface, boundary, random);
+}
 
 TEST(QuickTrim, IsTheSameAsTrimmingWithTwinsAlongRingsAnywhere)
 {
