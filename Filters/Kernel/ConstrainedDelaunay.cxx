@@ -251,10 +251,12 @@ private:
       [](const Piece& p, const Piece& q) {
         return p.A != q.A ? p.A < q.A : (p.B != q.B ? p.B < q.B : p.Rank < q.Rank);
       },
-      progress);
-    std::size_t kept = 0;
+      Part(progress, 0.0, 0.9));
+    const Progress joining = Part(progress, 0.9, 1.0);
+    std::size_t kept = 0, done = 0;
     for (const Piece& piece : this->Pieces)
     {
+      ReportStep(joining, done++, this->Pieces.size());
       if (kept > 0 && this->Pieces[kept - 1].A == piece.A && this->Pieces[kept - 1].B == piece.B)
       {
         Piece& same = this->Pieces[kept - 1];
@@ -410,9 +412,10 @@ private:
   void CutAtVertices(const CellGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
   {
     const std::size_t count = this->Vertices.size();
+    Looks looks(progress);
     for (std::size_t v = 0; v < count; ++v)
     {
-      ReportStep(progress, v, count, 1024);
+      looks.Step(v, count);
       const Point2& p = this->Vertices[v].Position;
       std::size_t cell;
       if (!grid.FindCell(p, cell))
@@ -421,6 +424,7 @@ private:
       }
       for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
       {
+        looks.Look();
         const Piece& piece = this->Pieces[*i];
         if (piece.A != static_cast<Index>(v) && piece.B != static_cast<Index>(v) &&
           IsWithin(this->At(piece.A), this->At(piece.B), p))
@@ -444,10 +448,12 @@ private:
         return p.Vertex != q.Vertex ? p.Vertex < q.Vertex
                                     : Orientation(this->At(p.Vertex), end(p), end(q)) == Positive;
       },
-      progress);
+      Part(progress, 0.0, 0.8));
+    const Progress counting = Part(progress, 0.8, 1.0);
     std::int64_t around = 0, alike = 0; // cuts before, of this vertex and of this direction
     for (std::size_t i = 1; i < cuts.size(); ++i)
     {
+      ReportStep(counting, i, cuts.size());
       const bool isSameVertex = cuts[i].Vertex == cuts[i - 1].Vertex;
       const bool isSameLine = isSameVertex &&
         Orientation(this->At(cuts[i].Vertex), end(cuts[i - 1]), end(cuts[i])) == Zero;
@@ -674,9 +680,12 @@ private:
       },
       Part(progress, 0.0, 0.5));
     std::vector<Piece> pieces;
+    const Progress cutting = Part(progress, 0.5, 0.7);
+    Looks looks(cutting);
     auto cut = cuts.begin();
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
     {
+      looks.Step(i, this->Pieces.size());
       Piece piece = this->Pieces[i];
       Index from = piece.A;
       const Index end = piece.B;
@@ -692,6 +701,7 @@ private:
       };
       for (; cut != cuts.end() && cut->Piece == static_cast<Index>(i); ++cut)
       {
+        looks.Look();
         append(cut->Vertex);
       }
       if (piece.Rank == None)
@@ -701,7 +711,7 @@ private:
       append(end);
     }
     this->Pieces = std::move(pieces);
-    this->JoinEqualPieces(Part(progress, 0.5, 1.0));
+    this->JoinEqualPieces(Part(progress, 0.7, 1.0));
   }
 
   /** Pass 3: the input points that are crossings. All others have been found when cutting. */

@@ -5,6 +5,7 @@
 #include "Predicates.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 namespace elevation
@@ -54,6 +55,64 @@ void Fans::ReplaceBorder(Index vertex, Index before, Index after)
   {
     std::replace(others->second.begin(), others->second.end(), before, after);
   }
+}
+
+Index Fans::Toward(const Mesh& mesh, Index from, Index to)
+{
+  const Point2& a = mesh.PointOf(from);
+  const Point2& b = mesh.PointOf(to);
+  if (a == b || this->Others.count(from) > 0)
+  {
+    return None;
+  }
+  // Counter-clockwise from a half-edge on.
+  const auto look = [&](Index first, Index most) {
+    Sign side = Orientation(a, b, mesh.PointOf(mesh.Destination(first)));
+    Index h = first;
+    do
+    {
+      const Sign next = Orientation(a, b, mesh.PointOf(mesh.Apex(h)));
+      if (side != Positive && next == Positive)
+      {
+        return h;
+      }
+      side = next;
+      h = mesh.Twin(Mesh::Previous(h));
+    } while (h != Mesh::Border && h != first && --most > 0);
+    return None;
+  };
+  std::vector<Spoke>& spokes = this->Hubs[from];
+  const auto isBefore = [&](const Spoke& s, const Spoke& t) {
+    const Point2 &p = mesh.PointOf(s.Vertex), &q = mesh.PointOf(t.Vertex);
+    const bool isUp = IsLower(a, p);
+    return isUp != IsLower(a, q) ? isUp : Orientation(a, p, q) == Positive;
+  };
+  const auto lookFromSpoke = [&](Index most) {
+    auto spoke = std::upper_bound(spokes.begin(), spokes.end(), Spoke{ to, None }, isBefore);
+    for (Index tried = 0; tried < Few && !spokes.empty(); ++tried)
+    {
+      spoke = std::prev(spoke == spokes.begin() ? spokes.end() : spoke);
+      if (mesh.Origin(spoke->HalfEdge) == from)
+      {
+        return look(spoke->HalfEdge, most);
+      }
+    }
+    return None;
+  };
+  Index found = lookFromSpoke(Few);
+  if (found == None)
+  {
+    // Too many have come or gone.
+    spokes.clear();
+    this->Visit(mesh, from, [&](Index h) {
+      spokes.push_back({ mesh.Destination(h), h });
+      return true;
+    });
+    std::rotate(
+      spokes.begin(), std::is_sorted_until(spokes.begin(), spokes.end(), isBefore), spokes.end());
+    found = lookFromSpoke(mesh.NumberOfHalfEdges());
+  }
+  return found;
 }
 
 namespace
@@ -273,7 +332,7 @@ private:
     const Point2& a = mesh.PointOf(from);
     const Point2& b = mesh.PointOf(segment.B);
     Index crossed = None;
-    this->VertexFans.Visit(mesh, from, [&](Index h) {
+    this->VertexFans.VisitToward(mesh, from, segment.B, [&](Index h) {
       if (Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
         Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive)
       {
@@ -468,7 +527,7 @@ private:
 
 } // namespace
 
-SegmentStep StepAlong(const Mesh& mesh, const Fans& fans, Index from, Index to)
+SegmentStep StepAlong(const Mesh& mesh, Fans& fans, Index from, Index to)
 {
   const Point2& a = mesh.PointOf(from);
   const Point2& b = mesh.PointOf(to);
@@ -481,7 +540,7 @@ SegmentStep StepAlong(const Mesh& mesh, const Fans& fans, Index from, Index to)
       step = { h, vertex };
     }
   };
-  fans.Visit(mesh, from, [&](Index h) {
+  fans.VisitToward(mesh, from, to, [&](Index h) {
     check(h, mesh.Destination(h));
     const Index last = Mesh::Previous(h);
     if (step.HalfEdge == None && mesh.IsBorder(last))

@@ -84,6 +84,33 @@ public:
     }
   }
 
+  /**
+   * The same for a visitor that waits for the half-edge along which, or in the triangle of which,
+   * the straight way from the vertex to another one begins: where there are many it is searched by
+   * direction, unless fans are pinched. Some may be visited twice.
+   */
+  template <typename Visitor>
+  void VisitToward(const Mesh& mesh, Index vertex, Index to, Visitor&& visit)
+  {
+    Index left = Few;
+    bool goesOn = true;
+    this->Visit(mesh, vertex, [&](Index h) {
+      goesOn = visit(h);
+      return goesOn && --left > 0;
+    });
+    if (!goesOn || left > 0)
+    {
+      return;
+    }
+    const Index h = this->Toward(mesh, vertex, to);
+    if (h != None)
+    {
+      visit(h);
+      return;
+    }
+    this->Visit(mesh, vertex, visit);
+  }
+
   /** Tells that half-edge h now leaves its origin, in place of a half-edge that may have gone. */
   void Replace(const Mesh& mesh, Index h)
   {
@@ -98,6 +125,11 @@ public:
   void ReplaceBorder(Index vertex, Index before, Index after);
 
 private:
+  static constexpr Index Few = 32;
+
+  /** What VisitToward() waits for; None: not found. */
+  Index Toward(const Mesh& mesh, Index from, Index to);
+
   template <typename Visitor>
   static bool VisitFan(const Mesh& mesh, Index first, Visitor& visit)
   {
@@ -113,12 +145,21 @@ private:
     return true;
   }
 
+  /** An edge of a vertex as it once was: the half-edge may have gone. */
+  struct Spoke
+  {
+    Index Vertex; ///< at its other end
+    Index HalfEdge;
+  };
+
   // A half-edge that leaves the vertex; for a vertex at the border the one that is a border, from
   // which the whole fan is reached counter-clockwise.
   std::vector<Index> First;
   std::vector<char> OnBorder;
   // The further fans of pinched vertices, each by its outgoing border.
   std::unordered_map<Index, std::vector<Index>> Others;
+  // Of vertices with many triangles, the edges by direction: from the right, counter-clockwise.
+  std::unordered_map<Index, std::vector<Spoke>> Hubs;
 };
 
 /** An edge on the way along a segment: a half-edge that is on it, and the vertex it leads to. */
@@ -130,9 +171,9 @@ struct SegmentStep
 
 /**
  * The edge at vertex @a from that lies on the straight way to vertex @a to and does not go beyond
- * it. Exact. Cost: the triangles around @a from.
+ * it. Exact. Cost: the triangles around @a from, or a search where these are many.
  */
-SegmentStep StepAlong(const Mesh& mesh, const Fans& fans, Index from, Index to);
+SegmentStep StepAlong(const Mesh& mesh, Fans& fans, Index from, Index to);
 
 /**
  * Makes every segment an edge of the mesh, or a chain of edges where it runs exactly through other

@@ -2,16 +2,107 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Crossings.h"
 
+#include "Boundary.h"
 #include "Predicates.h"
 #include "Reach.h"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <set>
+#include <unordered_map>
 
 namespace elevation
 {
 
 namespace
 {
+
+/**
+ * Whether any segments cross. A sweep from the lowest point to the highest keeps those that it is
+ * on from the left to the right [Shamos & Hoey 1976]. Just below the lowest place where some cross,
+ * all that pass through it or end there are neighbours; when those that end are gone, two that
+ * cross are beside each other.
+ */
+class CrossingSweep
+{
+public:
+  explicit CrossingSweep(const std::vector<Ends>& segments)
+  {
+    for (const Ends& s : segments)
+    {
+      if (s[0] != s[1])
+      {
+        this->Segments.push_back(IsLower(s[0], s[1]) ? s : Ends{ { s[1], s[0] } });
+      }
+    }
+  }
+
+  bool FindsCrossing(const Progress& progress)
+  {
+    std::vector<Ends>& all = this->Segments;
+    Sort(
+      all.begin(), all.end(),
+      [](const Ends& s, const Ends& t) {
+        return s[0] != t[0] ? IsLower(s[0], t[0]) : IsLower(s[1], t[1]);
+      },
+      Part(progress, 0.0, 0.3));
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    std::vector<Index> byEnd(all.size());
+    std::iota(byEnd.begin(), byEnd.end(), 0);
+    Sort(
+      byEnd.begin(), byEnd.end(), [&](Index s, Index t) { return IsLower(all[s][1], all[t][1]); },
+      Part(progress, 0.3, 0.5));
+
+    const Progress sweeping = Part(progress, 0.5, 1.0);
+    const auto isBefore = [this](Index s, Index t) { return this->IsLeftOf(s, t); };
+    std::set<Index, decltype(isBefore)> across(isBefore);
+    std::vector<decltype(across.begin())> places(all.size());
+    const auto isCrossed = [&](decltype(across.begin()) s, decltype(across.begin()) t) {
+      return s != across.end() && t != across.end() && Cross(all[*s], all[*t]);
+    };
+    const auto before = [&](decltype(across.begin()) s) {
+      return s == across.begin() ? across.end() : std::prev(s);
+    };
+    auto ending = byEnd.begin();
+    for (std::size_t i = 0; i <= all.size(); ++i)
+    {
+      ReportStep(sweeping, i, all.size() + 1, 1024);
+      // First those that end before it begins.
+      for (; ending != byEnd.end() && (i == all.size() || !IsLower(all[i][0], all[*ending][1]));
+           ++ending)
+      {
+        const auto place = places[*ending];
+        if (isCrossed(before(place), std::next(place)))
+        {
+          return true;
+        }
+        across.erase(place);
+      }
+      if (i < all.size())
+      {
+        const auto place = places[i] = across.insert(static_cast<Index>(i)).first;
+        if (isCrossed(before(place), place) || isCrossed(place, std::next(place)))
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+private:
+  /** Of two that the sweep is on; of two on one line the first. */
+  bool IsLeftOf(Index s, Index t) const
+  {
+    const Ends &first = this->Segments[std::min(s, t)], &second = this->Segments[std::max(s, t)];
+    Sign side = second[0] == first[0] ? Zero : Orientation(first[0], first[1], second[0]);
+    side = side == Zero ? Orientation(first[0], first[1], second[1]) : side;
+    return side == Zero ? s < t : (side == Positive) == (s > t);
+  }
+
+  std::vector<Ends> Segments; ///< from their lower ends, which rise
+};
 
 /**
  * The rings as walks from place to place, cut wherever a point of one lies on an edge. So two steps
@@ -31,23 +122,51 @@ public:
       Index Point;
     };
     std::vector<Cut> cuts;
+    // Where a cell holds very many, a place of many points is looked at once.
+    constexpr std::ptrdiff_t many = 64;
+    std::unordered_map<Point2, std::vector<Index>, HashOfPoint> known;
+    std::vector<Index> through;
+    const Progress cutting = Part(progress, 0.0, 0.5);
+    Looks looks(cutting);
     for (std::size_t i = 0; i < edges.size(); ++i)
     {
-      ReportStep(progress, i, edges.size(), 1024);
+      looks.Step(i, edges.size());
       const Point2& p = edges[i][0];
-      grid.Visit(p, [&](Index edge) {
-        const Ends& ends = edges[edge];
+      std::size_t cell = 0;
+      grid.FindCell(p, cell); // there is one
+      through.clear();
+      bool isNew = true;
+      std::vector<Index>* edgesHere = &through;
+      if (grid.End(cell) - grid.Begin(cell) > many)
+      {
+        const auto place = known.try_emplace(p);
+        edgesHere = &place.first->second;
+        isNew = place.second;
+      }
+      for (const Index* edge = grid.Begin(cell); isNew && edge < grid.End(cell); ++edge)
+      {
+        looks.Look();
+        const Ends& ends = edges[*edge];
         if (IsWithin(ends, p) && Orientation(ends[0], ends[1], p) == Zero)
         {
-          cuts.push_back({ static_cast<std::size_t>(edge), rings.Vertices[i] });
+          edgesHere->push_back(*edge);
         }
-      });
+      }
+      for (const Index edge : *edgesHere)
+      {
+        looks.Look();
+        cuts.push_back({ static_cast<std::size_t>(edge), rings.Vertices[i] });
+      }
     }
-    std::sort(cuts.begin(), cuts.end(), [&](const Cut& p, const Cut& q) {
-      const Ends& edge = edges[p.Edge];
-      return p.Edge != q.Edge ? p.Edge < q.Edge
-                              : IsBefore(edge[0], edge[1], points[p.Point], points[q.Point]);
-    });
+    Sort(
+      cuts.begin(), cuts.end(),
+      [&](const Cut& p, const Cut& q) {
+        const Ends& edge = edges[p.Edge];
+        return p.Edge != q.Edge ? p.Edge < q.Edge
+                                : IsBefore(edge[0], edge[1], points[p.Point], points[q.Point]);
+      },
+      Part(progress, 0.5, 0.9));
+    const Progress walking = Part(progress, 0.9, 1.0);
     auto cut = cuts.begin();
     for (Index ring = 0; ring < rings.Count(); ++ring)
     {
@@ -61,6 +180,7 @@ public:
       };
       for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
       {
+        ReportStep(walking, i, edges.size(), 256);
         append(rings.Vertices[i]);
         for (; cut != cuts.end() && cut->Edge == static_cast<std::size_t>(i); ++cut)
         {
@@ -111,14 +231,15 @@ public:
       },
       Part(progress, 0.0, 0.5));
     const Progress looking = Part(progress, 0.5, 1.0);
+    Looks looks(looking);
     for (std::size_t i = 0, end = 0; i < order.size(); i = end)
     {
-      ReportStep(looking, i, order.size(), 1024);
+      looks.Step(i, order.size());
       while (end < order.size() && this->At(order[end]) == this->At(order[i]))
       {
         ++end;
       }
-      if (end > i + 1 && this->FindCrossingAt(&order[i], &order[0] + end, crossing))
+      if (end > i + 1 && this->FindCrossingAt(&order[i], &order[0] + end, crossing, looks))
       {
         return true;
       }
@@ -143,6 +264,7 @@ private:
     Index Node;
     int Way;
     Index Direction; ///< a number that all in this direction have, increasing counter-clockwise
+    Index Other;     ///< the direction of the other way
   };
 
   const Point2& At(Index node) const { return this->Nodes[node].Position; }
@@ -166,24 +288,25 @@ private:
     }
   }
 
-  bool FindCrossingAt(const Index* begin, const Index* end, Meeting& crossing) const
+  bool FindCrossingAt(const Index* begin, const Index* end, Meeting& crossing, Looks& looks) const
   {
     // All strands here, around the place.
     const Point2& at = this->At(*begin);
     std::vector<Strand> strands;
     for (const Index* node = begin; node < end; ++node)
     {
-      strands.push_back({ *node, Before, 0 });
-      strands.push_back({ *node, After, 0 });
+      strands.push_back({ *node, Before, 0, 0 });
+      strands.push_back({ *node, After, 0, 0 });
     }
     const auto to = [&](const Strand& s) { return this->At(this->Step(s.Node, s.Way)); };
     std::sort(strands.begin(), strands.end(), [&](const Strand& s, const Strand& t) {
+      looks.Look();
       const bool isUp = IsLower(at, to(s));
       if (isUp != IsLower(at, to(t)))
       {
         return isUp;
       }
-      const Sign turn = Orientation(at, to(s), to(t));
+      const Sign turn = to(s) == to(t) ? Zero : Orientation(at, to(s), to(t));
       return turn != Zero ? turn == Positive : s.Node < t.Node;
     });
     // From each node here: the directions of both its strands.
@@ -228,19 +351,41 @@ private:
       open.push_back(span);
     }
 
-    // Walks that go on together from here, each pair along the one that comes first.
-    for (std::size_t i = 0; i < strands.size(); ++i)
+    // Walks that go on together from here.
+    for (Strand& strand : strands)
     {
-      for (std::size_t j = i + 1;
-           j < strands.size() && strands[j].Direction == strands[i].Direction; ++j)
+      strand.Other = passageOf(strand.Node)[Before + After - strand.Way];
+    }
+    for (auto first = strands.begin(), last = first; first != strands.end(); first = last)
+    {
+      last = std::find_if(
+        first, strands.end(), [&](const Strand& s) { return s.Direction != first->Direction; });
+      constexpr std::ptrdiff_t many = 8;
+      if (!(last - first > many && this->KeepSides({ first, last }, looks)) &&
+        this->FindCrossingAlong(&*first, &*first + (last - first), crossing, looks))
       {
-        const bool isFirst = strands[i].Node < strands[j].Node;
-        const Strand& p = isFirst ? strands[i] : strands[j];
-        const Strand& q = isFirst ? strands[j] : strands[i];
-        if (p.Way == After &&
-          passageOf(p.Node)[Before] != passageOf(q.Node)[After + Before - q.Way] &&
-          this->ChangeSides(p.Node, q.Node, q.Way, crossing))
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /** Of walks that go on together: looks at each pair from where the first one comes from. */
+  bool FindCrossingAlong(
+    const Strand* begin, const Strand* end, Meeting& crossing, Looks& looks) const
+  {
+    for (const Strand* p = begin; p < end; ++p)
+    {
+      for (const Strand* q = p + 1; q < end && p->Way == After; ++q)
+      {
+        looks.Look();
+        const Node &first = this->Nodes[p->Node], &second = this->Nodes[q->Node];
+        const bool isOfOneRing = first.Ring == second.Ring;
+        Index last = None;
+        if (p->Other != q->Other && !(isOfOneRing && q->Way == Before) &&
+          this->ChangeSides(*p, *q, looks, last))
         {
+          crossing = { first.Point, this->Nodes[last].Point, isOfOneRing };
           return true;
         }
       }
@@ -248,23 +393,46 @@ private:
     return false;
   }
 
-  /** Whether walks that come together, go on, p after and q in its way, and part do cross. */
-  bool ChangeSides(Index p, Index q, int way, Meeting& crossing) const
+  /**
+   * Whether none of many walks that go on together changes sides with another, as far as that is
+   * told by those that come from beside each other: if none of these do, none of all do.
+   */
+  bool KeepSides(std::vector<Strand> together, Looks& looks) const
   {
-    crossing = { this->Nodes[p].Point, None, this->Nodes[p].Ring == this->Nodes[q].Ring };
-    if (crossing.IsOfOneRing && way == Before)
+    std::sort(together.begin(), together.end(), [](const Strand& s, const Strand& t) {
+      const bool isAfter = s.Other > s.Direction;
+      return isAfter != (t.Other > t.Direction) ? isAfter : s.Other < t.Other;
+    });
+    const bool areAlike = together.front().Other == together.back().Other;
+    for (std::size_t i = 1; i < together.size() && !areAlike; ++i)
     {
-      return false;
+      const Strand &p = together[i - 1], &q = together[i];
+      Index last = None;
+      if (p.Other == q.Other || this->ChangeSides(p, q, looks, last))
+      {
+        return false;
+      }
     }
-    const bool fromLeft = this->IsLeftOf(p, this->At(this->Step(q, After + Before - way)));
+    return true;
+  }
+
+  /**
+   * Whether walks that come together and go on so do cross.
+   * @param[out] last  the node of p where they part
+   */
+  bool ChangeSides(const Strand& p, const Strand& q, Looks& looks, Index& last) const
+  {
+    last = p.Node;
+    Index other = q.Node;
+    const bool fromLeft = this->IsLeftOf(last, this->At(this->Step(other, After + Before - q.Way)));
     // It does end: going on and on, both would come to where they were not together yet.
     do
     {
-      p = this->Step(p, After);
-      q = this->Step(q, way);
-    } while (this->At(this->Step(p, After)) == this->At(this->Step(q, way)));
-    crossing.Last = this->Nodes[p].Point;
-    return fromLeft != this->IsLeftOf(p, this->At(this->Step(q, way)));
+      looks.Look();
+      last = this->Step(last, p.Way);
+      other = this->Step(other, q.Way);
+    } while (this->At(this->Step(last, p.Way)) == this->At(this->Step(other, q.Way)));
+    return fromLeft != this->IsLeftOf(last, this->At(this->Step(other, q.Way)));
   }
 
   /** Whether the way to a point, which is not that of the walk, is on the left of the walk. */
@@ -287,8 +455,42 @@ CellGrid GridOf(const std::vector<Ends>& segments)
   return CellGrid(segments.size(), [&](std::size_t i) { return segments[i]; });
 }
 
+void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
+  const Progress& progress, const std::function<void(std::size_t, std::size_t)>& visit)
+{
+  const std::size_t many = 64 * segments.size();
+  bool isSwept = false;
+  Looks looks(progress);
+  for (std::size_t i = 0; i < segments.size(); ++i)
+  {
+    looks.Step(i, segments.size());
+    if (looks.Count() > many && !isSwept)
+    {
+      const double done = static_cast<double>(i) / static_cast<double>(segments.size());
+      if (!CrossingSweep(segments).FindsCrossing(Part(progress, done, done)))
+      {
+        return;
+      }
+      isSwept = true;
+    }
+    grid.Visit(segments[i], [&](Index other) {
+      looks.Look();
+      const std::size_t j = static_cast<std::size_t>(other);
+      if (j > i && Cross(segments[i], segments[j]))
+      {
+        visit(i, j);
+      }
+    });
+  }
+}
+
 bool Cross(const Ends& s, const Ends& t)
 {
+  // With an end in common, which some orientation would take long to find out.
+  if (s[0] == t[0] || s[0] == t[1] || s[1] == t[0] || s[1] == t[1])
+  {
+    return false;
+  }
   return Orientation(s[0], s[1], t[0]) * Orientation(s[0], s[1], t[1]) < 0 &&
     Orientation(t[0], t[1], s[0]) * Orientation(t[0], t[1], s[1]) < 0;
 }
@@ -321,18 +523,10 @@ void CheckCrossings(const std::vector<Point2>& points, const Rings& rings, const
     }
   }
   const CellGrid grid = GridOf(edges);
-  for (std::size_t i = 0; i < edges.size(); ++i)
-  {
-    ReportStep(progress, i, 2 * edges.size(), 1024);
-    grid.Visit(edges[i], [&](Index other) {
-      const std::size_t j = static_cast<std::size_t>(other);
-      if (j > i && Cross(edges[i], edges[j]))
-      {
-        throw Error("The boundary's edge " + NameOfEdge(points, rings, i) + " crosses its edge " +
-          NameOfEdge(points, rings, j) + ". Rings may touch and nest, but not cross.");
-      }
-    });
-  }
+  VisitCrossings(edges, grid, Part(progress, 0.0, 0.5), [&](std::size_t i, std::size_t j) {
+    throw Error("The boundary's edge " + NameOfEdge(points, rings, i) + " crosses its edge " +
+      NameOfEdge(points, rings, j) + ". Rings may touch and nest, but not cross.");
+  });
 
   const RingWalks walks(points, rings, edges, grid, Part(progress, 0.5, 0.75));
   RingWalks::Meeting crossing;

@@ -7,7 +7,10 @@
  * one ring runs along in both directions, as a bridge to a hole, cancels out: nothing to cross.
  *
  * Exact. Cost: linear in the edges and the pairs of them that are near each other, and a sort of the
- * points.
+ * points; n log n edges where very many are near each other, as around a point that they share, or
+ * the same one many times, but for the pairs of rings that run together from different sides.
+ *
+ * [Shamos & Hoey 1976] Geometric intersection problems.
  */
 #ifndef elevation_Crossings_h
 #define elevation_Crossings_h
@@ -16,6 +19,7 @@
 #include "Mesh.h"
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +30,14 @@ namespace elevation
 using Ends = std::array<Point2, 2>;
 
 CellGrid GridOf(const std::vector<Ends>& segments);
+
+/**
+ * Calls visit(i, j) for segments i < j that cross, by increasing i, and for each in the order of
+ * the grid of all of them; perhaps repeatedly. Where very many are near each other, a sweep tells
+ * before whether there are any.
+ */
+void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
+  const Progress& progress, const std::function<void(std::size_t, std::size_t)>& visit);
 
 /** Whether each of two segments has the ends of the other on its two sides. */
 bool Cross(const Ends& s, const Ends& t);

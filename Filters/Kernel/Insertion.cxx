@@ -103,7 +103,8 @@ public:
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      isCut = this->CutAtEachOther() || this->CutAtBorder(Part(progress, 1.0, 1.0));
+      const Progress again = Part(progress, 1.0, 1.0);
+      isCut = this->CutAtEachOther(again) || this->CutAtBorder(again);
     }
     this->FinishRings();
   }
@@ -592,27 +593,29 @@ private:
    * Pieces that moved may cross others that run along them within rounding: leads them through an
    * end of these. @return whether there were such
    */
-  bool CutAtEachOther()
+  bool CutAtEachOther(const Progress& progress)
   {
     const std::vector<Ends> pieces = this->EndsOfPieces();
     const CellGrid grid = GridOf(pieces);
     this->OnTheWay.clear();
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-    {
+    std::size_t last = 0; // piece that is cut
+    const auto cut = [&](std::size_t i, std::size_t j) {
       const Units units = UnitsOf(pieces[i][0], pieces[i][1]);
-      grid.Visit(pieces[i], [&](Index j) {
-        for (const int end : { 0, 1 })
+      for (const int end : { 0, 1 })
+      {
+        if (IsInReach(pieces[i][0], pieces[i][1], units, Reach, pieces[j][end]))
         {
-          if (Cross(pieces[i], pieces[j]) &&
-            IsInReach(pieces[i][0], pieces[i][1], units, Reach, pieces[j][end]))
-          {
-            this->OnTheWay.push_back(
-              { i, this->Pieces[end == 0 ? j : this->NextOf(j)].Vertex, true, true });
-            this->EdgeOfCut = this->Pieces[i].Edge;
-          }
+          const Index at = end == 0 ? static_cast<Index>(j) : this->NextOf(static_cast<Index>(j));
+          this->OnTheWay.push_back({ i, this->Pieces[at].Vertex, true, true });
+          last = std::max(last, i);
+          this->EdgeOfCut = this->Pieces[last].Edge;
         }
-      });
-    }
+      }
+    };
+    VisitCrossings(pieces, grid, progress, [&](std::size_t i, std::size_t j) {
+      cut(i, j);
+      cut(j, i);
+    });
     this->CutPieces(pieces);
     return !this->OnTheWay.empty();
   }

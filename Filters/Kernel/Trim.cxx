@@ -16,15 +16,18 @@ namespace
 {
 
 /** Whether the way from a vertex to another begins in a triangle or along an edge. */
-bool BeginsInside(const Mesh& mesh, const Fans& fans, Index from, Index to)
+bool BeginsInside(const Mesh& mesh, Fans& fans, Index from, Index to)
 {
-  bool isInside = StepAlong(mesh, fans, from, to).HalfEdge != None;
+  if (StepAlong(mesh, fans, from, to).HalfEdge != None)
+  {
+    return true;
+  }
+  bool isInside = false;
   const Point2& a = mesh.PointOf(from);
   const Point2& b = mesh.PointOf(to);
-  fans.Visit(mesh, from, [&](Index h) {
-    isInside = isInside ||
-      (Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
-        Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive);
+  fans.VisitToward(mesh, from, to, [&](Index h) {
+    isInside = Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
+      Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive;
     return !isInside;
   });
   return isInside;
@@ -34,7 +37,8 @@ bool BeginsInside(const Mesh& mesh, const Fans& fans, Index from, Index to)
  * The edges of rings that lie within the mesh, in an order that depends on their places alone:
  * where the mesh is not Delaunay, the order in which they are recovered matters.
  */
-std::vector<Segment> SegmentsOf(const Mesh& mesh, const Fans& fans, const Rings& rings)
+std::vector<Segment> SegmentsOf(
+  const Mesh& mesh, Fans& fans, const Rings& rings, const Progress& progress)
 {
   std::vector<Segment> segments;
   segments.reserve(rings.Vertices.size());
@@ -44,6 +48,7 @@ std::vector<Segment> SegmentsOf(const Mesh& mesh, const Fans& fans, const Rings&
     const Index* vertices = rings.Begin(ring);
     for (Index i = 0; i < size; ++i)
     {
+      ReportStep(progress, rings.Offsets[ring] + i, 2 * rings.Vertices.size(), 256);
       const Segment segment{ vertices[i], vertices[i + 1 == size ? 0 : i + 1] };
       const bool isInside = BeginsInside(mesh, fans, segment.A, segment.B);
       if (isInside != BeginsInside(mesh, fans, segment.B, segment.A))
@@ -61,25 +66,28 @@ std::vector<Segment> SegmentsOf(const Mesh& mesh, const Fans& fans, const Rings&
       }
     }
   }
-  std::sort(segments.begin(), segments.end(), [&mesh](const Segment& s, const Segment& t) {
-    const Point2& a = mesh.PointOf(s.A);
-    const Point2& b = mesh.PointOf(t.A);
-    return IsLower(a, b) || (a == b && IsLower(mesh.PointOf(s.B), mesh.PointOf(t.B)));
-  });
+  Sort(
+    segments.begin(), segments.end(),
+    [&mesh](const Segment& s, const Segment& t) {
+      const Point2& a = mesh.PointOf(s.A);
+      const Point2& b = mesh.PointOf(t.A);
+      return IsLower(a, b) || (a == b && IsLower(mesh.PointOf(s.B), mesh.PointOf(t.B)));
+    },
+    Part(progress, 0.5, 1.0));
   return segments;
 }
 
 /**
  * Sets one flag a half-edge: whether the segments run along its edge an odd number of times.
  */
-void MarkEdges(const Mesh& mesh, const Fans& fans, const std::vector<Segment>& segments,
+void MarkEdges(const Mesh& mesh, Fans& fans, const std::vector<Segment>& segments,
   std::vector<char>& isOdd, const Progress& progress)
 {
   isOdd.assign(mesh.Triangles.size(), 0);
   std::size_t done = 0;
   for (const Segment& segment : segments)
   {
-    ReportStep(progress, done++, segments.size());
+    ReportStep(progress, done++, segments.size(), 256);
     Index vertex = segment.A;
     while (vertex != segment.B)
     {
@@ -163,8 +171,9 @@ TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
   const Index count = mesh.NumberOfTriangles();
   TrimResult result;
   Report(options.Monitor, 0.0);
-  Fans fans(mesh, Part(options.Monitor, 0.0, 0.4));
-  const std::vector<Segment> segments = SegmentsOf(mesh, fans, boundary);
+  Fans fans(mesh, Part(options.Monitor, 0.0, 0.35));
+  const std::vector<Segment> segments =
+    SegmentsOf(mesh, fans, boundary, Part(options.Monitor, 0.35, 0.4));
   std::vector<char> flags;
   if (options.RecoverBoundary)
   {

@@ -145,6 +145,39 @@ inline void ReportStep(
 }
 
 /**
+ * Reports in a loop of which single steps may take long: at one step in a thousand, and at one in
+ * so many of all things that the steps look at.
+ */
+class Looks
+{
+public:
+  /** Keeps a reference to the progress. */
+  explicit Looks(const Progress& progress)
+    : Monitor(progress)
+  {
+  }
+  void Step(std::size_t done, std::size_t count)
+  {
+    this->Done = done;
+    this->OfAll = count;
+    ReportStep(this->Monitor, done, count, 1024);
+  }
+  void Look()
+  {
+    if (++this->Number % 65536 == 0)
+    {
+      ReportStep(this->Monitor, this->Done, this->OfAll, 1);
+    }
+  }
+  std::size_t Count() const { return this->Number; }
+
+private:
+  const Progress& Monitor;
+  std::size_t Done = 0, OfAll = 1;
+  std::size_t Number = 0;
+};
+
+/**
  * The sub-interval [begin, end] of a progress, for a step of a longer computation. Keeps a
  * reference to the progress.
  */

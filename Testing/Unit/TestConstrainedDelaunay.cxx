@@ -81,7 +81,7 @@ Cloud AllPoints(const Cloud& cloud, const ConstrainedTriangulation& constrained)
 std::vector<char> MarkPieces(const Mesh& mesh, const std::vector<Segment>& pieces)
 {
   std::vector<char> constrained(mesh.Triangles.size(), 0);
-  const Fans fans(mesh);
+  Fans fans(mesh);
   for (const Segment& piece : pieces)
   {
     for (Index v = piece.A; v != piece.B;)

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -386,4 +387,45 @@ TEST(Constraints, StopWhenAsked)
   std::vector<char> constrained;
   EXPECT_THROW(
     RecoverSegments(mesh, { { 3, 1 } }, constrained, [](double) { return false; }), Aborted);
+}
+
+namespace
+{
+/** Segments from one point to others around it, which other points do not let be edges yet. */
+Mesh Star(int count, Random& random, std::vector<Segment>& segments)
+{
+  std::vector<Point2> points = ScatteredPoints(random, count);
+  const Index hub = static_cast<Index>(points.size());
+  points.push_back({ 0.5, 0.5 });
+  for (int i = 0; i < count; ++i)
+  {
+    const double angle = 6.283185307179586 * random.Unit(), radius = 0.3 + 0.1 * random.Unit();
+    const Segment spoke{ hub, static_cast<Index>(points.size()) };
+    points.push_back({ 0.5 + radius * std::cos(angle), 0.5 + radius * std::sin(angle) });
+    segments.push_back(random.Below(2) ? spoke : Segment{ spoke.B, spoke.A });
+  }
+  return Delaunay(points);
+}
+} // namespace
+
+TEST(Constraints, ThatMeetInOnePointBecomeEdges)
+{
+  Random random(19);
+  std::vector<Segment> segments;
+  Mesh mesh = Star(1000, random, segments);
+  std::vector<char> constrained;
+  EXPECT_GT(RecoverSegments(mesh, segments, constrained), 700);
+  ExpectConstrainedDelaunay(mesh, constrained);
+  ExpectEdgesOf(mesh, segments, constrained);
+}
+
+TEST(Constraints, ThatMeetInOnePointTakeReasonableTime)
+{
+  Random random(20);
+  std::vector<Segment> segments;
+  Mesh mesh = Star(30000, random, segments);
+  std::vector<char> constrained;
+  const testing_time::Stopwatch stopwatch;
+  EXPECT_GT(RecoverSegments(mesh, segments, constrained), 20000);
+  EXPECT_LT(stopwatch.Seconds(), 1.0);
 }

@@ -3,7 +3,9 @@
 #include "DelaunayMesh.h"
 #include "Location.h"
 #include "PointSets.h"
+#include "Silence.h"
 
+#include "Kernel/Crossings.h"
 #include "Kernel/Insertion.h"
 #include "Kernel/Predicates.h"
 #include "Kernel/Trim.h"
@@ -431,7 +433,7 @@ TEST(InsertRings, KeepsWhatIsBothInTheRingsAndInTheMesh)
   // Rings that reach beyond a mesh of random points, with and without a hole.
   Random random(33);
   const std::vector<Point2> square{ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } };
-  for (int round = 0; round < 300; ++round)
+  for (int round = 0; round < 150; ++round)
   {
     std::vector<Point2> points = ScatteredPoints(random, 30 + random.Below(400));
     points.insert(points.end(), square.begin(), square.end());
@@ -687,6 +689,41 @@ TEST(InsertRings, RefusesRingsThatCrossAlongEdges)
   }
 }
 
+TEST(InsertRings, RefusesOneOfManyRingsThatCrossesAlongEdges)
+{
+  // All run along two edges, between them farther and farther out to the left and to the right.
+  Mesh mesh;
+  mesh.Points = { { -99, -99 }, { 99, -99 }, { 99, 99 }, { -99, 99 } };
+  mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
+  mesh.ConnectTwins();
+  constexpr int count = 20;
+  const auto messageOf = [&](int left, int right, bool isReversed) {
+    Boundary boundary;
+    for (int i = 0; i <= count; ++i)
+    {
+      const double toLeft = i == 0 ? left : 2 * i, toRight = i == 0 ? right : 2 * i;
+      boundary.Add({ { 0, 0 }, { 1, 0 }, { 1 + toRight, 1 }, { 1, 2 }, { 0, 2 }, { -toLeft, 1 } });
+    }
+    if (isReversed)
+    {
+      std::reverse(boundary.Lines.Vertices.begin(), boundary.Lines.Vertices.end());
+    }
+    return MessageOf(mesh, boundary);
+  };
+  for (const bool isReversed : { false, true })
+  {
+    for (int at = 1; at < 2 * count + 2; ++at)
+    {
+      EXPECT_EQ(messageOf(at, at, isReversed), "no error");
+      if (at > 2)
+      {
+        EXPECT_HAS(messageOf(at, at % 2, isReversed), "cross where they run together from");
+        EXPECT_HAS(messageOf(at % 2, at, isReversed), "cross where they run together from");
+      }
+    }
+  }
+}
+
 TEST(InsertRings, RefusesARingThatCrossesItself)
 {
   Mesh mesh;
@@ -837,6 +874,134 @@ TEST(InsertRings, TakesManyPointsInOneTriangleInReasonableTime)
   }
   EXPECT_NEAR(kept, 3.141592653589793, 1e-8);
   EXPECT_EQ(FindingsOf(mesh), "");
+}
+
+namespace
+{
+constexpr double FullTurn = 6.283185307179586;
+
+/** Triangles that have a corner in common, beside each other with gaps between. */
+Boundary Petals(int count, const Point2& hub, double radius)
+{
+  Boundary boundary;
+  for (int i = 0; i < count; ++i)
+  {
+    const double first = FullTurn * i / count, last = FullTurn * (i + 0.4) / count;
+    boundary.Add({ hub, { hub.X + radius * std::cos(first), hub.Y + radius * std::sin(first) },
+      { hub.X + radius * std::cos(last), hub.Y + radius * std::sin(last) } });
+  }
+  return boundary;
+}
+
+/** The area kept of a square of side 1 with 2,000 points in it, without long silence or effort. */
+double AreaKept(const Boundary& boundary)
+{
+  Random random(5);
+  std::vector<Point2> points = ScatteredPoints(random, 2000);
+  points.insert(points.end(), { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
+  Mesh mesh = Delaunay(points);
+  testing_time::Silence silence;
+  const testing_time::Stopwatch stopwatch;
+  const InsertedRings rings =
+    InsertRings(mesh, boundary.Points, boundary.Lines, true, silence.Monitor());
+  TrimOptions options;
+  options.Monitor = silence.Monitor();
+  const TrimResult trimmed = Trim(mesh, rings.Vertices, options);
+  EXPECT_LT(stopwatch.Seconds(), 1.0);
+  EXPECT_LT(silence.Longest, 0.2);
+  EXPECT_EQ(FindingsOf(mesh), "");
+  double kept = 0.0;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    kept += trimmed.IsOutward[t] ? 0.0 : 0.5 * testing_surfaces::TwiceArea(mesh, t);
+  }
+  return kept;
+}
+} // namespace
+
+TEST(InsertRings, TakesManyRingsThroughOnePointInReasonableTime)
+{
+  constexpr int count = 6000;
+  const double slice = 0.5 * count * std::sin(0.4 * FullTurn / count);
+  EXPECT_NEAR(AreaKept(Petals(count, { 0.5, 0.5 }, 0.4)), 0.16 * slice, 1e-9);
+  EXPECT_NEAR(AreaKept(Petals(count, { 0.5, 0.5 }, 0.9)), 0.4, 1e-3) << "over the border";
+  EXPECT_NEAR(AreaKept(Petals(count, { 0.5, 0.0 }, 0.4)), 0.08 * slice, 1e-3) << "on the border";
+}
+
+TEST(InsertRings, TakesManyRingsAlongTheSameEdgesInReasonableTime)
+{
+  constexpr int count = 2001;
+  for (const double radius : { 0.3, 0.6 }) // within the mesh, and over its border
+  {
+    std::vector<Point2> ring;
+    for (int k = 0; k < 7; ++k)
+    {
+      const double angle = FullTurn * k / 7;
+      ring.push_back({ 0.5 + radius * std::cos(angle), 0.5 + radius * std::sin(angle) });
+    }
+    Boundary one, same;
+    one.Add(ring);
+    for (int i = 0; i < count; ++i)
+    {
+      same.Add(ring);
+    }
+    EXPECT_NEAR(AreaKept(same), AreaKept(one), 1e-9);
+  }
+  Boundary nested;
+  for (int i = 1; i <= count; ++i)
+  {
+    nested.Add({ { 0.1, 0.1 }, { 0.9, 0.1 }, { 0.5, 0.1 + 0.8 * i / count } });
+  }
+  EXPECT_NEAR(AreaKept(nested), 0.5 * 0.32, 1e-3) << "every second strip";
+}
+
+TEST(VisitCrossings, FindsTheSamePairsWhereVeryManyAreNearEachOther)
+{
+  Random random(77);
+  int numberOfSets = 0;
+  for (int round = 0; round < 150; ++round)
+  {
+    // Segments that share ends, touch and overlap; the last one perhaps crosses some.
+    std::vector<Ends> segments;
+    const int size = 3 + random.Below(5);
+    const auto point = [&]() {
+      return Point2{ static_cast<double>(random.Below(size)),
+        static_cast<double>(random.Below(size)) };
+    };
+    const auto crosses = [&](const Ends& s) {
+      return std::any_of(
+        segments.begin(), segments.end(), [&](const Ends& t) { return Cross(s, t); });
+    };
+    for (int i = 0; i < 40; ++i)
+    {
+      const Ends segment{ { point(), point() } };
+      if (!crosses(segment))
+      {
+        segments.insert(segments.end(), 20, segment);
+      }
+    }
+    const Ends last{ { point(), point() } };
+    numberOfSets += crosses(last);
+    segments.push_back(last);
+    random.Shuffle(segments);
+    std::set<std::pair<std::size_t, std::size_t>> expected, found;
+    for (std::size_t j = 0; j < segments.size(); ++j)
+    {
+      for (std::size_t i = 0; i < j; ++i)
+      {
+        if (Cross(segments[i], segments[j]))
+        {
+          expected.insert({ i, j });
+        }
+      }
+    }
+    VisitCrossings(segments, GridOf(segments), Progress(), [&](std::size_t i, std::size_t j) {
+      found.insert({ i, j });
+    });
+    ASSERT_EQ(found, expected) << round;
+  }
+  EXPECT_GT(numberOfSets, 25);
+  EXPECT_LT(numberOfSets, 125);
 }
 
 TEST(InsertRings, InRealCloudsKeepsTheAreaOfThePolygon)
@@ -1045,7 +1210,7 @@ TEST(InsertRings, AcrossABorderOfTrianglesAsThinAsRounding)
   // A comb that crosses the border of a turned lattice many times beside each of its nodes, which
   // are corners of triangles far thinner than the distance of doubles.
   Random random(42);
-  for (int round = 0; round < 300; ++round)
+  for (int round = 0; round < 150; ++round)
   {
     const TurnedLattice node(random);
     const std::vector<Point2> points = node.Square(4);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Progress rises, and no step of a long computation is silent, so that an abort is heard soon.
+#include "Kernel/ConstrainedDelaunay.h"
 #include "Kernel/Constraints.h"
 #include "Kernel/Delaunay.h"
 #include "Kernel/Fill.h"
@@ -265,4 +266,29 @@ TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
   rings.Offsets.push_back(3);
   EXPECT_TRUE(QuickTrim(list, points, rings, true, 1, trimming.Monitor(), trimmed));
   EXPECT_LT(trimming.Longest, 0.12);
+}
+
+TEST(Progress, OfConstraintsThatLieOnEachOtherIsNotSilent)
+{
+  std::mt19937_64 random(6);
+  testing_points::Cloud cloud, ends;
+  ConstraintLines lines;
+  for (int i = 0; i < 2000; ++i)
+  {
+    cloud.Add(testing_points::Uniform(random), testing_points::Uniform(random));
+    for (int end = 0; end < 2; ++end)
+    {
+      ends.Add(testing_points::Uniform(random), 0.5);
+      lines.Vertices.push_back(static_cast<Index>(lines.Vertices.size()));
+    }
+    lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
+    lines.IsClosed.push_back(0);
+    lines.Cells.push_back(i);
+  }
+  lines.Points = ends.View();
+  testing_time::Silence silence;
+  DelaunayOptions options;
+  options.Monitor = silence.Monitor();
+  EXPECT_EQ(TriangulateConstrained(cloud.View(), lines, options).NumberOfCrossings, 0);
+  EXPECT_LT(silence.Longest, 0.07);
 }
