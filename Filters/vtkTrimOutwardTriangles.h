@@ -79,6 +79,8 @@
  * or cells, and a vtkCellArray that is not valid. A mesh without triangles passes with a warning,
  * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
  * outward then).
+ * Where borders of the mesh lie on each other without common points, as those of tiles, a ring that
+ * passes there may be refused: merge the points, as vtkStaticCleanPolyData does.
  * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
  *
  * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges; where
