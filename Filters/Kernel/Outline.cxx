@@ -303,19 +303,15 @@ void CloseSmallOpenings(
 /**
  * Takes out slivers from the outside in, as long as there are any.
  * @param[in] isSliver  isSliver(h): whether the triangle of h is hardly higher than this edge
- * @return the vertices of edges beyond which the mesh goes on, where others may be slivers as well;
- *         if any, this is to be done again with more of the mesh
  */
 template <typename IsSliver>
-std::vector<Index> DropSlivers(
+void DropSlivers(
   const Mesh& mesh, IsSliver&& isSliver, std::vector<char>& keep, const Progress& progress)
 {
   std::vector<Index> dropped;
-  std::vector<Index> unknown;
   const auto look = [&](Index t) {
     for (Index h = 3 * t; h < 3 * t + 3 && keep[t]; ++h)
     {
-      // What leads beyond this mesh is surface.
       if ((mesh.IsBorder(h) || !keep[Mesh::Triangle(mesh.Twin(h))]) && isSliver(h))
       {
         keep[t] = 0;
@@ -333,12 +329,7 @@ std::vector<Index> DropSlivers(
         dropped.pop_back();
         for (Index h = 3 * last; h < 3 * last + 3; ++h)
         {
-          if (mesh.Twin(h) == h)
-          {
-            unknown.push_back(mesh.Origin(h));
-            unknown.push_back(mesh.Destination(h));
-          }
-          else if (!mesh.IsBorder(h))
+          if (!mesh.IsBorder(h))
           {
             look(Mesh::Triangle(mesh.Twin(h)));
           }
@@ -346,7 +337,6 @@ std::vector<Index> DropSlivers(
       }
     }
   });
-  return unknown;
 }
 
 /**
@@ -744,17 +734,33 @@ void TraceSurface(const MeasuredTriangles& measured, const VertexSet& atBorder,
   const TriangleList& list = measured.List;
   const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
   std::vector<char>& keep = result.IsSurface;
-  double begin = 0.0; // of the progress that is left
-  for (int number = 1;; ++number)
+  const auto isSliverOver = [&](Index t, double length) {
+    const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
+    return 2.0 * list.ShareOfSquare(t, spacing) * spacing < LeastHeight * length;
+  };
+  // Slivers have two corners at the border, or at slivers that have a corner there: all that are
+  // beside them are in the mesh then.
+  VertexSet atEdge = near;
+  for (const Index t : TrianglesAt(list, near, Part(progress, 0.0, 0.1)))
   {
-    // Few need a second round, and hardly any a third, which is the last one.
+    for (int k = 0; k < 3 && isSliverOver(t, std::sqrt(measured.Longest[t])); ++k)
+    {
+      atEdge.Add(list.CornersOf(t)[k]);
+    }
+  }
+  near = atEdge;
+  double begin = 0.1; // of the progress that is left
+  for (;;)
+  {
+    // Few need a second round, and hardly any a third.
     const double end = 0.5 * (1.0 + begin);
     const Progress round = Part(progress, begin, end);
     begin = end;
     std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
-    if (number == 3 || static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
+    if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
     {
-      triangles = AllTriangles(list); // nothing goes on beyond them
+      // With all of them, this is the last round.
+      triangles = AllTriangles(list);
     }
     const PartialMesh mesh(
       list, measured.Border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
@@ -767,23 +773,21 @@ void TraceSurface(const MeasuredTriangles& measured, const VertexSet& atBorder,
     };
     const auto isSliver = [&](Index h) {
       const Index t = mesh.Triangles[Mesh::Triangle(h)];
-      const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
-      const double length = std::sqrt(SquaredLength(mesh.Surface.PointOf(mesh.Surface.Origin(h)),
-        mesh.Surface.PointOf(mesh.Surface.Destination(h))));
-      return 2.0 * list.ShareOfSquare(t, spacing) * spacing < LeastHeight * length;
+      const Index* corners = list.CornersOf(t);
+      return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
+        isSliverOver(t,
+          std::sqrt(SquaredLength(mesh.Surface.PointOf(mesh.Surface.Origin(h)),
+            mesh.Surface.PointOf(mesh.Surface.Destination(h)))));
     };
-    std::vector<Index> unknown =
-      DropSlivers(mesh.Surface, isSliver, keepHere, Part(round, 0.3, 0.4));
+    DropSlivers(mesh.Surface, isSliver, keepHere, Part(round, 0.3, 0.4));
     if (std::find(keepHere.begin(), keepHere.end(), char(1)) == keepHere.end() &&
       static_cast<Index>(mesh.Triangles.size()) == list.Count)
     {
       keepHere = keep; // a surface of nothing else
     }
-    if (unknown.empty())
-    {
-      CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.4, 0.55));
-      unknown = DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.55, 0.8));
-    }
+    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.4, 0.55));
+    const std::vector<Index> unknown =
+      DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.55, 0.8));
     if (unknown.empty())
     {
       mesh.PutFlags(keepHere, keep);
@@ -791,7 +795,7 @@ void TraceSurface(const MeasuredTriangles& measured, const VertexSet& atBorder,
       ToIds(result.Vertices.Vertices, mesh.Ids.data(), Part(round, 1.0, 1.0));
       return;
     }
-    // To see more of these.
+    // To see more of these pieces.
     for (const Index vertex : unknown)
     {
       near.Add(mesh.Ids[vertex]);

@@ -156,8 +156,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     than a square with a side of 0.7 GapTolerance short spacings: no lake has room in it.
  *   - A triangle at the border of the surface whose height over the edge there is less than a tenth
  *     of its short spacing is a sliver, and not surface; so is the next one, once it is at the
- *     border. It counts nothing in the size of an opening. So a line of points that leaves the others is left out, also where it wavers. (Unless
- *     no triangle is left.)
+ *     border, if two of its corners were there from the first, or are corners of such flat triangles
+ *     with one there. Slivers count nothing in the size of an opening. So a line of points that
+ *     leaves the others is left out, also where it wavers. (Unless no triangle is left.)
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
  *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,

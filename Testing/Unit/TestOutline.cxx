@@ -159,8 +159,28 @@ struct RuleByTheLetter
       this->NumberOfOthers += !this->Keep[t];
       this->Keep[t] = this->Keep[t] || ratios[t] <= this->Tolerance;
     }
-    // Slivers, until there are none.
-    std::vector<char> isSliver(count, 0);
+    // Slivers with two corners at the border, until there are none.
+    std::vector<char> isSliver(count, 0), atEdge = atBorder;
+    for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+    {
+      atEdge[mesh.Origin(h)] |= !this->Keep[Mesh::Triangle(h)];
+    }
+    const auto isSliverOver = [&](Index t, double length) {
+      const double height = std::fabs(testing_surfaces::TwiceArea(mesh, t)) / length;
+      return height < 0.1 * this->SpacingOf(shortEdges, t);
+    };
+    const std::vector<char> atBorderOfAll = atEdge;
+    for (Index t = 0; t < count; ++t)
+    {
+      const Index corners[3] = { mesh.Origin(3 * t), mesh.Origin(3 * t + 1),
+        mesh.Origin(3 * t + 2) };
+      const bool isAtEdge =
+        atBorderOfAll[corners[0]] || atBorderOfAll[corners[1]] || atBorderOfAll[corners[2]];
+      for (int k = 0; k < 3 && isAtEdge && isSliverOver(t, this->Longest(t)); ++k)
+      {
+        atEdge[corners[k]] = 1;
+      }
+    }
     for (bool isDone = false; !isDone;)
     {
       isDone = true;
@@ -168,11 +188,11 @@ struct RuleByTheLetter
       {
         const Index t = Mesh::Triangle(h);
         const bool isOpen = mesh.IsBorder(h) || !this->Keep[Mesh::Triangle(mesh.Twin(h))];
-        if (this->Keep[t] && isOpen)
+        const bool isAtEdge =
+          atEdge[mesh.Origin(h)] + atEdge[mesh.Destination(h)] + atEdge[mesh.Apex(h)] >= 2;
+        if (this->Keep[t] && isOpen && isAtEdge)
         {
-          const double length = std::sqrt(this->Squared(mesh.Origin(h), mesh.Destination(h)));
-          const double height = std::fabs(testing_surfaces::TwiceArea(mesh, t)) / length;
-          if (height < 0.1 * this->SpacingOf(shortEdges, t))
+          if (isSliverOver(t, std::sqrt(this->Squared(mesh.Origin(h), mesh.Destination(h)))))
           {
             this->Keep[t] = 0;
             isSliver[t] = 1;
