@@ -44,6 +44,9 @@
  * - Only triangles that are in doubt are measured so: those whose longest edge is more than about
  *   half of GapTolerance times the mean of the four shortest edges at their points, and which lie
  *   together where there could be room for a lake, or at the border.
+ * - Slivers, triangles at the border whose height is less than a tenth of the mean of the four
+ *   shortest edges at their points, are not surface, nor are further ones behind them: a wavering
+ *   line of points that leaves the others makes them (unless all of the surface is so thin).
  * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance
  *   spacings. A smaller one is surface.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
@@ -194,7 +197,8 @@ public:
   /**
    * After Update(): the number of points that the extracted boundary leaves out, though triangles
    * have them: lone points, lines of points that leave the others, and groups too small to be a
-   * surface. They are corners of output 1 alone. 0 when a boundary was given.
+   * surface. They are corners of output 1 alone. 0 when a boundary was given, and with
+   * INWARD_NORMAL, which keeps what no edge of the boundary leads to.
    */
   vtkGetMacro(NumberOfPointsLeftOut, vtkIdType);
 
