@@ -608,7 +608,6 @@ private:
           const Index at = end == 0 ? static_cast<Index>(j) : this->NextOf(static_cast<Index>(j));
           this->OnTheWay.push_back({ i, this->Pieces[at].Vertex, true, true });
           last = std::max(last, i);
-          this->EdgeOfCut = this->Pieces[last].Edge;
         }
       }
     };
@@ -616,6 +615,10 @@ private:
       cut(i, j);
       cut(j, i);
     });
+    if (!this->OnTheWay.empty())
+    {
+      this->EdgeOfCut = this->Pieces[last].Edge;
+    }
     this->CutPieces(pieces);
     return !this->OnTheWay.empty();
   }

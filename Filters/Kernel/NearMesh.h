@@ -9,6 +9,7 @@
 
 #include "Mesh.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace elevation
@@ -70,7 +71,14 @@ public:
   }
 
   void Add(Index vertex) { this->Bits[WordOf(vertex)] |= BitOf(vertex); }
-  void Remove(Index vertex) { this->Bits[WordOf(vertex)] &= ~BitOf(vertex); }
+  void AddAll(const Index* three)
+  {
+    std::for_each(three, three + 3, [this](Index v) { this->Add(v); });
+  }
+  void RemoveAll(const Index* three)
+  {
+    std::for_each(three, three + 3, [this](Index v) { this->Bits[WordOf(v)] &= ~BitOf(v); });
+  }
   /** Adds the vertices of another set; those that it has already, to @a common as well. */
   void Add(const VertexSet& other, VertexSet& common)
   {
@@ -157,10 +165,7 @@ struct NearMesh
       for (Index i = begin; i < end; ++i)
       {
         Prefetch(list.CornersOf(triangles[std::min(i + 16, count - 1)]));
-        for (int k = 0; k < 3; ++k)
-        {
-          corners.Add(list.CornersOf(triangles[i])[k]);
-        }
+        corners.AddAll(list.CornersOf(triangles[i]));
       }
     });
     this->Ids = corners.Number();

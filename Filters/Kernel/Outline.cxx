@@ -511,9 +511,9 @@ Index CountLeftOut(
   InStretches(list.Count, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
-      for (int k = 0; k < 3 && !keep[t]; ++k)
+      if (!keep[t])
       {
-        leftOut.Add(list.CornersOf(t)[k]);
+        leftOut.AddAll(list.CornersOf(t));
       }
     }
   });
@@ -522,10 +522,7 @@ Index CountLeftOut(
     {
       if (leftOut.HasAny(list.CornersOf(t)) && keep[t])
       {
-        for (int k = 0; k < 3; ++k)
-        {
-          leftOut.Remove(list.CornersOf(t)[k]);
-        }
+        leftOut.RemoveAll(list.CornersOf(t));
       }
     }
   });
@@ -743,9 +740,9 @@ void TraceSurface(const MeasuredTriangles& measured, const VertexSet& atBorder,
   VertexSet atEdge = near;
   for (const Index t : TrianglesAt(list, near, Part(progress, 0.0, 0.1)))
   {
-    for (int k = 0; k < 3 && isSliverOver(t, std::sqrt(measured.Longest[t])); ++k)
+    if (isSliverOver(t, std::sqrt(measured.Longest[t])))
     {
-      atEdge.Add(list.CornersOf(t)[k]);
+      atEdge.AddAll(list.CornersOf(t));
     }
   }
   near = atEdge;
@@ -900,9 +897,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
     {
       const Index t = doubtful[i];
       keep[t] = ratioOf(t) <= result.GapTolerance;
-      for (int k = 0; k < 3 && !keep[t]; ++k)
+      if (!keep[t])
       {
-        near.Add(list.CornersOf(t)[k]);
+        near.AddAll(list.CornersOf(t));
       }
     }
   });
