@@ -1,43 +1,68 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# The concepts of the kernel, in the order of the data's path. Each is Kernel/<Name>.{h,cxx}.
+# The rooms of the kernel, in the order in which they may include each other, and the files of each:
+# Kernel/<Room>/<Name>.{h,cxx}, or a header alone. The room's public face is Kernel/<Room>/<Room>.h.
 # The module and the unit tests both compile this list: a new kernel file is one line here.
-set(es_kernel_concepts
-  Predicates
-  Lattice
+set(es_kernel_rooms Base Mesh Lattice Triangulate Trim Fill)
+set(es_kernel_Base
+  Predicates)
+set(es_kernel_Mesh
+  HalfEdgeMesh
+  VertexStars
+  Recovery
+  Holes
+  Validate)
+set(es_kernel_Lattice
+  FindLattice
+  Nodes
+  Metric)
+set(es_kernel_Triangulate
   BinGrid
-  Surroundings
-  Mesh
+  WideApexSearch
   DivideAndConquer
-  Delaunay
-  LatticeNodes
-  LatticeDelaunay
-  Constraints
-  ConstrainedDelaunay
-  Boundary
+  LatticeGrowth
+  Constrained
+  Triangulate)
+set(es_kernel_Trim
+  Rings
   Outline
   Crossings
   Insertion
-  Trim
-  Holes
-  QuickTrim
+  TrimMesh
+  QuickTrim)
+set(es_kernel_Fill
   Membrane
   Spline
   Heights
   Patch
-  Fill
-  Validate)
+  Fill)
 
-# Kernel headers without a source file.
-set(es_kernel_headers Kernel/Types.h Kernel/Parallel.h Kernel/Extent.h Kernel/Reach.h
-    Kernel/CellGrid.h Kernel/NearMesh.h Kernel/Sweep.h Kernel/Dot.h)
+# Headers without a source file.
+set(es_kernel_headers_Base
+  Base CellGrid Duplicates Extent IdSet Memory Points Progress ScalarProduct SnapRounding Threads)
+set(es_kernel_headers_Mesh
+  Mesh SubMesh TriangleSweep)
+set(es_kernel_headers_Lattice
+  Lattice)
+set(es_kernel_headers_Triangulate
+  Options)
+set(es_kernel_headers_Trim
+  Trim)
+set(es_kernel_headers_Fill)
+
+set(es_kernel_headers)
 set(es_kernel_sources)
-foreach (es_concept IN LISTS es_kernel_concepts)
-  list(APPEND es_kernel_headers "Kernel/${es_concept}.h")
-  list(APPEND es_kernel_sources "Kernel/${es_concept}.cxx")
+foreach (es_room IN LISTS es_kernel_rooms)
+  foreach (es_name IN LISTS es_kernel_${es_room})
+    list(APPEND es_kernel_sources "Kernel/${es_room}/${es_name}.cxx")
+  endforeach ()
+  foreach (es_name IN LISTS es_kernel_${es_room} es_kernel_headers_${es_room})
+    list(APPEND es_kernel_headers "Kernel/${es_room}/${es_name}.h")
+  endforeach ()
 endforeach ()
-unset(es_concept)
+unset(es_room)
+unset(es_name)
 
 # What the kernel needs from the compiler, wherever it is compiled.
 function (es_kernel_compile_options target)

@@ -8,7 +8,7 @@
 #ifndef KernelCall_h
 #define KernelCall_h
 
-#include "Kernel/Types.h"
+#include "Kernel/Base/Base.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshConversion.h"
 
-#include "Kernel/Parallel.h"
-#include "Kernel/Predicates.h"
+#include "Kernel/Base/Base.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"

@@ -7,9 +7,9 @@
 #ifndef MeshConversion_h
 #define MeshConversion_h
 
-#include "Kernel/Mesh.h"
-#include "Kernel/QuickTrim.h"
-#include "Kernel/Types.h"
+#include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Trim/Trim.h"
+#include "Kernel/Base/Base.h"
 
 #include "vtkSmartPointer.h"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFillElevationHoles.h"
 
-#include "Kernel/Fill.h"
-#include "Kernel/Holes.h"
+#include "Kernel/Fill/Fill.h"
+#include "Kernel/Mesh/Mesh.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
 

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkGridDelaunay2D.h"
 
-#include "Kernel/ConstrainedDelaunay.h"
-#include "Kernel/Delaunay.h"
-#include "Kernel/Parallel.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "Kernel/Base/Base.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
 

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTrimOutwardTriangles.h"
 
-#include "Kernel/Boundary.h"
-#include "Kernel/Extent.h"
-#include "Kernel/Holes.h"
-#include "Kernel/Insertion.h"
-#include "Kernel/Parallel.h"
-#include "Kernel/QuickTrim.h"
-#include "Kernel/Trim.h"
+#include "Kernel/Trim/Trim.h"
+#include "Kernel/Base/Base.h"
+#include "Kernel/Mesh/Mesh.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
 

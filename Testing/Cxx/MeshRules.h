@@ -7,7 +7,7 @@
 #ifndef MeshRules_h
 #define MeshRules_h
 
-#include "Kernel/Validate.h"
+#include "Kernel/Mesh/Validate.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"

@@ -7,8 +7,8 @@
 #ifndef DelaunayMesh_h
 #define DelaunayMesh_h
 
-#include "Kernel/Delaunay.h"
-#include "Kernel/Mesh.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "Kernel/Mesh/HalfEdgeMesh.h"
 
 #include <algorithm>
 #include <array>

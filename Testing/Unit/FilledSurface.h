@@ -7,8 +7,8 @@
 #ifndef FilledSurface_h
 #define FilledSurface_h
 
-#include "Kernel/Fill.h"
-#include "Kernel/Validate.h"
+#include "Kernel/Fill/Fill.h"
+#include "Kernel/Mesh/Validate.h"
 #include "LatticeSurface.h"
 
 #include <gtest/gtest.h>

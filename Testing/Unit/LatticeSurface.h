@@ -7,7 +7,7 @@
 #ifndef LatticeSurface_h
 #define LatticeSurface_h
 
-#include "Kernel/Mesh.h"
+#include "Kernel/Mesh/HalfEdgeMesh.h"
 
 #include <string>
 #include <utility>

@@ -7,8 +7,8 @@
 #ifndef Location_h
 #define Location_h
 
-#include "Kernel/Mesh.h"
-#include "Kernel/Predicates.h"
+#include "Kernel/Mesh/HalfEdgeMesh.h"
+#include "Kernel/Base/Predicates.h"
 
 #include <algorithm>
 #include <vector>

@@ -10,7 +10,7 @@
 #ifndef testing_MaskedSurface_h
 #define testing_MaskedSurface_h
 
-#include "Kernel/Boundary.h"
+#include "Kernel/Trim/Rings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #define PatchQuality_h
 
 #include "FilledSurface.h"
-#include "Kernel/Predicates.h"
+#include "Kernel/Base/Predicates.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #ifndef PointSets_h
 #define PointSets_h
 
-#include "Kernel/Delaunay.h"
-#include "Kernel/Validate.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "Kernel/Mesh/Validate.h"
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 #ifndef testing_Silence_h
 #define testing_Silence_h
 
-#include "Kernel/Types.h"
+#include "Kernel/Base/Base.h"
 
 #include <algorithm>
 #include <ctime>

@@ -9,7 +9,7 @@
 #include "CGALFill.h"
 #endif
 
-#include "Kernel/Mesh.h"
+#include "Kernel/Mesh/HalfEdgeMesh.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GDALFill.h"
 
-#include "Kernel/Types.h"
+#include "Kernel/Base/Base.h"
 
 #include <cstdlib>
 #include <filesystem>

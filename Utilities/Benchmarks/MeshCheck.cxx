@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshCheck.h"
 
-#include "Kernel/Predicates.h"
-#include "Kernel/Validate.h"
+#include "Kernel/Base/Predicates.h"
+#include "Kernel/Mesh/Validate.h"
 
 #include <algorithm>
 #include <cmath>

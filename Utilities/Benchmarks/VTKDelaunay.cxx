@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Competitor.h"
 
-#include "Kernel/Parallel.h"
+#include "Kernel/Base/Threads.h"
 #include "vtkGridDelaunay2D.h"
 
 #include "vtkCellArray.h"

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What every room of the kernel stands on.
+ */
+#ifndef elevation_Base_Base_h
+#define elevation_Base_Base_h
+
+#include "CellGrid.h"
+#include "Duplicates.h"
+#include "Extent.h"
+#include "IdSet.h"
+#include "Memory.h"
+#include "Points.h"
+#include "Predicates.h"
+#include "Progress.h"
+#include "ScalarProduct.h"
+#include "SnapRounding.h"
+#include "Threads.h"
+
+#endif

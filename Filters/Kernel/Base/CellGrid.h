@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Points, segments or triangles in the cells of a grid over them. What touches a cell is found
+ * there, and perhaps some that pass it by within a millionth of a cell: a grid answers nothing, it
+ * only leaves out.
+ *
+ * Cost: linear in the things and the cells that they touch, some 30 each at most on average.
+ */
+#ifndef elevation_Base_CellGrid_h
+#define elevation_Base_CellGrid_h
+
+#include "Progress.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace elevation
+{
+
+class CellGrid
+{
+public:
+  /** Enters things 0 to count - 1, of which cornersOf(i) are an array of one to three points. */
+  template <typename CornersOf>
+  CellGrid(std::size_t count, CornersOf&& cornersOf, const Progress& progress = Progress())
+  {
+    this->SetExtent(count, cornersOf);
+    // Count, sum, fill.
+    this->Begins.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      ReportStep(progress, i, 2 * count);
+      this->ForEachCell(cornersOf(i), [&](std::size_t cell) { ++this->Begins[cell + 1]; });
+    }
+    for (std::size_t cell = 1; cell < this->Begins.size(); ++cell)
+    {
+      this->Begins[cell] += this->Begins[cell - 1];
+    }
+    this->Things.resize(this->Begins.back());
+    std::vector<std::size_t> next(this->Begins.begin(), this->Begins.end() - 1);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      ReportStep(progress, count + i, 2 * count);
+      this->ForEachCell(cornersOf(i),
+        [&](std::size_t cell) { this->Things[next[cell]++] = static_cast<Index>(i); });
+    }
+  }
+
+  /** The things in a cell, in their order. */
+  std::size_t NumberOfCells() const { return this->Begins.size() - 1; }
+  const Index* Begin(std::size_t cell) const { return this->Things.data() + this->Begins[cell]; }
+  const Index* End(std::size_t cell) const { return this->Begin(cell + 1); }
+
+  /** The cell of a point; false when nothing touches the point. */
+  bool FindCell(const Point2& p, std::size_t& cell) const
+  {
+    // Not a number is outside, too.
+    if (!(p.X >= this->Low.X && p.X <= this->High.X && p.Y >= this->Low.Y && p.Y <= this->High.Y))
+    {
+      return false;
+    }
+    const Point2 at = this->InCells(p);
+    cell = static_cast<std::size_t>(CellOf(at.Y, this->Rows)) * this->Columns +
+      CellOf(at.X, this->Columns);
+    return true;
+  }
+
+  /** Calls visit for all things that may touch a point, once each. */
+  template <typename Visitor>
+  void Visit(const Point2& p, Visitor&& visit) const
+  {
+    std::size_t cell;
+    if (this->FindCell(p, cell))
+    {
+      std::for_each(this->Begin(cell), this->End(cell), visit);
+    }
+  }
+
+  /** The same for a segment or triangle; perhaps repeatedly. */
+  template <std::size_t Count, typename Visitor>
+  void Visit(const std::array<Point2, Count>& corners, Visitor&& visit) const
+  {
+    this->ForEachCell(
+      corners, [&](std::size_t cell) { std::for_each(this->Begin(cell), this->End(cell), visit); });
+  }
+
+private:
+  struct Box
+  {
+    Point2 Low, High;
+
+    void Add(const Point2& p)
+    {
+      this->Low = { std::min(this->Low.X, p.X), std::min(this->Low.Y, p.Y) };
+      this->High = { std::max(this->High.X, p.X), std::max(this->High.Y, p.Y) };
+    }
+  };
+  template <std::size_t Count>
+  static Box BoxOf(const std::array<Point2, Count>& corners)
+  {
+    Box box{ corners[0], corners[0] };
+    for (std::size_t i = 1; i < Count; ++i)
+    {
+      box.Add(corners[i]);
+    }
+    return box;
+  }
+
+  /** Columns and rows follow how far things reach along x and y: lines of one way share few. */
+  template <typename CornersOf>
+  void SetExtent(std::size_t count, CornersOf& cornersOf)
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Box all{ { infinity, infinity }, { -infinity, -infinity } };
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const Box box = BoxOf(cornersOf(i));
+      all.Add(box.Low);
+      all.Add(box.High);
+    }
+    this->Low = all.Low;
+    this->High = all.High;
+    if (count == 0)
+    {
+      return;
+    }
+    // Differences must not leave the range of double.
+    const double largest = std::max({ std::fabs(this->Low.X), std::fabs(this->Low.Y),
+      std::fabs(this->High.X), std::fabs(this->High.Y) });
+    this->Scale = largest > 1e150 ? 0x1p-600 : (largest < 1e-150 ? 0x1p600 : 1.0);
+    this->Corner = { this->Low.X * this->Scale, this->Low.Y * this->Scale };
+    const double width = this->High.X * this->Scale - this->Corner.X;
+    const double height = this->High.Y * this->Scale - this->Corner.Y;
+
+    // How many things it takes to reach from one side to the other, at least one.
+    double alongX = 1.0, alongY = 1.0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const Box box = BoxOf(cornersOf(i));
+      alongX += width > 0.0 ? (box.High.X * this->Scale - box.Low.X * this->Scale) / width : 0.0;
+      alongY += height > 0.0 ? (box.High.Y * this->Scale - box.Low.Y * this->Scale) / height : 0.0;
+    }
+    // Two cells a thing; fewer where things would be in more than some 30 cells each.
+    const double most = 30.0 * static_cast<double>(count);
+    const double cells = std::min(
+      { 2.0 * static_cast<double>(count), most * most / (4.0 * alongX * alongY), 100000000.0 });
+    const double columns =
+      std::min(std::max(std::sqrt(cells * alongY / alongX), 1.0), std::max(cells, 1.0));
+    this->Columns = static_cast<int>(columns);
+    this->Rows = static_cast<int>(std::max(cells / columns, 1.0));
+    // An extent of which cells would be too small for their inverse is one column or row.
+    this->PerX = width > 1e-290 ? this->Columns / width : 0.0;
+    this->PerY = height > 1e-290 ? this->Rows / height : 0.0;
+  }
+
+  /** A position in columns and rows; differences from the corner lose next to nothing. */
+  Point2 InCells(const Point2& p) const
+  {
+    return { (p.X * this->Scale - this->Corner.X) * this->PerX,
+      (p.Y * this->Scale - this->Corner.Y) * this->PerY };
+  }
+  static int CellOf(double position, int count)
+  {
+    return position > 0.0 ? (position < count ? static_cast<int>(position) : count - 1) : 0;
+  }
+
+  /** Calls visit(cell) for every cell that a thing touches, row by row. */
+  template <std::size_t Count, typename Visitor>
+  void ForEachCell(const std::array<Point2, Count>& corners, Visitor&& visit) const
+  {
+    const Box box = BoxOf(corners);
+    if (!(box.High.X >= this->Low.X && box.Low.X <= this->High.X && box.High.Y >= this->Low.Y &&
+          box.Low.Y <= this->High.Y))
+    {
+      return;
+    }
+    constexpr double margin = 1e-6; // of a cell; rounding is far below, unless far away
+    constexpr double far = 1e8;
+    const Point2 low = this->InCells(box.Low), high = this->InCells(box.High);
+    const int firstRow = CellOf(low.Y - margin, this->Rows);
+    const int lastRow = CellOf(high.Y + margin, this->Rows);
+    const int firstColumn = CellOf(low.X - margin, this->Columns);
+    const int lastColumn = CellOf(high.X + margin, this->Columns);
+    const bool isToNarrow = firstRow < lastRow && firstColumn < lastColumn &&
+      std::max({ -low.X, -low.Y, high.X, high.Y }) < far;
+    std::array<Point2, Count> at = corners;
+    for (std::size_t i = 0; i < Count && isToNarrow; ++i)
+    {
+      at[i] = this->InCells(corners[i]);
+    }
+    for (int row = firstRow; row <= lastRow; ++row)
+    {
+      int begin = firstColumn, end = lastColumn;
+      if (isToNarrow)
+      {
+        double left = high.X, right = low.X;
+        for (std::size_t i = 0; i + (Count == 2) < Count; ++i)
+        {
+          Widen(at[i], at[(i + 1) % Count], row - margin, row + 1.0 + margin, left, right);
+        }
+        begin = CellOf(left - margin, this->Columns);
+        end = CellOf(right + margin, this->Columns);
+      }
+      for (int column = begin; column <= end; ++column)
+      {
+        visit(static_cast<std::size_t>(row) * this->Columns + column);
+      }
+    }
+  }
+
+  /** Widens a range of x by what of a segment lies between two heights. */
+  static void Widen(
+    const Point2& a, const Point2& b, double bottom, double top, double& left, double& right)
+  {
+    const Point2 &low = b.Y < a.Y ? b : a, &high = b.Y < a.Y ? a : b;
+    if (high.Y < bottom || low.Y > top)
+    {
+      return;
+    }
+    double first = std::min(a.X, b.X), last = std::max(a.X, b.X);
+    // Infinite or not a number where it is level.
+    const double slope = (high.X - low.X) / (high.Y - low.Y);
+    if (std::isfinite(slope))
+    {
+      const double x0 = low.X + (bottom - low.Y) * slope, x1 = low.X + (top - low.Y) * slope;
+      first = std::max(first, std::min(x0, x1));
+      last = std::min(last, std::max(x0, x1));
+    }
+    left = std::min(left, first);
+    right = std::max(right, last);
+  }
+
+  Point2 Low, High; ///< of all that is in the grid
+  double Scale = 1.0;
+  Point2 Corner{ 0.0, 0.0 }; ///< Low, scaled
+  double PerX = 0.0, PerY = 0.0;
+  int Columns = 1, Rows = 1;
+  std::vector<std::size_t> Begins;
+  std::vector<Index> Things;
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Bits of words, and sets of ids made of them.
+ */
+#ifndef elevation_Base_IdSet_h
+#define elevation_Base_IdSet_h
+
+#include "Progress.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#if defined(_MSC_VER)
+#include <intrin.h>
+#endif
+
+namespace elevation
+{
+
+/** Number of bits that are set. */
+inline int CountBits(std::uint64_t bits)
+{
+  bits -= (bits >> 1) & 0x5555555555555555u;
+  bits = (bits & 0x3333333333333333u) + ((bits >> 2) & 0x3333333333333333u);
+  bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<int>((bits * 0x0101010101010101u) >> 56);
+}
+
+/** Position of the lowest bit that is set; there must be one. */
+inline int LowestBit(std::uint64_t bits)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  return __builtin_ctzll(bits);
+#elif defined(_MSC_VER) && (defined(_M_X64) || defined(_M_ARM64))
+  unsigned long position;
+  _BitScanForward64(&position, bits);
+  return static_cast<int>(position);
+#else
+  return CountBits((bits & (~bits + 1)) - 1);
+#endif
+}
+
+/** Position of the highest bit that is set; there must be one. */
+inline int HighestBit(std::uint64_t bits)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  return 63 - __builtin_clzll(bits);
+#else
+  for (int shift : { 1, 2, 4, 8, 16, 32 })
+  {
+    bits |= bits >> shift;
+  }
+  return CountBits(bits) - 1;
+#endif
+}
+
+/** A set of ids, one bit each: small enough to be asked for any id at any time. */
+class IdSet
+{
+public:
+  /** Empty; for ids below @a limit. */
+  explicit IdSet(Index limit)
+    : Words(static_cast<std::size_t>(limit) / 64 + 1, 0)
+  {
+  }
+
+  void Add(Index id) { this->Words[WordOf(id)] |= BitOf(id); }
+  void AddAll(const Index* three)
+  {
+    std::for_each(three, three + 3, [this](Index id) { this->Add(id); });
+  }
+  void RemoveAll(const Index* three)
+  {
+    std::for_each(three, three + 3, [this](Index id) { this->Words[WordOf(id)] &= ~BitOf(id); });
+  }
+  /** Adds the ids of another set; those that it has already, to @a common as well. */
+  void Add(const IdSet& other, IdSet& common)
+  {
+    for (std::size_t word = 0; word < this->Words.size(); ++word)
+    {
+      common.Words[word] |= this->Words[word] & other.Words[word];
+      this->Words[word] |= other.Words[word];
+    }
+  }
+  bool Has(Index id) const { return (this->Words[WordOf(id)] & BitOf(id)) != 0; }
+  /** Whether any of three is in it; without branches. */
+  bool HasAny(const Index* three) const
+  {
+    const std::uint32_t a = three[0], b = three[1], c = three[2];
+    return ((this->Words[a / 64] >> a % 64) | (this->Words[b / 64] >> b % 64) |
+             (this->Words[c / 64] >> c % 64)) &
+      1;
+  }
+
+  Index Count() const
+  {
+    Index count = 0;
+    for (const std::uint64_t word : this->Words)
+    {
+      count += CountBits(word);
+    }
+    return count;
+  }
+
+  /** Its ids, increasing: sooner than a list of many is sorted. */
+  std::vector<Index> List(const Progress& progress = Progress()) const
+  {
+    std::vector<Index> ids;
+    ids.reserve(this->Count());
+    for (std::size_t word = 0; word < this->Words.size(); ++word)
+    {
+      ReportStep(progress, word, this->Words.size());
+      for (std::uint64_t left = this->Words[word]; left != 0; left &= left - 1)
+      {
+        ids.push_back(static_cast<Index>(64 * word) + LowestBit(left));
+      }
+    }
+    return ids;
+  }
+
+  /** Lists its ids; from then on NumberOf() tells where in the list an id is. */
+  std::vector<Index> Number()
+  {
+    this->Before.resize(this->Words.size());
+    Index count = 0;
+    for (std::size_t word = 0; word < this->Words.size(); ++word)
+    {
+      this->Before[word] = count;
+      count += CountBits(this->Words[word]);
+    }
+    return this->List();
+  }
+  Index NumberOf(Index id) const
+  {
+    const std::uint64_t lower = this->Words[WordOf(id)] & (BitOf(id) - 1);
+    return this->Before[WordOf(id)] + CountBits(lower);
+  }
+
+private:
+  static std::size_t WordOf(Index id) { return static_cast<std::uint32_t>(id) / 64; }
+  static std::uint64_t BitOf(Index id)
+  {
+    return std::uint64_t(1) << static_cast<std::uint32_t>(id) % 64;
+  }
+
+  std::vector<std::uint64_t> Words;
+  std::vector<Index> Before; ///< how many are set before each word
+};
+
+} // namespace elevation
+
+#endif

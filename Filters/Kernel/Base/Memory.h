@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Large arrays of plain values.
+ */
+#ifndef elevation_Base_Memory_h
+#define elevation_Base_Memory_h
+
+#include "Progress.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace elevation
+{
+
+/**
+ * Memory as from malloc, in large pages where it is large and the system leaves that to programs:
+ * to take it in small ones costs about as much as to fill it. Null when there is none.
+ */
+inline void* Allocate(std::size_t size)
+{
+#ifdef MADV_HUGEPAGE
+  constexpr std::size_t page = 4096, largePage = std::size_t(1) << 21;
+  void* memory = nullptr;
+  if (size >= largePage && posix_memalign(&memory, largePage, size) == 0)
+  {
+    madvise(memory, size / page * page, MADV_HUGEPAGE); // a wish: no harm where it fails
+    return memory;
+  }
+#endif
+  return std::malloc(size);
+}
+
+/** Asks for memory before it is needed: points in any order are spread over all of the bitmap. */
+template <typename T>
+inline void Prefetch(const T* memory)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  __builtin_prefetch(memory);
+#else
+  static_cast<void>(memory);
+#endif
+}
+
+/**
+ * A growable array of plain values that are not initialised, in memory from malloc, so that
+ * it can be handed over to a VTK array without a copy, and grows without one where the
+ * system can move pages.
+ */
+template <typename T>
+class Buffer
+{
+  static_assert(std::is_trivially_copyable<T>::value, "Buffer holds plain values");
+
+public:
+  Buffer() = default;
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  Buffer(Buffer&& other) noexcept { this->Swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept
+  {
+    this->Swap(other);
+    return *this;
+  }
+  ~Buffer() { std::free(this->Begin); }
+
+  std::size_t size() const { return this->Length; }
+  std::size_t capacity() const { return this->Capacity; }
+  bool empty() const { return this->Length == 0; }
+  T* data() { return this->Begin; }
+  const T* data() const { return this->Begin; }
+  T* begin() { return this->Begin; }
+  T* end() { return this->Begin + this->Length; }
+  const T* begin() const { return this->Begin; }
+  const T* end() const { return this->Begin + this->Length; }
+  T& operator[](std::size_t i) { return this->Begin[i]; }
+  const T& operator[](std::size_t i) const { return this->Begin[i]; }
+
+  /** Room for @a capacity values; the values already there stay. @throws std::bad_alloc */
+  void Reserve(std::size_t capacity)
+  {
+    if (capacity > this->Capacity)
+    {
+      this->Reallocate(capacity);
+    }
+  }
+  /** New values are not initialised. @throws std::bad_alloc */
+  void Resize(std::size_t length)
+  {
+    this->Reserve(length);
+    this->Length = length;
+  }
+  void Append(const T& value)
+  {
+    if (this->Length == this->Capacity)
+    {
+      this->Reallocate(this->Capacity + this->Capacity / 2 + 64);
+    }
+    this->Begin[this->Length++] = value;
+  }
+  /** Gives back what Reserve took and nobody filled. */
+  void Shrink()
+  {
+    if (this->Length > 0 && this->Length != this->Capacity)
+    {
+      this->Reallocate(this->Length);
+    }
+  }
+  /** Takes the memory of another buffer, whose values are lost, in place of its own. */
+  template <typename Other>
+  void Recycle(Buffer<Other>&& other)
+  {
+    std::free(this->Begin);
+    this->Length = 0;
+    this->Capacity = other.capacity() * sizeof(Other) / sizeof(T);
+    this->Begin = reinterpret_cast<T*>(other.Release());
+  }
+  /** The memory becomes the caller's, who frees it with std::free. */
+  T* Release()
+  {
+    T* memory = this->Begin;
+    this->Begin = nullptr;
+    this->Length = this->Capacity = 0;
+    return memory;
+  }
+
+private:
+  void Swap(Buffer& other) noexcept
+  {
+    std::swap(this->Begin, other.Begin);
+    std::swap(this->Length, other.Length);
+    std::swap(this->Capacity, other.Capacity);
+  }
+  void Reallocate(std::size_t capacity)
+  {
+    if (capacity > std::numeric_limits<std::size_t>::max() / sizeof(T))
+    {
+      throw std::bad_alloc();
+    }
+    const std::size_t size = capacity * sizeof(T);
+    void* memory = this->Begin ? std::realloc(this->Begin, size) : Allocate(size);
+    if (!memory)
+    {
+      throw std::bad_alloc();
+    }
+    this->Begin = static_cast<T*>(memory);
+    this->Capacity = capacity;
+  }
+
+  T* Begin = nullptr;
+  std::size_t Length = 0;
+  std::size_t Capacity = 0;
+};
+
+/**
+ * Writes into each page of memory that values [begin, end) will be stored in, as far as there are
+ * so many, with reports. The system gives a page when it is first used: where values come in any
+ * order, the first few of them would wait for all pages.
+ */
+template <typename T>
+void TakePages(Buffer<T>& values, Index begin, Index end, const Progress& progress = Progress())
+{
+  constexpr Index step = std::max<Index>(1, 4096 / sizeof(T));
+  end = std::min(end, static_cast<Index>(values.size()));
+  const std::size_t pages = begin < end ? (end - begin) / step + 1 : 0;
+  for (std::size_t page = 0; begin < end; ++page, begin += step)
+  {
+    ReportStep(progress, page, pages, 1024);
+    std::memset(static_cast<void*>(values.data() + begin), 0, sizeof(T));
+  }
+}
+
+} // namespace elevation
+
+#endif

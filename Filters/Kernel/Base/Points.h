@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Ids, points in the x,y plane and their order.
+ *
+ * The kernel computes in the x,y plane. Elevations stay with the caller until a rule needs them
+ * (which of two points with the same x,y is kept; the height of an inserted point).
+ */
+#ifndef elevation_Base_Points_h
+#define elevation_Base_Points_h
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace elevation
+{
+
+/** Ids of vertices, triangles and half-edges; half the memory traffic of 64 bits. */
+using Index = std::int32_t;
+
+/** A mesh has fewer than 2 triangles a point and 3 half-edges a triangle, all of them an Index. */
+constexpr Index MaximumNumberOfPoints = std::numeric_limits<Index>::max() / 6;
+
+/** No vertex, no triangle, no neighbour. */
+constexpr Index None = -1;
+
+struct Point2
+{
+  double X;
+  double Y;
+};
+
+inline bool operator==(const Point2& p, const Point2& q)
+{
+  return p.X == q.X && p.Y == q.Y;
+}
+
+inline bool operator!=(const Point2& p, const Point2& q)
+{
+  return !(p == q);
+}
+
+/**
+ * The order of points every rule of the kernel uses: by y, then by x. "Lowest" always means first
+ * in this order.
+ */
+inline bool IsLower(const Point2& p, const Point2& q)
+{
+  // Without branches: which of two neighbours is lower cannot be predicted.
+  return (p.Y < q.Y) | ((p.Y == q.Y) & (p.X < q.X));
+}
+
+/**
+ * A power of two that brings coordinates near 1, of which the largest is given: there products and
+ * squares stay in the range of double. 1 for 0.
+ */
+inline double ScaleToOne(double largest)
+{
+  return largest > 0.0 ? std::ldexp(1.0, -std::max(-1000, std::min(1000, std::ilogb(largest))))
+                       : 1.0;
+}
+
+/**
+ * Points as a caller holds them: x, y, z interleaved, float or double, not owned.
+ * Exactly one of the two pointers is set (none when Count is 0).
+ */
+struct PointView
+{
+  const float* Float = nullptr;
+  const double* Double = nullptr;
+  Index Count = 0;
+
+  Point2 At(Index i) const
+  {
+    const std::size_t k = 3 * static_cast<std::size_t>(i);
+    return this->Double ? Point2{ this->Double[k], this->Double[k + 1] }
+                        : Point2{ this->Float[k], this->Float[k + 1] };
+  }
+  double Elevation(Index i) const
+  {
+    const std::size_t k = 3 * static_cast<std::size_t>(i) + 2;
+    return this->Double ? this->Double[k] : static_cast<double>(this->Float[k]);
+  }
+};
+
+} // namespace elevation
+
+#endif

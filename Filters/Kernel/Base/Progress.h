@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * How a long computation reports, is stopped, and fails.
+ */
+#ifndef elevation_Base_Progress_h
+#define elevation_Base_Progress_h
+
+#include "Points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <stdexcept>
+
+namespace elevation
+{
+
+/** What the input does not allow; the message names the offending point, edge or cell. */
+class Error : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/** Thrown out of a long computation when the caller's Progress asked to stop. */
+class Aborted : public std::exception
+{
+public:
+  const char* what() const noexcept override { return "aborted"; }
+};
+
+/**
+ * Told the fraction done, which rises in [0, 1]; returns false to stop. Every pass over all points
+ * or triangles calls it between stretches of some tens of milliseconds, so that an abort takes
+ * effect within half a second. May be empty.
+ */
+using Progress = std::function<bool(double)>;
+
+/** Reports to an optional progress callback, and throws Aborted when it asks to stop. */
+inline void Report(const Progress& progress, double fraction)
+{
+  if (progress && !progress(fraction))
+  {
+    throw Aborted();
+  }
+}
+
+/** In a loop: reports that @a done of @a count steps are done, at one step in @a stride. */
+inline void ReportStep(
+  const Progress& progress, std::size_t done, std::size_t count, std::size_t stride = 16384)
+{
+  if (done % stride == 0)
+  {
+    Report(progress, static_cast<double>(done) / static_cast<double>(count));
+  }
+}
+
+/**
+ * Reports in a loop of which single steps may take long: at one step in a thousand, and at one in
+ * so many of all things that the steps look at.
+ */
+class WorkReporter
+{
+public:
+  /** Keeps a reference to the progress. */
+  explicit WorkReporter(const Progress& progress)
+    : Monitor(progress)
+  {
+  }
+  void Step(std::size_t done, std::size_t count)
+  {
+    this->Done = done;
+    this->OfAll = count;
+    ReportStep(this->Monitor, done, count, 1024);
+  }
+  void Look()
+  {
+    if (++this->Number % 65536 == 0)
+    {
+      ReportStep(this->Monitor, this->Done, this->OfAll, 1);
+    }
+  }
+  std::size_t Count() const { return this->Number; }
+
+private:
+  const Progress& Monitor;
+  std::size_t Done = 0, OfAll = 1;
+  std::size_t Number = 0;
+};
+
+/**
+ * The sub-interval [begin, end] of a progress, for a step of a longer computation. Keeps a
+ * reference to the progress.
+ */
+inline Progress Part(const Progress& progress, double begin, double end)
+{
+  if (!progress)
+  {
+    return progress;
+  }
+  return [&progress, begin, end](double fraction) {
+    // Rounding must not lead beyond the end, where the next part begins.
+    return progress(std::min(end, begin + fraction * (end - begin)));
+  };
+}
+
+/** std::sort of plain values that reports; stopped by an abort, the values are of no use. */
+template <typename Iterator, typename Less>
+void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
+{
+  if (!progress)
+  {
+    std::sort(begin, end, less);
+    return;
+  }
+  // About as many comparisons as it takes; the fraction stays below 1 when it takes more.
+  const double count = static_cast<double>(end - begin);
+  const double expected = 1.0 + 1.5 * count * std::log2(1.0 + count);
+  std::size_t comparisons = 0;
+  std::sort(begin, end, [&](const auto& a, const auto& b) {
+    if (++comparisons % 65536 == 0)
+    {
+      Report(progress, std::min(1.0, static_cast<double>(comparisons) / expected));
+    }
+    return less(a, b);
+  });
+}
+
+/**
+ * Calls work(begin, end) for one stretch of [0, count) after another, and reports between them.
+ * Inside, a tight loop.
+ */
+template <typename Work>
+void ForEachStretch(Index count, const Progress& progress, Work&& work)
+{
+  constexpr Index stretch = 1 << 14;
+  for (Index begin = 0; begin < count;)
+  {
+    Report(progress, static_cast<double>(begin) / count);
+    const Index end = count - begin < stretch ? count : begin + stretch;
+    work(begin, end);
+    begin = end;
+  }
+}
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,837 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Patch.h"
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Triangulate/Triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+namespace elevation
+{
+
+namespace
+{
+/** Least distance of points from the boundary when they are placed: in spacings, and in steps. */
+constexpr double Clearance = 0.6;
+constexpr double ClearanceOfNodes = 0.4;
+
+/**
+ * Least distance of points from the boundary and from each other when they refine, in spacings. On
+ * rims of unequal edges 0.5 left twice as many small angles, and many more long edges; less than
+ * 0.3 gains nothing.
+ */
+constexpr double ClearanceWhenRefining = 0.3;
+
+/** Longest edge, in spacings. */
+constexpr double LongestEdge = 1.6;
+
+/** The square of twice the sine of 20 degrees: of the shortest edge to the radius, at least. */
+constexpr double LeastEdgeToRadius = 0.46791111376204392;
+
+/** Height of an equilateral triangle: the distance of rows, in spacings. */
+constexpr double RowHeight = 0.86602540378443864676;
+
+/** Edges of the boundary of which the mean length is the spacing there. */
+constexpr Index EdgesAround = 8;
+
+/** Where such spacings differ more than that, points are graded. */
+constexpr double LargestRatioOfSpacings = 3.0;
+
+/** How much the spacing grows with the distance. */
+constexpr double Growth = 0.2;
+
+/**
+ * The typical triangle on a lattice, in cells, from which on its nodes are too many. It is half a
+ * cell where all nodes are there, and one and a half where a quarter of them is.
+ */
+constexpr double LargestCellsPerTriangle = 1.75;
+
+/** Below this many steps of the coordinates, rounding would push points onto each other. */
+constexpr double LeastStepsPerSpacing = 4.0;
+
+/** The node nearest to a point; false when it is farther than the tolerance. */
+bool FindNode(const Lattice& lattice, const Point2& p, Point2& node)
+{
+  const double x = p.X - lattice.Origin.X;
+  const double y = p.Y - lattice.Origin.Y;
+  const double i = (x * lattice.StepV.Y - y * lattice.StepV.X) / lattice.Area();
+  const double j = (lattice.StepU.X * y - lattice.StepU.Y * x) / lattice.Area();
+  node = { std::round(i), std::round(j) };
+  constexpr double largest = 1e9; // rows are counted by Index
+  return std::fabs(i - node.X) <= LatticeTolerance && std::fabs(j - node.Y) <= LatticeTolerance &&
+    std::fabs(node.X) < largest && std::fabs(node.Y) < largest;
+}
+
+/** A stretch of a row that is too near to a boundary edge; the edge crosses the row within it or
+ * not. */
+struct Blocked
+{
+  Index Row;
+  double Begin;
+  double End;
+  bool Crosses;
+};
+
+/** Rows of points: the point k of a row is at x = (k + shift) Step, y = row RowHeight. */
+struct Rows
+{
+  double Step;
+  double RowHeight;
+  double ShiftOfOddRows; ///< in steps
+  double Clearance;
+};
+
+/**
+ * Visits the points of rows that are inside the boundary and not nearer to it than the clearance.
+ * Each boundary edge blocks, in every row it comes near to, the stretch that is nearer than the
+ * clearance. Between blocked stretches a row is wholly inside the hole or wholly outside, which
+ * the number of crossings on its left tells.
+ * @param[in] points    of the boundary, in the coordinates of the rows
+ * @param[in] visit     visit(row, k), row after row
+ */
+template <typename Visitor>
+void VisitRows(const Rows& rows, const std::vector<Point2>& points,
+  const std::vector<Segment>& edges, const Progress& progress, Visitor&& visit)
+{
+  const Progress blocking = Part(progress, 0.0, 0.4);
+  const Progress sorting = Part(progress, 0.4, 0.6);
+  const Progress placing = Part(progress, 0.6, 1.0);
+  const double clearance = rows.Clearance;
+  std::vector<Blocked> blocked;
+  std::size_t done = 0;
+  std::size_t visited = 0;
+  for (const Segment& edge : edges)
+  {
+    // A long edge at a small spacing comes near to many rows.
+    const double share = static_cast<double>(done++) / static_cast<double>(edges.size());
+    Point2 a = points[edge.A];
+    Point2 b = points[edge.B];
+    if (b.Y < a.Y)
+    {
+      std::swap(a, b);
+    }
+    const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+    const double ux = (b.X - a.X) / length;
+    const double uy = (b.Y - a.Y) / length; // >= 0
+    const double from = std::ceil((a.Y - clearance) / rows.RowHeight);
+    const double to = std::floor((b.Y + clearance) / rows.RowHeight);
+    for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
+    {
+      if (++visited % 16384 == 0)
+      {
+        Report(blocking, share);
+      }
+      const double y = row * rows.RowHeight;
+      Blocked stretch{ row, std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity(), (a.Y <= y) != (b.Y <= y) };
+      const auto include = [&stretch](double begin, double end) {
+        stretch.Begin = std::min(stretch.Begin, begin);
+        stretch.End = std::max(stretch.End, end);
+      };
+      // The discs around both ends ...
+      for (const Point2& p : { a, b })
+      {
+        const double square = clearance * clearance - (y - p.Y) * (y - p.Y);
+        if (square >= 0.0)
+        {
+          include(p.X - std::sqrt(square), p.X + std::sqrt(square));
+        }
+      }
+      // ... and the strip between them: its two sides, where the row cuts them.
+      for (double side : { -clearance, clearance })
+      {
+        const double ay = a.Y + side * ux;
+        const double by = b.Y + side * ux;
+        if (ay < by && ay <= y && y <= by)
+        {
+          const double x = a.X - side * uy + (y - ay) / (by - ay) * (b.X - a.X);
+          include(x, x);
+        }
+      }
+      if (stretch.Begin <= stretch.End)
+      {
+        blocked.push_back(stretch);
+      }
+    }
+  }
+  Sort(
+    blocked.begin(), blocked.end(),
+    [](const Blocked& s, const Blocked& t) {
+      return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
+    },
+    sorting);
+
+  bool isInside = false;
+  std::size_t placed = 0;
+  for (std::size_t i = 0; i < blocked.size(); ++i)
+  {
+    if (i == 0 || blocked[i].Row != blocked[i - 1].Row)
+    {
+      isInside = false;
+    }
+    isInside = isInside != blocked[i].Crosses;
+    if (i + 1 == blocked.size() || blocked[i + 1].Row != blocked[i].Row)
+    {
+      continue;
+    }
+    blocked[i + 1].End = std::max(blocked[i].End, blocked[i + 1].End);
+    if (!isInside)
+    {
+      continue;
+    }
+    const Index row = blocked[i].Row;
+    const double shift = row % 2 == 0 ? 0.0 : rows.ShiftOfOddRows;
+    const double last = std::floor(blocked[i + 1].Begin / rows.Step - shift);
+    for (double k = std::ceil(blocked[i].End / rows.Step - shift); k <= last; ++k)
+    {
+      if (++placed % 16384 == 0)
+      {
+        Report(placing, static_cast<double>(i) / static_cast<double>(blocked.size()));
+      }
+      visit(row, k + shift);
+    }
+  }
+}
+
+Error BelowPrecision(double spacing)
+{
+  std::ostringstream text;
+  text << "The spacing of " << spacing
+       << " is below what the coordinates can tell apart; a larger spacing helps.";
+  return Error(text.str());
+}
+
+/** The lattice's nodes inside. */
+void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
+{
+  // Nodes are counted from one at the boundary, so that their numbers are small.
+  Point2 first;
+  FindNode(plan.Steps, patch.At(0), first);
+  std::vector<Point2> boundary(patch.NumberOfBoundaryVertices());
+  for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
+  {
+    FindNode(plan.Steps, patch.At(v), boundary[v]);
+    boundary[v] = { boundary[v].X - first.X, boundary[v].Y - first.Y };
+  }
+  VisitRows(
+    { 1.0, 1.0, 0.0, ClearanceOfNodes }, boundary, patch.Edges, progress, [&](Index row, double x) {
+      const Point2 node{ first.X + x, first.Y + row };
+      const Point2 p = plan.Rounded(plan.Steps.Node(node.X, node.Y));
+      Point2 found;
+      if (!FindNode(plan.Steps, p, found) || found != node)
+      {
+        throw BelowPrecision(plan.Spacing);
+      }
+      patch.Points.insert(patch.Points.end(), { p.X, p.Y, 0.0 });
+    });
+}
+
+/** Rows one spacing apart; one point is in the centre of the hole's bounding box. */
+void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
+{
+  Point2 low = patch.At(0);
+  Point2 high = low;
+  for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
+  {
+    const Point2 p = patch.At(v);
+    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+  }
+  const Point2 centre{ low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
+  std::vector<Point2> boundary(patch.NumberOfBoundaryVertices());
+  for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
+  {
+    boundary[v] = { patch.At(v).X - centre.X, patch.At(v).Y - centre.Y };
+  }
+  const double d = plan.Spacing;
+  VisitRows({ d, RowHeight * d, 0.5, Clearance * d }, boundary, patch.Edges, progress,
+    [&](Index row, double x) {
+      if (d < LeastStepsPerSpacing * plan.Precision)
+      {
+        throw BelowPrecision(d);
+      }
+      const Point2 p = plan.Rounded({ centre.X + x * d, centre.Y + row * (RowHeight * d) });
+      patch.Points.insert(patch.Points.end(), { p.X, p.Y, 0.0 });
+    });
+}
+
+/** The triangles between boundary and new points inside the hole, as a mesh with Twins. */
+Mesh Connect(const Patch& patch, int threads, const Progress& progress)
+{
+  PointView view;
+  view.Double = patch.Points.data();
+  view.Count = patch.NumberOfVertices();
+  DelaunayOptions options;
+  options.NumberOfThreads = threads;
+  options.Monitor = Part(progress, 0.0, 0.6);
+  const Triangulation triangulation = Triangulate(view, options);
+  if (!triangulation.UnusedPoints.empty())
+  {
+    throw Error("New points fall together; a larger spacing helps.");
+  }
+  Mesh mesh;
+  mesh.Points.resize(patch.NumberOfVertices());
+  for (Index v = 0; v < patch.NumberOfVertices(); ++v)
+  {
+    mesh.Points[v] = patch.At(v);
+  }
+  mesh.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
+  mesh.ConnectTwins(0, Part(progress, 0.6, 0.8));
+  std::vector<char> constrained;
+  RecoverSegments(mesh, patch.Edges, constrained, Part(progress, 0.8, 0.9));
+
+  // The triangulation covers the convex hull. Across an edge of the boundary, and nowhere else,
+  // one goes from the hole to outside it or back.
+  constexpr char unknown = 2;
+  std::vector<char> isInside(mesh.NumberOfTriangles(), unknown);
+  std::vector<Index> stack;
+  for (Index h = 0; h < mesh.NumberOfHalfEdges() && stack.empty(); ++h)
+  {
+    if (mesh.IsBorder(h))
+    {
+      isInside[Mesh::Triangle(h)] = constrained[h] ? 1 : 0;
+      stack.push_back(Mesh::Triangle(h));
+    }
+  }
+  const Progress walking = Part(progress, 0.9, 1.0);
+  std::size_t done = 0;
+  while (!stack.empty())
+  {
+    ReportStep(walking, done++, isInside.size());
+    const Index t = stack.back();
+    stack.pop_back();
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      if (!mesh.IsBorder(h) && isInside[Mesh::Triangle(mesh.Twin(h))] == unknown)
+      {
+        isInside[Mesh::Triangle(mesh.Twin(h))] = constrained[h] ? 1 - isInside[t] : isInside[t];
+        stack.push_back(Mesh::Triangle(mesh.Twin(h)));
+      }
+    }
+  }
+
+  // Those inside move together, each to the place that the ones before it leave.
+  std::vector<Index> placeOf(mesh.NumberOfTriangles(), None);
+  Index count = 0;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    if (isInside[t] == 1)
+    {
+      placeOf[t] = count++;
+    }
+  }
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (Index i = 0; i < 3 && placeOf[t] != None; ++i)
+    {
+      const Index twin = mesh.Twin(3 * t + i);
+      const Index place = twin == Mesh::Border ? None : placeOf[Mesh::Triangle(twin)];
+      mesh.Triangles[3 * placeOf[t] + i] = mesh.Triangles[3 * t + i];
+      mesh.Twins[3 * placeOf[t] + i] = place == None ? Mesh::Border : 3 * place + twin % 3;
+    }
+  }
+  mesh.Triangles.resize(3 * static_cast<std::size_t>(count));
+  mesh.Twins.resize(3 * static_cast<std::size_t>(count));
+  return mesh;
+}
+
+/** Puts points into a patch until no triangle is to be refined. Borders of the mesh stay. */
+class Refinement
+{
+public:
+  Refinement(const PatchPlan& plan, const Patch& patch, Mesh& mesh)
+    : Plan(plan)
+    , Patch(mesh)
+    , BoundaryVertices(patch.NumberOfBoundaryVertices())
+    , Unit(1.0 / plan.Spacing)
+  {
+    if (plan.Kind != Arrangement::Graded)
+    {
+      return;
+    }
+    this->Spacings.resize(mesh.NumberOfPoints(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < patch.Edges.size(); ++i)
+    {
+      double& spacing = this->Spacings[patch.Edges[i].A];
+      spacing = std::min(spacing, plan.Spacings[i] * this->Unit);
+      this->Largest = std::max(this->Largest, plan.Spacings[i] * this->Unit);
+    }
+  }
+
+  void Run(const Progress& progress)
+  {
+    const double count = static_cast<double>(this->Patch.NumberOfPoints());
+    const double most = this->BoundaryVertices + std::floor(this->Plan.MostPoints);
+    std::vector<Index> queue(this->Patch.NumberOfTriangles());
+    for (Index t = 0; t < this->Patch.NumberOfTriangles(); ++t)
+    {
+      queue[t] = t;
+    }
+    // What is queued again comes after all that is: the largest triangles are cut first.
+    std::vector<Index> next;
+    // Of points that have been placed before, most triangles are good: one pass is nearly all.
+    const double first = this->Spacings.empty() ? static_cast<double>(queue.size()) : 0.0;
+    double steps = 0.0;
+    while (!queue.empty())
+    {
+      for (const Index t : queue)
+      {
+        if (std::fmod(++steps, 4096.0) == 0.0)
+        {
+          const double points = static_cast<double>(this->Patch.NumberOfPoints());
+          Report(progress,
+            first > 0.0 ? std::min(1.0, steps / first) : (points - count) / (most - count));
+        }
+        if (this->Patch.NumberOfPoints() + 1 > most)
+        {
+          return;
+        }
+        if (this->Refine(t))
+        {
+          next.insert(next.end(), this->Star.begin(), this->Star.end());
+        }
+      }
+      queue.swap(next);
+      next.clear();
+    }
+  }
+
+private:
+  // Squares of lengths are in units of the plan's spacing, so that no product leaves the range.
+  double Square(const Point2& p, const Point2& q) const
+  {
+    const double x = (q.X - p.X) * this->Unit;
+    const double y = (q.Y - p.Y) * this->Unit;
+    return x * x + y * y;
+  }
+
+  /** Puts a point into the centre of a triangle's circle, if it is to be refined and can be. */
+  bool Refine(Index t)
+  {
+    const Mesh& mesh = this->Patch;
+    // From the apex over the longest edge, where the centre is always seen from.
+    Index base = 3 * t;
+    double longest = -1.0;
+    double longestInside = 0.0;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      const double square =
+        this->Square(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)));
+      if (square > longest)
+      {
+        longest = square;
+        base = h;
+      }
+      shortest = std::min(shortest, square);
+      longestInside = mesh.IsBorder(h) ? longestInside : std::max(longestInside, square);
+    }
+    const Index corners[3] = { mesh.Apex(base), mesh.Origin(base), mesh.Destination(base) };
+    const Point2& q = mesh.PointOf(corners[0]);
+    const Point2& a = mesh.PointOf(corners[1]);
+    const Point2& b = mesh.PointOf(corners[2]);
+    const Point2 u{ (a.X - q.X) * this->Unit, (a.Y - q.Y) * this->Unit };
+    const Point2 v{ (b.X - q.X) * this->Unit, (b.Y - q.Y) * this->Unit };
+    const double uu = u.X * u.X + u.Y * u.Y;
+    const double vv = v.X * v.X + v.Y * v.Y;
+    const double twice = 2.0 * (u.X * v.Y - u.Y * v.X);
+    const Point2 centre{ (v.Y * uu - u.Y * vv) / twice, (u.X * vv - v.X * uu) / twice };
+    const double square = centre.X * centre.X + centre.Y * centre.Y;
+    if (!(square < std::numeric_limits<double>::infinity()))
+    {
+      return false; // as good as flat: the centre is far outside
+    }
+    double spacing = 1.0;
+    double mean = 1.0;
+    if (!this->Spacings.empty())
+    {
+      const double s[3] = { this->Spacings[corners[0]], this->Spacings[corners[1]],
+        this->Spacings[corners[2]] };
+      mean = (s[0] + s[1] + s[2]) / 3.0;
+      spacing =
+        std::min(this->Largest, std::min(s[0], std::min(s[1], s[2])) + Growth * std::sqrt(square));
+    }
+    if (longestInside <= LongestEdge * LongestEdge * mean * mean &&
+      shortest >= LeastEdgeToRadius * square)
+    {
+      return false;
+    }
+    const double clearance = ClearanceWhenRefining * spacing;
+    if (square < clearance * clearance ||
+      spacing * this->Plan.Spacing < LeastStepsPerSpacing * this->Plan.Precision)
+    {
+      return false;
+    }
+    const Point2 p = this->Plan.Rounded(
+      { q.X + centre.X * this->Plan.Spacing, q.Y + centre.Y * this->Plan.Spacing });
+    const Index place = this->Locate(base, p);
+    if (place == None || this->IsNearBorder(place, p, clearance * clearance))
+    {
+      return false;
+    }
+    return this->Insert(place, p, spacing);
+  }
+
+  /**
+   * The triangle that holds a point, on the straight way from the apex of a half-edge, through this
+   * edge; None where a border is crossed, or rounding leads astray.
+   */
+  Index Locate(Index h, const Point2& p) const
+  {
+    const Mesh& mesh = this->Patch;
+    const Point2& from = mesh.PointOf(mesh.Apex(h));
+    while (
+      Orientation(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)), p) == Negative)
+    {
+      if (mesh.IsBorder(h))
+      {
+        return None;
+      }
+      // The origin of h is on the right of the way, its destination on the left.
+      const Index twin = mesh.Twin(h);
+      h = Orientation(from, p, mesh.PointOf(mesh.Apex(twin))) == Negative ? Mesh::Previous(twin)
+                                                                          : Mesh::Next(twin);
+    }
+    const Index t = Mesh::Triangle(h);
+    for (Index side = 3 * t; side < 3 * t + 3; ++side)
+    {
+      if (Orientation(mesh.PointOf(mesh.Origin(side)), mesh.PointOf(mesh.Destination(side)), p) ==
+        Negative)
+      {
+        return None;
+      }
+    }
+    return t;
+  }
+
+  /**
+   * Whether a border is nearer to a point in a triangle. Vertices are not (the point is the
+   * centre of an empty circle that is larger), so each edge that is near is reached in one way.
+   * Rounding might bring a vertex nearer; so many edges are not looked at.
+   */
+  bool IsNearBorder(Index t, const Point2& p, double square)
+  {
+    constexpr int mostEdges = 10000;
+    int edges = 0;
+    std::vector<Index>& stack = this->Stack;
+    stack.assign({ 3 * t, 3 * t + 1, 3 * t + 2 });
+    while (!stack.empty())
+    {
+      const Index h = stack.back();
+      stack.pop_back();
+      if (!(this->SquareToEdge(h, p) < square))
+      {
+        continue;
+      }
+      const Index twin = this->Patch.Twin(h);
+      if (twin == Mesh::Border || ++edges > mostEdges)
+      {
+        return true;
+      }
+      stack.push_back(Mesh::Next(twin));
+      stack.push_back(Mesh::Previous(twin));
+    }
+    return false;
+  }
+
+  double SquareToEdge(Index h, const Point2& p) const
+  {
+    const Point2& a = this->Patch.PointOf(this->Patch.Origin(h));
+    const Point2& b = this->Patch.PointOf(this->Patch.Destination(h));
+    const Point2 ab{ (b.X - a.X) * this->Unit, (b.Y - a.Y) * this->Unit };
+    const Point2 ap{ (p.X - a.X) * this->Unit, (p.Y - a.Y) * this->Unit };
+    const double length = ab.X * ab.X + ab.Y * ab.Y;
+    const double along =
+      std::max(0.0, std::min(1.0, (ab.X * ap.X + ab.Y * ap.Y) / length)); // NaN becomes 1
+    const Point2 away{ ap.X - along * ab.X, ap.Y - along * ab.Y };
+    return away.X * away.X + away.Y * away.Y;
+  }
+
+  /** Puts a point into a triangle or onto an edge of it, and flips edges until all is Delaunay. */
+  bool Insert(Index t, const Point2& p, double spacing)
+  {
+    Mesh& mesh = this->Patch;
+    Index on = None;
+    int edges = 0;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      if (Orientation(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)), p) == Zero)
+      {
+        on = h;
+        ++edges;
+      }
+    }
+    if (edges > 1 || (on != None && mesh.IsBorder(on)))
+    {
+      return false; // it falls on a vertex by rounding
+    }
+    const Index vertex = mesh.NumberOfPoints();
+    mesh.Points.push_back(p);
+    if (!this->Spacings.empty())
+    {
+      this->Spacings.push_back(spacing);
+    }
+    // All triangles around the new vertex have it as their third; their first half-edges are
+    // those of the polygon around it.
+    Index polygon[4];
+    Index outer[4];
+    Index slots[4];
+    int count = 0;
+    const auto add = [&](Index h, Index slot) {
+      polygon[count] = mesh.Origin(h);
+      outer[count] = mesh.Twin(h);
+      slots[count++] = slot;
+    };
+    const Index more = mesh.NumberOfTriangles();
+    if (on == None)
+    {
+      add(3 * t, t);
+      add(3 * t + 1, more);
+      add(3 * t + 2, more + 1);
+    }
+    else
+    {
+      const Index twin = mesh.Twin(on);
+      add(Mesh::Next(on), t);
+      add(Mesh::Previous(on), more);
+      add(Mesh::Next(twin), Mesh::Triangle(twin));
+      add(Mesh::Previous(twin), more + 1);
+    }
+    mesh.Triangles.resize(mesh.Triangles.size() + 6);
+    mesh.Twins.resize(mesh.Twins.size() + 6);
+    this->Stack.clear();
+    for (int i = 0; i < count; ++i)
+    {
+      const Index slot = 3 * slots[i];
+      const int next = i + 1 < count ? i + 1 : 0;
+      mesh.Triangles[slot] = polygon[i];
+      mesh.Triangles[slot + 1] = polygon[next];
+      mesh.Triangles[slot + 2] = vertex;
+      this->Join(slot, outer[i]);
+      this->Join(slot + 1, 3 * slots[next] + 2);
+      this->Stack.push_back(slot);
+    }
+    while (!this->Stack.empty())
+    {
+      const Index h = this->Stack.back();
+      this->Stack.pop_back();
+      if (!mesh.IsBorder(h) && this->IsToFlip(h))
+      {
+        this->Flip(h);
+      }
+    }
+    this->Star.clear();
+    const Index first = 3 * t + 1;
+    Index h = first;
+    do
+    {
+      this->Star.push_back(Mesh::Triangle(h));
+      h = Mesh::Previous(mesh.Twin(h));
+    } while (h != first);
+    return true;
+  }
+
+  void Join(Index h, Index twin)
+  {
+    this->Patch.Twins[h] = twin;
+    if (twin != Mesh::Border)
+    {
+      this->Patch.Twins[twin] = h;
+    }
+  }
+
+  /** As everywhere: of co-circular points the lowest is on all edges between them. */
+  bool IsToFlip(Index h) const
+  {
+    const Mesh& mesh = this->Patch;
+    const Point2& from = mesh.PointOf(mesh.Origin(h));
+    const Point2& to = mesh.PointOf(mesh.Destination(h));
+    const Point2& p = mesh.PointOf(mesh.Apex(h));
+    const Point2& q = mesh.PointOf(mesh.Apex(mesh.Twin(h)));
+    const Sign side = InCircle(from, to, p, q);
+    return side == Positive ||
+      (side == Zero && IsLower(IsLower(p, q) ? p : q, IsLower(from, to) ? from : to));
+  }
+
+  /** Edge h of the polygon gives way to the apex behind it, which becomes a corner. */
+  void Flip(Index h)
+  {
+    Mesh& mesh = this->Patch;
+    const Index twin = mesh.Twin(h);
+    const Index corner = mesh.Apex(twin);
+    const Index to = mesh.Destination(h);
+    const Index vertex = mesh.Apex(h);
+    const Index before = mesh.Twin(Mesh::Next(twin));
+    const Index after = mesh.Twin(Mesh::Previous(twin));
+    const Index next = mesh.Twin(h + 1);
+    const Index other = 3 * Mesh::Triangle(twin);
+    mesh.Triangles[h + 1] = corner;
+    mesh.Triangles[other] = corner;
+    mesh.Triangles[other + 1] = to;
+    mesh.Triangles[other + 2] = vertex;
+    this->Join(h, before);
+    this->Join(other, after);
+    this->Join(other + 1, next);
+    this->Join(h + 1, other + 2);
+    this->Stack.push_back(h);
+    this->Stack.push_back(other);
+  }
+
+  const PatchPlan& Plan;
+  Mesh& Patch;
+  const Index BoundaryVertices;
+  const double Unit;
+  std::vector<double> Spacings; ///< at the vertices, in units; empty: 1
+  double Largest = 0.0;         ///< of them
+  std::vector<Index> Stack;
+  std::vector<Index> Star; ///< triangles around the last point that was inserted
+};
+} // namespace
+
+namespace
+{
+/** The median area of the surface's triangles at the vertices of a hole's boundary. */
+double TypicalTriangle(const Mesh& mesh, const Holes& holes, Index hole)
+{
+  std::vector<double> areas;
+  holes.VisitEdges(hole, [&](Index h) {
+    const Point2& p = mesh.PointOf(mesh.Origin(h));
+    for (; h != Mesh::Border; h = mesh.Twin(Mesh::Previous(h)))
+    {
+      const Point2& a = mesh.PointOf(mesh.Destination(h));
+      const Point2& b = mesh.PointOf(mesh.Apex(h));
+      areas.push_back(0.5 * ((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)));
+    }
+  });
+  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::nth_element(areas.begin(), middle, areas.end());
+  return *middle;
+}
+} // namespace
+
+PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double area, double spacing,
+  const Lattice* lattice)
+{
+  PatchPlan plan;
+  const double edges = holes.NumberOfEdges(hole);
+  bool isOnLattice = lattice && !(spacing > 0.0);
+  std::vector<double> lengths;
+  lengths.reserve(holes.NumberOfEdges(hole));
+  holes.VisitEdges(hole, [&](Index h) {
+    const Point2& a = mesh.PointOf(mesh.Origin(h));
+    const Point2& b = mesh.PointOf(mesh.Destination(h));
+    lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
+    Point2 i, j;
+    isOnLattice = isOnLattice && FindNode(*lattice, a, i) && FindNode(*lattice, b, j) && i != j;
+  });
+  plan.Spacing =
+    spacing > 0.0 ? spacing : std::accumulate(lengths.begin(), lengths.end(), 0.0) / edges;
+  plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
+  if (spacing > 0.0)
+  {
+    return plan;
+  }
+  // In holes of a few points refinement may need one more.
+  constexpr double morePerEdge = 0.125;
+  plan.MostPoints += morePerEdge * edges;
+  if (isOnLattice &&
+    TypicalTriangle(mesh, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
+  {
+    plan.Kind = Arrangement::Nodes;
+    plan.Steps = *lattice;
+    plan.MostPoints = area / lattice->Area();
+    return plan;
+  }
+
+  // At the origin of each edge, the mean of the edges before and behind it on its walk.
+  plan.Spacings.reserve(lengths.size());
+  const double* length = lengths.data();
+  for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
+  {
+    const Index count = holes.Walks.Size(holes.Loops[loop]);
+    const Index around = std::min(count, EdgesAround);
+    for (Index i = 0; i < count; ++i)
+    {
+      double sum = 0.0;
+      for (Index k = 0; k < around; ++k)
+      {
+        sum += length[(i + k + count - around / 2) % count];
+      }
+      plan.Spacings.push_back(sum / around);
+    }
+    length += count;
+  }
+  const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
+  if (*range.second > LargestRatioOfSpacings * *range.first)
+  {
+    // Where the boundary is finer than on average there are more points near it.
+    constexpr double morePerEdgeWhenGraded = 8.0;
+    plan.Kind = Arrangement::Graded;
+    plan.MostPoints += morePerEdgeWhenGraded * edges;
+  }
+  else
+  {
+    plan.Spacings = std::vector<double>();
+  }
+  return plan;
+}
+
+Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
+{
+  Patch patch;
+  const Index edges = holes.NumberOfEdges(hole);
+  patch.BoundaryIds.reserve(edges);
+  patch.Edges.reserve(edges);
+  holes.VisitEdges(hole, [&](Index h) {
+    patch.BoundaryIds.push_back(mesh.Origin(h));
+    patch.Edges.push_back({ mesh.Origin(h), mesh.Destination(h) });
+  });
+  std::vector<Index>& ids = patch.BoundaryIds;
+  const IsLowerPoint isLower{ mesh };
+  std::sort(ids.begin(), ids.end(), isLower);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  const auto vertexOf = [&](Index id) {
+    return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id, isLower) - ids.begin());
+  };
+  for (Segment& edge : patch.Edges)
+  {
+    edge = { vertexOf(edge.A), vertexOf(edge.B) };
+  }
+  patch.Points.reserve(3 * ids.size());
+  for (const Index id : ids)
+  {
+    // The elevation is not looked at; one that is no number would not be triangulated.
+    patch.Points.insert(patch.Points.end(), { mesh.PointOf(id).X, mesh.PointOf(id).Y, 0.0 });
+  }
+  return patch;
+}
+
+void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
+{
+  patch.Spacing = plan.Spacing;
+  const Progress placing = Part(progress, 0.0, 0.1);
+  if (plan.Kind == Arrangement::Nodes)
+  {
+    PlaceNodes(plan, placing, patch);
+  }
+  else if (plan.Kind == Arrangement::Even)
+  {
+    PlaceEvenly(plan, placing, patch);
+  }
+  Mesh mesh = Connect(patch, plan.NumberOfThreads, Part(progress, 0.1, 0.7));
+  if (plan.Kind != Arrangement::Nodes)
+  {
+    Refinement(plan, patch, mesh).Run(Part(progress, 0.7, 1.0));
+  }
+  for (Index v = patch.NumberOfVertices(); v < mesh.NumberOfPoints(); ++v)
+  {
+    patch.Points.insert(patch.Points.end(), { mesh.PointOf(v).X, mesh.PointOf(v).Y, 0.0 });
+  }
+  patch.Triangles = std::move(mesh.Triangles);
+}
+
+} // namespace elevation

@@ -1,0 +1,738 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FindLattice.h"
+
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <limits>
+
+namespace elevation
+{
+namespace
+{
+constexpr Index FewestPoints = 6;      // fewer than that fit some lattice by chance
+constexpr std::size_t Neighbors = 128; // points whose differences begin the search
+constexpr std::size_t Vectors = 128;   // shortest of their differences
+constexpr double SampleSize = 1024.0;
+constexpr double WideSampleSize = 16384.0; // in which the fullest place is looked for
+// A remainder of so many steps is taken for none, tried in turn: exact coordinates allow large
+// multiples of the steps, rounded ones do not.
+constexpr std::array<double, 3> Nothings{ 0.02, 0.06, 0.15 };
+constexpr int MostCells = 64; // along each side of the first histogram
+
+double Dot(const Point2& p, const Point2& q)
+{
+  return p.X * q.X + p.Y * q.Y;
+}
+
+double Cross(const Point2& p, const Point2& q)
+{
+  return p.X * q.Y - p.Y * q.X;
+}
+
+Point2 Minus(const Point2& p, const Point2& q, double times = 1.0)
+{
+  return { p.X - times * q.X, p.Y - times * q.Y };
+}
+
+Extent BoxOf(const std::vector<Point2>& points)
+{
+  Extent box;
+  for (const Point2& p : points)
+  {
+    box.Add(p);
+  }
+  return box;
+}
+
+/** Coordinates of a vector in steps. */
+Point2 InSteps(const Point2& d, const Point2& u, const Point2& v)
+{
+  const double area = Cross(u, v);
+  return { Cross(d, v) / area, Cross(u, d) / area };
+}
+
+/** Lagrange's reduction: afterwards u is a shortest vector and v a shortest one beside it. */
+void Reduce(Point2& u, Point2& v)
+{
+  for (int guard = 0; guard < 1000; ++guard)
+  {
+    if (Dot(v, v) < Dot(u, u))
+    {
+      std::swap(u, v);
+    }
+    const double times = std::round(Dot(u, v) / Dot(u, u));
+    if (times == 0.0)
+    {
+      return;
+    }
+    const Point2 next = Minus(v, u, times);
+    if (!(Dot(next, next) < Dot(v, v)))
+    {
+      return; // a tie, up to rounding
+    }
+    v = next;
+  }
+}
+
+/** The vectors seen so far, as a basis of what they generate. */
+class Generators
+{
+public:
+  Generators(double leastArea, double leastLength, double nothing)
+    : LeastArea(leastArea)
+    , LeastLength(leastLength)
+    , Nothing(nothing)
+  {
+  }
+
+  /** @return false when the lattice becomes too fine */
+  bool Insert(Point2 vector)
+  {
+    std::array<Point2, 3> set{ vector, this->U, this->V };
+    int size = this->Rank + 1;
+    for (int guard = 0; guard < 200; ++guard)
+    {
+      for (const int i : { 0, 1, 0 }) // sort by length
+      {
+        if (i + 1 < size && Dot(set[i + 1], set[i + 1]) < Dot(set[i], set[i]))
+        {
+          std::swap(set[i], set[i + 1]);
+        }
+      }
+      if (!(Dot(set[0], set[0]) > this->LeastLength * this->LeastLength))
+      {
+        return false;
+      }
+      if (size == 1)
+      {
+        return this->Take(set, 1);
+      }
+      // The second by the first.
+      const double times = std::round(Dot(set[1], set[0]) / Dot(set[0], set[0]));
+      const Point2 second = Minus(set[1], set[0], times);
+      if (times != 0.0 && Dot(second, second) < 0.999 * Dot(set[1], set[1]))
+      {
+        set[1] = second;
+        if (this->IsNothing(second, set[0]))
+        {
+          set[1] = set[2];
+          --size;
+          if (size == 1)
+          {
+            return this->Take(set, 1);
+          }
+        }
+        continue;
+      }
+      if (std::fabs(Cross(set[0], set[1])) < this->LeastArea)
+      {
+        return false;
+      }
+      if (size == 2)
+      {
+        return this->Take(set, 2);
+      }
+      // The third by both.
+      const Point2 steps = InSteps(set[2], set[0], set[1]);
+      const double i = std::round(steps.X), j = std::round(steps.Y);
+      if (i == 0.0 && j == 0.0)
+      {
+        return false; // cannot be: it would be shorter
+      }
+      if (std::fabs(steps.X - i) < this->Nothing && std::fabs(steps.Y - j) < this->Nothing)
+      {
+        return this->Take(set, 2);
+      }
+      set[2] = Minus(Minus(set[2], set[0], i), set[1], j);
+    }
+    return false;
+  }
+
+  const double LeastArea, LeastLength, Nothing;
+  int Rank = 0;
+  Point2 U{ 0.0, 0.0 }, V{ 0.0, 0.0 };
+
+private:
+  bool IsNothing(const Point2& p, const Point2& than) const
+  {
+    return Dot(p, p) < this->Nothing * this->Nothing * Dot(than, than);
+  }
+
+  bool Take(const std::array<Point2, 3>& set, int rank)
+  {
+    this->U = set[0];
+    this->V = set[1];
+    this->Rank = rank;
+    return true;
+  }
+};
+
+/** Least squares: a node and two steps from points whose node is known. */
+class Fit
+{
+public:
+  void Add(double i, double j, const Point2& p)
+  {
+    this->N += 1.0;
+    this->I += i;
+    this->J += j;
+    this->II += i * i;
+    this->IJ += i * j;
+    this->JJ += j * j;
+    this->P.X += p.X;
+    this->P.Y += p.Y;
+    this->PI.X += i * p.X;
+    this->PI.Y += i * p.Y;
+    this->PJ.X += j * p.X;
+    this->PJ.Y += j * p.Y;
+  }
+
+  /** @return false when the nodes are too few, or on one line */
+  bool Solve(Point2& origin, Point2& u, Point2& v) const
+  {
+    if (this->N < 4.0)
+    {
+      return false;
+    }
+    const double i = this->I / this->N, j = this->J / this->N;
+    const double ii = this->II - i * this->I, ij = this->IJ - i * this->J;
+    const double jj = this->JJ - j * this->J;
+    const double determinant = ii * jj - ij * ij;
+    if (!(determinant > 0.05 * ii * jj) || !(determinant > 0.5))
+    {
+      return false;
+    }
+    const auto solve = [&](double p, double pi, double pj, double& o, double& s, double& t) {
+      const double mi = pi - i * p, mj = pj - j * p;
+      s = (jj * mi - ij * mj) / determinant;
+      t = (ii * mj - ij * mi) / determinant;
+      o = p / this->N - s * i - t * j;
+    };
+    solve(this->P.X, this->PI.X, this->PJ.X, origin.X, u.X, v.X);
+    solve(this->P.Y, this->PI.Y, this->PJ.Y, origin.Y, u.Y, v.Y);
+    return true;
+  }
+
+private:
+  double N = 0.0, I = 0.0, J = 0.0, II = 0.0, IJ = 0.0, JJ = 0.0;
+  Point2 P{ 0.0, 0.0 }, PI{ 0.0, 0.0 }, PJ{ 0.0, 0.0 };
+};
+
+/** The same for equal points, and spread evenly over 32 bits. */
+std::uint64_t HashOf(const Point2& p)
+{
+  const double x = p.X + 0.0, y = p.Y + 0.0; // one zero
+  std::uint64_t a, b;
+  std::memcpy(&a, &x, sizeof a);
+  std::memcpy(&b, &y, sizeof b);
+  a = (a ^ (a >> 32)) * 0x9e3779b97f4a7c15u + b;
+  a = (a ^ (a >> 29)) * 0xbf58476d1ce4e5b9u;
+  return (a ^ (a >> 32)) & 0xffffffffu;
+}
+
+/** The points with a hash below it are a sample of about so many, the same in any order. */
+std::uint64_t HashLimit(double size, double count)
+{
+  return static_cast<std::uint64_t>(std::min(size / count, 1.0) * 0x1p32);
+}
+
+void SortUnique(std::vector<Point2>& points)
+{
+  std::sort(points.begin(), points.end(), IsLower);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+}
+
+/** Places, each once, however many points there are at it. */
+class alignas(64) PlaceSet // not where other threads write next to
+{
+public:
+  void Add(const Point2& p)
+  {
+    if (2 * this->Count >= this->Slots.size())
+    {
+      this->Grow();
+    }
+    this->Count += this->Put(p);
+  }
+
+  /** In no order that matters. */
+  std::vector<Point2> Places() const
+  {
+    std::vector<Point2> places;
+    places.reserve(this->Count);
+    std::copy_if(this->Slots.begin(), this->Slots.end(), std::back_inserter(places), IsTaken);
+    return places;
+  }
+
+private:
+  static bool IsTaken(const Point2& slot) { return slot.X == slot.X; } // or not a number
+
+  /** @return whether the place is new */
+  bool Put(const Point2& p)
+  {
+    // Those of a sample have a small hash: they differ in its lowest bits.
+    std::size_t at = HashOf(p) & (this->Slots.size() - 1);
+    while (IsTaken(this->Slots[at]))
+    {
+      if (this->Slots[at] == p)
+      {
+        return false;
+      }
+      at = (at + 1) & (this->Slots.size() - 1);
+    }
+    this->Slots[at] = p;
+    return true;
+  }
+
+  void Grow()
+  {
+    const std::vector<Point2> places = this->Places();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    this->Slots.assign(std::max<std::size_t>(64, 4 * this->Count), { nan, nan });
+    for (const Point2& p : places)
+    {
+      this->Put(p);
+    }
+  }
+
+  std::vector<Point2> Slots; ///< a power of two of them, at most half of them taken
+  std::size_t Count = 0;
+};
+
+/** The places of several sets, sorted. */
+std::vector<Point2> Join(std::vector<std::vector<Point2>> sets, const Progress& progress)
+{
+  PlaceSet all;
+  std::size_t joined = 0;
+  for (std::vector<Point2>& set : sets)
+  {
+    ReportStep(progress, joined++, 2 * sets.size(), 16);
+    for (const Point2& p : set)
+    {
+      all.Add(p);
+    }
+    set = std::vector<Point2>();
+  }
+  std::vector<Point2> places = all.Places();
+  Sort(places.begin(), places.end(), IsLower, Part(progress, 0.5, 1.0));
+  return places;
+}
+
+/** Cells over a box, to find where most points are. */
+struct Histogram
+{
+  Histogram(const Extent& box, int cells)
+    : Low(box.Low)
+    , PerX(box.Width() > 0.0 ? cells / box.Width() : 0.0)
+    , PerY(box.Height() > 0.0 ? cells / box.Height() : 0.0)
+    , Side(cells)
+    , Counts(static_cast<std::size_t>(cells) * cells, 0)
+  {
+  }
+  int CellOf(const Point2& p) const
+  {
+    const int column = std::min(static_cast<int>((p.X - this->Low.X) * this->PerX), this->Side - 1);
+    const int row = std::min(static_cast<int>((p.Y - this->Low.Y) * this->PerY), this->Side - 1);
+    return row * this->Side + column;
+  }
+  void Add(const std::vector<Point2>& points)
+  {
+    for (const Point2& p : points)
+    {
+      ++this->Counts[this->CellOf(p)];
+    }
+  }
+  /** The lower left (0) or upper right (1) corner of a cell. */
+  Point2 CornerOf(int cell, int upper) const
+  {
+    return { this->Low.X + (cell % this->Side + upper) / this->PerX,
+      this->Low.Y + (cell / this->Side + upper) / this->PerY };
+  }
+  int Fullest() const
+  {
+    return static_cast<int>(
+      std::max_element(this->Counts.begin(), this->Counts.end()) - this->Counts.begin());
+  }
+
+  Point2 Low;
+  double PerX, PerY;
+  int Side;
+  std::vector<Index> Counts;
+};
+
+/**
+ * Keeps those of distinct points that are in the fullest cell of their box, again and again, until
+ * few are left.
+ */
+void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
+{
+  constexpr std::size_t few = 1 << 16;
+  while (points.size() > few)
+  {
+    Histogram histogram(BoxOf(points), MostCells);
+    if (!std::isfinite(histogram.PerX) || !std::isfinite(histogram.PerY))
+    {
+      return;
+    }
+    histogram.Add(points);
+    const int fullest = histogram.Fullest();
+    points.erase(std::remove_if(points.begin(), points.end(),
+                   [&](const Point2& p) { return histogram.CellOf(p) != fullest; }),
+      points.end());
+    Report(progress, 0.5);
+  }
+}
+
+/** Keeps the fullest part of a set of distinct points until few are left. */
+void KeepFullest(std::vector<Point2>& points)
+{
+  while (points.size() > Neighbors)
+  {
+    const Extent box = BoxOf(points);
+    const Point2 &low = box.Low, &high = box.High;
+    // Halves of the longer side; a box without height has the longer one all the same.
+    const bool isWide = box.Width() > box.Height();
+    const double middle = isWide ? 0.5 * (low.X + high.X) : 0.5 * (low.Y + high.Y);
+    const auto isLow = [&](const Point2& p) { return (isWide ? p.X : p.Y) < middle; };
+    const std::size_t lower =
+      static_cast<std::size_t>(std::count_if(points.begin(), points.end(), isLow));
+    if (lower == 0 || lower == points.size())
+    {
+      points.resize(Neighbors); // a few roundoffs apart
+      return;
+    }
+    const bool keepLow = 2 * lower >= points.size();
+    points.erase(std::remove_if(points.begin(), points.end(),
+                   [&](const Point2& p) { return isLow(p) != keepLow; }),
+      points.end());
+  }
+}
+
+/** Area a point in the fullest part; where that has no area, a thousandth of the mean of all. */
+double MeanAreaOf(const std::vector<Point2>& points, double ofAll)
+{
+  const Extent box = BoxOf(points);
+  return std::max(box.Width() * box.Height() / points.size(), 1e-3 * ofAll);
+}
+
+/** The shortest differences of the points, by increasing length. */
+std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
+{
+  struct Difference
+  {
+    double Squared;
+    Point2 Vector;
+  };
+  std::vector<Difference> all;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    for (std::size_t j = i + 1; j < points.size(); ++j)
+    {
+      const Point2 d = Minus(points[j], points[i]);
+      all.push_back({ Dot(d, d), d });
+    }
+  }
+  const auto isShorter = [](const Difference& p, const Difference& q) {
+    return p.Squared != q.Squared ? p.Squared < q.Squared : IsLower(p.Vector, q.Vector);
+  };
+  if (all.size() > Vectors)
+  {
+    std::nth_element(all.begin(), all.begin() + Vectors, all.end(), isShorter);
+    all.resize(Vectors);
+  }
+  std::sort(all.begin(), all.end(), isShorter);
+  std::vector<Point2> vectors;
+  for (const Difference& difference : all)
+  {
+    vectors.push_back(difference.Vector);
+  }
+  return vectors;
+}
+
+/**
+ * Of the reduced bases of a lattice, the one whose steps lead most nearly along +x and +y. Where
+ * there are several, the one with an acute angle, and then the one that is turned to the left.
+ */
+void Direct(Point2& u, Point2& v)
+{
+  Reduce(u, v);
+  const double size = Dot(u, u) + Dot(v, v), area = std::fabs(Cross(u, v));
+  const std::array<Point2, 4> half{ u, v, Minus(u, v), Minus(u, v, -1.0) };
+  std::vector<Point2> vectors;
+  for (const Point2& w : half)
+  {
+    vectors.push_back(w);
+    vectors.push_back({ -w.X, -w.Y });
+  }
+  double best = -DBL_MAX;
+  Point2 bestU = u, bestV = v;
+  for (const Point2& p : vectors)
+  {
+    for (const Point2& q : vectors)
+    {
+      // A little more than rounding, so that a hexagonal lattice has all of its bases.
+      if (!(Cross(p, q) > 0.5 * area) || !(Cross(p, q) < 1.5 * area) ||
+        Dot(p, p) + Dot(q, q) > size * (1.0 + 1e-6))
+      {
+        continue;
+      }
+      double score = p.X / std::sqrt(Dot(p, p)) + q.Y / std::sqrt(Dot(q, q));
+      score += Dot(p, q) > -1e-3 * size ? 1e-3 : 0.0;
+      score += p.Y > -1e-3 * std::sqrt(size) ? 1e-4 : 0.0;
+      if (score > best + 1e-9)
+      {
+        best = score;
+        bestU = p;
+        bestV = q;
+      }
+    }
+  }
+  u = bestU;
+  v = bestV;
+}
+
+/** The value with the fewest decimals within @a allowed. */
+double Rounded(double value, double allowed)
+{
+  for (int decimals = -9; decimals <= 15; ++decimals)
+  {
+    const double power = std::pow(10.0, std::abs(decimals));
+    const double candidate =
+      decimals < 0 ? std::round(value / power) * power : std::round(value * power) / power;
+    if (std::fabs(candidate - value) <= allowed)
+    {
+      return candidate + 0.0;
+    }
+  }
+  return value;
+}
+
+/** Pass 4 and 5: from the middle of the sample outwards. Points are relative to the first. */
+bool FitOutwards(const std::vector<Point2>& sample, Generators generators, double tolerance,
+  double extent, double mostNodes, Lattice& lattice)
+{
+  const double far = 1.5 * generators.Nothing; // steps: between the nodes
+  bool isFitted = false;
+  Point2 origin{ 0.0, 0.0 }, u, v;
+  for (int round = 0; round < 64 && !isFitted; ++round)
+  {
+    if (generators.Rank == 2)
+    {
+      Reduce(generators.U, generators.V);
+    }
+    origin = { 0.0, 0.0 };
+    u = generators.U;
+    v = generators.V;
+    Fit fit;
+    std::size_t next = 8;
+    Point2 beside{ 0.0, 0.0 }; // farthest from the line, as long as there is but one step
+    isFitted = true;
+    for (std::size_t k = 0; k < sample.size() && isFitted; ++k)
+    {
+      const Point2 d = Minus(sample[k], origin);
+      Point2 rest = d;
+      bool isNode = true;
+      if (generators.Rank == 2)
+      {
+        const Point2 steps = InSteps(d, u, v);
+        const double i = std::round(steps.X), j = std::round(steps.Y);
+        rest = Minus(Minus(d, u, i), v, j);
+        isNode = std::fabs(steps.X - i) <= far && std::fabs(steps.Y - j) <= far;
+        fit.Add(i, j, sample[k]);
+      }
+      else if (generators.Rank == 1)
+      {
+        rest = Minus(d, u, std::round(Dot(d, u) / Dot(u, u)));
+        isNode = Dot(rest, rest) <= far * far * Dot(u, u);
+        beside = Dot(rest, rest) > Dot(beside, beside) ? rest : beside;
+      }
+      else
+      {
+        isNode = Dot(d, d) == 0.0;
+      }
+      if (!isNode)
+      {
+        generators.U = u;
+        generators.V = v;
+        if (!generators.Insert(rest))
+        {
+          return false;
+        }
+        isFitted = false;
+      }
+      else if (k + 1 == next && generators.Rank == 2)
+      {
+        fit.Solve(origin, u, v);
+        next += next / 4;
+      }
+    }
+    if (isFitted && generators.Rank == 1)
+    {
+      // The other step is so short that it was taken for a remainder.
+      if (!generators.Insert(beside))
+      {
+        return false;
+      }
+      isFitted = false;
+    }
+  }
+  if (!isFitted || generators.Rank < 2)
+  {
+    return false;
+  }
+
+  // All of the sample, twice: with the steps directed, and once more with those fitted.
+  Direct(u, v);
+  for (int pass = 0; pass < 2; ++pass)
+  {
+    Fit fit;
+    for (const Point2& p : sample)
+    {
+      const Point2 steps = InSteps(Minus(p, origin), u, v);
+      fit.Add(std::round(steps.X), std::round(steps.Y), p);
+    }
+    if (!fit.Solve(origin, u, v))
+    {
+      return false;
+    }
+  }
+  const double length = std::sqrt(std::min(Dot(u, u), Dot(v, v)));
+  const double allowed = 1e-6 * length * std::min(1.0, length / extent);
+  u = { Rounded(u.X, allowed), Rounded(u.Y, allowed) };
+  v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
+  origin.X = std::fabs(origin.X) <= 1e-6 * length ? 0.0 : origin.X;
+  origin.Y = std::fabs(origin.Y) <= 1e-6 * length ? 0.0 : origin.Y;
+  Extent box; // in steps
+  for (const Point2& p : sample)
+  {
+    const Point2 steps = InSteps(Minus(p, origin), u, v);
+    box.Add(steps);
+    if (!(std::fabs(steps.X - std::round(steps.X)) <= 1.01 * tolerance + 1e-8) ||
+      !(std::fabs(steps.Y - std::round(steps.Y)) <= 1.01 * tolerance + 1e-8))
+    {
+      return false;
+    }
+  }
+  if (box.Width() * box.Height() > mostNodes)
+  {
+    return false; // coarser steps may do
+  }
+  lattice.Origin = origin;
+  lattice.StepU = u;
+  lattice.StepV = v;
+  return true;
+}
+} // namespace
+
+LatticeSearch FindLattice(
+  const PointView& points, double tolerance, int threads, const Progress& progress)
+{
+  LatticeSearch search;
+  std::vector<PlaceSet> picked(NumberOfRanges(points.Count));
+  const std::uint64_t wideLimit = HashLimit(WideSampleSize, points.Count);
+  static_cast<Extent&>(search) =
+    FindExtent(points, threads, Part(progress, 0.0, 0.5), [&](Index piece, const Point2& p) {
+      if (HashOf(p) < wideLimit)
+      {
+        picked[piece].Add(p);
+      }
+    });
+  const Index count = points.Count - static_cast<Index>(search.NotFinite.size());
+  const double width = search.Width(), height = search.Height();
+  const double extent = width + height;
+  // Where squares and quotients might leave the range of double there is no lattice.
+  if (count < FewestPoints || !(width > 1e-60 && height > 1e-60 && extent < 1e60))
+  {
+    return search;
+  }
+  std::vector<std::vector<Point2>> pieces;
+  for (const PlaceSet& set : picked)
+  {
+    pieces.push_back(set.Places());
+  }
+  std::vector<Point2> sample = Join(pieces, Part(progress, 0.5, 0.55));
+
+  // The fullest place: a cell of the sample's extent, a cell of that, and so on. Where hardly any
+  // points differ, everywhere.
+  Extent place = search;
+  std::vector<Point2> crowd = sample;
+  for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
+  {
+    const double here = count * (crowd.size() / static_cast<double>(sample.size()));
+    const double cells = std::sqrt(here / static_cast<double>(Neighbors));
+    Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
+    const bool hasCells = histogram.PerX > 0.0 && histogram.PerX <= DBL_MAX &&
+      histogram.PerY > 0.0 && histogram.PerY <= DBL_MAX;
+    if (histogram.Side < 2 || !hasCells)
+    {
+      break;
+    }
+    histogram.Add(crowd);
+    const int fullest = histogram.Fullest();
+    crowd.erase(std::remove_if(crowd.begin(), crowd.end(),
+                  [&](const Point2& p) { return histogram.CellOf(p) != fullest; }),
+      crowd.end());
+    place = BoxOf(crowd); // rounding may have put a point beside its cell
+    place.Add(histogram.CornerOf(fullest, 0));
+    place.Add(histogram.CornerOf(fullest, 1));
+  }
+  ForEachRange(
+    points.Count, threads, Part(progress, 0.55, 0.9), [&](Index piece, Index begin, Index end) {
+      PlaceSet here;
+      ForEachPoint(points, begin, end, search.NotFinite, [&](Index, const Point2& p) {
+        if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
+          (p.Y <= place.High.Y))
+        {
+          here.Add(p);
+        }
+      });
+      pieces[piece] = here.Places();
+    });
+  std::vector<Point2> around = Join(std::move(pieces), Part(progress, 0.9, 0.95));
+  const std::uint64_t limit = HashLimit(SampleSize, points.Count);
+  sample.erase(std::remove_if(sample.begin(), sample.end(),
+                 [limit](const Point2& p) { return HashOf(p) >= limit; }),
+    sample.end());
+
+  KeepFullestCells(around, Part(progress, 0.95, 1.0));
+  KeepFullest(around);
+  // Relative to a point in the middle of the fullest place, and from there outwards.
+  const Point2 middle = around[around.size() / 2];
+  sample.insert(sample.end(), around.begin(), around.end());
+  SortUnique(sample);
+  for (Point2& p : sample)
+  {
+    p = Minus(p, middle);
+  }
+  std::sort(sample.begin(), sample.end(), [](const Point2& p, const Point2& q) {
+    const double a = Dot(p, p), b = Dot(q, q);
+    return a != b ? a < b : IsLower(p, q);
+  });
+  const double leastArea = 0.5 * MeanAreaOf(around, width * height / count) / MaximumNodesPerPoint;
+  const std::vector<Point2> differences = ShortestDifferences(around);
+  for (const double nothing : Nothings)
+  {
+    Generators generators(leastArea, 1e-9 * extent / count, nothing);
+    bool isLattice = true;
+    for (std::size_t i = 0; i < differences.size() && isLattice; ++i)
+    {
+      isLattice = generators.Insert(differences[i]);
+    }
+    if (isLattice &&
+      FitOutwards(
+        sample, generators, tolerance, extent, MaximumNodesPerPoint * count, search.Steps))
+    {
+      search.Found = true;
+      break;
+    }
+  }
+  search.Steps.Origin.X += middle.X;
+  search.Steps.Origin.Y += middle.Y;
+  return search;
+}
+
+} // namespace elevation

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * A triangle mesh over the x,y plane: the triangle array and the twin array, nothing else.
+ *
+ *          2                 Half-edge 3t+i leaves vertex i of triangle t:
+ *         / \                  3t   goes from vertex 0 to vertex 1,
+ *   3t+2 /   \ 3t+1            3t+1 from 1 to 2, 3t+2 from 2 to 0.
+ *       /  t  \              The triangle lies on its left (triangles are counter-clockwise).
+ *      0-------1             Its twin is the half-edge of the neighbour that runs the other way,
+ *         3t                 or Mesh::Border where there is no neighbour.
+ *
+ * This numbering is used everywhere in the kernel and drawn nowhere else. The triangle array is the
+ * connectivity of a vtkCellArray as it stands.
+ */
+#ifndef elevation_Mesh_HalfEdgeMesh_h
+#define elevation_Mesh_HalfEdgeMesh_h
+
+#include "Kernel/Base/Base.h"
+
+#include <string>
+#include <vector>
+
+namespace elevation
+{
+
+/** A point as messages name it: "point 7 (1.5, 2)". */
+std::string NameOf(const std::vector<Point2>& points, Index id);
+
+class Mesh
+{
+public:
+  /** The twin of a half-edge with nothing on its right. */
+  static constexpr Index Border = None;
+
+  std::vector<Point2> Points;
+  std::vector<Index> Triangles; ///< three vertices a triangle, counter-clockwise
+  std::vector<Index> Twins;     ///< one a half-edge; filled by ConnectTwins
+
+  Index NumberOfPoints() const { return static_cast<Index>(this->Points.size()); }
+  Index NumberOfTriangles() const { return static_cast<Index>(this->Triangles.size() / 3); }
+  Index NumberOfHalfEdges() const { return static_cast<Index>(this->Triangles.size()); }
+
+  static Index Next(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  static Index Previous(Index h) { return h % 3 == 0 ? h + 2 : h - 1; }
+  static Index Triangle(Index h) { return h / 3; }
+
+  Index Origin(Index h) const { return this->Triangles[h]; }
+  Index Destination(Index h) const { return this->Triangles[Next(h)]; }
+  /** The vertex of h's triangle that is not on h. */
+  Index Apex(Index h) const { return this->Triangles[Previous(h)]; }
+  Index Twin(Index h) const { return this->Twins[h]; }
+  bool IsBorder(Index h) const { return this->Twins[h] == Border; }
+  const Point2& PointOf(Index vertex) const { return this->Points[vertex]; }
+
+  /**
+   * Fills Twins from Triangles. Linear in time and memory, but for sorting the borders.
+   * @param[in] firstCell  what messages add to the id of a triangle to name it as the user's cell
+   * @throws Error naming the triangle and its edge when an edge has more than two triangles or two
+   *         that run the same way (the mesh is not a consistently oriented manifold). Aborted.
+   */
+  void ConnectTwins(Index firstCell = 0, const Progress& progress = Progress());
+};
+
+/** The order of vertices from the lowest on; only where two are at the same place their ids count. */
+struct IsLowerPoint
+{
+  const Mesh& Surface;
+
+  bool operator()(Index a, Index b) const
+  {
+    const Point2& p = this->Surface.PointOf(a);
+    const Point2& q = this->Surface.PointOf(b);
+    return IsLower(p, q) || (a < b && p == q);
+  }
+};
+
+/** How many half-edges ahead loops over all of them ask for what belongs to their origins. */
+constexpr std::size_t HalfEdgesAhead = 64;
+
+/**
+ * Rings of vertices: ring r is Vertices[Offsets[r]] ... Vertices[Offsets[r + 1] - 1], and closes
+ * from its last vertex to its first, which is not repeated.
+ */
+struct Rings
+{
+  std::vector<Index> Offsets{ 0 };
+  std::vector<Index> Vertices;
+
+  Index Count() const { return static_cast<Index>(this->Offsets.size()) - 1; }
+  Index Size(Index ring) const { return this->Offsets[ring + 1] - this->Offsets[ring]; }
+  const Index* Begin(Index ring) const { return this->Vertices.data() + this->Offsets[ring]; }
+  const Index* End(Index ring) const { return this->Vertices.data() + this->Offsets[ring + 1]; }
+};
+
+/**
+ * The parts of a mesh (with Twins) that are connected by edges.
+ * The triangles of a part may lie on two sides, as edges that lead to the other side tell.
+ */
+struct Parts
+{
+  Buffer<Index> Labels;      ///< one a triangle: 2 part + side
+  std::vector<Index> Lowest; ///< one a part: its lowest triangle, which is on side 0; increasing
+
+  Index Count() const { return static_cast<Index>(this->Lowest.size()); }
+  Index PartOf(Index triangle) const { return this->Labels[triangle] / 2; }
+};
+
+/**
+ * Finds the parts: one sweep over the triangles, each of which joins what its neighbours before it
+ * belong to. Linear, but for a logarithm of the parts that have been joined; fast where neighbours
+ * lie near in memory.
+ * @param[in] relation  relation(h), for a half-edge h that is no border: 0 when the triangles on
+ *                      either side of h are on the same side, 1 when they are not, below 0 when h
+ *                      does not connect them. Asked for one half-edge of an edge.
+ * @throws Aborted, std::bad_alloc
+ */
+template <typename Relation>
+Parts FindParts(const Mesh& mesh, const Progress& progress, Relation&& relation)
+{
+  const Index count = mesh.NumberOfTriangles();
+  Parts parts;
+  parts.Labels.Resize(count);
+  // One a part: where it has been joined to, as a label; to itself while it has not.
+  std::vector<Index> joined;
+  const auto find = [&joined](Index label) {
+    while (joined[label / 2] != (label & ~1))
+    {
+      const Index next = joined[label / 2];
+      joined[label / 2] = joined[next / 2] ^ (next & 1); // halves the way
+      label = joined[label / 2] ^ (label & 1);
+    }
+    return label;
+  };
+  ForEachStretch(count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      Index label = None;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        // Border, which is below 0, is not among those before.
+        const Index twin = mesh.Twins[h];
+        if (static_cast<std::uint32_t>(twin) >= static_cast<std::uint32_t>(3 * t))
+        {
+          continue;
+        }
+        const int step = relation(h);
+        if (step < 0)
+        {
+          continue;
+        }
+        const Index other = parts.Labels[Mesh::Triangle(twin)] ^ step;
+        if (label == None)
+        {
+          label = other;
+        }
+        else if (label != other)
+        {
+          label = find(label);
+          const Index root = find(other);
+          const Index low = std::min(label, root);
+          const Index high = std::max(label, root);
+          if (low / 2 != high / 2)
+          {
+            joined[high / 2] = low ^ (high & 1);
+            label = low;
+          }
+        }
+      }
+      if (label == None)
+      {
+        label = static_cast<Index>(2 * joined.size());
+        joined.push_back(label);
+        parts.Lowest.push_back(t);
+      }
+      parts.Labels[t] = label;
+    }
+  });
+
+  // Only parts that have not been joined to others remain; lower ones are numbered before.
+  Index remaining = 0;
+  for (std::size_t i = 0; i < joined.size(); ++i)
+  {
+    const Index root = joined[i];
+    if (root == static_cast<Index>(2 * i))
+    {
+      parts.Lowest[remaining] = parts.Lowest[i];
+      joined[i] = 2 * remaining++;
+    }
+    else
+    {
+      joined[i] = joined[root / 2] ^ (root & 1);
+    }
+  }
+  parts.Lowest.resize(remaining);
+  ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      parts.Labels[t] = joined[parts.Labels[t] / 2] ^ (parts.Labels[t] & 1);
+    }
+  });
+  return parts;
+}
+
+/**
+ * The border of a mesh (with Twins) as closed walks of half-edges, in the half-edges' own
+ * direction, so that the mesh lies on the left: counter-clockwise around the outside of a
+ * component, clockwise around a hole. At a vertex where several borders meet, a walk stays with the
+ * empty wedge it runs along, so each walk bounds one empty region of the plane. Every border
+ * half-edge is in exactly one walk; a walk starts at its lowest half-edge id, and walks are in the
+ * order of their first. The result's Vertices are half-edge ids; their origins are the vertices of
+ * the walk. Linear, but for sorting the borders at shared vertices.
+ * @param[in] keep  one flag a triangle: the border is that of the triangles with it; empty: all
+ * @throws Aborted
+ */
+Rings TraceBorder(const Mesh& mesh, const Progress& progress = Progress(),
+  const std::vector<char>& keep = std::vector<char>());
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,469 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Holes.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+namespace elevation
+{
+
+namespace
+{
+/** The order of half-edges by their origins; those of a pinched vertex by where they lead. */
+struct IsLowerEdge
+{
+  const Mesh& Surface;
+
+  bool operator()(Index g, Index h) const
+  {
+    const IsLowerPoint isLower{ this->Surface };
+    const Index a = this->Surface.Origin(g);
+    const Index b = this->Surface.Origin(h);
+    return a == b ? isLower(this->Surface.Destination(g), this->Surface.Destination(h))
+                  : isLower(a, b);
+  }
+};
+
+/** Lets each walk begin with its lowest edge, so that the order of cells does not decide where. */
+void StartAtLowest(const Mesh& mesh, Rings& walks)
+{
+  for (Index walk = 0; walk < walks.Count(); ++walk)
+  {
+    const auto begin = walks.Vertices.begin() + walks.Offsets[walk];
+    const auto end = walks.Vertices.begin() + walks.Offsets[walk + 1];
+    std::rotate(begin, std::min_element(begin, end, IsLowerEdge{ mesh }), end);
+  }
+}
+
+/** A border edge from its lower to its higher end. */
+struct Segment
+{
+  Point2 Low;
+  Point2 High;
+  Index HalfEdge;
+  Index Walk;
+  bool
+    IsUp; ///< the half-edge runs upwards: the surface is on the left, the empty side on the right
+};
+
+/** The side of a segment, seen along it upwards, on which a point lies: Positive is left. */
+Sign SideOf(const Segment& segment, const Point2& p)
+{
+  return Orientation(segment.Low, segment.High, p);
+}
+
+bool CrossInside(const Segment& s, const Segment& t)
+{
+  return SideOf(s, t.Low) * SideOf(s, t.High) < 0 && SideOf(t, s.Low) * SideOf(t, s.High) < 0;
+}
+
+/** From left to right, for segments that are cut by the same sweep line and do not cross. */
+struct IsLeftOf
+{
+  using is_transparent = void;
+  const std::vector<Segment>* Segments;
+
+  bool operator()(Index i, Index j) const
+  {
+    if (i == j)
+    {
+      return false;
+    }
+    const Segment& s = (*this->Segments)[i];
+    const Segment& t = (*this->Segments)[j];
+    // Look at the one that began later; where it begins on the other, at where it goes.
+    const bool tIsLater = !IsLower(t.Low, s.Low);
+    const Segment& line = tIsLater ? s : t;
+    const Segment& later = tIsLater ? t : s;
+    Sign side = SideOf(line, later.Low);
+    if (side == Zero)
+    {
+      side = SideOf(line, later.High);
+    }
+    if (side != Zero)
+    {
+      return (side == Negative) == tIsLater;
+    }
+    // One upon the other, back to back: the surface ends, then begins again.
+    return s.IsUp != t.IsUp ? s.IsUp : i < j;
+  }
+  bool operator()(Index i, const Point2& p) const
+  {
+    return SideOf((*this->Segments)[i], p) == Negative;
+  }
+  bool operator()(const Point2& p, Index i) const
+  {
+    return SideOf((*this->Segments)[i], p) == Positive;
+  }
+};
+
+/** The end of a segment at which the sweep stops. */
+struct Event
+{
+  Point2 At;
+  Index Segment;
+  bool IsStart;
+};
+
+/** One run of the sweep; its members are what the passes hand on. */
+class BorderSweep
+{
+public:
+  BorderSweep(const Mesh& mesh, Index firstCell, Holes& result)
+    : Surface(mesh)
+    , FirstCell(firstCell)
+    , Result(result)
+    , Status(IsLeftOf{ &this->Segments })
+  {
+  }
+
+  void Run(const Progress& progress)
+  {
+    this->MakeSegments(Part(progress, 0.0, 0.05));
+    this->FindTurns(Part(progress, 0.05, 0.1));
+    Sort(
+      this->Events.begin(), this->Events.end(),
+      [](const Event& a, const Event& b) {
+        return a.At != b.At ? IsLower(a.At, b.At)
+                            : (a.IsStart != b.IsStart ? b.IsStart : a.Segment < b.Segment);
+      },
+      Part(progress, 0.1, 0.4));
+    const Progress sweeping = Part(progress, 0.4, 1.0);
+    std::size_t told = 0;
+    for (std::size_t first = 0; first < this->Events.size();)
+    {
+      std::size_t last = first + 1;
+      while (last < this->Events.size() && this->Events[last].At == this->Events[first].At)
+      {
+        ++last;
+      }
+      this->Stop(first, last);
+      first = last;
+      if (first >= told)
+      {
+        Report(sweeping, static_cast<double>(first) / this->Events.size());
+        told = first + 4096;
+      }
+    }
+    this->MakeHoles();
+  }
+
+private:
+  using Place = std::set<Index, IsLeftOf>::iterator;
+
+  static constexpr Index NotLocated = -2;
+  static constexpr Index Outside = None; ///< the empty region around everything
+
+  void MakeSegments(const Progress& progress)
+  {
+    const Rings& walks = this->Result.Walks;
+    this->Segments.reserve(walks.Vertices.size());
+    this->Events.reserve(2 * walks.Vertices.size());
+    for (Index walk = 0; walk < walks.Count(); ++walk)
+    {
+      for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
+      {
+        ReportStep(progress, this->Segments.size(), walks.Vertices.size());
+        const Point2& origin = this->Surface.PointOf(this->Surface.Origin(*h));
+        const Point2& destination = this->Surface.PointOf(this->Surface.Destination(*h));
+        const bool isUp = IsLower(origin, destination);
+        const Index id = static_cast<Index>(this->Segments.size());
+        this->Segments.push_back(
+          { isUp ? origin : destination, isUp ? destination : origin, *h, walk, isUp });
+        this->Events.push_back({ this->Segments.back().Low, id, true });
+        this->Events.push_back({ this->Segments.back().High, id, false });
+      }
+    }
+    this->Places.resize(this->Segments.size());
+  }
+
+  /** Which walks are rims; each is the border of a region of its own. */
+  void FindTurns(const Progress& progress)
+  {
+    const Rings& walks = this->Result.Walks;
+    this->Regions.assign(walks.Count(), NotLocated);
+    for (Index walk = 0; walk < walks.Count(); ++walk)
+    {
+      ReportStep(progress, walk, walks.Count());
+      const Index size = walks.Size(walk);
+      const Index* h = walks.Begin(walk);
+      Point2 lowest = this->Surface.PointOf(this->Surface.Origin(h[0]));
+      for (Index i = 1; i < size; ++i)
+      {
+        const Point2& p = this->Surface.PointOf(this->Surface.Origin(h[i]));
+        if (IsLower(p, lowest))
+        {
+          lowest = p;
+        }
+      }
+
+      // Every edge goes up from here; the wedge that opens downwards is the one with a left turn.
+      bool isOutside = false;
+      for (Index i = 0; i < size && !isOutside; ++i)
+      {
+        const Point2& p = this->Surface.PointOf(this->Surface.Origin(h[i]));
+        const Index before = h[i == 0 ? size - 1 : i - 1];
+        isOutside = p == lowest &&
+          Orientation(this->Surface.PointOf(this->Surface.Origin(before)), p,
+            this->Surface.PointOf(this->Surface.Destination(h[i]))) == Positive;
+      }
+      if (!isOutside)
+      {
+        this->Regions[walk] = static_cast<Index>(this->Rims.size());
+        this->Rims.push_back(walk);
+      }
+    }
+    this->Result.Touched.assign(this->Rims.size(), 0);
+  }
+
+  /** All that happens at one point. */
+  void Stop(std::size_t first, std::size_t last)
+  {
+    const Point2 p = this->Events[first].At;
+
+    // Edges that end here leave the line.
+    Place behind = this->Status.end();
+    bool haveEnded = false;
+    for (; first < last && !this->Events[first].IsStart; ++first)
+    {
+      behind = this->Status.erase(this->Places[this->Events[first].Segment]);
+      haveEnded = true;
+    }
+    // Edges that pass through this point stay; without a contact there are none.
+    if (!haveEnded)
+    {
+      behind = this->Status.lower_bound(p);
+    }
+    Place through = behind;
+    while (through != this->Status.begin() && this->IsOn(*std::prev(through), p))
+    {
+      --through;
+    }
+    const bool hasLeft = through != this->Status.begin();
+    const Place left = hasLeft ? std::prev(through) : this->Status.end();
+    while (behind != this->Status.end() && this->IsOn(*behind, p))
+    {
+      ++behind;
+    }
+    for (; through != behind; ++through)
+    {
+      this->Passing.push_back(*through);
+    }
+    // Edges that start here come between the neighbours.
+    for (std::size_t i = first; i < last; ++i)
+    {
+      const Index segment = this->Events[i].Segment;
+      this->Places[segment] = this->Status.insert(behind, segment);
+    }
+    this->CheckOrder(hasLeft ? left : this->Status.begin(), behind, p);
+
+    // The first edges of a walk are at its lowest point: what is left of them is empty.
+    for (Place place = hasLeft ? std::next(left) : this->Status.begin(); place != behind; ++place)
+    {
+      Index& region = this->Regions[this->Segments[*place].Walk];
+      if (region == NotLocated)
+      {
+        region = place == this->Status.begin() ? Outside : this->RegionOf(*std::prev(place));
+      }
+    }
+    this->MarkContacts(p, last);
+  }
+
+  bool IsOn(Index segment, const Point2& p) const
+  {
+    return SideOf(this->Segments[segment], p) == Zero;
+  }
+
+  Index RegionOf(Index segment) const { return this->Regions[this->Segments[segment].Walk]; }
+
+  /** From @a begin to @a end, both included: into the surface, out of it, into it, ... */
+  void CheckOrder(Place begin, Place end, const Point2& p) const
+  {
+    if (begin == this->Status.begin() && begin != this->Status.end() && this->Segments[*begin].IsUp)
+    {
+      this->RefuseOverlap(*begin, p);
+    }
+    for (Place place = begin; place != end && place != this->Status.end(); ++place)
+    {
+      const Place next = std::next(place);
+      if (next == this->Status.end())
+      {
+        if (!this->Segments[*place].IsUp)
+        {
+          this->RefuseOverlap(*place, p);
+        }
+        return;
+      }
+      const Segment& s = this->Segments[*place];
+      const Segment& t = this->Segments[*next];
+      if (CrossInside(s, t))
+      {
+        this->RefuseCrossing(s, t);
+      }
+      if (s.IsUp == t.IsUp)
+      {
+        // Twice in: the right one's triangle lies on covered ground; twice out: the left one's.
+        this->RefuseOverlap(s.IsUp ? *place : *next, p);
+      }
+    }
+  }
+
+  std::string CellOf(const Segment& segment) const
+  {
+    return std::to_string(
+      static_cast<std::int64_t>(this->FirstCell) + Mesh::Triangle(segment.HalfEdge));
+  }
+  std::string EdgeOf(const Segment& segment) const
+  {
+    return std::to_string(this->Surface.Origin(segment.HalfEdge)) + "-" +
+      std::to_string(this->Surface.Destination(segment.HalfEdge));
+  }
+
+  [[noreturn]] void RefuseCrossing(const Segment& s, const Segment& t) const
+  {
+    throw Error("Cell " + this->CellOf(s) + " overlaps cell " + this->CellOf(t) +
+      " in x,y: the border edges of points " + this->EdgeOf(s) + " and " + this->EdgeOf(t) +
+      " cross. An elevation surface has one z at each x,y.");
+  }
+  [[noreturn]] void RefuseOverlap(Index segment, const Point2& p) const
+  {
+    std::ostringstream message;
+    message.precision(17);
+    message << "Cell " << this->CellOf(this->Segments[segment])
+            << " lies over or under another part of the surface (near x, y = " << p.X << ", " << p.Y
+            << "). An elevation surface has one z at each x,y.";
+    throw Error(message.str());
+  }
+
+  /** Vertices here that lie inside an edge, or at the same place as another vertex. */
+  void MarkContacts(const Point2& p, std::size_t last)
+  {
+    // The same vertex as seen from different empty regions is no contact.
+    const auto vertexAt = [&](const Segment& segment) {
+      const Index origin = this->Surface.Origin(segment.HalfEdge);
+      return this->Surface.PointOf(origin) == p ? origin
+                                                : this->Surface.Destination(segment.HalfEdge);
+    };
+    std::size_t begin = last;
+    while (begin > 0 && this->Events[begin - 1].At == p)
+    {
+      --begin;
+    }
+    Index vertex = None;
+    bool coincide = false;
+    for (std::size_t i = begin; i < last; ++i)
+    {
+      const Index other = vertexAt(this->Segments[this->Events[i].Segment]);
+      coincide = coincide || (vertex != None && other != vertex);
+      vertex = other;
+    }
+    if (!coincide && this->Passing.empty())
+    {
+      return;
+    }
+    for (Index segment : this->Passing)
+    {
+      this->Touch(this->RegionOf(segment));
+    }
+    this->Passing.clear();
+    if (coincide)
+    {
+      for (std::size_t i = begin; i < last; ++i)
+      {
+        for (std::size_t j = begin; j < i; ++j)
+        {
+          const Index s = this->Events[i].Segment;
+          const Index t = this->Events[j].Segment;
+          if (this->RegionOf(s) == this->RegionOf(t) &&
+            vertexAt(this->Segments[s]) != vertexAt(this->Segments[t]))
+          {
+            this->Touch(this->RegionOf(s));
+          }
+        }
+      }
+    }
+    constexpr std::size_t listed = 8;
+    ++this->Result.NumberOfContacts;
+    if (this->Result.ContactVertices.size() < listed)
+    {
+      this->Result.ContactVertices.push_back(vertex);
+    }
+  }
+
+  void Touch(Index region)
+  {
+    if (region != Outside)
+    {
+      this->Result.Touched[region] = 1;
+    }
+  }
+
+  /** The regions with their walks, the rim first, then islands from the lowest on. */
+  void MakeHoles()
+  {
+    const Index count = static_cast<Index>(this->Rims.size());
+    std::vector<Index>& offsets = this->Result.Offsets;
+    offsets.assign(count + 1, 0);
+    for (Index region : this->Regions)
+    {
+      if (region != Outside)
+      {
+        ++offsets[region + 1];
+      }
+    }
+    for (Index hole = 0; hole < count; ++hole)
+    {
+      offsets[hole + 1] += offsets[hole];
+    }
+    this->Result.Loops.resize(offsets[count]);
+    std::vector<Index> next(offsets.begin(), offsets.end() - 1);
+    for (Index hole = 0; hole < count; ++hole)
+    {
+      this->Result.Loops[next[hole]++] = this->Rims[hole];
+    }
+    for (Index walk = 0; walk < this->Result.Walks.Count(); ++walk)
+    {
+      const Index region = this->Regions[walk];
+      if (region != Outside && this->Rims[region] != walk)
+      {
+        this->Result.Loops[next[region]++] = walk;
+      }
+    }
+    const IsLowerEdge isLower{ this->Surface };
+    for (Index hole = 0; hole < count; ++hole)
+    {
+      std::sort(this->Result.Loops.begin() + offsets[hole] + 1,
+        this->Result.Loops.begin() + offsets[hole + 1], [&](Index a, Index b) {
+          return isLower(*this->Result.Walks.Begin(a), *this->Result.Walks.Begin(b));
+        });
+    }
+  }
+
+  const Mesh& Surface;
+  const Index FirstCell;
+  Holes& Result;
+  std::vector<Segment> Segments;
+  std::vector<Event> Events;
+  std::set<Index, IsLeftOf> Status;
+  std::vector<Place> Places;  ///< of each segment in Status
+  std::vector<Index> Regions; ///< the empty region of each walk: a hole, or Outside
+  std::vector<Index> Rims;    ///< the rim of each hole
+  std::vector<Index> Passing; ///< segments with the present point inside
+};
+} // namespace
+
+Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
+{
+  Holes holes;
+  holes.Walks = TraceBorder(mesh, Part(progress, 0.0, 0.5));
+  StartAtLowest(mesh, holes.Walks);
+  BorderSweep(mesh, firstCell, holes).Run(Part(progress, 0.5, 1.0));
+  return holes;
+}
+
+} // namespace elevation

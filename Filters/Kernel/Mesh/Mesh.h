@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The triangle mesh, and what can be asked of it and done to it without knowing where it comes from.
+ */
+#ifndef elevation_Mesh_Mesh_h
+#define elevation_Mesh_Mesh_h
+
+#include "HalfEdgeMesh.h"
+#include "Holes.h"
+#include "Recovery.h"
+#include "SubMesh.h"
+#include "TriangleSweep.h"
+#include "Validate.h"
+#include "VertexStars.h"
+
+#endif

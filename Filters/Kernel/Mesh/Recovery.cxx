@@ -1,0 +1,472 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Recovery.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+
+namespace elevation
+{
+
+namespace
+{
+
+std::string NameOfSegment(const Mesh& mesh, const Segment& segment)
+{
+  return "The segment from " + NameOf(mesh.Points, segment.A) + " to " +
+    NameOf(mesh.Points, segment.B);
+}
+
+/** Of points on one line: whether p lies from a in the direction of b, and not beyond b. */
+bool IsOnTheWay(const Point2& a, const Point2& b, const Point2& p)
+{
+  return IsLower(a, b) ? IsLower(a, p) && !IsLower(b, p) : IsLower(p, a) && !IsLower(p, b);
+}
+
+/** One side of a segment: an empty polygon, and the triangles that fill it. */
+class Cavity
+{
+public:
+  /** The polygon's vertices counter-clockwise; its last edge, back to the first, is the segment. */
+  std::vector<Index> Corners;
+  /** The half-edge that ran along each edge of the polygon (but the last) inside it. */
+  std::vector<Index> Edges;
+
+  // The triangles that fill it, numbered by themselves as in Mesh. A twin below 0 is ~i for the
+  // polygon's edge i.
+  std::vector<Index> Triangles;
+  std::vector<Index> Twins;
+
+  void Clear()
+  {
+    this->Corners.clear();
+    this->Edges.clear();
+  }
+
+  void Fill(const Mesh& mesh)
+  {
+    this->Scan(mesh);
+    this->MakeDelaunay(mesh);
+  }
+
+private:
+  /**
+   * Cuts off ears along the polygon. Every corner sees the segment, so what is on the stack bounds,
+   * with the segment, an empty polygon of which every left turn is an ear.
+   */
+  void Scan(const Mesh& mesh)
+  {
+    this->Triangles.clear();
+    this->Twins.clear();
+    this->Stack.clear();
+    this->Stack.push_back({ this->Corners[0], 0 });
+    for (std::size_t i = 1; i < this->Corners.size(); ++i)
+    {
+      const Index r = this->Corners[i];
+      Index twin = ~static_cast<Index>(i - 1);
+      while (this->Stack.size() > 1)
+      {
+        const Entry q = this->Stack.back();
+        const Index p = this->Stack[this->Stack.size() - 2].Vertex;
+        if (Orientation(mesh.PointOf(p), mesh.PointOf(q.Vertex), mesh.PointOf(r)) != Positive)
+        {
+          break;
+        }
+        this->Stack.pop_back();
+        const Index h = static_cast<Index>(this->Triangles.size());
+        this->Triangles.insert(this->Triangles.end(), { p, q.Vertex, r });
+        this->Twins.insert(this->Twins.end(), { q.Twin, twin, None });
+        this->Connect(h, q.Twin);
+        this->Connect(h + 1, twin);
+        twin = h + 2;
+      }
+      this->Stack.push_back({ r, twin });
+    }
+    this->Twins[this->Stack.back().Twin] = ~static_cast<Index>(this->Corners.size() - 1);
+  }
+
+  void Connect(Index h, Index twin)
+  {
+    this->Twins[h] = twin;
+    if (twin >= 0)
+    {
+      this->Twins[twin] = h;
+    }
+  }
+
+  /** Flips until every edge inside the polygon is locally Delaunay, ties by the rule. */
+  void MakeDelaunay(const Mesh& mesh)
+  {
+    this->Queue.clear();
+    for (std::size_t h = 0; h < this->Twins.size(); ++h)
+    {
+      if (this->Twins[h] > static_cast<Index>(h))
+      {
+        this->Queue.push_back(static_cast<Index>(h));
+      }
+    }
+    while (!this->Queue.empty())
+    {
+      const Index a = this->Queue.back();
+      this->Queue.pop_back();
+      const Index b = this->Twins[a];
+      if (b < 0 || !this->IsToFlip(mesh, a, b))
+      {
+        continue;
+      }
+      //            from            a and b ran between from and to; now they are the sides from-q
+      //       a  /  |  \           and to-p, and the new edge is between their next two.
+      //        p    |    q
+      //          \  |  /  b
+      //             to
+      const Index beforeA = Mesh::Previous(a);
+      const Index beforeB = Mesh::Previous(b);
+      this->Triangles[a] = this->Triangles[beforeB];
+      this->Triangles[b] = this->Triangles[beforeA];
+      this->Connect(a, this->Twins[beforeB]);
+      this->Connect(b, this->Twins[beforeA]);
+      this->Connect(beforeA, beforeB);
+      this->Queue.insert(this->Queue.end(), { a, b, Mesh::Next(a), Mesh::Next(b) });
+    }
+  }
+
+  bool IsToFlip(const Mesh& mesh, Index a, Index b) const
+  {
+    const Point2& from = mesh.PointOf(this->Triangles[a]);
+    const Point2& to = mesh.PointOf(this->Triangles[b]);
+    const Point2& p = mesh.PointOf(this->Triangles[Mesh::Previous(a)]);
+    const Point2& q = mesh.PointOf(this->Triangles[Mesh::Previous(b)]);
+    const Sign side = InCircle(from, to, p, q);
+    if (side != Zero)
+    {
+      return side == Positive;
+    }
+    const Point2& lowestOn = IsLower(from, to) ? from : to;
+    const Point2& lowestOff = IsLower(p, q) ? p : q;
+    return IsLower(lowestOff, lowestOn);
+  }
+
+  struct Entry
+  {
+    Index Vertex;
+    Index Twin; ///< of the half-edge that leads to the vertex from the one below on the stack
+  };
+  std::vector<Entry> Stack;
+  std::vector<Index> Queue;
+};
+
+/** The passes for one segment, and the memory they use again and again. */
+class Recovery
+{
+public:
+  Recovery(Mesh& mesh, VertexStars& stars, std::vector<char>& constrained)
+    : Surface(mesh)
+    , Constrained(constrained)
+    , Stars(stars)
+  {
+  }
+
+  /** @return whether an edge was missing */
+  bool Recover(const Segment& segment)
+  {
+    for (const Index end : { segment.A, segment.B })
+    {
+      if (end < 0 || end >= this->Surface.NumberOfPoints() || !this->Stars.IsUsed(end))
+      {
+        throw Error("A segment ends in " +
+          (end < 0 || end >= this->Surface.NumberOfPoints()
+              ? "point " + std::to_string(end) + ", which does not exist."
+              : NameOf(this->Surface.Points, end) + ", which is not the corner of any triangle."));
+      }
+    }
+    bool missing = false;
+    Index vertex = segment.A;
+    while (vertex != segment.B)
+    {
+      const SegmentStep step = StepAlong(this->Surface, this->Stars, vertex, segment.B);
+      if (step.HalfEdge != None)
+      {
+        this->Constrain(step.HalfEdge);
+        vertex = step.Vertex;
+        continue;
+      }
+      missing = true;
+      vertex = this->Cross(vertex, segment);
+    }
+    return missing;
+  }
+
+private:
+  void Constrain(Index h)
+  {
+    this->Constrained[h] = 1;
+    if (!this->Surface.IsBorder(h))
+    {
+      this->Constrained[this->Surface.Twin(h)] = 1;
+    }
+  }
+
+  /** Makes an edge from a vertex to the next vertex on the segment, which it returns. */
+  Index Cross(Index from, const Segment& segment)
+  {
+    const Index end = this->FindCrossed(from, segment);
+    for (Cavity* side : { &this->Left, &this->Right })
+    {
+      side->Fill(this->Surface);
+    }
+    this->WriteBack();
+    return end;
+  }
+
+  /** Walks along the segment: collects the crossed triangles and the polygons on either side. */
+  Index FindCrossed(Index from, const Segment& segment)
+  {
+    const Mesh& mesh = this->Surface;
+    const Point2& a = mesh.PointOf(from);
+    const Point2& b = mesh.PointOf(segment.B);
+    Index crossed = None;
+    this->Stars.VisitToward(mesh, from, segment.B, [&](Index h) {
+      if (Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
+        Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive)
+      {
+        crossed = Mesh::Next(h);
+      }
+      return crossed == None;
+    });
+    if (crossed == None)
+    {
+      this->ThrowLeaves(from, segment);
+    }
+
+    this->Slots.assign(1, Mesh::Triangle(crossed));
+    this->Left.Clear();
+    this->Right.Clear();
+    this->Left.Corners.push_back(from);
+    this->Right.Corners.push_back(from);
+    this->Left.Edges.push_back(Mesh::Next(crossed));
+    this->Right.Edges.push_back(Mesh::Previous(crossed));
+    // The crossed edge always runs from the right of the segment to its left.
+    for (;;)
+    {
+      if (this->Constrained[crossed])
+      {
+        throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
+          NameOf(mesh.Points, mesh.Origin(crossed)) + " to " +
+          NameOf(mesh.Points, mesh.Destination(crossed)) +
+          ". Segments may not cross; they may meet in a vertex.");
+      }
+      const Index beyond = mesh.Twin(crossed);
+      if (beyond == Mesh::Border)
+      {
+        this->ThrowLeaves(from, segment);
+      }
+      this->Slots.push_back(Mesh::Triangle(beyond));
+      this->Left.Corners.push_back(mesh.Destination(crossed));
+      this->Right.Corners.push_back(mesh.Origin(crossed));
+      const Index apex = mesh.Apex(beyond);
+      const Sign side = Orientation(a, b, mesh.PointOf(apex));
+      if (side == Positive)
+      {
+        this->Right.Corners.pop_back();
+        this->Left.Edges.push_back(Mesh::Previous(beyond));
+        crossed = Mesh::Next(beyond);
+      }
+      else if (side == Negative)
+      {
+        this->Left.Corners.pop_back();
+        this->Right.Edges.push_back(Mesh::Next(beyond));
+        crossed = Mesh::Previous(beyond);
+      }
+      else
+      {
+        if (apex != segment.B && !IsOnTheWay(a, b, mesh.PointOf(apex)))
+        {
+          this->ThrowLeaves(from, segment); // only in a mesh that overlaps itself
+        }
+        this->Left.Corners.push_back(apex);
+        this->Right.Corners.push_back(apex);
+        this->Left.Edges.push_back(Mesh::Previous(beyond));
+        this->Right.Edges.push_back(Mesh::Next(beyond));
+        // Counter-clockwise, the segment last: the left one from the end back to the start.
+        std::reverse(this->Left.Corners.begin(), this->Left.Corners.end());
+        std::reverse(this->Left.Edges.begin(), this->Left.Edges.end());
+        return apex;
+      }
+    }
+  }
+
+  void WriteBack()
+  {
+    Mesh& mesh = this->Surface;
+    // What lies beyond the polygons' edges, before it is overwritten. An edge may run into a
+    // polygon and back, so that its twin is an edge of a polygon too.
+    this->Old.clear();
+    for (const Cavity* side : { &this->Left, &this->Right })
+    {
+      for (const Index h : side->Edges)
+      {
+        this->Old.push_back({ h, mesh.Twin(h), this->Constrained[h], None });
+      }
+    }
+
+    std::sort(this->Slots.begin(), this->Slots.end());
+    auto slot = this->Slots.begin();
+    std::size_t firstOld = 0;
+    Index alongSegment = None;
+    for (const Cavity* side : { &this->Left, &this->Right })
+    {
+      const auto first = slot;
+      const Index size = static_cast<Index>(side->Triangles.size());
+      for (Index h = 0; h < size; ++h)
+      {
+        const Index here = 3 * first[h / 3] + h % 3;
+        mesh.Triangles[here] = side->Triangles[h];
+        this->Constrained[here] = 0;
+        const Index twin = side->Twins[h];
+        if (twin >= 0)
+        {
+          mesh.Twins[here] = 3 * first[twin / 3] + twin % 3;
+        }
+        else if (static_cast<std::size_t>(~twin) < side->Edges.size())
+        {
+          this->Old[firstOld + static_cast<std::size_t>(~twin)].After = here;
+        }
+        else if (alongSegment == None)
+        {
+          alongSegment = here;
+        }
+        else
+        {
+          mesh.Twins[here] = alongSegment;
+          mesh.Twins[alongSegment] = here;
+          this->Constrain(here);
+        }
+      }
+      slot += size / 3;
+      firstOld += side->Edges.size();
+    }
+    this->ReconnectEdges();
+    for (const Index triangle : this->Slots)
+    {
+      for (Index h = 3 * triangle; h < 3 * triangle + 3; ++h)
+      {
+        this->Stars.Replace(mesh, h);
+      }
+    }
+  }
+
+  void ReconnectEdges()
+  {
+    Mesh& mesh = this->Surface;
+    // By their ids before, to find the twins that were edges of a polygon.
+    std::sort(this->Old.begin(), this->Old.end(),
+      [](const OldEdge& p, const OldEdge& q) { return p.Before < q.Before; });
+    for (const OldEdge& edge : this->Old)
+    {
+      Index twin = edge.Twin;
+      if (twin != Mesh::Border)
+      {
+        const auto other = std::lower_bound(this->Old.begin(), this->Old.end(), twin,
+          [](const OldEdge& p, Index h) { return p.Before < h; });
+        if (other != this->Old.end() && other->Before == twin)
+        {
+          twin = other->After;
+        }
+        mesh.Twins[twin] = edge.After;
+      }
+      mesh.Twins[edge.After] = twin;
+      this->Constrained[edge.After] = edge.IsConstrained;
+      if (twin == Mesh::Border)
+      {
+        this->Moved.push_back(edge);
+      }
+    }
+    // In two steps, for borders of one vertex may exchange their ids.
+    for (const OldEdge& edge : this->Moved)
+    {
+      this->Stars.ReplaceBorder(mesh.Origin(edge.After), edge.Before, None - 1 - edge.After);
+    }
+    for (const OldEdge& edge : this->Moved)
+    {
+      this->Stars.ReplaceBorder(mesh.Origin(edge.After), None - 1 - edge.After, edge.After);
+    }
+    this->Moved.clear();
+  }
+
+  [[noreturn]] void ThrowLeaves(Index from, const Segment& segment) const
+  {
+    throw Error(NameOfSegment(this->Surface, segment) +
+      " leaves the mesh: it crosses a hole or the outside" +
+      (from == segment.A ? "." : " after " + NameOf(this->Surface.Points, from) + "."));
+  }
+
+  struct OldEdge
+  {
+    Index Before;
+    Index Twin;
+    char IsConstrained;
+    Index After;
+  };
+
+  Mesh& Surface;
+  std::vector<char>& Constrained;
+  VertexStars& Stars;
+  Cavity Left;
+  Cavity Right;
+  std::vector<Index> Slots;
+  std::vector<OldEdge> Old;
+  std::vector<OldEdge> Moved;
+};
+
+} // namespace
+
+SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to)
+{
+  const Point2& a = mesh.PointOf(from);
+  const Point2& b = mesh.PointOf(to);
+  SegmentStep step;
+  auto check = [&](Index h, Index vertex) {
+    if (vertex == to ||
+      (Orientation(a, b, mesh.PointOf(vertex)) == Zero && IsOnTheWay(a, b, mesh.PointOf(vertex)) &&
+        mesh.PointOf(vertex) != b))
+    {
+      step = { h, vertex };
+    }
+  };
+  stars.VisitToward(mesh, from, to, [&](Index h) {
+    check(h, mesh.Destination(h));
+    const Index last = Mesh::Previous(h);
+    if (step.HalfEdge == None && mesh.IsBorder(last))
+    {
+      check(last, mesh.Origin(last));
+    }
+    return step.HalfEdge == None;
+  });
+  return step;
+}
+
+Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
+  std::vector<char>& constrained, const Progress& progress)
+{
+  VertexStars stars(mesh, Part(progress, 0.0, 0.5));
+  return RecoverSegments(mesh, stars, segments, constrained, Part(progress, 0.5, 1.0));
+}
+
+Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,
+  std::vector<char>& constrained, const Progress& progress)
+{
+  constrained.resize(mesh.Triangles.size(), 0);
+  Recovery recovery(mesh, stars, constrained);
+  Index missing = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+  {
+    ReportStep(progress, i, segments.size(), 256);
+    missing += recovery.Recover(segments[i]) ? 1 : 0;
+  }
+  return missing;
+}
+
+} // namespace elevation

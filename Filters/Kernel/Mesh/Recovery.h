@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Segments that must be edges of a mesh, recovered in place: constrained Delaunay triangulation.
+ *
+ * In: a mesh with Twins, segments between its vertices. Out: the same mesh, in which every segment
+ * is an edge, or a chain of edges where it runs exactly through other vertices.
+ * For each segment:
+ *   1. Walk from its first end through the triangles it crosses, up to the
+ *      next vertex exactly on it.
+ *   2. Take these triangles out. Every corner of the empty polygon on either side of the segment
+ *      sees the segment, so that one scan with a stack fills the polygon with triangles.
+ *   3. Flip the edges inside each polygon until they are locally Delaunay [Lawson 1977].
+ *   4. Write the triangles back into the slots of those taken out.
+ * Only crossed triangles change. When the mesh was (constrained) Delaunay before, it is constrained
+ * Delaunay afterwards [Lee & Lin 1986]: only edges that are not constrained are locally Delaunay.
+ *
+ * Guarantees: exact (Orientation and InCircle decide), and unique: the tie of co-circular points is
+ * broken by the rule of Delaunay.h, so that the result depends on the positions alone, not on
+ * the order of points, triangles or segments.
+ *
+ * Cost: one linear pass over the mesh for each call; then proportional to the triangles around the
+ * ends of the segments and the edges crossed, as long as flips stay local, which they do for data
+ * that are spread in the plane (no more than the square of the edges crossed by one segment).
+ *
+ * [Lawson 1977] Software for C1 surface interpolation.
+ * [Lee & Lin 1986] Generalized Delaunay triangulation for planar graphs.
+ */
+#ifndef elevation_Mesh_Recovery_h
+#define elevation_Mesh_Recovery_h
+
+#include "VertexStars.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/** A straight line from one vertex to another, by their ids. */
+struct Segment
+{
+  Index A;
+  Index B;
+};
+
+/** An edge on the way along a segment: a half-edge that is on it, and the vertex it leads to. */
+struct SegmentStep
+{
+  Index HalfEdge = None; ///< from or to the vertex asked for; None when there is no such edge
+  Index Vertex = None;
+};
+
+/**
+ * The edge at vertex @a from that lies on the straight way to vertex @a to and does not go beyond
+ * it. Exact. Cost: the triangles around @a from, or a search where these are many.
+ */
+SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to);
+
+/**
+ * Makes every segment an edge of the mesh, or a chain of edges where it runs exactly through other
+ * vertices.
+ * @param[in,out] mesh         with Twins; the number of triangles is conserved,
+ *                             their slots are reused
+ * @param[in]     segments     in any order and direction; the same one may come twice, they may
+ *                             overlap. A segment from a vertex to itself is left out.
+ * @param[in,out] constrained  one flag a half-edge: in, edges that must stay (empty: none); out, 1
+ *                             for these and for both half-edges of every segment's edges, else 0
+ * @param[in]     progress     may be empty
+ * @return the number of segments that were not edges or chains of edges before
+ * @throws Error naming the two points when a segment crosses a constrained edge (so two segments
+ *         cross), leaves the mesh (crosses a hole or the outside), or ends in a point that is not
+ *         the corner of any triangle. The mesh then is valid, with the segments before recovered.
+ *         Aborted; std::bad_alloc.
+ */
+Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
+  std::vector<char>& constrained, const Progress& progress = Progress());
+
+/** The same with the stars of the mesh, which afterwards are those of the mesh as it has become. */
+Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,
+  std::vector<char>& constrained, const Progress& progress = Progress());
+
+} // namespace elevation
+
+#endif

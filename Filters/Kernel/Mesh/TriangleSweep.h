@@ -1,0 +1,556 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * A sweep over the triangles of a list where they lie: one pass that proves them counter-clockwise,
+ * finds the border, and shows each of them to a visitor.
+ *
+ * What is kept of a vertex is read into one place at first, so that a triangle costs one access to
+ * memory for each corner, wherever the points lie. Edges are matched as they come; what stays open
+ * is the border. Threads sweep over a range of triangles each; triangles with a vertex that another
+ * range has as well are put off to the end.
+ *
+ * Cost: linear; about as much as reading triangles and points, when triangles come in the order in
+ * which a sweep over the plane makes them, as those of this kernel do. The edges that are open at a
+ * time then have room beside their vertices. Where too many have not, the sweep is given up.
+ * Memory: one Visitor::Vertex a point, and a bit for each range.
+ */
+#ifndef elevation_Mesh_TriangleSweep_h
+#define elevation_Mesh_TriangleSweep_h
+
+#include "SubMesh.h"
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <new>
+#include <type_traits>
+#include <unordered_set>
+#include <vector>
+
+namespace elevation
+{
+
+/** What the sweep keeps of a vertex. */
+struct SweptVertex
+{
+  Point2 Place{ 0.0, 0.0 };
+  Index Upper[2] = { None, None }; ///< of open half-edges: where one leads up to, and down from
+  Index NumberOfOthers = 0; ///< open half-edges of which it is the lower end, without room here
+  Index Unused = 0;         ///< so that none lies in two lines of the cache
+};
+
+/** A half-edge: its ends, and whether it leads from the lower to the upper, or down. */
+struct SweptEdge
+{
+  SweptEdge(Index a, Point2 placeOfA, Index b, Point2 placeOfB)
+    : IsDown(IsLower(placeOfB, placeOfA))
+    , Lower(a ^ ((a ^ b) & -this->IsDown)) // without branches: which way it leads is by chance
+    , Upper(a ^ b ^ this->Lower)
+  {
+  }
+  Index IsDown;
+  Index Lower;
+  Index Upper;
+};
+
+/**
+ * The half-edges that have come without their twins so far. Each is known to the lower end of its
+ * edge, which has room for one that leads up and one that leads down to it: more are not open at a
+ * time when triangles come by their lowest vertices. Others go to a map.
+ */
+template <typename Vertex>
+class OpenEdges
+{
+public:
+  /** @param[in] most  others that the map takes */
+  OpenEdges(Vertex* vertices, std::size_t most)
+    : Vertices(vertices)
+    , Most(most)
+  {
+  }
+
+  /** A half-edge has come: it finds its twin, or stays open. */
+  void Add(const SweptEdge& edge)
+  {
+    // Most stay open. One that is open already is found in the slow way.
+    Vertex& at = this->Vertices[edge.Lower];
+    if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
+      (at.NumberOfOthers == 0))
+    {
+      at.Upper[edge.IsDown] = edge.Upper;
+    }
+    else if (!this->Match(edge))
+    {
+      this->Open(edge);
+    }
+  }
+
+  /**
+   * Whether both half-edges have found their twins: one up from a vertex to @a right, one down to
+   * it from @a left. If not, nothing is changed.
+   */
+  bool MatchBoth(Vertex& at, Index right, Index left)
+  {
+    const bool areTwins = (at.Upper[1] == right) & (at.Upper[0] == left);
+    if (areTwins)
+    {
+      at.Upper[0] = at.Upper[1] = None;
+    }
+    return areTwins;
+  }
+
+  /** Whether the half-edge has found its twin, which then is no longer open. */
+  bool Match(const SweptEdge& edge)
+  {
+    Vertex& at = this->Vertices[edge.Lower];
+    Index& twin = at.Upper[1 - edge.IsDown];
+    if (twin == edge.Upper)
+    {
+      twin = None;
+      return true;
+    }
+    if (at.NumberOfOthers == 0 || this->Others.erase(KeyOf(edge, 1 - edge.IsDown)) == 0)
+    {
+      return false;
+    }
+    --at.NumberOfOthers;
+    return true;
+  }
+
+  void Open(const SweptEdge& edge)
+  {
+    Vertex& at = this->Vertices[edge.Lower];
+    Index& open = at.Upper[edge.IsDown];
+    if (open == None)
+    {
+      open = edge.Upper;
+      return;
+    }
+    const bool isNew = open != edge.Upper && this->Others.insert(KeyOf(edge, edge.IsDown)).second;
+    ++at.NumberOfOthers;
+    this->Failed = this->Failed || !isNew || this->Others.size() > this->Most;
+  }
+
+  /** Adds those in the map of another, which has had other vertices. */
+  void Take(const OpenEdges& other)
+  {
+    this->Others.insert(other.Others.begin(), other.Others.end());
+    this->Failed = this->Failed || other.Failed || this->Others.size() > this->Most;
+  }
+
+  /** Too many for the map, or one twice: not an order, or not a surface, for this. */
+  bool HasFailed() const { return this->Failed; }
+
+  /** Adds what is open: beside a vertex ... */
+  void AddBeside(Index vertex, std::vector<BorderEdge>& border) const
+  {
+    const Vertex& at = this->Vertices[vertex];
+    if ((at.Upper[0] & at.Upper[1]) != None)
+    {
+      if (at.Upper[0] != None)
+      {
+        border.push_back({ vertex, at.Upper[0] });
+      }
+      if (at.Upper[1] != None)
+      {
+        border.push_back({ at.Upper[1], vertex });
+      }
+    }
+  }
+  /** ... and in the map. */
+  void AddOthers(std::vector<BorderEdge>& border) const
+  {
+    for (const std::uint64_t key : this->Others)
+    {
+      border.push_back({ static_cast<Index>(key >> 32), static_cast<Index>(key & 0xFFFFFFFFu) });
+    }
+  }
+
+private:
+  static std::uint64_t KeyOf(const SweptEdge& edge, int isDown)
+  {
+    return isDown ? std::uint64_t(edge.Upper) << 32 | std::uint32_t(edge.Lower)
+                  : std::uint64_t(edge.Lower) << 32 | std::uint32_t(edge.Upper);
+  }
+
+  Vertex* Vertices;
+  std::unordered_set<std::uint64_t> Others; ///< origin and destination
+  std::size_t Most;
+  bool Failed = false;
+};
+
+/** Whether a triangle is counter-clockwise and has finite corners: what a filter leaves open. */
+inline bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
+{
+  for (const double value : { a.X, a.Y, b.X, b.Y, c.X, c.Y })
+  {
+    if (!std::isfinite(value))
+    {
+      return false;
+    }
+  }
+  return Orientation(a, b, c) == Positive;
+}
+
+inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
+{
+  // The filter of Orientation(), which nothing that is not finite passes.
+  const double left = (a.X - c.X) * (b.Y - c.Y);
+  const double right = (a.Y - c.Y) * (b.X - c.X);
+  return left - right > 1e-15 * (std::fabs(left) + std::fabs(right)) + 1e-290 ||
+    IsExactlyCounterClockwise(a, b, c);
+}
+
+/**
+ * The sweep. A visitor has
+ *   - Vertex: a SweptVertex, with what the visitor adds;
+ *   - Start(Vertex&): called once for each vertex, whose place is known;
+ *   - Begin(p, a): told the first corner of triangles that follow each other, and the next;
+ *   - Visit(t, p, a, b): each of these triangles.
+ * Each range has a visitor of its own; all are copies of one.
+ */
+template <typename Visitor>
+class TriangleSweep
+{
+public:
+  using Vertex = typename Visitor::Vertex;
+
+  TriangleSweep(const TriangleList& list, int threads)
+    : List(list)
+    , Threads(ResolveNumberOfThreads(threads))
+    , Number(std::max(1, std::min(ThreadsAtOnce(threads), list.Count / FewestInRange)))
+    , Shared(list.Points.Count)
+  {
+    static_assert(std::is_trivially_destructible<Vertex>::value, "nobody destroys them");
+    this->Memory.Resize(static_cast<std::size_t>(list.Points.Count));
+    this->Vertices = reinterpret_cast<Vertex*>(this->Memory.data());
+  }
+
+  Index NumberOfRanges() const { return this->Number; }
+
+  /**
+   * @return whether all triangles are counter-clockwise, with corners that exist and are finite,
+   *         and all elevations are finite, also of points that are no corners; and edges could be
+   *         matched. If not, nothing else is of use.
+   * @throws Aborted, std::bad_alloc
+   */
+  bool Run(const Visitor& visitor, const Progress& progress)
+  {
+    const Index number = this->Number;
+    for (Index i = 0; i < number; ++i)
+    {
+      const auto at = [&](Index k) {
+        return static_cast<Index>(static_cast<std::int64_t>(this->List.Count) * k / number);
+      };
+      this->Ranges.emplace_back(Range{ at(i), at(i + 1), at(i),
+        OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
+        visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
+    }
+    if (!this->Read(visitor, Part(progress, 0.0, 0.1)))
+    {
+      return false;
+    }
+    bool isRight = true;
+    if (number > 1)
+    {
+      isRight = this->InRanges(
+        Part(progress, 0.1, 0.2), [this](Range& range) { return this->Mark(range); });
+      IdSet all(this->List.Points.Count);
+      for (Range& range : this->Ranges)
+      {
+        all.Add(range.Corners, this->Shared);
+        range.Corners = IdSet(0);
+      }
+    }
+    isRight = isRight &&
+      this->InRanges(Part(progress, 0.2, 0.9), [this](Range& range) { return this->Go(range); });
+    return isRight && this->Join(Part(progress, 0.9, 1.0));
+  }
+
+  /** What the visitors have seen; the first one's triangles may not be in order. */
+  std::vector<Visitor*> Visitors()
+  {
+    std::vector<Visitor*> visitors;
+    for (Range& range : this->Ranges)
+    {
+      visitors.push_back(&range.Seen);
+    }
+    return visitors;
+  }
+
+  Vertex& At(Index vertex) { return this->Vertices[vertex]; }
+
+  /**
+   * The half-edges without twins, in no order.
+   * @param[in] count, idOf  among idOf(0) ... idOf(count - 1) are all corners, once each, and None
+   * @param[in] visit        visit(i, vertex) is called for all of them, on several threads; with
+   *                         null for None
+   */
+  template <typename IdOf, typename Visit>
+  std::vector<BorderEdge> Border(Index count, const Progress& progress, IdOf&& idOf, Visit&& visit)
+  {
+    const OpenEdges<Vertex>& edges = this->Ranges[0].Edges;
+    std::vector<std::vector<BorderEdge>> pieces(elevation::NumberOfRanges(count));
+    ForEachRange(count, this->Threads, progress, [&](Index piece, Index begin, Index end) {
+      std::vector<BorderEdge> here;
+      for (Index i = begin; i < end; ++i)
+      {
+        Prefetch(this->Vertices + std::max(0, idOf(std::min(i + 32, end - 1))));
+        const Index id = idOf(i);
+        if (id != None)
+        {
+          edges.AddBeside(id, here);
+        }
+        visit(i, id != None ? this->Vertices + id : nullptr);
+      }
+      pieces[piece] = std::move(here);
+    });
+    std::size_t size = 0;
+    for (const std::vector<BorderEdge>& piece : pieces)
+    {
+      size += piece.size();
+    }
+    std::vector<BorderEdge> border;
+    border.reserve(size);
+    for (std::vector<BorderEdge>& piece : pieces)
+    {
+      Report(progress, 1.0);
+      border.insert(border.end(), piece.begin(), piece.end());
+      piece = std::vector<BorderEdge>();
+    }
+    edges.AddOthers(border);
+    return border;
+  }
+
+private:
+  struct alignas(64) Range // not where other threads write next to
+  {
+    Index Begin, End, Next;
+    OpenEdges<Vertex> Edges;
+    Visitor Seen;
+    IdSet Corners;
+    std::vector<Index> PutOff; ///< triangles with a vertex of another range
+  };
+  struct alignas(Vertex) Storage
+  {
+    unsigned char Bytes[sizeof(Vertex)];
+  };
+
+  static constexpr Index FewestInRange = 1 << 12; ///< triangles
+  static constexpr Index AtOnce = 1 << 14;        ///< triangles
+
+  /** Makes the vertices. @return whether all elevations are finite */
+  bool Read(const Visitor& visitor, const Progress& progress)
+  {
+    std::atomic<bool> areFinite{ true };
+    const auto read = [&](const auto* coordinates) {
+      ForEachRange(
+        this->List.Points.Count, this->Threads, progress, [&](Index, Index begin, Index end) {
+          const auto* p = coordinates + 3 * static_cast<std::size_t>(begin);
+          double sum = 0.0; // of numbers times 0: 0, or not a number
+          for (Index v = begin; v < end; ++v, p += 3)
+          {
+            Vertex* vertex = new (this->Vertices + v) Vertex;
+            vertex->Place = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
+            visitor.Start(*vertex);
+            sum += 0.0 * static_cast<double>(p[2]);
+          }
+          if (!(sum == 0.0))
+          {
+            areFinite = false;
+          }
+        });
+    };
+    this->List.Points.Double ? read(this->List.Points.Double) : read(this->List.Points.Float);
+    return areFinite;
+  }
+
+  /** Calls goOn(range) for all ranges until their ends. @return whether all is right */
+  template <typename GoOn>
+  bool InRanges(const Progress& progress, GoOn&& goOn)
+  {
+    for (Range& range : this->Ranges)
+    {
+      range.Next = range.Begin;
+    }
+    const auto fraction = [&]() {
+      double left = 0.0;
+      for (const Range& range : this->Ranges)
+      {
+        left += range.End - range.Next;
+      }
+      return 1.0 - left / this->List.Count;
+    };
+    std::atomic<bool> isRight{ true };
+    InRounds(static_cast<int>(this->Ranges.size()), progress, fraction,
+      [&](Index i, const RoundClock::time_point& end) {
+        Range& range = this->Ranges[i];
+        do
+        {
+          if (!goOn(range))
+          {
+            isRight = false;
+          }
+        } while (isRight && range.Next < range.End && RoundClock::now() < end);
+        return isRight && range.Next < range.End;
+      });
+    return isRight && std::all_of(this->Ranges.begin(), this->Ranges.end(), [](const Range& range) {
+      return range.Next == range.End;
+    });
+  }
+
+  /** Whether corners exist. */
+  bool Exist(std::size_t begin, std::size_t end) const
+  {
+    const std::uint32_t most = static_cast<std::uint32_t>(this->List.Points.Count - 1);
+    std::uint32_t sign = 0; // of numbers below 0, or beyond the last
+    for (std::size_t h = begin; h < end; ++h)
+    {
+      const std::uint32_t id = static_cast<std::uint32_t>(this->List.Corners[h]);
+      sign |= id | (most - id);
+    }
+    return sign >> 31 == 0;
+  }
+
+  /** Goes on with marking the corners of a range. @return whether they exist */
+  bool Mark(Range& range)
+  {
+    const Index begin = range.Next;
+    range.Next += std::min(AtOnce, range.End - begin);
+    const std::size_t first = 3 * static_cast<std::size_t>(begin);
+    const std::size_t end = 3 * static_cast<std::size_t>(range.Next);
+    const bool exist = this->Exist(first, end);
+    for (std::size_t h = first; exist && h < end; ++h)
+    {
+      range.Corners.Add(this->List.Corners[h]);
+    }
+    return exist;
+  }
+
+  /** Goes on with sweeping over a range. @return whether all is right so far */
+  bool Go(Range& range)
+  {
+    constexpr std::size_t ahead = 126; // so many corners further on vertices are asked for
+    const std::size_t count = 3 * static_cast<std::size_t>(this->List.Count);
+    const Index begin = range.Next;
+    const Index end = range.Next += std::min(AtOnce, range.End - begin);
+    const std::size_t known = std::min(count, 3 * static_cast<std::size_t>(end) + ahead + 3);
+    const std::size_t reach = known < count ? ahead : 0;
+    if (!this->Exist(3 * static_cast<std::size_t>(begin), known))
+    {
+      return false;
+    }
+    return this->Ranges.size() == 1
+      ? this->Stretch(begin, end, reach, range, [](Index) { return true; })
+      : this->Stretch(begin, end, reach, range, [this](Index v) { return !this->Shared.Has(v); });
+  }
+
+  /**
+   * Sweeps over some of the triangles, whose corners exist.
+   * @param[in] ahead   so many corners further on exist as well
+   * @param[in] isOurs  isOurs(id): whether triangles may have it; with others they are put off
+   * @return whether all is right so far
+   */
+  template <typename IsOurs>
+  bool Stretch(Index begin, Index end, std::size_t ahead, Range& range, IsOurs&& isOurs)
+  {
+    Vertex* const vertices = this->Vertices;
+    OpenEdges<Vertex>& edges = range.Edges;
+    Visitor& visitor = range.Seen;
+    bool isRight = true;
+    const Index* ids = this->List.CornersOf(begin);
+    const Index* const lastIds = this->List.CornersOf(end);
+    Index t = begin;
+    while (ids < lastIds)
+    {
+      const Index first = ids[0];
+      const Index right = ids[1];
+      if (!isOurs(first) || !isOurs(right) || !isOurs(ids[2]))
+      {
+        range.PutOff.push_back(t);
+        ids += 3;
+        ++t;
+        continue;
+      }
+      Vertex& p = vertices[first];
+      Vertex& r = vertices[right];
+      visitor.Begin(p, r);
+      Index last = right;
+      Vertex* b = &r;
+      do
+      {
+        Prefetch(vertices + ids[ahead + 1]);
+        Prefetch(vertices + ids[ahead + 2]);
+        const Index before = last;
+        Vertex& a = *b;
+        last = ids[2];
+        b = vertices + last;
+        isRight &= IsCounterClockwise(a.Place, b->Place, p.Place);
+        edges.Add(SweptEdge(before, a.Place, last, b->Place));
+        visitor.Visit(t, p, a, *b);
+        ids += 3;
+        ++t;
+      } while (ids < lastIds && ids[0] == first && ids[1] == last && isOurs(ids[2]));
+      if (!edges.MatchBoth(p, right, last))
+      {
+        // Both may find their twins before one that has none takes the room of one of these.
+        const SweptEdge firstEdge(first, p.Place, right, r.Place);
+        const bool hasTwin = edges.Match(firstEdge);
+        edges.Add(SweptEdge(last, b->Place, first, p.Place));
+        if (!hasTwin)
+        {
+          edges.Add(firstEdge); // where the fan is closed, the last edge is its twin
+        }
+      }
+    }
+    return isRight && !edges.HasFailed();
+  }
+
+  /** Goes through what ranges have put off. @return whether all is right */
+  bool Join(const Progress& progress)
+  {
+    Range& all = this->Ranges[0];
+    std::vector<Index> triangles;
+    for (Range& range : this->Ranges)
+    {
+      triangles.insert(triangles.end(), range.PutOff.begin(), range.PutOff.end());
+      range.PutOff.clear();
+      if (&range != &all)
+      {
+        all.Edges.Take(range.Edges);
+      }
+    }
+    bool isRight = !all.Edges.HasFailed();
+    std::size_t reported = 0;
+    for (std::size_t i = 0; i < triangles.size() && isRight;)
+    {
+      if (i >= reported)
+      {
+        Report(progress, static_cast<double>(i) / static_cast<double>(triangles.size()));
+        reported = i + AtOnce;
+      }
+      const Index first = triangles[i];
+      Index end = first;
+      for (; i < triangles.size() && triangles[i] == end && end - first < AtOnce; ++i)
+      {
+        ++end;
+      }
+      isRight = this->Stretch(first, end, 0, all, [](Index) { return true; });
+    }
+    return isRight;
+  }
+
+  const TriangleList& List;
+  const int Threads;
+  const Index Number; ///< of ranges
+  Buffer<Storage> Memory;
+  Vertex* Vertices;
+  std::vector<Range> Ranges;
+  IdSet Shared; ///< corners in more than one range
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Validate.h"
+
+#include "Holes.h"
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+
+namespace elevation
+{
+namespace
+{
+
+class Checker
+{
+public:
+  Checker(const Mesh& mesh, const ValidateOptions& options)
+    : Checked(mesh)
+    , Options(options)
+  {
+  }
+
+  std::vector<Finding> Check()
+  {
+    this->CheckTriangles();
+    if (this->Findings.empty())
+    {
+      this->CheckManifold();
+    }
+    // What follows presumes a consistent mesh of counter-clockwise triangles.
+    if (!this->Findings.empty())
+    {
+      return this->Findings;
+    }
+    if (this->Options.Delaunay)
+    {
+      this->CheckEmptyCircles();
+    }
+    if (this->Options.ConvexHull)
+    {
+      this->CheckHull();
+    }
+    if (this->Options.AllPoints)
+    {
+      this->CheckVertices();
+    }
+    if (this->Options.Overlap)
+    {
+      this->CheckOverlap();
+    }
+    return this->Findings;
+  }
+
+private:
+  void Add(Rule rule, Index where, const std::string& message)
+  {
+    if (this->Findings.size() < this->Options.MaximumFindings)
+    {
+      this->Findings.push_back({ rule, where, message });
+    }
+  }
+
+  void CheckTriangles()
+  {
+    const auto& ids = this->Checked.Triangles;
+    if (ids.size() % 3 != 0)
+    {
+      this->Add(Rule::Ids, None, "the number of triangle corners is not a multiple of three");
+      return;
+    }
+    for (Index t = 0; t < this->Checked.NumberOfTriangles(); ++t)
+    {
+      const Index a = ids[3 * t], b = ids[3 * t + 1], c = ids[3 * t + 2];
+      const Index count = this->Checked.NumberOfPoints();
+      if (std::min({ a, b, c }) < 0 || std::max({ a, b, c }) >= count || a == b || b == c || c == a)
+      {
+        this->Add(Rule::Ids, t,
+          "triangle " + std::to_string(t) + " has the corners " + std::to_string(a) + ", " +
+            std::to_string(b) + ", " + std::to_string(c) + " of " + std::to_string(count) +
+            " points");
+        continue;
+      }
+      const Sign side =
+        Orientation(this->Checked.PointOf(a), this->Checked.PointOf(b), this->Checked.PointOf(c));
+      if (side != Positive)
+      {
+        this->Add(Rule::Orientation, t,
+          "triangle " + std::to_string(t) + (side == Zero ? " is flat" : " is clockwise"));
+      }
+    }
+  }
+
+  void CheckManifold()
+  {
+    this->Checked.Twins.clear();
+    try
+    {
+      this->Checked.ConnectTwins();
+    }
+    catch (const Error& error)
+    {
+      this->Add(Rule::Manifold, None, error.what());
+    }
+  }
+
+  std::string EdgeOf(Index h) const
+  {
+    return "edge " + std::to_string(this->Checked.Origin(h)) + "-" +
+      std::to_string(this->Checked.Destination(h));
+  }
+
+  void CheckEmptyCircles()
+  {
+    for (Index h = 0; h < this->Checked.NumberOfHalfEdges(); ++h)
+    {
+      const Index twin = this->Checked.Twin(h);
+      if (twin < h || (this->Options.Constrained && (*this->Options.Constrained)[h]))
+      {
+        continue; // a border, or seen from the other side
+      }
+      const Point2& a = this->Checked.PointOf(this->Checked.Origin(h));
+      const Point2& b = this->Checked.PointOf(this->Checked.Destination(h));
+      const Point2& c = this->Checked.PointOf(this->Checked.Apex(h));
+      const Point2& d = this->Checked.PointOf(this->Checked.Apex(twin));
+      const Sign side = InCircle(a, b, c, d);
+      if (side == Positive)
+      {
+        this->Add(Rule::EmptyCircle, h,
+          "beyond " + this->EdgeOf(h) + " point " + std::to_string(this->Checked.Apex(twin)) +
+            " lies inside the circle of triangle " + std::to_string(Mesh::Triangle(h)));
+      }
+      else if (side == Zero)
+      {
+        const Point2& lowEnd = IsLower(a, b) ? a : b;
+        const Point2& lowApex = IsLower(c, d) ? c : d;
+        if (!IsLower(lowEnd, lowApex))
+        {
+          this->Add(Rule::TieRule, h,
+            this->EdgeOf(h) + " cuts a co-circular polygon, but not from its lowest vertex");
+        }
+      }
+    }
+  }
+
+  void CheckHull()
+  {
+    if (this->Checked.NumberOfTriangles() == 0)
+    {
+      return;
+    }
+    const Rings border = TraceBorder(this->Checked);
+    if (border.Count() != 1)
+    {
+      this->Add(Rule::Hull, None,
+        "the border consists of " + std::to_string(border.Count()) +
+          " loops, not of the hull alone");
+      return;
+    }
+    const Index size = border.Size(0);
+    const auto vertex = [&](Index i) { return this->Checked.Origin(border.Begin(0)[i % size]); };
+    Index lowestVertices = 0;
+    for (Index i = 0; i < size; ++i)
+    {
+      const Point2& before = this->Checked.PointOf(vertex(i));
+      const Point2& here = this->Checked.PointOf(vertex(i + 1));
+      const Point2& after = this->Checked.PointOf(vertex(i + 2));
+      if (Orientation(before, here, after) == Negative)
+      {
+        this->Add(Rule::Hull, vertex(i + 1),
+          "the border turns inwards at point " + std::to_string(vertex(i + 1)));
+      }
+      lowestVertices += IsLower(here, before) && IsLower(here, after);
+    }
+    if (lowestVertices != 1)
+    {
+      this->Add(Rule::Hull, None, "the border winds around more than once");
+    }
+  }
+
+  void CheckVertices()
+  {
+    std::vector<bool> isUsed(this->Checked.Points.size(), false);
+    for (Index vertex : this->Checked.Triangles)
+    {
+      isUsed[vertex] = true;
+    }
+    const auto* unused = this->Options.UnusedPoints;
+    for (Index point = 0; point < this->Checked.NumberOfPoints(); ++point)
+    {
+      const bool isListed = unused && std::binary_search(unused->begin(), unused->end(), point);
+      if (isUsed[point] == isListed)
+      {
+        this->Add(Rule::Vertices, point,
+          "point " + std::to_string(point) +
+            (isListed ? " is listed as unused but is a vertex" : " is not a vertex"));
+      }
+    }
+  }
+
+  void CheckOverlap()
+  {
+    try
+    {
+      FindHoles(this->Checked);
+    }
+    catch (const Error& error)
+    {
+      this->Add(Rule::Overlap, None, error.what());
+    }
+  }
+
+  Mesh Checked; // a copy, whose Twins are made here
+  const ValidateOptions& Options;
+  std::vector<Finding> Findings;
+};
+} // namespace
+
+std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options)
+{
+  return Checker(mesh, options).Check();
+}
+
+std::string ToString(const std::vector<Finding>& findings)
+{
+  std::string text;
+  for (const Finding& finding : findings)
+  {
+    text += finding.Message + "\n";
+  }
+  return text;
+}
+
+} // namespace elevation

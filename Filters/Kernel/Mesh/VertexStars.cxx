@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "VertexStars.h"
+
+#include <algorithm>
+
+namespace elevation
+{
+
+VertexStars::VertexStars(const Mesh& mesh, const Progress& progress)
+  : First(mesh.Points.size(), None)
+  , OnBorder(mesh.Points.size(), 0)
+{
+  // From the last half-edge to the first, so that the first one stays.
+  const Index count = mesh.NumberOfHalfEdges();
+  std::vector<Index> borders;
+  ForEachStretch(count, progress, [&](Index begin, Index end) {
+    for (Index h = count - 1 - begin; h > count - 1 - end; --h)
+    {
+      this->First[mesh.Origin(h)] = h;
+      if (mesh.IsBorder(h))
+      {
+        borders.push_back(h);
+      }
+    }
+  });
+  for (auto h = borders.rbegin(); h != borders.rend(); ++h)
+  {
+    const Index vertex = mesh.Origin(*h);
+    if (!this->OnBorder[vertex])
+    {
+      this->OnBorder[vertex] = 1;
+      this->First[vertex] = *h;
+    }
+    else
+    {
+      this->Others[vertex].push_back(*h);
+    }
+  }
+}
+
+void VertexStars::ReplaceBorder(Index vertex, Index before, Index after)
+{
+  if (this->First[vertex] == before)
+  {
+    this->First[vertex] = after;
+    return;
+  }
+  const auto others = this->Others.find(vertex);
+  if (others != this->Others.end())
+  {
+    std::replace(others->second.begin(), others->second.end(), before, after);
+  }
+}
+
+Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
+{
+  const Point2& a = mesh.PointOf(from);
+  const Point2& b = mesh.PointOf(to);
+  if (a == b || this->Others.count(from) > 0)
+  {
+    return None;
+  }
+  // Counter-clockwise from a half-edge on.
+  const auto look = [&](Index first, Index most) {
+    Sign side = Orientation(a, b, mesh.PointOf(mesh.Destination(first)));
+    Index h = first;
+    do
+    {
+      const Sign next = Orientation(a, b, mesh.PointOf(mesh.Apex(h)));
+      if (side != Positive && next == Positive)
+      {
+        return h;
+      }
+      side = next;
+      h = mesh.Twin(Mesh::Previous(h));
+    } while (h != Mesh::Border && h != first && --most > 0);
+    return None;
+  };
+  std::vector<Spoke>& spokes = this->Hubs[from];
+  const auto isBefore = [&](const Spoke& s, const Spoke& t) {
+    const Point2 &p = mesh.PointOf(s.Vertex), &q = mesh.PointOf(t.Vertex);
+    const bool isUp = IsLower(a, p);
+    return isUp != IsLower(a, q) ? isUp : Orientation(a, p, q) == Positive;
+  };
+  const auto lookFromSpoke = [&](Index most) {
+    auto spoke = std::upper_bound(spokes.begin(), spokes.end(), Spoke{ to, None }, isBefore);
+    for (Index tried = 0; tried < Few && !spokes.empty(); ++tried)
+    {
+      spoke = std::prev(spoke == spokes.begin() ? spokes.end() : spoke);
+      if (mesh.Origin(spoke->HalfEdge) == from)
+      {
+        return look(spoke->HalfEdge, most);
+      }
+    }
+    return None;
+  };
+  Index found = lookFromSpoke(Few);
+  if (found == None)
+  {
+    // Too many have come or gone.
+    spokes.clear();
+    this->Visit(mesh, from, [&](Index h) {
+      spokes.push_back({ mesh.Destination(h), h });
+      return true;
+    });
+    std::rotate(
+      spokes.begin(), std::is_sorted_until(spokes.begin(), spokes.end(), isBefore), spokes.end());
+    found = lookFromSpoke(mesh.NumberOfHalfEdges());
+  }
+  return found;
+}
+
+} // namespace elevation

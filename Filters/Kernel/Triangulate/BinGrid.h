@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Points sorted into the bins of a uniform grid over their bounding box, and a tree of boxes over
+ * the bins, for the searches of the triangulation.
+ *
+ * In: points. Out: the same points in *slots*, row of bins after row of bins, so that the points of
+ * neighbouring bins of a row are contiguous; equal points set aside; the rest is a lookup.
+ * Where density is even, a bin holds about one point. Where it is not, some bins hold many: the
+ * slots of a full bin are ordered by halving its points again and again, whatever their density.
+ * The tree joins both: a leaf is a stretch of slots, the bins of part of a row or a few points of a
+ * full bin; a node knows the bounding boxes of its eight children. So voids are passed over, and
+ * clusters are entered, in a number of steps that is logarithmic in the number of points.
+ * The passes: find the bounds and lay the bins; sort the points into blocks of rows, each of which
+ * fits into a core's cache; in each block sort the points into bins, build its part of the tree,
+ * order its rows by (y, x), set duplicates aside, which are neighbours then; join the blocks. The
+ * blocks depend on the points alone, so the result is the same for any number of threads.
+ *
+ * The bin of a coordinate is a monotone function of it, also in floating point: all points with x
+ * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
+ * The boxes of a node's children have no point in common.
+ *
+ * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 4 for the bins and
+ * 3 for the tree (5 in full bins). While it is built, 24 more, and a few more in full bins.
+ */
+#ifndef elevation_Triangulate_BinGrid_h
+#define elevation_Triangulate_BinGrid_h
+
+#include "Options.h"
+#include "Kernel/Base/Base.h"
+
+#include <utility>
+#include <vector>
+
+namespace elevation
+{
+
+class BinGrid
+{
+public:
+  /** Where the bins are. */
+  struct Layout
+  {
+    double OriginX = 0.0, OriginY = 0.0; ///< lower left corner of the points' bounding box
+    double PerX = 0.0, PerY = 0.0;       ///< bins a unit of length
+    Index Columns = 0, Rows = 0;
+    double BinWidth = 0.0, BinHeight = 0.0;
+    /** Whether the bins' bounds are where OriginX + k * BinWidth is, to a thousandth of a bin, and
+     * single precision holds squares. */
+    bool HasPlainBins = false;
+
+    Index Column(double x) const { return Cell((x - this->OriginX) * this->PerX, this->Columns); }
+    Index Row(double y) const { return Cell((y - this->OriginY) * this->PerY, this->Rows); }
+
+  private:
+    static Index Cell(double position, Index count)
+    {
+      // Written so that "not a number" (an infinite difference times zero) is the first cell.
+      return position > 0.0 ? (position < count ? static_cast<Index>(position) : count - 1) : 0;
+    }
+  };
+
+  /**
+   * A node of the tree: bounding boxes of the points of up to eight children. The other places hold
+   * the empty box, from infinity to minus infinity, which nothing reaches.
+   */
+  struct Node
+  {
+    static constexpr int Places = 8;
+    double LowX[Places], HighX[Places], LowY[Places], HighY[Places];
+    Index First[Places]; ///< of a leaf the first slot, else the node
+    Index Count[Places]; ///< of a leaf the number of slots, else 0
+    Index Size;          ///< number of points below
+    Index Parent;        ///< None of the root
+  };
+
+  /**
+   * A node on the way from a point up to the root, with the box of its points, which is the whole
+   * plane for the root, and its place in its parent. All points within the box are below the node.
+   */
+  struct Step
+  {
+    const BinGrid::Node* Node;
+    int Place;
+    double LowX, HighX, LowY, HighY;
+
+    bool IsRoot() const { return this->Node->Parent == None; }
+  };
+
+  /**
+   * Bins the finite points and sets duplicates aside.
+   * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
+   * that squares of distances neither over- nor underflow; this is exact, or not done.
+   * @param threads  how many to use
+   * @param known    the points' extent, which is taken away; null: it is looked for
+   */
+  BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
+    int threads = 1, Extent* known = nullptr);
+
+  Index NumberOfPoints() const { return static_cast<Index>(this->Ids.size()); }
+  Point2 PointAt(Index slot) const { return { this->X[slot], this->Y[slot] }; }
+
+  /** Slots of the bins firstColumn..lastColumn of a row: [first, second). */
+  std::pair<Index, Index> Slots(Index row, Index firstColumn, Index lastColumn) const
+  {
+    const Index* starts = this->Starts.data() + static_cast<std::size_t>(row) * this->Bins.Columns;
+    return { starts[firstColumn], starts[lastColumn + 1] };
+  }
+
+  /** The node above the leaf that holds a slot. */
+  Step Lowest(Index slot) const;
+  /** The parent of a node that is not the root. */
+  Step Above(const Step& step) const { return this->StepTo(step.Node->Parent); }
+
+  Buffer<double> X, Y; ///< coordinates by slot; eight more values may be read than there are
+  Buffer<Index> Ids;   ///< the input's point id by slot
+  double Scale = 1.0;  ///< what the input's coordinates were multiplied by
+  Layout Bins;
+  Buffer<Index> Order;            ///< all slots by increasing (y, x): row after row
+  Buffer<Index> Starts;           ///< first slot of each bin, row by row, and the number of slots
+  Buffer<double> RowLow, RowHigh; ///< range of y of the points in each row
+  Buffer<Node> Nodes;             ///< the tree, children before parents: the root is the last
+  Buffer<Index> LeafNodes;        ///< for eight slots after eight, a node above one of their leaves
+
+  /** Memory that binning has used and nobody uses now: as much as the triangles take. To reuse it
+     is cheaper than to ask for other: the system clears what it gives. */
+  Buffer<Index> Room;
+
+  std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y
+  std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite
+
+private:
+  struct Block;
+
+  Step StepTo(Index node) const;
+  Index FindLowest(Index slot) const;
+
+  bool Lay(const PointView& points, const Extent& extent);
+  std::vector<Block> Fill(
+    const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads);
+  void FillBlock(
+    Block& block, const PointView& points, DuplicatePolicy policy, const Progress& progress);
+  /** @param idLimit  the first id that no point has */
+  void Join(std::vector<Block>& blocks, Index idLimit, const Progress& progress, int threads);
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,961 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Constrained.h"
+
+#include "Kernel/Base/Base.h"
+#include "Triangulate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+namespace elevation
+{
+namespace
+{
+
+/** Part of one or several segments, without a known vertex between its ends. */
+struct Piece
+{
+  Index A; ///< vertices; the same one twice: a point that no segment ends in
+  Index B;
+  Index Rank;           ///< the first segment that it is part of
+  Index Count;          ///< of distinct segments that it is part of
+  RoundingUnits Unit = RoundingUnits(); ///< the largest of its segments
+};
+
+/** A vertex of the lines. */
+struct Vertex
+{
+  Point2 Position;
+  Index Input = None;  ///< the input point that it is
+  Index Source = None; ///< the point of the lines that it is
+  Index From = None;   ///< a crossing: between these vertices
+  Index To = None;
+};
+
+/** A piece and a vertex to cut it at. */
+struct Cut
+{
+  Index Piece;
+  Index Vertex;
+};
+
+struct Crossing
+{
+  Index P; ///< pieces, P < Q
+  Index Q;
+};
+
+/** Whether p, which is neither, lies on the segment from a to b. */
+bool IsWithin(const Point2& a, const Point2& b, const Point2& p)
+{
+  return std::min(a.X, b.X) <= p.X && p.X <= std::max(a.X, b.X) && std::min(a.Y, b.Y) <= p.Y &&
+    p.Y <= std::max(a.Y, b.Y) && Orientation(a, b, p) == Zero;
+}
+
+/** Whether two segments cross between their ends. */
+bool AreCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
+{
+  // a and c are the lower ends, so that this settles y.
+  if (b.Y < c.Y || d.Y < a.Y || std::max(a.X, b.X) < std::min(c.X, d.X) ||
+    std::max(c.X, d.X) < std::min(a.X, b.X))
+  {
+    return false;
+  }
+  return Orientation(a, b, c) * Orientation(a, b, d) < 0 &&
+    Orientation(c, d, a) * Orientation(c, d, b) < 0;
+}
+
+/** Passes 1 to 3: from lines to pieces that do not cross, and what points they add. */
+class Splitting
+{
+public:
+  Splitting(const PointView& points, const ConstraintLines& lines, DuplicatePolicy duplicates,
+    const Progress& progress)
+    : Points(points)
+    , Lines(lines)
+    , Duplicates(duplicates)
+  {
+    this->Collect(Part(progress, 0.0, 0.1));
+    if (!this->Pieces.empty())
+    {
+      this->Split(Part(progress, 0.1, 0.9));
+      this->Match(Part(progress, 0.9, 1.0));
+    }
+  }
+
+  bool IsEmpty() const { return this->Vertices.empty(); }
+  std::int64_t NumberOfCrossings() const { return this->Crossings; }
+
+  /** The points that are added, and the pieces by final ids. */
+  void GetResult(
+    std::vector<AddedPoint>& added, std::vector<Segment>& pieces, const Progress& progress) const
+  {
+    std::vector<Index> ids(this->Vertices.size());
+    const auto elevationOf = [&](Index id) {
+      return id < this->Points.Count ? this->Points.Elevation(id)
+                                     : added[id - this->Points.Count].Elevation;
+    };
+    for (std::size_t v = 0; v < this->Vertices.size(); ++v)
+    {
+      ReportStep(progress, v, this->Vertices.size());
+      const Vertex& vertex = this->Vertices[v];
+      if (vertex.Input != None)
+      {
+        ids[v] = vertex.Input;
+        continue;
+      }
+      if (added.size() >= static_cast<std::size_t>(MaximumNumberOfPoints - this->Points.Count))
+      {
+        throw Error("With the points that lines add there are more than " +
+          std::to_string(MaximumNumberOfPoints) + " points.");
+      }
+      ids[v] = this->Points.Count + static_cast<Index>(added.size());
+      AddedPoint point{ vertex.Position, 0.0, vertex.Source, None, None, 0.0 };
+      if (vertex.Source != None)
+      {
+        point.Elevation = this->Lines.Points.Elevation(vertex.Source);
+      }
+      else
+      {
+        point.From = ids[vertex.From];
+        point.To = ids[vertex.To];
+        point.Fraction = this->FractionOf(vertex);
+        const double from = elevationOf(point.From), to = elevationOf(point.To);
+        point.Elevation = from + point.Fraction * (to - from);
+        if (!std::isfinite(point.Elevation))
+        {
+          point.Elevation = (1.0 - point.Fraction) * from + point.Fraction * to;
+        }
+      }
+      added.push_back(point);
+    }
+    for (const Piece& piece : this->Pieces)
+    {
+      if (piece.A != piece.B)
+      {
+        pieces.push_back({ ids[piece.A], ids[piece.B] });
+      }
+    }
+  }
+
+private:
+  const Point2& At(Index vertex) const { return this->Vertices[vertex].Position; }
+
+  CellGrid GridOf(const std::vector<Piece>& pieces, const Progress& progress) const
+  {
+    return CellGrid(
+      pieces.size(),
+      [&](std::size_t i) {
+        return std::array<Point2, 2>{ { this->At(pieces[i].A), this->At(pieces[i].B) } };
+      },
+      progress);
+  }
+
+  /** Pass 1. */
+  void Collect(const Progress& progress)
+  {
+    const PointView& own = this->Lines.Points;
+    std::vector<Index> used;
+    for (Index line = 0; line < this->Lines.Count(); ++line)
+    {
+      for (Index k = this->Lines.Offsets[line]; k < this->Lines.Offsets[line + 1]; ++k)
+      {
+        ReportStep(progress, k, 4 * this->Lines.Vertices.size());
+        const Index id = this->Lines.Vertices[k];
+        const bool exists = id >= 0 && id < own.Count;
+        if (!exists || !std::isfinite(own.At(id).X) || !std::isfinite(own.At(id).Y) ||
+          !std::isfinite(own.Elevation(id)))
+        {
+          throw Error("Point " + std::to_string(id) + " of the constraints' cell " +
+            std::to_string(this->Lines.Cells[line]) +
+            (exists ? " has a coordinate that is not finite." : " does not exist."));
+        }
+        used.push_back(id);
+      }
+    }
+    // By position, so that equal ones are neighbours; the lowest id of them is the vertex.
+    Sort(
+      used.begin(), used.end(),
+      [&](Index p, Index q) {
+        const Point2 at = own.At(p), other = own.At(q);
+        return at != other ? IsLower(at, other) : p < q;
+      },
+      Part(progress, 0.25, 0.5));
+    std::vector<Index> vertexOf(own.Count, None); // the source first
+    for (std::size_t i = 0, first = 0; i < used.size(); ++i)
+    {
+      first = i > 0 && own.At(used[i]) == own.At(used[first]) ? first : i;
+      vertexOf[used[i]] = used[first];
+    }
+    // Vertices by the ids of their sources, which come before what they are the vertex of or not.
+    std::vector<Index> ofSource(own.Count, None);
+    for (Index id = 0; id < own.Count; ++id)
+    {
+      if (vertexOf[id] == id)
+      {
+        ofSource[id] = static_cast<Index>(this->Vertices.size());
+        Vertex vertex;
+        vertex.Position = own.At(id);
+        vertex.Source = id;
+        this->Vertices.push_back(vertex);
+      }
+    }
+
+    std::vector<char> hasSegment(this->Vertices.size(), 0);
+    Report(progress, 0.5);
+    for (Index line = 0; line < this->Lines.Count(); ++line)
+    {
+      const Index begin = this->Lines.Offsets[line], end = this->Lines.Offsets[line + 1];
+      for (Index k = begin; k < end; ++k)
+      {
+        const Index next = k + 1 < end ? k + 1 : (this->Lines.IsClosed[line] ? begin : k);
+        const Index p = ofSource[vertexOf[this->Lines.Vertices[k]]];
+        const Index q = ofSource[vertexOf[this->Lines.Vertices[next]]];
+        if (p != q)
+        {
+          const bool isUp = IsLower(this->At(p), this->At(q));
+          this->SegmentLines.push_back(line);
+          this->Segments.push_back({ isUp ? p : q, isUp ? q : p });
+          this->Pieces.push_back(
+            { isUp ? p : q, isUp ? q : p, static_cast<Index>(this->Segments.size()) - 1, 1 });
+          this->Pieces.back().Unit = UnitsOf(this->At(p), this->At(q));
+          hasSegment[p] = hasSegment[q] = 1;
+        }
+      }
+    }
+    this->JoinEqualPieces(Part(progress, 0.6, 1.0));
+    for (Piece& piece : this->Pieces)
+    {
+      piece.Count = 1; // the same segment in several lines is one
+    }
+    for (std::size_t v = 0; v < hasSegment.size(); ++v)
+    {
+      if (!hasSegment[v])
+      {
+        this->Pieces.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
+      }
+    }
+  }
+
+  void JoinEqualPieces(const Progress& progress)
+  {
+    Sort(
+      this->Pieces.begin(), this->Pieces.end(),
+      [](const Piece& p, const Piece& q) {
+        return p.A != q.A ? p.A < q.A : (p.B != q.B ? p.B < q.B : p.Rank < q.Rank);
+      },
+      Part(progress, 0.0, 0.9));
+    const Progress joining = Part(progress, 0.9, 1.0);
+    std::size_t kept = 0, done = 0;
+    for (const Piece& piece : this->Pieces)
+    {
+      ReportStep(joining, done++, this->Pieces.size());
+      if (kept > 0 && this->Pieces[kept - 1].A == piece.A && this->Pieces[kept - 1].B == piece.B)
+      {
+        Piece& same = this->Pieces[kept - 1];
+        same.Count += piece.Count;
+        same.Unit = { std::max(same.Unit.X, piece.Unit.X), std::max(same.Unit.Y, piece.Unit.Y) };
+      }
+      else
+      {
+        this->Pieces[kept++] = piece;
+      }
+    }
+    this->Pieces.resize(kept);
+  }
+
+  /** Pass 2. */
+  void Split(const Progress& progress)
+  {
+    {
+      const CellGrid grid = this->GridOf(this->Pieces, Part(progress, 0.0, 0.1));
+      std::vector<Cut> cuts;
+      this->CutAtVertices(grid, cuts, Part(progress, 0.1, 0.2));
+      this->CutAtInputPoints(grid, cuts, Part(progress, 0.2, 0.45));
+      this->CountCrossingsAtVertices(cuts, Part(progress, 0.45, 0.47));
+      this->Apply(cuts, Part(progress, 0.47, 0.5));
+    }
+    // As the lines run exactly; what follows moves pieces by rounding.
+    const std::vector<Piece> pieces = this->Pieces;
+    const std::size_t count = this->Vertices.size();
+    // Two units make up for the rounding of an end and of a crossing. Without any it goes where
+    // they are no less than the lines' own lengths, and the grid of the doubles bounds all there is.
+    if (this->Settle(2.0, true, Part(progress, 0.5, 0.9)))
+    {
+      return;
+    }
+    this->Pieces = pieces;
+    this->Vertices.resize(count);
+    if (!this->Settle(0.0, false, Part(progress, 0.9, 1.0)))
+    {
+      throw Error(this->NameOf(this->Unsettled[0]) + " and t" +
+        this->NameOf(this->Unsettled[1]).substr(1) +
+        " cross again and again where rounding moves them.");
+    }
+  }
+
+  /**
+   * Cuts until no pieces cross and none runs through a vertex.
+   * @param reach  in units in the last place: two pieces that cross go through an end of one that
+   *               is so near to the other, and through a vertex within twice as much of the place
+   *               where they cross, instead of a new vertex.
+   * @return whether it came to an end
+   */
+  bool Settle(double reach, bool isToCount, const Progress& progress)
+  {
+    constexpr int mostRounds = 64; // two or three are usual
+    this->Reach = reach;
+    bool haveCounted = !isToCount;
+    for (int round = 0; round < mostRounds; ++round)
+    {
+      // Half of what is left for each.
+      const Progress ofRound =
+        Part(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
+      const CellGrid grid = this->GridOf(this->Pieces, Part(ofRound, 0.0, 0.2));
+      std::vector<Cut> cuts;
+      this->CutAtVertices(grid, cuts, Part(ofRound, 0.2, 0.4));
+      std::vector<Crossing> crossings;
+      if (cuts.empty())
+      {
+        this->FindCrossings(grid, crossings, Part(ofRound, 0.4, 0.7));
+        if (crossings.empty())
+        {
+          return true;
+        }
+        this->CutAtCrossings(grid, crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
+        haveCounted = true;
+        this->Unsettled = { this->Pieces[crossings[0].P].Rank, this->Pieces[crossings[0].Q].Rank };
+      }
+      this->Apply(cuts, Part(ofRound, 0.9, 1.0));
+    }
+    return false;
+  }
+
+  /**
+   * Finds the input points that are vertices of the lines, and cuts at those that are on segments,
+   * which become vertices.
+   */
+  void CutAtInputPoints(const CellGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
+  {
+    std::vector<Cut> found; // input points as yet
+    ForEachStretch(this->Points.Count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
+      for (Index id = begin; id < end; ++id)
+      {
+        const Point2 p = this->Points.At(id);
+        std::size_t cell;
+        if (!grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
+        {
+          continue;
+        }
+        const std::size_t before = found.size();
+        for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
+        {
+          const Piece& piece = this->Pieces[*i];
+          const Index vertex =
+            this->At(piece.A) == p ? piece.A : (this->At(piece.B) == p ? piece.B : None);
+          if (vertex != None)
+          {
+            this->SetInput(vertex, id);
+            found.resize(before); // what is on a segment then is the vertex
+            break;
+          }
+          if (IsWithin(this->At(piece.A), this->At(piece.B), p))
+          {
+            found.push_back({ *i, id });
+          }
+        }
+      }
+    });
+    Sort(
+      found.begin(), found.end(),
+      [&](const Cut& p, const Cut& q) {
+        const Point2 at = this->Points.At(p.Vertex), other = this->Points.At(q.Vertex);
+        return at != other ? IsLower(at, other) : p.Piece < q.Piece;
+      },
+      Part(progress, 0.8, 1.0));
+    const std::size_t first = this->Vertices.size(), firstCut = cuts.size();
+    for (const Cut& cut : found)
+    {
+      const Point2 p = this->Points.At(cut.Vertex);
+      if (this->Vertices.size() == first || this->Vertices.back().Position != p)
+      {
+        this->Vertices.emplace_back();
+        this->Vertices.back().Position = p;
+      }
+      const Index vertex = static_cast<Index>(this->Vertices.size()) - 1;
+      this->SetInput(vertex, cut.Vertex);
+      // Duplicates cut once.
+      if (cuts.size() == firstCut || cuts.back().Vertex != vertex || cuts.back().Piece != cut.Piece)
+      {
+        cuts.push_back({ cut.Piece, vertex });
+      }
+    }
+  }
+
+  void SetInput(Index vertex, Index id)
+  {
+    Index& input = this->Vertices[vertex].Input;
+    if (input == None || IsPreferred(this->Points, this->Duplicates, id, input))
+    {
+      input = id;
+    }
+  }
+
+  /** Cuts pieces at the vertices that are on them. */
+  void CutAtVertices(const CellGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
+  {
+    const std::size_t count = this->Vertices.size();
+    WorkReporter work(progress);
+    for (std::size_t v = 0; v < count; ++v)
+    {
+      work.Step(v, count);
+      const Point2& p = this->Vertices[v].Position;
+      std::size_t cell;
+      if (!grid.FindCell(p, cell))
+      {
+        continue;
+      }
+      for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
+      {
+        work.Look();
+        const Piece& piece = this->Pieces[*i];
+        if (piece.A != static_cast<Index>(v) && piece.B != static_cast<Index>(v) &&
+          IsWithin(this->At(piece.A), this->At(piece.B), p))
+        {
+          cuts.push_back({ *i, static_cast<Index>(v) });
+        }
+      }
+    }
+  }
+
+  /**
+   * Counts the pairs of segments that cross in a vertex: those cut there that are not on one line.
+   */
+  void CountCrossingsAtVertices(std::vector<Cut> cuts, const Progress& progress)
+  {
+    const auto end = [&](const Cut& cut) { return this->At(this->Pieces[cut.Piece].B); };
+    Sort(
+      cuts.begin(), cuts.end(),
+      [&](const Cut& p, const Cut& q) {
+        // Around one vertex by the direction upwards, which is within half a turn.
+        return p.Vertex != q.Vertex ? p.Vertex < q.Vertex
+                                    : Orientation(this->At(p.Vertex), end(p), end(q)) == Positive;
+      },
+      Part(progress, 0.0, 0.8));
+    const Progress counting = Part(progress, 0.8, 1.0);
+    std::int64_t around = 0, alike = 0; // cuts before, of this vertex and of this direction
+    for (std::size_t i = 1; i < cuts.size(); ++i)
+    {
+      ReportStep(counting, i, cuts.size());
+      const bool isSameVertex = cuts[i].Vertex == cuts[i - 1].Vertex;
+      const bool isSameLine = isSameVertex &&
+        Orientation(this->At(cuts[i].Vertex), end(cuts[i - 1]), end(cuts[i])) == Zero;
+      around = isSameVertex ? around + 1 : 0;
+      alike = isSameLine ? alike + 1 : 0;
+      this->Crossings += around - alike;
+    }
+  }
+
+  void FindCrossings(
+    const CellGrid& grid, std::vector<Crossing>& crossings, const Progress& progress) const
+  {
+    const Progress searching = Part(progress, 0.0, 0.8);
+    std::size_t pairs = 0;
+    for (std::size_t cell = 0; cell < grid.NumberOfCells(); ++cell)
+    {
+      ReportStep(searching, cell, grid.NumberOfCells());
+      const Index *const begin = grid.Begin(cell), *const end = grid.End(cell);
+      for (const Index* i = begin; i < end; ++i)
+      {
+        pairs += static_cast<std::size_t>(end - i);
+        if (pairs > 1000000)
+        {
+          pairs = 0;
+          Report(searching, static_cast<double>(cell) / static_cast<double>(grid.NumberOfCells()));
+        }
+        const Piece& p = this->Pieces[*i];
+        for (const Index* j = i + 1; j < end; ++j)
+        {
+          const Piece& q = this->Pieces[*j];
+          if (AreCrossing(this->At(p.A), this->At(p.B), this->At(q.A), this->At(q.B)))
+          {
+            crossings.push_back({ *i, *j }); // cells hold pieces in their order
+          }
+        }
+      }
+    }
+    // A pair is found in every cell that both are in.
+    Sort(
+      crossings.begin(), crossings.end(),
+      [](const Crossing& p, const Crossing& q) { return p.P != q.P ? p.P < q.P : p.Q < q.Q; },
+      Part(progress, 0.8, 1.0));
+    crossings.erase(
+      std::unique(crossings.begin(), crossings.end(),
+        [](const Crossing& p, const Crossing& q) { return p.P == q.P && p.Q == q.Q; }),
+      crossings.end());
+  }
+
+  bool CanPassThrough(const Piece& piece, Index vertex) const
+  {
+    return piece.A == vertex || piece.B == vertex ||
+      IsBetween(this->At(piece.A), this->At(piece.B), this->At(vertex));
+  }
+
+  /** Cuts at an end of one of two pieces that cross, where the other one runs by it in reach. */
+  bool CutAtEnds(const Crossing& crossing, std::vector<Cut>& cuts) const
+  {
+    bool isCut = false;
+    for (const auto& [piece, other] :
+      { std::make_pair(crossing.P, crossing.Q), std::make_pair(crossing.Q, crossing.P) })
+    {
+      for (const Index end : { this->Pieces[other].A, this->Pieces[other].B })
+      {
+        const Piece& bent = this->Pieces[piece];
+        if (IsInReach(this->At(bent.A), this->At(bent.B), bent.Unit, this->Reach, this->At(end)))
+        {
+          cuts.push_back({ piece, end });
+          isCut = true;
+        }
+      }
+    }
+    return isCut;
+  }
+
+  void CutAtCrossings(const CellGrid& grid, const std::vector<Crossing>& crossings, bool areToCount,
+    std::vector<Cut>& cuts, const Progress& progress)
+  {
+    struct Place
+    {
+      Point2 Position;
+      Crossing Of;
+      Index Vertex;
+    };
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < crossings.size(); ++i)
+    {
+      ReportStep(progress, i, 2 * crossings.size(), 1024);
+      const Crossing& crossing = crossings[i];
+      const Piece &p = this->Pieces[crossing.P], &q = this->Pieces[crossing.Q];
+      this->Crossings +=
+        areToCount ? static_cast<std::int64_t>(p.Count) * static_cast<std::int64_t>(q.Count) : 0;
+      if (!this->CutAtEnds(crossing, cuts))
+      {
+        places.push_back(
+          { RoundedCrossing(this->At(p.A), this->At(p.B), this->At(q.A), this->At(q.B)), crossing,
+            None });
+      }
+    }
+    Sort(
+      places.begin(), places.end(),
+      [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
+      Part(progress, 0.5, 0.7));
+
+    NewVertices added{ {}, {}, static_cast<Index>(this->Vertices.size()) };
+    const Progress naming = Part(progress, 0.7, 1.0);
+    for (std::size_t i = 0, end = 0; i < places.size(); i = end)
+    {
+      ReportStep(naming, i, places.size());
+      const Point2 position = places[i].Position;
+      for (; end < places.size() && places[end].Position == position; ++end)
+      {
+        places[end].Vertex = this->FindVertexInReach(grid, added, position, places[end].Of);
+      }
+      // Those of the same place that are in reach of none share a new one, which lies on the first.
+      Index vertex = None, first = None;
+      for (std::size_t k = i; k < end; ++k)
+      {
+        Index at = places[k].Vertex;
+        if (at == None)
+        {
+          vertex = at = vertex == None ? this->AddVertex(grid, added, position) : vertex;
+        }
+        for (const Index piece : { places[k].Of.P, places[k].Of.Q })
+        {
+          cuts.push_back({ piece, at });
+          if (at == vertex &&
+            (first == None || this->Pieces[piece].Rank < this->Pieces[first].Rank))
+          {
+            first = piece;
+          }
+        }
+      }
+      if (vertex != None)
+      {
+        this->Vertices[vertex].From = this->Pieces[first].A;
+        this->Vertices[vertex].To = this->Pieces[first].B;
+      }
+    }
+  }
+
+  /** Vertices that one round adds, from the lowest to the highest, by cells of the grid. */
+  struct NewVertices
+  {
+    std::unordered_map<std::size_t, Index> Last; ///< the last one in a cell
+    std::vector<Index> Before;                   ///< of each, the one in the same cell before it
+    Index First;                                 ///< the first of all
+  };
+
+  Index AddVertex(const CellGrid& grid, NewVertices& added, const Point2& position)
+  {
+    const Index vertex = static_cast<Index>(this->Vertices.size());
+    this->Vertices.emplace_back();
+    this->Vertices.back().Position = position;
+    std::size_t cell = 0;
+    grid.FindCell(position, cell); // it is within the box of two pieces
+    Index& last = added.Last.emplace(cell, None).first->second;
+    added.Before.push_back(last);
+    last = vertex;
+    return vertex;
+  }
+
+  /** The vertex next to where two pieces cross that both can pass through; None: none in reach. */
+  Index FindVertexInReach(
+    const CellGrid& grid, const NewVertices& added, const Point2& p, const Crossing& crossing) const
+  {
+    const Piece& one = this->Pieces[crossing.P];
+    const Piece& other = this->Pieces[crossing.Q];
+    // Anything but zero, to divide by.
+    const double least = std::numeric_limits<double>::denorm_min();
+    const double unitX = std::max({ one.Unit.X, other.Unit.X, least });
+    const double unitY = std::max({ one.Unit.Y, other.Unit.Y, least });
+    const double reach = 2.0 * this->Reach, reachX = reach * unitX, reachY = reach * unitY;
+    Index nearest = None;
+    double shortest = 0.0;
+    const auto look = [&](Index v) {
+      const double distance =
+        std::max(std::fabs(this->At(v).X - p.X) / unitX, std::fabs(this->At(v).Y - p.Y) / unitY);
+      if (distance <= reach &&
+        (this->At(v) == p || (this->CanPassThrough(one, v) && this->CanPassThrough(other, v))) &&
+        (nearest == None || distance < shortest ||
+          (distance == shortest && IsLower(this->At(v), this->At(nearest)))))
+      {
+        nearest = v;
+        shortest = distance;
+      }
+    };
+    std::size_t last = static_cast<std::size_t>(-1);
+    for (const double y : { -reachY, reachY })
+    {
+      for (const double x : { -reachX, reachX })
+      {
+        std::size_t cell;
+        if (!grid.FindCell(Point2{ p.X + x, p.Y + y }, cell) || cell == last)
+        {
+          continue;
+        }
+        last = cell;
+        for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
+        {
+          look(this->Pieces[*i].A);
+          look(this->Pieces[*i].B);
+        }
+        const auto found = added.Last.find(cell);
+        for (Index v = found == added.Last.end() ? None : found->second;
+             v != None && this->At(v).Y >= p.Y - reachY; v = added.Before[v - added.First])
+        {
+          look(v);
+        }
+      }
+    }
+    return nearest;
+  }
+
+  /** Puts pieces from cut to cut in the place of those that are cut. */
+  void Apply(std::vector<Cut>& cuts, const Progress& progress)
+  {
+    Sort(
+      cuts.begin(), cuts.end(),
+      [&](const Cut& p, const Cut& q) {
+        const Piece& piece = this->Pieces[p.Piece];
+        return p.Piece != q.Piece
+          ? p.Piece < q.Piece
+          : IsBefore(this->At(piece.A), this->At(piece.B), this->At(p.Vertex), this->At(q.Vertex));
+      },
+      Part(progress, 0.0, 0.5));
+    std::vector<Piece> pieces;
+    const Progress cutting = Part(progress, 0.5, 0.7);
+    WorkReporter work(cutting);
+    auto cut = cuts.begin();
+    for (std::size_t i = 0; i < this->Pieces.size(); ++i)
+    {
+      work.Step(i, this->Pieces.size());
+      Piece piece = this->Pieces[i];
+      Index from = piece.A;
+      const Index end = piece.B;
+      const auto append = [&](Index to) {
+        if (from != to)
+        {
+          const bool isUp = IsLower(this->At(from), this->At(to));
+          piece.A = isUp ? from : to;
+          piece.B = isUp ? to : from;
+          pieces.push_back(piece);
+          from = to;
+        }
+      };
+      for (; cut != cuts.end() && cut->Piece == static_cast<Index>(i); ++cut)
+      {
+        work.Look();
+        append(cut->Vertex);
+      }
+      if (piece.Rank == None)
+      {
+        pieces.push_back(piece);
+      }
+      append(end);
+    }
+    this->Pieces = std::move(pieces);
+    this->JoinEqualPieces(Part(progress, 0.7, 1.0));
+  }
+
+  /** Pass 3: the input points that are crossings. All others have been found when cutting. */
+  void Match(const Progress& progress)
+  {
+    std::vector<Piece> places;
+    for (std::size_t v = 0; v < this->Vertices.size(); ++v)
+    {
+      if (this->Vertices[v].From != None)
+      {
+        places.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
+      }
+    }
+    if (places.empty())
+    {
+      return;
+    }
+    const CellGrid grid = this->GridOf(places, Part(progress, 0.0, 0.1));
+    ForEachStretch(this->Points.Count, Part(progress, 0.1, 1.0), [&](Index begin, Index end) {
+      for (Index id = begin; id < end; ++id)
+      {
+        const Point2 p = this->Points.At(id);
+        std::size_t cell;
+        if (!grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
+        {
+          continue;
+        }
+        for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
+        {
+          if (this->At(places[*i].A) == p)
+          {
+            this->SetInput(places[*i].A, id);
+          }
+        }
+      }
+    });
+  }
+
+  /** How far a crossing is from From to To, along the longer of x and y. */
+  double FractionOf(const Vertex& vertex) const
+  {
+    const Point2 &p = vertex.Position, &a = this->At(vertex.From), &b = this->At(vertex.To);
+    const double largest =
+      std::max({ std::fabs(a.X), std::fabs(a.Y), std::fabs(b.X), std::fabs(b.Y) });
+    // Quarters, so that no difference overflows; or many times, so that none is lost.
+    const double scale = largest < 1e-150 ? 0x1p600 : 0.25;
+    const double dx = scale * b.X - scale * a.X, dy = scale * b.Y - scale * a.Y;
+    return std::fabs(dx) > std::fabs(dy) ? (scale * p.X - scale * a.X) / dx
+                                         : (scale * p.Y - scale * a.Y) / dy;
+  }
+
+  std::string NameOf(Index rank) const
+  {
+    const Segment& segment = this->Segments[rank];
+    const auto name = [&](Index vertex) {
+      return "point " + std::to_string(this->Vertices[vertex].Source);
+    };
+    return "The segment from " + name(segment.A) + " to " + name(segment.B) +
+      " of the constraints' cell " + std::to_string(this->Lines.Cells[this->SegmentLines[rank]]);
+  }
+
+  const PointView& Points;
+  const ConstraintLines& Lines;
+  const DuplicatePolicy Duplicates;
+  std::vector<Vertex> Vertices;
+  std::vector<Piece> Pieces;       ///< each from its lower end to its upper one
+  std::vector<Segment> Segments;   ///< by rank, which is the order of the lines
+  std::vector<Index> SegmentLines; ///< by rank
+  std::int64_t Crossings = 0;
+  double Reach = 0.0;                               ///< see Settle()
+  std::array<Index, 2> Unsettled{ { None, None } }; ///< two segments that still cross
+};
+
+/** Input points and added ones in one array; empty when nothing is added. */
+Buffer<double> JoinPoints(
+  const PointView& points, const std::vector<AddedPoint>& added, const Progress& progress)
+{
+  Buffer<double> joined;
+  if (added.empty())
+  {
+    return joined;
+  }
+  joined.Resize(3 * (static_cast<std::size_t>(points.Count) + added.size()));
+  double* out = joined.data();
+  ForEachStretch(points.Count, progress, [&](Index begin, Index end) {
+    for (Index id = begin; id < end; ++id)
+    {
+      const Point2 p = points.At(id);
+      *out++ = p.X;
+      *out++ = p.Y;
+      *out++ = points.Elevation(id);
+    }
+  });
+  for (const AddedPoint& point : added)
+  {
+    *out++ = point.Position.X;
+    *out++ = point.Position.Y;
+    *out++ = point.Elevation;
+  }
+  return joined;
+}
+
+/** A triangle from its lowest vertex. */
+using Corners = std::array<Index, 3>;
+
+/** The order of Delaunay.h: by lowest vertices, then counter-clockwise around them. */
+bool ComesBefore(const std::vector<Point2>& points, const Corners& p, const Corners& q)
+{
+  return p[0] != q[0] ? IsLower(points[p[0]], points[q[0]])
+                      : Orientation(points[p[0]], points[p[1]], points[q[1]]) == Positive;
+}
+
+/**
+ * Puts the triangles that recovery changed where they belong among the others, and leaves out those
+ * with an edge over the limit.
+ */
+void WriteTriangles(const Mesh& mesh, bool haveChanged, double limit, const Progress& progress,
+  Buffer<Index>& triangles)
+{
+  const Index count = mesh.NumberOfTriangles();
+  const auto cornersOf = [&](Index t) {
+    Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1], mesh.Triangles[3 * t + 2] };
+    return corners;
+  };
+  std::vector<Corners> changed;
+  if (haveChanged)
+  {
+    Index kept = 0;
+    ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        Corners corners = cornersOf(t);
+        if (std::equal(corners.begin(), corners.end(), &triangles[3 * t]))
+        {
+          std::copy(corners.begin(), corners.end(), &triangles[3 * kept++]);
+          continue;
+        }
+        std::rotate(corners.begin(),
+          std::min_element(corners.begin(), corners.end(),
+            [&](Index v, Index w) { return IsLower(mesh.PointOf(v), mesh.PointOf(w)); }),
+          corners.end());
+        changed.push_back(corners);
+      }
+    });
+    Sort(
+      changed.begin(), changed.end(),
+      [&](const Corners& p, const Corners& q) { return ComesBefore(mesh.Points, p, q); },
+      Part(progress, 0.3, 0.5));
+  }
+  // From the end, so that nothing is overwritten before it has moved.
+  Index unchanged = count - static_cast<Index>(changed.size());
+  ForEachStretch(count, Part(progress, 0.5, 0.8), [&](Index begin, Index end) {
+    for (Index t = count - 1 - begin; t > count - 1 - end && !changed.empty(); --t)
+    {
+      const Index* last = &triangles[3 * (unchanged > 0 ? unchanged - 1 : 0)];
+      if (unchanged > 0 &&
+        ComesBefore(mesh.Points, changed.back(), Corners{ last[0], last[1], last[2] }))
+      {
+        std::copy_n(last, 3, &triangles[3 * t]);
+        --unchanged;
+      }
+      else
+      {
+        std::copy(changed.back().begin(), changed.back().end(), &triangles[3 * t]);
+        changed.pop_back();
+      }
+    }
+  });
+  if (limit > 0.0)
+  {
+    const bool isPlain = limit > 1e-150 && limit < 1e150; // squares neither over- nor underflow
+    const auto isShort = [&](Index v, Index w) {
+      const double dx = mesh.PointOf(v).X - mesh.PointOf(w).X;
+      const double dy = mesh.PointOf(v).Y - mesh.PointOf(w).Y;
+      return isPlain ? dx * dx + dy * dy <= limit * limit : std::hypot(dx, dy) <= limit;
+    };
+    std::size_t kept = 0;
+    ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        const Index p = triangles[3 * t], q = triangles[3 * t + 1], r = triangles[3 * t + 2];
+        if (isShort(p, q) && isShort(q, r) && isShort(r, p))
+        {
+          for (const Index v : { p, q, r })
+          {
+            triangles[kept++] = v;
+          }
+        }
+      }
+    });
+    triangles.Resize(kept);
+  }
+}
+} // namespace
+
+ConstrainedTriangulation TriangulateConstrained(
+  const PointView& points, const ConstraintLines& lines, const DelaunayOptions& asked)
+{
+  ConstrainedTriangulation constrained;
+  Triangulation& result = constrained.Result;
+  const Progress& progress = asked.Monitor;
+  {
+    const Splitting splitting(points, lines, asked.Duplicates, Part(progress, 0.0, 0.15));
+    if (splitting.IsEmpty())
+    {
+      result = Triangulate(points, asked);
+      return constrained;
+    }
+    constrained.NumberOfCrossings = splitting.NumberOfCrossings();
+    splitting.GetResult(constrained.Added, constrained.Pieces, Part(progress, 0.15, 0.17));
+  }
+  const Buffer<double> joined = JoinPoints(points, constrained.Added, Part(progress, 0.17, 0.2));
+  PointView all = points;
+  if (!joined.empty())
+  {
+    all.Float = nullptr;
+    all.Double = joined.data();
+    all.Count += static_cast<Index>(constrained.Added.size());
+  }
+
+  DelaunayOptions options = asked;
+  options.Monitor = Part(progress, 0.2, 0.6);
+  options.UseLattice = LatticeMode::Off;
+  options.MaximumEdgeLength = 0.0; // recovery needs all triangles
+  result = Triangulate(all, options);
+  if (result.Triangles.empty())
+  {
+    return constrained;
+  }
+  Mesh mesh;
+  mesh.Points.resize(all.Count);
+  ForEachStretch(all.Count, Part(progress, 0.6, 0.62), [&](Index begin, Index end) {
+    for (Index id = begin; id < end; ++id)
+    {
+      mesh.Points[id] = all.At(id);
+    }
+  });
+  mesh.Triangles.assign(result.Triangles.begin(), result.Triangles.end());
+  mesh.ConnectTwins(0, Part(progress, 0.62, 0.8));
+  std::vector<char> flags;
+  const Index missing = RecoverSegments(mesh, constrained.Pieces, flags, Part(progress, 0.8, 0.95));
+  WriteTriangles(
+    mesh, missing > 0, asked.MaximumEdgeLength, Part(progress, 0.95, 1.0), result.Triangles);
+  Report(progress, 1.0);
+  return constrained;
+}
+
+} // namespace elevation

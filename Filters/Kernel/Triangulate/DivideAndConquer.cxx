@@ -1,0 +1,378 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DivideAndConquer.h"
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Lattice/Lattice.h"
+
+#include <vector>
+
+namespace elevation
+{
+namespace
+{
+
+/**
+ * One direction of an edge, in the ring of the directions that leave its origin. Numbers 2e and
+ * 2e + 1 are the two directions of an edge.
+ */
+struct Spoke
+{
+  Index Origin;   ///< None when the edge has been removed
+  Index Next;     ///< counter-clockwise around the origin; of what is removed, the next such edge
+  Index Previous; ///< clockwise
+};
+
+/** Two spokes on the convex hull of a stretch of points. */
+struct HullEnds
+{
+  Index FromLowest;  ///< from the lowest point, counter-clockwise along the hull
+  Index FromHighest; ///< from the highest point, clockwise
+};
+
+class Division
+{
+public:
+  Division(const Buffer<Point2>& points, const Progress& progress, const LatticeMetric* metric)
+    : Points(points)
+    , Metric(metric)
+    , Count(static_cast<Index>(points.size()))
+    , Monitor(progress)
+    , Work(static_cast<double>(points.size()) * std::log2(static_cast<double>(points.size())))
+  {
+    // At any time the edges form a planar graph: fewer than three a point.
+    this->Spokes.Reserve(6 * static_cast<std::size_t>(this->Count));
+  }
+
+  /**
+   * Triangulates the points [begin, end), at least two. They may be separated from all others by a
+   * line, which is what merging asks for: "lower" is "to the left" of the published method, turned.
+   */
+  HullEnds Divide(Index begin, Index end)
+  {
+    if (end - begin == 2)
+    {
+      const Index edge = this->AddEdge(begin, begin + 1);
+      return { edge, Twin(edge) };
+    }
+    if (end - begin == 3)
+    {
+      return this->ConnectThree(begin);
+    }
+    const Index middle = begin + (end - begin) / 2;
+    const HullEnds lower = this->Divide(begin, middle);
+    const HullEnds upper = this->Divide(middle, end);
+    this->Steps = 0;
+    this->StepsAtMost = end - begin;
+    const HullEnds ends = this->Merge(lower, upper);
+    this->WorkDone += end - begin;
+    return ends;
+  }
+
+  /** Removes the edges between triangles that have one circle. */
+  void RemoveTies(Index hullSpoke, const Progress& progress)
+  {
+    std::vector<bool> isOnHull(this->Spokes.size() / 2, false);
+    Index spoke = hullSpoke;
+    do
+    {
+      isOnHull[spoke / 2] = true;
+      spoke = this->Spokes[Twin(spoke)].Next;
+    } while (spoke != hullSpoke);
+
+    const Index number = static_cast<Index>(this->Spokes.size());
+    for (spoke = 0; spoke < number; spoke += 2)
+    {
+      ReportStep(progress, spoke, number, 2 * ReportStride);
+      // Where an edge has been removed before, any other vertex of the polygon is on its circle.
+      if (this->Spokes[spoke].Origin != None && !isOnHull[spoke / 2] &&
+        this->IsInCircle(this->OriginOf(spoke), this->EndOf(spoke),
+          this->EndOf(this->NextLeft(spoke)), this->EndOf(this->NextLeft(Twin(spoke)))) == Zero)
+      {
+        this->RemoveEdge(spoke);
+      }
+    }
+  }
+
+  /** Cuts the polygons, each into the fan of its lowest vertex. */
+  Buffer<Index> CutIntoFans(Index hullSpoke, const Progress& progress) const
+  {
+    // Where the spokes to higher vertices begin, counter-clockwise. Every vertex but the lowest has
+    // a lower one among its neighbours, since no two of these are half a turn or more apart but on
+    // the hull, along which one is lower.
+    Buffer<Index> firsts;
+    firsts.Resize(this->Count);
+    firsts[0] = hullSpoke;
+    firsts[this->Count - 1] = None;
+    const Index number = static_cast<Index>(this->Spokes.size());
+    for (Index spoke = 0; spoke < number; ++spoke)
+    {
+      ReportStep(progress, spoke, 2 * static_cast<std::size_t>(number), 4 * ReportStride);
+      const Index origin = this->Spokes[spoke].Origin;
+      if (origin > 0 && this->Target(spoke) > origin &&
+        this->Target(this->Spokes[spoke].Previous) < origin)
+      {
+        firsts[origin] = spoke;
+      }
+    }
+
+    Buffer<Index> triangles;
+    triangles.Reserve(6 * static_cast<std::size_t>(this->Count));
+    for (Index lowest = 0; lowest + 1 < this->Count; ++lowest)
+    {
+      ReportStep(
+        progress, this->Count + lowest, 2 * static_cast<std::size_t>(this->Count), ReportStride);
+      // Between two higher neighbours lies a polygon of which this is the lowest vertex.
+      Index spoke = firsts[lowest];
+      for (Index next = this->Spokes[spoke].Next;
+           next != firsts[lowest] && this->Target(next) > lowest; next = this->Spokes[spoke].Next)
+      {
+        for (Index side = this->NextLeft(spoke); this->Target(side) != lowest;
+             side = this->NextLeft(side))
+        {
+          triangles.Append(lowest);
+          triangles.Append(this->Spokes[side].Origin);
+          triangles.Append(this->Target(side));
+        }
+        spoke = next;
+      }
+    }
+    triangles.Shrink();
+    return triangles;
+  }
+
+private:
+  /** Steps between two reports: a step takes a tenth of a microsecond, but some hundred where
+   * integers of any length decide. */
+  static constexpr Index ReportStride = 256;
+
+  static Index Twin(Index spoke) { return spoke ^ 1; }
+  Index Target(Index spoke) const { return this->Spokes[Twin(spoke)].Origin; }
+  const Point2& OriginOf(Index spoke) const { return this->Points[this->Spokes[spoke].Origin]; }
+  const Point2& EndOf(Index spoke) const { return this->Points[this->Target(spoke)]; }
+
+  /** The next side of the polygon on the left of a spoke, counter-clockwise along the polygon. */
+  Index NextLeft(Index spoke) const { return this->Spokes[Twin(spoke)].Previous; }
+
+  /** An edge that is joined to no other. */
+  Index AddEdge(Index from, Index to)
+  {
+    Index spoke = this->Removed;
+    if (spoke != None)
+    {
+      this->Removed = this->Spokes[spoke].Next;
+    }
+    else
+    {
+      spoke = static_cast<Index>(this->Spokes.size());
+      this->Spokes.Resize(this->Spokes.size() + 2);
+    }
+    this->Spokes[spoke] = { from, spoke, spoke };
+    this->Spokes[Twin(spoke)] = { to, Twin(spoke), Twin(spoke) };
+    return spoke;
+  }
+
+  /** Puts a lone spoke into a ring, counter-clockwise after another. */
+  void PutAfter(Index spoke, Index previous)
+  {
+    const Index next = this->Spokes[previous].Next;
+    this->Spokes[spoke].Next = next;
+    this->Spokes[spoke].Previous = previous;
+    this->Spokes[next].Previous = spoke;
+    this->Spokes[previous].Next = spoke;
+  }
+
+  /**
+   * Adds the edge from the origin of one spoke, right before it, to that of another, right after
+   * it: the new spoke has on its left what the first has on its right.
+   */
+  Index Connect(Index before, Index after)
+  {
+    const Index spoke = this->AddEdge(this->Spokes[before].Origin, this->Spokes[after].Origin);
+    this->PutAfter(spoke, this->Spokes[before].Previous);
+    this->PutAfter(Twin(spoke), after);
+    return spoke;
+  }
+
+  void RemoveEdge(Index spoke)
+  {
+    const Index even = spoke & ~1;
+    for (const Index one : { even, even + 1 })
+    {
+      const Spoke removed = this->Spokes[one];
+      this->Spokes[removed.Previous].Next = removed.Next;
+      this->Spokes[removed.Next].Previous = removed.Previous;
+      this->Spokes[one].Origin = None;
+    }
+    this->Spokes[even].Next = this->Removed;
+    this->Removed = even;
+  }
+
+  HullEnds ConnectThree(Index begin)
+  {
+    const Index first = this->AddEdge(begin, begin + 1);
+    const Index second = this->AddEdge(begin + 1, begin + 2);
+    this->PutAfter(second, Twin(first));
+    const Sign turn =
+      Orientation(this->Points[begin], this->Points[begin + 1], this->Points[begin + 2]);
+    if (turn == Zero)
+    {
+      return { first, Twin(second) };
+    }
+    const Index third = this->Connect(Twin(second), first);
+    return turn == Positive ? HullEnds{ first, Twin(second) } : HullEnds{ Twin(third), third };
+  }
+
+  Sign SideOf(Index vertex, Index spoke) const
+  {
+    return Orientation(this->OriginOf(spoke), this->EndOf(spoke), this->Points[vertex]);
+  }
+
+  /**
+   * The two triangulations are sewn together along the line that parts them, from the lower right
+   * tangent of their hulls to the upper left one. Each new edge is the base of the next triangle,
+   * whose apex is the next neighbour of either end that no other neighbour's circle excludes;
+   * edges it would cross are removed.
+   */
+  HullEnds Merge(HullEnds lower, HullEnds upper)
+  {
+    Index left = lower.FromHighest, right = upper.FromLowest;
+    for (;;)
+    {
+      this->Step();
+      if (this->SideOf(this->Spokes[right].Origin, left) == Positive)
+      {
+        left = this->NextLeft(left);
+      }
+      else if (this->SideOf(this->Spokes[left].Origin, right) == Negative)
+      {
+        right = this->Spokes[Twin(right)].Next;
+      }
+      else
+      {
+        break;
+      }
+    }
+    Index base = this->Connect(right, left); // from the upper points to the lower
+    if (this->Spokes[left].Origin == this->Spokes[lower.FromLowest].Origin)
+    {
+      lower.FromLowest = Twin(base);
+    }
+    if (this->Spokes[right].Origin == this->Spokes[upper.FromHighest].Origin)
+    {
+      upper.FromHighest = base;
+    }
+
+    for (;;)
+    {
+      this->Step();
+      const Point2 &p = this->OriginOf(base), &q = this->EndOf(base);
+      const auto isAbove = [&](Index spoke) {
+        return Orientation(q, p, this->EndOf(spoke)) == Positive;
+      };
+      Index inLower = this->Spokes[Twin(base)].Next;
+      const bool hasLower = isAbove(inLower);
+      if (hasLower)
+      {
+        for (Index next = this->Spokes[inLower].Next; next != Twin(base) &&
+             this->IsInCircle(q, p, this->EndOf(inLower), this->EndOf(next)) == Positive;
+             next = this->Spokes[inLower].Next)
+        {
+          this->RemoveEdge(inLower);
+          inLower = next;
+          this->Step();
+        }
+      }
+      Index inUpper = this->Spokes[base].Previous;
+      const bool hasUpper = isAbove(inUpper);
+      if (hasUpper)
+      {
+        for (Index next = this->Spokes[inUpper].Previous; next != base &&
+             this->IsInCircle(q, p, this->EndOf(inUpper), this->EndOf(next)) == Positive;
+             next = this->Spokes[inUpper].Previous)
+        {
+          this->RemoveEdge(inUpper);
+          inUpper = next;
+          this->Step();
+        }
+      }
+      if (!hasLower && !hasUpper)
+      {
+        return { lower.FromLowest, upper.FromHighest };
+      }
+      const bool isUpper = !hasLower ||
+        (hasUpper &&
+          this->IsInCircle(this->EndOf(inLower), q, p, this->EndOf(inUpper)) == Positive);
+      base =
+        isUpper ? this->Connect(Twin(inUpper), Twin(base)) : this->Connect(base, Twin(inLower));
+    }
+  }
+
+  /** As InCircle(), of counter-clockwise a, b, c, also in a lattice's metric. */
+  Sign IsInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d) const
+  {
+    if (!this->Metric)
+    {
+      return InCircle(a, b, c, d);
+    }
+    // Of two points left of ab, the one with the smaller quotient dot / cross is in the circle of
+    // the other; multiplied out, this holds on either side.
+    struct Offset
+    {
+      std::int64_t X, Y;
+    };
+    const auto from = [&a](const Point2& p) {
+      return Offset{ static_cast<std::int64_t>(p.X - a.X), static_cast<std::int64_t>(p.Y - a.Y) };
+    };
+    const Offset e = from(b), p = from(c), q = from(d);
+    const auto dot = [&](const Offset& o) {
+      return this->Metric->Dot(o.X, o.Y, o.X - e.X, o.Y - e.Y);
+    };
+    const auto cross = [&](const Offset& o) { return e.X * o.Y - e.Y * o.X; };
+    return static_cast<Sign>(CompareProducts(dot(p), cross(q), dot(q), cross(p)));
+  }
+
+  /** Reports within a merge, which at the top takes long. */
+  void Step()
+  {
+    ++this->Steps;
+    if (++this->AllSteps % ReportStride == 0)
+    {
+      Report(this->Monitor,
+        std::min(1.0, (this->WorkDone + std::min(this->Steps, this->StepsAtMost)) / this->Work));
+    }
+  }
+
+  const Buffer<Point2>& Points;
+  const LatticeMetric* const Metric;
+  const Index Count;
+  Buffer<Spoke> Spokes;
+  Index Removed = None; ///< the first spokes of removed edges, as a list
+
+  const Progress& Monitor;
+  const double Work;     ///< points times levels
+  double WorkDone = 0.0; ///< points merged, on all levels
+  Index Steps = 0;       ///< of this merge
+  Index StepsAtMost = 0; ///< as many as are counted as progress of this merge
+  std::size_t AllSteps = 0;
+};
+
+} // namespace
+
+Buffer<Index> DivideAndConquer(
+  const Buffer<Point2>& points, const Progress& progress, const LatticeMetric* metric)
+{
+  if (points.size() < 3)
+  {
+    return Buffer<Index>();
+  }
+  const Progress dividing = Part(progress, 0.0, 0.9);
+  Division division(points, dividing, metric);
+  const Index hullSpoke = division.Divide(0, static_cast<Index>(points.size())).FromLowest;
+  division.RemoveTies(hullSpoke, Part(progress, 0.9, 0.95));
+  Buffer<Index> triangles = division.CutIntoFans(hullSpoke, Part(progress, 0.95, 1.0));
+  Report(progress, 1.0);
+  return triangles;
+}
+
+} // namespace elevation

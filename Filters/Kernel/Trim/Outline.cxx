@@ -1,0 +1,983 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Outline.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace elevation
+{
+
+namespace
+{
+
+// The figures of the rule (see Outline.h), found by trials: lattices, lattices thinned to a tenth,
+// random points, points graded tenfold and scan lines eight times denser along than across, all cut
+// out by outlines with lakes, a fjord, a neck and islands, wider than the tolerance. The area between
+// truth and outline was 0.08 to 0.25 of the area within one spacing of the true outline; with less
+// than 2 typical triangles the sea comes in between random points (0.31 with 1.85), with more than
+// 2.25 wider channels are closed.
+constexpr int NeighborOfSpacing = 6;
+constexpr double SpacingPerNeighborDistance = 0.5;
+constexpr double ToleranceOfTypicalTriangle = 2.25;
+constexpr double LargestSpacingInTriangle = 2.0;
+constexpr std::size_t NeighborsOfHub = 64;
+// What leaves no doubt, in parts of the tolerance, but in short spacings. In the same trials, and
+// with clusters and real surveys, the outline by the sixth neighbours alone leaves out one triangle
+// in 10,000 more, at most; lattices the same. With 0.55 the outlines of scan lines were a little
+// worse; the mean length not limited by the second edge took gaps between scan lines for surface.
+constexpr double BeyondDoubt = 0.52;
+constexpr double SmallGroup = 0.7;
+// A tenth of a spacing is what a line of points wavers by, when it is one; the narrow triangles
+// between points of scan lines eight times denser along than across are seven times as high.
+constexpr double LeastHeight = 0.1;
+constexpr Index LargestSample = 4096;
+// Smaller ones, whose squares leave the range of double, are taken as this: no spacing is 0.
+constexpr double LeastSpacing = 1e-150;
+
+/** The neighbours of each vertex. */
+struct Neighbors
+{
+  Buffer<std::uint32_t> Offsets;
+  /** Of each vertex a multiple of Group, filled up with the vertex itself. */
+  Buffer<Index> Ids;
+  static constexpr std::uint32_t Group =
+    4; ///< at a time, for an end of loops that can be predicted
+
+  Neighbors(const MeasuredTriangles& measured, const Progress& progress)
+  {
+    const TriangleList& list = measured.List;
+    const Index count = list.Points.Count;
+    this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
+    this->Ids.Resize(3 * static_cast<std::size_t>(list.Count) + measured.Border.size() +
+      (Group - 1) * (static_cast<std::size_t>(count) + 1));
+    // At first where those of each vertex end: they are filled in from there.
+    std::uint32_t sum = 0; // stays below 9 for each point
+    ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v)
+      {
+        const std::uint32_t size = measured.Degrees[v];
+        this->Offsets[v] = sum + size;
+        // More than are needed, as how many cannot be predicted; what comes next overwrites them.
+        std::fill_n(&this->Ids[sum + size], Group - 1, v);
+        sum += (size + Group - 1) / Group * Group;
+      }
+    });
+    this->Offsets[count] = sum;
+    const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
+    ForEachStretch(list.Count, Part(progress, 0.3, 1.0), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
+        Prefetch(&this->Offsets[ahead[1]]);
+        Prefetch(&this->Offsets[ahead[2]]);
+        const Index* soon = list.CornersOf(std::min(t + 20, list.Count - 1));
+        Prefetch(&this->Ids[this->Offsets[soon[1]] - 1]);
+        Prefetch(&this->Ids[this->Offsets[soon[2]] - 1]);
+        const Index* corners = list.CornersOf(t);
+        add(corners[0], corners[1]);
+        add(corners[1], corners[2]);
+        add(corners[2], corners[0]);
+      }
+    });
+    for (const BorderEdge& edge : measured.Border)
+    {
+      add(edge.Destination, edge.Origin);
+    }
+  }
+};
+
+/**
+ * The spacing at some vertices: half the distance of the 6th nearest vertex.
+ * In a Delaunay triangulation the next nearest vertex is always a neighbour of the vertex or of one
+ * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
+ * with very many neighbours, which would make it quadratic. In other meshes it finds the 6th of
+ * those that it comes across, which are the same in any order of vertices: it passes all that are
+ * equally near at once, and none as far as the 6th.
+ * @param[in]  wanted    best in an order in which neighbours are near each other
+ * @param[out] spacings  at the place of each vertex; the others stay as they are
+ */
+void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
+  const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings)
+{
+  struct Candidate
+  {
+    double Squared;
+    Index Vertex;
+    bool IsPassed;
+  };
+  const Index* ids = neighbors.Ids.data();
+  constexpr int last = NeighborOfSpacing - 1;
+  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None, false };
+  const auto find = [&](Index begin, Index end) {
+    std::vector<Index> found;
+    // Vertices that the one at hand has had among its nearest. One may have taken the place of
+    // another, which then is compared once more with the nearest themselves.
+    constexpr std::uint32_t places = 1024;
+    std::vector<std::uint64_t> known(places, ~std::uint64_t(0));
+    for (Index place = begin; place < end; ++place)
+    {
+      const Index v = wanted[place];
+      const auto keyOf = [v](Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); };
+      // What lies ahead is soon reached, but not in order: ids by way of offsets, and so on.
+      const auto wantedAhead = [&wanted, place, end](
+                                 Index steps) { return wanted[std::min(place + steps, end - 1)]; };
+      Prefetch(&neighbors.Offsets[wantedAhead(16)]);
+      Prefetch(ids + neighbors.Offsets[wantedAhead(12)]);
+      const Index next = wantedAhead(8);
+      list.PrefetchPoint(next);
+      const Index soon = wantedAhead(4);
+      for (std::uint32_t i = 0; i < 8; ++i)
+      {
+        const std::uint32_t j =
+          std::min(neighbors.Offsets[next] + i, neighbors.Offsets[next + 1] - 1);
+        list.PrefetchPoint(ids[j]);
+        Prefetch(&neighbors.Offsets[ids[j]]);
+        const std::uint32_t k =
+          std::min(neighbors.Offsets[soon] + i, neighbors.Offsets[soon + 1] - 1);
+        Prefetch(ids + neighbors.Offsets[ids[k]]);
+      }
+
+      // The nearest vertices found.
+      Candidate nearest[NeighborOfSpacing];
+      std::fill_n(nearest, NeighborOfSpacing, nothing);
+      const Point2 p = list.Points.At(v);
+      const auto squaredTo = [&](Index w) { return SquaredLength(p, list.Points.At(w)); };
+      known[static_cast<std::uint32_t>(v) % places] = keyOf(v);
+      const auto pass = [&](Index passed) {
+        const std::uint32_t first = neighbors.Offsets[passed];
+        const std::uint32_t size = neighbors.Offsets[passed + 1] - first;
+        if (passed != v && size > NeighborsOfHub)
+        {
+          return;
+        }
+        if (found.size() < size)
+        {
+          found.resize(size);
+        }
+        // Those that are near enough, without branches, for which they are cannot be predicted.
+        const double limit = nearest[last].Squared;
+        Index* next = found.data();
+        const Index* groupsEnd = ids + first + size;
+        for (const Index* group = ids + first; group != groupsEnd; group += Neighbors::Group)
+        {
+          for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
+          {
+            const Index w = group[j];
+            *next = w;
+            const int isNear = squaredTo(w) < limit;
+            const int isNew = known[static_cast<std::uint32_t>(w) % places] != keyOf(w);
+            next += isNear & isNew;
+          }
+        }
+        const std::size_t numberFound = next - found.data();
+        for (std::size_t i = 0; i < numberFound; ++i)
+        {
+          const Candidate candidate{ squaredTo(found[i]), found[i], false };
+          bool isKnown = candidate.Vertex == v;
+          for (const Candidate& other : nearest)
+          {
+            isKnown |= other.Vertex == candidate.Vertex;
+          }
+          if (isKnown || !(candidate.Squared < nearest[last].Squared))
+          {
+            continue;
+          }
+          known[static_cast<std::uint32_t>(candidate.Vertex) % places] = keyOf(candidate.Vertex);
+          int at = last;
+          for (; at > 0 && candidate.Squared < nearest[at - 1].Squared; --at)
+          {
+            nearest[at] = nearest[at - 1];
+          }
+          nearest[at] = candidate;
+        }
+      };
+      pass(v);
+      for (Candidate* next = nearest; next != nearest + last;)
+      {
+        if (next->IsPassed || !(next->Squared < nearest[last].Squared))
+        {
+          ++next;
+          continue;
+        }
+        Index equal[NeighborOfSpacing];
+        int numberOfEqual = 0;
+        const double squared = next->Squared;
+        for (; next != nearest + last && next->Squared == squared; ++next)
+        {
+          if (!next->IsPassed)
+          {
+            equal[numberOfEqual++] = next->Vertex;
+            next->IsPassed = true;
+          }
+        }
+        for (int i = 0; i < numberOfEqual; ++i)
+        {
+          pass(equal[i]);
+        }
+        next = nearest; // nearer ones may have come
+      }
+      int k = last;
+      while (k > 0 && nearest[k].Vertex == None)
+      {
+        --k; // there are no more
+      }
+      spacings[v] = SpacingPerNeighborDistance * std::sqrt(nearest[k].Squared);
+    }
+  };
+  const Index count = static_cast<Index>(wanted.size());
+  constexpr Index atOnce = 1 << 11;
+  ForEachRange(
+    count, threads, progress, [&](Index, Index begin, Index end) { find(begin, end); }, atOnce);
+}
+
+/** The parts of triangles with the same flag that are connected by edges. */
+Parts PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
+{
+  return FindParts(mesh, progress, [&](Index h) {
+    return flags[Mesh::Triangle(h)] == flags[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
+  });
+}
+
+/**
+ * Closes the openings that are smaller than what the tolerance bridges.
+ * @param[in] shareOf  shareOf(t): the area of a triangle in parts of what the tolerance bridges
+ */
+template <typename ShareOf>
+void CloseSmallOpenings(
+  const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
+{
+  const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
+  struct Piece
+  {
+    Index Part;
+    double Share;
+    Index Triangle;
+  };
+  std::vector<Piece> pieces;
+  std::vector<char> reachesBorder(parts.Count(), 0);
+  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.5, 0.7), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (!keep[t])
+      {
+        const bool isAtBorder =
+          mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
+        pieces.push_back({ parts.PartOf(t), 0.0, t });
+        reachesBorder[parts.PartOf(t)] |= isAtBorder;
+      }
+    }
+  });
+  pieces.erase(std::remove_if(pieces.begin(), pieces.end(),
+                 [&](const Piece& piece) { return reachesBorder[piece.Part] != 0; }),
+    pieces.end());
+  for (Piece& piece : pieces)
+  {
+    piece.Share = shareOf(piece.Triangle);
+  }
+  // In the order of size, so that the sum does not depend on the order of the triangles.
+  Sort(
+    pieces.begin(), pieces.end(),
+    [](const Piece& p, const Piece& q) {
+      return p.Part != q.Part ? p.Part < q.Part : p.Share < q.Share;
+    },
+    Part(progress, 0.7, 1.0));
+  for (auto first = pieces.begin(); first != pieces.end();)
+  {
+    double sum = 0.0;
+    auto last = first;
+    for (; last != pieces.end() && last->Part == first->Part; ++last)
+    {
+      sum += last->Share;
+    }
+    for (; first != last; ++first)
+    {
+      keep[first->Triangle] = sum < 1.0;
+    }
+  }
+}
+
+/**
+ * Takes out slivers from the outside in, as long as there are any.
+ * @param[in] isSliver  isSliver(h): whether the triangle of h is hardly higher than this edge
+ */
+template <typename IsSliver>
+void DropSlivers(
+  const Mesh& mesh, IsSliver&& isSliver, std::vector<char>& keep, const Progress& progress)
+{
+  std::vector<Index> dropped;
+  const auto look = [&](Index t) {
+    for (Index h = 3 * t; h < 3 * t + 3 && keep[t]; ++h)
+    {
+      if ((mesh.IsBorder(h) || !keep[Mesh::Triangle(mesh.Twin(h))]) && isSliver(h))
+      {
+        keep[t] = 0;
+        dropped.push_back(t);
+      }
+    }
+  };
+  ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      look(t);
+      while (!dropped.empty())
+      {
+        const Index last = dropped.back();
+        dropped.pop_back();
+        for (Index h = 3 * last; h < 3 * last + 3; ++h)
+        {
+          if (!mesh.IsBorder(h))
+          {
+            look(Mesh::Triangle(mesh.Twin(h)));
+          }
+        }
+      }
+    }
+  });
+}
+
+/**
+ * Takes out pieces with too few vertices to have a spacing of their own, if others have more.
+ * @return the vertices of pieces that look small, but go on beyond the mesh; if any, nothing is done
+ */
+std::vector<Index> DropSmallPieces(
+  const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
+{
+  const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
+  // More triangles than so few vertices can have.
+  constexpr Index many = 3 * NeighborOfSpacing + 1;
+  std::vector<Index> sizes(parts.Count(), 0);
+  std::vector<char> goesOn(parts.Count(), 0);
+  const Index count = mesh.NumberOfTriangles();
+  ForEachStretch(count, Part(progress, 0.5, 0.7), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      sizes[parts.PartOf(t)] += keep[t];
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        goesOn[parts.PartOf(t)] |= mesh.Twin(h) == h;
+      }
+    }
+  });
+  std::vector<std::pair<Index, Index>> corners; // (part, vertex)
+  bool anyLarge = std::any_of(sizes.begin(), sizes.end(), [](Index size) { return size >= many; });
+  ForEachStretch(count, Part(progress, 0.7, 0.9), [&](Index begin, Index end) {
+    for (Index h = 3 * begin; h < 3 * end; ++h)
+    {
+      if (keep[Mesh::Triangle(h)] && sizes[parts.PartOf(Mesh::Triangle(h))] < many)
+      {
+        corners.emplace_back(parts.PartOf(Mesh::Triangle(h)), mesh.Origin(h));
+      }
+    }
+  });
+  Sort(
+    corners.begin(), corners.end(), std::less<std::pair<Index, Index>>(), Part(progress, 0.9, 1.0));
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  std::vector<char> isSmall(parts.Count(), 0);
+  std::vector<Index> unknown;
+  for (auto first = corners.begin(); first != corners.end();)
+  {
+    const auto last = std::find_if(first, corners.end(),
+      [&](const std::pair<Index, Index>& corner) { return corner.first != first->first; });
+    const bool isFew = last - first <= NeighborOfSpacing;
+    for (auto corner = first; isFew && goesOn[first->first] && corner != last; ++corner)
+    {
+      unknown.push_back(corner->second);
+    }
+    isSmall[first->first] = isFew;
+    anyLarge = anyLarge || !isFew;
+    first = last;
+  }
+  for (Index t = 0; anyLarge && unknown.empty() && t < count; ++t)
+  {
+    keep[t] = keep[t] && !isSmall[parts.PartOf(t)];
+  }
+  return unknown;
+}
+
+/**
+ * The border of the triangles to keep, as simple rings of vertices in an order of their positions.
+ */
+Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
+{
+  const Progress cutting = Part(progress, 0.6, 0.8);
+
+  // A walk that comes back to a vertex it has passed has closed a ring.
+  const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.6), keep);
+  Rings rings;
+  rings.Vertices.reserve(walks.Vertices.size());
+  std::vector<Index> path;
+  std::vector<char> isOnPath(mesh.Points.size(), 0);
+  for (Index walk = 0; walk < walks.Count(); ++walk)
+  {
+    auto cutRing = [&](std::size_t first) {
+      auto lowest = path.begin() + first;
+      for (auto v = lowest + 1; v != path.end(); ++v)
+      {
+        // Two vertices may be at one place: then the next ones tell.
+        const auto nextTo = [&](const auto& w) {
+          return mesh.PointOf(w + 1 == path.end() ? path[first] : w[1]);
+        };
+        const Point2& p = mesh.PointOf(*v);
+        const Point2& q = mesh.PointOf(*lowest);
+        if (IsLower(p, q) || (p == q && IsLower(nextTo(v), nextTo(lowest))))
+        {
+          lowest = v;
+        }
+      }
+      std::rotate(path.begin() + first, lowest, path.end());
+      rings.Vertices.insert(rings.Vertices.end(), path.begin() + first, path.end());
+      rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
+    };
+    for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
+    {
+      ReportStep(cutting, h - walks.Vertices.data(), walks.Vertices.size());
+      const Index vertex = mesh.Origin(*h);
+      if (isOnPath[vertex])
+      {
+        std::size_t first = path.size() - 1; // most rings are small: back from the end
+        while (path[first] != vertex)
+        {
+          --first;
+        }
+        for (std::size_t i = first; i < path.size(); ++i)
+        {
+          isOnPath[path[i]] = 0;
+        }
+        cutRing(first);
+        path.resize(first);
+      }
+      isOnPath[vertex] = 1;
+      path.push_back(vertex);
+    }
+    for (const Index vertex : path)
+    {
+      isOnPath[vertex] = 0;
+    }
+    cutRing(0);
+    path.clear();
+  }
+  const auto isBefore = [&](Index r, Index s) {
+    for (Index i = 0; i < std::min(rings.Size(r), rings.Size(s)); ++i)
+    {
+      const Point2& p = mesh.PointOf(rings.Begin(r)[i]);
+      const Point2& q = mesh.PointOf(rings.Begin(s)[i]);
+      if (p != q)
+      {
+        return IsLower(p, q);
+      }
+    }
+    return rings.Size(r) < rings.Size(s);
+  };
+  std::vector<Index> order(rings.Count());
+  std::iota(order.begin(), order.end(), 0);
+  Sort(order.begin(), order.end(), isBefore, Part(progress, 0.8, 0.95));
+  Rings result;
+  result.Vertices.reserve(rings.Vertices.size());
+  for (const Index ring : order)
+  {
+    ReportStep(progress, 19 * order.size() + result.Count(), 20 * order.size());
+    result.Vertices.insert(result.Vertices.end(), rings.Begin(ring), rings.End(ring));
+    result.Offsets.push_back(static_cast<Index>(result.Vertices.size()));
+  }
+  return result;
+}
+
+/** The triangles that have a corner in the set, in their order. */
+std::vector<Index> TrianglesAt(
+  const TriangleList& list, const IdSet& vertices, const Progress& progress)
+{
+  std::vector<Index> triangles;
+  ForEachStretch(list.Count, progress, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (vertices.HasAny(list.CornersOf(t)))
+      {
+        triangles.push_back(t);
+      }
+    }
+  });
+  return triangles;
+}
+
+/** How many corners no triangle with the flag has. */
+Index CountLeftOut(
+  const TriangleList& list, const std::vector<char>& keep, const Progress& progress)
+{
+  IdSet leftOut(list.Points.Count);
+  ForEachStretch(list.Count, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (!keep[t])
+      {
+        leftOut.AddAll(list.CornersOf(t));
+      }
+    }
+  });
+  ForEachStretch(list.Count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (leftOut.HasAny(list.CornersOf(t)) && keep[t])
+      {
+        leftOut.RemoveAll(list.CornersOf(t));
+      }
+    }
+  });
+  return leftOut.Count();
+}
+
+std::vector<Index> AllTriangles(const TriangleList& list)
+{
+  std::vector<Index> triangles(list.Count);
+  std::iota(triangles.begin(), triangles.end(), 0);
+  return triangles;
+}
+
+/** The corners of triangles, in the order in which those name them. */
+std::vector<Index> CornersOf(
+  const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
+{
+  IdSet known(list.Points.Count);
+  std::vector<Index> corners;
+  ForEachStretch(static_cast<Index>(triangles.size()), progress, [&](Index begin, Index end) {
+    for (Index i = 3 * begin; i < 3 * end; ++i)
+    {
+      const Index vertex = list.CornersOf(triangles[i / 3])[i % 3];
+      if (!known.Has(vertex))
+      {
+        known.Add(vertex);
+        corners.push_back(vertex);
+      }
+    }
+  });
+  return corners;
+}
+
+/**
+ * The spacing of a triangle: the middle one of its corners' three, which the spacing of a point
+ * that lies alone is not, nor of two that lie alone; but not far above the least.
+ */
+template <typename Real>
+double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
+{
+  const Real a = spacings[corners[0]];
+  const Real b = spacings[corners[1]];
+  const Real c = spacings[corners[2]];
+  const Real least = std::min({ a, b, c });
+  const Real middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
+  return std::max<double>(LeastSpacing, std::min<double>(middle, LargestSpacingInTriangle * least));
+}
+
+/**
+ * Triangles from everywhere: those at some vertices, or all when they are few. Not those of a vertex
+ * with very many neighbours, which would outvote all others.
+ */
+std::vector<Index> SampleOf(const MeasuredTriangles& measured)
+{
+  const TriangleList& list = measured.List;
+  const int bits = SampleBitsOf(list.Count);
+  std::vector<Index> sample;
+  for (const Index t : measured.Sample)
+  {
+    const Index* corners = list.CornersOf(t);
+    if (bits == 0 || std::any_of(corners, corners + 3, [&](Index v) {
+          return measured.Degrees[v] <= NeighborsOfHub &&
+            IsChosenForSample(list.Points.At(v), bits);
+        }))
+    {
+      sample.push_back(t);
+    }
+  }
+  return sample.empty() ? AllTriangles(list) : sample;
+}
+
+/**
+ * Takes triangles out of a list that are surface in any case: those of a group, connected by
+ * corners and apart from the border, in which there is no room for a lake.
+ * @param[in]     shareOf  shareOf(t): the area of a triangle in parts of the least lake's
+ * @param[in,out] keep     is set for those taken out
+ * @return the others
+ */
+template <typename ShareOf>
+std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBorder,
+  const std::vector<Index>& triangles, ShareOf&& shareOf, std::vector<char>& keep,
+  const Progress& progress)
+{
+  // Where a vertex has been joined to; to itself where it has not.
+  Buffer<Index> joined;
+  joined.Resize(list.Points.Count);
+  std::iota(joined.begin(), joined.end(), 0);
+  const auto find = [&joined](Index v) {
+    while (joined[v] != v)
+    {
+      v = joined[v] = joined[joined[v]];
+    }
+    return v;
+  };
+  // In whole numbers, so that the sum does not depend on the order of the triangles.
+  constexpr std::int64_t whole = std::int64_t(1) << 30;
+  Buffer<std::int64_t> sums;
+  sums.Resize(list.Points.Count);
+  std::fill(sums.begin(), sums.end(), 0);
+  const Index count = static_cast<Index>(triangles.size());
+  ForEachStretch(count, Part(progress, 0.0, 0.7), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
+      const Index* corners = list.CornersOf(triangles[i]);
+      const bool isAtBorder = atBorder.HasAny(corners);
+      const double share = isAtBorder ? 1.0 : std::min(1.0, shareOf(triangles[i]));
+      Index root = find(corners[0]);
+      sums[root] += static_cast<std::int64_t>(share * static_cast<double>(whole));
+      for (int k = 0; k < 3; ++k)
+      {
+        list.PrefetchPoint(ahead[k]);
+        Prefetch(&joined[ahead[k]]);
+        Prefetch(&sums[ahead[k]]);
+        const Index other = find(corners[k]);
+        if (other != root)
+        {
+          joined[std::max(root, other)] = std::min(root, other);
+          sums[std::min(root, other)] += sums[std::max(root, other)];
+          root = std::min(root, other);
+        }
+      }
+    }
+  });
+  std::vector<Index> others;
+  ForEachStretch(count, Part(progress, 0.7, 1.0), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index t = triangles[i];
+      keep[t] = sums[find(list.CornersOf(t)[0])] < whole;
+      if (!keep[t])
+      {
+        others.push_back(t);
+      }
+    }
+  });
+  return others;
+}
+
+/** Triangles as a mesh with Twins. A half-edge that is its own leads to one that is not here. */
+class PartialMesh : public SubMesh
+{
+public:
+  /** @param[in] border  sorted */
+  PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
+    const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress)
+    : SubMesh(list, triangles, Part(progress, 0.0, 0.5))
+    , Triangles(std::move(triangles))
+  {
+    this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));
+    if (static_cast<Index>(this->Triangles.size()) == list.Count)
+    {
+      return; // nothing goes on beyond all
+    }
+    ForEachStretch(
+      this->Surface.NumberOfHalfEdges(), Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+        for (Index h = begin; h < end; ++h)
+        {
+          if (this->Surface.IsBorder(h))
+          {
+            const BorderEdge edge{ this->Ids[this->Surface.Origin(h)],
+              this->Ids[this->Surface.Destination(h)] };
+            if (!atBorder.Has(edge.Origin) || !atBorder.Has(edge.Destination) ||
+              !std::binary_search(border.begin(), border.end(), edge))
+            {
+              this->Surface.Twins[h] = h;
+            }
+          }
+        }
+      });
+  }
+
+  const std::vector<Index> Triangles; ///< their ids in the list
+
+  std::vector<char> FlagsOf(const std::vector<char>& flags) const
+  {
+    std::vector<char> ofThese;
+    ofThese.reserve(this->Triangles.size());
+    for (const Index t : this->Triangles)
+    {
+      ofThese.push_back(flags[t]);
+    }
+    return ofThese;
+  }
+  void PutFlags(const std::vector<char>& ofThese, std::vector<char>& flags) const
+  {
+    for (std::size_t i = 0; i < ofThese.size(); ++i)
+    {
+      flags[this->Triangles[i]] = ofThese[i];
+    }
+  }
+};
+
+/**
+ * The last steps: drops slivers, closes small openings, drops small pieces, and traces the border of
+ * what is left.
+ * @param[in]     spacings  of the corners of triangles that are not surface so far, and perhaps of
+ *                          others
+ * @param[in]     near      the corners at the border of the surface so far
+ * @param[in,out] result    which triangles are surface; its rings
+ */
+void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
+  const Buffer<double>& spacings, IdSet near, const Progress& progress,
+  ExtractedBoundary& result)
+{
+  const TriangleList& list = measured.List;
+  const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
+  std::vector<char>& keep = result.IsSurface;
+  const auto isSliverOver = [&](Index t, double length) {
+    const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
+    return 2.0 * list.ShareOfSquare(t, spacing) * spacing < LeastHeight * length;
+  };
+  // Slivers have two corners at the border, or at slivers that have a corner there: all that are
+  // beside them are in the mesh then.
+  IdSet atEdge = near;
+  for (const Index t : TrianglesAt(list, near, Part(progress, 0.0, 0.1)))
+  {
+    if (isSliverOver(t, std::sqrt(measured.Longest[t])))
+    {
+      atEdge.AddAll(list.CornersOf(t));
+    }
+  }
+  near = atEdge;
+  double begin = 0.1; // of the progress that is left
+  for (;;)
+  {
+    // Few need a second round, and hardly any a third.
+    const double end = 0.5 * (1.0 + begin);
+    const Progress round = Part(progress, begin, end);
+    begin = end;
+    std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
+    if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
+    {
+      // With all of them, this is the last round.
+      triangles = AllTriangles(list);
+    }
+    const PartialMesh mesh(
+      list, measured.Border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
+    std::vector<char> keepHere = mesh.FlagsOf(keep);
+    // In parts of a square of the size that the tolerance bridges. A sliver, which was surface so
+    // far, has hardly an area, and the spacing is not known there.
+    const auto shareOf = [&](Index i) {
+      const Index t = mesh.Triangles[i];
+      return keep[t] ? 0.0 : list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
+    };
+    const auto isSliver = [&](Index h) {
+      const Index t = mesh.Triangles[Mesh::Triangle(h)];
+      const Index* corners = list.CornersOf(t);
+      return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
+        isSliverOver(t,
+          std::sqrt(SquaredLength(mesh.Surface.PointOf(mesh.Surface.Origin(h)),
+            mesh.Surface.PointOf(mesh.Surface.Destination(h)))));
+    };
+    DropSlivers(mesh.Surface, isSliver, keepHere, Part(round, 0.3, 0.4));
+    if (std::find(keepHere.begin(), keepHere.end(), char(1)) == keepHere.end() &&
+      static_cast<Index>(mesh.Triangles.size()) == list.Count)
+    {
+      keepHere = keep; // a surface of nothing else
+    }
+    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.4, 0.55));
+    const std::vector<Index> unknown =
+      DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.55, 0.8));
+    if (unknown.empty())
+    {
+      mesh.PutFlags(keepHere, keep);
+      result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
+      ToIds(result.Vertices.Vertices, mesh.Ids.data(), Part(round, 1.0, 1.0));
+      return;
+    }
+    // To see more of these pieces.
+    for (const Index vertex : unknown)
+    {
+      near.Add(mesh.Ids[vertex]);
+    }
+  }
+}
+
+} // namespace
+
+int SampleBitsOf(Index numberOfTriangles)
+{
+  int bits = 0;
+  while (numberOfTriangles >> bits > LargestSample)
+  {
+    ++bits;
+  }
+  return bits;
+}
+
+ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options)
+{
+  const TriangleList& list = measured.List;
+  const Progress& progress = options.Monitor;
+  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+  const auto squareOf = [](double value) { return value * value; };
+  ExtractedBoundary result;
+  result.GapTolerance = options.GapTolerance;
+  std::vector<BorderEdge>& border = measured.Border;
+  Sort(border.begin(), border.end(), std::less<BorderEdge>(), Part(progress, 0.0, 0.02));
+  IdSet atBorder(list.Points.Count);
+  for (const BorderEdge& edge : border)
+  {
+    atBorder.Add(edge.Origin);
+    atBorder.Add(edge.Destination);
+  }
+
+  const Buffer<float>& shortSpacings = measured.ShortSpacings;
+  const Neighbors neighbors(measured, Part(progress, 0.02, 0.25));
+  Buffer<double> spacings; // of those vertices for which they are asked
+  spacings.Resize(list.Points.Count);
+  const auto findSpacings = [&](const std::vector<Index>& triangles, const Progress& part) {
+    const std::vector<Index> corners = CornersOf(list, triangles, Part(part, 0.0, 0.1));
+    FindSpacings(list, neighbors, corners, threads, Part(part, 0.1, 1.0), spacings.data());
+  };
+  const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
+  const auto ratioOf = [&](Index t) { return std::sqrt(measured.Longest[t]) / spacingOf(t); };
+  if (!(result.GapTolerance > 0.0))
+  {
+    const std::vector<Index> sample = SampleOf(measured);
+    const Progress finding = Part(progress, 0.25, 0.35);
+    findSpacings(sample, finding);
+    std::vector<double> ratios;
+    for (const Index t : sample)
+    {
+      ratios.push_back(ratioOf(t));
+    }
+    const auto median = ratios.begin() + ratios.size() / 2;
+    std::nth_element(ratios.begin(), median, ratios.end());
+    result.GapTolerance = ToleranceOfTypicalTriangle * *median;
+  }
+
+  std::vector<char>& keep = result.IsSurface;
+  keep.resize(list.Count);
+  const double limit = BeyondDoubt * result.GapTolerance;
+  const auto isWithin = [&](Index, Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      const Index* ahead = list.CornersOf(std::min(t + 40, end - 1));
+      Prefetch(&shortSpacings[ahead[1]]);
+      Prefetch(&shortSpacings[ahead[2]]);
+      keep[t] =
+        measured.Longest[t] <= squareOf(limit * SpacingOf(shortSpacings, list.CornersOf(t)));
+    }
+  };
+  constexpr Index atOnce = 1 << 13;
+  ForEachRange(list.Count, threads, Part(progress, 0.35, 0.5), isWithin, atOnce);
+  std::vector<Index> doubtful;
+  ForEachStretch(list.Count, Part(progress, 0.5, 0.52), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (!keep[t])
+      {
+        doubtful.push_back(t);
+      }
+    }
+  });
+  const auto shortShareOf = [&](Index t) {
+    const double spacing = SpacingOf(shortSpacings, list.CornersOf(t));
+    return list.ShareOfSquare(t, SmallGroup * result.GapTolerance * spacing);
+  };
+  doubtful =
+    DropSmallGroups(list, atBorder, doubtful, shortShareOf, keep, Part(progress, 0.52, 0.6));
+  const Progress finding = Part(progress, 0.6, 0.74);
+  Report(finding, 0.0);
+  findSpacings(doubtful, finding);
+  Report(finding, 1.0);
+  // All that the last steps need are triangles near the border of the surface.
+  IdSet near = atBorder;
+  const Index numberOfDoubtful = static_cast<Index>(doubtful.size());
+  ForEachStretch(numberOfDoubtful, Part(progress, 0.74, 0.75), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index t = doubtful[i];
+      keep[t] = ratioOf(t) <= result.GapTolerance;
+      if (!keep[t])
+      {
+        near.AddAll(list.CornersOf(t));
+      }
+    }
+  });
+  TraceSurface(measured, atBorder, spacings, std::move(near), Part(progress, 0.75, 0.95), result);
+  result.NumberOfPointsLeftOut = CountLeftOut(list, result.IsSurface, Part(progress, 0.95, 1.0));
+  Report(progress, 1.0);
+  return result;
+}
+
+ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)
+{
+  const Index count = mesh.NumberOfTriangles();
+  if (count == 0)
+  {
+    ExtractedBoundary nothing;
+    nothing.GapTolerance = options.GapTolerance;
+    return nothing;
+  }
+  // At a scale where squares do not leave the range of double.
+  double largest = 0.0;
+  for (const Index v : mesh.Triangles)
+  {
+    largest = std::max({ largest, std::fabs(mesh.PointOf(v).X), std::fabs(mesh.PointOf(v).Y) });
+  }
+  const double scale =
+    largest > LargestUnscaled || largest < LeastUnscaled ? ScaleToOne(largest) : 1.0;
+  Buffer<double> coordinates;
+  coordinates.Reserve(3 * mesh.Points.size());
+  for (const Point2& p : mesh.Points)
+  {
+    coordinates.Append(scale * p.X);
+    coordinates.Append(scale * p.Y);
+    coordinates.Append(0.0);
+  }
+  MeasuredTriangles measured;
+  TriangleList& list = measured.List;
+  list.Corners = mesh.Triangles.data();
+  list.Count = count;
+  list.Points.Double = coordinates.data();
+  list.Points.Count = mesh.NumberOfPoints();
+  measured.Longest.Resize(count);
+  measured.SetNumberOfVertices(list.Points.Count);
+  std::vector<EdgesAtVertex> edges(mesh.Points.size());
+  const int bits = SampleBitsOf(count);
+  ForEachStretch(count, Part(options.Monitor, 0.0, 0.4), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      measured.Longest[t] = 0.0;
+      bool isInSample = false;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        const BorderEdge edge{ mesh.Origin(h), mesh.Destination(h) };
+        const Point2 origin = list.Points.At(edge.Origin);
+        const double squared = SquaredLength(origin, list.Points.At(edge.Destination));
+        measured.Longest[t] = std::max(measured.Longest[t], squared);
+        edges[edge.Origin].Add(squared);
+        isInSample = isInSample || IsChosenForSample(origin, bits);
+        if (mesh.IsBorder(h))
+        {
+          // No half-edge leaves its other end.
+          edges[edge.Destination].Add(squared);
+          measured.Border.push_back(edge);
+        }
+      }
+      if (isInSample)
+      {
+        measured.Sample.push_back(t);
+      }
+    }
+  });
+  for (Index v = 0; v < list.Points.Count; ++v)
+  {
+    measured.Set(v, edges[v]);
+  }
+  ExtractOptions rest = options;
+  const Progress finding = Part(options.Monitor, 0.4, 1.0);
+  rest.Monitor = finding;
+  return FindOutline(std::move(measured), rest);
+}
+
+} // namespace elevation

@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Rings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+namespace elevation
+{
+
+// ---------------------------------------------------------------------------------------- location
+
+namespace
+{
+
+template <typename Visitor>
+void VisitEdges(const Rings& rings, Visitor&& visit)
+{
+  for (Index ring = 0; ring < rings.Count(); ++ring)
+  {
+    const Index* end = rings.End(ring);
+    for (const Index* v = rings.Begin(ring); v != end; ++v)
+    {
+      visit(*v, v + 1 == end ? *rings.Begin(ring) : v[1]);
+    }
+  }
+}
+
+} // namespace
+
+RingLocator::RingLocator(const std::vector<Point2>& points, const Rings& rings)
+  : Points(points)
+{
+  double top = -std::numeric_limits<double>::infinity();
+  this->Bottom = std::numeric_limits<double>::infinity();
+  double heights = 0.0;
+  VisitEdges(rings, [&](Index a, Index b) {
+    if (points[b].Y < points[a].Y)
+    {
+      std::swap(a, b);
+    }
+    this->Edges.push_back({ a, b });
+    this->Bottom = std::min(this->Bottom, points[a].Y);
+    top = std::max(top, points[b].Y);
+    heights += points[b].Y - points[a].Y;
+  });
+  // As many bins as keep the entries of all edges a few times the number of edges.
+  const double count = static_cast<double>(this->Edges.size());
+  const double share = heights / (top - this->Bottom);
+  const double bins = share > 0.0 ? std::min(count, 8.0 * count / share) : 1.0;
+  this->BinOffsets.assign(static_cast<std::size_t>(bins) + 2, 0);
+  this->BinsPerUnit = bins / (top - this->Bottom);
+
+  for (const bool fill : { false, true })
+  {
+    for (std::size_t i = 0; i < this->Edges.size(); ++i)
+    {
+      const Index last = this->BinOf(points[this->Edges[i].High].Y);
+      for (Index bin = this->BinOf(points[this->Edges[i].Low].Y); bin <= last; ++bin)
+      {
+        if (fill)
+        {
+          this->BinEdges[--this->BinOffsets[bin]] = static_cast<Index>(i);
+        }
+        else
+        {
+          ++this->BinOffsets[bin];
+        }
+      }
+    }
+    if (!fill)
+    {
+      for (std::size_t bin = 1; bin < this->BinOffsets.size(); ++bin)
+      {
+        this->BinOffsets[bin] += this->BinOffsets[bin - 1];
+      }
+      this->BinEdges.resize(this->BinOffsets.back());
+    }
+  }
+}
+
+Index RingLocator::BinOf(double y) const
+{
+  // Monotone in y; "not a number" (an infinite range) is bin 0.
+  const double position = (y - this->Bottom) * this->BinsPerUnit;
+  const Index last = static_cast<Index>(this->BinOffsets.size()) - 2;
+  return position > 0.0 ? (position < last ? static_cast<Index>(position) : last) : 0;
+}
+
+template <typename Visitor>
+void RingLocator::VisitEdgesAt(double y, Visitor&& visit) const
+{
+  const Index bin = this->BinOf(y);
+  for (Index i = this->BinOffsets[bin]; i < this->BinOffsets[bin + 1]; ++i)
+  {
+    const Edge& edge = this->Edges[this->BinEdges[i]];
+    visit(this->Points[edge.Low], this->Points[edge.High]);
+  }
+}
+
+bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) const
+{
+  // p is the lowest corner, q the next one: the inside of the triangle near p is above p and on the
+  // left of pq. The question is asked for a place there, closer to p than anything else.
+  const bool lowestIsB = IsLower(b, a) && IsLower(b, c);
+  const bool lowestIsC = !lowestIsB && IsLower(c, a);
+  const Point2& p = lowestIsB ? b : lowestIsC ? c : a;
+  const Point2& q = lowestIsB ? c : lowestIsC ? a : b;
+  bool isInside = false;
+  this->VisitEdgesAt(p.Y, [&](const Point2& low, const Point2& high) {
+    if (!(low.Y <= p.Y && p.Y < high.Y))
+    {
+      return;
+    }
+    const Sign side = Orientation(low, high, p);
+    // An edge that goes up from p passes the triangle on its left or on its
+    // right: it does not cut it.
+    isInside ^= side == Negative || (side == Zero && Orientation(p, high, q) == Negative);
+  });
+  return isInside;
+}
+
+// ------------------------------------------------------------------------------------- given lines
+
+namespace
+{
+
+std::string NameOfLine(const BoundaryLines& lines, Index line)
+{
+  return (lines.IsPolygon[line] ? "polygon (cell " : "line (cell ") +
+    std::to_string(lines.Cells[line]) + ")";
+}
+
+/** A line without points that repeat the one before; closed ones do not repeat the first. */
+struct Piece
+{
+  std::vector<Index> Points;
+  Index Line;
+  bool IsClosed;
+};
+
+std::vector<Piece> MakePieces(const BoundaryLines& lines)
+{
+  std::vector<Piece> pieces;
+  for (Index line = 0; line < lines.Lines.Count(); ++line)
+  {
+    Piece piece;
+    piece.Line = line;
+    for (const Index* point = lines.Lines.Begin(line); point != lines.Lines.End(line); ++point)
+    {
+      const Point2& p = lines.Points[*point];
+      if (!std::isfinite(p.X) || !std::isfinite(p.Y))
+      {
+        throw Error("The boundary's " + NameOf(lines.Points, *point) + " of " +
+          NameOfLine(lines, line) + " is not finite.");
+      }
+      if (piece.Points.empty() || lines.Points[piece.Points.back()] != p)
+      {
+        piece.Points.push_back(*point);
+      }
+    }
+    if (piece.Points.empty())
+    {
+      continue;
+    }
+    const bool returns = lines.Points[piece.Points.front()] == lines.Points[piece.Points.back()];
+    piece.IsClosed = lines.IsPolygon[line] || returns;
+    if (piece.Points.size() > 1 && returns)
+    {
+      piece.Points.pop_back();
+    }
+    if (piece.IsClosed && piece.Points.size() < 3)
+    {
+      throw Error("The boundary's " + NameOfLine(lines, line) + " has only " +
+        std::to_string(piece.Points.size()) + " different point" +
+        (piece.Points.size() == 1 ? "" : "s") + "; a ring has at least three.");
+    }
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
+void Append(Rings& rings, const std::vector<Index>& points)
+{
+  rings.Vertices.insert(rings.Vertices.end(), points.begin(), points.end());
+  rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
+}
+
+} // namespace
+
+Rings JoinLines(const BoundaryLines& lines)
+{
+  const std::vector<Piece> pieces = MakePieces(lines);
+  const auto placeOf = [&lines](Index point) { return lines.Points[point]; };
+  if (pieces.empty())
+  {
+    throw Error("The boundary has no line and no polygon.");
+  }
+
+  // The ends of open pieces in a place: the front of piece i is 2 i, its back 2 i + 1.
+  const auto placeOfEnd = [&](std::size_t end) {
+    const std::vector<Index>& points = pieces[end / 2].Points;
+    return placeOf(end % 2 == 0 ? points.front() : points.back());
+  };
+  const auto nextOfEnd = [&](std::size_t end) {
+    const std::vector<Index>& points = pieces[end / 2].Points;
+    return placeOf(end % 2 == 0 ? points[1] : points[points.size() - 2]);
+  };
+  std::unordered_map<Point2, std::vector<std::size_t>, HashOfPoint> endsAt;
+  for (std::size_t end = 0; end < 2 * pieces.size(); ++end)
+  {
+    if (!pieces[end / 2].IsClosed)
+    {
+      endsAt[placeOfEnd(end)].push_back(end);
+    }
+  }
+  for (std::size_t end = 0; end < 2 * pieces.size(); ++end)
+  {
+    const auto meeting = endsAt.find(placeOfEnd(end));
+    if (!pieces[end / 2].IsClosed && meeting->second.size() % 2 != 0)
+    {
+      const std::vector<Index>& points = pieces[end / 2].Points;
+      throw Error("The boundary is not closed: " + NameOfLine(lines, pieces[end / 2].Line) +
+        " ends at " + NameOf(lines.Points, end % 2 == 0 ? points.front() : points.back()) +
+        (meeting->second.size() == 1 ? ", where no other line goes on."
+                                     : ", where " + std::to_string(meeting->second.size()) +
+              " lines end, which cannot be paired."));
+    }
+  }
+
+  // Where more than two end, each goes on in one beside it, so that no rings cross there; and two
+  // that begin alike in each other, as what they have in common cancels out.
+  std::vector<std::size_t> partners(2 * pieces.size());
+  for (auto& meeting : endsAt)
+  {
+    const Point2& place = meeting.first;
+    std::vector<std::size_t>& ends = meeting.second;
+    const auto comesBefore = [&](std::size_t e, std::size_t f) {
+      const Point2 p = nextOfEnd(e), q = nextOfEnd(f);
+      return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
+                                                    : Orientation(place, p, q) == Positive;
+    };
+    std::stable_sort(ends.begin(), ends.end(), comesBefore);
+    std::vector<std::size_t> others;
+    const auto pairAll = [&](bool areAlike) {
+      others.clear();
+      for (const std::size_t end : ends)
+      {
+        if (others.empty() || (areAlike && comesBefore(others.back(), end)))
+        {
+          others.push_back(end);
+          continue;
+        }
+        partners[end] = others.back();
+        partners[others.back()] = end;
+        others.pop_back();
+      }
+      ends = others;
+    };
+    pairAll(true);
+    pairAll(false);
+  }
+  Rings joined;
+  std::vector<char> used(pieces.size(), 0);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    if (pieces[i].IsClosed)
+    {
+      Append(joined, pieces[i].Points);
+      continue;
+    }
+    std::vector<Index> ring;
+    for (std::size_t end = 2 * i; !used[end / 2]; end = partners[end ^ 1])
+    {
+      used[end / 2] = 1;
+      const std::vector<Index>& points = pieces[end / 2].Points;
+      if (end % 2 == 0)
+      {
+        ring.insert(ring.end(), points.begin(), points.end() - 1);
+      }
+      else
+      {
+        ring.insert(ring.end(), points.rbegin(), points.rend() - 1);
+      }
+    }
+    // Two lines along one edge, as of two parcels that share it, cancel out.
+    if (ring.size() > 2)
+    {
+      Append(joined, ring);
+    }
+  }
+  if (joined.Vertices.empty())
+  {
+    throw Error("The boundary's " + NameOfLine(lines, pieces.front().Line) +
+      " makes a ring of only two points, and so do all others; a ring has at least three.");
+  }
+  return joined;
+}
+
+} // namespace elevation

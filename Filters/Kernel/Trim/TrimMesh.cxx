@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TrimMesh.h"
+
+#include "Rings.h"
+#include "Kernel/Base/Base.h"
+#include "Kernel/Mesh/Mesh.h"
+
+#include <algorithm>
+#include <string>
+
+namespace elevation
+{
+
+namespace
+{
+
+/** Whether the way from a vertex to another begins in a triangle or along an edge. */
+bool BeginsInside(const Mesh& mesh, VertexStars& stars, Index from, Index to)
+{
+  if (StepAlong(mesh, stars, from, to).HalfEdge != None)
+  {
+    return true;
+  }
+  bool isInside = false;
+  const Point2& a = mesh.PointOf(from);
+  const Point2& b = mesh.PointOf(to);
+  stars.VisitToward(mesh, from, to, [&](Index h) {
+    isInside = Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
+      Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive;
+    return !isInside;
+  });
+  return isInside;
+}
+
+/**
+ * The edges of rings that lie within the mesh, in an order that depends on their places alone:
+ * where the mesh is not Delaunay, the order in which they are recovered matters.
+ */
+std::vector<Segment> SegmentsOf(
+  const Mesh& mesh, VertexStars& stars, const Rings& rings, const Progress& progress)
+{
+  std::vector<Segment> segments;
+  segments.reserve(rings.Vertices.size());
+  for (Index ring = 0; ring < rings.Count(); ++ring)
+  {
+    const Index size = rings.Size(ring);
+    const Index* vertices = rings.Begin(ring);
+    for (Index i = 0; i < size; ++i)
+    {
+      ReportStep(progress, rings.Offsets[ring] + i, 2 * rings.Vertices.size(), 256);
+      const Segment segment{ vertices[i], vertices[i + 1 == size ? 0 : i + 1] };
+      const bool isInside = BeginsInside(mesh, stars, segment.A, segment.B);
+      if (isInside != BeginsInside(mesh, stars, segment.B, segment.A))
+      {
+        throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
+          NameOf(mesh.Points, segment.B) +
+          " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
+          "pass through points of the mesh there; or merge points of the mesh, as "
+          "vtkStaticCleanPolyData does, if borders of it lie on each other there.");
+      }
+      if (isInside)
+      {
+        const bool isUp = IsLower(mesh.PointOf(segment.A), mesh.PointOf(segment.B));
+        segments.push_back(isUp ? segment : Segment{ segment.B, segment.A });
+      }
+    }
+  }
+  Sort(
+    segments.begin(), segments.end(),
+    [&mesh](const Segment& s, const Segment& t) {
+      const Point2& a = mesh.PointOf(s.A);
+      const Point2& b = mesh.PointOf(t.A);
+      return IsLower(a, b) || (a == b && IsLower(mesh.PointOf(s.B), mesh.PointOf(t.B)));
+    },
+    Part(progress, 0.5, 1.0));
+  return segments;
+}
+
+/**
+ * Sets one flag a half-edge: whether the segments run along its edge an odd number of times.
+ */
+void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,
+  std::vector<char>& isOdd, const Progress& progress)
+{
+  isOdd.assign(mesh.Triangles.size(), 0);
+  std::size_t done = 0;
+  for (const Segment& segment : segments)
+  {
+    ReportStep(progress, done++, segments.size(), 256);
+    Index vertex = segment.A;
+    while (vertex != segment.B)
+    {
+      const SegmentStep step = StepAlong(mesh, stars, vertex, segment.B);
+      if (step.HalfEdge == None)
+      {
+        throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
+          NameOf(mesh.Points, segment.B) +
+          " is not an edge of the mesh. Turn RecoverBoundary on, or triangulate with it.");
+      }
+      isOdd[step.HalfEdge] ^= 1;
+      if (!mesh.IsBorder(step.HalfEdge))
+      {
+        isOdd[mesh.Twin(step.HalfEdge)] ^= 1;
+      }
+      vertex = step.Vertex;
+    }
+  }
+}
+
+/**
+ * The published test. A walk with the surface on the right has outward triangles on its left. Two
+ * edges of such a triangle follow each other on the walk if and only if it is on the left of both:
+ * nothing else has room in its corner. So no walk is kept, but the number of edges of each triangle
+ * that are on it by now.
+ * @param[in]     isOdd      one flag a half-edge: whether its edge is of the boundary
+ * @param[in,out] isOutward  in: the triangles outside, which tell the walk's direction; out: those
+ *                           that the test finds
+ */
+void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOdd,
+  std::vector<char>& isOutward, const Progress& progress)
+{
+  constexpr char isTaken = 4;
+  std::vector<char> edges(isOutward.size(), 0);
+  std::vector<Index> taken;
+  const auto walkAlong = [&](Index h) {
+    const Index t = Mesh::Triangle(h);
+    if (isOutward[t] && ++edges[t] == 2)
+    {
+      taken.push_back(t);
+    }
+  };
+  ForEachStretch(mesh.NumberOfHalfEdges(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+    for (Index h = begin; h < end; ++h)
+    {
+      if (isOdd[h])
+      {
+        walkAlong(h);
+      }
+    }
+  });
+  const Progress walking = Part(progress, 0.5, 1.0);
+  std::size_t done = 0;
+  while (!taken.empty())
+  {
+    ReportStep(walking, done++, isOutward.size());
+    const Index t = taken.back();
+    taken.pop_back();
+    edges[t] = isTaken;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      // The walk goes on along the third edge, seen from the other side: in an outward triangle,
+      // unless that edge is of the boundary.
+      const Index twin = mesh.Twin(h);
+      if (twin != Mesh::Border && edges[Mesh::Triangle(twin)] < 2)
+      {
+        walkAlong(twin);
+      }
+    }
+  }
+  for (std::size_t t = 0; t < isOutward.size(); ++t)
+  {
+    isOutward[t] = edges[t] >= 2;
+  }
+}
+
+} // namespace
+
+TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
+{
+  const Index count = mesh.NumberOfTriangles();
+  TrimResult result;
+  Report(options.Monitor, 0.0);
+  VertexStars stars(mesh, Part(options.Monitor, 0.0, 0.35));
+  const std::vector<Segment> segments =
+    SegmentsOf(mesh, stars, boundary, Part(options.Monitor, 0.35, 0.4));
+  std::vector<char> flags;
+  if (options.RecoverBoundary)
+  {
+    result.NumberOfRecoveredEdges =
+      RecoverSegments(mesh, stars, segments, flags, Part(options.Monitor, 0.4, 0.5));
+  }
+  MarkEdges(mesh, stars, segments, flags, Part(options.Monitor, 0.5, 0.6));
+
+  const RingLocator locator(mesh.Points, boundary);
+  const Parts parts = FindParts(mesh, Part(options.Monitor, 0.6, 0.9),
+    [&flags](Index h) { return static_cast<int>(flags[h]); });
+  std::vector<char> isOutward; // one a label
+  for (const Index t : parts.Lowest)
+  {
+    const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)),
+      mesh.PointOf(mesh.Origin(3 * t + 1)), mesh.PointOf(mesh.Origin(3 * t + 2)));
+    isOutward.push_back(!isInside);
+    isOutward.push_back(isInside);
+  }
+  result.IsOutward.resize(count);
+  ForEachStretch(count, Part(options.Monitor, 0.9, 0.95), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      result.IsOutward[t] = isOutward[parts.Labels[t]];
+      result.NumberOfOutwardTriangles += result.IsOutward[t];
+    }
+  });
+  if (count > 0 && result.NumberOfOutwardTriangles == count)
+  {
+    const std::string name =
+      boundary.Count() > 0 ? NameOf(mesh.Points, boundary.Vertices.front()) : std::string();
+    throw Error("The boundary encloses no triangle of the mesh" +
+      (name.empty() ? name : ". Its first ring begins at" + name.substr(name.find(" ("))) +
+      (boundary.Count() > 1 ? "; of rings in each other, what lies between two is enclosed."
+                            : "."));
+  }
+  if (options.Test == OutwardTest::InwardNormal)
+  {
+    TakeAlongBoundary(mesh, flags, result.IsOutward, Part(options.Monitor, 0.95, 1.0));
+    result.NumberOfOutwardTriangles =
+      static_cast<Index>(std::count(result.IsOutward.begin(), result.IsOutward.end(), 1));
+  }
+  Report(options.Monitor, 1.0);
+  return result;
+}
+
+TrimResult TrimExtracted(const ExtractedBoundary& boundary)
+{
+  TrimResult result;
+  result.IsOutward = boundary.IsSurface;
+  result.NumberOfPointsLeftOut = boundary.NumberOfPointsLeftOut;
+  for (char& flag : result.IsOutward)
+  {
+    flag = !flag;
+    result.NumberOfOutwardTriangles += flag;
+  }
+  return result;
+}
+
+} // namespace elevation

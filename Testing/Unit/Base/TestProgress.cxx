@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Progress rises, and no step of a long computation is silent, so that an abort is heard soon.
+#include "Kernel/Triangulate/Constrained.h"
+#include "Kernel/Mesh/Recovery.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "Kernel/Fill/Fill.h"
+#include "Kernel/Mesh/Holes.h"
+#include "Kernel/Trim/Outline.h"
+#include "Kernel/Trim/QuickTrim.h"
+#include "Kernel/Trim/Trim.h"
+#include "LatticeSurface.h"
+#include "PointSets.h"
+#include "Silence.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace elevation;
+
+namespace
+{
+constexpr Index Width = 500;
+constexpr Index Height = 300;
+
+/** 300,000 triangles, many times what lies between two reports; a hole in the middle. */
+const Mesh& LargeSheet()
+{
+  static const Mesh sheet = []() {
+    std::vector<std::string> picture(Height, std::string(Width, '#'));
+    for (Index row = 150; row < 160; ++row)
+    {
+      picture[row].replace(200, 10, 10, ' ');
+    }
+    return testing_surfaces::Draw(picture);
+  }();
+  return sheet;
+}
+
+/** What a computation reports; the fractions are checked to rise within [0, 1]. */
+template <typename Computation>
+std::vector<double> FractionsOf(Computation&& computation)
+{
+  std::vector<double> fractions{ 0.0 };
+  computation([&fractions](double fraction) {
+    EXPECT_GE(fraction, fractions.back());
+    EXPECT_LE(fraction, 1.0);
+    fractions.push_back(fraction);
+    return true;
+  });
+  fractions.push_back(1.0);
+  return fractions;
+}
+
+/** The largest part of a computation that passes without a report. */
+template <typename Computation>
+double LargestSilence(Computation&& computation)
+{
+  const std::vector<double> fractions = FractionsOf(computation);
+  double largest = 0.0;
+  for (std::size_t i = 1; i < fractions.size(); ++i)
+  {
+    largest = std::max(largest, fractions[i] - fractions[i - 1]);
+  }
+  return largest;
+}
+} // namespace
+
+TEST(Progress, OfPartsDoesNotFallWhereTheyMeet)
+{
+  for (int i = 1; i < 1000; ++i)
+  {
+    const double begin = 0.001 * i;
+    for (int j = i + 1; j <= 1000; ++j)
+    {
+      const double end = 0.001 * j;
+      const Progress progress = [end](double fraction) {
+        EXPECT_LE(fraction, end);
+        return true;
+      };
+      Part(progress, begin, end)(1.0);
+    }
+  }
+}
+
+TEST(Progress, OfSortingRisesAndStops)
+{
+  std::vector<Index> values;
+  for (Index i = 0; i < 300000; ++i)
+  {
+    values.push_back(static_cast<Index>((i * 7919ll) % 300007));
+  }
+  std::vector<Index> sorted = values;
+  const auto sort = [&sorted](const Progress& progress) {
+    Sort(sorted.begin(), sorted.end(), std::less<Index>(), progress);
+  };
+  EXPECT_LT(LargestSilence(sort), 0.3);
+  EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
+  sorted = values;
+  sort(Progress());
+  EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
+  sorted = values;
+  EXPECT_THROW(sort([](double) { return false; }), Aborted);
+}
+
+TEST(Progress, OfConnectingAndTracingAMeshIsNotSilent)
+{
+  Mesh mesh = LargeSheet();
+  EXPECT_LT(LargestSilence([&](const Progress& progress) { mesh.ConnectTwins(0, progress); }), 0.1);
+  EXPECT_LT(LargestSilence([&](const Progress& progress) { TraceBorder(mesh, progress); }), 0.1);
+  EXPECT_LT(LargestSilence([&](const Progress& progress) { FindHoles(mesh, 0, progress); }), 0.55)
+    << "half of it is for borders, of which this mesh has few";
+}
+
+TEST(Progress, OfABoundaryIsNotSilent)
+{
+  EXPECT_LT(LargestSilence([&](const Progress& progress) {
+    ExtractOptions options;
+    options.Monitor = progress;
+    ExtractBoundary(LargeSheet(), options);
+  }),
+    0.1);
+}
+
+TEST(Progress, OfTrimmingIsNotSilent)
+{
+  EXPECT_LT(LargestSilence([&](const Progress& progress) {
+    Mesh mesh = LargeSheet();
+    Rings rings;
+    rings.Vertices = { 0, Width, Height * (Width + 1) };
+    rings.Offsets.push_back(3);
+    TrimOptions options;
+    options.Monitor = progress;
+    Trim(mesh, rings, options);
+  }),
+    0.25);
+}
+
+TEST(Progress, OfFillingOneLargeHoleIsNotSilent)
+{
+  EXPECT_LT(LargestSilence([&](const Progress& progress) {
+    const Mesh& mesh = LargeSheet();
+    std::vector<double> coordinates;
+    for (const Point2& p : mesh.Points)
+    {
+      coordinates.insert(coordinates.end(), { p.X, p.Y, 0.1 * p.X * p.Y });
+    }
+    PointView points;
+    points.Double = coordinates.data();
+    points.Count = mesh.NumberOfPoints();
+    FillOptions options;
+    options.Spacing = 0.02;
+    options.Monitor = progress;
+    const FillResult result = FillHoles(mesh, points, FindHoles(mesh), options);
+    EXPECT_GT(result.NumberOfPoints(), 250000);
+  }),
+    0.1);
+}
+
+TEST(Progress, OfTriangulatingPointsThatAreSlowIsNotSilent)
+{
+  // One fan of a circle's points, and comparisons that take integers of any length.
+  std::mt19937_64 random(3);
+  testing_points::Cloud circle, range;
+  for (int i = 0; i < 100000; ++i)
+  {
+    const double angle = 6.283185307179586 * testing_points::Uniform(random);
+    circle.Add(std::cos(angle), std::sin(angle));
+  }
+  for (int i = 0; i < 1500; ++i)
+  {
+    const auto coordinate = [&]() {
+      return std::ldexp(testing_points::Uniform(random), static_cast<int>(random() % 2000) - 1000);
+    };
+    const double x = coordinate();
+    range.Add(x, coordinate());
+  }
+  for (const testing_points::Cloud* cloud : { &circle, &range })
+  {
+    for (const SearchStrategy strategy :
+      { SearchStrategy::VoxelTraversal, SearchStrategy::Compactness })
+    {
+      testing_time::Silence silence;
+      DelaunayOptions options;
+      options.Strategy = strategy;
+      options.Monitor = silence.Monitor();
+      Triangulate(cloud->View(), options);
+      EXPECT_LT(silence.Longest, 0.4) << (cloud == &circle ? "circle" : "range");
+    }
+  }
+}
+
+TEST(Progress, OfTriangulatingPointsOnFewPlacesIsNotSilent)
+{
+  std::mt19937_64 random(4);
+  testing_points::Cloud four, crowds;
+  for (int i = 0; i < 4000000; ++i)
+  {
+    four.Add(
+      1000.0 * static_cast<double>(random() % 2), 1000.0 * static_cast<double>(random() % 2));
+    if (i % 10 == 0)
+    {
+      crowds.Add(testing_points::Uniform(random), testing_points::Uniform(random));
+    }
+    else
+    {
+      crowds.Add(0.5 + 1e-6 * static_cast<double>(random() % 1000), 0.5);
+    }
+  }
+  for (const testing_points::Cloud* cloud : { &four, &crowds })
+  {
+    for (const LatticeMode mode : { LatticeMode::Automatic, LatticeMode::Off })
+    {
+      testing_time::Silence silence;
+      DelaunayOptions options;
+      options.UseLattice = mode;
+      options.Monitor = silence.Monitor();
+      const Triangulation result = Triangulate(cloud->View(), options);
+      EXPECT_LT(silence.Longest, 0.1) << (cloud == &four ? "four" : "crowds");
+      EXPECT_GT(result.NumberOfDuplicates, 3500000);
+    }
+  }
+}
+
+TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
+{
+  // All edges are borders, and each triangle is a ring, in no order.
+  constexpr Index side = 800;
+  std::vector<Index> order(side * side);
+  std::iota(order.begin(), order.end(), 0);
+  std::mt19937 random(5);
+  std::shuffle(order.begin(), order.end(), random);
+  std::vector<double> coordinates;
+  for (const Index i : order)
+  {
+    const double x = i % side, y = i / side;
+    coordinates.insert(coordinates.end(), { x, y, 0.0, x + 0.8, y, 0.0, x, y + 0.8, 0.0 });
+  }
+  std::vector<Index> corners(coordinates.size() / 3);
+  std::iota(corners.begin(), corners.end(), 0);
+  TriangleList list;
+  list.Corners = corners.data();
+  list.Count = side * side;
+  list.Points.Double = coordinates.data();
+  list.Points.Count = 3 * list.Count;
+
+  testing_time::Silence extracting;
+  ExtractOptions options;
+  options.Monitor = extracting.Monitor();
+  TrimmedList trimmed;
+  ExtractedBoundary boundary;
+  EXPECT_TRUE(QuickExtract(list, options, trimmed, boundary));
+  EXPECT_EQ(boundary.Vertices.Count(), side * side);
+  EXPECT_LT(extracting.Longest, 0.12);
+
+  testing_time::Silence trimming;
+  const std::vector<Point2> points{ { -1.0, -1.0 }, { 500.5, -1.0 }, { 300.5, 700.5 } };
+  Rings rings;
+  rings.Vertices = { 0, 1, 2 };
+  rings.Offsets.push_back(3);
+  EXPECT_TRUE(QuickTrim(list, points, rings, true, 1, trimming.Monitor(), trimmed));
+  EXPECT_LT(trimming.Longest, 0.12);
+}
+
+TEST(Progress, OfConstraintsThatLieOnEachOtherIsNotSilent)
+{
+  std::mt19937_64 random(6);
+  testing_points::Cloud cloud, ends;
+  ConstraintLines lines;
+  for (int i = 0; i < 2000; ++i)
+  {
+    cloud.Add(testing_points::Uniform(random), testing_points::Uniform(random));
+    for (int end = 0; end < 2; ++end)
+    {
+      ends.Add(testing_points::Uniform(random), 0.5);
+      lines.Vertices.push_back(static_cast<Index>(lines.Vertices.size()));
+    }
+    lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
+    lines.IsClosed.push_back(0);
+    lines.Cells.push_back(i);
+  }
+  lines.Points = ends.View();
+  testing_time::Silence silence;
+  DelaunayOptions options;
+  options.Monitor = silence.Monitor();
+  EXPECT_EQ(TriangulateConstrained(cloud.View(), lines, options).NumberOfCrossings, 0);
+  EXPECT_LT(silence.Longest, 0.07);
+}

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Base/Threads.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+using namespace elevation;
+
+namespace
+{
+void WorkFor(double milliseconds)
+{
+  const RoundClock::time_point begin = RoundClock::now();
+  while (RoundClock::now() - begin < std::chrono::duration<double, std::milli>(milliseconds))
+  {
+  }
+}
+} // namespace
+
+TEST(Parallel, DoesEachPieceOnceAndReportsFromTheCaller)
+{
+  for (const int threads : { 1, 2, 4 })
+  {
+    for (const Index count : { 0, 1, 2, 37 })
+    {
+      std::vector<std::atomic<int>> times(count);
+      double last = 0.0;
+      int reports = 0;
+      const std::thread::id caller = std::this_thread::get_id();
+      const Progress progress = [&](double fraction) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        EXPECT_GE(fraction, last);
+        EXPECT_LE(fraction, 1.0);
+        last = fraction;
+        ++reports;
+        return true;
+      };
+      ForEachPiece(count, threads, progress, [&](Index i) {
+        WorkFor(4.0);
+        ++times[i];
+      });
+      for (const std::atomic<int>& each : times)
+      {
+        EXPECT_EQ(each, 1);
+      }
+      EXPECT_GE(reports, count < 37 ? 0 : 2) << threads << " threads";
+    }
+  }
+}
+
+TEST(Parallel, ThrowsWhatTheFirstPieceThatFailedHasThrown)
+{
+  for (const int threads : { 1, 2, 4 })
+  {
+    for (int i = 0; i < 50; ++i)
+    {
+      try
+      {
+        ForEachPiece(1000, threads, Progress(), [&](Index piece) {
+          if (piece == 20)
+          {
+            WorkFor(0.1); // later ones fail first
+          }
+          if (piece >= 20)
+          {
+            throw std::runtime_error(std::to_string(piece));
+          }
+        });
+        FAIL() << "nothing was thrown";
+      }
+      catch (const std::runtime_error& error)
+      {
+        EXPECT_EQ(error.what(), std::string("20")) << threads << " threads";
+      }
+    }
+  }
+}
+
+TEST(Parallel, StopsBetweenRounds)
+{
+  for (const int threads : { 1, 2, 4 })
+  {
+    std::atomic<int> done{ 0 };
+    int reports = 0;
+    EXPECT_THROW(ForEachPiece(
+                   1000, threads, [&](double) { return ++reports < 3; },
+                   [&](Index) {
+                     WorkFor(1.0);
+                     ++done;
+                   }),
+      Aborted);
+    EXPECT_GT(done, 0);
+    EXPECT_LT(done, 500);
+  }
+}
+
+TEST(Parallel, GoesOnInRoundsUntilNothingIsLeft)
+{
+  for (const int threads : { 1, 2, 4 })
+  {
+    std::vector<int> left(threads, 0);
+    for (int i = 0; i < threads; ++i)
+    {
+      left[i] = 3 + i;
+    }
+    int rounds = 0;
+    const Progress count = [&](double) {
+      ++rounds;
+      return true;
+    };
+    std::atomic<int> calls{ 0 };
+    InRounds(
+      threads, count, [] { return 0.5; },
+      [&](Index thread, const RoundClock::time_point&) {
+        ++calls;
+        left[thread] = std::max(left[thread] - 1, 0);
+        return left[thread] > 0;
+      });
+    const int used = std::min(threads, ResolveNumberOfThreads(0));
+    EXPECT_EQ(rounds, 2 + used);
+    EXPECT_EQ(calls, rounds * used);
+    for (int i = 0; i < used; ++i)
+    {
+      EXPECT_EQ(left[i], 0);
+    }
+  }
+}
