@@ -7,7 +7,7 @@
 #ifndef Competitor_h
 #define Competitor_h
 
-#include "Kernel/Base/Points.h"
+#include "Kernel/Base/Memory.h"
 
 #include <cstddef>
 #include <memory>
