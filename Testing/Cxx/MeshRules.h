@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The rules of Kernel/Validate.h, asked of the output of a filter.
+ * The rules of Kernel/Mesh/Validate.h, asked of the output of a filter.
  */
 #ifndef MeshRules_h
 #define MeshRules_h
