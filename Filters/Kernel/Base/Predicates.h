@@ -115,7 +115,7 @@ inline Sign InCircle(const Point2& a, const Point2& b, const Point2& c, const Po
  * Where the line through a and b crosses the line through c and d, each coordinate rounded to the
  * nearest double (below 1e-307 to one of the two nearest). So it does not depend on the order of
  * the lines or of their ends, is exact where it can be, and along a segment the crossings come in
- * their true order, or are equal. The lines must not be parallel. Some 8 microseconds.
+ * their true order, or are equal. The lines must not be parallel.
  */
 Point2 RoundedCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2& d);
 

@@ -59,8 +59,8 @@ inline void ReportStep(
 }
 
 /**
- * Reports in a loop of which single steps may take long: at one step in a thousand, and at one in
- * so many of all things that the steps look at.
+ * Reports in a loop whose steps differ much in work: once in a thousand steps, and once in some ten
+ * thousand pieces of work within them.
  */
 class WorkReporter
 {
@@ -130,8 +130,8 @@ void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
 }
 
 /**
- * Calls work(begin, end) for one stretch of [0, count) after another, and reports between them.
- * Inside, a tight loop.
+ * Calls work(begin, end) for one stretch of [0, count) after another, and reports between them, so
+ * that the loop inside stays tight.
  */
 template <typename Work>
 void ForEachStretch(Index count, const Progress& progress, Work&& work)
