@@ -124,9 +124,8 @@ public:
   /**
    * Which of the two searches of the published method finds the third point of an edge: a
    * SearchStrategyType, to which other numbers are clamped. Both give the same triangles, byte for
-   * byte; what differs is the time. COMPACTNESS takes 1.3 to 2.5 microseconds a point where
-   * VOXEL_TRAVERSAL (default) takes 0.2 to 0.3, and is there to compare the two. On a lattice it
-   * plays no part.
+   * byte; what differs is the time. COMPACTNESS takes several times as long as VOXEL_TRAVERSAL
+   * (default), and is there to compare the two. On a lattice it plays no part.
    */
   vtkSetClampMacro(SearchStrategy, int, VOXEL_TRAVERSAL, COMPACTNESS);
   vtkGetMacro(SearchStrategy, int);
