@@ -29,6 +29,12 @@
 namespace elevation
 {
 
+namespace
+{
+/** Copied at a time, to report between. */
+constexpr vtkIdType TuplesAtOnce = 65536;
+} // namespace
+
 PointsOfDataSet ViewPoints(vtkPointSet* input)
 {
   PointsOfDataSet points;
@@ -431,11 +437,38 @@ bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array)
     array == data->GetAbstractAttribute(vtkDataSetAttributes::PEDIGREEIDS);
 }
 
+vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew, int type,
+  const Progress& progress, const std::function<void(vtkIdType i, double* xyz)>& place)
+{
+  if (numberOfNew == 0)
+  {
+    return input;
+  }
+  const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
+  const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(type);
+  points->SetNumberOfPoints(count + numberOfNew);
+  for (vtkIdType i = 0; i < count; i += TuplesAtOnce)
+  {
+    ReportStep(progress, static_cast<std::size_t>(i), all);
+    points->InsertPoints(i, std::min(TuplesAtOnce, count - i), i, input);
+  }
+  for (vtkIdType i = 0; i < numberOfNew; ++i)
+  {
+    ReportStep(progress, static_cast<std::size_t>(count + i), all);
+    double xyz[3];
+    place(i, xyz);
+    points->SetPoint(count + i, xyz);
+  }
+  return points;
+}
+
 namespace
 {
-/** The tuples of @a input, and behind them as many as are missing, without a value. */
+/** The tuples of @a input, and behind them new ones without a value. */
 vtkSmartPointer<vtkAbstractArray> Extend(
-  vtkAbstractArray* input, vtkIdType more, bool areIds, const Progress& progress)
+  vtkAbstractArray* input, vtkIdType numberOfNew, bool areIds, const Progress& progress)
 {
   const vtkIdType count = input->GetNumberOfTuples();
   auto output = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(input->GetDataType()));
@@ -447,17 +480,16 @@ vtkSmartPointer<vtkAbstractArray> Extend(
   {
     numbers->SetLookupTable(vtkArrayDownCast<vtkDataArray>(input)->GetLookupTable());
   }
-  output->SetNumberOfTuples(count + more);
-  if (output->GetNumberOfTuples() != count + more)
+  output->SetNumberOfTuples(count + numberOfNew);
+  if (output->GetNumberOfTuples() != count + numberOfNew)
   {
     throw std::bad_alloc();
   }
-  const std::size_t all = static_cast<std::size_t>(count + more);
-  constexpr vtkIdType block = 65536; // at a time, to report between
-  for (vtkIdType i = 0; i < count; i += block)
+  const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
+  for (vtkIdType i = 0; i < count; i += TuplesAtOnce)
   {
     ReportStep(progress, static_cast<std::size_t>(i), all);
-    output->InsertTuples(i, std::min(block, count - i), i, input);
+    output->InsertTuples(i, std::min(TuplesAtOnce, count - i), i, input);
   }
   if (vtkArrayDownCast<vtkDataArray>(output.Get()))
   {
@@ -465,7 +497,7 @@ vtkSmartPointer<vtkAbstractArray> Extend(
     const vtkVariant value =
       IsFloatingPoint(output) ? vtkVariant(vtkMath::Nan()) : vtkVariant(areIds ? -1 : 0);
     const vtkIdType components = output->GetNumberOfComponents();
-    for (vtkIdType i = components * count; i < components * (count + more); ++i)
+    for (vtkIdType i = components * count; i < components * (count + numberOfNew); ++i)
     {
       ReportStep(progress, static_cast<std::size_t>(i / components), all);
       output->SetVariantValue(i, value);
@@ -473,13 +505,47 @@ vtkSmartPointer<vtkAbstractArray> Extend(
   }
   return output;
 }
+
+/** The new tuples of an array, behind those of the input. */
+void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNormals,
+  const Progress& progress, vtkAbstractArray* output)
+{
+  vtkDataArray* const numbers =
+    IsFloatingPoint(input) ? vtkArrayDownCast<vtkDataArray>(output) : nullptr;
+  if (numbers ? !values.Interpolated : !values.Nearest)
+  {
+    return;
+  }
+  const vtkIdType count = input->GetNumberOfTuples();
+  const vtkIdType numberOfNew = output->GetNumberOfTuples() - count;
+  for (vtkIdType i = values.First; i < numberOfNew; ++i)
+  {
+    ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(numberOfNew));
+    if (!numbers)
+    {
+      output->SetTuple(count + i, values.Nearest(i), input);
+      continue;
+    }
+    double squares = 0.0;
+    for (int c = 0; c < numbers->GetNumberOfComponents(); ++c)
+    {
+      const double value = values.Interpolated(i, c);
+      numbers->SetComponent(count + i, c, value);
+      squares += value * value;
+    }
+    for (int c = 0; areNormals && squares > 0.0 && c < 3; ++c)
+    {
+      numbers->SetComponent(count + i, c, numbers->GetComponent(count + i, c) / std::sqrt(squares));
+    }
+  }
+}
 } // namespace
 
-void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttributes* output,
+void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
   const Progress& progress,
-  const std::function<void(vtkAbstractArray*, vtkAbstractArray*, const Progress&)>& fill)
+  const std::function<NewValues(vtkAbstractArray*, vtkAbstractArray*, const Progress&)>& valuesOf)
 {
-  if (more == 0)
+  if (numberOfNew == 0)
   {
     output->PassData(input);
     return;
@@ -490,8 +556,13 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttribu
     const double count = input->GetNumberOfArrays();
     const Progress ofArray = Part(progress, i / count, (i + 1) / count);
     const vtkSmartPointer<vtkAbstractArray> after =
-      Extend(before, more, IsIdArray(input, before), Part(ofArray, 0.0, 0.5));
-    fill(before, after, Part(ofArray, 0.5, 1.0));
+      Extend(before, numberOfNew, IsIdArray(input, before), Part(ofArray, 0.0, 0.5));
+    if (valuesOf && !IsGhostArray(before))
+    {
+      const NewValues values = valuesOf(before, after, Part(ofArray, 0.5, 0.7));
+      const bool areNormals = before == input->GetAbstractAttribute(vtkDataSetAttributes::NORMALS);
+      SetNewTuples(before, values, areNormals, Part(ofArray, 0.7, 1.0), after);
+    }
     const int index = output->AddArray(after);
     for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
     {

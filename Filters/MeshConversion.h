@@ -7,9 +7,9 @@
 #ifndef MeshConversion_h
 #define MeshConversion_h
 
+#include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Trim/Trim.h"
-#include "Kernel/Base/Base.h"
 
 #include "vtkSmartPointer.h"
 
@@ -21,6 +21,7 @@ class vtkCellArray;
 class vtkDataArray;
 class vtkDataSetAttributes;
 class vtkPointSet;
+class vtkPoints;
 class vtkPolyData;
 
 namespace elevation
@@ -112,13 +113,34 @@ bool IsGhostArray(vtkAbstractArray* array);
 bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array);
 
 /**
- * All arrays of the input, extended by @a more tuples (NaN, 0 or nothing; for ids NaN, -1, the
- * largest number of an unsigned type, or nothing), which fill(input array, output array, progress)
- * sets. The input's own arrays when there are no more.
+ * The points of an input, or none, and behind them new ones; place(i, xyz) tells where new point i
+ * lies.
+ * @param[in] type  VTK_FLOAT or VTK_DOUBLE, to which all points are converted
+ * @return the input's own points when there are no new ones
  */
-void PassExtended(vtkDataSetAttributes* input, vtkIdType more, vtkDataSetAttributes* output,
+vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew, int type,
+  const Progress& progress, const std::function<void(vtkIdType i, double* xyz)>& place);
+
+/** What new points have in one array. A function that is empty leaves them without a value. */
+struct NewValues
+{
+  /** In an array of float or double: component c of new point i. All before i are set by then. */
+  std::function<double(vtkIdType i, int c)> Interpolated;
+  /** In any other array: the point of the input whose value new point i has as well. */
+  std::function<vtkIdType(vtkIdType i)> Nearest;
+  /** The first new point to be set; those before it are left alone. */
+  vtkIdType First = 0;
+};
+
+/**
+ * All arrays of the input, extended by new tuples. These have the values that valuesOf(input array,
+ * output array, progress) tells, normals at unit length; or else no value: NaN, 0 or nothing, for
+ * ids NaN, -1, the largest number of an unsigned type, or nothing. Flags of ghosts are 0. Global
+ * ids are none in the output, as values repeat. The input's own arrays when there are no new tuples.
+ */
+void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
   const Progress& progress,
-  const std::function<void(vtkAbstractArray*, vtkAbstractArray*, const Progress&)>& fill);
+  const std::function<NewValues(vtkAbstractArray*, vtkAbstractArray*, const Progress&)>& valuesOf);
 
 } // namespace elevation
 

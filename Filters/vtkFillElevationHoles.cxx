@@ -95,75 +95,34 @@ std::vector<elevation::Values> AttributesOf(vtkPointData* pointData)
   return attributes;
 }
 
-/** The tuples of new points, whose components begin with the attribute @a first. */
-void SetInterpolated(const FillResult& patches, std::size_t first, bool unitLength,
-  vtkDataArray* values, const Progress& progress)
-{
-  const vtkIdType before = values->GetNumberOfTuples() - patches.NumberOfPoints();
-  const int components = values->GetNumberOfComponents();
-  for (Index i = 0; i < patches.NumberOfPoints(); ++i)
-  {
-    ReportStep(progress, i, patches.NumberOfPoints());
-    double squares = 0.0;
-    for (int c = 0; c < components; ++c)
-    {
-      const double value = patches.Attributes[first + c][i];
-      squares += value * value;
-    }
-    const double scale = unitLength && squares > 0.0 ? 1.0 / std::sqrt(squares) : 1.0;
-    for (int c = 0; c < components; ++c)
-    {
-      values->SetComponent(before + i, c, scale * patches.Attributes[first + c][i]);
-    }
-  }
-}
-
-void PassPointData(vtkPointData* input, const FillResult& patches, bool interpolate,
-  vtkPointData* output, const Progress& progress)
-{
-  std::size_t attribute = 0;
-  elevation::PassExtended(input, patches.NumberOfPoints(), output, progress,
-    [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
-      if (!interpolate || elevation::IsGhostArray(before) || elevation::IsIdArray(input, before))
-      {
-        return;
-      }
-      if (IsInterpolated(input, before))
-      {
-        SetInterpolated(patches, attribute, before == input->GetNormals(),
-          vtkArrayDownCast<vtkDataArray>(after), ofArray);
-        attribute += before->GetNumberOfComponents();
-        return;
-      }
-      const vtkIdType first = before->GetNumberOfTuples();
-      for (Index i = 0; i < patches.NumberOfPoints(); ++i)
-      {
-        ReportStep(ofArray, i, patches.NumberOfPoints());
-        after->SetTuple(first + i, patches.NearestBoundaryPoints[i], before);
-      }
-    });
-}
-
 /** Whether the points of the output are float: what new points must be rounded to. */
 bool HasFloatPoints(vtkPolyData* input)
 {
   return input->GetPoints() && input->GetPoints()->GetDataType() == VTK_FLOAT;
 }
 
-vtkSmartPointer<vtkPoints> AppendPoints(
-  vtkPolyData* input, const FillResult& patches, const Progress& progress)
+/** The points of output 0 with their data: those of the input, and behind them new ones. */
+void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
+  const Progress& progress, vtkPolyData* output)
 {
-  const vtkIdType count = input->GetNumberOfPoints();
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataType(HasFloatPoints(input) ? VTK_FLOAT : VTK_DOUBLE);
-  points->SetNumberOfPoints(count + patches.NumberOfPoints());
-  points->InsertPoints(0, count, 0, input->GetPoints());
-  for (Index i = 0; i < patches.NumberOfPoints(); ++i)
-  {
-    ReportStep(progress, i, patches.NumberOfPoints());
-    points->SetPoint(count + i, patches.Points.data() + 3 * static_cast<std::size_t>(i));
-  }
-  return points;
+  output->SetPoints(elevation::AppendPoints(input->GetPoints(), patches.NumberOfPoints(),
+    HasFloatPoints(input) ? VTK_FLOAT : VTK_DOUBLE, Part(progress, 0.0, 0.3),
+    [&](vtkIdType i, double* xyz) { std::copy_n(patches.Points.data() + 3 * i, 3, xyz); }));
+  vtkPointData* pointData = input->GetPointData();
+  std::size_t next = 0; // of the attributes, which are in the order of the arrays
+  elevation::PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(),
+    Part(progress, 0.3, 1.0), [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
+      elevation::NewValues values;
+      if (!interpolate || elevation::IsIdArray(pointData, array))
+      {
+        return values;
+      }
+      values.Interpolated = [&patches, first = next](
+                              vtkIdType i, int c) { return patches.Attributes[first + c][i]; };
+      values.Nearest = [&patches](vtkIdType i) { return patches.NearestBoundaryPoints[i]; };
+      next += IsInterpolated(pointData, array) ? array->GetNumberOfComponents() : 0;
+      return values;
+    });
 }
 
 /** Output 0. */
@@ -171,11 +130,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   const Progress& progress, vtkPolyData* output)
 {
   Report(progress, 0.0);
-  output->SetPoints(patches.NumberOfPoints() > 0
-      ? AppendPoints(input, patches, Part(progress, 0.0, 0.2)).Get()
-      : input->GetPoints());
-  PassPointData(
-    input->GetPointData(), patches, interpolate, output->GetPointData(), Part(progress, 0.2, 0.6));
+  PassPoints(input, patches, interpolate, Part(progress, 0.0, 0.6), output);
   vtkNew<vtkUnsignedCharArray> isNew;
   isNew->SetName("FilledPoint");
   isNew->SetNumberOfTuples(output->GetNumberOfPoints());
@@ -196,7 +151,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   output->SetPolys(elevation::ToCellArray(std::move(triangles)));
 
   elevation::PassExtended(input->GetCellData(), patches.NumberOfTriangles(), output->GetCellData(),
-    Part(progress, 0.7, 0.9), [](vtkAbstractArray*, vtkAbstractArray*, const Progress&) {});
+    Part(progress, 0.7, 0.9), nullptr);
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
   holeIds->SetName("HoleId");
@@ -266,10 +221,14 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
 }
 
 /**
- * One warning about all that was not filled though the limits allow it; empty when there is none.
+ * One warning about all that was not filled though the limits allow it; empty when all was.
  */
-std::string Complaint(const Holes& holes, const FillResult& patches)
+std::string Complaint(const Mesh& mesh, const Holes& holes, const FillResult& patches)
 {
+  if (mesh.NumberOfTriangles() == 0)
+  {
+    return "The input has no triangles, so there is nothing to fill.";
+  }
   constexpr int listed = 5;
   std::ostringstream text;
   int failed = 0;
@@ -356,11 +315,7 @@ int vtkFillElevationHoles::RequestData(
       elevation::AddCount(output->GetFieldData(), "NumberOfHoles", holes.Count());
       elevation::AddCount(output->GetFieldData(), "NumberOfFilledHoles", filled);
     }
-    if (mesh.NumberOfTriangles() == 0)
-    {
-      vtkWarningMacro(<< "The input has no triangles, so there is nothing to fill.");
-    }
-    const std::string complaint = Complaint(holes, patches);
+    const std::string complaint = Complaint(mesh, holes, patches);
     if (!complaint.empty())
     {
       vtkWarningMacro(<< complaint);

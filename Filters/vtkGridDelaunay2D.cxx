@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkGridDelaunay2D.h"
 
-#include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Base/Base.h"
+#include "Kernel/Triangulate/Triangulate.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
 
@@ -54,9 +54,26 @@ ConstraintLines ToLines(
   return lines;
 }
 
-/** The input's points and behind them those added; float as long as that is exact. */
-vtkSmartPointer<vtkPoints> AppendPoints(
-  vtkPoints* input, const std::vector<AddedPoint>& added, const Progress& progress)
+/** Triangulates points, with the lines of a source when there is one. */
+elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
+  const elevation::PointView& points, elevation::DelaunayOptions options, const Progress& progress)
+{
+  if (!source)
+  {
+    options.Monitor = progress;
+    elevation::ConstrainedTriangulation unconstrained;
+    unconstrained.Result = elevation::Triangulate(points, options);
+    return unconstrained;
+  }
+  elevation::CheckPointArrays(source, "The constraints'");
+  const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
+  const ConstraintLines lines = ToLines(source, own, Part(progress, 0.0, 0.02));
+  options.Monitor = Part(progress, 0.02, 0.95);
+  return elevation::TriangulateConstrained(points, lines, options);
+}
+
+/** The type of all points: float as long as that is exact. */
+int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
 {
   bool isFloat = !input || input->GetDataType() == VTK_FLOAT;
   for (const AddedPoint& point : added)
@@ -67,88 +84,76 @@ vtkSmartPointer<vtkPoints> AppendPoints(
         static_cast<double>(static_cast<float>(value)) == value;
     }
   }
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataType(isFloat ? VTK_FLOAT : VTK_DOUBLE);
-  const vtkIdType count = input ? input->GetNumberOfPoints() : 0;
-  points->SetNumberOfPoints(count + static_cast<vtkIdType>(added.size()));
-  constexpr vtkIdType block = 65536; // at a time, to report between
-  for (vtkIdType i = 0; i < count; i += block)
-  {
-    ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(count));
-    points->InsertPoints(i, std::min(block, count - i), i, input);
-  }
-  for (std::size_t i = 0; i < added.size(); ++i)
-  {
-    const AddedPoint& point = added[i];
-    points->SetPoint(
-      count + static_cast<vtkIdType>(i), point.Position.X, point.Position.Y, point.Elevation);
-  }
-  return points;
+  return isFloat ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-/** The input's arrays, with values at the added points. */
-void PassPointData(vtkPointData* input, vtkPointData* source, const std::vector<AddedPoint>& added,
-  const Progress& progress, vtkPointData* output)
+/** The array of the constraints that goes with one of the input; nullptr: none. */
+vtkAbstractArray* FindGiven(vtkPointData* source, vtkAbstractArray* array)
 {
-  elevation::PassExtended(input, static_cast<vtkIdType>(added.size()), output, progress,
+  vtkAbstractArray* given = array->GetName() ? source->GetAbstractArray(array->GetName()) : nullptr;
+  if (!given || given->GetNumberOfComponents() != array->GetNumberOfComponents())
+  {
+    return nullptr;
+  }
+  const bool canConvert =
+    elevation::IsFloatingPoint(array) && vtkArrayDownCast<vtkDataArray>(given);
+  return given->GetDataType() == array->GetDataType() || canConvert ? given : nullptr;
+}
+
+/** Copies the values of points of the constraints. @return how many points these are */
+vtkIdType CopyGiven(vtkAbstractArray* given, const std::vector<AddedPoint>& added,
+  const Progress& progress, vtkAbstractArray* values)
+{
+  const vtkIdType count = static_cast<vtkIdType>(added.size());
+  const vtkIdType first = values->GetNumberOfTuples() - count;
+  const bool isSameType = given && given->GetDataType() == values->GetDataType();
+  auto* const from = isSameType ? nullptr : vtkArrayDownCast<vtkDataArray>(given);
+  auto* const to = vtkArrayDownCast<vtkDataArray>(values);
+  vtkIdType i = 0; // points of the constraints come first, then crossings
+  for (; i < count && added[i].Source != elevation::None; ++i)
+  {
+    ReportStep(progress, static_cast<std::size_t>(i), added.size());
+    if (isSameType)
+    {
+      values->SetTuple(first + i, added[i].Source, given);
+    }
+    for (int c = 0; from && c < from->GetNumberOfComponents(); ++c)
+    {
+      to->SetComponent(first + i, c, from->GetComponent(added[i].Source, c));
+    }
+  }
+  return i;
+}
+
+/** The input's points and arrays, and behind them the added points with their values. */
+void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<AddedPoint>& added,
+  const Progress& progress, vtkPolyData* output)
+{
+  const vtkIdType count = static_cast<vtkIdType>(added.size());
+  output->SetPoints(
+    elevation::AppendPoints(input->GetPoints(), count, TypeOfPoints(input->GetPoints(), added),
+      Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+        xyz[0] = added[i].Position.X;
+        xyz[1] = added[i].Position.Y;
+        xyz[2] = added[i].Elevation;
+      }));
+  elevation::PassExtended(input->GetPointData(), count, output->GetPointData(),
+    Part(progress, 0.4, 1.0),
     [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
-      if (elevation::IsGhostArray(before))
-      {
-        return;
-      }
-      auto* numbers =
-        elevation::IsFloatingPoint(before) ? vtkArrayDownCast<vtkDataArray>(after) : nullptr;
-      vtkAbstractArray* given =
-        before->GetName() ? source->GetAbstractArray(before->GetName()) : nullptr;
-      auto* givenNumbers = vtkArrayDownCast<vtkDataArray>(given);
-      if (given &&
-        (given->GetNumberOfComponents() != before->GetNumberOfComponents() ||
-          (given->GetDataType() != before->GetDataType() && !(numbers && givenNumbers))))
-      {
-        given = nullptr;
-      }
-      const vtkIdType count = before->GetNumberOfTuples();
-      for (std::size_t i = 0; i < added.size(); ++i)
-      {
-        ReportStep(ofArray, i, added.size());
-        const AddedPoint& point = added[i];
-        const vtkIdType id = count + static_cast<vtkIdType>(i);
-        if (point.Source != elevation::None)
-        {
-          if (given && given->GetDataType() == after->GetDataType())
-          {
-            after->SetTuple(id, point.Source, given);
-          }
-          else if (given)
-          {
-            for (int c = 0; c < numbers->GetNumberOfComponents(); ++c)
-            {
-              numbers->SetComponent(id, c, givenNumbers->GetComponent(point.Source, c));
-            }
-          }
-        }
-        else if (numbers)
-        {
-          double squares = 0.0;
-          for (int c = 0; c < numbers->GetNumberOfComponents(); ++c)
-          {
-            const double from = numbers->GetComponent(point.From, c);
-            const double to = numbers->GetComponent(point.To, c);
-            const double value = from + point.Fraction * (to - from);
-            numbers->SetComponent(id, c, value);
-            squares += value * value;
-          }
-          for (int c = 0; before == input->GetNormals() && squares > 0.0 && c < 3; ++c)
-          {
-            numbers->SetComponent(id, c, numbers->GetComponent(id, c) / std::sqrt(squares));
-          }
-        }
-      }
+      elevation::NewValues values;
+      values.First = CopyGiven(FindGiven(source->GetPointData(), before), added, ofArray, after);
+      values.Interpolated = [&added, numbers = vtkArrayDownCast<vtkDataArray>(after)](
+                              vtkIdType i, int c) {
+        const double from = numbers->GetComponent(added[i].From, c);
+        const double to = numbers->GetComponent(added[i].To, c);
+        return from + added[i].Fraction * (to - from);
+      };
+      return values;
     });
 }
 
-void AddUnusedPoints(const elevation::Triangulation& triangulation,
-  const elevation::Progress& progress, vtkFieldData* fieldData)
+void AddUnusedPoints(
+  const elevation::Triangulation& triangulation, const Progress& progress, vtkFieldData* fieldData)
 {
   const std::size_t count = triangulation.UnusedPoints.size();
   vtkNew<vtkIdTypeArray> ids;
@@ -159,26 +164,40 @@ void AddUnusedPoints(const elevation::Triangulation& triangulation,
   reasons->SetNumberOfValues(static_cast<vtkIdType>(count));
   for (std::size_t i = 0; i < count; ++i)
   {
-    elevation::ReportStep(progress, i, count, 1 << 18);
+    ReportStep(progress, i, count, 1 << 18);
     const vtkIdType at = static_cast<vtkIdType>(i);
     ids->SetValue(at, triangulation.UnusedPoints[i]);
     reasons->SetValue(at, static_cast<unsigned char>(triangulation.UnusedReasons[i]));
   }
   fieldData->AddArray(ids);
   fieldData->AddArray(reasons);
-  elevation::AddCount(fieldData, "NumberOfDuplicatePoints", triangulation.NumberOfDuplicates);
-  elevation::AddCount(fieldData, "NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
 }
 
-void AddLattice(const elevation::Lattice& lattice, vtkFieldData* fieldData)
+/** What the field data tell of points, lines and lattice. */
+void AddReport(const elevation::ConstrainedTriangulation& constrained, const Progress& progress,
+  vtkFieldData* fieldData)
 {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName("Lattice");
-  array->SetNumberOfComponents(6);
-  const double values[] = { lattice.Origin.X, lattice.Origin.Y, lattice.StepU.X, lattice.StepU.Y,
-    lattice.StepV.X, lattice.StepV.Y };
-  array->InsertNextTuple(values);
-  fieldData->AddArray(array);
+  const elevation::Triangulation& triangulation = constrained.Result;
+  AddUnusedPoints(triangulation, progress, fieldData);
+  const auto add = [fieldData](const char* name, auto count) {
+    elevation::AddCount(fieldData, name, static_cast<vtkIdType>(count));
+  };
+  add("NumberOfDuplicatePoints", triangulation.NumberOfDuplicates);
+  add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
+  add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
+  add("NumberOfAddedPoints", constrained.Added.size());
+  fieldData->RemoveArray("Lattice"); // an input's, of other points
+  if (triangulation.LatticeFound)
+  {
+    const elevation::Lattice& lattice = triangulation.Steps;
+    vtkNew<vtkDoubleArray> array;
+    array->SetName("Lattice");
+    array->SetNumberOfComponents(6);
+    const double values[] = { lattice.Origin.X, lattice.Origin.Y, lattice.StepU.X, lattice.StepU.Y,
+      lattice.StepV.X, lattice.StepV.Y };
+    array->InsertNextTuple(values);
+    fieldData->AddArray(array);
+  }
 }
 } // namespace
 
@@ -240,59 +259,26 @@ int vtkGridDelaunay2D::RequestData(
     elevation::Report(progress, 0.0);
     elevation::CheckPointArrays(input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
-    elevation::ConstrainedTriangulation constrained;
+    elevation::ConstrainedTriangulation constrained =
+      TriangulateWith(source, points.View, options, progress);
     elevation::Triangulation& triangulation = constrained.Result;
-    if (source)
-    {
-      elevation::CheckPointArrays(source, "The constraints'");
-      const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
-      const ConstraintLines lines = ToLines(source, own, Part(progress, 0.0, 0.02));
-      options.Monitor = Part(progress, 0.02, 0.95);
-      constrained = elevation::TriangulateConstrained(points.View, lines, options);
-    }
-    else
-    {
-      options.Monitor = progress;
-      triangulation = elevation::Triangulate(points.View, options);
-    }
-
     if (triangulation.NumberOfHullPoints == 0)
     {
       vtkWarningMacro(
         << "No triangle was made: the " << points.View.Count
         << " input points are fewer than three distinct finite points, or all on one line.");
     }
-    if (constrained.Added.empty())
-    {
-      output->SetPoints(input->GetPoints());
-      output->GetPointData()->PassData(input->GetPointData());
-    }
-    else
-    {
-      output->SetPoints(
-        AppendPoints(input->GetPoints(), constrained.Added, Part(progress, 0.95, 0.97)));
-      PassPointData(input->GetPointData(), source->GetPointData(), constrained.Added,
-        Part(progress, 0.97, 1.0), output->GetPointData());
-    }
-    const vtkIdType added = static_cast<vtkIdType>(constrained.Added.size());
-    const vtkIdType crossings = static_cast<vtkIdType>(constrained.NumberOfCrossings);
+    PassPoints(input, source, constrained.Added, Part(progress, 0.95, 1.0), output);
     output->GetFieldData()->PassData(input->GetFieldData());
-    AddUnusedPoints(triangulation, Part(progress, 1.0, 1.0), output->GetFieldData());
-    elevation::AddCount(output->GetFieldData(), "NumberOfConstraintCrossings", crossings);
-    elevation::AddCount(output->GetFieldData(), "NumberOfAddedPoints", added);
-    output->GetFieldData()->RemoveArray("Lattice"); // an input's, of other points
-    if (triangulation.LatticeFound)
-    {
-      AddLattice(triangulation.Steps, output->GetFieldData());
-    }
+    AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
     elevation::Report(progress, 1.0);
     // Only now, as an abort or an error leaves no counts.
     this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
     this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
-    this->NumberOfConstraintCrossings = crossings;
-    this->NumberOfAddedPoints = added;
+    this->NumberOfConstraintCrossings = static_cast<vtkIdType>(constrained.NumberOfCrossings);
+    this->NumberOfAddedPoints = static_cast<vtkIdType>(constrained.Added.size());
     this->LatticeFound = triangulation.LatticeFound;
   });
 }

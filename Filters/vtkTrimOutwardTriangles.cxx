@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTrimOutwardTriangles.h"
 
-#include "Kernel/Trim/Trim.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Trim/Trim.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
 
@@ -215,72 +215,37 @@ void PassPoints(vtkPolyData* input, const elevation::TrimmedList& list, const Pr
   vtkPolyData* output)
 {
   const std::vector<elevation::InsertedVertex>& inserted = list.Inserted;
-  const vtkIdType count = input->GetNumberOfPoints();
-  const vtkIdType more = static_cast<vtkIdType>(inserted.size());
-  if (more == 0)
-  {
-    output->SetPoints(input->GetPoints());
-  }
-  else
-  {
-    // In double precision, or the new points would leave the boundary.
-    vtkNew<vtkPoints> points;
-    points->SetDataType(VTK_DOUBLE);
-    points->SetNumberOfPoints(count + more);
-    points->InsertPoints(0, count, 0, input->GetPoints());
-    for (vtkIdType i = 0; i < more; ++i)
-    {
-      const elevation::InsertedVertex& vertex = inserted[i];
-      double z = 0.0;
+  const vtkIdType count = static_cast<vtkIdType>(inserted.size());
+  // In double precision, or the new points would leave the boundary.
+  output->SetPoints(elevation::AppendPoints(
+    input->GetPoints(), count, VTK_DOUBLE, Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+      xyz[0] = list.Places[i].X;
+      xyz[1] = list.Places[i].Y;
+      xyz[2] = 0.0;
       for (int k = 0; k < 3; ++k)
       {
-        z += vertex.Weights[k] * points->GetPoint(vertex.Corners[k])[2];
+        xyz[2] += inserted[i].Weights[k] * input->GetPoint(inserted[i].Corners[k])[2];
       }
-      const elevation::Point2& p = list.Places[i];
-      points->SetPoint(count + i, p.X, p.Y, z);
-    }
-    output->SetPoints(points);
-  }
-  vtkPointData* data = input->GetPointData();
-  elevation::PassExtended(data, more, output->GetPointData(), progress,
-    [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
-      if (elevation::IsGhostArray(before))
-      {
-        return;
-      }
-      auto* values =
-        elevation::IsFloatingPoint(before) ? vtkArrayDownCast<vtkDataArray>(after) : nullptr;
-      for (vtkIdType i = 0; i < more; ++i)
-      {
-        ReportStep(ofArray, static_cast<std::size_t>(i), static_cast<std::size_t>(more));
-        const elevation::InsertedVertex& vertex = inserted[i];
-        if (!values)
+    }));
+  elevation::PassExtended(input->GetPointData(), count, output->GetPointData(),
+    Part(progress, 0.4, 1.0), [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
+      elevation::NewValues values;
+      values.Interpolated = [&inserted, numbers = vtkArrayDownCast<vtkDataArray>(array)](
+                              vtkIdType i, int c) {
+        double value = 0.0;
+        for (int k = 0; k < 3; ++k)
         {
-          const int nearest =
-            static_cast<int>(std::max_element(vertex.Weights, vertex.Weights + 3) - vertex.Weights);
-          after->SetTuple(count + i, vertex.Corners[nearest], before);
-          continue;
+          // A corner beyond the edge that the point is on may be NaN.
+          const double weight = inserted[i].Weights[k];
+          value += weight > 0.0 ? weight * numbers->GetComponent(inserted[i].Corners[k], c) : 0.0;
         }
-        double squares = 0.0;
-        for (int c = 0; c < values->GetNumberOfComponents(); ++c)
-        {
-          double value = 0.0;
-          for (int k = 0; k < 3; ++k)
-          {
-            // A corner beyond the edge that the point is on may be NaN.
-            value += vertex.Weights[k] > 0.0
-              ? vertex.Weights[k] * values->GetComponent(vertex.Corners[k], c)
-              : 0.0;
-          }
-          values->SetComponent(count + i, c, value);
-          squares += value * value;
-        }
-        for (int c = 0; before == data->GetNormals() && squares > 0.0 && c < 3; ++c)
-        {
-          values->SetComponent(
-            count + i, c, values->GetComponent(count + i, c) / std::sqrt(squares));
-        }
-      }
+        return value;
+      };
+      values.Nearest = [&inserted](vtkIdType i) {
+        const double* const weights = inserted[i].Weights;
+        return inserted[i].Corners[std::max_element(weights, weights + 3) - weights];
+      };
+      return values;
     });
 }
 
