@@ -20,7 +20,10 @@ set(es_kernel_Lattice
 set(es_kernel_Triangulate
   BinGrid
   WideApexSearch
+  ApexSearch
+  Hull
   DivideAndConquer
+  GridGrowth
   LatticeGrowth
   Constrained
   Triangulate)
@@ -46,7 +49,7 @@ set(es_kernel_headers_Mesh
 set(es_kernel_headers_Lattice
   Lattice)
 set(es_kernel_headers_Triangulate
-  Options)
+  EdgeLimit Options WorkBudget)
 set(es_kernel_headers_Trim
   Trim)
 set(es_kernel_headers_Fill)

@@ -3,6 +3,8 @@
 #include "LatticeGrowth.h"
 
 #include "DivideAndConquer.h"
+#include "EdgeLimit.h"
+#include "WorkBudget.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Lattice/Lattice.h"
 
@@ -293,11 +295,6 @@ private:
 /** Work for each point before growing is given up, in nanoseconds or so. */
 constexpr std::int64_t WorkPerPoint = 1000;
 
-/** Thrown where it is. */
-struct CannotGrow
-{
-};
-
 /**
  * Grows the triangulation in strips of rows, several at the same time. A strip writes to its own
  * part of the triangles and of the fans' ends. What a triangle from below the strip would have told
@@ -314,6 +311,7 @@ public:
     , Metric(metric)
     , Options(options)
     , Count(nodes.NumberOfPoints())
+    , Limit(options.MaximumEdgeLength)
     , Lists(metric, nodes)
   {
     this->First.Recycle(std::move(nodes.Room));
@@ -321,9 +319,8 @@ public:
     const double perPoint = double(nodes.Columns) * nodes.Rows / this->Count;
     this->FirstHeight = 1.3 * std::sqrt(std::sqrt(area) * perPoint);
     this->UseCells = this->IsProved({ 1, 0 }, { 1, 1 });
-    if (options.MaximumEdgeLength > 0.0)
+    if (this->Limit.IsSet())
     {
-      this->LimitSquared = options.MaximumEdgeLength * options.MaximumEdgeLength;
       const Point2 &u = nodes.Steps.StepU, &v = nodes.Steps.StepV;
       // Otherwise some diagonal of a cell may be too long.
       this->UseCells = this->UseCells &&
@@ -392,13 +389,13 @@ private:
     Index* end = triangles.data();
     for (const Strip& strip : strips)
     {
-      if (this->LimitSquared == Infinity && strip.Begin != end)
+      if (!this->Limit.IsSet() && strip.Begin != end)
       {
         ThrowOpenFan();
       }
       end = strip.Begin == end ? strip.Next : std::copy(strip.Begin, strip.Next, end);
     }
-    if (this->LimitSquared == Infinity && end != triangles.end())
+    if (!this->Limit.IsSet() && end != triangles.end())
     {
       ThrowOpenFan();
     }
@@ -951,15 +948,7 @@ private:
   /** Whether the limit on edges leaves in a triangle of points. */
   bool Admits(Index a, Index b, Index c) const
   {
-    return this->LimitSquared == Infinity ||
-      (this->IsShort(a, b) && this->IsShort(b, c) && this->IsShort(c, a));
-  }
-
-  bool IsShort(Index a, Index b) const
-  {
-    const Point2 p = this->Points.At(a), q = this->Points.At(b);
-    const double dx = p.X - q.X, dy = p.Y - q.Y;
-    return dx * dx + dy * dy <= this->LimitSquared;
+    return this->Limit.Admits([this](Index id) { return this->Points.At(id); }, a, b, c);
   }
 
   Index StepTo(const Offset& p) const
@@ -1157,7 +1146,7 @@ private:
   const DelaunayOptions& Options;
   const Index Count;
   double FirstHeight = 0.0;
-  double LimitSquared = Infinity;
+  const EdgeLimit Limit;
   bool UseCells = true;
   std::int64_t Gaps = 0; ///< nodes between the ends of their rows that are not occupied
   struct RowEnds

@@ -1187,6 +1187,32 @@ TEST(Lattice, LeavesOutExactlyTheTrianglesWithALongEdge)
   }
 }
 
+TEST(Lattice, LimitsEdgesWhoseSquaresOverflow)
+{
+  const double step = std::ldexp(1.0, 508);
+  std::vector<Node> nodes;
+  for (std::int64_t j = 0; j < 8; ++j)
+  {
+    for (const std::int64_t i : { 0, 1, 2, 30, 31, 32 })
+    {
+      nodes.push_back({ i, j });
+    }
+  }
+  const Cloud cloud = CloudOn({ { 0.0, 0.0 }, { step, 0.0 }, { 0.0, step } }, nodes);
+  LatticeSearch search = FindLattice(cloud.View(), 0.01, 1, Progress());
+  search.Steps.StepU = { step, 0.0 };
+  search.Steps.StepV = { 0.0, step };
+  DelaunayOptions options;
+  options.MaximumEdgeLength = 20.0 * step; // shorter than the gap
+  for (const bool isDivided : { false, true })
+  {
+    options.DivideAtOnce = isDivided;
+    Triangulation limited;
+    ASSERT_TRUE(TriangulateOnLattice(cloud.View(), search, options, limited));
+    EXPECT_EQ(limited.Triangles.size(), 3u * 2 * 2 * 2 * 7); // of 2 times 2 columns of 7 cells
+  }
+}
+
 TEST(Lattice, OrdersTrianglesByTheirLowestVertex)
 {
   std::mt19937_64 random(42);

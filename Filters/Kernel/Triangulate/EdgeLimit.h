@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Which triangles DelaunayOptions::MaximumEdgeLength leaves in.
+ */
+#ifndef elevation_Triangulate_EdgeLimit_h
+#define elevation_Triangulate_EdgeLimit_h
+
+#include "Kernel/Base/Base.h"
+
+#include <cmath>
+
+namespace elevation
+{
+
+class EdgeLimit
+{
+public:
+  /** @param length  the longest edge that is left in; 0: no limit */
+  explicit EdgeLimit(double length)
+    : Length(length)
+    , IsPlain(length > 1e-150 && length < 1e150)
+  {
+  }
+
+  bool IsSet() const { return this->Length > 0.0; }
+
+  /** Whether a triangle of vertices stays in; @a pointOf tells the point of a vertex. */
+  template <typename PointOf>
+  bool Admits(const PointOf& pointOf, Index p, Index q, Index r) const
+  {
+    return !this->IsSet() ||
+      (this->IsShort(pointOf(p), pointOf(q)) && this->IsShort(pointOf(q), pointOf(r)) &&
+        this->IsShort(pointOf(r), pointOf(p)));
+  }
+
+private:
+  bool IsShort(const Point2& p, const Point2& q) const
+  {
+    const double dx = p.X - q.X, dy = p.Y - q.Y;
+    return this->IsPlain ? dx * dx + dy * dy <= this->Length * this->Length
+                         : std::hypot(dx, dy) <= this->Length;
+  }
+
+  const double Length;
+  const bool IsPlain; ///< squares neither over- nor underflow
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The convex hull, from which growth begins.
+ *
+ * [Andrew 1979] Another efficient algorithm for convex hulls in two dimensions, Information
+ * Processing Letters 9(5):216-219.
+ */
+#ifndef elevation_Triangulate_Hull_h
+#define elevation_Triangulate_Hull_h
+
+#include "BinGrid.h"
+#include "Kernel/Base/Base.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/** Both sides of the convex hull from its lowest to its highest point, collinear points included. */
+struct Hull
+{
+  std::vector<Index> RightChain, LeftChain;
+
+  bool IsLine() const { return this->RightChain == this->LeftChain; }
+  std::size_t NumberOfPoints() const
+  {
+    return this->RightChain.size() + this->LeftChain.size() - 2;
+  }
+};
+
+/**
+ * The hull of points [Andrew 1979], in linear time.
+ * @param candidates  by increasing (y, x); at least one, and all that are on the hull
+ * @param turn        turn(p, q, r): the side of r with respect to the line from p to q, a Sign
+ */
+template <typename Turn>
+Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress& progress)
+{
+  Hull hull;
+  for (const Sign outside : { Negative, Positive }) // must stay empty: beside the right chain, then
+  {                                                 // beside the left one
+    std::vector<Index>& chain = outside == Negative ? hull.RightChain : hull.LeftChain;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+    {
+      ReportStep(progress, i, candidates.size());
+      while (chain.size() > 1 &&
+        turn(chain[chain.size() - 2], chain.back(), candidates[i]) == outside)
+      {
+        chain.pop_back();
+      }
+      chain.push_back(candidates[i]);
+    }
+  }
+  return hull;
+}
+
+/** The hull of the points of a grid, of which there is at least one, as slots; in linear time. */
+Hull FindHull(const BinGrid& grid, const Progress& progress);
+
+} // namespace elevation
+
+#endif
