@@ -339,23 +339,30 @@ struct Histogram
     const int row = std::min(static_cast<int>((p.Y - this->Low.Y) * this->PerY), this->Side - 1);
     return row * this->Side + column;
   }
-  void Add(const std::vector<Point2>& points)
-  {
-    for (const Point2& p : points)
-    {
-      ++this->Counts[this->CellOf(p)];
-    }
-  }
   /** The lower left (0) or upper right (1) corner of a cell. */
   Point2 CornerOf(int cell, int upper) const
   {
     return { this->Low.X + (cell % this->Side + upper) / this->PerX,
       this->Low.Y + (cell / this->Side + upper) / this->PerY };
   }
-  int Fullest() const
+  /** Whether the box has cells that numbers can tell apart. */
+  bool HasCells() const
   {
-    return static_cast<int>(
+    return this->PerX > 0.0 && this->PerX <= DBL_MAX && this->PerY > 0.0 && this->PerY <= DBL_MAX;
+  }
+  /** Leaves only the points of the cell with the most, and returns the cell. */
+  int KeepFullest(std::vector<Point2>& points)
+  {
+    for (const Point2& p : points)
+    {
+      ++this->Counts[this->CellOf(p)];
+    }
+    const int fullest = static_cast<int>(
       std::max_element(this->Counts.begin(), this->Counts.end()) - this->Counts.begin());
+    points.erase(std::remove_if(points.begin(), points.end(),
+                   [&](const Point2& p) { return this->CellOf(p) != fullest; }),
+      points.end());
+    return fullest;
   }
 
   Point2 Low;
@@ -378,11 +385,7 @@ void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
     {
       return;
     }
-    histogram.Add(points);
-    const int fullest = histogram.Fullest();
-    points.erase(std::remove_if(points.begin(), points.end(),
-                   [&](const Point2& p) { return histogram.CellOf(p) != fullest; }),
-      points.end());
+    histogram.KeepFullest(points);
     Report(progress, 0.5);
   }
 }
@@ -511,228 +514,300 @@ double Rounded(double value, double allowed)
   return value;
 }
 
-/** Pass 4 and 5: from the middle of the sample outwards. Points are relative to the first. */
-bool FitOutwards(const std::vector<Point2>& sample, Generators generators, double tolerance,
-  double extent, double mostNodes, Lattice& lattice)
+/** Passes 4 and 5: the lattice of a sample, whose points are relative to the first and go outwards. */
+class OutwardFit
 {
-  const double far = 1.5 * generators.Nothing; // steps: between the nodes
-  bool isFitted = false;
-  Point2 origin{ 0.0, 0.0 }, u, v;
-  for (int round = 0; round < 64 && !isFitted; ++round)
+public:
+  OutwardFit(const std::vector<Point2>& sample, const Generators& generators)
+    : Sample(sample)
+    , Basis(generators)
+    , Between(1.5 * generators.Nothing)
   {
-    if (generators.Rank == 2)
+  }
+
+  /** @return false when there is none, or more than so many nodes for the sample's box */
+  bool Run(double tolerance, double extent, double mostNodes, Lattice& lattice)
+  {
+    constexpr int mostRounds = 64;
+    Outcome outcome = Outcome::Refined;
+    for (int round = 0; round < mostRounds && outcome == Outcome::Refined; ++round)
     {
-      Reduce(generators.U, generators.V);
+      outcome = this->GoOutwards();
     }
-    origin = { 0.0, 0.0 };
-    u = generators.U;
-    v = generators.V;
+    if (outcome != Outcome::Fitted || this->Basis.Rank < 2)
+    {
+      return false;
+    }
+    // All of the sample, twice: with the steps directed, and once more with those fitted.
+    Direct(this->Steps.StepU, this->Steps.StepV);
+    if (!this->FitAll() || !this->FitAll())
+    {
+      return false;
+    }
+    this->RoundSteps(extent);
+    if (!this->IsWithin(tolerance, mostNodes))
+    {
+      return false;
+    }
+    lattice = this->Steps;
+    return true;
+  }
+
+private:
+  enum class Outcome
+  {
+    Fitted,  ///< all points are on nodes
+    Refined, ///< by a point between the nodes: from the start again
+    TooFine
+  };
+
+  Point2 ToSteps(const Point2& p) const
+  {
+    return InSteps(Minus(p, this->Steps.Origin), this->Steps.StepU, this->Steps.StepV);
+  }
+
+  /** Fits the steps to more and more points, until one refines the lattice. */
+  Outcome GoOutwards()
+  {
+    if (this->Basis.Rank == 2)
+    {
+      Reduce(this->Basis.U, this->Basis.V);
+    }
+    this->Steps = { { 0.0, 0.0 }, this->Basis.U, this->Basis.V };
     Fit fit;
     std::size_t next = 8;
     Point2 beside{ 0.0, 0.0 }; // farthest from the line, as long as there is but one step
-    isFitted = true;
-    for (std::size_t k = 0; k < sample.size() && isFitted; ++k)
+    for (std::size_t k = 0; k < this->Sample.size(); ++k)
     {
-      const Point2 d = Minus(sample[k], origin);
-      Point2 rest = d;
-      bool isNode = true;
-      if (generators.Rank == 2)
+      Point2 rest;
+      if (!this->IsNode(this->Sample[k], fit, rest))
       {
-        const Point2 steps = InSteps(d, u, v);
-        const double i = std::round(steps.X), j = std::round(steps.Y);
-        rest = Minus(Minus(d, u, i), v, j);
-        isNode = std::fabs(steps.X - i) <= far && std::fabs(steps.Y - j) <= far;
-        fit.Add(i, j, sample[k]);
+        this->Basis.U = this->Steps.StepU;
+        this->Basis.V = this->Steps.StepV;
+        return this->Refine(rest);
       }
-      else if (generators.Rank == 1)
+      beside = Dot(rest, rest) > Dot(beside, beside) ? rest : beside;
+      if (k + 1 == next && this->Basis.Rank == 2)
       {
-        rest = Minus(d, u, std::round(Dot(d, u) / Dot(u, u)));
-        isNode = Dot(rest, rest) <= far * far * Dot(u, u);
-        beside = Dot(rest, rest) > Dot(beside, beside) ? rest : beside;
-      }
-      else
-      {
-        isNode = Dot(d, d) == 0.0;
-      }
-      if (!isNode)
-      {
-        generators.U = u;
-        generators.V = v;
-        if (!generators.Insert(rest))
-        {
-          return false;
-        }
-        isFitted = false;
-      }
-      else if (k + 1 == next && generators.Rank == 2)
-      {
-        fit.Solve(origin, u, v);
+        fit.Solve(this->Steps.Origin, this->Steps.StepU, this->Steps.StepV);
         next += next / 4;
       }
     }
-    if (isFitted && generators.Rank == 1)
+    // With one step the other is so short that it was taken for a remainder.
+    return this->Basis.Rank == 1 ? this->Refine(beside) : Outcome::Fitted;
+  }
+
+  Outcome Refine(const Point2& vector)
+  {
+    return this->Basis.Insert(vector) ? Outcome::Refined : Outcome::TooFine;
+  }
+
+  /** Whether a point is on a node, as far as there are steps; the rest is what leads from there. */
+  bool IsNode(const Point2& p, Fit& fit, Point2& rest) const
+  {
+    const Point2 &u = this->Steps.StepU, &v = this->Steps.StepV;
+    rest = Minus(p, this->Steps.Origin);
+    if (this->Basis.Rank == 2)
     {
-      // The other step is so short that it was taken for a remainder.
-      if (!generators.Insert(beside))
+      const Point2 steps = InSteps(rest, u, v);
+      const double i = std::round(steps.X), j = std::round(steps.Y);
+      rest = Minus(Minus(rest, u, i), v, j);
+      fit.Add(i, j, p);
+      return std::fabs(steps.X - i) <= this->Between && std::fabs(steps.Y - j) <= this->Between;
+    }
+    if (this->Basis.Rank == 1)
+    {
+      rest = Minus(rest, u, std::round(Dot(rest, u) / Dot(u, u)));
+      return Dot(rest, rest) <= this->Between * this->Between * Dot(u, u);
+    }
+    return Dot(rest, rest) == 0.0;
+  }
+
+  bool FitAll()
+  {
+    Fit fit;
+    for (const Point2& p : this->Sample)
+    {
+      const Point2 steps = this->ToSteps(p);
+      fit.Add(std::round(steps.X), std::round(steps.Y), p);
+    }
+    return fit.Solve(this->Steps.Origin, this->Steps.StepU, this->Steps.StepV);
+  }
+
+  /** As far as it moves no node noticeably. */
+  void RoundSteps(double extent)
+  {
+    Point2 &u = this->Steps.StepU, &v = this->Steps.StepV, &origin = this->Steps.Origin;
+    const double length = std::sqrt(std::min(Dot(u, u), Dot(v, v)));
+    const double allowed = 1e-6 * length * std::min(1.0, length / extent);
+    u = { Rounded(u.X, allowed), Rounded(u.Y, allowed) };
+    v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
+    origin.X = std::fabs(origin.X) <= 1e-6 * length ? 0.0 : origin.X;
+    origin.Y = std::fabs(origin.Y) <= 1e-6 * length ? 0.0 : origin.Y;
+  }
+
+  /** Whether all points are near nodes, and the nodes not too many: coarser steps may do. */
+  bool IsWithin(double tolerance, double mostNodes) const
+  {
+    const double far = 1.01 * tolerance + 1e-8;
+    Extent box; // in steps
+    for (const Point2& p : this->Sample)
+    {
+      const Point2 steps = this->ToSteps(p);
+      box.Add(steps);
+      if (!(std::fabs(steps.X - std::round(steps.X)) <= far) ||
+        !(std::fabs(steps.Y - std::round(steps.Y)) <= far))
       {
         return false;
       }
-      isFitted = false;
     }
-  }
-  if (!isFitted || generators.Rank < 2)
-  {
-    return false;
+    return !(box.Width() * box.Height() > mostNodes);
   }
 
-  // All of the sample, twice: with the steps directed, and once more with those fitted.
-  Direct(u, v);
-  for (int pass = 0; pass < 2; ++pass)
+  const std::vector<Point2>& Sample;
+  Generators Basis;
+  const double Between; ///< the nodes, in steps
+  Lattice Steps;
+};
+
+/** One run of FindLattice(); its members are what the passes hand on. */
+class LatticeFinder
+{
+public:
+  LatticeFinder(const PointView& points, int threads)
+    : Points(points)
+    , Threads(threads)
+    , Pieces(NumberOfRanges(points.Count))
   {
-    Fit fit;
-    for (const Point2& p : sample)
-    {
-      const Point2 steps = InSteps(Minus(p, origin), u, v);
-      fit.Add(std::round(steps.X), std::round(steps.Y), p);
-    }
-    if (!fit.Solve(origin, u, v))
-    {
-      return false;
-    }
   }
-  const double length = std::sqrt(std::min(Dot(u, u), Dot(v, v)));
-  const double allowed = 1e-6 * length * std::min(1.0, length / extent);
-  u = { Rounded(u.X, allowed), Rounded(u.Y, allowed) };
-  v = { Rounded(v.X, allowed), Rounded(v.Y, allowed) };
-  origin.X = std::fabs(origin.X) <= 1e-6 * length ? 0.0 : origin.X;
-  origin.Y = std::fabs(origin.Y) <= 1e-6 * length ? 0.0 : origin.Y;
-  Extent box; // in steps
-  for (const Point2& p : sample)
+
+  LatticeSearch Run(double tolerance, const Progress& progress)
   {
-    const Point2 steps = InSteps(Minus(p, origin), u, v);
-    box.Add(steps);
-    if (!(std::fabs(steps.X - std::round(steps.X)) <= 1.01 * tolerance + 1e-8) ||
-      !(std::fabs(steps.Y - std::round(steps.Y)) <= 1.01 * tolerance + 1e-8))
+    this->TakeSample(Part(progress, 0.0, 0.55));
+    const double width = this->Search.Width(), height = this->Search.Height();
+    const double extent = width + height;
+    // Where squares and quotients might leave the range of double there is no lattice.
+    if (this->Count < FewestPoints || !(width > 1e-60 && height > 1e-60 && extent < 1e60))
     {
-      return false;
+      return std::move(this->Search);
     }
+    this->GatherAround(this->FullestPlace(), Part(progress, 0.55, 1.0));
+    const Point2 middle = this->Around[this->Around.size() / 2];
+    this->SortSample(middle);
+    const double leastArea =
+      0.5 * MeanAreaOf(this->Around, width * height / this->Count) / MaximumNodesPerPoint;
+    const std::vector<Point2> differences = ShortestDifferences(this->Around);
+    const auto isLattice = [&](double nothing) {
+      Generators generators(leastArea, 1e-9 * extent / this->Count, nothing);
+      return std::all_of(differences.begin(), differences.end(),
+               [&](const Point2& vector) { return generators.Insert(vector); }) &&
+        OutwardFit(this->Sample, generators)
+          .Run(tolerance, extent, MaximumNodesPerPoint * this->Count, this->Search.Steps);
+    };
+    this->Search.Found = std::any_of(Nothings.begin(), Nothings.end(), isLattice);
+    this->Search.Steps.Origin.X += middle.X;
+    this->Search.Steps.Origin.Y += middle.Y;
+    return std::move(this->Search);
   }
-  if (box.Width() * box.Height() > mostNodes)
+
+private:
+  /** Pass 1. */
+  void TakeSample(const Progress& progress)
   {
-    return false; // coarser steps may do
+    std::vector<PlaceSet> picked(this->Pieces.size());
+    const std::uint64_t limit = HashLimit(WideSampleSize, this->Points.Count);
+    static_cast<Extent&>(this->Search) = FindExtent(
+      this->Points, this->Threads, Part(progress, 0.0, 0.9), [&](Index piece, const Point2& p) {
+        if (HashOf(p) < limit)
+        {
+          picked[piece].Add(p);
+        }
+      });
+    this->Count = this->Points.Count - static_cast<Index>(this->Search.NotFinite.size());
+    std::transform(picked.begin(), picked.end(), this->Pieces.begin(),
+      [](const PlaceSet& set) { return set.Places(); });
+    this->Sample = Join(this->Pieces, Part(progress, 0.9, 1.0));
   }
-  lattice.Origin = origin;
-  lattice.StepU = u;
-  lattice.StepV = v;
-  return true;
-}
+
+  /**
+   * A cell of the sample's extent, a cell of that, and so on. Where hardly any points differ,
+   * everywhere.
+   */
+  Extent FullestPlace() const
+  {
+    Extent place = this->Search;
+    std::vector<Point2> crowd = this->Sample;
+    for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
+    {
+      const double here = this->Count * (crowd.size() / static_cast<double>(this->Sample.size()));
+      const double cells = std::sqrt(here / static_cast<double>(Neighbors));
+      Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
+      if (histogram.Side < 2 || !histogram.HasCells())
+      {
+        break;
+      }
+      const int fullest = histogram.KeepFullest(crowd);
+      place = BoxOf(crowd); // rounding may have put a point beside its cell
+      place.Add(histogram.CornerOf(fullest, 0));
+      place.Add(histogram.CornerOf(fullest, 1));
+    }
+    return place;
+  }
+
+  /** All points of the place, or of its fullest part. */
+  void GatherAround(const Extent& place, const Progress& progress)
+  {
+    ForEachRange(this->Points.Count, this->Threads, Part(progress, 0.0, 0.75),
+      [&](Index piece, Index begin, Index end) {
+        PlaceSet here;
+        ForEachPoint(this->Points, begin, end, this->Search.NotFinite, [&](Index, const Point2& p) {
+          if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
+            (p.Y <= place.High.Y))
+          {
+            here.Add(p);
+          }
+        });
+        this->Pieces[piece] = here.Places();
+      });
+    this->Around = Join(std::move(this->Pieces), Part(progress, 0.75, 0.9));
+    KeepFullestCells(this->Around, Part(progress, 0.9, 1.0));
+    KeepFullest(this->Around);
+  }
+
+  /** A smaller sample, relative to a point in the middle of the fullest place, from there outwards. */
+  void SortSample(const Point2& middle)
+  {
+    const std::uint64_t limit = HashLimit(SampleSize, this->Points.Count);
+    std::vector<Point2>& sample = this->Sample;
+    sample.erase(std::remove_if(sample.begin(), sample.end(),
+                   [limit](const Point2& p) { return HashOf(p) >= limit; }),
+      sample.end());
+    sample.insert(sample.end(), this->Around.begin(), this->Around.end());
+    SortUnique(sample);
+    for (Point2& p : sample)
+    {
+      p = Minus(p, middle);
+    }
+    std::sort(sample.begin(), sample.end(), [](const Point2& p, const Point2& q) {
+      const double a = Dot(p, p), b = Dot(q, q);
+      return a != b ? a < b : IsLower(p, q);
+    });
+  }
+
+  const PointView& Points;
+  const int Threads;
+  LatticeSearch Search;
+  Index Count = 0;                         ///< of the finite points
+  std::vector<std::vector<Point2>> Pieces; ///< places, by range of the points
+  std::vector<Point2> Sample;
+  std::vector<Point2> Around; ///< the points of the fullest place
+};
 } // namespace
 
 LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
-  LatticeSearch search;
-  std::vector<PlaceSet> picked(NumberOfRanges(points.Count));
-  const std::uint64_t wideLimit = HashLimit(WideSampleSize, points.Count);
-  static_cast<Extent&>(search) =
-    FindExtent(points, threads, Part(progress, 0.0, 0.5), [&](Index piece, const Point2& p) {
-      if (HashOf(p) < wideLimit)
-      {
-        picked[piece].Add(p);
-      }
-    });
-  const Index count = points.Count - static_cast<Index>(search.NotFinite.size());
-  const double width = search.Width(), height = search.Height();
-  const double extent = width + height;
-  // Where squares and quotients might leave the range of double there is no lattice.
-  if (count < FewestPoints || !(width > 1e-60 && height > 1e-60 && extent < 1e60))
-  {
-    return search;
-  }
-  std::vector<std::vector<Point2>> pieces;
-  for (const PlaceSet& set : picked)
-  {
-    pieces.push_back(set.Places());
-  }
-  std::vector<Point2> sample = Join(pieces, Part(progress, 0.5, 0.55));
-
-  // The fullest place: a cell of the sample's extent, a cell of that, and so on. Where hardly any
-  // points differ, everywhere.
-  Extent place = search;
-  std::vector<Point2> crowd = sample;
-  for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
-  {
-    const double here = count * (crowd.size() / static_cast<double>(sample.size()));
-    const double cells = std::sqrt(here / static_cast<double>(Neighbors));
-    Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
-    const bool hasCells = histogram.PerX > 0.0 && histogram.PerX <= DBL_MAX &&
-      histogram.PerY > 0.0 && histogram.PerY <= DBL_MAX;
-    if (histogram.Side < 2 || !hasCells)
-    {
-      break;
-    }
-    histogram.Add(crowd);
-    const int fullest = histogram.Fullest();
-    crowd.erase(std::remove_if(crowd.begin(), crowd.end(),
-                  [&](const Point2& p) { return histogram.CellOf(p) != fullest; }),
-      crowd.end());
-    place = BoxOf(crowd); // rounding may have put a point beside its cell
-    place.Add(histogram.CornerOf(fullest, 0));
-    place.Add(histogram.CornerOf(fullest, 1));
-  }
-  ForEachRange(
-    points.Count, threads, Part(progress, 0.55, 0.9), [&](Index piece, Index begin, Index end) {
-      PlaceSet here;
-      ForEachPoint(points, begin, end, search.NotFinite, [&](Index, const Point2& p) {
-        if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
-          (p.Y <= place.High.Y))
-        {
-          here.Add(p);
-        }
-      });
-      pieces[piece] = here.Places();
-    });
-  std::vector<Point2> around = Join(std::move(pieces), Part(progress, 0.9, 0.95));
-  const std::uint64_t limit = HashLimit(SampleSize, points.Count);
-  sample.erase(std::remove_if(sample.begin(), sample.end(),
-                 [limit](const Point2& p) { return HashOf(p) >= limit; }),
-    sample.end());
-
-  KeepFullestCells(around, Part(progress, 0.95, 1.0));
-  KeepFullest(around);
-  // Relative to a point in the middle of the fullest place, and from there outwards.
-  const Point2 middle = around[around.size() / 2];
-  sample.insert(sample.end(), around.begin(), around.end());
-  SortUnique(sample);
-  for (Point2& p : sample)
-  {
-    p = Minus(p, middle);
-  }
-  std::sort(sample.begin(), sample.end(), [](const Point2& p, const Point2& q) {
-    const double a = Dot(p, p), b = Dot(q, q);
-    return a != b ? a < b : IsLower(p, q);
-  });
-  const double leastArea = 0.5 * MeanAreaOf(around, width * height / count) / MaximumNodesPerPoint;
-  const std::vector<Point2> differences = ShortestDifferences(around);
-  for (const double nothing : Nothings)
-  {
-    Generators generators(leastArea, 1e-9 * extent / count, nothing);
-    bool isLattice = true;
-    for (std::size_t i = 0; i < differences.size() && isLattice; ++i)
-    {
-      isLattice = generators.Insert(differences[i]);
-    }
-    if (isLattice &&
-      FitOutwards(
-        sample, generators, tolerance, extent, MaximumNodesPerPoint * count, search.Steps))
-    {
-      search.Found = true;
-      break;
-    }
-  }
-  search.Steps.Origin.X += middle.X;
-  search.Steps.Origin.Y += middle.Y;
-  return search;
+  return LatticeFinder(points, threads).Run(tolerance, progress);
 }
 
 } // namespace elevation

@@ -131,17 +131,288 @@ bool AreScattered(
 }
 } // namespace
 
+/** One run of Place(); its members are what the passes hand on. */
+class LatticeNodes::Placement
+{
+public:
+  Placement(LatticeNodes& nodes, const PointView& points, const LatticeSearch& search,
+    DuplicatePolicy policy, int threads)
+    : Nodes(nodes)
+    , Points(points)
+    , Search(search)
+    , Policy(policy)
+    , Threads(threads)
+    , NodeOf(search.Steps)
+  {
+  }
+
+  bool Run(double tolerance, const Progress& progress)
+  {
+    if (!this->Lay(this->FindBox(Part(progress, 0.0, 0.2)), Part(progress, 0.2, 0.2)))
+    {
+      return false;
+    }
+    this->IsScattered = AreScattered(this->Points, this->Search.NotFinite, this->NodeOf);
+    if (!this->FindNodes(tolerance, Part(progress, 0.2, 0.5)))
+    {
+      return false;
+    }
+    IdSet duplicates(this->Points.Count);
+    Stretches sorted;
+    const bool isSorted =
+      this->IsScattered && this->SortIntoStretches(sorted, Part(progress, 0.5, 0.7));
+    const Progress placing = Part(progress, 0.7, 0.99);
+    if (!(isSorted ? this->PlaceSorted(sorted, duplicates, placing)
+                   : this->PlaceInOrder(duplicates, placing)))
+    {
+      return false;
+    }
+    this->Nodes.Duplicates = duplicates.List(Part(progress, 0.99, 1.0));
+    this->FindOrigin();
+    return true;
+  }
+
+private:
+  /** Points by stretches of nodes. */
+  struct Stretches
+  {
+    std::vector<Index> Begins; ///< where each begins in Nodes and Ids; then the end of the last
+    Buffer<Index> Nodes;       ///< None for points on a node that is taken
+    Buffer<Index> Ids;         ///< of the points
+    Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
+  };
+
+  /** The box of the points' nodes: that of their bounding box, where the lattice is along the axes. */
+  NodeOfPoint::Box FindBox(const Progress& progress) const
+  {
+    NodeOfPoint::Box box;
+    const Point2 &low = this->Search.Low, &high = this->Search.High;
+    for (const Point2& p : { low, Point2{ high.X, low.Y }, Point2{ low.X, high.Y }, high })
+    {
+      this->NodeOf.Extend(box, p);
+    }
+    const double nodesInBox =
+      this->Search.Width() * this->Search.Height() / this->Search.Steps.Area();
+    if (box.Columns() * box.Rows() <= 1.05 * nodesInBox + 64.0)
+    {
+      return box;
+    }
+    // A lattice across the axes: the points themselves tell it better.
+    std::vector<NodeOfPoint::Box> pieces(NumberOfRanges(this->Points.Count));
+    this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
+      NodeOfPoint::Box here;
+      ForEachPoint(this->Points, begin, end, this->Search.NotFinite,
+        [&](Index, const Point2& p) { this->NodeOf.Extend(here, p); });
+      pieces[piece] = here;
+    });
+    box = NodeOfPoint::Box();
+    for (const NodeOfPoint::Box& piece : pieces)
+    {
+      box.Add(piece);
+    }
+    return box;
+  }
+
+  /** Lays the bitmap over a box of nodes. @return false when it takes too much memory */
+  bool Lay(const NodeOfPoint::Box& box, const Progress& progress)
+  {
+    const double count = this->Points.Count - static_cast<double>(this->Search.NotFinite.size());
+    const double columns = box.Columns(), rows = box.Rows();
+    const double wordsPerRow = std::floor((columns + 63.0) / 64.0) + 1.0;
+    const double words = wordsPerRow * (rows + RowsBeyond) + 2.0;
+    if (!(columns <= MaximumSide && rows <= MaximumSide) ||
+      columns * rows > MaximumNodesPerPoint * count || words > 2.0 * count + 256.0 ||
+      words * 64.0 > std::numeric_limits<Index>::max())
+    {
+      return false;
+    }
+    this->NodeOf.Start(box);
+    this->Nodes.Columns = static_cast<Index>(columns);
+    this->Nodes.Rows = static_cast<Index>(rows);
+    this->Nodes.WordsPerRow = static_cast<Index>(wordsPerRow);
+    this->Nodes.Memory.Resize(static_cast<std::size_t>(words));
+    this->Nodes.Words = reinterpret_cast<AtomicWord*>(this->Nodes.Memory.data());
+    elevation::ForEachRange(
+      static_cast<Index>(words), this->Threads, progress, [&](Index, Index begin, Index end) {
+        for (Index word = begin; word < end; ++word)
+        {
+          new (this->Nodes.Words + word) AtomicWord(0);
+        }
+      });
+    return true;
+  }
+
+  /**
+   * Writes the node of each point, or None, to Room; where points are not scattered, sets the bits.
+   * @return false when a point is too far from its node
+   */
+  bool FindNodes(double tolerance, const Progress& progress)
+  {
+    this->Nodes.Room.Resize(static_cast<std::size_t>(this->Points.Count));
+    Index* const nodes = this->Nodes.Room.data();
+    std::vector<double> offsets(NumberOfRanges(this->Points.Count), 0.0);
+    this->Second.resize(offsets.size());
+    std::atomic<bool> fits{ true };
+    this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
+      if (!fits)
+      {
+        return;
+      }
+      std::vector<Index> second; // not in memory that other threads write next to
+      double largest = 0.0;
+      for (; begin < end; begin += Few)
+      {
+        const Index last = std::min(begin + Few, end);
+        if (!this->Search.NotFinite.empty())
+        {
+          std::fill(nodes + begin, nodes + last, None);
+        }
+        ForEachPoint(
+          this->Points, begin, last, this->Search.NotFinite, [&](Index id, const Point2& p) {
+            Index column, row;
+            largest = std::max(largest, this->NodeOf(p, column, row));
+            nodes[id] = this->Nodes.NodeAt(row, column);
+            Prefetch(this->Nodes.Words + (nodes[id] >> 6));
+          });
+        if (!this->IsScattered)
+        {
+          this->Occupy(begin, last, second);
+        }
+      }
+      if (!(largest <= tolerance + Roundoff))
+      {
+        fits = false;
+      }
+      offsets[piece] = largest;
+      this->Second[piece] = std::move(second);
+    });
+    this->Nodes.LargestOffset = *std::max_element(offsets.begin(), offsets.end()) +
+      std::max(Roundoff, this->NodeOf.Roundoff(this->Search.Low, this->Search.High));
+    return fits;
+  }
+
+  /** Calls work(piece, begin, end) for ranges of the points. */
+  template <typename Work>
+  void ForEachRange(const Progress& progress, Work&& work) const
+  {
+    elevation::ForEachRange(this->Points.Count, this->Threads, progress, work);
+  }
+
+  bool PlaceSorted(Stretches& sorted, IdSet& duplicates, const Progress& progress)
+  {
+    ForEachPiece(sorted.Count(), this->Threads, Part(progress, 0.0, 0.35),
+      [&](Index stretch) { this->OccupyStretch(sorted, stretch); });
+    this->CountBefore();
+    ForEachPiece(sorted.Count(), this->Threads, Part(progress, 0.35, 0.85),
+      [&](Index stretch) { this->PlaceStretch(sorted, stretch); });
+    const Progress settling = Part(progress, 0.85, 1.0);
+    const Index placed = sorted.Begins.back();
+    for (Index i = 0; i < placed && this->Nodes.NumberOfPoints() < placed; ++i)
+    {
+      ReportStep(settling, static_cast<std::size_t>(i), static_cast<std::size_t>(placed));
+      if (sorted.Nodes[i] == None && !this->Settle(sorted.Ids[i], duplicates))
+      {
+        return false;
+      }
+    }
+    this->Nodes.Room = std::move(sorted.Nodes);
+    return true;
+  }
+
+  bool PlaceInOrder(IdSet& duplicates, const Progress& progress)
+  {
+    if (this->IsScattered)
+    {
+      this->ForEachRange(Part(progress, 0.0, 0.35), [&](Index piece, Index begin, Index end) {
+        std::vector<Index> second;
+        this->Occupy(begin, end, second);
+        this->Second[piece] = std::move(second);
+      });
+    }
+    this->CountBefore();
+    this->ForEachRange(Part(progress, 0.35, 0.85),
+      [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
+    const Progress settling = Part(progress, 0.85, 1.0);
+    std::size_t steps = 0;
+    for (const std::vector<Index>& second : this->Second)
+    {
+      for (const Index id : second)
+      {
+        ReportStep(settling, steps++, static_cast<std::size_t>(this->Points.Count));
+        if (!this->Settle(id, duplicates))
+        {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  /** Of two points on one node one is kept. @return false when they are not at the same place */
+  bool Settle(Index id, IdSet& duplicates)
+  {
+    Index column, row;
+    this->NodeOf(this->Points.At(id), column, row);
+    Index& kept = this->Nodes.Ids[this->Nodes.RankOf(this->Nodes.NodeAt(row, column))];
+    const bool isSamePlace = this->Points.At(kept) == this->Points.At(id);
+    if (isSamePlace && IsPreferred(this->Points, this->Policy, id, kept))
+    {
+      std::swap(id, kept);
+    }
+    duplicates.Add(id);
+    return isSamePlace;
+  }
+
+  /** The lowest node that is occupied. */
+  void FindOrigin()
+  {
+    Index word = 0;
+    while (this->Nodes.Word(word) == 0)
+    {
+      ++word;
+    }
+    const Index lowest = 64 * word + LowestBit(this->Nodes.Word(word));
+    const Index row = this->Nodes.RowOf(lowest);
+    this->Nodes.Steps = this->Search.Steps;
+    this->Nodes.Steps.Origin = this->Search.Steps.Node(
+      this->NodeOf.FirstI + this->Nodes.ColumnOf(lowest, row), this->NodeOf.FirstJ + row);
+  }
+
+  bool SortIntoStretches(Stretches& sorted, const Progress& progress);
+  void OccupyStretch(Stretches& stretches, Index stretch);
+  void PlaceStretch(const Stretches& stretches, Index stretch);
+  std::uint64_t SetBits(Index word, std::uint64_t bits, bool isShared);
+  void Occupy(Index begin, Index end, std::vector<Index>& second);
+  void CountBefore();
+  void PlaceIds(Index begin, Index end);
+
+  LatticeNodes& Nodes;
+  const PointView& Points;
+  const LatticeSearch& Search;
+  const DuplicatePolicy Policy;
+  const int Threads;
+  NodeOfPoint NodeOf;
+  bool IsScattered = false;               ///< the points come in no order, and are many
+  std::vector<std::vector<Index>> Second; ///< by range: the points on a node that is taken
+};
+
+bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, double tolerance,
+  DuplicatePolicy policy, int threads, const Progress& progress)
+{
+  return Placement(*this, points, search, policy, threads).Run(tolerance, progress);
+}
+
 /**
  * Sorts the nodes in Room, whose memory becomes that of Ids.
  * @return whether points are spread over the stretches; if not, they stay as they are
  */
-bool LatticeNodes::SortIntoStretches(Stretches& sorted, int threads, const Progress& progress)
+bool LatticeNodes::Placement::SortIntoStretches(Stretches& sorted, const Progress& progress)
 {
   // What belongs to a stretch should fit in a core's own memory, and so should the end of each one.
   constexpr Index pointsPerStretch = 1 << 14, mostStretches = 512;
-  const Index count = static_cast<Index>(this->Room.size());
-  const Index last = static_cast<Index>(this->Memory.size() * 64 - 1); // node
-  int shift = 6;                                                       // words stay whole
+  const Index count = static_cast<Index>(this->Nodes.Room.size());
+  const Index last = static_cast<Index>(this->Nodes.Memory.size() * 64 - 1); // node
+  int shift = 6;                                                             // words stay whole
   while (last >> shift >= std::min(mostStretches, count / pointsPerStretch + 1))
   {
     ++shift;
@@ -153,15 +424,15 @@ bool LatticeNodes::SortIntoStretches(Stretches& sorted, int threads, const Progr
     Index* const here = numbers.data() + static_cast<std::size_t>(range) * stretches;
     for (Index id = begin; id < end; ++id)
     {
-      if (this->Room[id] != None)
+      if (this->Nodes.Room[id] != None)
       {
-        visit(here[this->Room[id] >> shift]++, id);
+        visit(here[this->Nodes.Room[id] >> shift]++, id);
       }
     }
   };
   sorted.Nodes.Resize(static_cast<std::size_t>(count));
   sorted.Ids.Resize(static_cast<std::size_t>(count));
-  ForEachRange(count, threads, Part(progress, 0.0, 0.5), [&](Index range, Index begin, Index end) {
+  this->ForEachRange(Part(progress, 0.0, 0.5), [&](Index range, Index begin, Index end) {
     TakePages(sorted.Nodes, begin, end);
     TakePages(sorted.Ids, begin, end);
     forEachNode(range, begin, end, [](Index, Index) {});
@@ -183,18 +454,18 @@ bool LatticeNodes::SortIntoStretches(Stretches& sorted, int threads, const Progr
     sorted = Stretches(); // gives its memory back
     return false;
   }
-  ForEachRange(count, threads, Part(progress, 0.5, 1.0), [&](Index range, Index begin, Index end) {
+  this->ForEachRange(Part(progress, 0.5, 1.0), [&](Index range, Index begin, Index end) {
     forEachNode(range, begin, end, [&](Index place, Index id) {
-      sorted.Nodes[place] = this->Room[id];
+      sorted.Nodes[place] = this->Nodes.Room[id];
       sorted.Ids[place] = id;
     });
   });
-  this->Ids = std::move(this->Room);
+  this->Nodes.Ids = std::move(this->Nodes.Room);
   return true;
 }
 
 /** As Occupy(), for points and words that are near. */
-void LatticeNodes::OccupyStretch(Stretches& stretches, Index stretch)
+void LatticeNodes::Placement::OccupyStretch(Stretches& stretches, Index stretch)
 {
   for (Index i = stretches.Begins[stretch]; i < stretches.Begins[stretch + 1]; ++i)
   {
@@ -208,21 +479,21 @@ void LatticeNodes::OccupyStretch(Stretches& stretches, Index stretch)
 }
 
 /** Writes each id to its place. */
-void LatticeNodes::PlaceStretch(const Stretches& stretches, Index stretch)
+void LatticeNodes::Placement::PlaceStretch(const Stretches& stretches, Index stretch)
 {
   for (Index i = stretches.Begins[stretch]; i < stretches.Begins[stretch + 1]; ++i)
   {
     if (stretches.Nodes[i] != None)
     {
-      this->Ids[this->RankOf(stretches.Nodes[i])] = stretches.Ids[i];
+      this->Nodes.Ids[this->Nodes.RankOf(stretches.Nodes[i])] = stretches.Ids[i];
     }
   }
 }
 
 /** Sets bits of a word. @return what was set before */
-std::uint64_t LatticeNodes::SetBits(Index word, std::uint64_t bits, bool isShared)
+std::uint64_t LatticeNodes::Placement::SetBits(Index word, std::uint64_t bits, bool isShared)
 {
-  AtomicWord& there = this->Words[word];
+  AtomicWord& there = this->Nodes.Words[word];
   if (isShared)
   {
     return there.fetch_or(bits, std::memory_order_relaxed);
@@ -232,9 +503,11 @@ std::uint64_t LatticeNodes::SetBits(Index word, std::uint64_t bits, bool isShare
   return before;
 }
 
-void LatticeNodes::Occupy(
-  Index begin, Index end, Index* nodes, bool isShared, std::vector<Index>& second)
+/** Sets the bits of points' nodes; those on a node that is taken lose theirs, and are listed. */
+void LatticeNodes::Placement::Occupy(Index begin, Index end, std::vector<Index>& second)
 {
+  Index* const nodes = this->Nodes.Room.data();
+  const bool isShared = this->Threads > 1;
   while (begin < end)
   {
     if (nodes[begin] == None)
@@ -269,41 +542,41 @@ void LatticeNodes::Occupy(
   }
 }
 
-void LatticeNodes::CountBefore(int threads)
+void LatticeNodes::Placement::CountBefore()
 {
-  const Index words = static_cast<Index>(this->Memory.size());
-  this->Before.Resize(this->Memory.size());
-  const Index pieces = std::min(threads, words);
+  const Index words = static_cast<Index>(this->Nodes.Memory.size());
+  this->Nodes.Before.Resize(this->Nodes.Memory.size());
+  const Index pieces = std::min(this->Threads, words);
   const auto beginOf = [&](Index piece) {
     return static_cast<Index>(std::int64_t(words) * piece / pieces);
   };
   std::vector<Index> sums(pieces, 0);
-  ForEachPiece(pieces - 1, threads, [&](Index piece) {
+  ForEachPiece(pieces - 1, this->Threads, [&](Index piece) {
     Index sum = 0;
     for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
     {
-      sum += CountBits(this->Word(word));
+      sum += CountBits(this->Nodes.Word(word));
     }
     sums[piece + 1] = sum;
   });
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
-  ForEachPiece(pieces, threads, [&](Index piece) {
+  ForEachPiece(pieces, this->Threads, [&](Index piece) {
     Index rank = sums[piece];
     for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
     {
-      this->Before[word] = rank;
-      rank += CountBits(this->Word(word));
+      this->Nodes.Before[word] = rank;
+      rank += CountBits(this->Nodes.Word(word));
     }
     sums[piece] = rank;
   });
-  this->Ids.Resize(sums.back());
+  this->Nodes.Ids.Resize(sums.back());
 }
 
 /** Writes the ids of some points to their places. */
-void LatticeNodes::PlaceIds(Index begin, Index end)
+void LatticeNodes::Placement::PlaceIds(Index begin, Index end)
 {
-  const Index* const nodes = this->Room.data();
-  Index* const ids = this->Ids.data();
+  const Index* const nodes = this->Nodes.Room.data();
+  Index* const ids = this->Nodes.Ids.data();
   std::array<Index, Few> ranks;
   for (; begin < end; begin += Few)
   {
@@ -311,13 +584,13 @@ void LatticeNodes::PlaceIds(Index begin, Index end)
     const Index* const here = nodes + begin;
     for (Index i = 0; i < size; ++i)
     {
-      Prefetch(this->Words + (here[i] >> 6));
-      Prefetch(this->Before.data() + (here[i] >> 6));
+      Prefetch(this->Nodes.Words + (here[i] >> 6));
+      Prefetch(this->Nodes.Before.data() + (here[i] >> 6));
     }
     for (Index i = 0; i < size; ++i)
     {
       const bool isNext = i > 0 && ranks[i - 1] != None && here[i] == here[i - 1] + 1;
-      ranks[i] = isNext ? ranks[i - 1] + 1 : here[i] != None ? this->RankOf(here[i]) : None;
+      ranks[i] = isNext ? ranks[i - 1] + 1 : here[i] != None ? this->Nodes.RankOf(here[i]) : None;
       Prefetch(ids + ranks[i]);
     }
     for (Index i = 0; i < size; ++i)
@@ -328,189 +601,6 @@ void LatticeNodes::PlaceIds(Index begin, Index end)
       }
     }
   }
-}
-
-bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, double tolerance,
-  DuplicatePolicy policy, int threads, const Progress& progress)
-{
-  const double count = points.Count - static_cast<double>(search.NotFinite.size());
-  NodeOfPoint nodeOf(search.Steps);
-  NodeOfPoint::Box box;
-  const Point2 &low = search.Low, &high = search.High;
-  for (const Point2& p : { low, Point2{ high.X, low.Y }, Point2{ low.X, high.Y }, high })
-  {
-    nodeOf.Extend(box, p);
-  }
-  struct Gathered
-  {
-    NodeOfPoint::Box Box;
-    double Largest = 0.0;      // distance of a point from its node
-    std::vector<Index> Second; // points on a node that is taken
-  };
-  std::vector<Gathered> pieces(NumberOfRanges(points.Count));
-  const double nodesInBox = (high.X - low.X) * (high.Y - low.Y) / search.Steps.Area();
-  if (box.Columns() * box.Rows() > 1.05 * nodesInBox + 64.0)
-  {
-    // A lattice across the axes: the points themselves tell it better.
-    ForEachRange(
-      points.Count, threads, Part(progress, 0.0, 0.2), [&](Index piece, Index begin, Index end) {
-        NodeOfPoint::Box here;
-        ForEachPoint(points, begin, end, search.NotFinite,
-          [&](Index, const Point2& p) { nodeOf.Extend(here, p); });
-        pieces[piece].Box = here;
-      });
-    box = NodeOfPoint::Box();
-    for (const Gathered& piece : pieces)
-    {
-      box.Add(piece.Box);
-    }
-  }
-  nodeOf.Start(box);
-  const double columns = box.Columns(), rows = box.Rows();
-  const double wordsPerRow = std::floor((columns + 63.0) / 64.0) + 1.0;
-  const double words = wordsPerRow * (rows + RowsBeyond) + 2.0;
-  if (!(columns <= MaximumSide && rows <= MaximumSide) ||
-    columns * rows > MaximumNodesPerPoint * count || words > 2.0 * count + 256.0 ||
-    words * 64.0 > std::numeric_limits<Index>::max())
-  {
-    return false;
-  }
-  this->Columns = static_cast<Index>(columns);
-  this->Rows = static_cast<Index>(rows);
-  this->WordsPerRow = static_cast<Index>(wordsPerRow);
-  this->Memory.Resize(static_cast<std::size_t>(words));
-  this->Words = reinterpret_cast<AtomicWord*>(this->Memory.data());
-  const Index numberOfWords = static_cast<Index>(words);
-  ForEachRange(
-    numberOfWords, threads, Part(progress, 0.2, 0.2), [&](Index, Index begin, Index end) {
-      for (Index word = begin; word < end; ++word)
-      {
-        new (this->Words + word) AtomicWord(0);
-      }
-    });
-
-  const bool areScattered = AreScattered(points, search.NotFinite, nodeOf);
-  this->Room.Resize(static_cast<std::size_t>(points.Count));
-  Index* const nodes = this->Room.data(); // of each point, or None
-  std::atomic<bool> fits{ true };
-  ForEachRange(
-    points.Count, threads, Part(progress, 0.2, 0.5), [&](Index piece, Index begin, Index end) {
-      if (!fits)
-      {
-        return;
-      }
-      Gathered here; // not in memory that other threads write next to
-      double largest = 0.0;
-      for (; begin < end; begin += Few)
-      {
-        const Index last = std::min(begin + Few, end);
-        if (!search.NotFinite.empty())
-        {
-          std::fill(nodes + begin, nodes + last, None);
-        }
-        ForEachPoint(points, begin, last, search.NotFinite, [&](Index id, const Point2& p) {
-          Index column, row;
-          largest = std::max(largest, nodeOf(p, column, row));
-          nodes[id] = this->NodeAt(row, column);
-          Prefetch(this->Words + (nodes[id] >> 6));
-        });
-        if (!areScattered)
-        {
-          this->Occupy(begin, last, nodes, threads > 1, here.Second);
-        }
-      }
-      if (!(largest <= tolerance + Roundoff))
-      {
-        fits = false;
-      }
-      here.Largest = largest;
-      pieces[piece] = std::move(here);
-    });
-  if (!fits)
-  {
-    return false;
-  }
-  double largest = 0.0;
-  for (const Gathered& piece : pieces)
-  {
-    largest = std::max(largest, piece.Largest);
-  }
-  this->LargestOffset = largest + std::max(Roundoff, nodeOf.Roundoff(low, high));
-
-  // Of the points on one node one is kept.
-  IdSet duplicates(points.Count);
-  const auto settle = [&](Index id) {
-    Index column, row;
-    nodeOf(points.At(id), column, row);
-    Index& kept = this->Ids[this->RankOf(this->NodeAt(row, column))];
-    const bool isSamePlace = points.At(kept) == points.At(id);
-    if (isSamePlace && IsPreferred(points, policy, id, kept))
-    {
-      std::swap(id, kept);
-    }
-    duplicates.Add(id);
-    return isSamePlace;
-  };
-  const Progress settling = Part(progress, 0.95, 0.99);
-  Stretches sorted;
-  if (areScattered && this->SortIntoStretches(sorted, threads, Part(progress, 0.5, 0.7)))
-  {
-    ForEachPiece(sorted.Count(), threads, Part(progress, 0.7, 0.8),
-      [&](Index stretch) { this->OccupyStretch(sorted, stretch); });
-    this->CountBefore(threads);
-    ForEachPiece(sorted.Count(), threads, Part(progress, 0.8, 0.95),
-      [&](Index stretch) { this->PlaceStretch(sorted, stretch); });
-    const Index placed = sorted.Begins.back();
-    for (Index i = 0; i < placed && this->NumberOfPoints() < placed; ++i)
-    {
-      ReportStep(settling, static_cast<std::size_t>(i), static_cast<std::size_t>(placed));
-      if (sorted.Nodes[i] == None && !settle(sorted.Ids[i]))
-      {
-        return false;
-      }
-    }
-    this->Room = std::move(sorted.Nodes);
-  }
-  else
-  {
-    if (areScattered)
-    {
-      ForEachRange(
-        points.Count, threads, Part(progress, 0.7, 0.8), [&](Index piece, Index begin, Index end) {
-          std::vector<Index> second;
-          this->Occupy(begin, end, nodes, threads > 1, second);
-          pieces[piece].Second = std::move(second);
-        });
-    }
-    this->CountBefore(threads);
-    ForEachRange(points.Count, threads, Part(progress, 0.8, 0.95),
-      [&](Index, Index begin, Index end) { this->PlaceIds(begin, end); });
-    std::size_t steps = 0;
-    for (const Gathered& piece : pieces)
-    {
-      for (const Index id : piece.Second)
-      {
-        ReportStep(settling, steps++, static_cast<std::size_t>(points.Count));
-        if (!settle(id))
-        {
-          return false;
-        }
-      }
-    }
-  }
-  this->Duplicates = duplicates.List(Part(progress, 0.99, 1.0));
-
-  Index word = 0;
-  while (this->Word(word) == 0)
-  {
-    ++word;
-  }
-  const Index lowest = 64 * word + LowestBit(this->Word(word));
-  const Index row = this->RowOf(lowest);
-  this->Steps = search.Steps;
-  this->Steps.Origin =
-    search.Steps.Node(nodeOf.FirstI + this->ColumnOf(lowest, row), nodeOf.FirstJ + row);
-  return true;
 }
 
 } // namespace elevation

@@ -90,23 +90,7 @@ public:
   std::vector<Index> Duplicates; ///< ids, increasing
 
 private:
-  /** Points by stretches of nodes. */
-  struct Stretches
-  {
-    std::vector<Index> Begins; ///< where each begins in Nodes and Ids; then the end of the last
-    Buffer<Index> Nodes;       ///< None for points on a node that is taken
-    Buffer<Index> Ids;         ///< of the points
-    Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
-  };
-
-  bool SortIntoStretches(Stretches& sorted, int threads, const Progress& progress);
-  void OccupyStretch(Stretches& stretches, Index stretch);
-  void PlaceStretch(const Stretches& stretches, Index stretch);
-  std::uint64_t SetBits(Index word, std::uint64_t bits, bool isShared);
-  /** Sets the bits of points' nodes; those on a node that is taken lose theirs, and are listed. */
-  void Occupy(Index begin, Index end, Index* nodes, bool isShared, std::vector<Index>& second);
-  void CountBefore(int threads);
-  void PlaceIds(Index begin, Index end);
+  class Placement;
 
   using AtomicWord = std::atomic<std::uint64_t>; // several threads set bits
   static_assert(sizeof(AtomicWord) == sizeof(std::uint64_t) &&

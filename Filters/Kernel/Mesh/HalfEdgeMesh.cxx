@@ -66,180 +66,236 @@ namespace
     (last - first > 2 ? " and another one: an edge of a surface has at most two triangles."
                       : " on the same side: the triangles overlap or are oriented differently."));
 }
-} // namespace
 
-void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
+/**
+ * Pairs the half-edges of a mesh. Vertices are numbered as the triangles name them, so that
+ * neighbours lie near in memory. Half-edges that rise, that is, lead to a vertex of a higher number,
+ * are listed by their origins; every other half-edge looks there for the one that runs the other way.
+ */
+class TwinFinder
 {
-  const Index count = this->NumberOfTriangles();
-  this->Twins.assign(this->Triangles.size(), Border);
-
-  // Vertices are numbered as the triangles name them, so that neighbours lie near in memory.
-  Buffer<Index> corners;
-  corners.Resize(this->Triangles.size());
-  Index used = 0;
+public:
+  explicit TwinFinder(Mesh& mesh)
+    : Surface(mesh)
   {
-    Buffer<Index> numbers;
-    numbers.Resize(this->Points.size());
-    std::fill(numbers.begin(), numbers.end(), None);
-    const std::size_t last = this->Triangles.size() - 1;
-    ForEachStretch(count, Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
-      for (Index h = 3 * begin; h < 3 * end; ++h)
-      {
-        Prefetch(&numbers[this->Triangles[std::min(h + HalfEdgesAhead, last)]]);
-        Index& number = numbers[this->Triangles[h]];
-        if (number == None)
-        {
-          number = used++;
-        }
-        corners[h] = number;
-      }
-    });
   }
 
-  // The half-edges that lead to a vertex of a higher number, by their origins.
-  struct Rising
+  /** @return false when two half-edges that run the same way have been found; borders aside */
+  bool Run(const Progress& progress)
+  {
+    this->NumberVertices(Part(progress, 0.0, 0.2));
+    this->CountRising(Part(progress, 0.2, 0.3));
+    this->ListRising(Part(progress, 0.3, 0.5));
+    this->SortWhereMany(Part(progress, 0.5, 0.5));
+    return this->ConnectFalling(Part(progress, 0.5, 0.9));
+  }
+
+private:
+  static constexpr Index Many = 64;  // neighbours of a vertex that are searched in order
+  static constexpr Index AtOnce = 4; // neighbours that are looked at without a branch
+  static constexpr Index Few = 128;  // triangles at a time
+
+  struct RisingEdge
   {
     Index Destination;
     Index HalfEdge;
   };
-  const auto forEach = [&corners](Index begin, Index end, auto&& visit) {
-    for (Index h = 3 * begin; h < 3 * end; h += 3)
-    {
-      const Index a = corners[h];
-      const Index b = corners[h + 1];
-      const Index c = corners[h + 2];
-      visit(h, a, b);
-      visit(h + 1, b, c);
-      visit(h + 2, c, a);
-    }
-  };
-  Buffer<Index> ends; // of each vertex's, one further on, once they are in
-  ends.Resize(static_cast<std::size_t>(used) + 1);
-  std::fill(ends.begin(), ends.end(), 0);
-  ForEachStretch(count, Part(progress, 0.2, 0.3), [&](Index begin, Index end) {
-    forEach(begin, end, [&](Index, Index a, Index b) { ends[a + 1] += a < b; });
-  });
-  for (std::size_t v = 1; v < ends.size(); ++v)
-  {
-    ends[v] += ends[v - 1];
-  }
-  const Index total = ends[used];
-  Buffer<Rising> rising;
-  // One more for those that do not rise, and as many as are looked at beyond the end.
-  constexpr Index atOnce = 4;
-  rising.Resize(static_cast<std::size_t>(total) + 1 + atOnce);
-  std::fill(rising.begin() + total, rising.end(), Rising{ None, None });
-  ForEachStretch(count, Part(progress, 0.3, 0.5), [&](Index begin, Index end) {
-    forEach(begin, end, [&](Index h, Index a, Index b) {
-      // Without branches: which way a half-edge runs cannot be predicted.
-      const bool rises = a < b;
-      rising[rises ? ends[a] : total] = { b, h };
-      ends[a] += rises;
-    });
-  });
-
-  // At a vertex with very many neighbours they are searched in order.
-  constexpr Index many = 64;
-  const auto isBefore = [](const Rising& edge, Index destination) {
-    return edge.Destination < destination;
-  };
-  for (Index v = 0, first = 0; v < used; first = ends[v++])
-  {
-    if (ends[v] - first > many)
-    {
-      Sort(
-        rising.begin() + first, rising.begin() + ends[v],
-        [](const Rising& p, const Rising& q) {
-          return p.Destination != q.Destination ? p.Destination < q.Destination
-                                                : p.HalfEdge < q.HalfEdge;
-        },
-        Part(progress, 0.5, 0.5));
-    }
-  }
-
-  // Every other half-edge looks for the one that rises the other way. Two of them in one place are
-  // found here, but for those without a twin.
-  bool isManifold = true;
-  struct Falling
+  struct FallingEdge
   {
     Index Origin;
     Index Destination;
     Index HalfEdge;
   };
-  constexpr Index few = 128; // triangles at a time
-  Falling falling[3 * few];
-  const auto connect = [&](Index begin, Index end) {
-    std::size_t size = 0;
-    forEach(begin, end, [&](Index h, Index a, Index b) {
-      falling[size] = { a, b, h }; // without branches, again
-      size += a > b;
-    });
-    for (std::size_t i = 0; i < size; ++i)
-    {
-      const Falling& edge = falling[i];
-      Index twin = 0;
-      Index matches = 0;
-      Index first = edge.Destination == 0 ? 0 : ends[edge.Destination - 1];
-      Index last = ends[edge.Destination];
-      if (last - first > many)
-      {
-        first = static_cast<Index>(
-          std::lower_bound(rising.begin() + first, rising.begin() + last, edge.Origin, isBefore) -
-          rising.begin());
-        last = std::min(last, first + atOnce);
-      }
-      const auto look = [&](Index k) {
-        const bool matching = (rising[k].Destination == edge.Origin) & (k < last);
-        twin |= rising[k].HalfEdge & -static_cast<Index>(matching);
-        matches += matching;
-      };
-      // There are rarely more than a few: an end of the loop that can be predicted.
-      for (Index k = first; k < first + atOnce; ++k)
-      {
-        look(k);
-      }
-      for (Index k = first + atOnce; k < last; ++k)
-      {
-        look(k);
-      }
-      isManifold = isManifold && matches <= 1;
-      if (matches == 1)
-      {
-        isManifold = isManifold && this->Twins[twin] == Border;
-        this->Twins[edge.HalfEdge] = twin;
-        this->Twins[twin] = edge.HalfEdge;
-      }
-    }
-  };
-  const Index last = this->NumberOfHalfEdges() - 1;
-  ForEachStretch(count, Part(progress, 0.5, 0.9), [&](Index begin, Index end) {
-    for (; begin < end; begin += few)
-    {
-      // What lies ahead is soon reached, but not in order.
-      constexpr Index ahead = 1 << 13, line = 16;
-      for (Index h = 3 * begin; h < 3 * begin + 3 * few; h += line)
-      {
-        const Index place = h < last - ahead ? h + ahead : last;
-        Prefetch(&this->Twins[place]);
-        Prefetch(&rising[std::min(place / 2, total)]);
-      }
-      connect(begin, std::min(begin + few, end));
-    }
-  });
 
+  void NumberVertices(const Progress& progress)
+  {
+    const std::vector<Index>& triangles = this->Surface.Triangles;
+    this->Corners.Resize(triangles.size());
+    Buffer<Index> numbers;
+    numbers.Resize(this->Surface.Points.size());
+    std::fill(numbers.begin(), numbers.end(), None);
+    const std::size_t last = triangles.size() - 1;
+    Index used = 0;
+    ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      for (Index h = 3 * begin; h < 3 * end; ++h)
+      {
+        Prefetch(&numbers[triangles[std::min(h + HalfEdgesAhead, last)]]);
+        Index& number = numbers[triangles[h]];
+        if (number == None)
+        {
+          number = used++;
+        }
+        this->Corners[h] = number;
+      }
+    });
+    this->Used = used;
+  }
+
+  /** Visits the half-edges of triangles, with their origin and destination. */
+  template <typename Visit>
+  void ForEachHalfEdge(Index begin, Index end, Visit&& visit) const
+  {
+    for (Index h = 3 * begin; h < 3 * end; h += 3)
+    {
+      const Index a = this->Corners[h];
+      const Index b = this->Corners[h + 1];
+      const Index c = this->Corners[h + 2];
+      visit(h, a, b);
+      visit(h + 1, b, c);
+      visit(h + 2, c, a);
+    }
+  }
+
+  /** Ends[v + 1] becomes the number of those that leave vertices up to v. */
+  void CountRising(const Progress& progress)
+  {
+    this->Ends.Resize(static_cast<std::size_t>(this->Used) + 1);
+    Index* const ends = this->Ends.data();
+    std::fill(this->Ends.begin(), this->Ends.end(), 0);
+    ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      this->ForEachHalfEdge(begin, end, [&](Index, Index a, Index b) { ends[a + 1] += a < b; });
+    });
+    for (std::size_t v = 1; v < this->Ends.size(); ++v)
+    {
+      ends[v] += ends[v - 1];
+    }
+  }
+
+  void ListRising(const Progress& progress)
+  {
+    const Index total = this->Ends[this->Used];
+    // One more for those that do not rise, and as many as are looked at beyond the end.
+    this->Rising.Resize(static_cast<std::size_t>(total) + 1 + AtOnce);
+    std::fill(this->Rising.begin() + total, this->Rising.end(), RisingEdge{ None, None });
+    RisingEdge* const rising = this->Rising.data();
+    Index* const ends = this->Ends.data();
+    ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      this->ForEachHalfEdge(begin, end, [&](Index h, Index a, Index b) {
+        // Without branches: which way a half-edge runs cannot be predicted.
+        const bool rises = a < b;
+        rising[rises ? ends[a] : total] = { b, h };
+        ends[a] += rises;
+      });
+    });
+  }
+
+  void SortWhereMany(const Progress& progress)
+  {
+    for (Index v = 0, first = 0; v < this->Used; first = this->Ends[v++])
+    {
+      if (this->Ends[v] - first > Many)
+      {
+        Sort(
+          this->Rising.begin() + first, this->Rising.begin() + this->Ends[v],
+          [](const RisingEdge& p, const RisingEdge& q) {
+            return p.Destination != q.Destination ? p.Destination < q.Destination
+                                                  : p.HalfEdge < q.HalfEdge;
+          },
+          progress);
+      }
+    }
+  }
+
+  bool ConnectFalling(const Progress& progress)
+  {
+    const Index last = this->Surface.NumberOfHalfEdges() - 1, total = this->Ends[this->Used];
+    bool isManifold = true;
+    FallingEdge falling[3 * Few];
+    ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+      for (; begin < end; begin += Few)
+      {
+        // What lies ahead is soon reached, but not in order.
+        constexpr Index ahead = 1 << 13, line = 16;
+        for (Index h = 3 * begin; h < 3 * begin + 3 * Few; h += line)
+        {
+          const Index place = h < last - ahead ? h + ahead : last;
+          Prefetch(&this->Surface.Twins[place]);
+          Prefetch(&this->Rising[std::min(place / 2, total)]);
+        }
+        std::size_t size = 0;
+        this->ForEachHalfEdge(begin, std::min(begin + Few, end), [&](Index h, Index a, Index b) {
+          falling[size] = { a, b, h }; // without branches, again
+          size += a > b;
+        });
+        for (std::size_t i = 0; i < size; ++i)
+        {
+          isManifold = this->Connect(falling[i]) && isManifold;
+        }
+      }
+    });
+    return isManifold;
+  }
+
+  /** @return false when there are several half-edges for the place of one */
+  bool Connect(const FallingEdge& edge)
+  {
+    const RisingEdge* const rising = this->Rising.data();
+    Index first = edge.Destination == 0 ? 0 : this->Ends[edge.Destination - 1];
+    Index last = this->Ends[edge.Destination];
+    if (last - first > Many)
+    {
+      const auto isBefore = [](const RisingEdge& p, Index end) { return p.Destination < end; };
+      first = static_cast<Index>(
+        std::lower_bound(rising + first, rising + last, edge.Origin, isBefore) - rising);
+      last = std::min(last, first + AtOnce);
+    }
+    Index twin = 0;
+    Index matches = 0;
+    const auto look = [&](Index k) {
+      const bool matching = (rising[k].Destination == edge.Origin) & (k < last);
+      twin |= rising[k].HalfEdge & -static_cast<Index>(matching);
+      matches += matching;
+    };
+    // There are rarely more than a few: an end of the loop that can be predicted.
+    for (Index k = first; k < first + AtOnce; ++k)
+    {
+      look(k);
+    }
+    for (Index k = first + AtOnce; k < last; ++k)
+    {
+      look(k);
+    }
+    if (matches != 1)
+    {
+      return matches == 0;
+    }
+    std::vector<Index>& twins = this->Surface.Twins;
+    const bool isFree = twins[twin] == Mesh::Border;
+    twins[edge.HalfEdge] = twin;
+    twins[twin] = edge.HalfEdge;
+    return isFree;
+  }
+
+  Mesh& Surface;
+  Buffer<Index> Corners;     ///< the number of each half-edge's origin
+  Index Used = 0;            ///< how many vertices have a number
+  Buffer<Index> Ends;        ///< where each vertex's part of Rising ends; one further on till it is full
+  Buffer<RisingEdge> Rising; ///< by their origins
+};
+
+/** Whether no two borders run the same way between the same vertices. */
+bool HasDistinctBorders(const Mesh& mesh, const Progress& progress)
+{
   std::vector<std::pair<Index, Index>> borders;
-  ForEachStretch(count, Part(progress, 0.9, 0.95), [&](Index begin, Index end) {
+  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)
     {
-      if (this->IsBorder(h))
+      if (mesh.IsBorder(h))
       {
-        borders.emplace_back(this->Origin(h), this->Destination(h));
+        borders.emplace_back(mesh.Origin(h), mesh.Destination(h));
       }
     }
   });
-  Sort(borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(),
-    Part(progress, 0.95, 1.0));
-  if (!isManifold || std::adjacent_find(borders.begin(), borders.end()) != borders.end())
+  Sort(
+    borders.begin(), borders.end(), std::less<std::pair<Index, Index>>(), Part(progress, 0.5, 1.0));
+  return std::adjacent_find(borders.begin(), borders.end()) == borders.end();
+}
+} // namespace
+
+void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
+{
+  this->Twins.assign(this->Triangles.size(), Border);
+  if (!TwinFinder(*this).Run(progress) || !HasDistinctBorders(*this, Part(progress, 0.9, 1.0)))
   {
     ThrowNotManifold(*this, firstCell, Part(progress, 1.0, 1.0));
   }
@@ -270,126 +326,166 @@ bool TurnsToFirst(const Point2& b, const Point2& r, const Point2& u, const Point
   const int vClass = TurnClass(b, r, v);
   return uClass != vClass ? uClass < vClass : Orientation(b, u, v) == Positive;
 }
-} // namespace
 
-Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<char>& keep)
+/** Walks along the border of a mesh; its members are what the passes hand on. */
+class BorderWalker
 {
-  std::vector<Index> borders;
-  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.95), [&](Index begin, Index end) {
-    if (keep.empty())
-    {
+public:
+  BorderWalker(const Mesh& mesh, const std::vector<char>& keep)
+    : Surface(mesh)
+    , Keep(keep)
+  {
+  }
+
+  Rings Run(const Progress& progress)
+  {
+    this->FindBorders(Part(progress, 0.0, 0.95));
+    const Progress sorting = Part(progress, 0.95, 0.95);
+    this->ListLeaving(sorting);
+    this->SortWhereMany(sorting);
+    return this->Walk(Part(progress, 0.95, 1.0));
+  }
+
+private:
+  /** A border that leaves a vertex: the vertex, and the border's place among all. */
+  using Leave = std::pair<Index, Index>;
+  using Place = std::vector<Leave>::const_iterator;
+
+  /** Where more of them meet they are searched in the order of turning from the one in Leaving. */
+  static constexpr std::ptrdiff_t Many = 16;
+
+  void FindBorders(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    const std::vector<char>& keep = this->Keep;
+    const bool isWhole = keep.empty();
+    ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       for (Index h = 3 * begin; h < 3 * end; ++h)
       {
-        if (mesh.IsBorder(h))
+        const bool isKept = isWhole || keep[Mesh::Triangle(h)];
+        if (isKept && (mesh.IsBorder(h) || (!isWhole && !keep[Mesh::Triangle(mesh.Twin(h))])))
         {
-          borders.push_back(h);
+          this->Borders.push_back(h);
         }
       }
-      return;
-    }
-    for (Index h = 3 * begin; h < 3 * end; ++h)
+    });
+  }
+
+  void ListLeaving(const Progress& progress)
+  {
+    this->Leaving.assign(this->Surface.NumberOfPoints(), None);
+    for (Index i = 0; i < this->Count(); ++i)
     {
-      if (keep[Mesh::Triangle(h)] && (mesh.IsBorder(h) || !keep[Mesh::Triangle(mesh.Twin(h))]))
+      const Index vertex = this->Surface.Origin(this->Borders[i]);
+      if (this->Leaving[vertex] == None)
       {
-        borders.push_back(h);
+        this->Leaving[vertex] = i;
+      }
+      else
+      {
+        this->Further.emplace_back(vertex, i);
       }
     }
-  });
-
-  // The borders that leave each vertex, by their places among all: one nearly always, several where
-  // borders meet.
-  std::vector<Index> leaving(mesh.NumberOfPoints(), None);
-  std::vector<std::pair<Index, Index>> further; // (vertex, place), sorted
-  const Index numberOfBorders = static_cast<Index>(borders.size());
-  for (Index i = 0; i < numberOfBorders; ++i)
-  {
-    const Index vertex = mesh.Origin(borders[i]);
-    if (leaving[vertex] == None)
-    {
-      leaving[vertex] = i;
-    }
-    else
-    {
-      further.emplace_back(vertex, i);
-    }
-  }
-  Sort(further.begin(), further.end(), std::less<std::pair<Index, Index>>(),
-    Part(progress, 0.95, 0.95));
-  const auto firstAt = [&further](Index vertex) {
-    return std::lower_bound(further.begin(), further.end(), std::make_pair(vertex, Index(0)));
-  };
-  const auto endOf = [&](Index place) -> const Point2& {
-    return mesh.PointOf(mesh.Destination(borders[place]));
-  };
-  // Where very many meet they are searched in the order of turning from the one in leaving.
-  constexpr std::ptrdiff_t many = 16;
-  for (auto first = further.begin(); first != further.end();)
-  {
-    const Index b = first->first;
-    const auto last = firstAt(b + 1);
-    if (last - first > many)
-    {
-      Sort(
-        first, last,
-        [&](const std::pair<Index, Index>& u, const std::pair<Index, Index>& v) {
-          const Point2& from = endOf(leaving[b]);
-          const Point2& p = mesh.PointOf(b);
-          return TurnsToFirst(p, from, endOf(u.second), endOf(v.second)) ||
-            (u.second < v.second && !TurnsToFirst(p, from, endOf(v.second), endOf(u.second)));
-        },
-        Part(progress, 0.95, 0.95));
-    }
-    first = last;
+    Sort(this->Further.begin(), this->Further.end(), std::less<Leave>(), progress);
   }
 
-  // Behind a border a->b the empty wedge at b opens counter-clockwise from b->a; the walk goes on
-  // with the border that closes this wedge.
-  const auto follow = [&](Index h) {
-    const Index b = mesh.Destination(h);
-    const Point2& p = mesh.PointOf(b);
-    const Point2& from = mesh.PointOf(mesh.Origin(h));
-    Index best = leaving[b];
-    auto other = firstAt(b);
-    if (further.end() - other > many && other[many].first == b)
+  void SortWhereMany(const Progress& progress)
+  {
+    for (auto first = this->Further.begin(); first != this->Further.end();)
     {
-      const auto last = firstAt(b + 1);
-      const Point2& start = endOf(best);
-      other = std::partition_point(other, last, [&](const std::pair<Index, Index>& u) {
-        return TurnsToFirst(p, start, endOf(u.second), from);
-      });
+      const Index b = first->first;
+      const auto last = first + (this->FirstAt(b + 1) - first);
+      if (last - first > Many)
+      {
+        const Point2& p = this->Surface.PointOf(b);
+        const Point2& from = this->EndOf(this->Leaving[b]);
+        Sort(
+          first, last,
+          [&](const Leave& u, const Leave& v) {
+            return TurnsToFirst(p, from, this->EndOf(u.second), this->EndOf(v.second)) ||
+              (u.second < v.second &&
+                !TurnsToFirst(p, from, this->EndOf(v.second), this->EndOf(u.second)));
+          },
+          progress);
+      }
+      first = last;
+    }
+  }
+
+  /**
+   * Behind a border a->b the empty wedge at b opens counter-clockwise from b->a; the walk goes on
+   * with the border that closes this wedge.
+   */
+  Index Following(Index h) const
+  {
+    const Index b = this->Surface.Destination(h);
+    const Point2& p = this->Surface.PointOf(b);
+    const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
+    Index best = this->Leaving[b];
+    Place other = this->FirstAt(b);
+    if (this->Further.end() - other > Many && other[Many].first == b)
+    {
+      const Place last = this->FirstAt(b + 1);
+      const Point2& start = this->EndOf(best);
+      other = std::partition_point(other, last,
+        [&](const Leave& u) { return TurnsToFirst(p, start, this->EndOf(u.second), from); });
       return other == last || TurnClass(p, start, from) < 0 ? best : other->second;
     }
-    for (; other != further.end() && other->first == b; ++other)
+    for (; other != this->Further.end() && other->first == b; ++other)
     {
-      if (TurnsToFirst(p, from, endOf(other->second), endOf(best)))
+      if (TurnsToFirst(p, from, this->EndOf(other->second), this->EndOf(best)))
       {
         best = other->second;
       }
     }
     return best;
-  };
-
-  Rings walks;
-  walks.Vertices.reserve(numberOfBorders);
-  std::vector<char> seen(numberOfBorders, 0);
-  const Progress walking = Part(progress, 0.95, 1.0);
-  for (Index start = 0; start < numberOfBorders; ++start)
-  {
-    if (seen[start])
-    {
-      continue;
-    }
-    Index i = start;
-    do
-    {
-      ReportStep(walking, walks.Vertices.size(), numberOfBorders);
-      seen[i] = 1;
-      walks.Vertices.push_back(borders[i]);
-      i = follow(borders[i]);
-    } while (!seen[i]);
-    walks.Offsets.push_back(static_cast<Index>(walks.Vertices.size()));
   }
-  return walks;
+
+  Rings Walk(const Progress& progress) const
+  {
+    Rings walks;
+    walks.Vertices.reserve(this->Borders.size());
+    std::vector<char> seen(this->Borders.size(), 0);
+    for (Index start = 0; start < this->Count(); ++start)
+    {
+      if (seen[start])
+      {
+        continue;
+      }
+      Index i = start;
+      do
+      {
+        ReportStep(progress, walks.Vertices.size(), this->Borders.size());
+        seen[i] = 1;
+        walks.Vertices.push_back(this->Borders[i]);
+        i = this->Following(this->Borders[i]);
+      } while (!seen[i]);
+      walks.Offsets.push_back(static_cast<Index>(walks.Vertices.size()));
+    }
+    return walks;
+  }
+
+  Index Count() const { return static_cast<Index>(this->Borders.size()); }
+  Place FirstAt(Index vertex) const
+  {
+    return std::lower_bound(this->Further.begin(), this->Further.end(), Leave(vertex, 0));
+  }
+  const Point2& EndOf(Index place) const
+  {
+    return this->Surface.PointOf(this->Surface.Destination(this->Borders[place]));
+  }
+
+  const Mesh& Surface;
+  const std::vector<char>& Keep;
+  std::vector<Index> Borders; ///< half-edges, increasing
+  std::vector<Index> Leaving; ///< one a vertex: the place of the first border that leaves it
+  std::vector<Leave> Further; ///< the others, where borders meet, sorted
+};
+} // namespace
+
+Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<char>& keep)
+{
+  return BorderWalker(mesh, keep).Run(progress);
 }
 
 } // namespace elevation

@@ -107,6 +107,66 @@ struct Parts
   Index PartOf(Index triangle) const { return this->Labels[triangle] / 2; }
 };
 
+/** Labels of triangles, as of Parts, of which some turn out to be those of one part. */
+class JoinedLabels
+{
+public:
+  Index Add()
+  {
+    this->JoinedTo.push_back(static_cast<Index>(2 * this->JoinedTo.size()));
+    return this->JoinedTo.back();
+  }
+  /** @return the one that both go on as */
+  Index Join(Index label, Index other)
+  {
+    label = this->Find(label);
+    const Index root = this->Find(other);
+    const Index low = std::min(label, root);
+    const Index high = std::max(label, root);
+    if (low / 2 == high / 2)
+    {
+      return label;
+    }
+    this->JoinedTo[high / 2] = low ^ (high & 1);
+    return low;
+  }
+  /** Counts only those that have not been joined to others, in their order, and takes the rest out. */
+  void Number(std::vector<Index>& lowest)
+  {
+    Index remaining = 0;
+    for (std::size_t i = 0; i < this->JoinedTo.size(); ++i)
+    {
+      const Index root = this->JoinedTo[i];
+      if (root == static_cast<Index>(2 * i))
+      {
+        lowest[remaining] = lowest[i];
+        this->JoinedTo[i] = 2 * remaining++;
+      }
+      else
+      {
+        this->JoinedTo[i] = this->JoinedTo[root / 2] ^ (root & 1);
+      }
+    }
+    lowest.resize(remaining);
+  }
+  /** What a label has been joined to. */
+  Index operator()(Index label) const { return this->JoinedTo[label / 2] ^ (label & 1); }
+
+private:
+  Index Find(Index label)
+  {
+    while (this->JoinedTo[label / 2] != (label & ~1))
+    {
+      const Index next = this->JoinedTo[label / 2];
+      this->JoinedTo[label / 2] = this->JoinedTo[next / 2] ^ (next & 1); // halves the way
+      label = (*this)(label);
+    }
+    return label;
+  }
+
+  std::vector<Index> JoinedTo; ///< one a part: to itself while it has not been
+};
+
 /**
  * Finds the parts: one sweep over the triangles, each of which joins what its neighbours before it
  * belong to. Linear, but for a logarithm of the parts that have been joined; fast where neighbours
@@ -122,17 +182,7 @@ Parts FindParts(const Mesh& mesh, const Progress& progress, Relation&& relation)
   const Index count = mesh.NumberOfTriangles();
   Parts parts;
   parts.Labels.Resize(count);
-  // One a part: where it has been joined to, as a label; to itself while it has not.
-  std::vector<Index> joined;
-  const auto find = [&joined](Index label) {
-    while (joined[label / 2] != (label & ~1))
-    {
-      const Index next = joined[label / 2];
-      joined[label / 2] = joined[next / 2] ^ (next & 1); // halves the way
-      label = joined[label / 2] ^ (label & 1);
-    }
-    return label;
-  };
+  JoinedLabels joined;
   ForEachStretch(count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
@@ -141,63 +191,27 @@ Parts FindParts(const Mesh& mesh, const Progress& progress, Relation&& relation)
       {
         // Border, which is below 0, is not among those before.
         const Index twin = mesh.Twins[h];
-        if (static_cast<std::uint32_t>(twin) >= static_cast<std::uint32_t>(3 * t))
+        const bool isBefore = static_cast<std::uint32_t>(twin) < static_cast<std::uint32_t>(3 * t);
+        const int step = isBefore ? relation(h) : -1;
+        if (step >= 0)
         {
-          continue;
-        }
-        const int step = relation(h);
-        if (step < 0)
-        {
-          continue;
-        }
-        const Index other = parts.Labels[Mesh::Triangle(twin)] ^ step;
-        if (label == None)
-        {
-          label = other;
-        }
-        else if (label != other)
-        {
-          label = find(label);
-          const Index root = find(other);
-          const Index low = std::min(label, root);
-          const Index high = std::max(label, root);
-          if (low / 2 != high / 2)
-          {
-            joined[high / 2] = low ^ (high & 1);
-            label = low;
-          }
+          const Index other = parts.Labels[Mesh::Triangle(twin)] ^ step;
+          label = label == None || label == other ? other : joined.Join(label, other);
         }
       }
       if (label == None)
       {
-        label = static_cast<Index>(2 * joined.size());
-        joined.push_back(label);
+        label = joined.Add();
         parts.Lowest.push_back(t);
       }
       parts.Labels[t] = label;
     }
   });
-
-  // Only parts that have not been joined to others remain; lower ones are numbered before.
-  Index remaining = 0;
-  for (std::size_t i = 0; i < joined.size(); ++i)
-  {
-    const Index root = joined[i];
-    if (root == static_cast<Index>(2 * i))
-    {
-      parts.Lowest[remaining] = parts.Lowest[i];
-      joined[i] = 2 * remaining++;
-    }
-    else
-    {
-      joined[i] = joined[root / 2] ^ (root & 1);
-    }
-  }
-  parts.Lowest.resize(remaining);
+  joined.Number(parts.Lowest);
   ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
-      parts.Labels[t] = joined[parts.Labels[t] / 2] ^ (parts.Labels[t] & 1);
+      parts.Labels[t] = joined(parts.Labels[t]);
     }
   });
   return parts;
