@@ -419,6 +419,9 @@ class VtkFormats(InFolder):
         self.assert_refused("a cell has the corner 77, but there are 3 points", text, "a.vtk")
         with self.assertRaisesRegex(files.FileError, "corner 77"):
             files.read_boundary(self.path("a.vtk"))
+        self.assert_refused(
+            "a cell has the corner -1, but there are 3 points", text.replace("77", "-1"), "b.vtk"
+        )
 
     def test_coordinates_too_large_for_the_format_are_told(self):
         from vtkmodules.vtkIOPLY import vtkPLYWriter
@@ -521,6 +524,17 @@ class Tiff(InFolder):
         cloud = files.read_points(self.tiff({}), no_data=5.0)
         self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [-9999, 1, 2, 4, 6])
 
+    def test_a_no_data_value_is_found_among_pixels_of_single_precision(self):
+        # As text it is a double, and not the float that stands in the pixels.
+        self.assertNotEqual(float(numpy.float32(-9999.9)), -9999.9)
+        rows = numpy.array([[1.0, -9999.9], [2.0, 3.0]])
+        for tags, no_data in (({42113: ("s", b"-9999.9\0")}, None), ({}, -9999.9)):
+            with self.subTest(no_data=no_data):
+                write_tiff(self.path("b.tif"), rows, tags)
+                cloud = files.read_points(self.path("b.tif"), no_data=no_data)
+                self.assertEqual(coordinates(cloud)[:, 2].tolist(), [1, 2, 3])
+                self.assertEqual(cloud.left_out, {"pixels without data": 1})
+
     def test_what_vtk_reads_wrong_goes_through_gdal_or_is_refused(self):
         for words, tags, bits in (
             ("has a colour table", {262: ("H", (3,))}, 32),
@@ -543,7 +557,7 @@ class Tiff(InFolder):
         self.assert_refused("cut off", b"II*\0\xff\0\0\0", "a.tif")
 
 
-def write_dem(path, profiles, dx=30.0, dy=30.0):
+def write_dem(path, profiles, dx=30.0, dy=30.0, dz=1.0, datum=0.0):
     """A USGS ASCII DEM. profiles: [(x, y of the first elevation, elevations)]."""
 
     def double(value):
@@ -551,11 +565,12 @@ def write_dem(path, profiles, dx=30.0, dy=30.0):
 
     head = "A TEST".ljust(144) + f"{1:6d}{1:6d}{1:6d}{10:6d}" + double(0.0) * 15
     head += f"{2:6d}{2:6d}{4:6d}" + double(0.0) * 8 + double(0.0) * 2 + double(0.0) + f"{0:6d}"
-    head += "".join(f"{v:12.6E}".replace("E", "D") for v in (dx, dy, 1.0))
+    head += "".join(f"{v:12.6E}".replace("E", "D") for v in (dx, dy, dz))
     head += f"{1:6d}{len(profiles):6d}"
     text = head.ljust(1024)
     for i, (x, y, z) in enumerate(profiles, 1):
-        record = f"{1:6d}{i:6d}{len(z):6d}{1:6d}" + double(x) + double(y) + double(0.0) * 3
+        record = f"{1:6d}{i:6d}{len(z):6d}{1:6d}" + double(x) + double(y) + double(datum)
+        record += double(0.0) * 2
         record += "".join(f"{v:6d}" for v in z)
         text += record.ljust(1024)
     with open(path, "w", encoding="ascii") as stream:
@@ -576,6 +591,14 @@ class Dem(InFolder):
         cloud = files.read_points(self.path("a.dem"))
         self.assert_rows(cloud, [(0, 0, 12), (0, 90, 40)])
         self.assertEqual(cloud.left_out, {"pixels without data": 2})
+
+    def test_elevations_are_steps_above_the_datum_of_their_profile(self):
+        write_dem(self.path("a.dem"), [(0, 0, [12, -32767, 20])], dz=0.25, datum=100.0)
+        cloud = files.read_points(self.path("a.dem"))
+        self.assert_rows(cloud, [(0, 0, 103), (0, 60, 105)])
+        # What a user calls no data is an elevation.
+        cloud = files.read_points(self.path("a.dem"), no_data=105.0)
+        self.assert_rows(cloud, [(0, 0, 103)])
 
     def test_a_damaged_file_names_the_profile(self):
         self.assert_refused("is not a USGS ASCII DEM", "no dem at all", "a.dem")
