@@ -316,6 +316,37 @@ TEST(Constraints, InMeshesWithHolesAndPinchedVerticesAreRecoveredOrRefused)
   EXPECT_GT(refused, 500);
 }
 
+TEST(Constraints, AlongAHalfMergedSeamEndInTheOneOfTwoVerticesThatIsMeant)
+{
+  // Two triangles side by side, with one vertex in common and two at the other end of their seam.
+  Mesh mesh;
+  mesh.Points = { { 0, 0 }, { 2, 1 }, { 0, 2 }, { 0, 2 }, { -2, 1 } };
+  for (const int first : { 0, 1 })
+  {
+    const Index right[] = { 0, 1, 2 }, left[] = { 0, 3, 4 };
+    mesh.Triangles.assign(first == 0 ? right : left, (first == 0 ? right : left) + 3);
+    mesh.Triangles.insert(
+      mesh.Triangles.end(), first == 0 ? left : right, (first == 0 ? left : right) + 3);
+    mesh.ConnectTwins();
+    const std::vector<Index> triangles = mesh.Triangles;
+    for (const Index end : { 2, 3 })
+    {
+      for (const Segment& segment : { Segment{ 0, end }, Segment{ end, 0 } })
+      {
+        std::vector<char> constrained;
+        EXPECT_EQ(RecoverSegments(mesh, { segment }, constrained), 0);
+        EXPECT_EQ(mesh.Triangles, triangles);
+        for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+        {
+          EXPECT_EQ(constrained[h] != 0,
+            std::minmax(mesh.Origin(h), mesh.Destination(h)) == std::minmax<Index>(0, end))
+            << end << " " << h;
+        }
+      }
+    }
+  }
+}
+
 TEST(Constraints, ThatCrossAreRefusedByName)
 {
   const Mesh mesh = Delaunay({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 }, { 2, 1 }, { 2, 5 } });

@@ -7,6 +7,7 @@
 
 #include "Kernel/Trim/Crossings.h"
 #include "Kernel/Trim/Insertion.h"
+#include "Kernel/Mesh/Holes.h"
 #include "Kernel/Base/Predicates.h"
 #include "Kernel/Trim/Trim.h"
 
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -1236,6 +1238,44 @@ TEST(InsertRings, AcrossABorderOfTrianglesAsThinAsRounding)
       kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t) / 625;
     }
     ASSERT_NEAR(kept, 2.0 * 6 * 0.25 * 0.5, 1e-6) << round;
+  }
+}
+
+TEST(InsertRings, DoesNotMoveABorderOverAnotherOneThatRunsAlongIt)
+{
+  // Two triangles with one unit in the last place between them; a ring begins so near that gap that
+  // either border could be led through its point.
+  const double unit = std::numeric_limits<double>::epsilon();
+  for (int units = -1; units <= 2; ++units)
+  {
+    const bool isAbove = units > 0;
+    for (const bool isUpperFirst : { false, true })
+    {
+      Mesh mesh;
+      mesh.Points = { { 4, -3 }, { 8, 1 }, { 0, 1 }, { 4, 5 }, { 0, 1 + unit }, { 8, 1 + unit } };
+      mesh.Triangles = { 0, 1, 2, 3, 4, 5 };
+      if (isUpperFirst)
+      {
+        mesh.Triangles = { 3, 4, 5, 0, 1, 2 };
+      }
+      mesh.ConnectTwins();
+      const double far = isAbove ? 3.0 : -1.0;
+      Boundary boundary;
+      boundary.Add({ { 4, 1 + units * unit }, { 4.5, far }, { 3.5, far } });
+      const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+      ASSERT_EQ(FindingsOf(mesh), "");
+      EXPECT_NO_THROW(FindHoles(mesh)) << units;
+      // A border that the point is on is cut there.
+      const auto borders = std::count(mesh.Twins.begin(), mesh.Twins.end(), Mesh::Border);
+      EXPECT_EQ(borders, units == 0 || units == 1 ? 7 : 6) << units;
+      const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+      double kept = 0.0;
+      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+      {
+        kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t);
+      }
+      EXPECT_NEAR(kept, 2.0, 1e-12) << units;
+    }
   }
 }
 

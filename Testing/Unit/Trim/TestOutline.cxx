@@ -865,6 +865,47 @@ TEST(ExtractBoundary, DoesNotDependOnTheOrderOfAnyMesh)
   EXPECT_GT(numberOfRings, 1000u);
 }
 
+TEST(ExtractBoundary, RingsBeginAtOneOfTwoVerticesAtTheLowestPlaceByTheNextOnes)
+{
+  // A triangle in a triangle, and the land between them slit open from corner to corner: vertices
+  // 0 and 7 are at the lowest place. From 7 the ring goes on inwards, to the lower of the next ones.
+  const std::vector<Point2> points{ { 0, -4 }, { 4, 4 }, { -4, 4 }, { 0, -1 }, { 1, 1 }, { -1, 1 },
+    { 0, -1 }, { 0, -4 } };
+  const std::vector<Index> triangles{ 0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4, 2, 7, 6, 2, 6, 5 };
+  const std::vector<Index> expected{ 7, 6, 5, 4, 3, 0, 1, 2 };
+  Random random(18);
+  std::vector<Index> ids(points.size()), order(triangles.size() / 3);
+  std::iota(ids.begin(), ids.end(), 0);
+  std::iota(order.begin(), order.end(), 0);
+  for (int round = 0; round < 20; ++round)
+  {
+    Mesh mesh;
+    mesh.Points.resize(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v)
+    {
+      mesh.Points[ids[v]] = points[v];
+    }
+    for (const Index t : order)
+    {
+      for (Index i = 0; i < 3; ++i)
+      {
+        mesh.Triangles.push_back(ids[triangles[3 * t + (i + round) % 3]]);
+      }
+    }
+    mesh.ConnectTwins();
+    ExtractOptions options;
+    options.GapTolerance = 1e9;
+    std::vector<Index> ring;
+    for (const Index v : ExtractBoundary(mesh, options).Vertices.Vertices)
+    {
+      ring.push_back(static_cast<Index>(std::find(ids.begin(), ids.end(), v) - ids.begin()));
+    }
+    EXPECT_EQ(ring, expected) << round;
+    random.Shuffle(ids);
+    random.Shuffle(order);
+  }
+}
+
 TEST(ExtractBoundary, AHubDoesNotTellTheTolerance)
 {
   // A lattice, and a fan of very many triangles, thousands of spacings long. Wherever its middle

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Mesh/TriangleSweep.h"
+#include "Kernel/Base/Predicates.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+using namespace elevation;
+
+namespace
+{
+
+/** A visitor that only looks. */
+struct Nobody
+{
+  using Vertex = SweptVertex;
+  void Start(Vertex&) const {}
+  void Begin(const Vertex&, const Vertex&) {}
+  void Visit(Index, const Vertex&, const Vertex&, const Vertex&) {}
+};
+
+/** Whether a sweep finds the triangles counter-clockwise. */
+bool IsRight(const std::vector<double>& coordinates, const std::vector<Index>& corners)
+{
+  TriangleList list;
+  list.Corners = corners.data();
+  list.Count = static_cast<Index>(corners.size() / 3);
+  list.Points.Double = coordinates.data();
+  list.Points.Count = static_cast<Index>(coordinates.size() / 3);
+  return TriangleSweep<Nobody>(list, 1).Run(Nobody(), Progress());
+}
+
+} // namespace
+
+TEST(TriangleSweep, SeesATriangleInAFanThatIsInvertedByOneRounding)
+{
+  // The corner of the fan is on a line with two others, or off it by a few units in the last place:
+  // its differences to these are rounded, and their products tell many that are inverted or flat
+  // for counter-clockwise.
+  const double unit = 0.5 * std::numeric_limits<double>::epsilon();
+  const double near = 8.8, far = 12.1;
+  int numberOfTraps = 0;
+  for (int i = -20; i <= 20; ++i)
+  {
+    for (int j = -20; j <= 20; ++j)
+    {
+      const Point2 corner{ 0.5 + unit * i, 0.5 + unit * j };
+      const bool isRight = Orientation(corner, { near, near }, { far, far }) == Positive;
+      const double left = (near - corner.X) * (far - corner.Y);
+      const double right = (near - corner.Y) * (far - corner.X);
+      numberOfTraps += !isRight && left > right;
+      ASSERT_EQ(
+        IsRight({ corner.X, corner.Y, 0, near, near, 0, far, far, 0, 0, 30, 0, -9, 0, 0 },
+          { 0, 1, 2, 0, 2, 3, 0, 3, 4 }),
+        isRight)
+        << i << " " << j;
+    }
+  }
+  EXPECT_GT(numberOfTraps, 20);
+}
