@@ -35,6 +35,7 @@ set(es_kernel_Trim
   TrimMesh
   QuickTrim)
 set(es_kernel_Fill
+  Multigrid
   Membrane
   Spline
   Heights
@@ -67,9 +68,11 @@ endforeach ()
 unset(es_room)
 unset(es_name)
 
-# What the kernel needs from the compiler, wherever it is compiled.
+# What the kernel needs, wherever it is compiled.
 function (es_kernel_compile_options target)
   target_compile_features("${target}" PRIVATE cxx_std_17)
+  # Headers alone, for linear algebra. Who uses an installed library needs none of it.
+  target_link_libraries("${target}" PRIVATE "$<BUILD_INTERFACE:VTK::eigen>")
   # The error bounds of the predicates hold for IEEE arithmetic, one rounding per operation. A fused
   # multiply-add or reordered sums would make the signs wrong, so a global -ffast-math is undone here.
   # Nothing reads errno: without it a square root is one instruction, also in loops.

@@ -62,7 +62,7 @@ endif ()
 include(CTest)
 
 # ---- VTK ---------------------------------------------------------------------------------------
-set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel)
+set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel eigen)
 set(es_vtk_test_components FiltersCore FiltersModeling FiltersSources IOXML InteractionStyle
   RenderingOpenGL2 TestingCore TestingRendering)
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Heights.h"
 
+#include "Spline.h"
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
@@ -362,7 +363,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
   {
     this->ChooseCentres();
     const int k = wanted == Interpolation::Cubic ? 1 : 0;
-    this->Splines[k] = this->MakeSpline(Kernels[k]);
+    this->Splines[k] = this->MakeSpline(k);
     this->Method = this->Splines[k] ? wanted : Interpolation::Membrane;
     this->Shares[k + 1] = 1.0;
   }
@@ -379,6 +380,8 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     this->Flat = std::make_unique<Membrane>(patch.Neighbours, progress);
   }
 }
+
+Heights::~Heights() = default;
 
 void Heights::CollectRing(const VertexStars& stars)
 {
@@ -485,7 +488,7 @@ void Heights::ChooseCentres()
     this->Centres[boundary - 1] == static_cast<Index>(boundary) - 1;
 }
 
-std::unique_ptr<Spline> Heights::MakeSpline(Spline::Kernel kernel) const
+std::unique_ptr<Spline> Heights::MakeSpline(int which) const
 {
   std::vector<Point2> centres;
   centres.reserve(this->Centres.size());
@@ -494,7 +497,7 @@ std::unique_ptr<Spline> Heights::MakeSpline(Spline::Kernel kernel) const
     centres.push_back(this->Normalized(this->Surface.PointOf(this->Known[place])));
   }
   auto spline = std::make_unique<Spline>();
-  return spline->Prepare(centres, kernel) ? std::move(spline) : nullptr;
+  return spline->Prepare(centres, Kernels[which]) ? std::move(spline) : nullptr;
 }
 
 void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
@@ -502,8 +505,8 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
   const Index count = this->Patch.NumberOfNewVertices();
   this->Method = Interpolation::Membrane;
-  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(Kernels[0]),
-    this->MakeSpline(Kernels[1]) };
+  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(0),
+    this->MakeSpline(1) };
   if (!splines[0])
   {
     return;

@@ -60,9 +60,7 @@
 #ifndef elevation_Fill_Heights_h
 #define elevation_Fill_Heights_h
 
-#include "Membrane.h"
 #include "Patch.h"
-#include "Spline.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
 
@@ -72,6 +70,8 @@
 
 namespace elevation
 {
+
+class Spline;
 
 /** How values are found. The numbers are what users read in the output. */
 enum class Interpolation : unsigned char
@@ -107,6 +107,7 @@ public:
    */
   Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch, Interpolation wanted,
     const Values& values, const Progress& progress = Progress());
+  ~Heights();
 
   /** The method, of several that are mixed the one with the largest share; never Adaptive. */
   Interpolation Used() const { return this->Method; }
@@ -126,7 +127,7 @@ private:
   void CollectRing(const VertexStars& stars);
   void CollectSlopes(const VertexStars& stars);
   void ChooseCentres();
-  std::unique_ptr<Spline> MakeSpline(Spline::Kernel kernel) const;
+  std::unique_ptr<Spline> MakeSpline(int which) const;
   bool HasSpline() const { return this->Splines[0] || this->Splines[1]; }
   bool NeedsFlat() const
   {

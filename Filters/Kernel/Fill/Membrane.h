@@ -6,19 +6,12 @@
  * keep their values. This is the state that eq. 2 of [Nguyen] tends to when it is repeated, a
  * stretched membrane. Values stay between the least and the greatest known one.
  *
- * Two ways, by the work that the first would take:
- *   - a Cholesky factorisation in the order of a breadth-first search, in which the entries
- *     of a row lie close to the diagonal [Cuthill & McKee];
- *   - conjugate gradients with a multigrid cycle before each step. The coarser graphs are made of
- *     the graph itself: a vertex and its neighbours become one vertex [Vanek, Mandel, Brezina].
+ * The systems of equations are solved by Multigrid.h.
  *
- * Cost: a fraction of a microsecond an unknown and right-hand side for small graphs, a few
- * microseconds for large ones; some 300 bytes an unknown. One thread; the same bits each time.
+ * Cost: linear in the unknowns, but for a small factor that grows with them, and a few hundred bytes
+ * each. One thread; the same bits each time.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
- * [Cuthill & McKee] Reducing the bandwidth of sparse symmetric matrices, 1969.
- * [Vanek, Mandel, Brezina] Algebraic multigrid by smoothed aggregation for second and fourth order
- * elliptic problems, 1996 (the aggregates; not smoothed here).
  */
 #ifndef elevation_Fill_Membrane_h
 #define elevation_Fill_Membrane_h
@@ -26,10 +19,13 @@
 #include "Kernel/Base/Base.h"
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace elevation
 {
+
+class Multigrid;
 
 /** The neighbours of unknown i of a graph: Neighbours[Offsets[i]] to Neighbours[Offsets[i+1] - 1].
  */
@@ -53,6 +49,7 @@ public:
    * @throws Aborted, std::bad_alloc
    */
   explicit Membrane(const Adjacency& graph, const Progress& progress = Progress());
+  ~Membrane();
 
   /**
    * The values of the unknowns.
@@ -64,48 +61,11 @@ public:
     const Progress& progress = Progress()) const;
 
   /** Whether the graph is so large that it is not factorised, and a solution takes a while. */
-  bool IsLarge() const { return this->Levels.size() > 1; }
+  bool IsLarge() const;
 
 private:
-  /** A symmetric matrix: the diagonal, and the other entries row by row. */
-  struct Matrix
-  {
-    std::vector<double> Diagonal;
-    std::vector<std::size_t> Offsets{ 0 };
-    std::vector<Index> Columns;
-    std::vector<double> Values;
-
-    Index Size() const { return static_cast<Index>(this->Diagonal.size()); }
-  };
-
-  /** The Cholesky factor of a matrix whose rows are reordered, from the first entry of each row. */
-  struct Factor
-  {
-    std::vector<Index> Order; ///< place -> row of the matrix
-    std::vector<Index> First; ///< column of the first entry of the row at a place
-    std::vector<std::size_t> Offsets{ 0 };
-    std::vector<double> Values;
-  };
-
-  /** A matrix, and into which row of the next coarser one each of its rows goes. */
-  struct Level
-  {
-    Matrix A;
-    std::vector<Index> Coarse;
-  };
-
-  static void Arrange(const Matrix& matrix, Factor& factor, const Progress& progress);
-  static double WorkOf(const Factor& factor);
-  static void Factorize(const Matrix& matrix, Factor& factor, const Progress& progress);
-  static void SolveFactor(
-    const Factor& factor, const std::vector<double>& right, std::vector<double>& x);
-  static bool Coarsen(Level& fine, Matrix& coarse, const Progress& progress);
-  void Cycle(std::size_t level, const std::vector<double>& right, std::vector<double>& x,
-    const Progress& progress) const;
-
   const Adjacency& Graph;
-  std::vector<Level> Levels; ///< from fine to coarse; of the last one there is the factor
-  Factor Coarsest;
+  std::unique_ptr<Multigrid> Equations;
 };
 
 } // namespace elevation

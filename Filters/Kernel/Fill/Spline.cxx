@@ -90,215 +90,81 @@ void AddKernel(Spline::Kernel kernel, double x, double y, double weight, const d
     AddCubic(x, y, weight, px, py, n, out);
   }
 }
-
-/** row -= sum of four factors times four columns. */
-void Subtract4(double* row, std::size_t n, const double* f, const double* a, const double* b,
-  const double* c, const double* d)
-{
-  const double f0 = f[0];
-  const double f1 = f[1];
-  const double f2 = f[2];
-  const double f3 = f[3];
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    row[i] -= (f0 * a[i] + f1 * b[i]) + (f2 * c[i] + f3 * d[i]);
-  }
-}
-
-/**
- * Cholesky's factor of the part of a matrix from row and column @a first on, in place below the
- * diagonal, on which the inverses are; four columns at a time. @return false when not definite
- */
-bool Factorize(double* matrix, std::size_t size, std::size_t first)
-{
-  double largest = 0.0;
-  for (std::size_t i = first; i < size; ++i)
-  {
-    largest = std::max(largest, matrix[i * size + i]);
-  }
-  const double least = LeastPivot * largest;
-  std::vector<double> columns[4];
-  for (std::vector<double>& column : columns)
-  {
-    column.resize(size);
-  }
-  for (std::size_t k = first; k < size; k += 4)
-  {
-    const std::size_t end = std::min(k + 4, size);
-    for (std::size_t j = k; j < end; ++j)
-    {
-      const double pivot = matrix[j * size + j];
-      if (!(pivot > least))
-      {
-        return false;
-      }
-      const double inverse = 1.0 / std::sqrt(pivot);
-      matrix[j * size + j] = inverse;
-      double* column = columns[j - k].data();
-      for (std::size_t i = j + 1; i < size; ++i)
-      {
-        column[i] = matrix[i * size + j] *= inverse;
-      }
-      for (std::size_t i = j + 1; i < size; ++i)
-      {
-        for (std::size_t m = j + 1; m < std::min(end, i + 1); ++m)
-        {
-          matrix[i * size + m] -= column[i] * column[m];
-        }
-      }
-    }
-    for (std::size_t i = end; i < size; ++i)
-    {
-      const double factors[4] = { columns[0][i], columns[1][i], columns[2][i], columns[3][i] };
-      Subtract4(matrix + i * size + end, i + 1 - end, factors, columns[0].data() + end,
-        columns[1].data() + end, columns[2].data() + end, columns[3].data() + end);
-    }
-  }
-  return true;
-}
 } // namespace
-
-/** values -= mirror (mirror . values) */
-void Spline::Reflect(int which, double* values) const
-{
-  const std::vector<double>& mirror = this->Mirrors[which];
-  const double dot = Dot(&mirror[which], values + which, mirror.size() - which);
-  for (std::size_t i = which; i < mirror.size(); ++i)
-  {
-    values[i] -= dot * mirror[i];
-  }
-}
 
 bool Spline::Prepare(const std::vector<Point2>& centres, Kernel kernel)
 {
-  const std::size_t n = centres.size();
-  this->F = kernel;
-  this->X.resize(n);
-  this->Y.resize(n);
-  std::vector<double> plane[3];
-  for (std::vector<double>& column : plane)
-  {
-    column.assign(n, 1.0);
-  }
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    plane[1][i] = this->X[i] = centres[i].X;
-    plane[2][i] = this->Y[i] = centres[i].Y;
-  }
+  const Eigen::Index n = static_cast<Eigen::Index>(centres.size());
   if (n < 3)
   {
     return false;
   }
+  this->F = kernel;
+  this->X.resize(n);
+  this->Y.resize(n);
+  Matrix plane(n, 3);
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    plane.row(i) << 1.0, this->X[i] = centres[i].X, this->Y[i] = centres[i].Y;
+  }
+  this->Plane.compute(plane);
+  const auto spread = this->Plane.matrixQR().diagonal().cwiseAbs();
+  const double least = LeastSpread * std::max(spread[1], std::sqrt(static_cast<double>(n)));
+  if (!(spread[1] > least && spread[2] > least))
+  {
+    return false;
+  }
 
-  double spread = 0.0;
+  // Of the matrix and its images the part below the diagonal is enough.
+  Matrix& a = this->Factor;
+  a.resize(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    a.col(i).tail(n - i).setZero();
+    AddKernel(kernel, this->X[i], this->Y[i], 1.0, &this->X[i], &this->Y[i], n - i, &a(i, i));
+  }
+  Eigen::VectorXd mirror(n);
+  Eigen::VectorXd image(n);
   for (int k = 0; k < 3; ++k)
   {
-    const double length = std::sqrt(Dot(&plane[k][k], &plane[k][k], n - k));
-    spread = k == 1 ? length : spread;
-    if (k > 0 && !(length > LeastSpread * std::max(spread, std::sqrt(static_cast<double>(n)))))
-    {
-      return false;
-    }
-    std::vector<double>& mirror = this->Mirrors[k];
-    mirror.assign(n, 0.0);
-    std::copy(plane[k].begin() + k, plane[k].end(), mirror.begin() + k);
-    mirror[k] += mirror[k] < 0.0 ? -length : length;
-    const double scale = std::sqrt(2.0 / Dot(mirror.data(), mirror.data(), n));
-    for (double& value : mirror)
-    {
-      value *= scale;
-    }
-    for (int j = k; j < 3; ++j)
-    {
-      this->Reflect(k, plane[j].data());
-    }
-    for (int j = 0; j <= k; ++j)
-    {
-      this->Plane[j][k] = plane[k][j];
-    }
+    // (I - t v v') A (I - t v v') = A - v u' - u v' with u = t A v - t (v' t A v) / 2 v.
+    const double t = this->Plane.hCoeffs()[k];
+    mirror.head(k).setZero();
+    mirror[k] = 1.0;
+    mirror.tail(n - k - 1) = this->Plane.matrixQR().col(k).tail(n - k - 1);
+    image.noalias() = a.selfadjointView<Eigen::Lower>() * mirror;
+    image *= t;
+    image -= 0.5 * t * mirror.dot(image) * mirror;
+    a.selfadjointView<Eigen::Lower>().rankUpdate(mirror, image, -1.0);
   }
-
-  std::vector<double>& a = this->Matrix;
-  a.assign(n * n, 0.0);
-  for (std::size_t i = 0; i < n; ++i)
+  if (n == 3)
   {
-    AddKernel(kernel, this->X[i], this->Y[i], 1.0, this->X.data(), this->Y.data(), n, &a[i * n]);
+    return true;
   }
-  std::vector<double> image(n);
-  for (const std::vector<double>& mirror : this->Mirrors)
-  {
-    // (I - v v') A (I - v v') = A - v u' - u v' with u = A v - (v' A v) / 2 v.
-    std::fill(image.begin(), image.end(), 0.0);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      const double factor = mirror[i];
-      const double* row = &a[i * n];
-      for (std::size_t j = 0; factor != 0.0 && j < n; ++j)
-      {
-        image[j] += factor * row[j];
-      }
-    }
-    const double product = Dot(mirror.data(), image.data(), n);
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      image[i] -= 0.5 * product * mirror[i];
-    }
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      double* row = &a[i * n];
-      const double v = mirror[i];
-      const double u = image[i];
-      for (std::size_t j = 0; j < n; ++j)
-      {
-        row[j] -= v * image[j] + u * mirror[j];
-      }
-    }
-  }
-  return Factorize(a.data(), n, 3);
+  const double leastPivot = LeastPivot * a.diagonal().tail(n - 3).maxCoeff();
+  Eigen::Ref<Matrix> rest = a.bottomRightCorner(n - 3, n - 3);
+  const Eigen::LLT<Eigen::Ref<Matrix>> inPlace(rest);
+  return inPlace.info() == Eigen::Success &&
+    a.diagonal().tail(n - 3).cwiseAbs2().minCoeff() > leastPivot;
 }
 
 Spline::Weights Spline::Interpolate(const std::vector<double>& values) const
 {
-  const std::size_t n = this->X.size();
-  Weights w(values);
-  w.resize(n + 3, 0.0);
-  for (int k = 0; k < 3; ++k)
-  {
-    this->Reflect(k, w.data());
-  }
-  double top[3] = { w[0], w[1], w[2] };
-  const double* a = this->Matrix.data();
-  for (std::size_t j = 3; j < n; ++j)
-  {
-    w[j] = (w[j] - Dot(&a[j * n + 3], &w[3], j - 3)) * a[j * n + j];
-  }
-  for (std::size_t j = n; j-- > 3;)
-  {
-    w[j] *= a[j * n + j];
-    for (std::size_t i = 3; i < j; ++i)
-    {
-      w[i] -= a[j * n + i] * w[j];
-    }
-  }
-  for (int k = 0; k < 3; ++k)
-  {
-    top[k] -= Dot(&a[k * n + 3], &w[3], n - 3);
-    w[k] = 0.0;
-  }
-  for (int k = 3; k-- > 0;)
-  {
-    double sum = top[k];
-    for (int j = k + 1; j < 3; ++j)
-    {
-      sum -= this->Plane[k][j] * w[n + j];
-    }
-    w[n + k] = sum / this->Plane[k][k];
-  }
-  for (int k = 3; k-- > 0;)
-  {
-    this->Reflect(k, w.data());
-  }
-  return w;
+  const Eigen::Index n = this->Factor.rows();
+  const auto factor = this->Factor.bottomRightCorner(n - 3, n - 3).triangularView<Eigen::Lower>();
+  Eigen::VectorXd w = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
+  w.applyOnTheLeft(this->Plane.householderQ().transpose());
+  Eigen::Vector3d plane = w.head<3>();
+  w.head<3>().setZero();
+  auto rest = w.tail(n - 3);
+  factor.solveInPlace(rest);
+  factor.transpose().solveInPlace(rest);
+  plane -= this->Factor.bottomLeftCorner(n - 3, 3).transpose() * rest;
+  this->Plane.matrixQR().topRows<3>().triangularView<Eigen::Upper>().solveInPlace(plane);
+  w.applyOnTheLeft(this->Plane.householderQ());
+  Weights weights(w.data(), w.data() + n);
+  weights.insert(weights.end(), plane.data(), plane.data() + 3);
+  return weights;
 }
 
 void Spline::Add(

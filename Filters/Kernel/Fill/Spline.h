@@ -10,8 +10,10 @@
  * surface that bends the least; f(r) = r^3 a smoother one. Both continue planes exactly, and do not
  * depend on the unit of length or the direction of the axes.
  *
- * The conditions are met by a change of basis (three Householder reflections), in which the matrix
- * is positive definite; it is factorised once, and each set of values then takes n^2 steps.
+ * The conditions are met by a change of basis (Householder's reflections that make a triangle of
+ * 1, x, y), in which the matrix is positive definite. Reflections and Cholesky's factor are Eigen's. The
+ * factor is made once,
+ * and each set of values then takes n^2 steps.
  *
  * Cost: n^3 / 6 multiplications to set up, n for each value; n^2 numbers.
  *
@@ -21,6 +23,9 @@
 #define elevation_Fill_Spline_h
 
 #include "Kernel/Base/Base.h"
+
+#include "vtk_eigen.h"
+#include VTK_EIGEN(Dense)
 
 #include <cstddef>
 #include <vector>
@@ -55,14 +60,14 @@ public:
   Index NumberOfCentres() const { return static_cast<Index>(this->X.size()); }
 
 private:
-  void Reflect(int which, double* values) const;
+  using Matrix = Eigen::MatrixXd;
 
   Kernel F = Kernel::ThinPlate;
   std::vector<double> X;
   std::vector<double> Y;
-  std::vector<double> Mirrors[3]; ///< of the reflections, of length sqrt 2
-  double Plane[3][3] = {};        ///< the triangle that the reflections make of 1, x, y
-  std::vector<double> Matrix;     ///< rows below 3: as reflected; below the diagonal: the factor
+  Eigen::HouseholderQR<Matrix> Plane; ///< of the columns 1, x, y
+  /** Below the diagonal: of the reflected matrix three columns, of the rest Cholesky's factor. */
+  Matrix Factor;
 };
 
 } // namespace elevation
