@@ -10,6 +10,7 @@ set(es_kernel_Base
 set(es_kernel_Mesh
   HalfEdgeMesh
   VertexStars
+  Segments
   Recovery
   Holes
   Validate)

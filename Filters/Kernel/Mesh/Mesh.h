@@ -10,6 +10,7 @@
 #include "HalfEdgeMesh.h"
 #include "Holes.h"
 #include "Recovery.h"
+#include "Segments.h"
 #include "SubMesh.h"
 #include "TriangleSweep.h"
 #include "Validate.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Recovery.h"
 
+#include "Segments.h"
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
@@ -18,12 +19,6 @@ std::string NameOfSegment(const Mesh& mesh, const Segment& segment)
 {
   return "The segment from " + NameOf(mesh.Points, segment.A) + " to " +
     NameOf(mesh.Points, segment.B);
-}
-
-/** Of points on one line: whether p lies from a in the direction of b, and not beyond b. */
-bool IsOnTheWay(const Point2& a, const Point2& b, const Point2& p)
-{
-  return IsLower(a, b) ? IsLower(a, p) && !IsLower(b, p) : IsLower(p, a) && !IsLower(p, b);
 }
 
 /** One side of a segment: an empty polygon, and the triangles that fill it. */
@@ -282,7 +277,7 @@ private:
       }
       else
       {
-        if (apex != segment.B && !IsOnTheWay(a, b, mesh.PointOf(apex)))
+        if (mesh.PointOf(apex) != b && !IsInside({ { a, b } }, mesh.PointOf(apex)))
         {
           this->ThrowLeaves(from, segment); // only in a mesh that overlaps itself
         }
@@ -425,13 +420,10 @@ private:
 
 SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 {
-  const Point2& a = mesh.PointOf(from);
-  const Point2& b = mesh.PointOf(to);
+  const Ends ends{ { mesh.PointOf(from), mesh.PointOf(to) } };
   SegmentStep step;
-  auto check = [&](Index h, Index vertex) {
-    if (vertex == to ||
-      (Orientation(a, b, mesh.PointOf(vertex)) == Zero && IsOnTheWay(a, b, mesh.PointOf(vertex)) &&
-        mesh.PointOf(vertex) != b))
+  const auto check = [&](Index h, Index vertex) {
+    if (vertex == to || IsInside(ends, mesh.PointOf(vertex)))
     {
       step = { h, vertex };
     }

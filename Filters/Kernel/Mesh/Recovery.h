@@ -17,7 +17,7 @@
  * Delaunay afterwards [Lee & Lin 1986]: only edges that are not constrained are locally Delaunay.
  *
  * Guarantees: exact (Orientation and InCircle decide), and unique: the tie of co-circular points is
- * broken by the rule of Delaunay.h, so that the result depends on the positions alone, not on
+ * broken by the rule of Triangulate.h, so that the result depends on the positions alone, not on
  * the order of points, triangles or segments.
  *
  * Cost: one linear pass over the mesh for each call; then proportional to the triangles around the

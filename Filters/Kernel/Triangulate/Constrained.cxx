@@ -18,16 +18,6 @@ namespace elevation
 namespace
 {
 
-/** Part of one or several segments, without a known vertex between its ends. */
-struct Piece
-{
-  Index A; ///< vertices; the same one twice: a point that no segment ends in
-  Index B;
-  Index Rank;           ///< the first segment that it is part of
-  Index Count;          ///< of distinct segments that it is part of
-  RoundingUnits Unit = RoundingUnits(); ///< the largest of its segments
-};
-
 /** A vertex of the lines. */
 struct Vertex
 {
@@ -38,38 +28,11 @@ struct Vertex
   Index To = None;
 };
 
-/** A piece and a vertex to cut it at. */
-struct Cut
-{
-  Index Piece;
-  Index Vertex;
-};
-
 struct Crossing
 {
   Index P; ///< pieces, P < Q
   Index Q;
 };
-
-/** Whether p, which is neither, lies on the segment from a to b. */
-bool IsWithin(const Point2& a, const Point2& b, const Point2& p)
-{
-  return std::min(a.X, b.X) <= p.X && p.X <= std::max(a.X, b.X) && std::min(a.Y, b.Y) <= p.Y &&
-    p.Y <= std::max(a.Y, b.Y) && Orientation(a, b, p) == Zero;
-}
-
-/** Whether two segments cross between their ends. */
-bool AreCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
-{
-  // a and c are the lower ends, so that this settles y.
-  if (b.Y < c.Y || d.Y < a.Y || std::max(a.X, b.X) < std::min(c.X, d.X) ||
-    std::max(c.X, d.X) < std::min(a.X, b.X))
-  {
-    return false;
-  }
-  return Orientation(a, b, c) * Orientation(a, b, d) < 0 &&
-    Orientation(c, d, a) * Orientation(c, d, b) < 0;
-}
 
 /** Passes 1 to 3: from lines to pieces that do not cross, and what points they add. */
 class Splitting
@@ -135,7 +98,7 @@ public:
       }
       added.push_back(point);
     }
-    for (const Piece& piece : this->Pieces)
+    for (const SegmentPiece& piece : this->Pieces)
     {
       if (piece.A != piece.B)
       {
@@ -145,16 +108,24 @@ public:
   }
 
 private:
+  static constexpr std::size_t Everything = static_cast<std::size_t>(-1);
+
   const Point2& At(Index vertex) const { return this->Vertices[vertex].Position; }
 
-  CellGrid GridOf(const std::vector<Piece>& pieces, const Progress& progress) const
+  Ends EndsOf(Index piece) const
   {
-    return CellGrid(
-      pieces.size(),
-      [&](std::size_t i) {
-        return std::array<Point2, 2>{ { this->At(pieces[i].A), this->At(pieces[i].B) } };
-      },
-      progress);
+    return { { this->At(this->Pieces[piece].A), this->At(this->Pieces[piece].B) } };
+  }
+
+  /** Enters the pieces, as they are, in a grid. */
+  void EnterInGrid(const Progress& progress)
+  {
+    this->PieceEnds.resize(this->Pieces.size());
+    for (std::size_t i = 0; i < this->Pieces.size(); ++i)
+    {
+      this->PieceEnds[i] = this->EndsOf(static_cast<Index>(i));
+    }
+    this->Grid = GridOf(this->PieceEnds, progress);
   }
 
   /** Pass 1. */
@@ -230,7 +201,7 @@ private:
       }
     }
     this->JoinEqualPieces(Part(progress, 0.6, 1.0));
-    for (Piece& piece : this->Pieces)
+    for (SegmentPiece& piece : this->Pieces)
     {
       piece.Count = 1; // the same segment in several lines is one
     }
@@ -247,18 +218,18 @@ private:
   {
     Sort(
       this->Pieces.begin(), this->Pieces.end(),
-      [](const Piece& p, const Piece& q) {
+      [](const SegmentPiece& p, const SegmentPiece& q) {
         return p.A != q.A ? p.A < q.A : (p.B != q.B ? p.B < q.B : p.Rank < q.Rank);
       },
       Part(progress, 0.0, 0.9));
     const Progress joining = Part(progress, 0.9, 1.0);
     std::size_t kept = 0, done = 0;
-    for (const Piece& piece : this->Pieces)
+    for (const SegmentPiece& piece : this->Pieces)
     {
       ReportStep(joining, done++, this->Pieces.size());
       if (kept > 0 && this->Pieces[kept - 1].A == piece.A && this->Pieces[kept - 1].B == piece.B)
       {
-        Piece& same = this->Pieces[kept - 1];
+        SegmentPiece& same = this->Pieces[kept - 1];
         same.Count += piece.Count;
         same.Unit = { std::max(same.Unit.X, piece.Unit.X), std::max(same.Unit.Y, piece.Unit.Y) };
       }
@@ -273,16 +244,9 @@ private:
   /** Pass 2. */
   void Split(const Progress& progress)
   {
-    {
-      const CellGrid grid = this->GridOf(this->Pieces, Part(progress, 0.0, 0.1));
-      std::vector<Cut> cuts;
-      this->CutAtVertices(grid, cuts, Part(progress, 0.1, 0.2));
-      this->CutAtInputPoints(grid, cuts, Part(progress, 0.2, 0.45));
-      this->CountCrossingsAtVertices(cuts, Part(progress, 0.45, 0.47));
-      this->Apply(cuts, Part(progress, 0.47, 0.5));
-    }
+    this->CutAtPoints(Part(progress, 0.0, 0.5));
     // As the lines run exactly; what follows moves pieces by rounding.
-    const std::vector<Piece> pieces = this->Pieces;
+    const std::vector<SegmentPiece> pieces = this->Pieces;
     const std::size_t count = this->Vertices.size();
     // Two units make up for the rounding of an end and of a crossing. Without any it goes where
     // they are no less than the lines' own lengths, and the grid of the doubles bounds all there is.
@@ -317,18 +281,18 @@ private:
       // Half of what is left for each.
       const Progress ofRound =
         Part(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
-      const CellGrid grid = this->GridOf(this->Pieces, Part(ofRound, 0.0, 0.2));
-      std::vector<Cut> cuts;
-      this->CutAtVertices(grid, cuts, Part(ofRound, 0.2, 0.4));
+      this->EnterInGrid(Part(ofRound, 0.0, 0.2));
+      std::vector<PieceCut> cuts;
+      this->CutAtVertices(cuts, Everything, Part(ofRound, 0.2, 0.4));
       std::vector<Crossing> crossings;
       if (cuts.empty())
       {
-        this->FindCrossings(grid, crossings, Part(ofRound, 0.4, 0.7));
+        this->FindCrossings(crossings, Part(ofRound, 0.4, 0.7));
         if (crossings.empty())
         {
           return true;
         }
-        this->CutAtCrossings(grid, crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
+        this->CutAtCrossings(crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
         haveCounted = true;
         this->Unsettled = { this->Pieces[crossings[0].P].Rank, this->Pieces[crossings[0].Q].Rank };
       }
@@ -337,35 +301,66 @@ private:
     return false;
   }
 
+  /** Cuts where the lines run exactly: at vertices and input points that are on them. */
+  void CutAtPoints(const Progress& progress)
+  {
+    this->EnterInGrid(Part(progress, 0.0, 0.2));
+    std::vector<PieceCut> cuts;
+    std::vector<Passage> passages;
+    // Where there are so many, lines overlap, or run along each other.
+    const std::size_t many = 64 * (this->Vertices.size() + this->Pieces.size());
+    if (!this->CutAtVertices(cuts, many, Part(progress, 0.2, 0.3)))
+    {
+      std::vector<Point2> places(this->Vertices.size());
+      for (std::size_t v = 0; v < places.size(); ++v)
+      {
+        places[v] = this->Vertices[v].Position;
+      }
+      passages = JoinOverlaps(this->Pieces, places, Part(progress, 0.3, 0.35));
+      this->EnterInGrid(Part(progress, 0.35, 0.4));
+      cuts.clear();
+      this->CutAtVertices(cuts, Everything, Part(progress, 0.4, 0.45));
+    }
+    this->CutAtInputPoints(cuts, Part(progress, 0.45, 0.9));
+    for (const PieceCut& cut : cuts)
+    {
+      const SegmentPiece& piece = this->Pieces[cut.Piece];
+      passages.push_back({ cut.Vertex, piece.B, piece.Count });
+    }
+    this->CountCrossingsAtVertices(passages, Part(progress, 0.9, 0.94));
+    this->Apply(cuts, Part(progress, 0.94, 1.0));
+  }
+
   /**
    * Finds the input points that are vertices of the lines, and cuts at those that are on segments,
    * which become vertices.
    */
-  void CutAtInputPoints(const CellGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
+  void CutAtInputPoints(std::vector<PieceCut>& cuts, const Progress& progress)
   {
-    std::vector<Cut> found; // input points as yet
+    std::vector<PieceCut> found; // input points as yet
     ForEachStretch(this->Points.Count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
       for (Index id = begin; id < end; ++id)
       {
         const Point2 p = this->Points.At(id);
         std::size_t cell;
-        if (!grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
+        if (!this->Grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
         {
           continue;
         }
         const std::size_t before = found.size();
-        for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
+        for (const Index* i = this->Grid.Begin(cell); i < this->Grid.End(cell); ++i)
         {
-          const Piece& piece = this->Pieces[*i];
-          const Index vertex =
-            this->At(piece.A) == p ? piece.A : (this->At(piece.B) == p ? piece.B : None);
+          const Ends& ends = this->PieceEnds[*i];
+          const Index vertex = ends[0] == p ? this->Pieces[*i].A
+            : ends[1] == p                  ? this->Pieces[*i].B
+                                            : None;
           if (vertex != None)
           {
             this->SetInput(vertex, id);
             found.resize(before); // what is on a segment then is the vertex
             break;
           }
-          if (IsWithin(this->At(piece.A), this->At(piece.B), p))
+          if (IsInside(ends, p))
           {
             found.push_back({ *i, id });
           }
@@ -374,13 +369,13 @@ private:
     });
     Sort(
       found.begin(), found.end(),
-      [&](const Cut& p, const Cut& q) {
+      [&](const PieceCut& p, const PieceCut& q) {
         const Point2 at = this->Points.At(p.Vertex), other = this->Points.At(q.Vertex);
         return at != other ? IsLower(at, other) : p.Piece < q.Piece;
       },
       Part(progress, 0.8, 1.0));
     const std::size_t first = this->Vertices.size(), firstCut = cuts.size();
-    for (const Cut& cut : found)
+    for (const PieceCut& cut : found)
     {
       const Point2 p = this->Points.At(cut.Vertex);
       if (this->Vertices.size() == first || this->Vertices.back().Position != p)
@@ -407,90 +402,63 @@ private:
     }
   }
 
-  /** Cuts pieces at the vertices that are on them. */
-  void CutAtVertices(const CellGrid& grid, std::vector<Cut>& cuts, const Progress& progress)
+  /**
+   * Cuts pieces at the vertices that are on them.
+   * @return false when there is more to look at than @a most; then the cuts are incomplete
+   */
+  bool CutAtVertices(std::vector<PieceCut>& cuts, std::size_t most, const Progress& progress)
   {
-    const std::size_t count = this->Vertices.size();
     WorkReporter work(progress);
-    for (std::size_t v = 0; v < count; ++v)
+    for (std::size_t v = 0; v < this->Vertices.size() && work.Count() <= most; ++v)
     {
-      work.Step(v, count);
+      work.Step(v, this->Vertices.size());
       const Point2& p = this->Vertices[v].Position;
-      std::size_t cell;
-      if (!grid.FindCell(p, cell))
-      {
-        continue;
-      }
-      for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
-      {
+      this->Grid.Visit(p, [&](Index piece) {
         work.Look();
-        const Piece& piece = this->Pieces[*i];
-        if (piece.A != static_cast<Index>(v) && piece.B != static_cast<Index>(v) &&
-          IsWithin(this->At(piece.A), this->At(piece.B), p))
+        if (IsInside(this->PieceEnds[piece], p))
         {
-          cuts.push_back({ *i, static_cast<Index>(v) });
+          cuts.push_back({ piece, static_cast<Index>(v) });
         }
-      }
+      });
     }
+    return work.Count() <= most;
   }
 
-  /**
-   * Counts the pairs of segments that cross in a vertex: those cut there that are not on one line.
-   */
-  void CountCrossingsAtVertices(std::vector<Cut> cuts, const Progress& progress)
+  /** Counts the pairs of segments that cross in a vertex: those through it not on one line. */
+  void CountCrossingsAtVertices(std::vector<Passage>& passages, const Progress& progress)
   {
-    const auto end = [&](const Cut& cut) { return this->At(this->Pieces[cut.Piece].B); };
     Sort(
-      cuts.begin(), cuts.end(),
-      [&](const Cut& p, const Cut& q) {
+      passages.begin(), passages.end(),
+      [&](const Passage& p, const Passage& q) {
         // Around one vertex by the direction upwards, which is within half a turn.
-        return p.Vertex != q.Vertex ? p.Vertex < q.Vertex
-                                    : Orientation(this->At(p.Vertex), end(p), end(q)) == Positive;
+        return p.Vertex != q.Vertex
+          ? p.Vertex < q.Vertex
+          : Orientation(this->At(p.Vertex), this->At(p.Toward), this->At(q.Toward)) == Positive;
       },
       Part(progress, 0.0, 0.8));
     const Progress counting = Part(progress, 0.8, 1.0);
-    std::int64_t around = 0, alike = 0; // cuts before, of this vertex and of this direction
-    for (std::size_t i = 1; i < cuts.size(); ++i)
+    std::int64_t around = 0, alike = 0; // segments before, of this vertex and of this direction
+    for (std::size_t i = 1; i < passages.size(); ++i)
     {
-      ReportStep(counting, i, cuts.size());
-      const bool isSameVertex = cuts[i].Vertex == cuts[i - 1].Vertex;
+      ReportStep(counting, i, passages.size());
+      const Passage &before = passages[i - 1], &passage = passages[i];
+      const bool isSameVertex = passage.Vertex == before.Vertex;
       const bool isSameLine = isSameVertex &&
-        Orientation(this->At(cuts[i].Vertex), end(cuts[i - 1]), end(cuts[i])) == Zero;
-      around = isSameVertex ? around + 1 : 0;
-      alike = isSameLine ? alike + 1 : 0;
-      this->Crossings += around - alike;
+        Orientation(this->At(passage.Vertex), this->At(before.Toward), this->At(passage.Toward)) ==
+          Zero;
+      around = isSameVertex ? around + before.Count : 0;
+      alike = isSameLine ? alike + before.Count : 0;
+      this->Crossings += passage.Count * (around - alike);
     }
   }
 
-  void FindCrossings(
-    const CellGrid& grid, std::vector<Crossing>& crossings, const Progress& progress) const
+  void FindCrossings(std::vector<Crossing>& crossings, const Progress& progress) const
   {
-    const Progress searching = Part(progress, 0.0, 0.8);
-    std::size_t pairs = 0;
-    for (std::size_t cell = 0; cell < grid.NumberOfCells(); ++cell)
-    {
-      ReportStep(searching, cell, grid.NumberOfCells());
-      const Index *const begin = grid.Begin(cell), *const end = grid.End(cell);
-      for (const Index* i = begin; i < end; ++i)
-      {
-        pairs += static_cast<std::size_t>(end - i);
-        if (pairs > 1000000)
-        {
-          pairs = 0;
-          Report(searching, static_cast<double>(cell) / static_cast<double>(grid.NumberOfCells()));
-        }
-        const Piece& p = this->Pieces[*i];
-        for (const Index* j = i + 1; j < end; ++j)
-        {
-          const Piece& q = this->Pieces[*j];
-          if (AreCrossing(this->At(p.A), this->At(p.B), this->At(q.A), this->At(q.B)))
-          {
-            crossings.push_back({ *i, *j }); // cells hold pieces in their order
-          }
-        }
-      }
-    }
-    // A pair is found in every cell that both are in.
+    VisitCrossings(
+      this->PieceEnds, this->Grid, Part(progress, 0.0, 0.8), [&](std::size_t i, std::size_t j) {
+        crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
+      });
+    // A pair may be found in every cell that both are in.
     Sort(
       crossings.begin(), crossings.end(),
       [](const Crossing& p, const Crossing& q) { return p.P != q.P ? p.P < q.P : p.Q < q.Q; },
@@ -501,34 +469,29 @@ private:
       crossings.end());
   }
 
-  bool CanPassThrough(const Piece& piece, Index vertex) const
+  bool CanPassThrough(const SegmentPiece& piece, Index vertex) const
   {
     return piece.A == vertex || piece.B == vertex ||
       IsBetween(this->At(piece.A), this->At(piece.B), this->At(vertex));
   }
 
   /** Cuts at an end of one of two pieces that cross, where the other one runs by it in reach. */
-  bool CutAtEnds(const Crossing& crossing, std::vector<Cut>& cuts) const
+  bool CutAtEnds(const Crossing& crossing, std::vector<PieceCut>& cuts) const
   {
-    bool isCut = false;
+    const std::size_t before = cuts.size();
     for (const auto& [piece, other] :
       { std::make_pair(crossing.P, crossing.Q), std::make_pair(crossing.Q, crossing.P) })
     {
-      for (const Index end : { this->Pieces[other].A, this->Pieces[other].B })
-      {
-        const Piece& bent = this->Pieces[piece];
-        if (IsInReach(this->At(bent.A), this->At(bent.B), bent.Unit, this->Reach, this->At(end)))
-        {
-          cuts.push_back({ piece, end });
-          isCut = true;
-        }
-      }
+      VisitEndsInReach(this->PieceEnds[other], this->PieceEnds[piece], this->Pieces[piece].Unit,
+        this->Reach, [&, bent = piece, to = other](int end) {
+          cuts.push_back({ bent, end == 0 ? this->Pieces[to].A : this->Pieces[to].B });
+        });
     }
-    return isCut;
+    return cuts.size() > before;
   }
 
-  void CutAtCrossings(const CellGrid& grid, const std::vector<Crossing>& crossings, bool areToCount,
-    std::vector<Cut>& cuts, const Progress& progress)
+  void CutAtCrossings(const std::vector<Crossing>& crossings, bool areToCount,
+    std::vector<PieceCut>& cuts, const Progress& progress)
   {
     struct Place
     {
@@ -541,7 +504,7 @@ private:
     {
       ReportStep(progress, i, 2 * crossings.size(), 1024);
       const Crossing& crossing = crossings[i];
-      const Piece &p = this->Pieces[crossing.P], &q = this->Pieces[crossing.Q];
+      const SegmentPiece &p = this->Pieces[crossing.P], &q = this->Pieces[crossing.Q];
       this->Crossings +=
         areToCount ? static_cast<std::int64_t>(p.Count) * static_cast<std::int64_t>(q.Count) : 0;
       if (!this->CutAtEnds(crossing, cuts))
@@ -564,7 +527,7 @@ private:
       const Point2 position = places[i].Position;
       for (; end < places.size() && places[end].Position == position; ++end)
       {
-        places[end].Vertex = this->FindVertexInReach(grid, added, position, places[end].Of);
+        places[end].Vertex = this->FindVertexInReach(added, position, places[end].Of);
       }
       // Those of the same place that are in reach of none share a new one, which lies on the first.
       Index vertex = None, first = None;
@@ -573,7 +536,7 @@ private:
         Index at = places[k].Vertex;
         if (at == None)
         {
-          vertex = at = vertex == None ? this->AddVertex(grid, added, position) : vertex;
+          vertex = at = vertex == None ? this->AddVertex(added, position) : vertex;
         }
         for (const Index piece : { places[k].Of.P, places[k].Of.Q })
         {
@@ -601,13 +564,13 @@ private:
     Index First;                                 ///< the first of all
   };
 
-  Index AddVertex(const CellGrid& grid, NewVertices& added, const Point2& position)
+  Index AddVertex(NewVertices& added, const Point2& position)
   {
     const Index vertex = static_cast<Index>(this->Vertices.size());
     this->Vertices.emplace_back();
     this->Vertices.back().Position = position;
     std::size_t cell = 0;
-    grid.FindCell(position, cell); // it is within the box of two pieces
+    this->Grid.FindCell(position, cell); // it is within the box of two pieces
     Index& last = added.Last.emplace(cell, None).first->second;
     added.Before.push_back(last);
     last = vertex;
@@ -616,10 +579,10 @@ private:
 
   /** The vertex next to where two pieces cross that both can pass through; None: none in reach. */
   Index FindVertexInReach(
-    const CellGrid& grid, const NewVertices& added, const Point2& p, const Crossing& crossing) const
+    const NewVertices& added, const Point2& p, const Crossing& crossing) const
   {
-    const Piece& one = this->Pieces[crossing.P];
-    const Piece& other = this->Pieces[crossing.Q];
+    const SegmentPiece& one = this->Pieces[crossing.P];
+    const SegmentPiece& other = this->Pieces[crossing.Q];
     // Anything but zero, to divide by.
     const double least = std::numeric_limits<double>::denorm_min();
     const double unitX = std::max({ one.Unit.X, other.Unit.X, least });
@@ -645,12 +608,12 @@ private:
       for (const double x : { -reachX, reachX })
       {
         std::size_t cell;
-        if (!grid.FindCell(Point2{ p.X + x, p.Y + y }, cell) || cell == last)
+        if (!this->Grid.FindCell(Point2{ p.X + x, p.Y + y }, cell) || cell == last)
         {
           continue;
         }
         last = cell;
-        for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
+        for (const Index* i = this->Grid.Begin(cell); i < this->Grid.End(cell); ++i)
         {
           look(this->Pieces[*i].A);
           look(this->Pieces[*i].B);
@@ -667,25 +630,19 @@ private:
   }
 
   /** Puts pieces from cut to cut in the place of those that are cut. */
-  void Apply(std::vector<Cut>& cuts, const Progress& progress)
+  void Apply(std::vector<PieceCut>& cuts, const Progress& progress)
   {
-    Sort(
-      cuts.begin(), cuts.end(),
-      [&](const Cut& p, const Cut& q) {
-        const Piece& piece = this->Pieces[p.Piece];
-        return p.Piece != q.Piece
-          ? p.Piece < q.Piece
-          : IsBefore(this->At(piece.A), this->At(piece.B), this->At(p.Vertex), this->At(q.Vertex));
-      },
-      Part(progress, 0.0, 0.5));
-    std::vector<Piece> pieces;
+    SortAlong(
+      cuts, [&](Index piece) { return this->EndsOf(piece); },
+      [&](Index vertex) { return this->At(vertex); }, Part(progress, 0.0, 0.5));
+    std::vector<SegmentPiece> pieces;
     const Progress cutting = Part(progress, 0.5, 0.7);
     WorkReporter work(cutting);
     auto cut = cuts.begin();
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
     {
       work.Step(i, this->Pieces.size());
-      Piece piece = this->Pieces[i];
+      SegmentPiece piece = this->Pieces[i];
       Index from = piece.A;
       const Index end = piece.B;
       const auto append = [&](Index to) {
@@ -716,35 +673,31 @@ private:
   /** Pass 3: the input points that are crossings. All others have been found when cutting. */
   void Match(const Progress& progress)
   {
-    std::vector<Piece> places;
+    std::vector<Index> crossings;
     for (std::size_t v = 0; v < this->Vertices.size(); ++v)
     {
       if (this->Vertices[v].From != None)
       {
-        places.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
+        crossings.push_back(static_cast<Index>(v));
       }
     }
-    if (places.empty())
+    if (crossings.empty())
     {
       return;
     }
-    const CellGrid grid = this->GridOf(places, Part(progress, 0.0, 0.1));
+    const CellGrid grid(crossings.size(),
+      [&](std::size_t i) { return std::array<Point2, 1>{ { this->At(crossings[i]) } }; },
+      Part(progress, 0.0, 0.1));
     ForEachStretch(this->Points.Count, Part(progress, 0.1, 1.0), [&](Index begin, Index end) {
       for (Index id = begin; id < end; ++id)
       {
         const Point2 p = this->Points.At(id);
-        std::size_t cell;
-        if (!grid.FindCell(p, cell) || !std::isfinite(this->Points.Elevation(id)))
-        {
-          continue;
-        }
-        for (const Index* i = grid.Begin(cell); i < grid.End(cell); ++i)
-        {
-          if (this->At(places[*i].A) == p)
+        grid.Visit(p, [&](Index i) {
+          if (this->At(crossings[i]) == p && std::isfinite(this->Points.Elevation(id)))
           {
-            this->SetInput(places[*i].A, id);
+            this->SetInput(crossings[i], id);
           }
-        }
+        });
       }
     });
   }
@@ -776,7 +729,9 @@ private:
   const ConstraintLines& Lines;
   const DuplicatePolicy Duplicates;
   std::vector<Vertex> Vertices;
-  std::vector<Piece> Pieces;       ///< each from its lower end to its upper one
+  std::vector<SegmentPiece> Pieces; ///< each from its lower end to its upper one
+  std::vector<Ends> PieceEnds;      ///< as they were entered in the grid
+  CellGrid Grid{ GridOf({}) };
   std::vector<Segment> Segments;   ///< by rank, which is the order of the lines
   std::vector<Index> SegmentLines; ///< by rank
   std::int64_t Crossings = 0;
@@ -816,7 +771,7 @@ Buffer<double> JoinPoints(
 /** A triangle from its lowest vertex. */
 using Corners = std::array<Index, 3>;
 
-/** The order of Delaunay.h: by lowest vertices, then counter-clockwise around them. */
+/** The order of Triangulate.h: by lowest vertices, then counter-clockwise around them. */
 bool ComesBefore(const std::vector<Point2>& points, const Corners& p, const Corners& q)
 {
   return p[0] != q[0] ? IsLower(points[p[0]], points[q[0]])

@@ -6,7 +6,7 @@
  *
  * In: points, and lines with points and elevations of their own. Out: triangles of the points and
  * of those that the lines add, in which every line is a chain of edges. The passes, in the order of
- * the functions in ConstrainedDelaunay.cxx:
+ * the functions in Constrained.cxx:
  *   1. Collect the points of the lines, equal x,y once, and the distinct segments between them.
  *   2. Split: segments are cut at every point of a line and every input point that lies exactly on
  *      them; then pieces that cross are cut at a new vertex, the crossing rounded to the nearest
@@ -16,8 +16,8 @@
  *      there is one, rather than cut at yet another. Pairs are found in a grid of cells that the
  *      segments are entered in.
  *   3. Match: a vertex with the x,y of an input point is that point; the others are added.
- *   4. Triangulate all points (Delaunay.h), by their coordinates.
- *   5. Recover the pieces as edges (Constraints.h); triangles that changed are sorted in among the
+ *   4. Triangulate all points (Triangulate.h), by their coordinates.
+ *   5. Recover the pieces as edges (Recovery.h); triangles that changed are sorted in among the
  *      others; those with an edge over MaximumEdgeLength are left out last.
  *
  * How near is next to: within two units in the last place of the longest coordinate of the segment
@@ -26,16 +26,17 @@
  * of their decimals, run along each other so become one chain, and many through one place meet in
  * one vertex or few.
  *
- * Guarantees: exact, as Delaunay.h: every edge that is not of a line is locally Delaunay; and
+ * Guarantees: exact, as Triangulate.h: every edge that is not of a line is locally Delaunay; and
  * unique: the set of triangles depends on the positions of points and segments alone, not on their
  * order or direction. (Which line comes first decides elevations: of points that lines add at
  * the same x,y, the one with the lowest id counts; at a crossing, the line that comes first.)
- * Triangles come in the order of Delaunay.h.
+ * Triangles come in the order of Triangulate.h.
  *
  * Cost, above triangulating: one pass over the points, two when lines cross; the twins of the
  * mesh, about two fifths of triangulating; and the edges that segments cross. Finding crossings
  * takes time proportional to segments and crossings where segments are short beside the whole, as
- * those of lines are; n that all span the whole aslant are compared in up to n^2 short steps.
+ * those of lines are; n log n for n that overlap along one line; n that all span the whole aslant
+ * are compared in up to n^2 short steps.
  *
  * [Hobby 1999] Practical Segment Intersection with Finite Precision Output, Computational Geometry
  * 13:199-214. [Halperin and Packer 2002] Iterated Snap Rounding, Computational Geometry 23:209-225.

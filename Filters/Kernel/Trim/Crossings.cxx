@@ -6,9 +6,6 @@
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
-#include <iterator>
-#include <numeric>
-#include <set>
 #include <unordered_map>
 
 namespace elevation
@@ -16,92 +13,6 @@ namespace elevation
 
 namespace
 {
-
-/**
- * Whether any segments cross. A sweep from the lowest point to the highest keeps those that it is
- * on from the left to the right [Shamos & Hoey 1976]. Just below the lowest place where some cross,
- * all that pass through it or end there are neighbours; when those that end are gone, two that
- * cross are beside each other.
- */
-class CrossingSweep
-{
-public:
-  explicit CrossingSweep(const std::vector<Ends>& segments)
-  {
-    for (const Ends& s : segments)
-    {
-      if (s[0] != s[1])
-      {
-        this->Segments.push_back(IsLower(s[0], s[1]) ? s : Ends{ { s[1], s[0] } });
-      }
-    }
-  }
-
-  bool FindsCrossing(const Progress& progress)
-  {
-    std::vector<Ends>& all = this->Segments;
-    Sort(
-      all.begin(), all.end(),
-      [](const Ends& s, const Ends& t) {
-        return s[0] != t[0] ? IsLower(s[0], t[0]) : IsLower(s[1], t[1]);
-      },
-      Part(progress, 0.0, 0.3));
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    std::vector<Index> byEnd(all.size());
-    std::iota(byEnd.begin(), byEnd.end(), 0);
-    Sort(
-      byEnd.begin(), byEnd.end(), [&](Index s, Index t) { return IsLower(all[s][1], all[t][1]); },
-      Part(progress, 0.3, 0.5));
-
-    const Progress sweeping = Part(progress, 0.5, 1.0);
-    const auto isBefore = [this](Index s, Index t) { return this->IsLeftOf(s, t); };
-    std::set<Index, decltype(isBefore)> across(isBefore);
-    std::vector<decltype(across.begin())> places(all.size());
-    const auto isCrossed = [&](decltype(across.begin()) s, decltype(across.begin()) t) {
-      return s != across.end() && t != across.end() && Cross(all[*s], all[*t]);
-    };
-    const auto before = [&](decltype(across.begin()) s) {
-      return s == across.begin() ? across.end() : std::prev(s);
-    };
-    auto ending = byEnd.begin();
-    for (std::size_t i = 0; i <= all.size(); ++i)
-    {
-      ReportStep(sweeping, i, all.size() + 1, 1024);
-      // First those that end before it begins.
-      for (; ending != byEnd.end() && (i == all.size() || !IsLower(all[i][0], all[*ending][1]));
-           ++ending)
-      {
-        const auto place = places[*ending];
-        if (isCrossed(before(place), std::next(place)))
-        {
-          return true;
-        }
-        across.erase(place);
-      }
-      if (i < all.size())
-      {
-        const auto place = places[i] = across.insert(static_cast<Index>(i)).first;
-        if (isCrossed(before(place), place) || isCrossed(place, std::next(place)))
-        {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-private:
-  /** Of two that the sweep is on; of two on one line the first. */
-  bool IsLeftOf(Index s, Index t) const
-  {
-    const Ends &first = this->Segments[std::min(s, t)], &second = this->Segments[std::max(s, t)];
-    Sign side = second[0] == first[0] ? Zero : Orientation(first[0], first[1], second[0]);
-    side = side == Zero ? Orientation(first[0], first[1], second[1]) : side;
-    return side == Zero ? s < t : (side == Positive) == (s > t);
-  }
-
-  std::vector<Ends> Segments; ///< from their lower ends, which rise
-};
 
 /**
  * The rings as walks from place to place, cut wherever a point of one lies on an edge. So two steps
@@ -146,7 +57,7 @@ public:
       {
         work.Look();
         const Ends& ends = edges[*edge];
-        if (IsWithin(ends, p) && Orientation(ends[0], ends[1], p) == Zero)
+        if (IsInside(ends, p))
         {
           edgesHere->push_back(*edge);
         }
@@ -448,57 +359,6 @@ private:
 };
 
 } // namespace
-
-CellGrid GridOf(const std::vector<Ends>& segments)
-{
-  return CellGrid(segments.size(), [&](std::size_t i) { return segments[i]; });
-}
-
-void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
-  const Progress& progress, const std::function<void(std::size_t, std::size_t)>& visit)
-{
-  const std::size_t many = 64 * segments.size();
-  bool isSwept = false;
-  WorkReporter work(progress);
-  for (std::size_t i = 0; i < segments.size(); ++i)
-  {
-    work.Step(i, segments.size());
-    if (work.Count() > many && !isSwept)
-    {
-      const double done = static_cast<double>(i) / static_cast<double>(segments.size());
-      if (!CrossingSweep(segments).FindsCrossing(Part(progress, done, done)))
-      {
-        return;
-      }
-      isSwept = true;
-    }
-    grid.Visit(segments[i], [&](Index other) {
-      work.Look();
-      const std::size_t j = static_cast<std::size_t>(other);
-      if (j > i && Cross(segments[i], segments[j]))
-      {
-        visit(i, j);
-      }
-    });
-  }
-}
-
-bool Cross(const Ends& s, const Ends& t)
-{
-  // With an end in common, which some orientation would take long to find out.
-  if (s[0] == t[0] || s[0] == t[1] || s[1] == t[0] || s[1] == t[1])
-  {
-    return false;
-  }
-  return Orientation(s[0], s[1], t[0]) * Orientation(s[0], s[1], t[1]) < 0 &&
-    Orientation(t[0], t[1], s[0]) * Orientation(t[0], t[1], s[1]) < 0;
-}
-
-bool IsWithin(const Ends& s, const Point2& p)
-{
-  return IsLower(s[0], s[1]) ? IsLower(s[0], p) && IsLower(p, s[1])
-                             : IsLower(p, s[0]) && IsLower(s[1], p);
-}
 
 std::string NameOfEdge(const std::vector<Point2>& points, const Rings& rings, std::size_t edge)
 {

@@ -519,12 +519,11 @@ private:
               { border, place, i, IsBefore(segment[0], segment[1], apex, place) });
           }
         }
-        else if (Orientation(edge[0], edge[1], segment[0]) == Zero && IsWithin(edge, segment[0]))
+        else if (IsInside(edge, segment[0]))
         {
           this->AddStop(i, edge, borders[border], mesh.Origin(borders[border]));
         }
-        else if (Orientation(segment[0], segment[1], edge[0]) == Zero &&
-          IsWithin(segment, edge[0]) && this->MayInsert)
+        else if (this->MayInsert && IsInside(segment, edge[0]))
         {
           // Otherwise it would have become a vertex of this border.
           this->RefuseDoubleBorder(this->Pieces[i].Edge, edge[0]);
@@ -731,7 +730,7 @@ private:
       {
         const Point2& p = mesh.PointOf(v);
         grid.Visit(p, [&](Index i) {
-          if (Orientation(segments[i][0], segments[i][1], p) == Zero && IsWithin(segments[i], p))
+          if (IsInside(segments[i], p))
           {
             isOn[v] = 1;
             segmentsThrough[v].push_back(i);

@@ -9,7 +9,7 @@
  * rings through these. The passes:
  *   1. Look whether the rings cross each other (Crossings.h).
  *   2. Match the rings' points to corners of the mesh with the same x,y. One that the border passes
- *      within rounding (Reach.h) becomes a vertex of the border, which moves by as little; but not
+ *      within rounding (SnapRounding.h) becomes a vertex of the border, which moves by as little; but not
  *      where two borders do, which must not move into each other.
  *   3. Locate the others: they are binned, and one sweep over the triangles looks into the bins
  *      that each one touches. A point inside a triangle cuts it in three; one on an edge cuts the

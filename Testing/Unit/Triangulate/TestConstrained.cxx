@@ -667,6 +667,42 @@ TEST(ConstrainedDelaunay, FarFromLinesIsTheTriangulationOfTheCoordinates)
   }
 }
 
+/** The pairs of distinct segments that cross. */
+std::int64_t CountCrossingPairs(const Lines& lines)
+{
+  std::set<std::array<double, 4>> distinct;
+  for (Index line = 0; line < lines.Lists.Count(); ++line)
+  {
+    const Index begin = lines.Lists.Offsets[line], end = lines.Lists.Offsets[line + 1];
+    for (Index k = begin; k < end; ++k)
+    {
+      const Index next = k + 1 < end ? k + 1 : (lines.Lists.IsClosed[line] ? begin : k);
+      Point2 a = lines.Own.View().At(lines.Lists.Vertices[k]);
+      Point2 b = lines.Own.View().At(lines.Lists.Vertices[next]);
+      if (IsLower(b, a))
+      {
+        std::swap(a, b);
+      }
+      if (a != b)
+      {
+        distinct.insert({ a.X, a.Y, b.X, b.Y });
+      }
+    }
+  }
+  std::int64_t expected = 0;
+  for (auto p = distinct.begin(); p != distinct.end(); ++p)
+  {
+    for (auto q = std::next(p); q != distinct.end(); ++q)
+    {
+      const Point2 a{ (*p)[0], (*p)[1] }, b{ (*p)[2], (*p)[3] };
+      const Point2 c{ (*q)[0], (*q)[1] }, d{ (*q)[2], (*q)[3] };
+      expected += Orientation(a, b, c) * Orientation(a, b, d) < 0 &&
+        Orientation(c, d, a) * Orientation(c, d, b) < 0;
+    }
+  }
+  return expected;
+}
+
 TEST(ConstrainedDelaunay, CrossingsAreThoseOfAllPairs)
 {
   Random random(21);
@@ -675,38 +711,85 @@ TEST(ConstrainedDelaunay, CrossingsAreThoseOfAllPairs)
     const int size = 8 + random.Below(20);
     const Cloud cloud = Square(size);
     Lines lines = RandomLines(random, cloud, size, 40, size);
-    std::set<std::array<double, 4>> distinct;
-    for (Index line = 0; line < lines.Lists.Count(); ++line)
-    {
-      const Index begin = lines.Lists.Offsets[line], end = lines.Lists.Offsets[line + 1];
-      for (Index k = begin; k < end; ++k)
-      {
-        const Index next = k + 1 < end ? k + 1 : (lines.Lists.IsClosed[line] ? begin : k);
-        Point2 a = lines.Own.View().At(lines.Lists.Vertices[k]);
-        Point2 b = lines.Own.View().At(lines.Lists.Vertices[next]);
-        if (IsLower(b, a))
-        {
-          std::swap(a, b);
-        }
-        if (a != b)
-        {
-          distinct.insert({ a.X, a.Y, b.X, b.Y });
-        }
-      }
-    }
-    std::int64_t expected = 0;
-    for (auto p = distinct.begin(); p != distinct.end(); ++p)
-    {
-      for (auto q = std::next(p); q != distinct.end(); ++q)
-      {
-        const Point2 a{ (*p)[0], (*p)[1] }, b{ (*p)[2], (*p)[3] };
-        const Point2 c{ (*q)[0], (*q)[1] }, d{ (*q)[2], (*q)[3] };
-        expected += Orientation(a, b, c) * Orientation(a, b, d) < 0 &&
-          Orientation(c, d, a) * Orientation(c, d, b) < 0;
-      }
-    }
+    const std::int64_t expected = CountCrossingPairs(lines);
     EXPECT_EQ(Triangulate(cloud, lines).NumberOfCrossings, expected);
   }
+}
+
+/** Segments that overlap on few lines, of which any two meet in nodes of a lattice, if at all. */
+Lines OverlappingLines(Random& random, int number, int size, int directions)
+{
+  Lines lines;
+  for (int i = 0; i < number; ++i)
+  {
+    const int direction = random.Below(directions);
+    std::vector<std::array<double, 3>> ends;
+    for (int k = 0; k < 2; ++k)
+    {
+      const double at = random.Below(size);
+      const double height = direction == 0 ? at : direction == 1 ? size - at : size / 2;
+      ends.push_back({ direction == 3 ? height : at, direction == 3 ? at : height, 1.0 * i });
+    }
+    lines.AddPoints(ends);
+  }
+  return lines;
+}
+
+TEST(ConstrainedDelaunay, VeryManyThatOverlapAreCutAtAllTheirEnds)
+{
+  Random random(22);
+  for (int round = 0; round < 2; ++round)
+  {
+    Lines lines = OverlappingLines(random, 2000, 2000, 4);
+    const Cloud cloud = Square(1);
+    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+    EXPECT_EQ(constrained.NumberOfCrossings, CountCrossingPairs(lines));
+    ExpectRules(cloud, constrained);
+    // From one end on a line to the next, where there is a segment.
+    const Lines diagonal = OverlappingLines(random, 2000, 2000, 1);
+    std::set<double> ends;
+    for (std::size_t i = 0; i < diagonal.Own.Coordinates.size(); i += 3)
+    {
+      ends.insert(diagonal.Own.Coordinates[i]);
+    }
+    std::multiset<std::array<double, 4>> expected;
+    for (auto end = std::next(ends.begin()); end != ends.end(); ++end)
+    {
+      const double from = *std::prev(end), to = *end;
+      for (std::size_t i = 0; i < diagonal.Own.Coordinates.size(); i += 6)
+      {
+        const auto [low, high] =
+          std::minmax(diagonal.Own.Coordinates[i], diagonal.Own.Coordinates[i + 3]);
+        if (low <= from && to <= high)
+        {
+          expected.insert({ from, from, to, to });
+          break;
+        }
+      }
+    }
+    lines = diagonal;
+    const Cloud none;
+    EXPECT_EQ(PiecePositions(none, Triangulate(none, lines)), expected);
+  }
+}
+
+TEST(ConstrainedDelaunay, OfLinesThatOverlapTakesNLogNSteps)
+{
+  // Steps are told by how often they are reported: once in a number of steps.
+  const auto countReports = [](int number) {
+    Random random(23);
+    Lines lines = OverlappingLines(random, number, 20 * number, 1);
+    int reports = 0;
+    DelaunayOptions options;
+    options.Monitor = [&reports](double) {
+      ++reports;
+      return true;
+    };
+    Triangulate(Square(1), lines, options);
+    return reports;
+  };
+  const int reports = countReports(2000);
+  EXPECT_LT(countReports(8000), 5 * reports) << "four times the lines";
 }
 
 TEST(ConstrainedDelaunay, ThousandsOfLinesKeepAllRules)

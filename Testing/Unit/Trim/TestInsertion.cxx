@@ -5,7 +5,7 @@
 #include "PointSets.h"
 #include "Silence.h"
 
-#include "Kernel/Trim/Crossings.h"
+#include "Kernel/Mesh/Segments.h"
 #include "Kernel/Trim/Insertion.h"
 #include "Kernel/Mesh/Holes.h"
 #include "Kernel/Base/Predicates.h"

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Segments in the plane: which of them cross, which points lie on them, and where to cut them.
+ * Constraints and boundary rings are both cut with this.
+ *
+ * Exact, but for what says that it takes rounding into account (SnapRounding.h).
+ *
+ * [Shamos & Hoey 1976] Geometric intersection problems.
+ */
+#ifndef elevation_Mesh_Segments_h
+#define elevation_Mesh_Segments_h
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace elevation
+{
+
+/** Of a segment. */
+using Ends = std::array<Point2, 2>;
+
+CellGrid GridOf(const std::vector<Ends>& segments, const Progress& progress = Progress());
+
+/** Whether each of two segments has the ends of the other on its two sides. */
+bool Cross(const Ends& s, const Ends& t);
+
+/** Whether a point lies on the segment, and is none of its ends. */
+inline bool IsInside(const Ends& s, const Point2& p)
+{
+  return std::min(s[0].Y, s[1].Y) <= p.Y && p.Y <= std::max(s[0].Y, s[1].Y) &&
+    std::min(s[0].X, s[1].X) <= p.X && p.X <= std::max(s[0].X, s[1].X) && p != s[0] && p != s[1] &&
+    Orientation(s[0], s[1], p) == Zero;
+}
+
+/**
+ * Calls visit(i, j) for segments i < j that cross, by increasing i, and for each in the order of
+ * the grid of all of them; perhaps repeatedly.
+ *
+ * Cost: linear in the segments and the pairs of them that are near each other. Where these are many,
+ * a sweep tells before whether any cross: n log n segments if none do.
+ */
+void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
+  const Progress& progress, const std::function<void(std::size_t, std::size_t)>& visit);
+
+/**
+ * Calls visit(0) and visit(1) for the first and second end of a segment, if the other segment, with
+ * its units, runs by within reach. @return whether any is in reach
+ */
+template <typename Visitor>
+bool VisitEndsInReach(
+  const Ends& segment, const Ends& other, const RoundingUnits& units, double reach, Visitor&& visit)
+{
+  bool isAny = false;
+  for (const int end : { 0, 1 })
+  {
+    if (IsInReach(other[0], other[1], units, reach, segment[end]))
+    {
+      visit(end);
+      isAny = true;
+    }
+  }
+  return isAny;
+}
+
+/** A piece, and a vertex to cut it at. */
+struct PieceCut
+{
+  Index Piece;
+  Index Vertex;
+};
+
+/** Sorts cuts, or what has these members, by pieces and along each from its first end. */
+template <typename Cuts, typename EndsOf, typename PlaceOf>
+void SortAlong(Cuts& cuts, EndsOf&& endsOf, PlaceOf&& placeOf, const Progress& progress)
+{
+  Sort(
+    cuts.begin(), cuts.end(),
+    [&](const auto& p, const auto& q) {
+      if (p.Piece != q.Piece)
+      {
+        return p.Piece < q.Piece;
+      }
+      const Ends ends = endsOf(p.Piece);
+      return IsBefore(ends[0], ends[1], placeOf(p.Vertex), placeOf(q.Vertex));
+    },
+    progress);
+}
+
+/** Part of one or several segments. */
+struct SegmentPiece
+{
+  Index A; ///< vertices; the same one twice: a point that no segment ends in
+  Index B;
+  Index Rank;           ///< the first segment that it is part of
+  Index Count;          ///< of distinct segments that it is part of
+  RoundingUnits Unit = RoundingUnits(); ///< the largest of its segments
+};
+
+/** Segments that run straight through a vertex. */
+struct Passage
+{
+  Index Vertex;
+  Index Toward; ///< a vertex further up on their line
+  Index Count;  ///< of segments
+};
+
+/**
+ * Cuts pieces that overlap along one line at each other's ends, so that none overlap.
+ * @param[in,out] pieces  from their lower ends to their upper ones, no two alike
+ * @param[in]     places  of the vertices, all different
+ * @return where pieces have been cut
+ *
+ * Some that overlap may be left, where differences of their coordinates are multiples of a large
+ * prime. Cost: n log n.
+ */
+std::vector<Passage> JoinOverlaps(
+  std::vector<SegmentPiece>& pieces, const std::vector<Point2>& places, const Progress& progress);
+
+} // namespace elevation
+
+#endif
