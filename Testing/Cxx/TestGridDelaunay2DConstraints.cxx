@@ -314,6 +314,15 @@ void TestRefusals()
   expect(MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } }, { { 2, 2, 0 }, { NAN, 1, 0 } } }),
     "Point 3 of the constraints' cell 1 has a coordinate that is not finite.");
 
+  // Cells are numbered as vtkPolyData does: vertices, lines, polygons.
+  auto mixed =
+    MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } }, { { 2, 2, 0 }, { NAN, 1, 0 }, { 3, 3, 0 } } }, true);
+  vtkNew<vtkCellArray> vertices;
+  vertices->InsertNextCell({ 0 });
+  vertices->InsertNextCell({ 1, 2 });
+  mixed->SetVerts(vertices);
+  expect(mixed, "Point 3 of the constraints' cell 3 has a coordinate that is not finite.");
+
   auto missing = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } } });
   const vtkIdType ids[2] = { 1, 4294967296 };
   missing->GetLines()->InsertNextCell(2, ids);

@@ -33,6 +33,7 @@
 #include <initializer_list>
 #include <iostream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -394,6 +395,75 @@ void TestExtractedBoundary()
   Check(trim->GetEffectiveGapTolerance() == 14.0, "the tolerance set is the one used");
 }
 
+/** The corners of all triangles of an output, in their order. */
+std::vector<vtkIdType> CornersOf(vtkPolyData* output)
+{
+  std::vector<vtkIdType> corners;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType i = 0; i < output->GetNumberOfPolys(); ++i)
+  {
+    output->GetPolys()->GetCellAtId(i, ids);
+    corners.insert(corners.end(), ids->begin(), ids->end());
+  }
+  return corners;
+}
+
+/** The published test along a boundary that is extracted. */
+void TestInwardNormalExtracted()
+{
+  // A block with an empty lake and an empty bay: what is outside has corners on the boundary alone.
+  vtkNew<vtkPolyData> cloud;
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 40 * 40; ++i)
+  {
+    const int x = i % 40, y = i / 40;
+    const bool isLake = std::hypot(x - 15.0, y - 20.0) < 9.5;
+    const bool isBay = x > 30 && y > 10 && y < 20;
+    if (!isLake && !isBay)
+    {
+      points->InsertNextPoint(x, y, 3.0);
+    }
+  }
+  cloud->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  vtkNew<vtkTrimOutwardTriangles> exact;
+  exact->SetInputConnection(delaunay->GetOutputPort());
+  exact->Update();
+  vtkNew<vtkTrimOutwardTriangles> published;
+  published->SetInputConnection(delaunay->GetOutputPort());
+  published->SetOutwardTestToInwardNormal();
+  published->Update();
+  Check(exact->GetNumberOfOutwardTriangles() > 30, "the lake and the bay are outward");
+  for (int port = 0; port < 2; ++port)
+  {
+    Check(CornersOf(exact->GetOutput(port)) == CornersOf(published->GetOutput(port)),
+      "without points outside, the published test takes what the exact one takes");
+  }
+  Check(published->GetOutput(2)->GetNumberOfLines() == 2 &&
+      published->GetOutput(2)->GetNumberOfPoints() == exact->GetOutput(2)->GetNumberOfPoints() &&
+      published->GetEffectiveGapTolerance() == exact->GetEffectiveGapTolerance(),
+    "the boundary is the same");
+
+  // A lone point in the lake is left out; the triangles at it are not on the boundary alone.
+  points->InsertNextPoint(15.0, 20.0, 3.0);
+  points->Modified();
+  cloud->Modified();
+  exact->Update();
+  published->Update();
+  const std::vector<vtkIdType> kept = CornersOf(published->GetOutput(0));
+  const std::vector<vtkIdType> exactlyKept = CornersOf(exact->GetOutput(0));
+  const vtkIdType lone = cloud->GetNumberOfPoints() - 1;
+  const auto atLone = std::count(kept.begin(), kept.end(), lone);
+  Check(exact->GetNumberOfPointsLeftOut() == 1 && published->GetNumberOfPointsLeftOut() == 0,
+    "points left out are counted by the exact test alone");
+  Check(atLone > 0 && std::count(exactlyKept.begin(), exactlyKept.end(), lone) == 0,
+    "the published test keeps triangles at a point outside");
+  Check(published->GetNumberOfOutwardTriangles() <= exact->GetNumberOfOutwardTriangles() - atLone &&
+      published->GetNumberOfOutwardTriangles() > 0,
+    "and takes others");
+}
+
 /**
  * One clockwise triangle sends the whole mesh the slow way, where it is turned: the outputs are
  * those of the mesh without it. So are they with ids of 64 bits.
@@ -535,6 +605,26 @@ void TestErrors()
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 4, 4 }, { 2, 2 } } }), true, "encloses no triangle");
   vtkNew<vtkPolyData> nothing;
   ExpectError(mesh, nothing, true, "no line and no polygon");
+
+  // Cells are numbered as vtkPolyData does: vertices, lines, polygons.
+  auto mixed = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 0 } }, { { 1, 4 }, { 3, 5 }, { 2, 7 } } });
+  vtkNew<vtkCellArray> vertices;
+  vertices->InsertNextCell({ 0 });
+  vertices->InsertNextCell({ 1, 2 });
+  mixed->SetVerts(vertices);
+  mixed->GetPoints()->SetPoint(4, 3, 5, std::nan(""));
+  ExpectError(mesh, mixed, true, "Point 4 of the boundary's cell 3 is not finite");
+  vtkNew<vtkCellArray> polygon;
+  polygon->InsertNextCell({ 3, 81, 5 });
+  mixed->SetPolys(polygon);
+  mixed->GetPoints()->SetPoint(4, 3, 5, 7);
+  ExpectError(mesh, mixed, true, "Point 81 of the boundary's cell 4 does not exist");
+  mixed->SetPolys(nullptr);
+  vtkNew<vtkCellArray> notClosed;
+  notClosed->InsertNextCell({ 0, 1, 2, 0 });
+  notClosed->InsertNextCell({ 3, 4, 5 });
+  mixed->SetLines(notClosed);
+  ExpectError(mesh, mixed, true, "line (cell 3) ends at point 3 (1, 4)");
   auto heights = MakeRings({ { { 0, 0 }, { 7, 2 }, { 7, 0 } } });
   heights->GetPoints()->SetPoint(1, 7, 2, std::nan(""));
   ExpectError(mesh, heights, true, "Point 1 of the boundary's cell 0 is not finite");
@@ -561,6 +651,9 @@ void TestErrors()
   cells->InsertNextCell({ At(0, 0), At(1, 0), At(1, 1), At(0, 1) });
   quad->SetPolys(cells);
   ExpectError(quad, nullptr, true, "Cell 0 has 4 points");
+  quad->SetVerts(vertices);
+  quad->SetLines(notClosed);
+  ExpectError(quad, nullptr, true, "Cell 4 has 4 points");
   vtkNew<vtkPolyData> folded;
   folded->SetPoints(mesh->GetPoints());
   vtkNew<vtkCellArray> two;
@@ -568,6 +661,9 @@ void TestErrors()
   two->InsertNextCell({ At(1, 1), At(6, 1), At(1, 6) });
   folded->SetPolys(two);
   ExpectError(folded, nullptr, true, "Cell 1 lies over");
+  folded->SetVerts(vertices);
+  folded->SetLines(notClosed);
+  ExpectError(folded, nullptr, true, "Cell 5 lies over");
 }
 
 void TestFaultyCells()
@@ -667,6 +763,7 @@ int TestTrimOutwardTriangles(int, char*[])
   TestCellDataOfParts();
   TestOutwardTest();
   TestExtractedBoundary();
+  TestInwardNormalExtracted();
   TestBothWaysAgree();
   TestErrors();
   TestFaultyCells();
