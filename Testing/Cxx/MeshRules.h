@@ -17,15 +17,14 @@
 #include "vtkPolyData.h"
 
 #include <iostream>
+#include <string>
 #include <vector>
 
 /** What every surface keeps to, whichever filter it comes from. */
 inline elevation::ValidateOptions RulesOfSurface()
 {
   elevation::ValidateOptions rules;
-  rules.Delaunay = false;
-  rules.ConvexHull = false;
-  rules.AllPoints = false;
+  rules.Delaunay = rules.ConvexHull = rules.AllPoints = false;
   return rules;
 }
 
@@ -37,14 +36,31 @@ inline elevation::ValidateOptions RulesOfDelaunayPart()
   return rules;
 }
 
-/**
- * Prints which of the rules the polygons of a surface break. Points in the field data's
- * UnusedPointIds need not be vertices. Polygons are taken as they are, so that a clockwise one is
- * found.
- * @return the number of findings; 0 when all is well
- */
-inline int NumberOfFindings(vtkPolyData* surface, elevation::ValidateOptions rules)
+/** Those of a surface that covers all within a convex border. */
+inline elevation::ValidateOptions RulesOfConvexSurface()
 {
+  elevation::ValidateOptions rules = RulesOfSurface();
+  rules.ConvexHull = true;
+  return rules;
+}
+
+/** Those of a constrained triangulation of all points, apart from empty circles. */
+inline elevation::ValidateOptions RulesOfConstrained()
+{
+  elevation::ValidateOptions rules = RulesOfConvexSurface();
+  rules.AllPoints = true;
+  return rules;
+}
+
+/**
+ * The rules that the polygons of a surface break; or of parts of one, which share their points.
+ * Points in the field data's UnusedPointIds need not be vertices. Polygons are taken as they are, so
+ * that a clockwise one is found.
+ */
+inline std::vector<elevation::Finding> FindingsOf(
+  const std::vector<vtkPolyData*>& parts, elevation::ValidateOptions rules)
+{
+  vtkPolyData* const surface = parts.front();
   elevation::Mesh mesh;
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
   {
@@ -53,17 +69,17 @@ inline int NumberOfFindings(vtkPolyData* surface, elevation::ValidateOptions rul
     mesh.Points.push_back({ p[0], p[1] });
   }
   vtkNew<vtkIdList> corners;
-  for (vtkIdType i = 0; i < surface->GetNumberOfPolys(); ++i)
+  for (vtkPolyData* part : parts)
   {
-    surface->GetPolys()->GetCellAtId(i, corners);
-    if (corners->GetNumberOfIds() != 3)
+    for (vtkIdType i = 0; i < part->GetNumberOfPolys(); ++i)
     {
-      std::cerr << "polygon " << i << " is not a triangle\n";
-      return 1;
-    }
-    for (vtkIdType k = 0; k < 3; ++k)
-    {
-      mesh.Triangles.push_back(static_cast<elevation::Index>(corners->GetId(k)));
+      part->GetPolys()->GetCellAtId(i, corners);
+      if (corners->GetNumberOfIds() != 3)
+      {
+        return { { elevation::Rule::Ids, static_cast<elevation::Index>(i),
+          "polygon " + std::to_string(i) + " is not a triangle" } };
+      }
+      mesh.Triangles.insert(mesh.Triangles.end(), corners->begin(), corners->end());
     }
   }
   std::vector<elevation::Index> unused;
@@ -75,9 +91,21 @@ inline int NumberOfFindings(vtkPolyData* surface, elevation::ValidateOptions rul
     }
   }
   rules.UnusedPoints = &unused;
-  const std::vector<elevation::Finding> findings = Validate(mesh, rules);
+  return Validate(mesh, rules);
+}
+
+/** Prints them. @return how many there are; 0 when all is well */
+inline int NumberOfFindings(
+  const std::vector<vtkPolyData*>& parts, const elevation::ValidateOptions& rules)
+{
+  const std::vector<elevation::Finding> findings = FindingsOf(parts, rules);
   std::cerr << ToString(findings);
   return static_cast<int>(findings.size());
+}
+
+inline int NumberOfFindings(vtkPolyData* surface, const elevation::ValidateOptions& rules)
+{
+  return NumberOfFindings(std::vector<vtkPolyData*>{ surface }, rules);
 }
 
 #endif

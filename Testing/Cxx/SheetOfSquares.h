@@ -91,27 +91,4 @@ inline double ProjectedArea(vtkPolyData* surface)
   return area;
 }
 
-/** How many edges have more than two polygons. */
-inline int NumberOfNonManifoldEdges(vtkPolyData* surface)
-{
-  std::map<std::pair<vtkIdType, vtkIdType>, int> uses;
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < surface->GetPolys()->GetNumberOfCells(); ++cell)
-  {
-    surface->GetPolys()->GetCellAtId(cell, ids);
-    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
-    {
-      const vtkIdType a = ids->GetId(i);
-      const vtkIdType b = ids->GetId((i + 1) % ids->GetNumberOfIds());
-      ++uses[a < b ? std::make_pair(a, b) : std::make_pair(b, a)];
-    }
-  }
-  int count = 0;
-  for (const auto& use : uses)
-  {
-    count += use.second > 2;
-  }
-  return count;
-}
-
 #endif

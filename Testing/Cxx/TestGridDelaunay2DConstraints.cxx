@@ -135,9 +135,7 @@ void TestNothingIsAdded()
   Check(HasEdge(output, 10, 21) && !HasEdge(plain, 10, 21), "the line is an edge");
   Check(!delaunay->GetLatticeFound() && !output->GetFieldData()->GetArray("Lattice"),
     "no lattice with constraints");
-  elevation::ValidateOptions rules;
-  rules.Delaunay = false;
-  Check(NumberOfFindings(output, rules) == 0, "the whole hull is covered");
+  Check(NumberOfFindings(output, RulesOfConstrained()) == 0, "the whole hull is covered");
 
   // Vertex cells and points in no cell are no constraints.
   vtkNew<vtkPolyData> vertices;

@@ -113,9 +113,8 @@ void Compare(const char* name, vtkPolyData* input, const std::vector<Ids>& lines
   ours->SetInputData(input);
   ours->SetSourceData(constraints);
   ours->Update();
-  elevation::ValidateOptions rules;
-  rules.Delaunay = false;
-  Check(NumberOfFindings(ours->GetOutput(), rules) == 0, "ours covers the hull once");
+  Check(
+    NumberOfFindings(ours->GetOutput(), RulesOfConstrained()) == 0, "ours covers the hull once");
   const double part = CoveredPart(ours->GetOutput(), lines, arePolygons);
   Check(std::fabs(part - 1.0) < 1e-12, "in ours all lines are edges");
 

@@ -7,6 +7,7 @@
 #include "Check.h"
 #include "FaultyCells.h"
 #include "MeshRules.h"
+#include "SheetOfSquares.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -112,26 +113,6 @@ vtkSmartPointer<vtkPolyData> MakeRings(
   return boundary;
 }
 
-/** Twice the area of the polygons; checks that each is counter-clockwise. */
-double TwiceArea(vtkPolyData* mesh)
-{
-  double sum = 0.0;
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPolys(); ++i)
-  {
-    vtkIdType size = 0;
-    const vtkIdType* t = nullptr;
-    mesh->GetPolys()->GetCellAtId(i, size, t);
-    double a[3], b[3], c[3];
-    mesh->GetPoint(t[0], a);
-    mesh->GetPoint(t[1], b);
-    mesh->GetPoint(t[2], c);
-    const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    Check(area > 0.0, "triangles are counter-clockwise");
-    sum += area;
-  }
-  return sum;
-}
-
 void TestGivenBoundary()
 {
   auto mesh = MakeMesh();
@@ -151,8 +132,9 @@ void TestGivenBoundary()
   Check(
     mesh->GetMTime() == time && boundary->GetMTime() == boundaryTime, "the inputs are not written");
   const double expected = (1 * 2 - 7 * 1) + (7 * 7 - 6 * 2) + (6 * 6 - 2 * 7) + (2 * 1 - 1 * 6) - 8;
-  Check(TwiceArea(kept) == expected, "the kept triangles cover the inside");
-  Check(TwiceArea(kept) + TwiceArea(outward) == 2.0 * 64, "both together cover the input");
+  Check(ProjectedArea(kept) == 0.5 * expected, "the kept triangles cover the inside");
+  Check(NumberOfFindings({ kept, outward }, RulesOfConstrained()) == 0,
+    "both together cover the input, with all of its points");
   Check(kept->GetNumberOfPolys() + outward->GetNumberOfPolys() == mesh->GetNumberOfPolys(),
     "the number of triangles is conserved");
   Check(trim->GetNumberOfOutwardTriangles() == outward->GetNumberOfPolys(), "outward is counted");
@@ -261,8 +243,9 @@ void TestBoundaryDrawnAnywhere()
   Check(kept->GetFieldData()->GetArray("NumberOfInsertedPoints") &&
       kept->GetFieldData()->GetArray("NumberOfInsertedPoints")->GetTuple1(0) == 7,
     "and stand in the field data");
-  Check(TwiceArea(kept) == 2.0 * (6.75 * 5.5 - 2.25 * 2.5), "the kept triangles cover the inside");
-  Check(TwiceArea(kept) + TwiceArea(outward) == 2.0 * 64, "both together cover the input");
+  Check(ProjectedArea(kept) == 6.75 * 5.5 - 2.25 * 2.5, "the kept triangles cover the inside");
+  Check(NumberOfFindings({ kept, outward }, RulesOfConstrained()) == 0,
+    "both together cover the input, with all of its points");
   Check(NumberOfFindings(kept, RulesOfSurface()) == 0 &&
       NumberOfFindings(outward, RulesOfSurface()) == 0,
     "both parts are surfaces");
@@ -351,12 +334,12 @@ void TestOutwardTest()
     { { { 1, 1 }, { 7, 1 }, { 7, 7 }, { 1, 7 } }, { { 3, 3 }, { 4, 3 }, { 4, 4 }, { 3, 4 } } }));
   trim->SetOutwardTestToInwardNormal();
   trim->Update();
-  Check(trim->GetNumberOfOutwardTriangles() == 2 && TwiceArea(trim->GetOutput(1)) == 2.0,
+  Check(trim->GetNumberOfOutwardTriangles() == 2 && ProjectedArea(trim->GetOutput(1)) == 1.0,
     "the published test takes the lake, and nothing at points off the boundary");
-  Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 63, "the others stay");
+  Check(ProjectedArea(trim->GetOutput(0)) == 63, "the others stay");
   trim->SetOutwardTestToExact();
   trim->Update();
-  Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 35, "the exact test takes all that is outside");
+  Check(ProjectedArea(trim->GetOutput(0)) == 35, "the exact test takes all that is outside");
 }
 
 void TestExtractedBoundary()
@@ -378,7 +361,7 @@ void TestExtractedBoundary()
   vtkNew<vtkTrimOutwardTriangles> trim;
   trim->SetInputConnection(delaunay->GetOutputPort());
   trim->Update();
-  Check(TwiceArea(trim->GetOutput(0)) == 2.0 * 9 * (11 + 7), "the blocks are kept");
+  Check(ProjectedArea(trim->GetOutput(0)) == 9 * (11 + 7), "the blocks are kept");
   Check(NumberOfFindings(trim->GetOutput(0), RulesOfDelaunayPart()) == 0 &&
       NumberOfFindings(trim->GetOutput(1), RulesOfDelaunayPart()) == 0,
     "what lies inside and what lies outside are parts of the triangulation");

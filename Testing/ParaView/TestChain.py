@@ -6,32 +6,9 @@ import os
 import numpy
 from paraview import simple
 
-from plugin_testing import (array, check, check_close, check_equal, edge_uses, fetch, finish,
-                            information, lines, points, ring_area, screenshot, signed_areas, start,
-                            triangles)
-
-
-def hull_of(coordinates):
-    """Convex hull by Andrew's monotone chain: its area, and the number of points on its border.
-
-    The data are multiples of 1/64 of a metre, so that the cross products are exact.
-    """
-    order = numpy.lexsort((coordinates[:, 1], coordinates[:, 0]))
-    sorted_points = [tuple(p) for p in (coordinates - coordinates.min(axis=0))[order]]
-
-    def half(chain_points):
-        chain = []
-        for p in chain_points:
-            while len(chain) > 1:
-                (ax, ay), (bx, by) = chain[-2:]
-                if (bx - ax) * (p[1] - ay) - (by - ay) * (p[0] - ax) >= 0:  # keeps collinear points
-                    break
-                chain.pop()
-            chain.append(p)
-        return chain
-
-    ring = half(sorted_points)[:-1] + half(sorted_points[::-1])[:-1]
-    return ring_area(numpy.array(ring + ring[:1])), len(ring)
+from plugin_testing import (array, check, check_close, check_equal, check_rules, fetch, finish,
+                            information, lines, number_of_border_edges, points, screenshot,
+                            signed_areas, start, triangles)
 
 
 def sorted_triangles(surface):
@@ -47,14 +24,10 @@ check_equal(count, 13299, "points of the file")
 # ---- grid Delaunay: all of the hull ------------------------------------------------------------
 delaunay = simple.GridDelaunay2D(Input=reader)
 full = fetch(delaunay)
-hull_area, on_hull = hull_of(points(cloud)[:, :2].astype(float))
 check_equal(full.GetNumberOfPoints(), count, "points of the triangulation")
 check(numpy.array_equal(points(full), points(cloud)), "the points are the points of the input")
-check_equal(full.GetNumberOfPolys(), 2 * count - 2 - on_hull, "triangles of the triangulation")
-check(signed_areas(full).min() > 0, "every triangle is counter-clockwise")
-check_close(signed_areas(full).sum(), hull_area, "area of the triangulation and of the hull")
-check_equal(edge_uses(full).max(), 2, "triangles at an edge, at most")
-check_equal((edge_uses(full) == 1).sum(), on_hull, "edges on the border")
+check_rules("the triangulation of all points is Delaunay and covers their hull", full, delaunay=True,
+            convex_hull=True, all_points=True)
 check_equal(information(delaunay, "NumberOfDuplicatePoints"), 0, "duplicate points")
 check_equal(information(delaunay, "NumberOfNonFinitePoints"), 0, "points that are not finite")
 check_equal(full.GetFieldData().GetArray("UnusedPointIds").GetNumberOfTuples(), 0, "unused points")
@@ -110,10 +83,10 @@ check_equal(array(holes.GetCellData(), "NumberOfInsertedPoints").sum(), is_new.s
 check_close(signed_areas(filled).sum(),
             signed_areas(kept).sum() + array(holes.GetCellData(), "Area").sum(),
             "area of the surface, with its holes")
-check(signed_areas(filled).min() > 0, "every triangle is counter-clockwise after filling")
-check_equal(edge_uses(filled).max(), 2, "triangles at an edge after filling, at most")
-check_equal((edge_uses(kept) == 1).sum() - (edge_uses(filled) == 1).sum(),
+check_rules("the filled surface covers nothing twice", filled)
+check_equal(number_of_border_edges(kept) - number_of_border_edges(filled),
             array(holes.GetCellData(), "NumberOfEdges").sum(), "rim edges that were closed")
+
 
 def beyond(surface):
     """How far new points lie above or below all old ones, in parts of the old ones' range."""

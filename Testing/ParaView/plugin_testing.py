@@ -13,6 +13,9 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 import numpy
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
+from mesh_rules import findings, number_of_border_edges  # noqa: E402,F401
+
 FAILURES = []
 
 
@@ -48,6 +51,12 @@ def check_close(value, expected, claim, relative=1e-9):
         math.isclose(value, expected, rel_tol=relative),
         "%s: %.17g instead of %.17g" % (claim, value, expected),
     )
+
+
+def check_rules(claim, *parts, **rules):
+    """Checks the rules of mesh_rules.findings(), and prints those that are broken."""
+    broken = findings(*parts, **rules)
+    check(not broken, "%s: %s" % (claim, "; ".join(broken[:5])))
 
 
 def finish():
@@ -109,13 +118,6 @@ def ring_area(coordinates):
     """Area in x,y of a closed line (the last point is the first), positive when counter-clockwise."""
     x, y = (coordinates[:, :2] - coordinates[0, :2]).astype(float).T
     return 0.5 * float(numpy.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
-
-
-def edge_uses(surface):
-    """Number of triangles at each edge, as the counts of the undirected edges."""
-    corners = triangles(surface)
-    edges = numpy.vstack([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    return numpy.unique(numpy.sort(edges, axis=1), axis=0, return_counts=True)[1]
 
 
 def screenshot(path, view):
