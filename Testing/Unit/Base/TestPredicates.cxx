@@ -72,6 +72,40 @@ TEST(InCircle, IsZeroForCocircularPoints)
   EXPECT_EQ(InCircle({ x, y }, { x + step, y }, { x + step, y + step }, { x, y + step }), Zero);
 }
 
+TEST(InCircle, TakesIntegersForSmallOnesOnlyWhereProductsAreExact)
+{
+  // A circle through 324 lattice points, whose products of four differences leave 53 bits.
+  constexpr int radius = 5 * 13 * 17 * 29;
+  std::vector<Point2> points;
+  for (int x = -radius; x <= radius; ++x)
+  {
+    const double square = double(radius) * radius - double(x) * x;
+    const double y = std::round(std::sqrt(square));
+    if (y * y == square)
+    {
+      points.push_back({ double(x), y });
+      points.push_back({ double(x), -y });
+    }
+  }
+  ASSERT_GT(points.size(), 300u);
+  std::mt19937_64 random(8);
+  const auto point = [&]() { return points[random() % points.size()]; };
+  for (int i = 0; i < 20000; ++i)
+  {
+    ASSERT_EQ(InCircle(point(), point(), point(), point()), Zero);
+  }
+}
+
+TEST(InCircle, TakesDifferencesForIntegersOnlyWhereTheyAreExact)
+{
+  // All but the last lie on a circle with the origin; differences from a point near the origin are
+  // rounded to integers.
+  const Point2 a{ 7, 1 }, b{ 7, 7 }, c{ -1, 7 };
+  EXPECT_EQ(InCircle(a, b, c, { 0, 0 }), Zero);
+  EXPECT_EQ(InCircle(a, b, c, { 1e-20, 0 }), Positive);
+  EXPECT_EQ(InCircle(a, b, c, { 0, -1e-20 }), Negative);
+}
+
 TEST(Predicates, AreExactOneRoundoffFromALine)
 {
   // All points of a small neighbourhood of the line y = x, where a determinant of

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -211,6 +212,38 @@ TEST(TraceBorder, SeparatesHolesThatShareAVertex)
   std::vector<Index> sizes{ walks.Size(0), walks.Size(1), walks.Size(2) };
   std::sort(sizes.begin(), sizes.end());
   EXPECT_EQ(sizes, (std::vector<Index>{ 4, 4, 16 }));
+}
+
+TEST(TraceBorder, TurnsIntoTheSlitWhereVeryManyBordersMeet)
+{
+  // Triangles all around a vertex, which is all that they share: behind each is an empty wedge of no
+  // width, and one walk goes through all of these. Also with fewer, which are searched one by one.
+  for (const int count : { 6, 40 })
+  {
+    for (int first = 0; first < count; ++first)
+    {
+      std::vector<Point2> points{ { 0, 0 } };
+      std::vector<Index> triangles;
+      for (int i = 0; i < count; ++i)
+      {
+        for (const int k : { first + i, first + i + 1 })
+        {
+          const double angle = 6.283185307179586 * (k % count) / count;
+          points.push_back({ std::cos(angle), std::sin(angle) });
+        }
+        triangles.insert(triangles.end(), { 2 * i + 1, 2 * i + 2, 0 });
+      }
+      const Mesh mesh = testing_surfaces::Make(points, triangles);
+      const Rings walks = TraceBorder(mesh);
+      ASSERT_EQ(walks.Count(), 1) << count << " " << first;
+      for (Index i = 0; i < walks.Size(0); ++i)
+      {
+        const Index h = walks.Begin(0)[i], next = walks.Begin(0)[(i + 1) % walks.Size(0)];
+        const Index after = (Mesh::Triangle(h) + 1) % count;
+        EXPECT_EQ(Mesh::Triangle(next), mesh.Destination(h) == 0 ? after : Mesh::Triangle(h));
+      }
+    }
+  }
 }
 
 TEST(TraceBorder, JoinsTwoPiecesThatShareAVertex)

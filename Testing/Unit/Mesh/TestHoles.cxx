@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace elevation;
@@ -391,6 +392,43 @@ TEST(Holes, WithTwoPointsAtOnePlaceAreMarkedAndTheOthersNot)
   EXPECT_EQ(NumberOfIslands(holes, touched), 1);
   EXPECT_EQ(holes.Touched[1 - touched], 0);
   EXPECT_EQ(NumberOfIslands(holes, 1 - touched), 0);
+}
+
+TEST(Holes, AreNotMarkedForTwoPointsAtOnePlaceThatSeeDifferentRegions)
+{
+  // The hole's lowest corner is on the outline as well, and there another triangle touches it from
+  // the outside, with a point of its own.
+  const std::vector<Point2> points{ { 0, 0 }, { 3, 0 }, { 0, 3 }, { -3, 0 }, { 1, 1 }, { -1, 1 },
+    { 0, 0 }, { -1, -2 }, { 1, -2 } };
+  const Holes holes = FindHoles(
+    Make(points, { 0, 1, 4, 1, 2, 4, 4, 2, 5, 2, 3, 5, 0, 5, 3, 6, 7, 8 }));
+  ASSERT_EQ(holes.Count(), 1);
+  EXPECT_EQ(holes.NumberOfContacts, 1);
+  EXPECT_EQ(holes.Touched[0], 0);
+}
+
+TEST(Holes, BeginAtAPinchedVertexWithTheEdgeToTheLowestOneInAnyOrderOfCells)
+{
+  // A triangle in a triangle, with one corner in common, the lowest one of both.
+  const std::vector<Point2> points{ { 0, -4 }, { 8, 4 }, { -8, 4 }, { 0, -1 }, { 2, 2 }, { -2, 2 },
+    { 0.5, 1 }, { -0.5, 1.2 } };
+  std::vector<std::array<Index, 3>> cells{ { 0, 1, 4 }, { 0, 4, 3 }, { 1, 2, 5 }, { 1, 5, 4 },
+    { 2, 0, 3 }, { 2, 3, 5 }, { 3, 6, 7 } };
+  for (std::size_t order = 0; order < cells.size(); ++order)
+  {
+    std::vector<Index> triangles;
+    for (const std::array<Index, 3>& cell : cells)
+    {
+      triangles.insert(triangles.end(), cell.begin(), cell.end());
+    }
+    const Mesh mesh = Make(points, triangles);
+    const Holes holes = FindHoles(mesh);
+    ASSERT_EQ(holes.Count(), 1);
+    const Index first = *holes.Walks.Begin(holes.Rim(0));
+    EXPECT_EQ(mesh.Origin(first), 3);
+    EXPECT_EQ(mesh.Destination(first), 6) << order;
+    std::rotate(cells.begin(), cells.begin() + 1, cells.end());
+  }
 }
 
 TEST(Holes, StopWhenAskedTo)

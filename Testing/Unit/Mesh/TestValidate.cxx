@@ -94,6 +94,22 @@ TEST(Validate, FindsABorderThatIsNotTheHull)
   EXPECT_EQ(BrokenRules(mesh), std::vector<Rule>{ Rule::Hull });
 }
 
+TEST(Validate, FindsABorderThatWindsAroundTwice)
+{
+  // A fan of ten triangles twice around its middle: nowhere does the border turn inwards.
+  Mesh mesh;
+  mesh.Points = { { 0, 0 } };
+  const Point2 corners[] = { { 4, 0 }, { 1, 4 }, { -3, 2 }, { -3, -2 }, { 1, -4 } };
+  for (Index i = 0; i < 10; ++i)
+  {
+    mesh.Points.push_back(corners[i % 5]);
+    mesh.Triangles.insert(mesh.Triangles.end(), { 0, 1 + i, 1 + (i + 1) % 10 });
+  }
+  ValidateOptions options;
+  options.Delaunay = options.Overlap = false;
+  EXPECT_EQ(BrokenRules(mesh, options), std::vector<Rule>{ Rule::Hull });
+}
+
 TEST(Validate, FindsPointsLeftOut)
 {
   Mesh mesh = Square();
