@@ -25,6 +25,7 @@ set(es_kernel_Triangulate
   Hull
   DivideAndConquer
   GridGrowth
+  LatticeApexes
   LatticeGrowth
   Constrained
   Triangulate)
@@ -51,7 +52,7 @@ set(es_kernel_headers_Mesh
 set(es_kernel_headers_Lattice
   Lattice)
 set(es_kernel_headers_Triangulate
-  EdgeLimit Options WorkBudget)
+  EdgeLimit Growth Options WorkBudget)
 set(es_kernel_headers_Trim
   Trim)
 set(es_kernel_headers_Fill)

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DivideAndConquer.h"
 
+#include "LatticeApexes.h"
 #include "Kernel/Base/Base.h"
-#include "Kernel/Lattice/Lattice.h"
 
 #include <vector>
 
@@ -315,21 +315,13 @@ private:
     {
       return InCircle(a, b, c, d);
     }
-    // Of two points left of ab, the one with the smaller quotient dot / cross is in the circle of
-    // the other; multiplied out, this holds on either side.
-    struct Offset
-    {
-      std::int64_t X, Y;
-    };
+    // Multiplied out, the comparison holds on either side of ab.
     const auto from = [&a](const Point2& p) {
       return Offset{ static_cast<std::int64_t>(p.X - a.X), static_cast<std::int64_t>(p.Y - a.Y) };
     };
-    const Offset e = from(b), p = from(c), q = from(d);
-    const auto dot = [&](const Offset& o) {
-      return this->Metric->Dot(o.X, o.Y, o.X - e.X, o.Y - e.Y);
-    };
-    const auto cross = [&](const Offset& o) { return e.X * o.Y - e.Y * o.X; };
-    return static_cast<Sign>(CompareProducts(dot(p), cross(q), dot(q), cross(p)));
+    const Offset e = from(b);
+    return static_cast<Sign>(
+      CompareQuotients(ApexAt(*this->Metric, e, from(c)), ApexAt(*this->Metric, e, from(d))));
   }
 
   /** Reports within a merge, which at the top takes long. */

@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Growing a triangulation: what is the same for points in a grid of bins and for nodes of a lattice.
+ *
+ * The vertices are taken from the lowest up, and each grows the fan of the triangles of which it is
+ * the lowest vertex. They are cut into strips, grown at the same time: a strip knows the first and
+ * the last edge of the fans of its own vertices only. What triangles from below would have told of
+ * them is found by a walk through the triangles that cross the strip's lower border. By Euler's
+ * formula the walk also tells how many triangles are below, so that each strip writes its own where
+ * they belong. Triangles do not depend on where strips begin: they are the same, byte for byte, for
+ * any number of strips.
+ *
+ * Where searches look at too many points, growing is given up, and the vertices are divided and
+ * conquered (DivideAndConquer.h). The triangles are the same, byte for byte.
+ */
+#ifndef elevation_Triangulate_Growth_h
+#define elevation_Triangulate_Growth_h
+
+#include "DivideAndConquer.h"
+#include "EdgeLimit.h"
+#include "Hull.h"
+#include "Options.h"
+#include "WorkBudget.h"
+
+#include <memory>
+
+namespace elevation
+{
+
+[[noreturn]] inline void ThrowOpenFan()
+{
+  throw std::logic_error("the fans of triangles do not close; this is a fault of the "
+                         "triangulation, please report it");
+}
+
+/**
+ * A stretch of the vertices that one thread grows, a little at a time. What differs is in a class
+ * that derives from it, with its own names of vertices:
+ *   bool IsBelow(Index v) const         whether a vertex is below those of the strip
+ *   bool Tell(Index p, Index q)         tells the lower end of a triangle's upper edge,
+ *                                       counter-clockwise from p to q, of the other one;
+ *                                       false when it is above the strip
+ *   bool PassCells()                    goes on with the walk as far as no search is needed
+ *   Index FindAcross()                  the apex of the triangle on the right of the walk's edge
+ *   void GrowFans()                     until the budget pauses or the strip is done
+ *   bool IsDone() const
+ *   double Done() const                 how many of the vertices are done, or about so many
+ */
+template <typename Derived>
+class Strip
+{
+public:
+  /** @param begin,end  its vertices, counted from the lowest */
+  Strip(const Hull& hull, Index begin, Index end, const WorkBudget& budget)
+    : OfAll(hull)
+    , Begin(begin)
+    , End(end)
+    , Budget(budget)
+  {
+  }
+  Strip(const Strip&) = delete;
+  Strip& operator=(const Strip&) = delete;
+
+  /** Where all triangles are to be written. */
+  void SetOutput(Buffer<Index>& triangles)
+  {
+    this->All = triangles.begin();
+    this->AllEnd = triangles.end();
+  }
+
+  /** Goes on until it is done, or until about a time. */
+  void GoOn(const RoundClock::time_point& end)
+  {
+    Derived& self = static_cast<Derived&>(*this);
+    do
+    {
+      this->Budget.Resume();
+      if (this->Out || this->Walk())
+      {
+        self.GrowFans();
+      }
+    } while (!self.IsDone() && RoundClock::now() < end);
+  }
+
+  /** Joins what it has written to what other strips have written before. */
+  void Join(Index*& end, bool isLimited) const
+  {
+    if (!isLimited && this->OutBegin != end)
+    {
+      ThrowOpenFan();
+    }
+    end = this->OutBegin == end ? this->Out : std::copy(this->OutBegin, this->Out, end);
+  }
+
+protected:
+  void NeedRoom(std::size_t triangles) const
+  {
+    if (static_cast<std::size_t>(this->AllEnd - this->Out) < 3 * triangles)
+    {
+      ThrowOpenFan();
+    }
+  }
+
+  /** There must be room, also for one that is left out. */
+  void Write(Index a, Index b, Index c, bool isLeftIn)
+  {
+    this->Out[0] = a;
+    this->Out[1] = b;
+    this->Out[2] = c;
+    this->Out += isLeftIn ? 3 : 0;
+  }
+
+private:
+  using Vertex = std::vector<Index>::const_iterator;
+
+  Vertex FirstAbove(const std::vector<Index>& chain) const
+  {
+    const Derived& self = static_cast<const Derived&>(*this);
+    return std::partition_point(
+      chain.begin(), chain.end(), [&](Index v) { return self.IsBelow(v); });
+  }
+
+  /**
+   * Goes on through the triangles across the lower border, from the left side of the hull to the
+   * right: each edge across is that of two of them.
+   * @return false when it pauses
+   */
+  bool Walk()
+  {
+    Derived& self = static_cast<Derived&>(*this);
+    const std::vector<Index>&rightChain = this->OfAll.RightChain,
+          &leftChain = this->OfAll.LeftChain;
+    const Vertex right = this->FirstAbove(rightChain), left = this->FirstAbove(leftChain);
+    if (this->Begin > 0)
+    {
+      if (this->Low == None)
+      {
+        this->Low = left[-1];
+        this->High = left[0];
+        this->LastLow = right[-1];
+        this->LastHigh = right[0];
+      }
+      while (this->Low != this->LastLow || this->High != this->LastHigh)
+      {
+        if (this->Budget.IsPaused())
+        {
+          return false;
+        }
+        if (self.PassCells())
+        {
+          continue;
+        }
+        const Index apex = self.FindAcross();
+        this->Budget.Check();
+        if (self.IsBelow(apex))
+        {
+          this->Low = apex;
+        }
+        else
+        {
+          ++this->Pairs;
+          self.Tell(apex, this->High);
+          this->High = apex;
+        }
+      }
+    }
+    // The hull's edges are as those of triangles below.
+    for (Vertex v = right; v + 1 != rightChain.end() && self.Tell(v[1], v[0]); ++v)
+    {
+    }
+    for (Vertex v = left; v + 1 != leftChain.end() && self.Tell(v[0], v[1]); ++v)
+    {
+    }
+    // n vertices joined by triangles, with no hole and b edges around, have 2 n - 2 - b triangles.
+    // Around those above are some edges of the hull and, along the walk, one for each pair.
+    const std::size_t below = 2 * static_cast<std::size_t>(this->Begin) + this->Pairs -
+      static_cast<std::size_t>((left - leftChain.begin()) + (right - rightChain.begin()));
+    this->OutBegin = this->Out = this->All + 3 * below;
+    return true;
+  }
+
+  const Hull& OfAll;
+  Index *All = nullptr, *AllEnd = nullptr; ///< where all triangles are written
+  Index* OutBegin = nullptr;
+
+protected:
+  Index* Out = nullptr; ///< the end of what it has written; null before the walk is done
+  const Index Begin, End;
+  WorkBudget Budget;
+  // The edge across the border that the walk has come to, and the last one.
+  Index Low = None, High = None, LastLow = None, LastHigh = None;
+  std::size_t Pairs = 0; ///< triangles with two vertices above that the walk has passed
+};
+
+/** Grows all strips, as many at a time as there are threads, with a report between rounds. */
+template <typename AnyStrip>
+void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int threads, Index vertices,
+  const Progress& progress)
+{
+  const Index number = static_cast<Index>(strips.size());
+  std::vector<Index> atWork(std::max(threads, 1), None); // the strip that a thread is at
+  std::atomic<Index> next{ 0 };
+  const auto fraction = [&]() {
+    double done = 0.0;
+    for (const auto& strip : strips)
+    {
+      done += strip->Done();
+    }
+    return done / vertices;
+  };
+  InRounds(std::min<int>(threads, number), progress, fraction,
+    [&](Index thread, const RoundClock::time_point& end) {
+      for (Index& i = atWork[thread];; i = None)
+      {
+        i = i == None ? next++ : i;
+        if (i >= number)
+        {
+          return false;
+        }
+        strips[i]->GoOn(end);
+        if (!strips[i]->IsDone())
+        {
+          return true;
+        }
+      }
+    });
+}
+
+/**
+ * The triangles of all vertices, in the order of their lowest ones, each from its lowest one on.
+ * @param growth   makes strips; tells places and names of vertices, metric and edge limit
+ * @param hull     of the vertices, which are not all on one line
+ * @param room     memory to write into
+ */
+template <typename Growth>
+Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
+  const DelaunayOptions& options, int threads, const Progress& progress, Buffer<Index>&& room)
+{
+  Buffer<Index> triangles = std::move(room);
+  if (!options.DivideAtOnce)
+  {
+    try
+    {
+      const auto strips = growth.MakeStrips(hull, threads);
+      triangles.Resize(3 * (2 * static_cast<std::size_t>(vertices) - 2 - hull.NumberOfPoints()));
+      for (const auto& strip : strips)
+      {
+        strip->SetOutput(triangles);
+      }
+      GrowStrips(strips, threads, vertices, progress);
+      // Where the edge limit leaves some out, the strips close up.
+      Index* end = triangles.begin();
+      for (const auto& strip : strips)
+      {
+        strip->Join(end, growth.Limit.IsSet());
+      }
+      if (!growth.Limit.IsSet() && end != triangles.end())
+      {
+        ThrowOpenFan();
+      }
+      triangles.Resize(static_cast<std::size_t>(end - triangles.begin()));
+      triangles.Shrink();
+      return triangles;
+    }
+    catch (const CannotGrow&)
+    {
+    }
+  }
+  triangles = Buffer<Index>();
+  const Buffer<Point2> places = growth.Places(Part(progress, 0.0, 0.0));
+  triangles = DivideAndConquer(places, Part(progress, 0.0, 0.95), growth.Metric);
+  const Progress naming = Part(progress, 0.95, 1.0);
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < triangles.size(); t += 3)
+  {
+    ReportStep(naming, t, triangles.size(), 49152);
+    Index* const triangle = triangles.data() + kept;
+    std::copy_n(triangles.data() + t, 3, triangle);
+    kept += growth.Name(places, triangle) ? 3 : 0;
+  }
+  triangles.Resize(kept);
+  return triangles;
+}
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,424 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LatticeApexes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace elevation
+{
+namespace
+{
+
+/** The discs through both ends of an edge, in the metric, in coordinates relative to its origin. */
+class DiscOfEdge
+{
+public:
+  DiscOfEdge(const LatticeMetric& metric, const Offset& e)
+    : A(static_cast<double>(metric.A))
+    , B(static_cast<double>(metric.B))
+    , Determinant(A * static_cast<double>(metric.C) - B * B)
+    , Root(std::sqrt(Determinant))
+    , Slant(B / A)
+    , PerRow(Determinant / A / A)
+    , EdgeX(static_cast<double>(e.X))
+    , EdgeY(static_cast<double>(e.Y))
+    , C(static_cast<double>(metric.C))
+  {
+    const double gx = this->A * this->EdgeX + this->B * this->EdgeY;
+    const double gy = this->B * this->EdgeX + this->C * this->EdgeY;
+    this->LengthSquared = gx * this->EdgeX + gy * this->EdgeY;
+    this->LengthOfStep = std::min(this->A, this->C);
+    this->NormalX = -gy / this->Root;
+    this->NormalY = gx / this->Root;
+  }
+
+  /** A disc is told by the position of its centre, in edge lengths along the edge's left normal. */
+  double PositionOf(const Apex& apex) const
+  {
+    return 0.5 * static_cast<double>(apex.Dot) / (this->Root * static_cast<double>(apex.Cross));
+  }
+  /** Of the disc that is so high over the edge. */
+  double PositionOfHeight(double height) const
+  {
+    const double h = height / std::sqrt(this->LengthSquared);
+    return 0.5 * (h - 0.25 / h);
+  }
+
+  double Length() const { return std::sqrt(this->LengthSquared); }
+
+  void Set(double position)
+  {
+    this->RadiusSquared = this->LengthSquared * (0.25 + position * position);
+    this->CenterX = 0.5 * this->EdgeX + position * this->NormalX;
+    this->CenterY = 0.5 * this->EdgeY + position * this->NormalY;
+    // Bounds, in steps, of what lies on the left of the edge: all of it is in the disc of position
+    // 0, where the position is less. A disc so large that rounding might matter is the half-plane.
+    const double bound = std::max(position, 0.0);
+    const double squared = this->LengthSquared * (0.25 + bound * bound);
+    const double halfWidth = std::sqrt(squared * this->C) / this->Root;
+    const double halfHeight = std::sqrt(squared * this->A) / this->Root;
+    const double centerX = 0.5 * this->EdgeX + bound * this->NormalX;
+    const double centerY = 0.5 * this->EdgeY + bound * this->NormalY;
+    this->IsHalfPlane = !(this->RadiusSquared < 1e16 * this->LengthOfStep);
+    this->WidthSquared = this->RadiusSquared / this->A * (1.0 + 1e-14);
+    this->Left = centerX - halfWidth * (1.0 + 1e-9);
+    this->Right = centerX + halfWidth * (1.0 + 1e-9);
+    this->Bottom = centerY - halfHeight * (1.0 + 1e-9);
+    this->Top = centerY + halfHeight * (1.0 + 1e-9);
+  }
+
+  double Left = 0.0, Right = 0.0, Bottom = 0.0, Top = 0.0;
+
+  /** Whether rows of the disc, from begin to end, certainly have none of a range of columns. */
+  bool MissesRows(double begin, double end, double left, double right) const
+  {
+    const double low = begin - this->CenterY, high = end - this->CenterY;
+    // The middles of these rows lie between two columns.
+    const double middle = this->CenterX - this->Slant * low;
+    const double other = this->CenterX - this->Slant * high;
+    const double beside =
+      std::max(left - std::max(middle, other), std::min(middle, other) - right) - Slack;
+    const double nearest = std::max(std::max(low, -high), 0.0);
+    const double squared = this->WidthSquared - this->PerRow * nearest * nearest;
+    return !this->IsHalfPlane && (squared < 0.0 || (beside > 0.0 && beside * beside > squared));
+  }
+
+  /** Leaves of a range of columns what a row of the disc has, a little more rather than less.
+   * @return false when no column is left */
+  bool ClipRow(double y, double& left, double& right) const
+  {
+    left = std::max(left, this->Left - Slack);
+    right = std::min(right, this->Right + Slack);
+    if (!this->IsHalfPlane)
+    {
+      const double dy = y - this->CenterY;
+      const double squared = this->WidthSquared - this->PerRow * dy * dy;
+      if (squared < 0.0)
+      {
+        return false;
+      }
+      const double half = std::sqrt(squared) + Slack;
+      const double middle = this->CenterX - this->Slant * dy;
+      left = std::max(left, middle - half);
+      right = std::min(right, middle + half);
+    }
+    return std::ceil(left) <= std::floor(right);
+  }
+
+private:
+  static constexpr double Slack = 1e-6; ///< in columns
+
+  double A, B, Determinant, Root, Slant, PerRow, EdgeX, EdgeY, C;
+  double LengthSquared, NormalX, NormalY;
+  double RadiusSquared = 0.0, WidthSquared = 0.0, CenterX = 0.0, CenterY = 0.0, LengthOfStep = 0.0;
+  bool IsHalfPlane = true;
+};
+} // namespace
+
+bool IsBetter(const Apex& p, const Apex& q, const Offset& e)
+{
+  const int order = CompareQuotients(p, q);
+  if (order != 0)
+  {
+    return order < 0;
+  }
+  return e.Y >= 0
+    ? Cross(p.Place, q.Place) > 0
+    : Cross({ q.Place.X - e.X, q.Place.Y - e.Y }, { p.Place.X - e.X, p.Place.Y - e.Y }) > 0;
+}
+
+ApexList::ApexList(const LatticeMetric& metric, const Offset& e, const LatticeNodes& nodes)
+{
+  constexpr std::size_t mostEntries = 64;
+  std::vector<Apex> all;
+  for (std::int64_t y = e.Y < 0 ? -Range : 0; y <= Range; ++y)
+  {
+    for (std::int64_t x = -Range; x <= Range; ++x)
+    {
+      const Offset p{ x, y };
+      if (Cross(e, p) > 0 && (e.Y < 0 || y > 0 || x > 0))
+      {
+        all.push_back(ApexAt(metric, e, p));
+      }
+    }
+  }
+  const std::size_t length = std::min(all.size(), mostEntries);
+  std::partial_sort(all.begin(), all.begin() + length, all.end(),
+    [&](const Apex& p, const Apex& q) { return IsBetter(p, q, e); });
+  DiscOfEdge disc(metric, e);
+  for (std::size_t i = 0; i < length; ++i)
+  {
+    const Apex& apex = all[i];
+    disc.Set(disc.PositionOf(apex));
+    const double limit = Range + 1 - 1e-6;
+    if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit) ||
+      (e.Y < 0 && !(disc.Bottom > -limit)))
+    {
+      break;
+    }
+    const Offset& p = apex.Place;
+    this->Entries.push_back({ static_cast<Index>(p.Y * nodes.WordsPerRow * 64 + p.X),
+      static_cast<std::int16_t>(p.X), static_cast<std::int16_t>(p.Y) });
+  }
+}
+
+LatticeApexes::LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& metric)
+  : Nodes(nodes)
+  , Metric(metric)
+{
+  const double area = double(metric.A) * double(metric.C) - double(metric.B) * double(metric.B);
+  const double perPoint = double(nodes.Columns) * nodes.Rows / nodes.NumberOfPoints();
+  this->FirstHeight = 1.3 * std::sqrt(std::sqrt(area) * perPoint); // about one spacing
+  for (int level = 0; level <= MostBands; ++level)
+  {
+    this->Ends[level].resize((nodes.Rows >> BandBits * level) + 1);
+  }
+  for (Index row = 0; row < nodes.Rows; ++row)
+  {
+    const Index begin = nodes.NodeAt(row, 0);
+    if (nodes.Before[begin / 64] == nodes.Before[nodes.NodeAt(row + 1, 0) / 64])
+    {
+      continue;
+    }
+    const Index left = nodes.Following(begin - 1) - begin;
+    const Index right = nodes.Previous(nodes.NodeAt(row, nodes.Columns)) - begin;
+    for (int level = 0; level <= MostBands; ++level)
+    {
+      RowEnds& ends = this->Ends[level][row >> BandBits * level];
+      ends = { std::min(ends.Left, left), std::max(ends.Right, right) };
+    }
+  }
+}
+
+LatticeApexes::~LatticeApexes()
+{
+  for (Slot& slot : this->Slots)
+  {
+    delete slot.List.load();
+  }
+}
+
+std::int64_t LatticeApexes::NumberOfGaps() const
+{
+  std::int64_t gaps = -static_cast<std::int64_t>(this->Nodes.NumberOfPoints());
+  for (const RowEnds& ends : this->Ends[0])
+  {
+    gaps += ends.IsEmpty() ? 0 : ends.Right - ends.Left + 1;
+  }
+  return gaps;
+}
+
+const ApexList* LatticeApexes::MakeList(const Offset& e, std::atomic<const ApexList*>& slot) const
+{
+  auto made = std::make_unique<ApexList>(this->Metric, e, this->Nodes);
+  const ApexList* list = nullptr;
+  return slot.compare_exchange_strong(list, made.get()) ? made.release() : list;
+}
+
+/** The search for the apex over one edge, row by row. */
+class LatticeApexes::RowSearch
+{
+public:
+  RowSearch(const LatticeApexes& apexes, Index row, Index column, const Offset& e,
+    const Apex& known, WorkBudget& budget)
+    : Apexes(apexes)
+    , Nodes(apexes.Nodes)
+    , Row(row)
+    , Column(column)
+    , E(e)
+    , Slope(e.Y != 0 ? double(e.X) / double(e.Y) : 0.0)
+    , Budget(budget)
+    , Disc(apexes.Metric, e)
+    , Best(known)
+  {
+  }
+
+  /**
+   * The first look goes into a disc about one spacing high over the edge, the next ones are four
+   * times as high. The disc of some node on the free side, of which one is known, bounds them all.
+   */
+  Offset Run()
+  {
+    // So are the nodes beside both ends, in their rows.
+    this->CompareNeighborInRow(this->E);
+    if (this->E.Y < 0)
+    {
+      this->CompareNeighborInRow({ 0, 0 });
+    }
+    double height = std::max(this->Apexes.FirstHeight, this->Disc.Length() / 8.0);
+    for (;; height *= 4.0)
+    {
+      const double seen = this->Disc.PositionOfHeight(height);
+      const double needed = this->Disc.PositionOf(this->Best);
+      if (!(seen < needed))
+      {
+        this->Look(needed);
+        break;
+      }
+      if (this->Look(seen))
+      {
+        if (!(this->Disc.PositionOf(this->Best) <= seen)) // found beside the disc, by rounding
+        {
+          this->Look(this->Disc.PositionOf(this->Best));
+        }
+        break;
+      }
+    }
+    return this->Best.Place;
+  }
+
+private:
+  /** Compares the node next to one end of an edge in its row, if there is one on the free side. */
+  void CompareNeighborInRow(const Offset& end)
+  {
+    if (this->E.Y == 0)
+    {
+      return;
+    }
+    const bool isUpwards = this->E.Y > 0;
+    const RowEnds& ends = this->Apexes.EndsOf(static_cast<Index>(this->Row + end.Y));
+    const std::int64_t column = this->Column + end.X;
+    if (isUpwards ? column <= ends.Left : column >= ends.Right)
+    {
+      return;
+    }
+    const Index node =
+      this->Nodes.NodeAt(static_cast<Index>(this->Row + end.Y), static_cast<Index>(column));
+    const Index neighbor = isUpwards ? this->Nodes.Previous(node) : this->Nodes.Following(node);
+    this->Compare({ end.X + neighbor - node, end.Y });
+  }
+
+  /** @return whether a node on the left of the edge is better than the best so far */
+  bool Compare(const Offset& p)
+  {
+    const Apex apex = ApexAt(this->Apexes.Metric, this->E, p);
+    const bool isBetter = apex.Cross > 0 && IsBetter(apex, this->Best, this->E);
+    if (isBetter)
+    {
+      this->Best = apex;
+    }
+    return isBetter;
+  }
+
+  /**
+   * Compares all nodes in a disc, which shrinks with the best that is found: over an edge upwards
+   * those above the first node, over one downwards all of them.
+   * @return whether a better one was found
+   */
+  bool Look(double position)
+  {
+    this->Disc.Set(position);
+    bool isAnyBetter = false;
+    Index y = 1; // no node of the first node's row is on the left of an edge upwards
+    if (this->E.Y < 0)
+    {
+      y = static_cast<Index>(std::max(std::ceil(this->Disc.Bottom - 1e-6), -double(this->Row)));
+    }
+    for (; this->Row + y < this->Nodes.Rows && y <= this->Disc.Top + 1e-6; ++y)
+    {
+      if (y == 0 || y == this->E.Y)
+      {
+        continue; // a disc through an end has no node beyond its neighbor in its row
+      }
+      const int level = this->BandMissed(y);
+      if (level > 0)
+      {
+        this->Budget.Spend(10);
+        y += (1 << BandBits * level) - 1;
+      }
+      else if (this->LookIntoRow(y))
+      {
+        isAnyBetter = true;
+        const double next = this->Disc.PositionOf(this->Best);
+        if (next < position)
+        {
+          position = next;
+          this->Disc.Set(position);
+        }
+      }
+    }
+    return isAnyBetter;
+  }
+
+  /** The level of the largest band that begins with a row and need not be looked into. */
+  int BandMissed(Index y) const
+  {
+    const Index row = this->Row + y;
+    int level = 0;
+    while (level < MostBands && (row & ((1 << BandBits * (level + 1)) - 1)) == 0)
+    {
+      // Whether it has no node left of the edge's line within the columns of the disc.
+      const RowEnds& ends = this->Apexes.Ends[level + 1][row >> BandBits * (level + 1)];
+      const Index top = y + (1 << BandBits * (level + 1)) - 1;
+      double left = ends.Left - this->Column, right = ends.Right - this->Column;
+      const double low = y * this->Slope, high = top * this->Slope;
+      right = this->E.Y > 0 ? std::min(right, std::max(low, high)) : right;
+      left = this->E.Y < 0 ? std::max(left, std::min(low, high)) : left;
+      if (!(left > right) && !this->Disc.MissesRows(y, top, left, right))
+      {
+        break;
+      }
+      ++level;
+    }
+    return level;
+  }
+
+  /** Compares what is in the disc, only of occupied columns and left of the edge's line. */
+  bool LookIntoRow(Index y)
+  {
+    // A node beside the line is at least 2^-20 from it.
+    const RowEnds& ends = this->Apexes.EndsOf(this->Row + y);
+    double left = ends.Left - this->Column, right = ends.Right - this->Column;
+    right = this->E.Y > 0 ? std::min(right, y * this->Slope - 4e-7) : right;
+    left = this->E.Y < 0 ? std::max(left, y * this->Slope + 4e-7) : left;
+    this->Budget.Spend(5);
+    if (!(left <= right) || this->Disc.MissesRows(y, y, left, right) ||
+      !this->Disc.ClipRow(y, left, right))
+    {
+      return false;
+    }
+    const Index origin = this->Nodes.NodeAt(this->Row + y, this->Column);
+    const Index firstNode = origin + static_cast<Index>(std::ceil(left));
+    const Index lastNode = origin + static_cast<Index>(std::floor(right));
+    const Index firstWord = firstNode >> 6, lastWord = lastNode >> 6;
+    this->Budget.Spend(lastWord - firstWord);
+    bool isBetter = false;
+    for (Index w = firstWord; w <= lastWord; ++w)
+    {
+      std::uint64_t bits = this->Nodes.Word(w);
+      if (w == firstWord)
+      {
+        bits = bits >> (firstNode & 63) << (firstNode & 63);
+      }
+      if (w == lastWord)
+      {
+        bits = bits << (63 - (lastNode & 63)) >> (63 - (lastNode & 63));
+      }
+      for (; bits; bits &= bits - 1)
+      {
+        this->Budget.Spend(8);
+        isBetter |= this->Compare({ 64 * w + LowestBit(bits) - origin, y });
+      }
+    }
+    return isBetter;
+  }
+
+  const LatticeApexes& Apexes;
+  const LatticeNodes& Nodes;
+  const Index Row, Column;
+  const Offset E;
+  const double Slope;
+  WorkBudget& Budget;
+  DiscOfEdge Disc;
+  Apex Best;
+};
+
+Offset LatticeApexes::Search(
+  Index row, Index column, const Offset& e, const Apex& known, WorkBudget& budget) const
+{
+  return RowSearch(*this, row, column, e, known, budget).Run();
+}
+
+} // namespace elevation

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Looks for the apex of the triangle over an edge between nodes of a lattice, in its metric.
+ *
+ * In: the bitmap of nodes, and an edge. Out: the occupied node on its left in whose circle no other
+ * one is; of co-circular ones the first as seen from the lower end of the edge. Exact, in integers.
+ *
+ * What can be the apex over an edge does not depend on where the edge is. So for each short edge
+ * vector that is asked for more than a few times, the nodes near it are sorted by circle, once: the
+ * first occupied one is the apex. What a list does not reach is searched for row by row, in discs
+ * that are proved to hold all better nodes; bands of rows with no node in the disc are passed over.
+ */
+#ifndef elevation_Triangulate_LatticeApexes_h
+#define elevation_Triangulate_LatticeApexes_h
+
+#include "Kernel/Lattice/Lattice.h"
+#include "WorkBudget.h"
+
+#include <array>
+#include <atomic>
+#include <vector>
+
+namespace elevation
+{
+
+/** A node relative to another one: columns to the right, rows up. */
+struct Offset
+{
+  std::int64_t X, Y;
+};
+
+inline std::int64_t Cross(const Offset& p, const Offset& q)
+{
+  return p.X * q.Y - p.Y * q.X;
+}
+
+/**
+ * An apex over the edge from a node to e: dot / cross is the cotangent of the angle under which it
+ * sees the edge; of two, the one with the smaller quotient lies inside the other's circle.
+ */
+struct Apex
+{
+  Offset Place;
+  std::int64_t Dot, Cross;
+};
+
+inline Apex ApexAt(const LatticeMetric& metric, const Offset& e, const Offset& p)
+{
+  return { p, metric.Dot(p.X, p.Y, p.X - e.X, p.Y - e.Y), Cross(e, p) };
+}
+
+/** Sign of the difference of two quotients, multiplied out. */
+inline int CompareQuotients(const Apex& p, const Apex& q)
+{
+  return CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
+}
+
+/**
+ * Whether p is the apex rather than q over the edge from a node to e. Of co-circular ones it is the
+ * first as seen from the lower end of the edge. Over an edge upwards this is the rule for ties: the
+ * node is the lowest, and the polygon is cut into its fan. Over an edge downwards it need not be:
+ * however the polygon is cut across a border, the nodes above are the same neighbours.
+ */
+bool IsBetter(const Apex& p, const Apex& q, const Offset& e);
+
+/** For an edge vector, the nodes near it that may be the apex, the best first. */
+class ApexList
+{
+public:
+  static constexpr Index Range = 15; ///< columns to each side, and rows
+
+  struct Entry
+  {
+    Index Step; ///< from the first node of the edge to this one
+    std::int16_t X, Y;
+  };
+
+  /**
+   * Over an edge upwards, of nodes above its first one, over one downwards of all of them. The list
+   * ends before the first node whose circle is not within range, so it misses nothing.
+   */
+  ApexList(const LatticeMetric& metric, const Offset& e, const LatticeNodes& nodes);
+
+  std::vector<Entry> Entries;
+};
+
+static_assert(ApexList::Range <= LatticeNodes::RowsBeyond, "rows beyond the last are looked at");
+static_assert(ApexList::Range < LatticeNodes::ColumnsBeyond, "nodes beyond a row are looked at");
+
+class LatticeApexes
+{
+public:
+  LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& metric);
+  LatticeApexes(const LatticeApexes&) = delete;
+  LatticeApexes& operator=(const LatticeApexes&) = delete;
+  ~LatticeApexes();
+
+  /** First and last occupied column of a row, or of a band of them. */
+  struct RowEnds
+  {
+    Index Left = LatticeNodes::MaximumSide, Right = -1;
+    bool IsEmpty() const { return this->Left > this->Right; }
+  };
+  const RowEnds& EndsOf(Index row) const { return this->Ends[0][row]; }
+
+  /** Nodes between the ends of their rows that are not occupied. */
+  std::int64_t NumberOfGaps() const;
+
+  /**
+   * Looks into the list of an edge, if there is one. Threads may ask at the same time.
+   * @return false when it does not tell the apex
+   */
+  bool FindInList(Index node, const Offset& e, Offset& place)
+  {
+    if (const ApexList* list = this->ListOf(e))
+    {
+      for (const ApexList::Entry& entry : list->Entries)
+      {
+        if (this->Nodes.IsOccupied(node + entry.Step))
+        {
+          place = { entry.X, entry.Y };
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /**
+   * Searches row by row.
+   * @param row,column  of the edge's first node
+   * @param e           the other one
+   * @param known       some node on the left of the edge, as an apex
+   * @param budget      is charged for what is looked at, about a nanosecond each
+   */
+  Offset Search(
+    Index row, Index column, const Offset& e, const Apex& known, WorkBudget& budget) const;
+
+private:
+  class RowSearch;
+
+  /** The list of a short edge vector, made when it has been asked for a few times, or nullptr. */
+  const ApexList* ListOf(const Offset& e)
+  {
+    if (std::abs(e.X) > Longest || std::abs(e.Y) > Longest)
+    {
+      return nullptr;
+    }
+    Slot& slot = this->Slots[static_cast<std::size_t>((e.Y + Longest) * Side + e.X + Longest)];
+    const ApexList* list = slot.List.load(std::memory_order_acquire);
+    return list || slot.Uses.fetch_add(1, std::memory_order_relaxed) < UsesBeforeList
+      ? list
+      : this->MakeList(e, slot.List);
+  }
+  const ApexList* MakeList(const Offset& e, std::atomic<const ApexList*>& list) const;
+
+  static constexpr Index Longest = 10, Side = 2 * Longest + 1;
+  static constexpr int UsesBeforeList = 16;
+
+  struct Slot
+  {
+    std::atomic<const ApexList*> List{ nullptr };
+    std::atomic<int> Uses{ 0 };
+  };
+
+  static constexpr int BandBits = 4; ///< a band is 16 rows, or 16 bands
+  static constexpr int MostBands = 4;
+
+  const LatticeNodes& Nodes;
+  const LatticeMetric& Metric;
+  double FirstHeight = 0.0; ///< over an edge, of the first disc that is looked into
+  std::array<std::vector<RowEnds>, MostBands + 1> Ends; ///< of each row, band, band of bands ...
+  std::array<Slot, Side * Side> Slots;
+};
+
+} // namespace elevation
+
+#endif
