@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The Delaunay triangulation by divide and conquer: for points on which growing it over a grid
- * (Delaunay.h) would take more than n log n, and as an independent second opinion for tests.
+ * The Delaunay triangulation by divide and conquer: for points on which growing it (Growth.h)
+ * would take more than n log n, and as an independent second opinion for tests.
  *
  * In: distinct points from the lowest up. Out: the same triangles in the same order as growing
  * makes, byte for byte. The passes, in the order of the functions in DivideAndConquer.cxx:
@@ -36,7 +36,7 @@ struct LatticeMetric;
  * Triangulates.
  * @param[in] points  distinct and finite, by increasing (y, x); at most MaximumNumberOfPoints
  * @param[in] metric  points are nodes of a lattice (column, row), and circles those of its metric
- *                    (LatticeDelaunay.h); null: circles are circles
+ *                    (LatticeGrowth.h); null: circles are circles
  * @return three positions in points a triangle, the lowest of them first, counter-clockwise; by
  *         their lowest vertices, and those of one vertex counter-clockwise. None when fewer than
  *         three points are given or all are on one line.

@@ -77,12 +77,15 @@ public:
   }
 
   /** Puts ids in the place of three of these; false where the edge limit leaves the triangle out. */
-  bool Name(const Buffer<Point2>& places, Index* triangle) const
+  bool Name(Index* triangle) const
   {
-    const bool isLeftIn = this->Limit.Admits(
-      [&places](Index i) { return places[i]; }, triangle[0], triangle[1], triangle[2]);
-    std::transform(triangle, triangle + 3, triangle,
-      [this](Index i) { return this->Grid.Ids[this->Grid.Order[i]]; });
+    std::transform(
+      triangle, triangle + 3, triangle, [this](Index i) { return this->Grid.Order[i]; });
+    const bool isLeftIn =
+      this->Limit.Admits([this](Index slot) { return this->Grid.PointAt(slot); }, triangle[0],
+        triangle[1], triangle[2]);
+    std::transform(
+      triangle, triangle + 3, triangle, [this](Index slot) { return this->Grid.Ids[slot]; });
     return isLeftIn;
   }
 
@@ -141,10 +144,7 @@ public:
     const Index apex = this->Search.FindAnywhere(this->High, this->Low);
     if (apex == None)
     {
-      throw std::logic_error("there is no triangle over the edge of points " +
-        std::to_string(this->Grid.Ids[this->High]) + " and " +
-        std::to_string(this->Grid.Ids[this->Low]) +
-        "; this is a fault of the triangulation, please report it");
+      ThrowOpenFan(this->Grid.Ids[this->Low]);
     }
     return apex;
   }
@@ -218,8 +218,7 @@ private:
       }
       if (current == None || this->Fan.size() > static_cast<std::size_t>(this->Order.size()))
       {
-        throw std::logic_error("the fan of point " + std::to_string(this->Grid.Ids[lowest]) +
-          " does not close; this is a fault of the triangulation, please report it");
+        ThrowOpenFan(this->Grid.Ids[lowest]);
       }
       if (current != end && this->Budget.IsPaused())
       {
@@ -235,9 +234,9 @@ private:
   void Emit(Index lowest)
   {
     const std::size_t triangles = this->Fan.size() - 1;
-    this->NeedRoom(triangles);
-    const auto pointOf = [this](Index slot) { return this->Grid.PointAt(slot); };
     const Index lowestId = this->Grid.Ids[lowest];
+    this->NeedRoom(triangles, lowestId);
+    const auto pointOf = [this](Index slot) { return this->Grid.PointAt(slot); };
     Index current = this->Fan[0];
     for (std::size_t i = 1; i <= triangles; ++i)
     {

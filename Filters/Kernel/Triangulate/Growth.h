@@ -29,10 +29,14 @@
 namespace elevation
 {
 
-[[noreturn]] inline void ThrowOpenFan()
+[[noreturn]] inline void ThrowFault(const std::string& what)
 {
-  throw std::logic_error("the fans of triangles do not close; this is a fault of the "
-                         "triangulation, please report it");
+  throw std::logic_error(what + "; this is a fault of the triangulation, please report it");
+}
+
+[[noreturn]] inline void ThrowOpenFan(Index id)
+{
+  ThrowFault("the fan of point " + std::to_string(id) + " does not close");
 }
 
 /**
@@ -84,22 +88,19 @@ public:
     } while (!self.IsDone() && RoundClock::now() < end);
   }
 
-  /** Joins what it has written to what other strips have written before. */
-  void Join(Index*& end, bool isLimited) const
+  /** Moves what it has written down to an end, which moves up. */
+  void MoveTo(Index*& end) const
   {
-    if (!isLimited && this->OutBegin != end)
-    {
-      ThrowOpenFan();
-    }
     end = this->OutBegin == end ? this->Out : std::copy(this->OutBegin, this->Out, end);
   }
 
 protected:
-  void NeedRoom(std::size_t triangles) const
+  /** Sees that there is room for triangles of a point. */
+  void NeedRoom(std::size_t triangles, Index id) const
   {
     if (static_cast<std::size_t>(this->AllEnd - this->Out) < 3 * triangles)
     {
-      ThrowOpenFan();
+      ThrowOpenFan(id);
     }
   }
 
@@ -254,11 +255,11 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
       Index* end = triangles.begin();
       for (const auto& strip : strips)
       {
-        strip->Join(end, growth.Limit.IsSet());
+        strip->MoveTo(end);
       }
       if (!growth.Limit.IsSet() && end != triangles.end())
       {
-        ThrowOpenFan();
+        ThrowFault("triangles are missing");
       }
       triangles.Resize(static_cast<std::size_t>(end - triangles.begin()));
       triangles.Shrink();
@@ -269,8 +270,8 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
     }
   }
   triangles = Buffer<Index>();
-  const Buffer<Point2> places = growth.Places(Part(progress, 0.0, 0.0));
-  triangles = DivideAndConquer(places, Part(progress, 0.0, 0.95), growth.Metric);
+  triangles = DivideAndConquer(
+    growth.Places(Part(progress, 0.0, 0.0)), Part(progress, 0.0, 0.95), growth.Metric);
   const Progress naming = Part(progress, 0.95, 1.0);
   std::size_t kept = 0;
   for (std::size_t t = 0; t < triangles.size(); t += 3)
@@ -278,7 +279,7 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
     ReportStep(naming, t, triangles.size(), 49152);
     Index* const triangle = triangles.data() + kept;
     std::copy_n(triangles.data() + t, 3, triangle);
-    kept += growth.Name(places, triangle) ? 3 : 0;
+    kept += growth.Name(triangle) ? 3 : 0;
   }
   triangles.Resize(kept);
   return triangles;

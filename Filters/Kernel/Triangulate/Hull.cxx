@@ -46,62 +46,14 @@ Buffer<Index> RowExtremes(const BinGrid& grid, const Progress& progress)
   return extremes;
 }
 
-/**
- * What lies well within the hull of the extremes of the rows, row by row: points between Left and
- * Right. Neither is exact: they keep a margin from the hull.
- */
-class Inside
+/** Where a chain is at a height; wrong by a few roundoffs of the greatest coordinate. */
+double ChainAt(const BinGrid& grid, const std::vector<Index>& chain, double y)
 {
-public:
-  Inside(const BinGrid& grid, const Hull& hull)
-    : Grid(grid)
-    , OfExtremes(hull)
-    , Margin(grid.Bins.HasPlainBins
-          ? 1e-12 * (std::fabs(grid.Bins.OriginX) + grid.Bins.Columns * grid.Bins.BinWidth)
-          : Infinity)
-  {
-  }
-
-  /** Goes up to a row. */
-  void SetRow(Index row)
-  {
-    // A chain is convex: over the row's height it is innermost at its lower or its upper end.
-    const std::vector<Index>&left = this->OfExtremes.LeftChain,
-          &right = this->OfExtremes.RightChain;
-    const double low = this->Grid.RowLow[row], high = this->Grid.RowHigh[row];
-    this->Left = Infinity;
-    this->Right = -Infinity;
-    if (low > this->Grid.Y[left.front()] && high < this->Grid.Y[left.back()])
-    {
-      this->Left = this->At(left, this->LeftEdge, low);
-      this->Right = this->At(right, this->RightEdge, low);
-      this->Left = std::max(this->Left, this->At(left, this->LeftEdge, high)) + this->Margin;
-      this->Right = std::min(this->Right, this->At(right, this->RightEdge, high)) - this->Margin;
-    }
-  }
-
-  /** Not where a chain is not a number. */
-  bool Has(double x) const { return x > this->Left && x < this->Right; }
-
-  double Left = Infinity, Right = -Infinity;
-
-private:
-  /** Where a chain is at a height; wrong by a few roundoffs of the greatest coordinate. */
-  double At(const std::vector<Index>& chain, std::size_t& edge, double y) const
-  {
-    while (edge + 2 < chain.size() && this->Grid.Y[chain[edge + 1]] < y)
-    {
-      ++edge;
-    }
-    const Point2 p = this->Grid.PointAt(chain[edge]), q = this->Grid.PointAt(chain[edge + 1]);
-    return p.X + (q.X - p.X) * ((y - p.Y) / (q.Y - p.Y));
-  }
-
-  const BinGrid& Grid;
-  const Hull& OfExtremes;
-  const double Margin;
-  std::size_t LeftEdge = 0, RightEdge = 0;
-};
+  const auto end = std::lower_bound(chain.begin() + 1, chain.end() - 1, y,
+    [&grid](Index slot, double height) { return grid.Y[slot] < height; });
+  const Point2 p = grid.PointAt(end[-1]), q = grid.PointAt(end[0]);
+  return p.X + (q.X - p.X) * ((y - p.Y) / (q.Y - p.Y));
+}
 
 /**
  * The points that may be on the convex hull, by increasing (y, x): those not well within the hull
@@ -110,11 +62,15 @@ private:
 Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const Progress& progress)
 {
   const BinGrid::Layout& bins = grid.Bins;
-  Inside inside(grid, ofExtremes);
+  const std::vector<Index>&leftChain = ofExtremes.LeftChain, &rightChain = ofExtremes.RightChain;
+  const double lowest = grid.Y[leftChain.front()], highest = grid.Y[leftChain.back()];
+  const double margin =
+    bins.HasPlainBins ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth) : Infinity;
+  double left, right; // of the points well within, in the row at hand
   Buffer<Index> candidates;
   const auto add = [&](Index slot) {
     ReportStep(progress, slot, grid.X.size());
-    if (!inside.Has(grid.X[slot]))
+    if (!(grid.X[slot] > left && grid.X[slot] < right)) // also where a chain is not a number
     {
       candidates.Append(slot);
     }
@@ -123,25 +79,29 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const 
   {
     ReportStep(progress, row, bins.Rows);
     const auto slots = grid.Slots(row, 0, bins.Columns - 1);
-    if (slots.first == slots.second)
+    const double low = grid.RowLow[row], high = grid.RowHigh[row];
+    left = Infinity;
+    right = -Infinity;
+    if (slots.first < slots.second && low > lowest && high < highest)
     {
-      continue;
+      // A chain is convex: over the row's height it is innermost at its lower or its upper end.
+      left = margin + std::max(ChainAt(grid, leftChain, low), ChainAt(grid, leftChain, high));
+      right = std::min(ChainAt(grid, rightChain, low), ChainAt(grid, rightChain, high)) - margin;
     }
-    inside.SetRow(row);
-    const Index leftColumn = bins.Column(inside.Left), rightColumn = bins.Column(inside.Right);
-    if (!(inside.Left < inside.Right) || leftColumn >= rightColumn)
+    const Index leftColumn = bins.Column(left), rightColumn = bins.Column(right);
+    if (!(left < right) || leftColumn >= rightColumn)
     {
       std::for_each(grid.Order.begin() + slots.first, grid.Order.begin() + slots.second, add);
       continue;
     }
     const std::size_t before = candidates.size();
-    for (Index slot = slots.first; slot < grid.Slots(row, 0, leftColumn).second; ++slot)
+    for (const auto& part :
+      { grid.Slots(row, 0, leftColumn), grid.Slots(row, rightColumn, bins.Columns - 1) })
     {
-      add(slot);
-    }
-    for (Index slot = grid.Slots(row, rightColumn, rightColumn).first; slot < slots.second; ++slot)
-    {
-      add(slot);
+      for (Index slot = part.first; slot < part.second; ++slot)
+      {
+        add(slot);
+      }
     }
     const auto isLower = [&grid](
                            Index p, Index q) { return IsLower(grid.PointAt(p), grid.PointAt(q)); };

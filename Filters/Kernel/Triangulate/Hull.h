@@ -45,8 +45,8 @@ Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress&
     for (std::size_t i = 0; i < candidates.size(); ++i)
     {
       ReportStep(progress, i, candidates.size());
-      while (chain.size() > 1 &&
-        turn(chain[chain.size() - 2], chain.back(), candidates[i]) == outside)
+      while (
+        chain.size() > 1 && turn(chain[chain.size() - 2], chain.back(), candidates[i]) == outside)
       {
         chain.pop_back();
       }

@@ -129,41 +129,6 @@ bool IsBetter(const Apex& p, const Apex& q, const Offset& e)
     : Cross({ q.Place.X - e.X, q.Place.Y - e.Y }, { p.Place.X - e.X, p.Place.Y - e.Y }) > 0;
 }
 
-ApexList::ApexList(const LatticeMetric& metric, const Offset& e, const LatticeNodes& nodes)
-{
-  constexpr std::size_t mostEntries = 64;
-  std::vector<Apex> all;
-  for (std::int64_t y = e.Y < 0 ? -Range : 0; y <= Range; ++y)
-  {
-    for (std::int64_t x = -Range; x <= Range; ++x)
-    {
-      const Offset p{ x, y };
-      if (Cross(e, p) > 0 && (e.Y < 0 || y > 0 || x > 0))
-      {
-        all.push_back(ApexAt(metric, e, p));
-      }
-    }
-  }
-  const std::size_t length = std::min(all.size(), mostEntries);
-  std::partial_sort(all.begin(), all.begin() + length, all.end(),
-    [&](const Apex& p, const Apex& q) { return IsBetter(p, q, e); });
-  DiscOfEdge disc(metric, e);
-  for (std::size_t i = 0; i < length; ++i)
-  {
-    const Apex& apex = all[i];
-    disc.Set(disc.PositionOf(apex));
-    const double limit = Range + 1 - 1e-6;
-    if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit) ||
-      (e.Y < 0 && !(disc.Bottom > -limit)))
-    {
-      break;
-    }
-    const Offset& p = apex.Place;
-    this->Entries.push_back({ static_cast<Index>(p.Y * nodes.WordsPerRow * 64 + p.X),
-      static_cast<std::int16_t>(p.X), static_cast<std::int16_t>(p.Y) });
-  }
-}
-
 LatticeApexes::LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& metric)
   : Nodes(nodes)
   , Metric(metric)
@@ -210,10 +175,45 @@ std::int64_t LatticeApexes::NumberOfGaps() const
   return gaps;
 }
 
-const ApexList* LatticeApexes::MakeList(const Offset& e, std::atomic<const ApexList*>& slot) const
+/**
+ * Over an edge upwards, of nodes above its first one, over one downwards of all of them. The list
+ * ends before the first node whose circle is not within range, so it misses nothing.
+ */
+const LatticeApexes::Entries* LatticeApexes::MakeList(
+  const Offset& e, std::atomic<const Entries*>& slot) const
 {
-  auto made = std::make_unique<ApexList>(this->Metric, e, this->Nodes);
-  const ApexList* list = nullptr;
+  constexpr std::size_t most = 64;
+  std::vector<Apex> all;
+  for (std::int64_t y = e.Y < 0 ? -Range : 0; y <= Range; ++y)
+  {
+    for (std::int64_t x = -Range; x <= Range; ++x)
+    {
+      if (Cross(e, { x, y }) > 0 && (e.Y < 0 || y > 0 || x > 0))
+      {
+        all.push_back(ApexAt(this->Metric, e, { x, y }));
+      }
+    }
+  }
+  const std::size_t length = std::min(all.size(), most);
+  std::partial_sort(all.begin(), all.begin() + length, all.end(),
+    [&](const Apex& p, const Apex& q) { return IsBetter(p, q, e); });
+  all.resize(length);
+  auto made = std::make_unique<Entries>();
+  DiscOfEdge disc(this->Metric, e);
+  for (const Apex& apex : all)
+  {
+    disc.Set(disc.PositionOf(apex));
+    const double limit = Range + 1 - 1e-6;
+    if (!(disc.Left > -limit && disc.Right < limit && disc.Top < limit) ||
+      (e.Y < 0 && !(disc.Bottom > -limit)))
+    {
+      break;
+    }
+    const Offset& p = apex.Place;
+    made->push_back({ static_cast<Index>(p.Y * this->Nodes.WordsPerRow * 64 + p.X),
+      static_cast<std::int16_t>(p.X), static_cast<std::int16_t>(p.Y) });
+  }
+  const Entries* list = nullptr;
   return slot.compare_exchange_strong(list, made.get()) ? made.release() : list;
 }
 

@@ -65,33 +65,14 @@ inline int CompareQuotients(const Apex& p, const Apex& q)
  */
 bool IsBetter(const Apex& p, const Apex& q, const Offset& e);
 
-/** For an edge vector, the nodes near it that may be the apex, the best first. */
-class ApexList
-{
-public:
-  static constexpr Index Range = 15; ///< columns to each side, and rows
-
-  struct Entry
-  {
-    Index Step; ///< from the first node of the edge to this one
-    std::int16_t X, Y;
-  };
-
-  /**
-   * Over an edge upwards, of nodes above its first one, over one downwards of all of them. The list
-   * ends before the first node whose circle is not within range, so it misses nothing.
-   */
-  ApexList(const LatticeMetric& metric, const Offset& e, const LatticeNodes& nodes);
-
-  std::vector<Entry> Entries;
-};
-
-static_assert(ApexList::Range <= LatticeNodes::RowsBeyond, "rows beyond the last are looked at");
-static_assert(ApexList::Range < LatticeNodes::ColumnsBeyond, "nodes beyond a row are looked at");
-
 class LatticeApexes
 {
 public:
+  /** How far lists go from the first node of an edge: columns to each side, and rows. */
+  static constexpr Index Range = 15;
+  static_assert(Range <= LatticeNodes::RowsBeyond, "rows beyond the last are looked at");
+  static_assert(Range < LatticeNodes::ColumnsBeyond, "nodes beyond a row are looked at");
+
   LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& metric);
   LatticeApexes(const LatticeApexes&) = delete;
   LatticeApexes& operator=(const LatticeApexes&) = delete;
@@ -114,9 +95,9 @@ public:
    */
   bool FindInList(Index node, const Offset& e, Offset& place)
   {
-    if (const ApexList* list = this->ListOf(e))
+    if (const Entries* list = this->ListOf(e))
     {
-      for (const ApexList::Entry& entry : list->Entries)
+      for (const Entry& entry : *list)
       {
         if (this->Nodes.IsOccupied(node + entry.Step))
         {
@@ -141,27 +122,35 @@ public:
 private:
   class RowSearch;
 
+  /** For an edge vector, the nodes near it that may be the apex, the best first. */
+  struct Entry
+  {
+    Index Step; ///< from the first node of the edge to this one
+    std::int16_t X, Y;
+  };
+  using Entries = std::vector<Entry>;
+
   /** The list of a short edge vector, made when it has been asked for a few times, or nullptr. */
-  const ApexList* ListOf(const Offset& e)
+  const Entries* ListOf(const Offset& e)
   {
     if (std::abs(e.X) > Longest || std::abs(e.Y) > Longest)
     {
       return nullptr;
     }
     Slot& slot = this->Slots[static_cast<std::size_t>((e.Y + Longest) * Side + e.X + Longest)];
-    const ApexList* list = slot.List.load(std::memory_order_acquire);
+    const Entries* list = slot.List.load(std::memory_order_acquire);
     return list || slot.Uses.fetch_add(1, std::memory_order_relaxed) < UsesBeforeList
       ? list
       : this->MakeList(e, slot.List);
   }
-  const ApexList* MakeList(const Offset& e, std::atomic<const ApexList*>& list) const;
+  const Entries* MakeList(const Offset& e, std::atomic<const Entries*>& slot) const;
 
   static constexpr Index Longest = 10, Side = 2 * Longest + 1;
   static constexpr int UsesBeforeList = 16;
 
   struct Slot
   {
-    std::atomic<const ApexList*> List{ nullptr };
+    std::atomic<const Entries*> List{ nullptr };
     std::atomic<int> Uses{ 0 };
   };
 

@@ -46,12 +46,18 @@ public:
   std::vector<std::unique_ptr<LatticeStrip>> MakeStrips(const Hull& hull, int threads);
   Hull FindHull() const;
   Buffer<Point2> Places(const Progress& progress) const;
-  bool Name(const Buffer<Point2>& places, Index* triangle) const;
+  bool Name(Index* triangle) const;
 
   const EdgeLimit Limit;
   const LatticeMetric* const Metric;
 
 private:
+  Offset Between(Index from, Index to) const
+  {
+    const Index fromRow = this->Nodes.RowOf(from), toRow = this->Nodes.RowOf(to);
+    return { this->Nodes.ColumnOf(to, toRow) - this->Nodes.ColumnOf(from, fromRow),
+      toRow - fromRow };
+  }
   Index FirstWordOf(Index row) const { return this->Nodes.NodeAt(row, 0) / 64; }
 
   /** Whether no triangle of this shape can be flat or inverted, however far its points are off. */
@@ -91,7 +97,6 @@ Hull Growth::FindHull() const
   const LatticeNodes& nodes = this->Nodes;
   const Index lowest = nodes.RowOf(nodes.Following(nodes.NodeAt(0, -1)));
   const Index highest = nodes.RowOf(nodes.Previous(nodes.NodeAt(nodes.Rows - 1, nodes.Columns)));
-  std::vector<Offset> places;
   Buffer<Index> candidates;
   for (Index row = lowest; row <= highest; ++row)
   {
@@ -102,28 +107,15 @@ Hull Growth::FindHull() const
     {
       if (nodes.IsOccupied(nodes.NodeAt(row, column)))
       {
-        candidates.Append(static_cast<Index>(places.size()));
-        places.push_back({ column, row });
+        candidates.Append(nodes.NodeAt(row, column));
       }
     }
   }
-  const auto turn = [&places](Index p, Index q, Index r) {
-    const auto to = [&](Index other) {
-      return Offset{ places[other].X - places[p].X, places[other].Y - places[p].Y };
-    };
-    const std::int64_t cross = Cross(to(q), to(r));
+  const auto turn = [this](Index p, Index q, Index r) {
+    const std::int64_t cross = Cross(this->Between(p, q), this->Between(p, r));
     return cross > 0 ? Positive : (cross < 0 ? Negative : Zero);
   };
-  Hull hull = elevation::FindHull(candidates, turn, Progress());
-  for (std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
-  {
-    for (Index& vertex : *chain)
-    {
-      const Offset& place = places[vertex];
-      vertex = nodes.NodeAt(static_cast<Index>(place.Y), static_cast<Index>(place.X));
-    }
-  }
-  return hull;
+  return elevation::FindHull(candidates, turn, Progress());
 }
 
 /** The nodes by row and column. */
@@ -146,18 +138,12 @@ Buffer<Point2> Growth::Places(const Progress&) const
   return places;
 }
 
-/** Puts ids in the place of three nodes; false where the edge limit leaves the triangle out. */
-bool Growth::Name(const Buffer<Point2>& places, Index* triangle) const
+/** Puts ids in the place of three ranks; false where the edge limit leaves the triangle out. */
+bool Growth::Name(Index* triangle) const
 {
-  const Point2 lowest = places[triangle[0]];
-  const auto to = [&](Index rank) {
-    return Offset{ static_cast<std::int64_t>(places[rank].X - lowest.X),
-      static_cast<std::int64_t>(places[rank].Y - lowest.Y) };
-  };
-  const Offset p = to(triangle[1]), q = to(triangle[2]);
   std::transform(
     triangle, triangle + 3, triangle, [this](Index rank) { return this->Nodes.Ids[rank]; });
-  return this->IsLeftIn(p, q, triangle[0], triangle[1], triangle[2]);
+  return this->IsLeftIn({ 0, 0 }, { 0, 0 }, triangle[0], triangle[1], triangle[2]);
 }
 
 class Growth::LatticeStrip : public Strip<LatticeStrip>
@@ -208,13 +194,13 @@ public:
   Index FindAcross()
   {
     const Index row = this->Nodes.RowOf(this->High);
-    const Offset e = this->FromHigh(this->Low);
+    const Offset e = this->All.Between(this->High, this->Low);
     Offset place;
-    if (row < ApexList::Range || !this->All.Apexes.FindInList(this->High, e, place))
+    if (row < LatticeApexes::Range || !this->All.Apexes.FindInList(this->High, e, place))
     {
       // The hull's edge is on the left: one of its ends at least is an apex.
-      Apex apex = ApexAt(*this->All.Metric, e, this->FromHigh(this->LastHigh));
-      const Apex other = ApexAt(*this->All.Metric, e, this->FromHigh(this->LastLow));
+      Apex apex = ApexAt(*this->All.Metric, e, this->All.Between(this->High, this->LastHigh));
+      const Apex other = ApexAt(*this->All.Metric, e, this->All.Between(this->High, this->LastLow));
       if (apex.Cross <= 0 || (other.Cross > 0 && IsBetter(other, apex, e)))
       {
         apex = other;
@@ -237,13 +223,6 @@ private:
       ends[rank] = end;
     }
     return isTold;
-  }
-
-  Offset FromHigh(Index node) const
-  {
-    const Index row = this->Nodes.RowOf(node), highRow = this->Nodes.RowOf(this->High);
-    return { this->Nodes.ColumnOf(node, row) - this->Nodes.ColumnOf(this->High, highRow),
-      row - highRow };
   }
 
   Index StepTo(const Offset& p) const
@@ -376,7 +355,7 @@ void Growth::LatticeStrip::GrowFans()
 /** The two triangles of each cell; @a here and @a up are the ids from its left end on. */
 void Growth::LatticeStrip::WriteCells(const Index* here, const Index* up, int length, bool isAcute)
 {
-  this->NeedRoom(2 * static_cast<std::size_t>(length));
+  this->NeedRoom(2 * static_cast<std::size_t>(length), *here);
   const Index* middle = isAcute ? up : up + 1; // the diagonal's end
   const Index* last = isAcute ? up - 1 : up;
   Index* out = this->Out;
@@ -414,7 +393,7 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
     }
     const Index apex = node + this->StepTo(p);
     const Index rankOfApex = nodes.RankOf(apex);
-    this->NeedRoom(1);
+    this->NeedRoom(1, id);
     const Index b = nodes.Ids[rankOfCurrent], c = nodes.Ids[rankOfApex];
     this->Write(id, b, c, this->All.IsLeftIn(e, p, id, b, c));
     apex > current ? this->Set(this->All.Last, rankOfCurrent, apex)

@@ -4,19 +4,13 @@
  * @file
  * The Delaunay triangulation of the nodes of a lattice, in integers.
  *
- * In: points. Out: the triangles, or the answer that the points are on no lattice. The passes, in
- * the order of the functions in LatticeDelaunay.cxx:
- *   1. Find the lattice (Lattice.h) and put the points on a bitmap of its nodes (LatticeNodes.h).
- *   2. The metric of the two steps, as integers: |i u + j v|^2 = A i^2 + 2 B i j + C j^2.
+ * In: points. Out: the triangles, or the answer that the points are on no lattice. The passes:
+ *   1. Find the lattice (FindLattice.h) and put the points on a bitmap of its nodes (Nodes.h).
+ *   2. The metric of the two steps, as integers: |i u + j v|^2 = A i^2 + 2 B i j + C j^2 (Metric.h).
  *   3. Find the convex hull, from the ends of the rows.
- *   4. Grow, as the general path does (Delaunay.h): each vertex, from the lowest up, completes the
- *      fan of triangles of which it is the lowest vertex. Where the grid is full, the fan is the
- * two triangles of one cell, and all such vertices of 64 nodes are told at once by a few operations
- *      on words. For all others the apex is the first occupied node in a list of the nodes near the
- *      edge, by increasing circle, that is made once for each edge vector; what the lists do not
- *      reach is searched for row by row, in a disc that is proved to hold all better nodes. Where
- *      that takes too long, as for nodes along a flat arc, the nodes are divided and conquered
- *      (DivideAndConquer.h), in n log n; the triangles are the same, byte for byte.
+ *   4. Grow, or divide and conquer (Growth.h). Where all nodes are occupied, the fan of a vertex is
+ *      the two triangles of one cell, and all such vertices of 64 nodes are told at once by a few
+ *      operations on words. For others each apex is looked for (LatticeApexes.h).
  *
  * Guarantees: exact and unique, as the general path, for the nodes in the metric: no node lies
  * inside a triangle's circle, and co-circular nodes are cut into the fan of the lowest (by row,
