@@ -5,6 +5,8 @@
 #include "ApexSearch.h"
 #include "Growth.h"
 
+#include <array>
+
 namespace elevation
 {
 namespace
@@ -19,52 +21,24 @@ constexpr std::int64_t WorkPerVertex = 340;
 constexpr std::int64_t WorkPerFan = 40;
 constexpr std::int64_t WorkPerPause = 10000;
 
-/**
- * The edge pool: the first and the last edge, counter-clockwise, of the fan of triangles above each
- * vertex, as their other ends. None where it is not known yet.
- */
-class EdgePool
-{
-public:
-  EdgePool(Index count, int threads, const Progress& progress)
-  {
-    this->Ends.Resize(2 * static_cast<std::size_t>(count));
-    ForEachRange(count, threads, progress, [&](Index, Index begin, Index end) {
-      std::fill(this->Ends.begin() + 2 * static_cast<std::size_t>(begin),
-        this->Ends.begin() + 2 * static_cast<std::size_t>(end), None);
-    });
-  }
-
-  const Index* At(Index vertex) const { return &this->Ends[2 * static_cast<std::size_t>(vertex)]; }
-  Index First(Index vertex) const { return this->Ends[2 * static_cast<std::size_t>(vertex)]; }
-  Index Last(Index vertex) const { return this->Ends[2 * static_cast<std::size_t>(vertex) + 1]; }
-  void Tell(Index vertex, int isLast, Index end)
-  {
-    this->Ends[2 * static_cast<std::size_t>(vertex) + isLast] = end;
-  }
-
-private:
-  Buffer<Index> Ends;
-};
-
 /** What is grown: the points of a grid, which are called by their slots. */
 class Growth
 {
 public:
-  Growth(const BinGrid& grid, const DelaunayOptions& options, int threads)
+  Growth(const BinGrid& grid, const DelaunayOptions& options)
     : Limit(options.MaximumEdgeLength * grid.Scale)
     , Grid(grid)
     , Options(options)
-    , Pool(grid.NumberOfPoints(), threads, Part(options.Monitor, 0.2, 0.2))
   {
   }
 
   class GridStrip;
   std::vector<std::unique_ptr<GridStrip>> MakeStrips(const Hull& hull, int threads);
 
-  /** The points by increasing (y, x). */
-  Buffer<Point2> Places(const Progress& progress) const
+  /** The points by increasing (y, x); growing has been given up. */
+  Buffer<Point2> Places(const Progress& progress)
   {
+    this->Pool = Buffer<Ends>();
     const Buffer<Index>& order = this->Grid.Order;
     Buffer<Point2> places;
     places.Resize(order.size());
@@ -79,23 +53,24 @@ public:
   /** Puts ids in the place of three of these; false where the edge limit leaves the triangle out. */
   bool Name(Index* triangle) const
   {
-    std::transform(
-      triangle, triangle + 3, triangle, [this](Index i) { return this->Grid.Order[i]; });
-    const bool isLeftIn =
-      this->Limit.Admits([this](Index slot) { return this->Grid.PointAt(slot); }, triangle[0],
-        triangle[1], triangle[2]);
-    std::transform(
-      triangle, triangle + 3, triangle, [this](Index slot) { return this->Grid.Ids[slot]; });
-    return isLeftIn;
+    const Buffer<Index>&order = this->Grid.Order, &ids = this->Grid.Ids;
+    const Index p = order[triangle[0]], q = order[triangle[1]], r = order[triangle[2]];
+    triangle[0] = ids[p];
+    triangle[1] = ids[q];
+    triangle[2] = ids[r];
+    return this->Limit.Admits([this](Index slot) { return this->Grid.PointAt(slot); }, p, q, r);
   }
 
   const EdgeLimit Limit;
   static constexpr const LatticeMetric* Metric = nullptr;
 
 private:
+  /** Other ends of the first and the last edge of a fan; None where they are not known yet. */
+  using Ends = std::array<Index, 2>;
+
   const BinGrid& Grid;
   const DelaunayOptions& Options;
-  EdgePool Pool;
+  Buffer<Ends> Pool; ///< the edge pool: of the fan above each vertex, counter-clockwise
 };
 
 class Growth::GridStrip : public Strip<GridStrip>
@@ -132,7 +107,7 @@ public:
       IsLower(isRising ? pPoint : qPoint, this->Grid.PointAt(this->Order[this->End]));
     if (isTold)
     {
-      this->Pool.Tell(ends[isRising], isRising, ends[!isRising]);
+      this->Pool[ends[isRising]][isRising] = ends[!isRising];
     }
     return isTold;
   }
@@ -177,7 +152,7 @@ private:
       Prefetch(&this->Grid.X[ahead]);
       Prefetch(&this->Grid.Y[ahead]);
       Prefetch(&this->Grid.Ids[ahead]);
-      Prefetch(this->Pool.At(ahead));
+      Prefetch(&this->Pool[ahead]);
     }
   }
 
@@ -191,7 +166,7 @@ private:
     {
       return true;
     }
-    const Index first = this->Pool.First(lowest), end = this->Pool.Last(lowest);
+    const Index first = this->Pool[lowest][0], end = this->Pool[lowest][1];
     if (first == end && first != None)
     {
       return true;
@@ -250,7 +225,7 @@ private:
 
   const BinGrid& Grid;
   const Buffer<Index>& Order;
-  EdgePool& Pool;
+  Buffer<Ends>& Pool;
   const EdgeLimit Limit;
   ApexSearch Search;
   Index Next;
@@ -267,6 +242,11 @@ std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& h
   const auto at = [&](Index k) {
     return static_cast<Index>(static_cast<std::int64_t>(count) * k / number);
   };
+  this->Pool.Resize(count);
+  ForEachRange(count, threads, Part(this->Options.Monitor, 0.2, 0.2),
+    [this](Index, Index begin, Index end) {
+      std::fill(this->Pool.begin() + begin, this->Pool.begin() + end, Ends{ None, None });
+    });
   std::vector<std::unique_ptr<GridStrip>> strips;
   for (Index i = 0; i < number; ++i)
   {
@@ -279,7 +259,7 @@ std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& h
 Buffer<Index> GrowOverGrid(
   BinGrid& grid, const Hull& hull, const DelaunayOptions& options, int threads)
 {
-  Growth growth(grid, options, threads);
+  Growth growth(grid, options);
   return GrowAll(growth, hull, grid.NumberOfPoints(), options, threads,
     Part(options.Monitor, 0.2, 1.0), std::move(grid.Room));
 }

@@ -70,8 +70,8 @@ public:
   /** Where all triangles are to be written. */
   void SetOutput(Buffer<Index>& triangles)
   {
-    this->All = triangles.begin();
-    this->AllEnd = triangles.end();
+    this->Output = triangles.begin();
+    this->OutputEnd = triangles.end();
   }
 
   /** Goes on until it is done, or until about a time. */
@@ -98,7 +98,7 @@ protected:
   /** Sees that there is room for triangles of a point. */
   void NeedRoom(std::size_t triangles, Index id) const
   {
-    if (static_cast<std::size_t>(this->AllEnd - this->Out) < 3 * triangles)
+    if (static_cast<std::size_t>(this->OutputEnd - this->Out) < 3 * triangles)
     {
       ThrowOpenFan(id);
     }
@@ -178,12 +178,12 @@ private:
     // Around those above are some edges of the hull and, along the walk, one for each pair.
     const std::size_t below = 2 * static_cast<std::size_t>(this->Begin) + this->Pairs -
       static_cast<std::size_t>((left - leftChain.begin()) + (right - rightChain.begin()));
-    this->OutBegin = this->Out = this->All + 3 * below;
+    this->OutBegin = this->Out = this->Output + 3 * below;
     return true;
   }
 
   const Hull& OfAll;
-  Index *All = nullptr, *AllEnd = nullptr; ///< where all triangles are written
+  Index *Output = nullptr, *OutputEnd = nullptr; ///< where all triangles are written
   Index* OutBegin = nullptr;
 
 protected:

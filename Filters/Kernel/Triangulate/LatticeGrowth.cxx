@@ -45,7 +45,7 @@ public:
   class LatticeStrip;
   std::vector<std::unique_ptr<LatticeStrip>> MakeStrips(const Hull& hull, int threads);
   Hull FindHull() const;
-  Buffer<Point2> Places(const Progress& progress) const;
+  Buffer<Point2> Places(const Progress& progress);
   bool Name(Index* triangle) const;
 
   const EdgeLimit Limit;
@@ -118,9 +118,11 @@ Hull Growth::FindHull() const
   return elevation::FindHull(candidates, turn, Progress());
 }
 
-/** The nodes by row and column. */
-Buffer<Point2> Growth::Places(const Progress&) const
+/** Columns and rows of the nodes; growing has been given up. */
+Buffer<Point2> Growth::Places(const Progress&)
 {
+  this->First = Buffer<Index>();
+  this->Last = Buffer<Index>();
   const LatticeNodes& nodes = this->Nodes;
   Buffer<Point2> places;
   places.Reserve(nodes.NumberOfPoints());
