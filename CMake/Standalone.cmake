@@ -11,6 +11,7 @@ option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface" ON)
 option(ES_BENCHMARKS "Build the benchmarks; they compare with CGAL where it is found" OFF)
 option(ES_WARNINGS "Compile with -Wall -Wextra" OFF)
 option(ES_WERROR "Warnings are errors (with ES_WARNINGS)" OFF)
+option(ES_FUZZ "Build the fuzz targets with libFuzzer, which clang++ brings" OFF)
 set(ES_SANITIZE "" CACHE STRING "Sanitizers to compile with, as in -fsanitize=<list>")
 set_property(CACHE ES_SANITIZE PROPERTY STRINGS "" "address,undefined" "thread")
 
@@ -40,6 +41,10 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 if (ES_SANITIZE)
   add_compile_options("-fsanitize=${ES_SANITIZE}" -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options("-fsanitize=${ES_SANITIZE}")
+endif ()
+
+if (ES_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif ()
 
 # ---- tests or not ------------------------------------------------------------------------------

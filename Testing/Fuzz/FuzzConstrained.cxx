@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Points and lines -> mesh: every line is a chain of edges, all else is Delaunay, and the order and
+ * direction of lines change nothing.
+ */
+#include "FuzzInput.h"
+
+#include "Kernel/Triangulate/Triangulate.h"
+
+#include <algorithm>
+#include <array>
+
+namespace
+{
+using namespace fuzz;
+
+/** Lines between the points of a cloud. */
+struct Lines
+{
+  Cloud Own;
+  std::vector<std::vector<Index>> Ids;
+  std::vector<char> AreClosed;
+
+  ConstraintLines Get() const
+  {
+    ConstraintLines lines;
+    lines.Points = this->Own.View();
+    for (std::size_t i = 0; i < this->Ids.size(); ++i)
+    {
+      lines.Vertices.insert(lines.Vertices.end(), this->Ids[i].begin(), this->Ids[i].end());
+      lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
+      lines.IsClosed.push_back(this->AreClosed[i]);
+      lines.Cells.push_back(static_cast<Index>(i));
+    }
+    return lines;
+  }
+  Lines Turned() const
+  {
+    Lines lines = *this;
+    std::reverse(lines.Ids.begin(), lines.Ids.end());
+    std::reverse(lines.AreClosed.begin(), lines.AreClosed.end());
+    for (std::vector<Index>& ids : lines.Ids)
+    {
+      std::reverse(ids.begin(), ids.end());
+    }
+    return lines;
+  }
+};
+
+Cloud AllPoints(const Cloud& cloud, const ConstrainedTriangulation& constrained)
+{
+  Cloud all = cloud;
+  for (const AddedPoint& point : constrained.Added)
+  {
+    all.Add(point.Position.X, point.Position.Y, point.Elevation);
+  }
+  return all;
+}
+
+/** One flag a half-edge: whether a piece runs along it. Fails where a piece is no chain of edges. */
+std::vector<char> MarkPieces(const Mesh& mesh, const std::vector<Segment>& pieces)
+{
+  std::vector<char> flags(mesh.Triangles.size(), 0);
+  VertexStars stars(mesh);
+  for (const Segment& piece : pieces)
+  {
+    for (Index v = piece.A; v != piece.B;)
+    {
+      const SegmentStep step = StepAlong(mesh, stars, v, piece.B);
+      Require(step.HalfEdge != None, "every line is a chain of edges");
+      flags[step.HalfEdge] = 1;
+      if (!mesh.IsBorder(step.HalfEdge))
+      {
+        flags[mesh.Twin(step.HalfEdge)] = 1;
+      }
+      v = step.Vertex;
+    }
+  }
+  return flags;
+}
+
+void RequireRules(const Cloud& cloud, const ConstrainedTriangulation& constrained)
+{
+  const Triangulation& result = constrained.Result;
+  const Cloud all = AllPoints(cloud, constrained);
+  Require(result.UnusedPoints.size() == result.UnusedReasons.size() &&
+      std::is_sorted(result.UnusedPoints.begin(), result.UnusedPoints.end()),
+    "unused points are listed in order");
+  Require(result.NumberOfDuplicates + result.NumberOfNotFinite ==
+      static_cast<Index>(result.UnusedPoints.size()),
+    "unused points are duplicates or not finite");
+  for (const AddedPoint& point : constrained.Added)
+  {
+    Require(IsFinite(point.Position), "added points are finite");
+  }
+  if (result.Triangles.empty())
+  {
+    return;
+  }
+  Mesh mesh = MeshOf(all, result);
+  mesh.ConnectTwins();
+  const std::vector<char> flags = MarkPieces(mesh, constrained.Pieces);
+  ValidateOptions rules;
+  rules.Constrained = &flags;
+  rules.UnusedPoints = &result.UnusedPoints;
+  RequireNone(ToString(Validate(mesh, rules)), "constrained triangulation");
+}
+
+/** The ends of all pieces by their places, sorted. */
+std::vector<std::array<double, 4>> PlacesOfPieces(
+  const Cloud& cloud, const ConstrainedTriangulation& constrained)
+{
+  const Cloud all = AllPoints(cloud, constrained);
+  std::vector<std::array<double, 4>> places;
+  for (const Segment& piece : constrained.Pieces)
+  {
+    Point2 a = all.View().At(piece.A), b = all.View().At(piece.B);
+    if (IsLower(b, a))
+    {
+      std::swap(a, b);
+    }
+    places.push_back({ a.X, a.Y, b.X, b.Y });
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  Input input(data, size);
+  DelaunayOptions options;
+  const unsigned bits = input.Byte();
+  options.Duplicates = static_cast<DuplicatePolicy>(input.Below(4));
+  options.DivideAtOnce = (bits & 1) != 0;
+  options.NumberOfThreads = (bits & 14) == 14 ? 3 : 1;
+  const unsigned shared = input.Byte();
+  Lines lines;
+  lines.AreClosed.resize(1 + input.Below(8));
+  lines.Ids.resize(lines.AreClosed.size());
+  std::vector<std::vector<unsigned>> chosen(lines.Ids.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+  {
+    const unsigned kind = input.Byte();
+    lines.AreClosed[i] = kind % 2 != 0;
+    chosen[i].resize(1 + kind / 2 % 8);
+    for (unsigned& id : chosen[i])
+    {
+      id = input.Byte();
+    }
+  }
+  // The lines' points are a cloud of which the first points are the input.
+  lines.Own = ReadCloud(input, 120);
+  if (lines.Own.Count() == 0)
+  {
+    return 0;
+  }
+  Cloud cloud = lines.Own;
+  cloud.Coordinates.resize(3 * (cloud.Coordinates.size() / 3 * shared / 255));
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+  {
+    for (const unsigned id : chosen[i])
+    {
+      const Index point = static_cast<Index>(id % lines.Own.Count());
+      if (IsFinite(lines.Own.View().At(point)) && std::isfinite(lines.Own.View().Elevation(point)))
+      {
+        lines.Ids[i].push_back(point);
+      }
+    }
+  }
+
+  const ConstraintLines given = lines.Get();
+  Show("points", cloud.View());
+  Show("points of the lines", given.Points);
+  Show("ids of the lines", given.Vertices);
+  Show("offsets of the lines", given.Offsets);
+
+  ConstrainedTriangulation constrained;
+  try
+  {
+    constrained = TriangulateConstrained(cloud.View(), given, options);
+  }
+  catch (const Error& error)
+  {
+    // The one error that lines between finite points may have: they cross anew wherever they are cut.
+    Require(std::strstr(error.what(), "cross again and again"), error.what());
+    return 0;
+  }
+  RequireRules(cloud, constrained);
+
+  if (bits & 16)
+  {
+    const Lines turned = lines.Turned();
+    const ConstraintLines other = turned.Get();
+    const ConstrainedTriangulation again = TriangulateConstrained(cloud.View(), other, options);
+    Require(PlacesOfPieces(cloud, constrained) == PlacesOfPieces(cloud, again),
+      "the order and direction of lines do not change their pieces");
+    Require(TriangleSet(AllPoints(cloud, constrained), constrained.Result) ==
+        TriangleSet(AllPoints(cloud, again), again.Result),
+      "the order and direction of lines do not change the triangles");
+    Require(constrained.NumberOfCrossings == again.NumberOfCrossings,
+      "the order and direction of lines do not change the number of crossings");
+  }
+  if (bits & 32)
+  {
+    DelaunayOptions other = options;
+    other.DivideAtOnce = !options.DivideAtOnce;
+    other.NumberOfThreads = 1;
+    const ConstrainedTriangulation again = TriangulateConstrained(cloud.View(), given, other);
+    Require(AreSame(constrained.Result.Triangles, again.Result.Triangles) &&
+        constrained.Result.UnusedPoints == again.Result.UnusedPoints,
+      "all ways of searching give the same bytes");
+  }
+  return 0;
+}
