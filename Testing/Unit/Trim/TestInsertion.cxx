@@ -1279,6 +1279,50 @@ TEST(InsertRings, DoesNotMoveABorderOverAnotherOneThatRunsAlongIt)
   }
 }
 
+TEST(InsertRings, TakesPointsInABorderInTheOrderAlongIt)
+{
+  // Two points of the ring are a unit in the last place beyond the border; the edge between them
+  // runs along it either way.
+  const double unit = std::numeric_limits<double>::epsilon();
+  const std::vector<Point2> ring{ { 2, 1 + unit }, { 4, -1 }, { 6, 1 + unit } };
+  for (const bool isReversed : { false, true })
+  {
+    Mesh mesh;
+    mesh.Points = { { 4, -3 }, { 8, 1 }, { 0, 1 } };
+    mesh.Triangles = { 0, 1, 2 };
+    mesh.ConnectTwins();
+    Boundary boundary;
+    boundary.Add(isReversed ? std::vector<Point2>(ring.rbegin(), ring.rend()) : ring);
+    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+    EXPECT_EQ(FindingsOf(mesh), "");
+    EXPECT_EQ(rings.Inserted.size(), 3u);
+    EXPECT_EQ(rings.Vertices.Vertices.size(), 3u);
+  }
+}
+
+TEST(InsertRings, InterpolatesOnAnEdgeBetweenItsEndsAlone)
+{
+  // The first point is exactly on the edge between two triangles, though the differences to its end
+  // near the origin, once rounded, are not.
+  Mesh mesh;
+  mesh.Points = { { std::ldexp(5, -57), std::ldexp(15, -59) }, { 1, 0.75 }, { 0, 2 }, { 2, -1 } };
+  mesh.Triangles = { 0, 1, 2, 1, 0, 3 };
+  mesh.ConnectTwins();
+  const Point2 p{ 0.5, 0.375 };
+  ASSERT_EQ(Orientation(mesh.Points[0], mesh.Points[1], p), Zero);
+  Boundary boundary;
+  boundary.Add({ p, { 0.5, 0.5 }, { 0.4, 0.5 } });
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+  ASSERT_EQ(rings.Inserted.size(), 3u);
+  const Index vertex = rings.Vertices.Vertices[0];
+  ASSERT_EQ(mesh.PointOf(vertex), p);
+  const InsertedVertex& inserted = rings.Inserted[vertex - 4];
+  for (int k = 0; k < 3; ++k)
+  {
+    EXPECT_TRUE(inserted.Corners[k] < 2 || inserted.Weights[k] == 0.0) << k;
+  }
+}
+
 TEST(InsertRings, TakesInABorderFarLongerThanItsPointsCoordinates)
 {
   // What rounding may do to a border follows from its ends, also next to the origin.
