@@ -40,8 +40,9 @@ set(es_kernel_Fill
   Multigrid
   Membrane
   Spline
-  Heights
   Patch
+  Neighbours
+  Heights
   Fill)
 
 # Headers without a source file.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Fill.h"
 
+#include "Neighbours.h"
 #include "Patch.h"
 #include "Kernel/Base/Base.h"
 
@@ -90,9 +91,21 @@ std::string ToText(double value)
   return text.str();
 }
 
+/** How many new points there may be. */
+struct Room
+{
+  Room(const Mesh& mesh, const FillOptions& options)
+    : OfIds(MaximumNumberOfPoints - mesh.NumberOfPoints())
+    , Left(std::min<double>(options.MaximumInsertedPoints, OfIds))
+  {
+  }
+  double OfIds; ///< for all holes
+  double Left;  ///< by those that come before
+};
+
 /** The limits, and what cannot be filled. All that could make a hole run away is stopped here. */
-void Judge(
-  HoleReport& report, bool isTouched, double points, double room, const FillOptions& options)
+void Judge(HoleReport& report, bool isTouched, double points, const Room& room,
+  const FillOptions& options)
 {
   if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
   {
@@ -123,114 +136,17 @@ void Judge(
   }
   // Rows of points count as points: a long thin hole has many rows, though few points.
   const double rows = report.Perimeter / report.Spacing - report.NumberOfEdges;
-  if (!(points <= room && rows <= room))
-  {
-    fail("It would take up to " + ToText(points) + " new points at a spacing of " +
-      ToText(report.Spacing) + ", but there is room for " + ToText(room) +
-      "; a larger spacing helps.");
-  }
-}
-
-/** The boundary vertices as a balanced k-d tree in place: the middle of a range is its root. */
-class NearestBoundary
-{
-public:
-  explicit NearestBoundary(const Patch& patch)
-    : Vertices(patch)
-    , Tree(patch.NumberOfBoundaryVertices())
-  {
-    for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
-    {
-      this->Tree[v] = { patch.At(v), v };
-    }
-    this->Build(0, this->Tree.size(), true);
-  }
-
-  /** The nearest vertex to @a p. @param guess  any vertex; a near one makes it fast */
-  Index Find(const Point2& p, Index guess)
-  {
-    this->P = p;
-    this->Best = guess;
-    this->BestSquare = Square(p, this->Vertices.At(guess));
-    this->Look(0, this->Tree.size(), true);
-    return this->Best;
-  }
-
-private:
-  struct Node
-  {
-    Point2 At;
-    Index Vertex;
-  };
-
-  static double Square(const Point2& p, const Point2& q)
-  {
-    return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
-  }
-
-  void Build(std::size_t begin, std::size_t end, bool byX)
-  {
-    if (end - begin < 2)
-    {
-      return;
-    }
-    const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(this->Tree.begin() + begin, this->Tree.begin() + middle,
-      this->Tree.begin() + end,
-      [byX](const Node& a, const Node& b) { return byX ? a.At.X < b.At.X : a.At.Y < b.At.Y; });
-    this->Build(begin, middle, !byX);
-    this->Build(middle + 1, end, !byX);
-  }
-
-  void Look(std::size_t begin, std::size_t end, bool byX)
-  {
-    if (begin == end)
-    {
-      return;
-    }
-    const std::size_t middle = begin + (end - begin) / 2;
-    const Node& node = this->Tree[middle];
-    const double square = Square(this->P, node.At);
-    if (square < this->BestSquare || (square == this->BestSquare && node.Vertex < this->Best))
-    {
-      this->BestSquare = square;
-      this->Best = node.Vertex;
-    }
-    const double beyond = byX ? this->P.X - node.At.X : this->P.Y - node.At.Y;
-    const bool isLow = beyond < 0.0;
-    this->Look(isLow ? begin : middle + 1, isLow ? middle : end, !byX);
-    if (beyond * beyond <= this->BestSquare)
-    {
-      this->Look(isLow ? middle + 1 : begin, isLow ? end : middle, !byX);
-    }
-  }
-
-  const Patch& Vertices;
-  std::vector<Node> Tree;
-  Point2 P{ 0.0, 0.0 };
-  Index Best = 0;
-  double BestSquare = 0.0;
-};
-
-void FindNearest(const Progress& progress, Patch& patch)
-{
-  if (patch.Order.empty())
+  if (points <= room.Left && rows <= room.Left)
   {
     return;
   }
-  NearestBoundary boundary(patch);
-  const Index first = patch.NumberOfBoundaryVertices();
-  patch.Nearest.resize(patch.NumberOfNewVertices());
-  for (std::size_t k = 0; k < patch.Order.size(); ++k)
-  {
-    // In the middle of a round hole much of the boundary is about equally near.
-    ReportStep(progress, k, patch.Order.size(), 1024);
-    // What is nearest to a neighbour is not far.
-    const Index vertex = patch.Order[k];
-    const Index outward = patch.Outward[vertex - first];
-    patch.Nearest[vertex - first] =
-      boundary.Find(patch.At(vertex), outward < first ? outward : patch.Nearest[outward - first]);
-  }
+  const bool isOurs = options.MaximumInsertedPoints < room.OfIds;
+  fail("It would take up to " + ToText(std::max(points, rows)) + " new points at a spacing of " +
+    ToText(report.Spacing) + ", but " +
+    (isOurs ? "MaximumNumberOfInsertedPoints, " + std::to_string(options.MaximumInsertedPoints)
+            : "the largest number of points, " + std::to_string(MaximumNumberOfPoints)) +
+    ", leaves room for " + ToText(room.Left) + "; a larger spacing helps" +
+    (isOurs ? ", or a larger limit." : "."));
 }
 
 /** Elevations and attributes; of the latter one vector each, in the order of vertices. */
@@ -268,7 +184,6 @@ struct FilledHole
   std::vector<std::vector<double>> Attributes;
 };
 
-/** All or nothing: when memory runs out, the result is as before. */
 void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
 {
   const Patch& patch = filled.Triangles;
@@ -291,7 +206,6 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
     room(values, points);
   }
   std::vector<Index> ids(patch.NumberOfVertices());
-
   std::copy(patch.BoundaryIds.begin(), patch.BoundaryIds.end(), ids.begin());
   for (std::size_t k = 0; k < points; ++k)
   {
@@ -314,166 +228,220 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
   }
 }
 
-/** Runs a step of filling a hole; what goes wrong in it is the hole's failure, and no other's. */
-template <typename Step>
-void Attempt(HoleReport& report, Step&& step)
+/** Fills all holes of one surface. */
+class HoleFilling
 {
-  try
+public:
+  HoleFilling(const Mesh& mesh, const PointView& points, const Holes& holes,
+    const FillOptions& options)
+    : Surface(mesh)
+    , Points(points)
+    , Given(holes)
+    , Options(options)
+    , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
+    , Plans(holes.Count())
   {
-    step();
   }
-  catch (const std::bad_alloc&)
+
+  FillResult Run()
   {
-    report.Status = FillStatus::Failed;
-    report.Reason = "There is not enough memory for it; a larger spacing helps.";
+    const Progress& monitor = this->Options.Monitor;
+    const bool needsStars = Heights::NeedsSurroundings(this->Options.Method);
+    this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
+    this->PlanAll();
+    if (this->AllWork > 0.0 && needsStars)
+    {
+      this->Stars = std::make_unique<VertexStars>(this->Surface, Part(monitor, 0.02, 0.06));
+    }
+    const Progress filling = Part(monitor, this->Stars ? 0.06 : 0.02, 1.0);
+    this->Result.Attributes.resize(this->Options.Attributes.size());
+    const double all = this->AllWork > 0.0 ? this->AllWork : 1.0;
+    double done = 0.0;
+    for (Index begin = 0; begin < this->Given.Count();)
+    {
+      const double before = done;
+      const Index end = this->EndOfBatch(begin, done);
+      const Progress ofBatch =
+        Part(filling, std::min(1.0, before / all), std::min(1.0, done / all));
+      Report(ofBatch, 0.0);
+      this->FillBatch(begin, end, ofBatch);
+      begin = end;
+    }
+    Report(monitor, 1.0);
+    return std::move(this->Result);
   }
-  catch (const Error& error)
+
+private:
+  /**
+   * All holes are judged before the first is filled: what one may take does not depend on how the
+   * others turn out.
+   */
+  void PlanAll()
   {
-    report.Status = FillStatus::Failed;
-    report.Reason = error.what();
+    const FillOptions& options = this->Options;
+    // Nodes are only for spacings that the user has not set.
+    LatticeSearch lattice;
+    if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
+      this->Given.Count() > 0)
+    {
+      lattice = FindLattice(
+        this->Points, LatticeTolerance, this->Threads, Part(options.Monitor, 0.0, 0.02));
+    }
+    Room room(this->Surface, options);
+    this->Result.Reports.reserve(this->Given.Count());
+    for (Index hole = 0; hole < this->Given.Count(); ++hole)
+    {
+      if (hole % 4096 == 0)
+      {
+        Report(options.Monitor, 0.02);
+      }
+      this->Result.Reports.push_back(Measure(this->Surface, this->Given, hole, options.Spacing));
+      HoleReport& report = this->Result.Reports.back();
+      PatchPlan& plan = this->Plans[hole];
+      plan = PlanPatch(this->Surface, this->Given, hole, report.Area, options.Spacing,
+        lattice.Found ? &lattice.Steps : nullptr);
+      const Index first = *this->Given.Walks.Begin(this->Given.Rim(hole));
+      const Point2& p = this->Surface.PointOf(this->Surface.Origin(first));
+      plan.Precision = StepAt(
+        std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
+      plan.SinglePrecision = options.SinglePrecision;
+      Judge(report, this->Given.Touched[hole] != 0, plan.MostPoints, room, options);
+      if (report.Status == FillStatus::Filled)
+      {
+        room.Left = std::max(0.0, room.Left - plan.MostPoints);
+        this->AllWork += this->WorkOf(hole);
+      }
+    }
   }
-}
+
+  double WorkOf(Index hole) const
+  {
+    const HoleReport& report = this->Result.Reports[hole];
+    return report.Status == FillStatus::Filled
+      ? this->Plans[hole].MostPoints + report.NumberOfEdges + this->Least
+      : 0.0;
+  }
+
+  /**
+   * A large patch is made alone and reports progress; others are made together, so many that
+   * threads seldom wait for each other.
+   */
+  Index EndOfBatch(Index begin, double& done) const
+  {
+    const double alone = this->Threads > 1 ? PointsAlone : PointsAlone / 4.0;
+    const double before = done;
+    Index end = begin;
+    do
+    {
+      done += this->WorkOf(end++);
+    } while (end < this->Given.Count() && end - begin < 4096 &&
+      done - before + this->WorkOf(end) <= PointsTogether * this->Threads &&
+      this->WorkOf(end) <= alone && this->WorkOf(begin) <= alone);
+    return end;
+  }
+
+  /** Holes of a batch, and the pieces of them that a thread takes at a time. */
+  struct Batch
+  {
+    std::vector<std::pair<double, Index>> Order; ///< from the most work on, which is negative
+    std::vector<std::size_t> Pieces{ 0 };
+  };
+
+  /** From the largest on, as what ends last should not take long. */
+  Batch DivideBatch(Index begin, Index end) const
+  {
+    Batch batch;
+    for (Index hole = begin; hole < end; ++hole)
+    {
+      if (this->Result.Reports[hole].Status == FillStatus::Filled)
+      {
+        batch.Order.emplace_back(-this->WorkOf(hole), hole);
+      }
+    }
+    std::sort(batch.Order.begin(), batch.Order.end());
+    double ofPiece = 0.0;
+    for (std::size_t k = 0; k < batch.Order.size(); ++k)
+    {
+      ofPiece -= batch.Order[k].first;
+      if (ofPiece > PointsPerPiece || k + 1 == batch.Order.size())
+      {
+        batch.Pieces.push_back(k + 1);
+        ofPiece = 0.0;
+      }
+    }
+    return batch;
+  }
+
+  /** Patches are made in any order, and appended in that of the holes. */
+  void FillBatch(Index begin, Index end, const Progress& progress)
+  {
+    const Batch batch = this->DivideBatch(begin, end);
+    std::vector<FilledHole> filled(end - begin);
+    const bool isAlone = end - begin == 1;
+    if (isAlone)
+    {
+      this->Plans[begin].NumberOfThreads = this->Threads;
+    }
+    ForEachPiece(static_cast<Index>(batch.Pieces.size()) - 1, isAlone ? 1 : this->Threads,
+      isAlone ? Progress() : progress, [&](Index piece) {
+        for (std::size_t k = batch.Pieces[piece]; k < batch.Pieces[piece + 1]; ++k)
+        {
+          const Index hole = batch.Order[k].second;
+          this->FillOne(hole, isAlone ? progress : Progress(), filled[hole - begin]);
+        }
+      });
+    for (Index hole = begin; hole < end; ++hole)
+    {
+      HoleReport& report = this->Result.Reports[hole];
+      if (report.Status == FillStatus::Filled)
+      {
+        Append(filled[hole - begin], this->Surface.NumberOfPoints(), this->Result);
+        report.NumberOfInsertedPoints = filled[hole - begin].Triangles.NumberOfNewVertices();
+      }
+      this->Result.PointOffsets.push_back(static_cast<Index>(this->Result.Points.size() / 3));
+      this->Result.TriangleOffsets.push_back(
+        static_cast<Index>(this->Result.Triangles.size() / 3));
+    }
+  }
+
+  /** What goes wrong with a hole is its failure, and no other's. */
+  void FillOne(Index hole, const Progress& progress, FilledHole& filled)
+  {
+    HoleReport& report = this->Result.Reports[hole];
+    try
+    {
+      filled.Triangles = CollectBoundary(this->Surface, this->Given, hole);
+      Patch& patch = filled.Triangles;
+      MakePatch(this->Plans[hole], Part(progress, 0.0, 0.4), patch);
+      Arrange(patch, Part(progress, 0.4, 0.45));
+      FindNearest(patch, Part(progress, 0.45, 0.5));
+      Elevate(this->Surface, this->Stars.get(), this->Points, this->Options,
+        Part(progress, 0.5, 1.0), patch, report, filled.Attributes);
+    }
+    catch (const Error& error)
+    {
+      report.Status = FillStatus::Failed;
+      report.Reason = error.what();
+    }
+  }
+
+  const Mesh& Surface;
+  const PointView& Points;
+  const Holes& Given;
+  const FillOptions& Options;
+  const int Threads;
+  double Least = 0.0; ///< work for any patch
+  double AllWork = 0.0;
+  std::vector<PatchPlan> Plans;
+  std::unique_ptr<VertexStars> Stars;
+  FillResult Result;
+};
 } // namespace
 
 FillResult FillHoles(
   const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options)
 {
-  FillResult result;
-  result.Reports.reserve(holes.Count());
-  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
-
-  // Nodes are only for spacings that the user has not set.
-  LatticeSearch lattice;
-  const Progress& monitor = options.Monitor;
-  if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) && holes.Count() > 0)
-  {
-    lattice = FindLattice(points, LatticeTolerance, threads, Part(monitor, 0.0, 0.02));
-  }
-
-  // All holes are judged before the first is filled: what one may take does not depend on how the
-  // others turn out.
-  double room =
-    std::min(options.MaximumInsertedPoints, MaximumNumberOfPoints - mesh.NumberOfPoints());
-  double work = 0.0;
-  std::vector<PatchPlan> plans(holes.Count());
-  const double least = Heights::NeedsSurroundings(options.Method) ? PointsPerTrial : PointsPerPatch;
-  const auto workOf = [&](Index hole) {
-    return result.Reports[hole].Status == FillStatus::Filled
-      ? plans[hole].MostPoints + result.Reports[hole].NumberOfEdges + least
-      : 0.0;
-  };
-  for (Index hole = 0; hole < holes.Count(); ++hole)
-  {
-    if (hole % 4096 == 0)
-    {
-      Report(monitor, 0.02);
-    }
-    result.Reports.push_back(Measure(mesh, holes, hole, options.Spacing));
-    HoleReport& report = result.Reports.back();
-    PatchPlan& plan = plans[hole];
-    plan = PlanPatch(
-      mesh, holes, hole, report.Area, options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
-    const Point2& first = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
-    plan.Precision = StepAt(
-      std::max(std::fabs(first.X), std::fabs(first.Y)) + report.Size, options.SinglePrecision);
-    plan.SinglePrecision = options.SinglePrecision;
-    Judge(report, holes.Touched[hole] != 0, plan.MostPoints, room, options);
-    if (report.Status == FillStatus::Filled)
-    {
-      room = std::max(0.0, room - plan.MostPoints);
-      work += workOf(hole);
-    }
-  }
-
-  std::unique_ptr<VertexStars> stars;
-  if (work > 0.0 && Heights::NeedsSurroundings(options.Method))
-  {
-    stars = std::make_unique<VertexStars>(mesh, Part(monitor, 0.02, 0.06));
-  }
-  const Progress filling = Part(monitor, stars ? 0.06 : 0.02, 1.0);
-  const auto fill = [&](Index hole, const Progress& progress, FilledHole& filled) {
-    HoleReport& report = result.Reports[hole];
-    Attempt(report, [&]() {
-      filled.Triangles = CollectBoundary(mesh, holes, hole);
-      Patch& patch = filled.Triangles;
-      MakePatch(plans[hole], Part(progress, 0.0, 0.4), patch);
-      Arrange(patch, Part(progress, 0.4, 0.45));
-      FindNearest(Part(progress, 0.45, 0.5), patch);
-      Elevate(mesh, stars.get(), points, options, Part(progress, 0.5, 1.0), patch, report,
-        filled.Attributes);
-    });
-  };
-
-  // A large patch is made alone and reports progress; others are made together, so many that
-  // threads seldom wait for each other. They are appended in the order of holes.
-  const double alone = threads > 1 ? PointsAlone : PointsAlone / 4.0;
-  result.Attributes.resize(options.Attributes.size());
-  double done = 0.0;
-  for (Index begin = 0; begin < holes.Count();)
-  {
-    const double before = done;
-    Index end = begin;
-    do
-    {
-      done += workOf(end++);
-    } while (end < holes.Count() && end - begin < 4096 &&
-      done - before + workOf(end) <= PointsTogether * threads && workOf(end) <= alone &&
-      workOf(begin) <= alone);
-    // From the largest on, as what ends last should not take long.
-    std::vector<std::pair<double, Index>> order;
-    for (Index hole = begin; hole < end; ++hole)
-    {
-      if (result.Reports[hole].Status == FillStatus::Filled)
-      {
-        order.emplace_back(-workOf(hole), hole);
-      }
-    }
-    std::sort(order.begin(), order.end());
-    std::vector<std::size_t> pieces{ 0 };
-    double ofPiece = 0.0;
-    for (std::size_t k = 0; k < order.size(); ++k)
-    {
-      ofPiece -= order[k].first;
-      if (ofPiece > PointsPerPiece || k + 1 == order.size())
-      {
-        pieces.push_back(k + 1);
-        ofPiece = 0.0;
-      }
-    }
-    std::vector<FilledHole> filled(end - begin);
-    const double all = work > 0.0 ? work : 1.0;
-    const Progress ofBatch = Part(filling, std::min(1.0, before / all), std::min(1.0, done / all));
-    Report(ofBatch, 0.0);
-    const bool isAlone = end - begin == 1;
-    if (isAlone)
-    {
-      plans[begin].NumberOfThreads = threads;
-    }
-    ForEachPiece(static_cast<Index>(pieces.size()) - 1, isAlone ? 1 : threads,
-      isAlone ? Progress() : ofBatch, [&](Index piece) {
-        for (std::size_t k = pieces[piece]; k < pieces[piece + 1]; ++k)
-        {
-          const Index hole = order[k].second;
-          fill(hole, isAlone ? ofBatch : Progress(), filled[hole - begin]);
-        }
-      });
-    for (Index hole = begin; hole < end; ++hole)
-    {
-      HoleReport& report = result.Reports[hole];
-      if (report.Status == FillStatus::Filled)
-      {
-        Attempt(report, [&]() {
-          Append(filled[hole - begin], mesh.NumberOfPoints(), result);
-          report.NumberOfInsertedPoints = filled[hole - begin].Triangles.NumberOfNewVertices();
-        });
-      }
-      result.PointOffsets.push_back(static_cast<Index>(result.Points.size() / 3));
-      result.TriangleOffsets.push_back(static_cast<Index>(result.Triangles.size() / 3));
-    }
-    begin = end;
-  }
-  Report(monitor, 1.0);
-  return result;
+  return HoleFilling(mesh, points, holes, options).Run();
 }
 
 } // namespace elevation

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 namespace elevation
@@ -183,140 +184,11 @@ private:
   double Shares[3] = { 1.0, 0.0, 0.0 };
 };
 
-/**
- * Cotangents are that much at most: coordinates are rounded. No weight is less than the other: in a
- * Delaunay triangulation they are not negative, but for rounding.
- */
-constexpr double LargestWeight = 1e6;
-constexpr double LeastWeight = 1e-12;
-
-/** The cotangent of the angle at @a c. */
-double Cotangent(const Point2& a, const Point2& b, const Point2& c)
-{
-  const double ux = a.X - c.X;
-  const double uy = a.Y - c.Y;
-  const double vx = b.X - c.X;
-  const double vy = b.Y - c.Y;
-  const double dot = ux * vx + uy * vy;
-  const double cross = std::fabs(ux * vy - uy * vx);
-  return std::fabs(dot) < LargestWeight * cross ? dot / cross : std::copysign(LargestWeight, dot);
-}
-
 bool AllFinite(const std::vector<double>& values)
 {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 } // namespace
-
-void Arrange(PatchMesh& patch, const Progress& progress)
-{
-  const Progress counting = Part(progress, 0.0, 0.3);
-  const Progress gathering = Part(progress, 0.3, 0.5);
-  const Progress weighing = Part(progress, 0.5, 0.7);
-  const Progress layering = Part(progress, 0.7, 1.0);
-  const Index boundary = patch.NumberOfBoundaryVertices();
-  const Index count = patch.NumberOfNewVertices();
-  // A new vertex is inside, so the half-edges that leave it lead to all its neighbours.
-  std::vector<std::size_t>& offsets = patch.Neighbours.Offsets;
-  offsets.assign(static_cast<std::size_t>(count) + 1, 0);
-  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
-  {
-    ReportStep(counting, h, patch.Triangles.size());
-    const Index vertex = patch.Triangles[h];
-    if (vertex >= boundary)
-    {
-      ++offsets[vertex - boundary + 1];
-    }
-  }
-  for (Index i = 0; i < count; ++i)
-  {
-    offsets[i + 1] += offsets[i];
-  }
-  std::vector<Index>& neighbours = patch.Neighbours.Neighbours;
-  neighbours.resize(offsets[count]);
-  patch.Neighbours.NumberOfKnown = boundary;
-  {
-    std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-    for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
-    {
-      ReportStep(gathering, h, patch.Triangles.size());
-      const Index vertex = patch.Triangles[h];
-      if (vertex >= boundary)
-      {
-        neighbours[next[vertex - boundary]++] =
-          patch.Triangles[static_cast<std::size_t>(Mesh::Next(static_cast<Index>(h)))];
-      }
-    }
-  }
-
-  // The weight of an edge is half the sum of the cotangents of the two angles that face it. Each
-  // half-edge gives its own to both ends.
-  std::vector<double>& weights = patch.Neighbours.Weights;
-  weights.assign(neighbours.size(), 0.0);
-  const auto add = [&](Index from, Index to, double weight) {
-    if (from >= boundary)
-    {
-      std::size_t k = offsets[from - boundary];
-      while (neighbours[k] != to)
-      {
-        ++k;
-      }
-      weights[k] += weight;
-    }
-  };
-  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
-  {
-    ReportStep(weighing, h, patch.Triangles.size());
-    const Index edge = static_cast<Index>(h);
-    const Index a = patch.Triangles[h];
-    const Index b = patch.Triangles[static_cast<std::size_t>(Mesh::Next(edge))];
-    if (a >= boundary || b >= boundary)
-    {
-      const Index c = patch.Triangles[static_cast<std::size_t>(Mesh::Previous(edge))];
-      const double weight = 0.5 * Cotangent(patch.At(a), patch.At(b), patch.At(c));
-      add(a, b, weight);
-      add(b, a, weight);
-    }
-  }
-  for (double& weight : weights)
-  {
-    weight = std::max(weight, LeastWeight);
-  }
-
-  constexpr Index unknown = std::numeric_limits<Index>::max();
-  std::vector<Index>& layers = patch.Layers;
-  layers.assign(count, unknown);
-  patch.Outward.assign(count, None);
-  patch.Order.reserve(count);
-  for (Index i = 0; i < count; ++i)
-  {
-    for (std::size_t k = offsets[i]; k < offsets[i + 1]; ++k)
-    {
-      if (neighbours[k] < boundary)
-      {
-        layers[i] = 1;
-        patch.Outward[i] = neighbours[k];
-        patch.Order.push_back(boundary + i);
-        break;
-      }
-    }
-  }
-  for (std::size_t k = 0; k < patch.Order.size(); ++k)
-  {
-    ReportStep(layering, k, count);
-    const Index i = patch.Order[k] - boundary;
-    for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
-    {
-      const Index other = neighbours[j] - boundary;
-      if (other >= 0 && layers[other] == unknown)
-      {
-        layers[other] = layers[i] + 1;
-        patch.Outward[other] = patch.Order[k];
-        patch.Order.push_back(neighbours[j]);
-      }
-    }
-  }
-}
 
 Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch,
   Interpolation wanted, const Values& values, const Progress& progress)
@@ -500,154 +372,213 @@ std::unique_ptr<Spline> Heights::MakeSpline(int which) const
   return spline->Prepare(centres, Kernels[which]) ? std::move(spline) : nullptr;
 }
 
-void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
+/**
+ * Tries the methods beside the hole, where the surface is known: its boundary, the other centres and
+ * some of its new points, the probes, are moved there, and each method predicts the probes from the
+ * rest.
+ */
+class Heights::Trials
 {
-  const Index boundary = this->Patch.NumberOfBoundaryVertices();
-  const Index count = this->Patch.NumberOfNewVertices();
-  this->Method = Interpolation::Membrane;
-  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(0),
-    this->MakeSpline(1) };
-  if (!splines[0])
+public:
+  Trials(const Heights& heights, const VertexStars& stars, const Values& values,
+    const std::unique_ptr<Spline>* splines)
+    : Of(heights)
+    , Stars(stars)
+    , ValueOf(values)
+    , Splines(splines)
+    , Boundary(heights.Patch.BoundaryIds.size())
   {
-    return;
+    std::copy_n(LogarithmOfPrior, 3, this->Scores);
+    this->CollectPoints();
   }
 
-  // What is moved: the boundary, the other centres, and the probes.
-  std::vector<Point2> points;
-  for (const Index id : this->Patch.BoundaryIds)
+  /** @return false where surface is not at each of the moved points */
+  bool At(double angle, double size, const Progress& progress)
   {
-    points.push_back(this->Surface.PointOf(id));
-  }
-  std::vector<Index> valueOfCentre;
-  for (const Index place : this->Centres)
-  {
-    valueOfCentre.push_back(place < boundary ? place : static_cast<Index>(points.size()));
-    if (place >= boundary)
-    {
-      points.push_back(this->Surface.PointOf(this->Known[place]));
-    }
-  }
-  const std::size_t firstProbe = points.size();
-  std::vector<Index> probes;
-  const Index numberOfProbes =
-    std::min({ count, LeastProbes + count / PointsPerProbe, MostProbes });
-  for (Index k = 0; k < numberOfProbes; ++k)
-  {
-    probes.push_back(static_cast<Index>((2 * std::int64_t(k) + 1) * count / (2 * numberOfProbes)));
-    points.push_back(this->Patch.At(boundary + probes.back()));
-  }
-  std::vector<Point2> normalized;
-  for (const Point2& p : points)
-  {
-    normalized.push_back(this->Normalized(p));
-  }
-
-  // The logarithms of the methods' shares, but for a common term.
-  double scores[3];
-  std::copy_n(LogarithmOfPrior, 3, scores);
-  std::vector<double> moved(points.size());
-  const auto tryAt = [&](double angle, double size, const Progress& here) {
-    const Point2 direction{ std::cos(angle), std::sin(angle) };
-    const auto along = [&](const Point2& p) { return p.X * direction.X + p.Y * direction.Y; };
-    double near = std::numeric_limits<double>::infinity();
-    Index end = 0;
-    for (std::size_t i = 0; i < firstProbe; ++i)
-    {
-      near = std::min(near, along(normalized[i]));
-      const double ahead = along(normalized[i]) - along(normalized[end]);
-      end = i < static_cast<std::size_t>(boundary) && ahead > 0.0 ? static_cast<Index>(i) : end;
-    }
-    // As near as can be: what is moved touches the hole with its ring. By a step from point to
-    // point, as lattices repeat themselves.
-    const double distance = size * (along(normalized[end]) - near) / this->Scale;
-    const Point2 origin = points[end];
-    Index start = None;
-    stars.Visit(this->Surface, this->Patch.BoundaryIds[end], [&](Index h) {
-      start = start == None ||
-          IsLower(this->Surface.PointOf(this->Surface.Destination(h)),
-            this->Surface.PointOf(this->Surface.Destination(start)))
-        ? h
-        : start;
-      return true;
-    });
-    Walk walk(this->Surface, Mesh::Triangle(start));
-    if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
-    {
-      return false;
-    }
-    const Point2 target = this->Surface.PointOf(walk.Corner());
     double smoothing = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-    {
-      if (!walk.To({ target.X + size * (points[i].X - origin.X),
-            target.Y + size * (points[i].Y - origin.Y) }))
-      {
-        return false;
-      }
-      moved[i] = walk.ValueOf(values);
-      smoothing += walk.Smoothing() / static_cast<double>(points.size());
-    }
-    if (!AllFinite(moved))
+    if (!this->Move({ std::cos(angle), std::sin(angle) }, size, smoothing) ||
+      !AllFinite(this->Moved))
     {
       return false;
     }
-
-    double squares[3] = { 0.0, 0.0, 0.0 };
-    const double shift = moved[0];
+    const double shift = this->Moved[0];
     double range = 0.0;
-    for (double& value : moved)
+    for (double& value : this->Moved)
     {
       value -= shift;
       range = std::max(range, std::fabs(value));
     }
-    const std::vector<double> rim(moved.begin(), moved.begin() + boundary);
-    const std::vector<double> flat = this->Flat->Solve(rim, RoughAccuracy, here);
-    for (Index k = 0; k < numberOfProbes; ++k)
-    {
-      const double error = flat[probes[k]] - moved[firstProbe + k];
-      squares[0] += error * error;
-    }
-    std::vector<double> atCentres;
-    for (const Index i : valueOfCentre)
-    {
-      atCentres.push_back(moved[i]);
-    }
-    for (int s = 0; s < 2 && splines[s]; ++s)
-    {
-      const Spline::Weights weights = splines[s]->Interpolate(atCentres);
-      std::vector<double> predicted(numberOfProbes, 0.0);
-      splines[s]->Add(weights, &normalized[firstProbe], predicted.size(), predicted.data());
-      if (!this->AllBoundaryIsCentre)
-      {
-        std::vector<double> rest(boundary, 0.0);
-        splines[s]->Add(weights, normalized.data(), rest.size(), rest.data());
-        for (Index i = 0; i < boundary; ++i)
-        {
-          rest[i] = rim[i] - rest[i];
-        }
-        const std::vector<double> correction = this->Flat->Solve(rest, RoughAccuracy, here);
-        for (Index k = 0; k < numberOfProbes; ++k)
-        {
-          predicted[k] += correction[probes[k]];
-        }
-      }
-      for (Index k = 0; k < numberOfProbes; ++k)
-      {
-        const double error = predicted[k] - moved[firstProbe + k];
-        squares[1 + s] += error * error;
-      }
-    }
     // Anywhere in triangles, one half on the mean.
     const double halvings = std::max(smoothing, -std::log(size) / std::log(2.0));
-    for (int i = 0; i < 3; ++i)
+    for (int method = 0; method < 3 && (method == 0 || this->Splines[method - 1]); ++method)
     {
+      const std::vector<double> predicted = this->Predict(method, progress);
+      double square = 0.0;
+      for (std::size_t k = 0; k < predicted.size(); ++k)
+      {
+        const double error = predicted[k] - this->Moved[this->FirstProbe + k];
+        square += error * error;
+      }
       // What is exact but for rounding must not outweigh all other places.
-      const double error =
-        0.5 * std::log(squares[i] + std::pow(LeastError * range, 2) + LeastSquare);
-      scores[i] -= ObservationsPerPlace * (error + PenaltyOfHalfSize[i] * halvings);
+      const double error = 0.5 * std::log(square + std::pow(LeastError * range, 2) + LeastSquare);
+      this->Scores[method] -=
+        ObservationsPerPlace * (error + PenaltyOfHalfSize[method] * halvings);
     }
     return true;
-  };
+  }
+
+  /** The logarithms of the methods' shares, but for a common term. */
+  double Scores[3];
+
+private:
+  void CollectPoints()
+  {
+    const PatchMesh& patch = this->Of.Patch;
+    for (const Index id : patch.BoundaryIds)
+    {
+      this->Points.push_back(this->Of.Surface.PointOf(id));
+    }
+    for (const Index place : this->Of.Centres)
+    {
+      const bool isAdded = static_cast<std::size_t>(place) < this->Boundary;
+      this->PlaceOfCentre.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
+      if (!isAdded)
+      {
+        this->Points.push_back(this->Of.Surface.PointOf(this->Of.Known[place]));
+      }
+    }
+    this->FirstProbe = this->Points.size();
+    const Index count = patch.NumberOfNewVertices();
+    const Index number = std::min({ count, LeastProbes + count / PointsPerProbe, MostProbes });
+    for (Index k = 0; k < number; ++k)
+    {
+      this->Probes.push_back(static_cast<Index>((2 * std::int64_t(k) + 1) * count / (2 * number)));
+      this->Points.push_back(patch.At(static_cast<Index>(this->Boundary) + this->Probes.back()));
+    }
+    for (const Point2& p : this->Points)
+    {
+      this->Normalized.push_back(this->Of.Normalized(p));
+    }
+    this->Moved.resize(this->Points.size());
+  }
+
+  /** Where the walk to a place begins, the same for any order of points. */
+  Index HalfEdgeAt(Index vertex) const
+  {
+    const Mesh& surface = this->Of.Surface;
+    Index start = None;
+    this->Stars.Visit(surface, vertex, [&](Index h) {
+      start = start == None ||
+          IsLower(surface.PointOf(surface.Destination(h)), surface.PointOf(surface.Destination(start)))
+        ? h
+        : start;
+      return true;
+    });
+    return start;
+  }
+
+  /**
+   * The values at the moved points: as near as can be, so that what is moved touches the hole with
+   * its ring, and by a step from point to point, as lattices repeat themselves.
+   */
+  bool Move(const Point2& direction, double size, double& smoothing)
+  {
+    const auto along = [&](std::size_t i) {
+      return this->Normalized[i].X * direction.X + this->Normalized[i].Y * direction.Y;
+    };
+    double near = std::numeric_limits<double>::infinity();
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < this->FirstProbe; ++i)
+    {
+      near = std::min(near, along(i));
+      end = i < this->Boundary && along(i) - along(end) > 0.0 ? i : end;
+    }
+    const double distance = size * (along(end) - near) / this->Of.Scale;
+    const Point2 origin = this->Points[end];
+    Walk walk(
+      this->Of.Surface, Mesh::Triangle(this->HalfEdgeAt(this->Of.Patch.BoundaryIds[end])));
+    if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
+    {
+      return false;
+    }
+    const Point2 target = this->Of.Surface.PointOf(walk.Corner());
+    for (std::size_t i = 0; i < this->Points.size(); ++i)
+    {
+      if (!walk.To({ target.X + size * (this->Points[i].X - origin.X),
+            target.Y + size * (this->Points[i].Y - origin.Y) }))
+      {
+        return false;
+      }
+      this->Moved[i] = walk.ValueOf(this->ValueOf);
+      smoothing += walk.Smoothing() / static_cast<double>(this->Points.size());
+    }
+    return true;
+  }
+
+  /** What the membrane makes of values at the boundary, at the probes. */
+  std::vector<double> PredictFlat(const std::vector<double>& rim, const Progress& progress) const
+  {
+    const std::vector<double> flat = this->Of.Flat->Solve(rim, RoughAccuracy, progress);
+    std::vector<double> predicted;
+    for (const Index probe : this->Probes)
+    {
+      predicted.push_back(flat[probe]);
+    }
+    return predicted;
+  }
+
+  /** The probes by a method: 0 the membrane, then the splines. */
+  std::vector<double> Predict(int method, const Progress& progress) const
+  {
+    std::vector<double> rim(
+      this->Moved.begin(), this->Moved.begin() + static_cast<std::ptrdiff_t>(this->Boundary));
+    if (method == 0)
+    {
+      return this->PredictFlat(rim, progress);
+    }
+    const Spline& spline = *this->Splines[method - 1];
+    std::vector<double> atCentres;
+    for (const Index i : this->PlaceOfCentre)
+    {
+      atCentres.push_back(this->Moved[i]);
+    }
+    const Spline::Weights weights = spline.Interpolate(atCentres);
+    std::vector<double> predicted(this->Probes.size(), 0.0);
+    spline.Add(weights, &this->Normalized[this->FirstProbe], predicted.size(), predicted.data());
+    if (!this->Of.AllBoundaryIsCentre)
+    {
+      std::vector<double> there(this->Boundary, 0.0);
+      spline.Add(weights, this->Normalized.data(), there.size(), there.data());
+      std::transform(rim.begin(), rim.end(), there.begin(), rim.begin(), std::minus<double>());
+      const std::vector<double> missed = this->PredictFlat(rim, progress);
+      std::transform(predicted.begin(), predicted.end(), missed.begin(), predicted.begin(),
+        std::plus<double>());
+    }
+    return predicted;
+  }
+
+  const Heights& Of;
+  const VertexStars& Stars;
+  const Values& ValueOf;
+  const std::unique_ptr<Spline>* Splines;
+  const std::size_t Boundary;      ///< its number of points, which come first
+  std::size_t FirstProbe = 0;      ///< they come last
+  std::vector<Point2> Points;
+  std::vector<Point2> Normalized;
+  std::vector<Index> PlaceOfCentre; ///< which points the centres are
+  std::vector<Index> Probes;        ///< numbers of new vertices
+  std::vector<double> Moved;        ///< values where the points are moved to
+};
+
+void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
+{
+  this->Method = Interpolation::Membrane;
+  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(0), this->MakeSpline(1) };
+  if (!splines[0])
+  {
+    return;
+  }
+  Trials trials(*this, stars, values, splines);
   const int number = this->Flat->IsLarge() ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
   int places = 0;
   double begun = 0.0;
@@ -659,10 +590,11 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
       const double done = begun + (1.0 - begun) * 0.8 * k / number;
       Report(progress, done);
       const double angle = 2.0 * 3.14159265358979323846 * k / number;
-      places += tryAt(angle, size, Part(progress, done, done)) ? 1 : 0;
+      places += trials.At(angle, size, Part(progress, done, done)) ? 1 : 0;
     }
     begun += (1.0 - begun) * 0.8;
   }
+  const double* scores = trials.Scores;
   const int methods = splines[1] ? 3 : 2;
   const int best = static_cast<int>(std::max_element(scores, scores + methods) - scores);
   double sum = 0.0;
@@ -713,6 +645,66 @@ std::vector<double> Heights::Mean(const Values& values, const Progress& progress
   return result;
 }
 
+/** The splines' sum at each vertex; at those of the boundary only where the membrane needs it. */
+std::vector<double> Heights::SumOfSplines(
+  const std::vector<double>& known, const Progress& progress) const
+{
+  std::vector<double> atCentres;
+  for (const Index place : this->Centres)
+  {
+    atCentres.push_back(known[place]);
+  }
+  std::vector<double> sums(this->Patch.NumberOfVertices(), 0.0);
+  const std::size_t first = this->Flat ? 0 : this->Patch.BoundaryIds.size();
+  Spline::Weights weights[2];
+  for (int s = 0; s < 2; ++s)
+  {
+    weights[s] = this->Splines[s] ? this->Splines[s]->Interpolate(atCentres) : Spline::Weights();
+    for (double& weight : weights[s])
+    {
+      weight *= this->Shares[s + 1];
+    }
+  }
+  std::vector<Point2> points(PointsPerReport);
+  for (std::size_t begin = first; begin < sums.size(); begin += PointsPerReport)
+  {
+    Report(progress, static_cast<double>(begin - first) / static_cast<double>(sums.size() - first));
+    const std::size_t size = std::min(PointsPerReport, sums.size() - begin);
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      points[i] = this->Normalized(this->Patch.At(static_cast<Index>(begin + i)));
+    }
+    for (int s = 0; s < 2; ++s)
+    {
+      if (this->Splines[s])
+      {
+        this->Splines[s]->Add(weights[s], points.data(), size, &sums[begin]);
+      }
+    }
+  }
+  return sums;
+}
+
+/** The root mean square of the slopes around the hole, in units of the values. */
+double Heights::MeanSlope(const Values& values, double unit) const
+{
+  double squares = 0.0;
+  double number = 0.0;
+  for (const Pair& pair : this->Slopes)
+  {
+    const Point2& a = this->Surface.PointOf(pair.Boundary);
+    const Point2& b = this->Surface.PointOf(pair.Away);
+    const double rise = (values(pair.Away) - values(pair.Boundary)) / unit /
+      (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
+    if (std::isfinite(rise))
+    {
+      squares += rise * rise;
+      number += 1.0;
+    }
+  }
+  return this->Scale * std::sqrt(squares / std::max(1.0, number));
+}
+
 std::vector<double> Heights::Apply(const Values& values, const Progress& progress) const
 {
   if (this->Method == Interpolation::NeighborMean)
@@ -720,116 +712,47 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
     return this->Mean(values, progress);
   }
   const std::size_t boundary = this->Patch.BoundaryIds.size();
-  const std::size_t count = static_cast<std::size_t>(this->Patch.NumberOfNewVertices());
   std::vector<double> known(this->HasSpline() ? this->Known.size() : boundary);
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (std::size_t i = 0; i < known.size(); ++i)
-  {
-    known[i] = values(this->Known[i]);
-    low = std::min(low, known[i]);
-    high = std::max(high, known[i]);
-  }
+  std::transform(this->Known.begin(),
+    this->Known.begin() + static_cast<std::ptrdiff_t>(known.size()), known.begin(), values);
   if (!AllFinite(known))
   {
     return this->Mean(values, progress);
   }
   // Within [-1, 1] nothing overflows, and offsets cost no digits.
+  const double low = *std::min_element(known.begin(), known.end());
+  const double high = *std::max_element(known.begin(), known.end());
   const double middle = 0.5 * low + 0.5 * high;
   const double unit = std::max(high - middle, middle - low);
+  std::vector<double> result(this->Patch.NumberOfNewVertices(), unit == 0.0 ? low : 0.0);
   if (unit == 0.0)
   {
-    return std::vector<double>(count, low);
+    return result;
   }
   for (double& value : known)
   {
     value = (value - middle) / unit;
   }
 
-  std::vector<double> result(count, 0.0);
   std::vector<double> rim(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(boundary));
   double slope = 0.0;
   if (this->HasSpline())
   {
-    std::vector<double> atCentres;
-    for (const Index place : this->Centres)
-    {
-      atCentres.push_back(known[place]);
-    }
-    Spline::Weights weights[2];
-    for (int s = 0; s < 2; ++s)
-    {
-      if (this->Splines[s])
-      {
-        weights[s] = this->Splines[s]->Interpolate(atCentres);
-        for (double& weight : weights[s])
-        {
-          weight *= this->Shares[s + 1];
-        }
-      }
-    }
-    const auto add = [&](const Point2* points, std::size_t size, double* sums) {
-      for (int s = 0; s < 2; ++s)
-      {
-        if (this->Splines[s])
-        {
-          this->Splines[s]->Add(weights[s], points, size, sums);
-        }
-      }
-    };
-    const Progress adding = Part(progress, 0.0, this->Flat ? 0.3 : 1.0);
-    std::vector<Point2> points(PointsPerReport);
-    for (std::size_t begin = 0; begin < count; begin += PointsPerReport)
-    {
-      Report(adding, static_cast<double>(begin) / static_cast<double>(count));
-      const std::size_t size = std::min(PointsPerReport, count - begin);
-      for (std::size_t i = 0; i < size; ++i)
-      {
-        points[i] = this->Normalized(this->Patch.At(static_cast<Index>(boundary + begin + i)));
-      }
-      add(points.data(), size, &result[begin]);
-    }
-    if (this->Flat)
-    {
-      std::vector<Point2> ends;
-      for (const Index id : this->Patch.BoundaryIds)
-      {
-        ends.push_back(this->Normalized(this->Surface.PointOf(id)));
-      }
-      std::vector<double> there(boundary, 0.0);
-      add(ends.data(), boundary, there.data());
-      for (std::size_t i = 0; i < boundary; ++i)
-      {
-        rim[i] -= there[i];
-      }
-    }
-    double squares = 0.0;
-    double number = 0.0;
-    for (const Pair& pair : this->Slopes)
-    {
-      const Point2& a = this->Surface.PointOf(pair.Boundary);
-      const Point2& b = this->Surface.PointOf(pair.Away);
-      const double rise = (values(pair.Away) - values(pair.Boundary)) / unit /
-        (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
-      if (std::isfinite(rise))
-      {
-        squares += rise * rise;
-        number += 1.0;
-      }
-    }
-    slope = SlopeLimit * this->Scale * std::sqrt(squares / std::max(1.0, number));
+    const std::vector<double> sums =
+      this->SumOfSplines(known, Part(progress, 0.0, this->Flat ? 0.3 : 1.0));
+    std::transform(rim.begin(), rim.end(), sums.begin(), rim.begin(), std::minus<double>());
+    std::copy(sums.begin() + static_cast<std::ptrdiff_t>(boundary), sums.end(), result.begin());
+    slope = SlopeLimit * this->MeanSlope(values, unit);
   }
   if (this->Flat)
   {
     // What the splines miss of the boundary; without any, all of it.
     const std::vector<double> flat =
       this->Flat->Solve(rim, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 1.0));
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      result[i] += flat[i];
-    }
+    std::transform(
+      result.begin(), result.end(), flat.begin(), result.begin(), std::plus<double>());
   }
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < result.size(); ++i)
   {
     double room = 0.0;
     if (slope > 0.0)

@@ -86,9 +86,6 @@ enum class Interpolation : unsigned char
 /** The value of a point of the surface, by its id. */
 using Values = std::function<double(Index)>;
 
-/** Neighbours and layers of the new vertices. Linear. */
-void Arrange(PatchMesh& patch, const Progress& progress = Progress());
-
 class Heights
 {
 public:
@@ -99,8 +96,8 @@ public:
   }
 
   /**
-   * Chooses and prepares. Surface, stars and patch must stay; the patch is arranged, its Nearest is
-   * set.
+   * Chooses and prepares. Surface, stars and patch must stay; of the patch all is
+   * known that Neighbours.h finds.
    * @param[in] stars   of the surface; may be null for methods that need no surroundings
    * @param[in] values  what Adaptive judges by: the elevations
    * @throws Aborted, std::bad_alloc
@@ -133,7 +130,10 @@ private:
   {
     return !this->AllBoundaryIsCentre || this->Shares[0] > 0.0 || !this->HasSpline();
   }
+  class Trials;
   void Choose(const VertexStars& stars, const Values& values, const Progress& progress);
+  std::vector<double> SumOfSplines(const std::vector<double>& known, const Progress& progress) const;
+  double MeanSlope(const Values& values, double unit) const;
   std::vector<double> Mean(const Values& values, const Progress& progress) const;
 
   const Mesh& Surface;

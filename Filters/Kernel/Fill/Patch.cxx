@@ -85,6 +85,80 @@ struct Rows
   double Clearance;
 };
 
+/** The stretch of a row that is nearer to an edge from @a a up to @a b than the clearance. */
+Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
+{
+  const double clearance = rows.Clearance;
+  const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+  const double ux = (b.X - a.X) / length;
+  const double uy = (b.Y - a.Y) / length; // >= 0
+  const double y = row * rows.RowHeight;
+  Blocked stretch{ row, std::numeric_limits<double>::infinity(),
+    -std::numeric_limits<double>::infinity(), (a.Y <= y) != (b.Y <= y) };
+  const auto include = [&stretch](double begin, double end) {
+    stretch.Begin = std::min(stretch.Begin, begin);
+    stretch.End = std::max(stretch.End, end);
+  };
+  // The discs around both ends ...
+  for (const Point2& p : { a, b })
+  {
+    const double square = clearance * clearance - (y - p.Y) * (y - p.Y);
+    if (square >= 0.0)
+    {
+      include(p.X - std::sqrt(square), p.X + std::sqrt(square));
+    }
+  }
+  // ... and the strip between them: its two sides, where the row cuts them.
+  for (double side : { -clearance, clearance })
+  {
+    const double ay = a.Y + side * ux;
+    const double by = b.Y + side * ux;
+    if (ay < by && ay <= y && y <= by)
+    {
+      const double x = a.X - side * uy + (y - ay) / (by - ay) * (b.X - a.X);
+      include(x, x);
+    }
+  }
+  return stretch;
+}
+
+/** All blocked stretches, row by row from the left. */
+std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& points,
+  const std::vector<Segment>& edges, const Progress& progress)
+{
+  const Progress blocking = Part(progress, 0.0, 0.7);
+  std::vector<Blocked> blocked;
+  std::size_t visited = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+  {
+    const bool isUpwards = points[edges[i].A].Y <= points[edges[i].B].Y;
+    const Point2& a = points[isUpwards ? edges[i].A : edges[i].B];
+    const Point2& b = points[isUpwards ? edges[i].B : edges[i].A];
+    const double from = std::ceil((a.Y - rows.Clearance) / rows.RowHeight);
+    const double to = std::floor((b.Y + rows.Clearance) / rows.RowHeight);
+    for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
+    {
+      // A long edge at a small spacing comes near to many rows.
+      if (++visited % 16384 == 0)
+      {
+        Report(blocking, static_cast<double>(i) / static_cast<double>(edges.size()));
+      }
+      const Blocked stretch = BlockRow(rows, row, a, b);
+      if (stretch.Begin <= stretch.End)
+      {
+        blocked.push_back(stretch);
+      }
+    }
+  }
+  Sort(
+    blocked.begin(), blocked.end(),
+    [](const Blocked& s, const Blocked& t) {
+      return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
+    },
+    Part(progress, 0.7, 1.0));
+  return blocked;
+}
+
 /**
  * Visits the points of rows that are inside the boundary and not nearer to it than the clearance.
  * Each boundary edge blocks, in every row it comes near to, the stretch that is nearer than the
@@ -97,74 +171,8 @@ template <typename Visitor>
 void VisitRows(const Rows& rows, const std::vector<Point2>& points,
   const std::vector<Segment>& edges, const Progress& progress, Visitor&& visit)
 {
-  const Progress blocking = Part(progress, 0.0, 0.4);
-  const Progress sorting = Part(progress, 0.4, 0.6);
+  std::vector<Blocked> blocked = BlockRows(rows, points, edges, Part(progress, 0.0, 0.6));
   const Progress placing = Part(progress, 0.6, 1.0);
-  const double clearance = rows.Clearance;
-  std::vector<Blocked> blocked;
-  std::size_t done = 0;
-  std::size_t visited = 0;
-  for (const Segment& edge : edges)
-  {
-    // A long edge at a small spacing comes near to many rows.
-    const double share = static_cast<double>(done++) / static_cast<double>(edges.size());
-    Point2 a = points[edge.A];
-    Point2 b = points[edge.B];
-    if (b.Y < a.Y)
-    {
-      std::swap(a, b);
-    }
-    const double length = std::hypot(b.X - a.X, b.Y - a.Y);
-    const double ux = (b.X - a.X) / length;
-    const double uy = (b.Y - a.Y) / length; // >= 0
-    const double from = std::ceil((a.Y - clearance) / rows.RowHeight);
-    const double to = std::floor((b.Y + clearance) / rows.RowHeight);
-    for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
-    {
-      if (++visited % 16384 == 0)
-      {
-        Report(blocking, share);
-      }
-      const double y = row * rows.RowHeight;
-      Blocked stretch{ row, std::numeric_limits<double>::infinity(),
-        -std::numeric_limits<double>::infinity(), (a.Y <= y) != (b.Y <= y) };
-      const auto include = [&stretch](double begin, double end) {
-        stretch.Begin = std::min(stretch.Begin, begin);
-        stretch.End = std::max(stretch.End, end);
-      };
-      // The discs around both ends ...
-      for (const Point2& p : { a, b })
-      {
-        const double square = clearance * clearance - (y - p.Y) * (y - p.Y);
-        if (square >= 0.0)
-        {
-          include(p.X - std::sqrt(square), p.X + std::sqrt(square));
-        }
-      }
-      // ... and the strip between them: its two sides, where the row cuts them.
-      for (double side : { -clearance, clearance })
-      {
-        const double ay = a.Y + side * ux;
-        const double by = b.Y + side * ux;
-        if (ay < by && ay <= y && y <= by)
-        {
-          const double x = a.X - side * uy + (y - ay) / (by - ay) * (b.X - a.X);
-          include(x, x);
-        }
-      }
-      if (stretch.Begin <= stretch.End)
-      {
-        blocked.push_back(stretch);
-      }
-    }
-  }
-  Sort(
-    blocked.begin(), blocked.end(),
-    [](const Blocked& s, const Blocked& t) {
-      return s.Row != t.Row ? s.Row < t.Row : s.Begin < t.Begin;
-    },
-    sorting);
-
   bool isInside = false;
   std::size_t placed = 0;
   for (std::size_t i = 0; i < blocked.size(); ++i)
@@ -259,6 +267,65 @@ void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
     });
 }
 
+/**
+ * One a triangle: 1 inside the hole, else 0. The triangulation covers the convex hull. Across an edge
+ * of the boundary, and nowhere else, one goes from the hole to outside it or back.
+ */
+std::vector<char> FindInside(
+  const Mesh& mesh, const std::vector<char>& constrained, const Progress& progress)
+{
+  constexpr char unknown = 2;
+  std::vector<char> isInside(mesh.NumberOfTriangles(), unknown);
+  std::vector<Index> stack;
+  for (Index h = 0; h < mesh.NumberOfHalfEdges() && stack.empty(); ++h)
+  {
+    if (mesh.IsBorder(h))
+    {
+      isInside[Mesh::Triangle(h)] = constrained[h] ? 1 : 0;
+      stack.push_back(Mesh::Triangle(h));
+    }
+  }
+  std::size_t done = 0;
+  while (!stack.empty())
+  {
+    ReportStep(progress, done++, isInside.size());
+    const Index t = stack.back();
+    stack.pop_back();
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      if (!mesh.IsBorder(h) && isInside[Mesh::Triangle(mesh.Twin(h))] == unknown)
+      {
+        isInside[Mesh::Triangle(mesh.Twin(h))] = constrained[h] ? 1 - isInside[t] : isInside[t];
+        stack.push_back(Mesh::Triangle(mesh.Twin(h)));
+      }
+    }
+  }
+  return isInside;
+}
+
+/** Triangles inside move together, each to the place that the ones before it leave. */
+void KeepInside(const std::vector<char>& isInside, Mesh& mesh)
+{
+  std::vector<Index> placeOf(isInside.size(), None);
+  Index count = 0;
+  for (std::size_t t = 0; t < isInside.size(); ++t)
+  {
+    placeOf[t] = isInside[t] == 1 ? count++ : None;
+  }
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (Index i = 0; i < 3 && placeOf[t] != None; ++i)
+    {
+      const Index twin = mesh.Twin(3 * t + i);
+      const Index place = twin == Mesh::Border ? None : placeOf[Mesh::Triangle(twin)];
+      mesh.Triangles[3 * placeOf[t] + i] = mesh.Triangles[3 * t + i];
+      mesh.Twins[3 * placeOf[t] + i] = place == None ? Mesh::Border : 3 * place + twin % 3;
+    }
+  }
+  mesh.Triangles.resize(3 * static_cast<std::size_t>(count));
+  mesh.Twins.resize(3 * static_cast<std::size_t>(count));
+}
+
 /** The triangles between boundary and new points inside the hole, as a mesh with Twins. */
 Mesh Connect(const Patch& patch, int threads, const Progress& progress)
 {
@@ -283,59 +350,7 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   mesh.ConnectTwins(0, Part(progress, 0.6, 0.8));
   std::vector<char> constrained;
   RecoverSegments(mesh, patch.Edges, constrained, Part(progress, 0.8, 0.9));
-
-  // The triangulation covers the convex hull. Across an edge of the boundary, and nowhere else,
-  // one goes from the hole to outside it or back.
-  constexpr char unknown = 2;
-  std::vector<char> isInside(mesh.NumberOfTriangles(), unknown);
-  std::vector<Index> stack;
-  for (Index h = 0; h < mesh.NumberOfHalfEdges() && stack.empty(); ++h)
-  {
-    if (mesh.IsBorder(h))
-    {
-      isInside[Mesh::Triangle(h)] = constrained[h] ? 1 : 0;
-      stack.push_back(Mesh::Triangle(h));
-    }
-  }
-  const Progress walking = Part(progress, 0.9, 1.0);
-  std::size_t done = 0;
-  while (!stack.empty())
-  {
-    ReportStep(walking, done++, isInside.size());
-    const Index t = stack.back();
-    stack.pop_back();
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      if (!mesh.IsBorder(h) && isInside[Mesh::Triangle(mesh.Twin(h))] == unknown)
-      {
-        isInside[Mesh::Triangle(mesh.Twin(h))] = constrained[h] ? 1 - isInside[t] : isInside[t];
-        stack.push_back(Mesh::Triangle(mesh.Twin(h)));
-      }
-    }
-  }
-
-  // Those inside move together, each to the place that the ones before it leave.
-  std::vector<Index> placeOf(mesh.NumberOfTriangles(), None);
-  Index count = 0;
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    if (isInside[t] == 1)
-    {
-      placeOf[t] = count++;
-    }
-  }
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    for (Index i = 0; i < 3 && placeOf[t] != None; ++i)
-    {
-      const Index twin = mesh.Twin(3 * t + i);
-      const Index place = twin == Mesh::Border ? None : placeOf[Mesh::Triangle(twin)];
-      mesh.Triangles[3 * placeOf[t] + i] = mesh.Triangles[3 * t + i];
-      mesh.Twins[3 * placeOf[t] + i] = place == None ? Mesh::Border : 3 * place + twin % 3;
-    }
-  }
-  mesh.Triangles.resize(3 * static_cast<std::size_t>(count));
-  mesh.Twins.resize(3 * static_cast<std::size_t>(count));
+  KeepInside(FindInside(mesh, constrained, Part(progress, 0.9, 1.0)), mesh);
   return mesh;
 }
 
@@ -409,28 +424,42 @@ private:
     return x * x + y * y;
   }
 
+  /** Squares of the lengths of a triangle's edges. */
+  struct Lengths
+  {
+    Index Base = None; ///< the longest edge
+    double Longest = -1.0;
+    double LongestInside = 0.0; ///< that is no edge of the boundary
+    double Shortest = std::numeric_limits<double>::infinity();
+  };
+
+  Lengths Measure(Index t) const
+  {
+    Lengths lengths;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      const double square = this->Square(
+        this->Patch.PointOf(this->Patch.Origin(h)), this->Patch.PointOf(this->Patch.Destination(h)));
+      if (square > lengths.Longest)
+      {
+        lengths.Longest = square;
+        lengths.Base = h;
+      }
+      lengths.Shortest = std::min(lengths.Shortest, square);
+      lengths.LongestInside =
+        this->Patch.IsBorder(h) ? lengths.LongestInside : std::max(lengths.LongestInside, square);
+    }
+    return lengths;
+  }
+
   /** Puts a point into the centre of a triangle's circle, if it is to be refined and can be. */
   bool Refine(Index t)
   {
     const Mesh& mesh = this->Patch;
+    const Lengths lengths = this->Measure(t);
     // From the apex over the longest edge, where the centre is always seen from.
-    Index base = 3 * t;
-    double longest = -1.0;
-    double longestInside = 0.0;
-    double shortest = std::numeric_limits<double>::infinity();
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      const double square =
-        this->Square(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)));
-      if (square > longest)
-      {
-        longest = square;
-        base = h;
-      }
-      shortest = std::min(shortest, square);
-      longestInside = mesh.IsBorder(h) ? longestInside : std::max(longestInside, square);
-    }
-    const Index corners[3] = { mesh.Apex(base), mesh.Origin(base), mesh.Destination(base) };
+    const Index corners[3] = { mesh.Apex(lengths.Base), mesh.Origin(lengths.Base),
+      mesh.Destination(lengths.Base) };
     const Point2& q = mesh.PointOf(corners[0]);
     const Point2& a = mesh.PointOf(corners[1]);
     const Point2& b = mesh.PointOf(corners[2]);
@@ -455,25 +484,19 @@ private:
       spacing =
         std::min(this->Largest, std::min(s[0], std::min(s[1], s[2])) + Growth * std::sqrt(square));
     }
-    if (longestInside <= LongestEdge * LongestEdge * mean * mean &&
-      shortest >= LeastEdgeToRadius * square)
-    {
-      return false;
-    }
     const double clearance = ClearanceWhenRefining * spacing;
-    if (square < clearance * clearance ||
+    if ((lengths.LongestInside <= LongestEdge * LongestEdge * mean * mean &&
+          lengths.Shortest >= LeastEdgeToRadius * square) ||
+      square < clearance * clearance ||
       spacing * this->Plan.Spacing < LeastStepsPerSpacing * this->Plan.Precision)
     {
       return false;
     }
     const Point2 p = this->Plan.Rounded(
       { q.X + centre.X * this->Plan.Spacing, q.Y + centre.Y * this->Plan.Spacing });
-    const Index place = this->Locate(base, p);
-    if (place == None || this->IsNearBorder(place, p, clearance * clearance))
-    {
-      return false;
-    }
-    return this->Insert(place, p, spacing);
+    const Index place = this->Locate(lengths.Base, p);
+    return place != None && !this->IsNearBorder(place, p, clearance * clearance) &&
+      this->Insert(place, p, spacing);
   }
 
   /**
@@ -575,8 +598,34 @@ private:
     {
       this->Spacings.push_back(spacing);
     }
-    // All triangles around the new vertex have it as their third; their first half-edges are
-    // those of the polygon around it.
+    this->Split(t, on, vertex);
+    while (!this->Stack.empty())
+    {
+      const Index h = this->Stack.back();
+      this->Stack.pop_back();
+      if (!mesh.IsBorder(h) && this->IsToFlip(h))
+      {
+        this->Flip(h);
+      }
+    }
+    this->Star.clear();
+    const Index first = 3 * t + 1;
+    Index h = first;
+    do
+    {
+      this->Star.push_back(Mesh::Triangle(h));
+      h = Mesh::Previous(mesh.Twin(h));
+    } while (h != first);
+    return true;
+  }
+
+  /**
+   * The triangles from a vertex in a triangle, or on an edge of it, to the polygon around. They have
+   * the vertex as their third; their first half-edges are those of the polygon.
+   */
+  void Split(Index t, Index on, Index vertex)
+  {
+    Mesh& mesh = this->Patch;
     Index polygon[4];
     Index outer[4];
     Index slots[4];
@@ -615,24 +664,6 @@ private:
       this->Join(slot + 1, 3 * slots[next] + 2);
       this->Stack.push_back(slot);
     }
-    while (!this->Stack.empty())
-    {
-      const Index h = this->Stack.back();
-      this->Stack.pop_back();
-      if (!mesh.IsBorder(h) && this->IsToFlip(h))
-      {
-        this->Flip(h);
-      }
-    }
-    this->Star.clear();
-    const Index first = 3 * t + 1;
-    Index h = first;
-    do
-    {
-      this->Star.push_back(Mesh::Triangle(h));
-      h = Mesh::Previous(mesh.Twin(h));
-    } while (h != first);
-    return true;
   }
 
   void Join(Index h, Index twin)
@@ -690,10 +721,7 @@ private:
   std::vector<Index> Stack;
   std::vector<Index> Star; ///< triangles around the last point that was inserted
 };
-} // namespace
 
-namespace
-{
 /** The median area of the surface's triangles at the vertices of a hole's boundary. */
 double TypicalTriangle(const Mesh& mesh, const Holes& holes, Index hole)
 {
@@ -710,6 +738,31 @@ double TypicalTriangle(const Mesh& mesh, const Holes& holes, Index hole)
   const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
   std::nth_element(areas.begin(), middle, areas.end());
   return *middle;
+}
+
+/** At the origin of each edge, the mean of the edges before and behind it on its walk. */
+std::vector<double> SpacingsAlong(
+  const Holes& holes, Index hole, const std::vector<double>& lengths)
+{
+  std::vector<double> spacings;
+  spacings.reserve(lengths.size());
+  const double* length = lengths.data();
+  for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
+  {
+    const Index count = holes.Walks.Size(holes.Loops[loop]);
+    const Index around = std::min(count, EdgesAround);
+    for (Index i = 0; i < count; ++i)
+    {
+      double sum = 0.0;
+      for (Index k = 0; k < around; ++k)
+      {
+        sum += length[(i + k + count - around / 2) % count];
+      }
+      spacings.push_back(sum / around);
+    }
+    length += count;
+  }
+  return spacings;
 }
 } // namespace
 
@@ -747,24 +800,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
     return plan;
   }
 
-  // At the origin of each edge, the mean of the edges before and behind it on its walk.
-  plan.Spacings.reserve(lengths.size());
-  const double* length = lengths.data();
-  for (Index loop = holes.Offsets[hole]; loop < holes.Offsets[hole + 1]; ++loop)
-  {
-    const Index count = holes.Walks.Size(holes.Loops[loop]);
-    const Index around = std::min(count, EdgesAround);
-    for (Index i = 0; i < count; ++i)
-    {
-      double sum = 0.0;
-      for (Index k = 0; k < around; ++k)
-      {
-        sum += length[(i + k + count - around / 2) % count];
-      }
-      plan.Spacings.push_back(sum / around);
-    }
-    length += count;
-  }
+  plan.Spacings = SpacingsAlong(holes, hole, lengths);
   const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
   if (*range.second > LargestRatioOfSpacings * *range.first)
   {

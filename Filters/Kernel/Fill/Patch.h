@@ -117,11 +117,11 @@ struct PatchMesh
   std::vector<Index> Triangles;   ///< inside the hole
   double Spacing = 0.0;
 
-  // What Arrange() of Heights.h finds; one for each new vertex.
+  // What Neighbours.h finds; one for each new vertex.
   Adjacency Neighbours;
   std::vector<Index> Layers;  ///< edges from the boundary
   std::vector<Index> Outward; ///< a neighbour one layer further out
-  std::vector<Index> Nearest; ///< boundary vertex; set by the caller
+  std::vector<Index> Nearest; ///< boundary vertex; of equally near ones the lowest
   std::vector<Index> Order;   ///< new vertices, from the boundary inwards
 
   Index NumberOfBoundaryVertices() const { return static_cast<Index>(this->BoundaryIds.size()); }

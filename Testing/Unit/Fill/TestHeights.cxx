@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Fill/Heights.h"
+#include "Kernel/Fill/Neighbours.h"
 #include "Kernel/Fill/Spline.h"
 
 #include "Kernel/Fill/Fill.h"

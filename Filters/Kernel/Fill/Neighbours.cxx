@@ -1,0 +1,257 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Neighbours.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace elevation
+{
+
+namespace
+{
+/**
+ * Cotangents are that much at most: coordinates are rounded. No weight is less than the other: in a
+ * Delaunay triangulation they are not negative, but for rounding.
+ */
+constexpr double LargestWeight = 1e6;
+constexpr double LeastWeight = 1e-12;
+
+/** The cotangent of the angle at @a c. */
+double Cotangent(const Point2& a, const Point2& b, const Point2& c)
+{
+  const double ux = a.X - c.X;
+  const double uy = a.Y - c.Y;
+  const double vx = b.X - c.X;
+  const double vy = b.Y - c.Y;
+  const double dot = ux * vx + uy * vy;
+  const double cross = std::fabs(ux * vy - uy * vx);
+  return std::fabs(dot) < LargestWeight * cross ? dot / cross : std::copysign(LargestWeight, dot);
+}
+
+/** A new vertex is inside, so the half-edges that leave it lead to all its neighbours. */
+void CollectNeighbours(PatchMesh& patch, const Progress& progress)
+{
+  const Index boundary = patch.NumberOfBoundaryVertices();
+  const Index count = patch.NumberOfNewVertices();
+  std::vector<std::size_t>& offsets = patch.Neighbours.Offsets;
+  offsets.assign(static_cast<std::size_t>(count) + 1, 0);
+  for (const Index vertex : patch.Triangles)
+  {
+    if (vertex >= boundary)
+    {
+      ++offsets[vertex - boundary + 1];
+    }
+  }
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  patch.Neighbours.NumberOfKnown = boundary;
+  patch.Neighbours.Neighbours.resize(offsets[count]);
+  std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
+  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+  {
+    ReportStep(progress, h, patch.Triangles.size());
+    const Index vertex = patch.Triangles[h];
+    if (vertex >= boundary)
+    {
+      patch.Neighbours.Neighbours[next[vertex - boundary]++] =
+        patch.Triangles[static_cast<std::size_t>(Mesh::Next(static_cast<Index>(h)))];
+    }
+  }
+}
+
+/**
+ * The weight of an edge is half the sum of the cotangents of the two angles that face it. Each
+ * half-edge gives its own to both ends.
+ */
+void WeighNeighbours(PatchMesh& patch, const Progress& progress)
+{
+  const Index boundary = patch.NumberOfBoundaryVertices();
+  const std::vector<Index>& neighbours = patch.Neighbours.Neighbours;
+  std::vector<double>& weights = patch.Neighbours.Weights;
+  weights.assign(neighbours.size(), 0.0);
+  const auto add = [&](Index from, Index to, double weight) {
+    if (from >= boundary)
+    {
+      std::size_t k = patch.Neighbours.Offsets[from - boundary];
+      while (neighbours[k] != to)
+      {
+        ++k;
+      }
+      weights[k] += weight;
+    }
+  };
+  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+  {
+    ReportStep(progress, h, patch.Triangles.size());
+    const Index edge = static_cast<Index>(h);
+    const Index a = patch.Triangles[h];
+    const Index b = patch.Triangles[static_cast<std::size_t>(Mesh::Next(edge))];
+    if (a >= boundary || b >= boundary)
+    {
+      const Index c = patch.Triangles[static_cast<std::size_t>(Mesh::Previous(edge))];
+      const double weight = 0.5 * Cotangent(patch.At(a), patch.At(b), patch.At(c));
+      add(a, b, weight);
+      add(b, a, weight);
+    }
+  }
+  for (double& weight : weights)
+  {
+    weight = std::max(weight, LeastWeight);
+  }
+}
+
+/** New vertices by their number of edges from the boundary, each with where it was reached from. */
+void FindLayers(PatchMesh& patch, const Progress& progress)
+{
+  constexpr Index unknown = std::numeric_limits<Index>::max();
+  const Index boundary = patch.NumberOfBoundaryVertices();
+  const Index count = patch.NumberOfNewVertices();
+  const std::vector<std::size_t>& offsets = patch.Neighbours.Offsets;
+  const std::vector<Index>& neighbours = patch.Neighbours.Neighbours;
+  patch.Layers.assign(count, unknown);
+  patch.Outward.assign(count, None);
+  patch.Order.reserve(count);
+  const auto reach = [&](Index i, Index layer, Index from) {
+    patch.Layers[i] = layer;
+    patch.Outward[i] = from;
+    patch.Order.push_back(boundary + i);
+  };
+  for (Index i = 0; i < count; ++i)
+  {
+    const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(offsets[i + 1]);
+    const auto first = std::find_if(neighbours.begin() + static_cast<std::ptrdiff_t>(offsets[i]),
+      end, [boundary](Index other) { return other < boundary; });
+    if (first != end)
+    {
+      reach(i, 1, *first);
+    }
+  }
+  for (std::size_t k = 0; k < patch.Order.size(); ++k)
+  {
+    ReportStep(progress, k, count);
+    const Index i = patch.Order[k] - boundary;
+    for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
+    {
+      const Index other = neighbours[j] - boundary;
+      if (other >= 0 && patch.Layers[other] == unknown)
+      {
+        reach(other, patch.Layers[i] + 1, boundary + i);
+      }
+    }
+  }
+}
+/** The boundary vertices as a balanced k-d tree in place: the middle of a range is its root. */
+class NearestBoundary
+{
+public:
+  explicit NearestBoundary(const PatchMesh& patch)
+    : Vertices(patch)
+    , Tree(patch.NumberOfBoundaryVertices())
+  {
+    for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
+    {
+      this->Tree[v] = { patch.At(v), v };
+    }
+    this->Build(0, this->Tree.size(), true);
+  }
+
+  /** The nearest vertex to @a p. @param guess  any vertex; a near one makes it fast */
+  Index Find(const Point2& p, Index guess)
+  {
+    this->P = p;
+    this->Best = guess;
+    this->BestSquare = Square(p, this->Vertices.At(guess));
+    this->Look(0, this->Tree.size(), true);
+    return this->Best;
+  }
+
+private:
+  struct Node
+  {
+    Point2 At;
+    Index Vertex;
+  };
+
+  static double Square(const Point2& p, const Point2& q)
+  {
+    return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
+  }
+
+  void Build(std::size_t begin, std::size_t end, bool byX)
+  {
+    if (end - begin < 2)
+    {
+      return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(this->Tree.begin() + begin, this->Tree.begin() + middle,
+      this->Tree.begin() + end,
+      [byX](const Node& a, const Node& b) { return byX ? a.At.X < b.At.X : a.At.Y < b.At.Y; });
+    this->Build(begin, middle, !byX);
+    this->Build(middle + 1, end, !byX);
+  }
+
+  void Look(std::size_t begin, std::size_t end, bool byX)
+  {
+    if (begin == end)
+    {
+      return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    const Node& node = this->Tree[middle];
+    const double square = Square(this->P, node.At);
+    if (square < this->BestSquare || (square == this->BestSquare && node.Vertex < this->Best))
+    {
+      this->BestSquare = square;
+      this->Best = node.Vertex;
+    }
+    const double beyond = byX ? this->P.X - node.At.X : this->P.Y - node.At.Y;
+    const bool isLow = beyond < 0.0;
+    this->Look(isLow ? begin : middle + 1, isLow ? middle : end, !byX);
+    if (beyond * beyond <= this->BestSquare)
+    {
+      this->Look(isLow ? middle + 1 : begin, isLow ? end : middle, !byX);
+    }
+  }
+
+  const PatchMesh& Vertices;
+  std::vector<Node> Tree;
+  Point2 P{ 0.0, 0.0 };
+  Index Best = 0;
+  double BestSquare = 0.0;
+};
+} // namespace
+
+void Arrange(PatchMesh& patch, const Progress& progress)
+{
+  CollectNeighbours(patch, Part(progress, 0.0, 0.5));
+  WeighNeighbours(patch, Part(progress, 0.5, 0.7));
+  FindLayers(patch, Part(progress, 0.7, 1.0));
+}
+
+void FindNearest(PatchMesh& patch, const Progress& progress)
+{
+  if (patch.Order.empty())
+  {
+    return;
+  }
+  NearestBoundary boundary(patch);
+  const Index first = patch.NumberOfBoundaryVertices();
+  patch.Nearest.resize(patch.NumberOfNewVertices());
+  for (std::size_t k = 0; k < patch.Order.size(); ++k)
+  {
+    // In the middle of a round hole much of the boundary is about equally near.
+    ReportStep(progress, k, patch.Order.size(), 1024);
+    // What is nearest to a neighbour is not far.
+    const Index vertex = patch.Order[k];
+    const Index outward = patch.Outward[vertex - first];
+    patch.Nearest[vertex - first] =
+      boundary.Find(patch.At(vertex), outward < first ? outward : patch.Nearest[outward - first]);
+  }
+}
+
+} // namespace elevation
