@@ -23,8 +23,6 @@
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <vtksys/SystemInformation.hxx>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -51,25 +49,6 @@ using elevation::Part;
 using elevation::Progress;
 using elevation::Report;
 using elevation::ReportStep;
-
-/**
- * What a new point costs at the peak, in the kernel and in the output, with a margin for arrays.
- */
-constexpr double BytesPerPoint = 500.0;
-
-/** How many new points fit into the memory that is free now. */
-Index PointsThatFit()
-{
-  vtksys::SystemInformation system;
-  const double host = static_cast<double>(system.GetHostMemoryTotal() - system.GetHostMemoryUsed());
-  const double process =
-    static_cast<double>(system.GetProcMemoryAvailable() - system.GetProcMemoryUsed());
-  const double points = 1024.0 * std::min(host, process) / BytesPerPoint;
-  // Where the system tells nothing, failing allocations are the limit.
-  return points > 0.0
-    ? static_cast<Index>(std::min<double>(points, elevation::MaximumNumberOfPoints))
-    : elevation::MaximumNumberOfPoints;
-}
 
 /** Whether new points get values of an array as they get their z. */
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
@@ -300,7 +279,9 @@ int vtkFillElevationHoles::RequestData(
       options.Attributes = AttributesOf(input->GetPointData());
     }
     options.SinglePrecision = HasFloatPoints(input);
-    options.MaximumInsertedPoints = PointsThatFit();
+    options.MaximumInsertedPoints = static_cast<Index>(this->MaximumNumberOfInsertedPoints > 0
+        ? std::min<vtkIdType>(this->MaximumNumberOfInsertedPoints, elevation::MaximumNumberOfPoints)
+        : elevation::MaximumNumberOfPoints);
     options.NumberOfThreads = this->NumberOfThreads;
     options.Monitor = Part(progress, 0.3, 0.8);
     const FillResult patches = elevation::FillHoles(mesh, points.View, holes, options);
@@ -339,6 +320,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
+  os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";

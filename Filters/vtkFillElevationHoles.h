@@ -62,9 +62,8 @@
  * and triangles do not depend on the order of the input's points and cells, only their ids do.
  *
  * A hole is left open, with status FAILED and a warning that says why, when
- * - it would take more new points than there is memory for (about 500 bytes a point), or than leave
- *   the surface 357,913,941 points; so, where memory is short, and only there, results may differ
- *   between machines;
+ * - it might take more new points than the holes before it leave of MaximumNumberOfInsertedPoints, or
+ *   of the 357,913,941 points that a surface has at most;
  * - its extent is above 1e150, or its extent or spacing is below 1e-150, so that squares leave the
  *   range of double;
  * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
@@ -178,6 +177,20 @@ public:
 
   ///@{
   /**
+   * The most new points of all holes together; 100 million (default), for which it takes about 50 GB
+   * of memory. 0: no limit but that of 357,913,941 points of a surface; negative values are taken
+   * as 0. Before the first hole is filled, each is granted, in the order of HoleId, the points that
+   * it may take at most, by its area and spacing, a long thin one also by its length; it fails where
+   * fewer are left, and later ones may still be filled. So which holes fail depends on the input
+   * and this number alone, not on threads or free memory. Holes that other limits leave open are
+   * granted none.
+   */
+  vtkSetClampMacro(MaximumNumberOfInsertedPoints, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
    * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
    * hole the mean length of its boundary edges, see above; negative values are taken as 0.
    */
@@ -224,6 +237,7 @@ protected:
 
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
+  vtkIdType MaximumNumberOfInsertedPoints = 100000000;
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;

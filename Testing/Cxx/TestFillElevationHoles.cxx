@@ -592,6 +592,46 @@ void TestSurfacesThatPass()
   Check(observer->GetWarningMessage().find("vtkCleanPolyData") != std::string::npos, "which helps");
 }
 
+void TestNumberOfInsertedPoints()
+{
+  vtkNew<vtkFillElevationHoles> fill;
+  Check(fill->GetMaximumNumberOfInsertedPoints() == 100000000, "100 million is the default");
+  fill->SetInputData(MakeSheet(ThreeHoles, VTK_DOUBLE, Tilted));
+  fill->SetSpacing(0.25);
+  vtkNew<vtkTest::ErrorObserver> observer;
+  fill->AddObserver(vtkCommand::WarningEvent, observer);
+  fill->Update();
+  const vtkIdType all = fill->GetOutput()->GetNumberOfPoints();
+  Check(fill->GetNumberOfFilledHoles() == 3 && !observer->GetWarning(), "all fit into the default");
+  for (const int threads : { 1, 3 })
+  {
+    observer->Clear();
+    fill->SetNumberOfThreads(threads);
+    fill->SetMaximumNumberOfInsertedPoints(220); // the largest alone takes more
+    fill->Update();
+    vtkDataArray* status = fill->GetOutput(1)->GetCellData()->GetArray("Status");
+    vtkDataArray* area = fill->GetOutput(1)->GetCellData()->GetArray("Area");
+    vtkDataArray* inserted = fill->GetOutput(1)->GetCellData()->GetArray("NumberOfInsertedPoints");
+    double sum = 0.0;
+    for (vtkIdType i = 0; i < 3; ++i)
+    {
+      Check((status->GetTuple1(i) == vtkFillElevationHoles::FAILED) == (area->GetTuple1(i) == 13.0),
+        "the hole that may take more points than are left fails, and later ones do not");
+      sum += inserted->GetTuple1(i);
+    }
+    Check(sum > 100.0 && sum <= 220.0, "the limit is kept");
+    Check(observer->GetWarning() && !observer->GetError(), "with a warning");
+    Check(observer->GetWarningMessage().find("MaximumNumberOfInsertedPoints, 220") !=
+        std::string::npos,
+      "that names the limit");
+  }
+  observer->Clear();
+  fill->SetMaximumNumberOfInsertedPoints(-1);
+  Check(fill->GetMaximumNumberOfInsertedPoints() == 0, "negative values are taken as 0");
+  fill->Update();
+  Check(fill->GetOutput()->GetNumberOfPoints() == all && !observer->GetWarning(), "0 is no limit");
+}
+
 void TestAbort()
 {
   auto input = MakeSheet(ThreeHoles, VTK_DOUBLE, Tilted);
@@ -652,7 +692,7 @@ void TestPrint()
   std::ostringstream text;
   fill->Print(text);
   for (const char* name :
-    { "MaximumHoleSize", "MaximumHoleEdges", "Spacing: 0", "Interpolation: Adaptive",
+    { "MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints: 100000000", "Spacing: 0", "Interpolation: Adaptive",
       "InterpolatePointData: On", "NumberOfHoles", "NumberOfFilledHoles" })
   {
     Check(text.str().find(name) != std::string::npos, std::string("Print shows ") + name);
@@ -672,6 +712,7 @@ int TestFillElevationHoles(int, char*[])
   TestRefusals();
   TestSurfacesThatPass();
   TestReplacedArrays();
+  TestNumberOfInsertedPoints();
   TestAbort();
   TestLateAbort();
   TestPrint();

@@ -28,6 +28,7 @@ OTHER_VALUES = {
     "FillElevationHoles": {
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
+        "MaximumNumberOfInsertedPoints": 5000,
         "Spacing": 0.25,
         "Interpolation": "Thin Plate",
         "InterpolatePointData": 0,

@@ -59,7 +59,7 @@ struct FillOptions
   Interpolation Method = Interpolation::Adaptive;
   /** Further values of the surface's points, each to be found at new points as elevations are. */
   std::vector<Values> Attributes;
-  /** A hole that would take more new points than are left of this number fails. */
+  /** A hole that may take more new points than those before it leave of this number fails. */
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
   /** Whether new points lie on the nodes of a lattice, where the points of the surface do. */
   LatticeMode UseLattice = LatticeMode::Automatic;
@@ -107,7 +107,7 @@ struct FillResult
  * @param[in] mesh    the surface, as FindHoles took it
  * @param[in] points  the same points with their elevations
  * @param[in] holes   what FindHoles gave
- * @throws Aborted. Lack of memory for one hole makes this hole fail, and no other.
+ * @throws Aborted, std::bad_alloc: which holes fail does not depend on the memory that is free
  */
 FillResult FillHoles(
   const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options);

@@ -375,6 +375,29 @@ TEST(Fill, SharesTheRoomForPointsAmongHoles)
   EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled);
   EXPECT_EQ(run.Patches.Reports[1].Status, FillStatus::Failed);
   EXPECT_LE(run.Patches.NumberOfPoints(), 70);
+  EXPECT_NE(run.Patches.Reports[1].Reason.find("MaximumNumberOfInsertedPoints, 70,"),
+    std::string::npos)
+    << run.Patches.Reports[1].Reason;
+}
+
+TEST(Fill, GrantsNoPointsToHolesThatOtherLimitsLeaveOpen)
+{
+  FillOptions options;
+  options.Spacing = 0.5;
+  options.MaximumInsertedPoints = 70; // the large hole would take up to 69, the small one 42
+  options.MaximumHoleSize = 5.0;
+  for (const int threads : { 1, 3 })
+  {
+    options.NumberOfThreads = threads;
+    const Outcome run =
+      Fill(Draw({ "###########", "#     #   #", "#     #   #", "#     #   #", "###########" }), options);
+    ASSERT_EQ(run.Found.Count(), 2);
+    for (const HoleReport& report : run.Patches.Reports)
+    {
+      EXPECT_EQ(
+        report.Status, report.Size > 5.0 ? FillStatus::TooLarge : FillStatus::Filled);
+    }
+  }
 }
 
 TEST(Fill, FailsALongThinHoleThatWouldTakeTooManyRows)
