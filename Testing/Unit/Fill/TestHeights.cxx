@@ -595,6 +595,34 @@ TEST(Heights, MeetALongRim)
   EXPECT_LT(squares, 0.4 * all);
 }
 
+TEST(Heights, OfSplinesHaveAllTheirCentresOnALongRim)
+{
+  // Twice as many boundary points as centres. With half the centres the error near the rim is half as
+  // much again, or twice as much.
+  const Mesh mesh = Sheet(220, Disc(110, 110, 75));
+  const std::pair<double, double> largest[] = { { 0.05, 0.025 }, { 0.08, 0.052 } };
+  for (const auto& [wave, error] : largest)
+  {
+    const Elevation hills = [frequency = wave](const Point2& p) {
+      return std::sin(frequency * p.X) * std::cos(0.8 * frequency * p.Y);
+    };
+    const Outcome run = Fill(mesh, hills, Interpolation::ThinPlate);
+    EXPECT_GT(run.Patches.Reports[0].NumberOfEdges, 590);
+    double squares = 0.0;
+    int count = 0;
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      const Point2& q = run.Surface.Points[run.Patches.NearestBoundaryPoints[i]];
+      if (std::hypot(run.At(i).X - q.X, run.At(i).Y - q.Y) < 6.0)
+      {
+        squares += std::pow(run.Value(i) - hills(run.At(i)), 2);
+        ++count;
+      }
+    }
+    EXPECT_LT(std::sqrt(squares / count), error) << wave;
+  }
+}
+
 TEST(Heights, DoNotDependOnOtherHoles)
 {
   // A large and a small hole, three squares apart; then the small one alone is filled.

@@ -469,6 +469,109 @@ TEST(Patch, IsGradedWhereEdgesDiffer)
   EXPECT_GT(sum[1] / edges[1], 3.0 * sum[0] / edges[0]);
 }
 
+TEST(Patch, TakesItsSpacingsFromBothSidesOfAVertex)
+{
+  // A circle of short edges, then long ones.
+  std::vector<Point2> points{ { -6.0, -6.0 }, { 6.0, -6.0 }, { 6.0, 6.0 }, { -6.0, 6.0 } };
+  for (double angle = 0.0; angle < 6.28; angle += angle < 3.0 ? 0.03 : 0.2)
+  {
+    points.push_back({ 4.0 * std::cos(angle), 4.0 * std::sin(angle) });
+  }
+  const Outcome run =
+    Fill(Cut(points, [](const Point2& p) { return std::hypot(p.X, p.Y) < 4.0; }), Evenly());
+  ASSERT_EQ(run.Found.Count(), 1);
+  std::vector<Point2> rim;
+  run.Found.VisitEdges(
+    0, [&](Index h) { rim.push_back(run.Surface.PointOf(run.Surface.Origin(h))); });
+  const PatchPlan plan =
+    PlanPatch(run.Surface, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr);
+  ASSERT_EQ(plan.Kind, Arrangement::Graded);
+  ASSERT_EQ(plan.Spacings.size(), rim.size());
+  const std::size_t count = rim.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    double sum = 0.0; // of four edges before the vertex, and four behind it
+    for (std::size_t k = i + count - 4; k < i + count + 4; ++k)
+    {
+      const Point2& a = rim[k % count];
+      const Point2& b = rim[(k + 1) % count];
+      sum += std::hypot(b.X - a.X, b.Y - a.Y);
+    }
+    EXPECT_NEAR(plan.Spacings[i], sum / 8.0, 1e-12) << i;
+  }
+}
+
+TEST(Patch, IsAsFineAtAPinchedVertexAsItsFinerSide)
+{
+  // An island touches the rim at the origin. Edges there are short on one side of it, long on the other.
+  for (const double side : { 1.0, -1.0 })
+  {
+    std::vector<Point2> points{ { 0.0, 0.0 } };
+    const auto add = [&](double radius, double degrees) {
+      const double angle = degrees * 3.14159265358979 / 180.0;
+      points.push_back({ radius * std::cos(angle), side * radius * std::sin(angle) });
+    };
+    for (int k = 1; k <= 40; ++k)
+    {
+      add(0.1 * k, 150.0);
+      add(0.1 * k, 30.0);
+    }
+    for (int k = 1; k <= 8; ++k)
+    {
+      add(k, -150.0);
+    }
+    for (int k = 1; k <= 4; ++k)
+    {
+      add(k, -30.0);
+      add(4.0 + k, 150.0);
+    }
+    for (double degrees = -135.0; degrees < 140.0; degrees += 15.0)
+    {
+      add(8.0, degrees);
+    }
+    for (double k = -12.0; k < 12.0; k += 2.0)
+    {
+      points.insert(points.end(), { { k, -12.0 }, { 12.0, k }, { -k, 12.0 }, { -12.0, -k } });
+    }
+    const auto isLost = [](const Point2& p) {
+      const double x = std::sqrt(3.0) * std::fabs(p.Y);
+      return std::hypot(p.X, p.Y) < 8.0 && -p.X < x && (p.X < x || p.X > std::sqrt(12.0));
+    };
+    const Outcome run = Fill(Cut(points, isLost), Evenly());
+    ASSERT_EQ(run.Found.Count(), 1);
+    ExpectPatchesFit(run, 1e-12);
+    const PatchPlan plan =
+      PlanPatch(run.Surface, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr);
+    ASSERT_EQ(plan.Kind, Arrangement::Graded);
+    std::vector<double> there;
+    std::size_t i = 0;
+    run.Found.VisitEdges(0, [&](Index h) {
+      if (run.Surface.Origin(h) == 0)
+      {
+        there.push_back(plan.Spacings[i]);
+      }
+      ++i;
+    });
+    std::sort(there.begin(), there.end());
+    ASSERT_EQ(there.size(), 2u);
+    EXPECT_NEAR(there[0], 0.1, 1e-12);
+    EXPECT_NEAR(there[1], 1.0, 1e-12);
+    // Edges inside that end at the vertex, on both sides.
+    double longest = 0.0;
+    const Mesh patch = run.Patch();
+    for (Index h = 0; h < patch.NumberOfHalfEdges(); ++h)
+    {
+      if (patch.Origin(h) == 0 && patch.Destination(h) >= run.Surface.NumberOfPoints())
+      {
+        const Point2& p = patch.PointOf(patch.Destination(h));
+        longest = std::max(longest, std::hypot(p.X, p.Y));
+      }
+    }
+    EXPECT_GT(longest, 0.0);
+    EXPECT_LT(longest, 0.5);
+  }
+}
+
 TEST(Patch, IsTheSameForAnyNumberOfThreads)
 {
   std::mt19937_64 random(10);
