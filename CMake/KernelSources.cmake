@@ -13,6 +13,7 @@ set(es_kernel_Mesh
   Segments
   Recovery
   Holes
+  TriangleList
   Validate)
 set(es_kernel_Lattice
   FindLattice
@@ -31,11 +32,13 @@ set(es_kernel_Triangulate
   Triangulate)
 set(es_kernel_Trim
   Rings
-  Outline
+  NearTriangles
   Crossings
   Insertion
-  TrimMesh
-  QuickTrim)
+  OutwardTriangles
+  MeasuredTriangles
+  Outline
+  Trim)
 set(es_kernel_Fill
   Multigrid
   Membrane
@@ -49,13 +52,12 @@ set(es_kernel_Fill
 set(es_kernel_headers_Base
   Base CellGrid Duplicates Extent IdSet Memory Points Progress ScalarProduct SnapRounding Threads)
 set(es_kernel_headers_Mesh
-  Mesh SubMesh TriangleSweep)
+  Mesh TriangleSweep)
 set(es_kernel_headers_Lattice
   Lattice)
 set(es_kernel_headers_Triangulate
   EdgeLimit Growth Options WorkBudget)
-set(es_kernel_headers_Trim
-  Trim)
+set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill)
 
 set(es_kernel_headers)

@@ -158,178 +158,25 @@ vtkIdType FirstPolygon(vtkPolyData* input)
   return input->GetNumberOfVerts() + input->GetNumberOfLines();
 }
 
-namespace
-{
-/** Copies the points, in pieces. @return whether all are finite */
-bool CopyPoints(const PointView& points, int threads, const Progress& progress, Mesh& mesh)
-{
-  mesh.Points.resize(points.Count);
-  constexpr Index piecePoints = 1 << 17;
-  const Index pieces = (points.Count + piecePoints - 1) / piecePoints;
-  std::vector<char> isFinite(pieces, 0);
-  ForEachPiece(pieces, threads, progress, [&](Index piece) {
-    const Index begin = piece * piecePoints, end = std::min(begin + piecePoints, points.Count);
-    double sum = 0.0; // of differences of numbers with themselves: 0, or not a number
-    for (Index i = begin; i < end; ++i)
-    {
-      const Point2 p = points.At(i);
-      const double z = points.Elevation(i);
-      sum += (p.X - p.X) + (p.Y - p.Y) + (z - z);
-      mesh.Points[i] = p;
-    }
-    isFinite[piece] = sum == 0.0;
-  });
-  return std::count(isFinite.begin(), isFinite.end(), 0) == 0;
-}
-
-/** Triangles from arrays of one of the types that a vtkCellArray has. */
-template <typename Id>
-class TriangleReader
-{
-public:
-  TriangleReader(
-    const Id* offsets, const Id* ids, vtkIdType firstCell, const PointView& points, bool areFinite)
-    : Offsets(offsets)
-    , Ids(ids)
-    , FirstCell(firstCell)
-    , Points(points)
-    , AreFinite(areFinite)
-  {
-  }
-
-  /** Writes the triangles [begin, end) to the mesh, counter-clockwise. */
-  void Read(Index begin, Index end, Mesh& mesh) const
-  {
-    // Few at a time: their points are asked for before they are needed.
-    constexpr Index few = 128;
-    for (; begin < end; begin += few)
-    {
-      const Index last = std::min(begin + few, end);
-      for (Index t = begin; t < last; ++t)
-      {
-        this->Copy(t, mesh);
-      }
-      for (Index t = begin; t < last; ++t)
-      {
-        this->Turn(t, mesh);
-      }
-    }
-  }
-
-private:
-  void Copy(Index t, Mesh& mesh) const
-  {
-    const Id begin = this->Offsets[t], size = this->Offsets[t + 1] - begin;
-    if (size != 3)
-    {
-      throw Error("Cell " + this->NameOf(t) + " has " + std::to_string(size) +
-        " points, but only triangles can be handled; pass the input through vtkTriangleFilter "
-        "first.");
-    }
-    for (int i = 0; i < 3; ++i)
-    {
-      const Id id = this->Ids[begin + i];
-      if (id < 0 || id >= this->Points.Count)
-      {
-        throw Error("Cell " + this->NameOf(t) + " names point " + std::to_string(id) +
-          ", but the points are 0 to " + std::to_string(this->Points.Count - 1) + ".");
-      }
-      Prefetch(&mesh.Points[id]);
-      mesh.Triangles[3 * static_cast<std::size_t>(t) + i] = static_cast<Index>(id);
-    }
-  }
-
-  void Turn(Index t, Mesh& mesh) const
-  {
-    Index* const ids = &mesh.Triangles[3 * static_cast<std::size_t>(t)];
-    for (int i = 0; i < 3 && !this->AreFinite; ++i)
-    {
-      const Point2& p = mesh.Points[ids[i]];
-      if (!std::isfinite(p.X) || !std::isfinite(p.Y) ||
-        !std::isfinite(this->Points.Elevation(ids[i])))
-      {
-        throw Error("Point " + std::to_string(ids[i]) + " of cell " + this->NameOf(t) +
-          " has a coordinate that is not finite.");
-      }
-    }
-    const Sign side = Orientation(mesh.Points[ids[0]], mesh.Points[ids[1]], mesh.Points[ids[2]]);
-    if (side == Zero)
-    {
-      throw Error("Cell " + this->NameOf(t) + " (points " + std::to_string(ids[0]) + ", " +
-        std::to_string(ids[1]) + ", " + std::to_string(ids[2]) +
-        ") is flat in x,y: an elevation surface has no vertical or empty triangles.");
-    }
-    if (side == Negative)
-    {
-      std::swap(ids[1], ids[2]);
-    }
-  }
-
-  std::string NameOf(Index t) const { return std::to_string(this->FirstCell + t); }
-
-  const Id* Offsets;
-  const Id* Ids;
-  const vtkIdType FirstCell;
-  const PointView& Points;
-  const bool AreFinite;
-};
-} // namespace
-
-void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int threads)
+TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
 {
   if (input->GetNumberOfStrips() > 0)
   {
     throw Error("The input has triangle strips; pass it through vtkTriangleFilter first.");
   }
-  CheckCells(input);
   vtkCellArray* polygons = input->GetPolys();
-  const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
+  const vtkIdType count = polygons->GetNumberOfCells();
+  const vtkIdType firstCell = FirstPolygon(input);
   if (count > std::numeric_limits<Index>::max() / 3)
   {
     throw Error("The input has " + std::to_string(count) + " triangles; at most " +
       std::to_string(std::numeric_limits<Index>::max() / 3) + " can be handled at once.");
   }
-  const PointsOfDataSet points = ViewPoints(input);
-  const bool areFinite = CopyPoints(points.View, threads, Part(progress, 0.0, 0.2), mesh);
-  mesh.Twins.clear();
-  mesh.Triangles.clear();
-  mesh.Triangles.resize(3 * static_cast<std::size_t>(count));
-  const auto read = [&](auto* offsets, auto* ids) {
-    using Id = std::remove_reference_t<decltype(*ids->GetPointer(0))>;
-    const TriangleReader<Id> reader(
-      offsets->GetPointer(0), ids->GetPointer(0), FirstPolygon(input), points.View, areFinite);
-    constexpr Index pieceTriangles = 1 << 16;
-    const Index pieces = (static_cast<Index>(count) + pieceTriangles - 1) / pieceTriangles;
-    ForEachPiece(pieces, threads, Part(progress, 0.2, 1.0), [&](Index piece) {
-      const Index begin = piece * pieceTriangles;
-      reader.Read(begin, begin + std::min(pieceTriangles, static_cast<Index>(count) - begin), mesh);
-    });
+  const auto visitOffsets = [polygons](auto&& visit) {
+    return polygons->IsStorage64Bit() ? visit(polygons->GetOffsetsArray64()->GetPointer(0))
+                                      : visit(polygons->GetOffsetsArray32()->GetPointer(0));
   };
-  if (count > 0 && polygons->IsStorage64Bit())
-  {
-    read(polygons->GetOffsetsArray64(), polygons->GetConnectivityArray64());
-  }
-  else if (count > 0)
-  {
-    read(polygons->GetOffsetsArray32(), polygons->GetConnectivityArray32());
-  }
-}
-
-bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles)
-{
-  vtkCellArray* polygons = input->GetPolys();
-  const vtkIdType count = polygons ? polygons->GetNumberOfCells() : 0;
-  if (count <= 0 || count > std::numeric_limits<Index>::max() / 3 ||
-    input->GetNumberOfStrips() > 0 || polygons->GetNumberOfConnectivityIds() != 3 * count ||
-    !HasSingleComponents(polygons))
-  {
-    return false;
-  }
-  triangles.Points = ViewPoints(input);
-  triangles.View.Points = triangles.Points.View;
-  triangles.View.Count = static_cast<Index>(count);
-  const auto areTriangles = [count](auto* offsets) {
-    const auto* begins = offsets->GetPointer(0);
+  const auto areTriangles = [count](const auto* begins) {
     using Id = std::remove_cv_t<std::remove_reference_t<decltype(*begins)>>;
     Id differing = 0; // some bit of it, where an offset is another one
     for (Id i = 0; i <= static_cast<Id>(count); ++i)
@@ -338,22 +185,51 @@ bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles)
     }
     return differing == 0;
   };
-  if (!polygons->IsStorage64Bit())
+  // Whether cells are valid is seen at once where all have three ids.
+  if (count <= 0 || !HasSingleComponents(polygons) ||
+    polygons->GetNumberOfConnectivityIds() != 3 * count || !visitOffsets(areTriangles))
+  {
+    CheckCells(input);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      if (polygons->GetCellSize(i) != 3)
+      {
+        throw Error("Cell " + std::to_string(firstCell + i) + " has " +
+          std::to_string(polygons->GetCellSize(i)) +
+          " points, but only triangles can be handled; pass the input through vtkTriangleFilter "
+          "first.");
+      }
+    }
+  }
+  TrianglesOfDataSet triangles;
+  triangles.Points = ViewPoints(input);
+  triangles.View.Points = triangles.Points.View;
+  triangles.View.Count = static_cast<Index>(count);
+  triangles.View.FirstCell = static_cast<Index>(firstCell);
+  if (count > 0 && !polygons->IsStorage64Bit())
   {
     triangles.View.Corners = polygons->GetConnectivityArray32()->GetPointer(0);
-    return areTriangles(polygons->GetOffsetsArray32());
   }
-  if (!areTriangles(polygons->GetOffsetsArray64()))
+  else if (count > 0)
   {
-    return false;
+    triangles.Converted.Resize(3 * static_cast<std::size_t>(count));
+    const vtkTypeInt64* const ids = polygons->GetConnectivityArray64()->GetPointer(0);
+    std::copy_n(ids, triangles.Converted.size(), triangles.Converted.begin());
+    const auto different =
+      std::mismatch(triangles.Converted.begin(), triangles.Converted.end(), ids);
+    if (different.first != triangles.Converted.end())
+    {
+      throw Error(NoSuchPoint(
+        firstCell + (different.second - ids) / 3, *different.second, input->GetNumberOfPoints()));
+    }
+    triangles.View.Corners = triangles.Converted.data();
   }
-  triangles.Converted.Resize(3 * static_cast<std::size_t>(count));
-  std::transform(polygons->GetConnectivityArray64()->GetPointer(0),
-    polygons->GetConnectivityArray64()->GetPointer(0) + triangles.Converted.size(),
-    triangles.Converted.begin(),
-    [](vtkTypeInt64 id) { return id == static_cast<Index>(id) ? static_cast<Index>(id) : None; });
-  triangles.View.Corners = triangles.Converted.data();
-  return true;
+  return triangles;
+}
+
+void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress, int threads)
+{
+  mesh = MeshOf(ViewTriangles(input).View, threads, progress);
 }
 
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,

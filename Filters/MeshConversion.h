@@ -50,31 +50,24 @@ PointsOfDataSet ViewPoints(vtkPointSet* input);
 void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
 void CheckArrays(vtkPolyData* input, const std::string& owner = "");
 
-/**
- * The polygons of a triangulated polydata as a mesh: Points are all points' x,y; triangle i is the
- * i-th polygon, turned counter-clockwise where it is not. Vertices and lines are left alone (their
- * cells precede the polygons in the cell numbering: see FirstPolygon).
- * Twins are not filled. Linear; on up to so many threads.
- * @throws Error that names the cell: not a triangle, a point that does not exist or is not finite,
- *         flat in x,y (as is a triangle that has a point twice), of a cell array that is not valid;
- *         or when there are triangle strips. Aborted.
- */
-void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
-
-/** Triangles of a polydata as QuickTrim reads them; the others keep the memory alive. */
+/** Triangles of a polydata as the kernel reads them; the others keep the memory alive. */
 struct TrianglesOfDataSet
 {
   TriangleList View;
   PointsOfDataSet Points;
-  Buffer<Index> Converted;
+  Buffer<Index> Converted; ///< ids of 64 bits; none when they are viewed in place
 };
 
 /**
- * Views the polygons in place when their ids have 32 bits, and copies ids of 64.
- * @return whether all are triangles, and there are some; ids that do not exist may be among them.
- *         Where the cell array is not valid: false
+ * Views the polygons in place when their ids have 32 bits, and copies ids of 64. Vertices and lines
+ * are left alone (their cells precede the polygons in the cell numbering: see FirstPolygon).
+ * @throws Error that names the cell: not a triangle, or of a cell array that is not valid; or when
+ *         there are triangle strips. Whether points exist is left to the kernel.
  */
-bool ViewTriangles(vtkPolyData* input, TrianglesOfDataSet& triangles);
+TrianglesOfDataSet ViewTriangles(vtkPolyData* input);
+
+/** The triangles as MeshOf() makes a mesh of them, with what that refuses. */
+void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
 
 /** A line or polygon as it is visited: point ids, which all exist, and how many there are. */
 struct LineOfDataSet

@@ -3,7 +3,6 @@
 #include "vtkTrimOutwardTriangles.h"
 
 #include "Kernel/Base/Base.h"
-#include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Trim/Trim.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
@@ -23,9 +22,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkTrimOutwardTriangles);
@@ -33,28 +31,14 @@ vtkStandardNewMacro(vtkTrimOutwardTriangles);
 namespace
 {
 using elevation::Index;
-using elevation::Mesh;
 using elevation::Part;
 using elevation::Progress;
 using elevation::Report;
 using elevation::ReportStep;
+using elevation::Trimmed;
+using elevation::TrimmedSide;
 
-/** What has become of the triangles, and what output 2 shows of the boundary. */
-struct Outcome
-{
-  const Index* Corners = nullptr; ///< of the input's triangles, three each
-  Index Count = 0;                ///< of the input's triangles
-  bool AreInput = false;          ///< whether these are the corners of the input as they lie there
-  elevation::TrimmedList List;    ///< how others differ
-  elevation::Rings Boundary;      ///< ids of the points of Source
-  vtkPolyData* Source = nullptr;
-  double GapTolerance = 0.0;
-  // What Corners points to:
-  elevation::TrianglesOfDataSet View;
-  Mesh Surface;
-};
-
-/** The boundary's lines; ids of its points. */
+/** The boundary's lines, and those points that they name. */
 elevation::BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress)
 {
   const elevation::PointsOfDataSet points = elevation::ViewPoints(boundary);
@@ -74,153 +58,21 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress
     lines.IsPolygon.push_back(line.IsPolygon);
     lines.Cells.push_back(static_cast<Index>(line.Cell));
   });
+  TakePoints(points.View, lines);
   return lines;
 }
 
-/** The points of the boundary. */
-std::vector<elevation::Point2> PlacesOf(vtkPolyData* boundary)
-{
-  const elevation::PointsOfDataSet points = elevation::ViewPoints(boundary);
-  std::vector<elevation::Point2> places(points.View.Count);
-  for (Index i = 0; i < points.View.Count; ++i)
-  {
-    places[i] = points.View.At(i);
-  }
-  return places;
-}
-
-/**
- * Trims by QuickTrim, along the boundary that is given or that is extracted.
- * @return whether it is done; if not, the outcome is of no use
- */
-bool TrimQuickly(vtkPolyData* input, vtkPolyData* given,
-  const elevation::ExtractOptions& extraction, bool recover, const Progress& progress,
-  Outcome& outcome)
-{
-  if (!elevation::ViewTriangles(input, outcome.View))
-  {
-    return false;
-  }
-  outcome.Corners = outcome.View.View.Corners;
-  outcome.Count = outcome.View.View.Count;
-  outcome.AreInput = true;
-  outcome.Source = given ? given : input;
-  if (!given)
-  {
-    elevation::ExtractOptions options = extraction;
-    options.Monitor = progress;
-    elevation::ExtractedBoundary extracted;
-    const bool isDone =
-      elevation::QuickExtract(outcome.View.View, options, outcome.List, extracted);
-    outcome.Boundary = std::move(extracted.Vertices);
-    outcome.GapTolerance = extracted.GapTolerance;
-    return isDone;
-  }
-  try
-  {
-    // The boundary may be some of very many points: only those are looked at.
-    elevation::BoundaryLines lines = ToLines(given, Part(progress, 0.0, 0.02));
-    std::vector<Index> ids = lines.Lines.Vertices;
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-    for (Index& vertex : lines.Lines.Vertices)
-    {
-      vertex = static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), vertex) - ids.begin());
-    }
-    const elevation::PointsOfDataSet points = elevation::ViewPoints(given);
-    for (const Index id : ids)
-    {
-      lines.Points.push_back(points.View.At(id));
-    }
-    outcome.Boundary = elevation::JoinLines(lines);
-    if (!elevation::QuickTrim(outcome.View.View, lines.Points, outcome.Boundary, recover,
-          extraction.NumberOfThreads, Part(progress, 0.02, 1.0), outcome.List))
-    {
-      return false;
-    }
-    for (Index& vertex : outcome.Boundary.Vertices)
-    {
-      vertex = ids[vertex];
-    }
-  }
-  catch (const elevation::Error&)
-  {
-    return false; // whose names are others here
-  }
-  return true;
-}
-
-/** Trims in a mesh with twins, with whatever is to be trimmed, or names what is wrong with it. */
-void TrimMesh(vtkPolyData* input, vtkPolyData* given, const elevation::ExtractOptions& extraction,
-  const elevation::TrimOptions& trimming, const Progress& progress, Outcome& outcome)
-{
-  Mesh& mesh = outcome.Surface;
-  const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
-  elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.15),
-    elevation::ResolveNumberOfThreads(extraction.NumberOfThreads));
-  mesh.ConnectTwins(firstPolygon, Part(progress, 0.15, 0.3));
-  // For its proof that nothing is covered twice.
-  elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.3, 0.4));
-
-  elevation::TrimmedList& list = outcome.List;
-  elevation::InsertedRings rings;
-  const Index points = mesh.NumberOfPoints();
-  outcome.Count = mesh.NumberOfTriangles();
-  outcome.Source = given ? given : input;
-  if (mesh.NumberOfTriangles() > 0)
-  {
-    const Progress finding = Part(progress, 0.42, 0.7);
-    if (given)
-    {
-      elevation::BoundaryLines lines = ToLines(given, Part(progress, 0.4, 0.42));
-      lines.Points = PlacesOf(given);
-      outcome.Boundary = elevation::JoinLines(lines);
-      rings = elevation::InsertRings(
-        mesh, lines.Points, outcome.Boundary, trimming.RecoverBoundary, finding);
-    }
-    else
-    {
-      elevation::ExtractOptions options = extraction;
-      options.Monitor = finding;
-      const elevation::ExtractedBoundary extracted = elevation::ExtractBoundary(mesh, options);
-      list.Trimmed = elevation::TrimExtracted(extracted);
-      outcome.Boundary = rings.Vertices = extracted.Vertices;
-      outcome.GapTolerance = extracted.GapTolerance;
-    }
-  }
-  if (rings.Vertices.Count() == 0)
-  {
-    outcome.Source = input;
-    list.Trimmed.IsOutward.assign(mesh.NumberOfTriangles(), 1);
-    list.Trimmed.NumberOfOutwardTriangles = mesh.NumberOfTriangles();
-  }
-  else if (given || trimming.Test != elevation::OutwardTest::Exact)
-  {
-    elevation::TrimOptions options = trimming;
-    const Progress rest = Part(progress, 0.7, 1.0);
-    options.Monitor = rest;
-    list.Trimmed = elevation::Trim(mesh, rings.Vertices, options);
-  }
-  outcome.Corners = mesh.Triangles.data();
-  list.Corners.assign(
-    mesh.Triangles.begin() + 3 * static_cast<std::size_t>(outcome.Count), mesh.Triangles.end());
-  list.Parents = std::move(rings.Parents);
-  list.Inserted = std::move(rings.Inserted);
-  list.Places.assign(
-    mesh.Points.begin() + points, mesh.Points.begin() + points + list.Inserted.size());
-}
-
 /** The points of outputs 0 and 1 with their data: those of the input, and behind them new ones. */
-void PassPoints(vtkPolyData* input, const elevation::TrimmedList& list, const Progress& progress,
-  vtkPolyData* output)
+void PassPoints(
+  vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output)
 {
-  const std::vector<elevation::InsertedVertex>& inserted = list.Inserted;
+  const std::vector<elevation::InsertedVertex>& inserted = trimmed.Inserted;
   const vtkIdType count = static_cast<vtkIdType>(inserted.size());
   // In double precision, or the new points would leave the boundary.
   output->SetPoints(elevation::AppendPoints(
     input->GetPoints(), count, VTK_DOUBLE, Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
-      xyz[0] = list.Places[i].X;
-      xyz[1] = list.Places[i].Y;
+      xyz[0] = trimmed.Places[i].X;
+      xyz[1] = trimmed.Places[i].Y;
       xyz[2] = 0.0;
       for (int k = 0; k < 3; ++k)
       {
@@ -250,147 +102,87 @@ void PassPoints(vtkPolyData* input, const elevation::TrimmedList& list, const Pr
 }
 
 /**
- * The triangles of outputs 0 and 1.
- * @param[out] cells  for each output, when asked for: behind what is there, whose cell data its
- *                    triangles have
+ * The cell data of the input's first cells, as many as these are, and of the triangles of one side.
+ * @param[in] arePieces  whether triangles are parts of the input's
  */
-void PartTriangles(vtkPolyData* input, const Outcome& outcome, bool hasCellData, int threads,
-  const Progress& progress, vtkPolyData* kept, vtkPolyData* outward,
-  elevation::Buffer<vtkIdType> (&cells)[2])
-{
-  const elevation::TrimmedList& list = outcome.List;
-  const std::vector<char>& flags = list.Trimmed.IsOutward;
-  const vtkIdType firstCell = elevation::FirstPolygon(input);
-  const Index all = static_cast<Index>(flags.size());
-  // All triangles, and before each range of them those of each side.
-  constexpr Index atOnce = 1 << 13;
-  const Index ranges = elevation::NumberOfRanges(all, atOnce);
-  std::vector<std::size_t> outwardBefore(ranges + 1, 0);
-  const auto number = [&](Index range, Index begin, Index end) {
-    outwardBefore[range + 1] = std::count(flags.begin() + begin, flags.begin() + end, char(1));
-  };
-  elevation::ForEachRange(all, threads, Part(progress, 0.0, 0.1), number, atOnce);
-  std::partial_sum(outwardBefore.begin(), outwardBefore.end(), outwardBefore.begin());
-
-  elevation::Buffer<Index> sides[2];
-  const std::size_t sizes[2] = { all - outwardBefore[ranges], outwardBefore[ranges] };
-  const std::size_t firstOfCells[2] = { cells[0].size(), cells[1].size() };
-  for (const std::size_t side : { 0, 1 })
-  {
-    sides[side].Resize(3 * sizes[side]);
-    cells[side].Resize(firstOfCells[side] + (hasCellData ? sizes[side] : 0));
-  }
-  const auto part = [&](Index range, Index t, Index endOfRange) {
-    std::size_t next[2] = { t - outwardBefore[range], outwardBefore[range] };
-    auto changed = std::lower_bound(list.Changed.begin(), list.Changed.end(), t);
-    while (t < endOfRange)
-    {
-      // Triangles of one side that follow each other.
-      const std::size_t side = flags[t];
-      const char* const first = flags.data() + t;
-      const void* other =
-        std::memchr(first, 1 - flags[t], static_cast<std::size_t>(endOfRange - t));
-      const Index end =
-        other ? t + static_cast<Index>(static_cast<const char*>(other) - first) : endOfRange;
-      Index* corners = sides[side].data() + 3 * next[side];
-      const Index last = std::min(end, outcome.Count);
-      if (t < last)
-      {
-        std::copy(outcome.Corners + 3 * static_cast<std::size_t>(t),
-          outcome.Corners + 3 * static_cast<std::size_t>(last), corners);
-      }
-      for (; changed != list.Changed.end() && *changed < end; ++changed)
-      {
-        std::copy_n(list.Corners.begin() + 3 * (changed - list.Changed.begin()), 3,
-          corners + 3 * (*changed - t));
-      }
-      for (Index i = std::max(t, outcome.Count); i < end; ++i)
-      {
-        std::copy_n(list.Corners.begin() + 3 * (list.Changed.size() + i - outcome.Count), 3,
-          corners + 3 * (i - t));
-      }
-      for (Index i = t; i < end && hasCellData; ++i)
-      {
-        cells[side][firstOfCells[side] + next[side] + (i - t)] =
-          firstCell + (i < outcome.Count ? i : list.Parents[i - outcome.Count]);
-      }
-      next[side] += end - t;
-      t = end;
-    }
-  };
-  elevation::ForEachRange(all, threads, Part(progress, 0.1, 1.0), part, atOnce);
-  for (const std::size_t side : { 0, 1 })
-  {
-    vtkPolyData* output = side ? outward : kept;
-    if (outcome.AreInput && outcome.View.Converted.empty() && list.Corners.empty() &&
-      sizes[1 - side] == 0)
-    {
-      output->SetPolys(input->GetPolys());
-      continue;
-    }
-    output->SetPolys(elevation::ToCellArray(std::move(sides[side]), threads));
-  }
-}
-
-/** The data of some of the input's cells. */
-void PassCellData(vtkPolyData* input, const elevation::Buffer<vtkIdType>& cells, bool areWhole,
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
   const Progress& progress, vtkPolyData* output)
 {
   output->GetCellData()->CopyAllOn();
-  const std::size_t count = cells.size();
-  output->GetCellData()->CopyAllocate(input->GetCellData(), static_cast<vtkIdType>(count));
+  const vtkIdType count = firstCells + static_cast<vtkIdType>(side.Parents.size());
+  output->GetCellData()->CopyAllocate(input->GetCellData(), count);
+  const vtkIdType firstTriangle = elevation::FirstPolygon(input);
   vtkNew<vtkIdList> from;
   vtkNew<vtkIdList> to;
-  constexpr std::size_t block = 65536; // at a time, to report between
-  for (std::size_t begin = 0; begin < count; begin += block)
+  constexpr vtkIdType block = 65536; // at a time, to report between
+  for (vtkIdType begin = 0; begin < count; begin += block)
   {
-    ReportStep(progress, begin, count);
-    const std::size_t size = std::min(block, count - begin);
-    from->SetNumberOfIds(static_cast<vtkIdType>(size));
-    to->SetNumberOfIds(static_cast<vtkIdType>(size));
-    std::copy_n(cells.begin() + begin, size, from->begin());
-    std::iota(to->begin(), to->end(), static_cast<vtkIdType>(begin));
+    ReportStep(progress, static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+    const vtkIdType size = std::min(block, count - begin);
+    from->SetNumberOfIds(size);
+    to->SetNumberOfIds(size);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      const vtkIdType cell = begin + i;
+      to->SetId(i, cell);
+      from->SetId(i, cell < firstCells ? cell : firstTriangle + side.Parents[cell - firstCells]);
+    }
     output->GetCellData()->CopyData(input->GetCellData(), from, to);
   }
-  if (!areWhole)
+  if (arePieces)
   {
     // Pieces have what their triangle has, so the values are no global ids any more.
     output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
   }
 }
 
-/** Outputs 0 and 1, but for their points: vertices and lines of the input, and the triangles. */
-void PassCells(vtkPolyData* input, const Outcome& outcome, int threads, const Progress& progress,
-  vtkPolyData* kept, vtkPolyData* outward)
+/** The cells of output 0 or 1, but for vertices and lines. */
+void PassTriangles(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, TrimmedSide& side,
+  int threads, vtkPolyData* output)
 {
-  const bool hasCellData = input->GetCellData()->GetNumberOfArrays() > 0;
-  elevation::Buffer<vtkIdType> cells[2];
-  for (vtkIdType cell = 0; cell < elevation::FirstPolygon(input) && hasCellData; ++cell)
+  if (side.IsWholeList && triangles.Converted.empty())
   {
-    cells[0].Append(cell);
+    output->SetPolys(input->GetPolys());
+    return;
   }
+  output->SetPolys(elevation::ToCellArray(
+    std::move(side.IsWholeList ? triangles.Converted : side.Corners), threads));
+}
+
+/** Outputs 0 and 1. */
+void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, Trimmed& trimmed,
+  int requestedThreads, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
+{
+  const int threads = elevation::ResolveNumberOfThreads(requestedThreads);
+  const bool arePieces = !trimmed.Inserted.empty();
+  PassPoints(input, trimmed, Part(progress, 0.0, 0.25), kept);
+  outward->SetPoints(kept->GetPoints());
+  outward->GetPointData()->PassData(kept->GetPointData());
   kept->SetVerts(input->GetVerts());
   kept->SetLines(input->GetLines());
-  PartTriangles(
-    input, outcome, hasCellData, threads, Part(progress, 0.0, 0.5), kept, outward, cells);
-  const bool areWhole = outcome.List.Parents.empty();
-  PassCellData(input, cells[0], areWhole, Part(progress, 0.5, 0.75), kept);
-  PassCellData(input, cells[1], areWhole, Part(progress, 0.75, 1.0), outward);
+  PassTriangles(input, triangles, trimmed.Kept, threads, kept);
+  PassTriangles(input, triangles, trimmed.Outward, threads, outward);
+  PassCellData(
+    input, elevation::FirstPolygon(input), trimmed.Kept, arePieces, Part(progress, 0.4, 0.7), kept);
+  PassCellData(input, 0, trimmed.Outward, arePieces, Part(progress, 0.7, 1.0), outward);
   kept->GetFieldData()->PassData(input->GetFieldData());
   outward->GetFieldData()->PassData(input->GetFieldData());
 }
 
-/** Output 2. */
-void PassBoundary(const Outcome& outcome, const Progress& progress, vtkPolyData* output)
+/**
+ * Output 2.
+ * @param[in] source  has the points of the rings
+ */
+void PassBoundary(
+  const elevation::Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output)
 {
-  vtkPoints* from = outcome.Source->GetPoints();
+  vtkPoints* from = source->GetPoints();
   vtkNew<vtkPoints> points;
   points->SetDataType(from ? from->GetDataType() : VTK_FLOAT);
   vtkPointData* pointData = output->GetPointData();
   pointData->CopyAllOn();
-  pointData->CopyAllocate(outcome.Source->GetPointData());
+  pointData->CopyAllocate(source->GetPointData());
   vtkNew<vtkCellArray> lines;
-  const elevation::Rings& rings = outcome.Boundary;
   for (Index ring = 0; ring < rings.Count(); ++ring)
   {
     const vtkIdType first = points->GetNumberOfPoints();
@@ -399,7 +191,7 @@ void PassBoundary(const Outcome& outcome, const Progress& progress, vtkPolyData*
     {
       ReportStep(progress, i, rings.Vertices.size());
       const vtkIdType id = points->InsertNextPoint(from->GetPoint(rings.Vertices[i]));
-      pointData->CopyData(outcome.Source->GetPointData(), rings.Vertices[i], id);
+      pointData->CopyData(source->GetPointData(), rings.Vertices[i], id);
       lines->InsertCellPoint(id);
     }
     lines->InsertCellPoint(first);
@@ -409,9 +201,8 @@ void PassBoundary(const Outcome& outcome, const Progress& progress, vtkPolyData*
 }
 
 /** In the field data of all outputs. */
-void AddCounts(const Outcome& outcome, vtkInformationVector* outputVector)
+void AddCounts(const Trimmed& trimmed, vtkInformationVector* outputVector)
 {
-  const elevation::TrimResult& trimmed = outcome.List.Trimmed;
   for (int port = 0; port < 3; ++port)
   {
     vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
@@ -419,10 +210,10 @@ void AddCounts(const Outcome& outcome, vtkInformationVector* outputVector)
     elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
     elevation::AddCount(fieldData, "NumberOfPointsLeftOut", trimmed.NumberOfPointsLeftOut);
     elevation::AddCount(
-      fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(outcome.List.Inserted.size()));
+      fieldData, "NumberOfInsertedPoints", static_cast<vtkIdType>(trimmed.Inserted.size()));
     vtkNew<vtkDoubleArray> tolerance;
     tolerance->SetName("EffectiveGapTolerance");
-    tolerance->InsertNextValue(outcome.GapTolerance);
+    tolerance->InsertNextValue(trimmed.GapTolerance);
     fieldData->AddArray(tolerance);
   }
 }
@@ -482,45 +273,42 @@ int vtkTrimOutwardTriangles::RequestData(
     {
       elevation::CheckArrays(given, "The boundary's");
     }
-    elevation::ExtractOptions extraction;
-    extraction.GapTolerance = this->GapTolerance;
-    extraction.NumberOfThreads = this->NumberOfThreads;
-    elevation::TrimOptions trimming;
-    trimming.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
-    trimming.RecoverBoundary = this->RecoverBoundary;
-    Outcome outcome;
-    const bool isDone = trimming.Test == elevation::OutwardTest::Exact &&
-      TrimQuickly(
-        input, given, extraction, this->RecoverBoundary, Part(progress, 0.0, 0.4), outcome);
-    if (!isDone)
+    elevation::TrianglesOfDataSet triangles = elevation::ViewTriangles(input);
+    elevation::BoundaryLines lines;
+    if (given && triangles.View.Count > 0)
     {
-      outcome = Outcome();
-      TrimMesh(input, given, extraction, trimming, Part(progress, 0.4, 0.8), outcome);
+      lines = ToLines(given, Part(progress, 0.0, 0.02));
     }
-    if (outcome.Boundary.Count() == 0)
+    const elevation::Progress trimming = Part(progress, 0.02, 0.8);
+    elevation::TrimOptions options;
+    options.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
+    options.RecoverBoundary = this->RecoverBoundary;
+    options.GapTolerance = this->GapTolerance;
+    options.TellParents = input->GetCellData()->GetNumberOfArrays() > 0;
+    options.NumberOfThreads = this->NumberOfThreads;
+    options.Monitor = trimming;
+    Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
+    const bool hasBoundary = trimmed.Boundary.Count() > 0;
+    if (!hasBoundary)
     {
-      vtkWarningMacro(<< (outcome.Count == 0
+      vtkWarningMacro(<< (triangles.View.Count == 0
                           ? "The input has no triangles, so there is nothing to trim."
                           : "No triangle is surface: all have an edge longer than "
                             "GapTolerance spacings. Raise GapTolerance."));
     }
 
-    vtkPolyData* kept = vtkPolyData::GetData(outputVector, 0);
-    vtkPolyData* outward = vtkPolyData::GetData(outputVector, 1);
-    PassPoints(input, outcome.List, Part(progress, 0.8, 0.84), kept);
-    outward->SetPoints(kept->GetPoints());
-    outward->GetPointData()->PassData(kept->GetPointData());
-    PassCells(input, outcome, elevation::ResolveNumberOfThreads(this->NumberOfThreads),
-      Part(progress, 0.84, 0.96), kept, outward);
-    PassBoundary(outcome, Part(progress, 0.96, 1.0), vtkPolyData::GetData(outputVector, 2));
-    AddCounts(outcome, outputVector);
+    PassSides(input, triangles, trimmed, this->NumberOfThreads, Part(progress, 0.8, 0.96),
+      vtkPolyData::GetData(outputVector, 0), vtkPolyData::GetData(outputVector, 1));
+    PassBoundary(trimmed.Boundary, given && hasBoundary ? given : input, Part(progress, 0.96, 1.0),
+      vtkPolyData::GetData(outputVector, 2));
+    AddCounts(trimmed, outputVector);
     Report(progress, 1.0);
     // Only now, as an abort or an error leaves no counts.
-    this->EffectiveGapTolerance = outcome.GapTolerance;
-    this->NumberOfOutwardTriangles = outcome.List.Trimmed.NumberOfOutwardTriangles;
-    this->NumberOfRecoveredEdges = outcome.List.Trimmed.NumberOfRecoveredEdges;
-    this->NumberOfPointsLeftOut = outcome.List.Trimmed.NumberOfPointsLeftOut;
-    this->NumberOfInsertedPoints = static_cast<vtkIdType>(outcome.List.Inserted.size());
+    this->EffectiveGapTolerance = trimmed.GapTolerance;
+    this->NumberOfOutwardTriangles = trimmed.NumberOfOutwardTriangles;
+    this->NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;
+    this->NumberOfPointsLeftOut = trimmed.NumberOfPointsLeftOut;
+    this->NumberOfInsertedPoints = static_cast<vtkIdType>(trimmed.Inserted.size());
   });
 }
 

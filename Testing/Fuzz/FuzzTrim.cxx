@@ -8,6 +8,8 @@
 #include "FuzzSurface.h"
 #include "Location.h"
 
+#include "Kernel/Trim/Outline.h"
+#include "Kernel/Trim/OutwardTriangles.h"
 #include "Kernel/Trim/Trim.h"
 
 #include <algorithm>
@@ -18,32 +20,38 @@ namespace
 using namespace fuzz;
 
 /** What has become of a surface. */
-struct Trimmed
+struct TrimmedMesh
 {
   std::string Message; ///< of the error, if there was one
   Mesh Triangles;
   std::vector<char> IsOutward; ///< one a triangle
   std::vector<Index> Parents;  ///< one a triangle added
   std::vector<InsertedVertex> Inserted;
-  Index NumberOfOutwardTriangles = 0;
   Index NumberOfRecoveredEdges = 0;
 };
 
-/** The call that is tried. */
-Trimmed TrimAlong(const Surface& surface, const std::vector<Point2>& points, const Rings& rings,
+/** Step by step, in a mesh of all triangles. */
+TrimmedMesh TrimStepByStep(const Surface& surface, const NamedPoints& points, const Rings& rings,
   const TrimOptions& options)
 {
-  Trimmed trimmed;
+  TrimmedMesh trimmed;
   Mesh& mesh = trimmed.Triangles;
   mesh = surface.Triangles;
   try
   {
     FindHoles(mesh);
     InsertedRings inserted = InsertRings(mesh, points, rings, options.RecoverBoundary);
-    TrimResult result = Trim(mesh, inserted.Vertices, options);
-    trimmed.IsOutward = std::move(result.IsOutward);
-    trimmed.NumberOfOutwardTriangles = result.NumberOfOutwardTriangles;
-    trimmed.NumberOfRecoveredEdges = result.NumberOfRecoveredEdges;
+    OutwardTriangles outward = FindOutward(mesh, inserted.Vertices, options.RecoverBoundary);
+    if (std::count(outward.IsOutward.begin(), outward.IsOutward.end(), char(0)) == 0)
+    {
+      throw Error("encloses no triangle");
+    }
+    if (options.Test == OutwardTest::InwardNormal)
+    {
+      TakeAlongBoundary(mesh, outward.IsOnBoundary, outward.IsOutward);
+    }
+    trimmed.IsOutward = std::move(outward.IsOutward);
+    trimmed.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
     trimmed.Parents = std::move(inserted.Parents);
     trimmed.Inserted = std::move(inserted.Inserted);
   }
@@ -55,34 +63,66 @@ Trimmed TrimAlong(const Surface& surface, const std::vector<Point2>& points, con
   return trimmed;
 }
 
-/** The same by a sweep over the triangles, where that can be done. */
-void RequireSameBySweep(const Surface& surface, const std::vector<Point2>& points,
-  const Rings& rings, bool recover, int threads, const Trimmed& expected)
+/** Without elevations, of which some are not finite. @param[out] xyz  the points */
+TriangleList ListOf(const Surface& surface, std::vector<double>& xyz)
 {
+  for (const Point2& p : surface.Triangles.Points)
+  {
+    xyz.insert(xyz.end(), { p.X, p.Y, 0.0 });
+  }
   TriangleList list;
   list.Corners = surface.Triangles.Triangles.data();
   list.Count = surface.Triangles.NumberOfTriangles();
-  list.Points = surface.Points();
-  TrimmedList quick;
-  if (!QuickTrim(list, points, rings, recover, threads, Progress(), quick))
+  list.Points.Double = xyz.data();
+  list.Points.Count = surface.Triangles.NumberOfPoints();
+  return list;
+}
+
+/** Trim(), which looks at the triangles near the rings alone where it can. */
+void RequireSame(const Surface& surface, const BoundaryLines& lines, const TrimOptions& options,
+  const TrimmedMesh& expected)
+{
+  std::vector<double> xyz;
+  const TriangleList list = ListOf(surface, xyz);
+  Trimmed trimmed;
+  try
   {
+    trimmed = Trim(list, &lines, options);
+  }
+  catch (const Error&)
+  {
+    Require(!expected.Message.empty(), "what is an error is one step by step too");
     return;
   }
-  Require(expected.Message.empty(), "what is an error is one by a sweep too");
-  std::vector<Index> corners = surface.Triangles.Triangles;
-  auto next = quick.Corners.begin();
-  for (const Index t : quick.Changed)
+  if (!expected.Message.empty())
   {
-    std::copy_n(next, 3, corners.begin() + 3 * t);
-    next += 3;
+    return; // rings that cross where no triangle is
   }
-  corners.insert(corners.end(), next, quick.Corners.end());
-  Require(corners == expected.Triangles.Triangles, "a sweep makes the same triangles");
-  Require(quick.Trimmed.IsOutward == expected.IsOutward, "a sweep keeps the same triangles");
-  Require(quick.Parents == expected.Parents, "a sweep cuts the same triangles");
-  Require(quick.Trimmed.NumberOfOutwardTriangles == expected.NumberOfOutwardTriangles &&
-      quick.Trimmed.NumberOfRecoveredEdges == expected.NumberOfRecoveredEdges,
-    "a sweep counts the same");
+  const Mesh& mesh = expected.Triangles;
+  std::vector<Index> corners[2], parents[2];
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const int side = expected.IsOutward[t];
+    corners[side].insert(corners[side].end(), mesh.Triangles.begin() + 3 * t,
+      mesh.Triangles.begin() + 3 * t + 3);
+    parents[side].push_back(t < list.Count ? t : expected.Parents[t - list.Count]);
+  }
+  const TrimmedSide* const sides[2] = { &trimmed.Kept, &trimmed.Outward };
+  for (const int side : { 0, 1 })
+  {
+    const TrimmedSide& found = *sides[side];
+    Require(found.IsWholeList
+        ? corners[side] == surface.Triangles.Triangles
+        : std::equal(found.Corners.begin(), found.Corners.end(), corners[side].begin(),
+            corners[side].end()),
+      "the triangles of each side are the same");
+    Require(std::equal(found.Parents.begin(), found.Parents.end(), parents[side].begin(),
+              parents[side].end()),
+      "the same triangles are cut");
+  }
+  Require(trimmed.NumberOfOutwardTriangles == static_cast<Index>(parents[1].size()) &&
+      trimmed.NumberOfRecoveredEdges == expected.NumberOfRecoveredEdges,
+    "the counts are the same");
 }
 
 // ------------------------------------------------------------------------------------------- rings
@@ -201,9 +241,9 @@ BoundaryLines ToLines(Input& input, const std::vector<Ring>& rings)
   };
   for (const Ring& ring : rings)
   {
-    const Index first = static_cast<Index>(lines.Points.size());
+    const Index first = static_cast<Index>(lines.Points.Places.size());
     const Index size = static_cast<Index>(ring.size());
-    lines.Points.insert(lines.Points.end(), ring.begin(), ring.end());
+    lines.Points.Places.insert(lines.Points.Places.end(), ring.begin(), ring.end());
     const unsigned kind = input.Below(4);
     for (Index i = 0; i < size; ++i)
     {
@@ -283,7 +323,7 @@ void ForEachEdge(const std::vector<Point2>& points, const Rings& rings, Visit&& 
 }
 
 /** Rings run along edges, and triangles are kept that are inside; but for rounding. */
-void RequireInside(const Trimmed& trimmed, const std::vector<Point2>& points, const Rings& rings,
+void RequireInside(const TrimmedMesh& trimmed, const std::vector<Point2>& points, const Rings& rings,
   double rounding, bool exact)
 {
   const Mesh& mesh = trimmed.Triangles;
@@ -304,9 +344,9 @@ void RequireInside(const Trimmed& trimmed, const std::vector<Point2>& points, co
       if (depth > rounding)
       {
         Fail("a ring runs through a triangle, " + std::to_string(depth / rounding) + " roundings deep, from " +
-          NameOf({ a }, 0) + " to " + NameOf({ b }, 0) + " through triangle " + std::to_string(t) + " of " +
-          NameOf(mesh.Points, mesh.Origin(3 * t)) + NameOf(mesh.Points, mesh.Origin(3 * t + 1)) +
-          NameOf(mesh.Points, mesh.Origin(3 * t + 2)));
+          NameOf(None, a) + " to " + NameOf(None, b) + " through triangle " + std::to_string(t) + " of " +
+          NameOf(mesh, mesh.Origin(3 * t)) + NameOf(mesh, mesh.Origin(3 * t + 1)) +
+          NameOf(mesh, mesh.Origin(3 * t + 2)));
       }
     });
     if (distance <= rounding)
@@ -319,7 +359,7 @@ void RequireInside(const Trimmed& trimmed, const std::vector<Point2>& points, co
   }
 }
 
-void RequireInsertedFits(const Surface& surface, const Trimmed& trimmed, double rounding)
+void RequireInsertedFits(const Surface& surface, const TrimmedMesh& trimmed, double rounding)
 {
   const Index before = surface.Triangles.NumberOfPoints();
   for (std::size_t i = 0; i < trimmed.Inserted.size(); ++i)
@@ -343,7 +383,7 @@ void RequireInsertedFits(const Surface& surface, const Trimmed& trimmed, double 
 }
 
 void RequireTrimmed(const Surface& surface, const std::vector<Point2>& points, const Rings& rings,
-  const TrimOptions& options, const Trimmed& trimmed)
+  const TrimOptions& options, const TrimmedMesh& trimmed)
 {
   const Mesh& mesh = trimmed.Triangles;
   double largest = surface.Largest;
@@ -356,9 +396,6 @@ void RequireTrimmed(const Surface& surface, const std::vector<Point2>& points, c
   RequireNone(SurfaceFindings(mesh, isThick), "trimmed, with what is outward");
   Require(trimmed.IsOutward.size() == static_cast<std::size_t>(mesh.NumberOfTriangles()),
     "every triangle has a flag");
-  Require(std::count(trimmed.IsOutward.begin(), trimmed.IsOutward.end(), char(1)) ==
-      trimmed.NumberOfOutwardTriangles,
-    "outward triangles are counted");
   Require(mesh.NumberOfTriangles() ==
       surface.Triangles.NumberOfTriangles() + static_cast<Index>(trimmed.Parents.size()),
     "every triangle added has a parent");
@@ -385,19 +422,18 @@ void RequireOutline(const Surface& surface, const ExtractOptions& options)
   const Rings& rings = extracted.Vertices;
   Require(extracted.IsSurface.size() == static_cast<std::size_t>(mesh.NumberOfTriangles()),
     "every triangle has a flag");
-  TriangleList list;
-  list.Corners = mesh.Triangles.data();
-  list.Count = mesh.NumberOfTriangles();
-  list.Points = surface.Points();
-  TrimmedList quick;
-  ExtractedBoundary swept;
-  if (QuickExtract(list, options, quick, swept))
-  {
-    Require(swept.IsSurface == extracted.IsSurface && swept.Vertices.Vertices == rings.Vertices &&
-        swept.Vertices.Offsets == rings.Offsets &&
-        swept.NumberOfPointsLeftOut == extracted.NumberOfPointsLeftOut,
-      "a sweep finds the same outline");
-  }
+  TrimOptions once;
+  once.GapTolerance = options.GapTolerance;
+  once.NumberOfThreads = options.NumberOfThreads;
+  std::vector<double> xyz;
+  const Trimmed found = Trim(ListOf(surface, xyz), nullptr, once);
+  Require(found.Boundary.Vertices == rings.Vertices && found.Boundary.Offsets == rings.Offsets &&
+      found.NumberOfPointsLeftOut == extracted.NumberOfPointsLeftOut &&
+      std::all_of(found.Kept.Parents.begin(), found.Kept.Parents.end(),
+        [&](Index t) { return extracted.IsSurface[t] != 0; }) &&
+      std::all_of(found.Outward.Parents.begin(), found.Outward.Parents.end(),
+        [&](Index t) { return extracted.IsSurface[t] == 0; }),
+    "a sweep finds the same outline");
   if (rings.Count() == 0)
   {
     Require(std::count(extracted.IsSurface.begin(), extracted.IsSurface.end(), char(1)) == 0,
@@ -412,10 +448,8 @@ void RequireOutline(const Surface& surface, const ExtractOptions& options)
         std::adjacent_find(vertices.begin(), vertices.end()) == vertices.end(),
       "rings are simple");
   }
-  TrimOptions trimming;
-  trimming.RecoverBoundary = false;
   Mesh trimmed = mesh;
-  const TrimResult result = Trim(trimmed, rings, trimming);
+  const OutwardTriangles result = FindOutward(trimmed, rings, false);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     Require(result.IsOutward[t] != extracted.IsSurface[t], "the outline goes around the surface");
@@ -449,7 +483,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const BoundaryLines lines = ToLines(forRings, given);
   Show("points of the surface", surface.Points());
   Show("corners of the surface", surface.Triangles.Triangles);
-  Show("points of the boundary", lines.Points);
+  Show("points of the boundary", lines.Points.Places);
   Show("offsets of its lines", lines.Lines.Offsets);
   Show("points of its lines", lines.Lines.Vertices);
   RequireNone(SurfaceFindings(surface.Triangles), "the input");
@@ -457,7 +491,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     return 0;
   }
-  if (lines.Points.empty())
+  if (lines.Points.Places.empty())
   {
     // Of coordinates that differ too much in size the small ones vanish when all are scaled.
     const auto isSmall = [&](double value) {
@@ -484,15 +518,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   TrimOptions options;
   options.RecoverBoundary = (bits & 1) == 0;
   options.Test = (bits & 48) == 48 ? OutwardTest::InwardNormal : OutwardTest::Exact;
-  const Trimmed trimmed = TrimAlong(surface, lines.Points, rings, options);
+  options.NumberOfThreads = extraction.NumberOfThreads;
+  const TrimmedMesh trimmed = TrimStepByStep(surface, lines.Points, rings, options);
   if (trimmed.Message.empty())
   {
-    RequireTrimmed(surface, lines.Points, rings, options, trimmed);
+    RequireTrimmed(surface, lines.Points.Places, rings, options, trimmed);
   }
-  if (options.Test == OutwardTest::Exact)
-  {
-    RequireSameBySweep(surface, lines.Points, rings, options.RecoverBoundary,
-      extraction.NumberOfThreads, trimmed);
-  }
+  RequireSame(surface, lines, options, trimmed);
   return 0;
 }

@@ -11,12 +11,22 @@
 namespace elevation
 {
 
-std::string NameOf(const std::vector<Point2>& points, Index id)
+std::string NameOf(Index id, const Point2& p)
 {
   char text[96];
-  std::snprintf(text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), points[id].X,
-    points[id].Y);
+  std::snprintf(
+    text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), p.X, p.Y);
   return text;
+}
+
+std::string NameOf(const NamedPoints& points, Index i)
+{
+  return NameOf(points.IdOf(i), points[i]);
+}
+
+std::string NameOf(const Mesh& mesh, Index vertex)
+{
+  return NameOf(mesh.IdOf(vertex), mesh.PointOf(vertex));
 }
 
 namespace

@@ -25,8 +25,28 @@
 namespace elevation
 {
 
+/** Points, and the ids by which messages name them: their numbers where there are none. */
+struct NamedPoints
+{
+  NamedPoints(std::vector<Point2> places = {}, std::vector<Index> ids = {})
+    : Places(std::move(places))
+    , Ids(std::move(ids))
+  {
+  }
+
+  const Point2& operator[](Index i) const { return this->Places[i]; }
+  Index IdOf(Index i) const { return this->Ids.empty() ? i : this->Ids[i]; }
+
+  std::vector<Point2> Places;
+  std::vector<Index> Ids;
+};
+
+class Mesh;
+
 /** A point as messages name it: "point 7 (1.5, 2)". */
-std::string NameOf(const std::vector<Point2>& points, Index id);
+std::string NameOf(Index id, const Point2& p);
+std::string NameOf(const NamedPoints& points, Index i);
+std::string NameOf(const Mesh& mesh, Index vertex);
 
 class Mesh
 {
@@ -37,6 +57,12 @@ public:
   std::vector<Point2> Points;
   std::vector<Index> Triangles; ///< three vertices a triangle, counter-clockwise
   std::vector<Index> Twins;     ///< one a half-edge; filled by ConnectTwins
+  /**
+   * Of a part of a larger mesh: the ids there of its points, which messages use. Points added
+   * behind have ids that follow those of the larger mesh.
+   */
+  std::vector<Index> Ids;
+  Index FirstNewId = 0;
 
   Index NumberOfPoints() const { return static_cast<Index>(this->Points.size()); }
   Index NumberOfTriangles() const { return static_cast<Index>(this->Triangles.size() / 3); }
@@ -53,6 +79,13 @@ public:
   Index Twin(Index h) const { return this->Twins[h]; }
   bool IsBorder(Index h) const { return this->Twins[h] == Border; }
   const Point2& PointOf(Index vertex) const { return this->Points[vertex]; }
+  Index IdOf(Index vertex) const
+  {
+    const Index known = static_cast<Index>(this->Ids.size());
+    return known == 0  ? vertex
+      : vertex < known ? this->Ids[vertex]
+                       : this->FirstNewId + (vertex - known);
+  }
 
   /**
    * Fills Twins from Triangles. Linear in time and memory, but for sorting the borders.

@@ -122,7 +122,8 @@ public:
   {
   }
 
-  void Run(const Progress& progress)
+  /** @return whether nothing is covered twice; if not, Fault() tells what is */
+  bool Run(const Progress& progress)
   {
     this->MakeSegments(Part(progress, 0.0, 0.05));
     this->FindTurns(Part(progress, 0.05, 0.1));
@@ -142,7 +143,10 @@ public:
       {
         ++last;
       }
-      this->Stop(first, last);
+      if (!this->Stop(first, last))
+      {
+        return false;
+      }
       first = last;
       if (first >= told)
       {
@@ -151,7 +155,10 @@ public:
       }
     }
     this->MakeHoles();
+    return true;
   }
+
+  const std::string& Fault() const { return this->Message; }
 
 private:
   using Place = std::set<Index, IsLeftOf>::iterator;
@@ -221,8 +228,8 @@ private:
     this->Result.Touched.assign(this->Rims.size(), 0);
   }
 
-  /** All that happens at one point. */
-  void Stop(std::size_t first, std::size_t last)
+  /** All that happens at one point. @return whether all is right there */
+  bool Stop(std::size_t first, std::size_t last)
   {
     const Point2 p = this->Events[first].At;
 
@@ -260,7 +267,10 @@ private:
       const Index segment = this->Events[i].Segment;
       this->Places[segment] = this->Status.insert(behind, segment);
     }
-    this->CheckOrder(hasLeft ? left : this->Status.begin(), behind, p);
+    if (!this->IsInOrder(hasLeft ? left : this->Status.begin(), behind, p))
+    {
+      return false;
+    }
 
     // The first edges of a walk are at its lowest point: what is left of them is empty.
     for (Place place = hasLeft ? std::next(left) : this->Status.begin(); place != behind; ++place)
@@ -272,6 +282,7 @@ private:
       }
     }
     this->MarkContacts(p, last);
+    return true;
   }
 
   bool IsOn(Index segment, const Point2& p) const
@@ -282,35 +293,32 @@ private:
   Index RegionOf(Index segment) const { return this->Regions[this->Segments[segment].Walk]; }
 
   /** From @a begin to @a end, both included: into the surface, out of it, into it, ... */
-  void CheckOrder(Place begin, Place end, const Point2& p) const
+  bool IsInOrder(Place begin, Place end, const Point2& p)
   {
     if (begin == this->Status.begin() && begin != this->Status.end() && this->Segments[*begin].IsUp)
     {
-      this->RefuseOverlap(*begin, p);
+      return this->RefuseOverlap(*begin, p);
     }
     for (Place place = begin; place != end && place != this->Status.end(); ++place)
     {
       const Place next = std::next(place);
       if (next == this->Status.end())
       {
-        if (!this->Segments[*place].IsUp)
-        {
-          this->RefuseOverlap(*place, p);
-        }
-        return;
+        return this->Segments[*place].IsUp || this->RefuseOverlap(*place, p);
       }
       const Segment& s = this->Segments[*place];
       const Segment& t = this->Segments[*next];
       if (CrossInside(s, t))
       {
-        this->RefuseCrossing(s, t);
+        return this->RefuseCrossing(s, t);
       }
       if (s.IsUp == t.IsUp)
       {
         // Twice in: the right one's triangle lies on covered ground; twice out: the left one's.
-        this->RefuseOverlap(s.IsUp ? *place : *next, p);
+        return this->RefuseOverlap(s.IsUp ? *place : *next, p);
       }
     }
+    return true;
   }
 
   std::string CellOf(const Segment& segment) const
@@ -324,20 +332,22 @@ private:
       std::to_string(this->Surface.Destination(segment.HalfEdge));
   }
 
-  [[noreturn]] void RefuseCrossing(const Segment& s, const Segment& t) const
+  bool RefuseCrossing(const Segment& s, const Segment& t)
   {
-    throw Error("Cell " + this->CellOf(s) + " overlaps cell " + this->CellOf(t) +
+    this->Message = "Cell " + this->CellOf(s) + " overlaps cell " + this->CellOf(t) +
       " in x,y: the border edges of points " + this->EdgeOf(s) + " and " + this->EdgeOf(t) +
-      " cross. An elevation surface has one z at each x,y.");
+      " cross. An elevation surface has one z at each x,y.";
+    return false;
   }
-  [[noreturn]] void RefuseOverlap(Index segment, const Point2& p) const
+  bool RefuseOverlap(Index segment, const Point2& p)
   {
     std::ostringstream message;
     message.precision(17);
     message << "Cell " << this->CellOf(this->Segments[segment])
             << " lies over or under another part of the surface (near x, y = " << p.X << ", " << p.Y
             << "). An elevation surface has one z at each x,y.";
-    throw Error(message.str());
+    this->Message = message.str();
+    return false;
   }
 
   /** Vertices here that lie inside an edge, or at the same place as another vertex. */
@@ -454,7 +464,40 @@ private:
   std::vector<Index> Regions; ///< the empty region of each walk: a hole, or Outside
   std::vector<Index> Rims;    ///< the rim of each hole
   std::vector<Index> Passing; ///< segments with the present point inside
+  std::string Message;        ///< of what is wrong
 };
+
+/** The border as a mesh of which nothing else is true: half-edge 3i is its i-th. */
+Mesh MeshOfBorder(
+  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
+{
+  Mesh mesh;
+  IdSet used(points.Count);
+  for (std::size_t i = 0; i < border.size(); ++i)
+  {
+    ReportStep(progress, i, 3 * border.size());
+    used.Add(border[i].Origin);
+    used.Add(border[i].Destination);
+  }
+  const std::vector<Index> ids = used.Number();
+  mesh.Points.reserve(ids.size());
+  for (const Index id : ids)
+  {
+    ReportStep(progress, ids.size() + mesh.Points.size(), 3 * ids.size());
+    mesh.Points.push_back(points.At(id));
+  }
+  mesh.Triangles.reserve(3 * border.size());
+  mesh.Twins.reserve(3 * border.size());
+  for (std::size_t i = 0; i < border.size(); ++i)
+  {
+    ReportStep(progress, 2 * border.size() + i, 3 * border.size());
+    const Index origin = used.NumberOf(border[i].Origin);
+    mesh.Triangles.insert(
+      mesh.Triangles.end(), { origin, used.NumberOf(border[i].Destination), origin });
+    mesh.Twins.insert(mesh.Twins.end(), { Mesh::Border, 0, 0 });
+  }
+  return mesh;
+}
 } // namespace
 
 Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
@@ -462,8 +505,22 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
   Holes holes;
   holes.Walks = TraceBorder(mesh, Part(progress, 0.0, 0.5));
   StartAtLowest(mesh, holes.Walks);
-  BorderSweep(mesh, firstCell, holes).Run(Part(progress, 0.5, 1.0));
+  BorderSweep sweep(mesh, firstCell, holes);
+  if (!sweep.Run(Part(progress, 0.5, 1.0)))
+  {
+    throw Error(sweep.Fault());
+  }
   return holes;
+}
+
+bool CoversOnce(
+  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
+{
+  const Mesh mesh = MeshOfBorder(border, points, Part(progress, 0.0, 0.5));
+  Holes holes;
+  holes.Walks = TraceBorder(mesh, Part(progress, 0.5, 0.75));
+  StartAtLowest(mesh, holes.Walks);
+  return BorderSweep(mesh, 0, holes).Run(Part(progress, 0.75, 1.0));
 }
 
 } // namespace elevation

@@ -30,6 +30,7 @@
 #define elevation_Mesh_Holes_h
 
 #include "HalfEdgeMesh.h"
+#include "TriangleList.h"
 
 #include <vector>
 
@@ -90,6 +91,14 @@ struct Holes
  *         Aborted; std::bad_alloc
  */
 Holes FindHoles(const Mesh& mesh, Index firstCell = 0, const Progress& progress = Progress());
+
+/**
+ * Whether the border alone proves that nothing is covered twice, for triangles that are
+ * counter-clockwise. Where not, FindHoles() names the cell.
+ * @throws Aborted; std::bad_alloc
+ */
+bool CoversOnce(
+  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress);
 
 } // namespace elevation
 

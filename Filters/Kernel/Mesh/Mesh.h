@@ -11,7 +11,7 @@
 #include "Holes.h"
 #include "Recovery.h"
 #include "Segments.h"
-#include "SubMesh.h"
+#include "TriangleList.h"
 #include "TriangleSweep.h"
 #include "Validate.h"
 #include "VertexStars.h"

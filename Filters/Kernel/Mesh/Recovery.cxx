@@ -17,8 +17,7 @@ namespace
 
 std::string NameOfSegment(const Mesh& mesh, const Segment& segment)
 {
-  return "The segment from " + NameOf(mesh.Points, segment.A) + " to " +
-    NameOf(mesh.Points, segment.B);
+  return "The segment from " + NameOf(mesh, segment.A) + " to " + NameOf(mesh, segment.B);
 }
 
 /** One side of a segment: an empty polygon, and the triangles that fill it. */
@@ -174,7 +173,7 @@ public:
         throw Error("A segment ends in " +
           (end < 0 || end >= this->Surface.NumberOfPoints()
               ? "point " + std::to_string(end) + ", which does not exist."
-              : NameOf(this->Surface.Points, end) + ", which is not the corner of any triangle."));
+              : NameOf(this->Surface, end) + ", which is not the corner of any triangle."));
       }
     }
     bool missing = false;
@@ -249,8 +248,8 @@ private:
       if (this->Constrained[crossed])
       {
         throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
-          NameOf(mesh.Points, mesh.Origin(crossed)) + " to " +
-          NameOf(mesh.Points, mesh.Destination(crossed)) +
+          NameOf(mesh, mesh.Origin(crossed)) + " to " +
+          NameOf(mesh, mesh.Destination(crossed)) +
           ". Segments may not cross; they may meet in a vertex.");
       }
       const Index beyond = mesh.Twin(crossed);
@@ -395,7 +394,7 @@ private:
   {
     throw Error(NameOfSegment(this->Surface, segment) +
       " leaves the mesh: it crosses a hole or the outside" +
-      (from == segment.A ? "." : " after " + NameOf(this->Surface.Points, from) + "."));
+      (from == segment.A ? "." : " after " + NameOf(this->Surface, from) + "."));
   }
 
   struct OldEdge

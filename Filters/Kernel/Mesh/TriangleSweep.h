@@ -18,7 +18,7 @@
 #ifndef elevation_Mesh_TriangleSweep_h
 #define elevation_Mesh_TriangleSweep_h
 
-#include "SubMesh.h"
+#include "TriangleList.h"
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>

@@ -360,7 +360,7 @@ private:
 
 } // namespace
 
-std::string NameOfEdge(const std::vector<Point2>& points, const Rings& rings, std::size_t edge)
+std::string NameOfEdge(const NamedPoints& points, const Rings& rings, std::size_t edge)
 {
   const Index from = static_cast<Index>(edge);
   const auto end = std::upper_bound(rings.Offsets.begin(), rings.Offsets.end(), from);
@@ -369,7 +369,7 @@ std::string NameOfEdge(const std::vector<Point2>& points, const Rings& rings, st
     NameOf(points, rings.Vertices[to]);
 }
 
-void CheckCrossings(const std::vector<Point2>& points, const Rings& rings, const Progress& progress)
+void CheckCrossings(const NamedPoints& points, const Rings& rings, const Progress& progress)
 {
   std::vector<Ends> edges;
   for (Index ring = 0; ring < rings.Count(); ++ring)
@@ -387,7 +387,7 @@ void CheckCrossings(const std::vector<Point2>& points, const Rings& rings, const
       NameOfEdge(points, rings, j) + ". Rings may touch and nest, but not cross.");
   });
 
-  const RingWalks walks(points, rings, edges, grid, Part(progress, 0.5, 0.75));
+  const RingWalks walks(points.Places, rings, edges, grid, Part(progress, 0.5, 0.75));
   RingWalks::Meeting crossing;
   if (!walks.FindCrossing(crossing, Part(progress, 0.75, 1.0)))
   {

@@ -23,11 +23,11 @@ namespace elevation
 {
 
 /** How messages name the edge from the ring's point rings.Vertices[edge]. */
-std::string NameOfEdge(const std::vector<Point2>& points, const Rings& rings, std::size_t edge);
+std::string NameOfEdge(const NamedPoints& points, const Rings& rings, std::size_t edge);
 
 /** @throws Error naming the edges, or the points, where rings cross; Aborted; std::bad_alloc */
 void CheckCrossings(
-  const std::vector<Point2>& points, const Rings& rings, const Progress& progress = Progress());
+  const NamedPoints& points, const Rings& rings, const Progress& progress = Progress());
 
 } // namespace elevation
 

@@ -69,7 +69,7 @@ private:
 class Insertion
 {
 public:
-  Insertion(Mesh& mesh, const std::vector<Point2>& points, const Rings& rings, bool insert,
+  Insertion(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
     InsertedRings& result)
     : Surface(mesh)
     , Points(points)
@@ -115,7 +115,7 @@ private:
 
   std::string NameOfVertex(Index vertex) const
   {
-    const std::string name = NameOf(this->Surface.Points, vertex);
+    const std::string name = NameOf(this->Surface, vertex);
     return vertex < this->CountBefore
       ? name + " of the mesh"
       : "where the boundary has cut it already" + name.substr(name.find(" ("));
@@ -158,8 +158,8 @@ private:
       }
       if (found->second != None)
       {
-        throw Error("Points " + std::to_string(std::min(found->second, vertex)) + " and " +
-          std::to_string(std::max(found->second, vertex)) +
+        throw Error("Points " + std::to_string(mesh.IdOf(std::min(found->second, vertex))) +
+          " and " + std::to_string(mesh.IdOf(std::max(found->second, vertex))) +
           " of the mesh have the same x,y and both are corners of triangles, so that the "
           "boundary's point there is not one place of the mesh. Merge them, as "
           "vtkStaticCleanPolyData does.");
@@ -236,7 +236,8 @@ private:
   void Reserve(std::size_t vertices)
   {
     constexpr std::size_t most = MaximumNumberOfPoints;
-    if (this->Surface.Points.size() + this->VertexAt.size() + vertices > most ||
+    const std::size_t before = this->Surface.IdOf(this->Surface.NumberOfPoints());
+    if (before + this->VertexAt.size() + vertices > most ||
       this->Surface.Triangles.size() / 3 + 2 * vertices > 2 * most)
     {
       throw Error("The mesh has no room for " + std::to_string(vertices) +
@@ -819,7 +820,7 @@ private:
 
   [[noreturn]] void RefuseDoubleBorder(std::size_t edge, const Point2& p) const
   {
-    const std::string name = NameOf(std::vector<Point2>{ p }, 0);
+    const std::string name = NameOf(None, p);
     throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes" +
       name.substr(name.find(" (")) +
       ", where borders of the mesh lie on each other without points in common. Merge the points, "
@@ -1112,7 +1113,7 @@ private:
   };
 
   Mesh& Surface;
-  const std::vector<Point2>& Points;
+  const NamedPoints& Points;
   const Rings& Given;
   const bool MayInsert;
   InsertedRings& Result;
@@ -1131,8 +1132,8 @@ private:
 
 } // namespace
 
-InsertedRings InsertRings(Mesh& mesh, const std::vector<Point2>& points, const Rings& rings,
-  bool insert, const Progress& progress)
+InsertedRings InsertRings(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
+  const Progress& progress)
 {
   InsertedRings result;
   Insertion(mesh, points, rings, insert, result).Run(progress);

@@ -66,8 +66,8 @@ struct InsertedRings
  *         each other; a crossing with a triangle so thin that it cannot be cut there; with insert
  *         off, a point or a crossing that the mesh does not have. Aborted; std::bad_alloc.
  */
-InsertedRings InsertRings(Mesh& mesh, const std::vector<Point2>& points, const Rings& rings,
-  bool insert, const Progress& progress = Progress());
+InsertedRings InsertRings(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
+  const Progress& progress = Progress());
 
 } // namespace elevation
 

@@ -34,7 +34,6 @@ constexpr double SmallGroup = 0.7;
 // A tenth of a spacing is what a line of points wavers by, when it is one; the narrow triangles
 // between points of scan lines eight times denser along than across are seven times as high.
 constexpr double LeastHeight = 0.1;
-constexpr Index LargestSample = 4096;
 // Smaller ones, whose squares leave the range of double, are taken as this: no spacing is 0.
 constexpr double LeastSpacing = 1e-150;
 
@@ -529,13 +528,6 @@ Index CountLeftOut(
   return leftOut.Count();
 }
 
-std::vector<Index> AllTriangles(const TriangleList& list)
-{
-  std::vector<Index> triangles(list.Count);
-  std::iota(triangles.begin(), triangles.end(), 0);
-  return triangles;
-}
-
 /** The corners of triangles, in the order in which those name them. */
 std::vector<Index> CornersOf(
   const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
@@ -663,13 +655,12 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
 }
 
 /** Triangles as a mesh with Twins. A half-edge that is its own leads to one that is not here. */
-class PartialMesh : public SubMesh
+struct PartialMesh
 {
-public:
   /** @param[in] border  sorted */
   PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
     const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress)
-    : SubMesh(list, triangles, Part(progress, 0.0, 0.5))
+    : Surface(PartOf(list, triangles, Part(progress, 0.0, 0.5)))
     , Triangles(std::move(triangles))
   {
     this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));
@@ -683,8 +674,8 @@ public:
         {
           if (this->Surface.IsBorder(h))
           {
-            const BorderEdge edge{ this->Ids[this->Surface.Origin(h)],
-              this->Ids[this->Surface.Destination(h)] };
+            const BorderEdge edge{ this->Surface.IdOf(this->Surface.Origin(h)),
+              this->Surface.IdOf(this->Surface.Destination(h)) };
             if (!atBorder.Has(edge.Origin) || !atBorder.Has(edge.Destination) ||
               !std::binary_search(border.begin(), border.end(), edge))
             {
@@ -695,6 +686,7 @@ public:
       });
   }
 
+  Mesh Surface;
   const std::vector<Index> Triangles; ///< their ids in the list
 
   std::vector<char> FlagsOf(const std::vector<char>& flags) const
@@ -789,28 +781,18 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
     {
       mesh.PutFlags(keepHere, keep);
       result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
-      ToIds(result.Vertices.Vertices, mesh.Ids.data(), Part(round, 1.0, 1.0));
+      ToIds(result.Vertices.Vertices, mesh.Surface.Ids.data(), Part(round, 1.0, 1.0));
       return;
     }
     // To see more of these pieces.
     for (const Index vertex : unknown)
     {
-      near.Add(mesh.Ids[vertex]);
+      near.Add(mesh.Surface.Ids[vertex]);
     }
   }
 }
 
 } // namespace
-
-int SampleBitsOf(Index numberOfTriangles)
-{
-  int bits = 0;
-  while (numberOfTriangles >> bits > LargestSample)
-  {
-    ++bits;
-  }
-  return bits;
-}
 
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options)
 {
@@ -905,75 +887,23 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
   });
   TraceSurface(measured, atBorder, spacings, std::move(near), Part(progress, 0.75, 0.95), result);
   result.NumberOfPointsLeftOut = CountLeftOut(list, result.IsSurface, Part(progress, 0.95, 1.0));
+  if (measured.Ids.size() > 0)
+  {
+    ToIds(result.Vertices.Vertices, measured.Ids.data(), Part(progress, 1.0, 1.0));
+  }
   Report(progress, 1.0);
   return result;
 }
 
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)
 {
-  const Index count = mesh.NumberOfTriangles();
-  if (count == 0)
+  if (mesh.NumberOfTriangles() == 0)
   {
     ExtractedBoundary nothing;
     nothing.GapTolerance = options.GapTolerance;
     return nothing;
   }
-  // At a scale where squares do not leave the range of double.
-  double largest = 0.0;
-  for (const Index v : mesh.Triangles)
-  {
-    largest = std::max({ largest, std::fabs(mesh.PointOf(v).X), std::fabs(mesh.PointOf(v).Y) });
-  }
-  const double scale =
-    largest > LargestUnscaled || largest < LeastUnscaled ? ScaleToOne(largest) : 1.0;
-  Buffer<double> coordinates;
-  coordinates.Reserve(3 * mesh.Points.size());
-  for (const Point2& p : mesh.Points)
-  {
-    coordinates.Append(scale * p.X);
-    coordinates.Append(scale * p.Y);
-    coordinates.Append(0.0);
-  }
-  MeasuredTriangles measured;
-  TriangleList& list = measured.List;
-  list.Corners = mesh.Triangles.data();
-  list.Count = count;
-  list.Points.Double = coordinates.data();
-  list.Points.Count = mesh.NumberOfPoints();
-  measured.Longest.Resize(count);
-  measured.SetNumberOfVertices(list.Points.Count);
-  std::vector<EdgesAtVertex> edges(mesh.Points.size());
-  const int bits = SampleBitsOf(count);
-  ForEachStretch(count, Part(options.Monitor, 0.0, 0.4), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      measured.Longest[t] = 0.0;
-      bool isInSample = false;
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
-      {
-        const BorderEdge edge{ mesh.Origin(h), mesh.Destination(h) };
-        const Point2 origin = list.Points.At(edge.Origin);
-        const double squared = SquaredLength(origin, list.Points.At(edge.Destination));
-        measured.Longest[t] = std::max(measured.Longest[t], squared);
-        edges[edge.Origin].Add(squared);
-        isInSample = isInSample || IsChosenForSample(origin, bits);
-        if (mesh.IsBorder(h))
-        {
-          // No half-edge leaves its other end.
-          edges[edge.Destination].Add(squared);
-          measured.Border.push_back(edge);
-        }
-      }
-      if (isInSample)
-      {
-        measured.Sample.push_back(t);
-      }
-    }
-  });
-  for (Index v = 0; v < list.Points.Count; ++v)
-  {
-    measured.Set(v, edges[v]);
-  }
+  MeasuredTriangles measured = Measure(mesh, Part(options.Monitor, 0.0, 0.4));
   ExtractOptions rest = options;
   const Progress finding = Part(options.Monitor, 0.4, 1.0);
   rest.Monitor = finding;

@@ -190,6 +190,24 @@ void Append(Rings& rings, const std::vector<Index>& points)
 
 } // namespace
 
+void TakePoints(const PointView& points, BoundaryLines& lines)
+{
+  IdSet used(points.Count);
+  for (const Index id : lines.Lines.Vertices)
+  {
+    used.Add(id);
+  }
+  lines.Points.Ids = used.Number();
+  for (const Index id : lines.Points.Ids)
+  {
+    lines.Points.Places.push_back(points.At(id));
+  }
+  for (Index& vertex : lines.Lines.Vertices)
+  {
+    vertex = used.NumberOf(vertex);
+  }
+}
+
 Rings JoinLines(const BoundaryLines& lines)
 {
   const std::vector<Piece> pieces = MakePieces(lines);

@@ -65,18 +65,24 @@ struct HashOfPoint
 /** Lines and polygons as they come in, each a list of points. */
 struct BoundaryLines
 {
-  std::vector<Point2> Points;
-  Rings Lines;                 ///< ids of Points; a line is closed only if it returns to its first
+  NamedPoints Points;
+  Rings Lines;                 ///< numbers of Points; a line is closed only if it returns to its first
   std::vector<char> IsPolygon; ///< one a line; a polygon closes by itself
   std::vector<Index> Cells;    ///< one a line; the number that messages use
 };
+
+/**
+ * Gives lines whose vertices are ids of points those points: they alone are copied, which may be few
+ * of very many. From then on the vertices are numbers of Points.
+ */
+void TakePoints(const PointView& points, BoundaryLines& lines);
 
 /**
  * Joins lines to rings. A line is a ring when it returns to its first point (the same id or the
  * same x,y); other lines are chained with each other where their ends meet, so that rings do not
  * cross where more than two do. Two lines that lie on each other and close a ring of two points are
  * left out: they cancel out.
- * @return rings of ids of the lines' points; no two that follow each other have the same x,y
+ * @return rings of numbers of the lines' points; no two that follow each other have the same x,y
  * @throws Error naming the line and the point: a point not finite; an end where no other line goes
  *         on; a line that is a ring of fewer than three points; no line at all, or only lines that
  *         cancel each other

@@ -8,7 +8,7 @@
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Mesh/Holes.h"
 #include "Kernel/Trim/Outline.h"
-#include "Kernel/Trim/QuickTrim.h"
+#include "Kernel/Trim/OutwardTriangles.h"
 #include "Kernel/Trim/Trim.h"
 #include "LatticeSurface.h"
 #include "PointSets.h"
@@ -135,9 +135,7 @@ TEST(Progress, OfTrimmingIsNotSilent)
     Rings rings;
     rings.Vertices = { 0, Width, Height * (Width + 1) };
     rings.Offsets.push_back(3);
-    TrimOptions options;
-    options.Monitor = progress;
-    Trim(mesh, rings, options);
+    FindOutward(mesh, rings, true, progress);
   }),
     0.25);
 }
@@ -251,20 +249,20 @@ TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
   list.Points.Count = 3 * list.Count;
 
   testing_time::Silence extracting;
-  ExtractOptions options;
+  TrimOptions options;
   options.Monitor = extracting.Monitor();
-  TrimmedList trimmed;
-  ExtractedBoundary boundary;
-  EXPECT_TRUE(QuickExtract(list, options, trimmed, boundary));
-  EXPECT_EQ(boundary.Vertices.Count(), side * side);
+  EXPECT_EQ(Trim(list, nullptr, options).Boundary.Count(), side * side);
   EXPECT_LT(extracting.Longest, 0.12);
 
   testing_time::Silence trimming;
-  const std::vector<Point2> points{ { -1.0, -1.0 }, { 500.5, -1.0 }, { 300.5, 700.5 } };
-  Rings rings;
-  rings.Vertices = { 0, 1, 2 };
-  rings.Offsets.push_back(3);
-  EXPECT_TRUE(QuickTrim(list, points, rings, true, 1, trimming.Monitor(), trimmed));
+  options.Monitor = trimming.Monitor();
+  BoundaryLines lines;
+  lines.Points = std::vector<Point2>{ { -1.0, -1.0 }, { 500.5, -1.0 }, { 300.5, 700.5 } };
+  lines.Lines.Vertices = { 0, 1, 2 };
+  lines.Lines.Offsets.push_back(3);
+  lines.IsPolygon = { 1 };
+  lines.Cells = { 0 };
+  Trim(list, &lines, options);
   EXPECT_LT(trimming.Longest, 0.12);
 }
 

@@ -8,7 +8,7 @@
 #include "Kernel/Lattice/FindLattice.h"
 #include "Kernel/Trim/Outline.h"
 #include "Kernel/Fill/Patch.h"
-#include "Kernel/Trim/Trim.h"
+#include "Kernel/Trim/OutwardTriangles.h"
 #include "PatchQuality.h"
 #include "PointSets.h"
 
@@ -40,7 +40,7 @@ Mesh Reconstruct(const Cloud& cloud, double longestEdge)
   Mesh mesh = MeshOf(cloud, Triangulate(cloud.View(), options));
   mesh.ConnectTwins();
   const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
-  const TrimResult trimmed = Trim(mesh, boundary.Vertices, TrimOptions());
+  const OutwardTriangles trimmed = FindOutward(mesh, boundary.Vertices, true);
   Mesh kept;
   kept.Points = mesh.Points;
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)

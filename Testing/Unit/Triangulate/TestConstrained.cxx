@@ -89,8 +89,8 @@ std::vector<char> MarkPieces(const Mesh& mesh, const std::vector<Segment>& piece
       const SegmentStep step = StepAlong(mesh, stars, v, piece.B);
       if (step.HalfEdge == None)
       {
-        ADD_FAILURE() << NameOf(mesh.Points, piece.A) << " to " << NameOf(mesh.Points, piece.B)
-                      << " is no chain of edges at " << NameOf(mesh.Points, v);
+        ADD_FAILURE() << NameOf(mesh, piece.A) << " to " << NameOf(mesh, piece.B)
+                      << " is no chain of edges at " << NameOf(mesh, v);
         return constrained;
       }
       constrained[step.HalfEdge] = 1;

@@ -4,12 +4,13 @@
 #include "Location.h"
 #include "PointSets.h"
 #include "Silence.h"
+#include "Surface.h"
 
 #include "Kernel/Mesh/Segments.h"
 #include "Kernel/Trim/Insertion.h"
 #include "Kernel/Mesh/Holes.h"
 #include "Kernel/Base/Predicates.h"
-#include "Kernel/Trim/Trim.h"
+#include "Kernel/Trim/OutwardTriangles.h"
 
 #include <gtest/gtest.h>
 
@@ -48,20 +49,9 @@ struct Boundary
   }
 };
 
-std::string MessageOf(Mesh mesh, const Boundary& boundary, bool insert = true)
+std::string MessageOf(const Mesh& mesh, const Boundary& boundary, bool insert = true)
 {
-  try
-  {
-    const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, insert);
-    TrimOptions options;
-    options.RecoverBoundary = insert;
-    Trim(mesh, rings.Vertices, options);
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "no error";
+  return MessageOfTrim(SurfaceOf(mesh), boundary.Points, boundary.Lines, insert);
 }
 
 #define EXPECT_HAS(text, part)                                                                     \
@@ -351,12 +341,12 @@ TEST(InsertRings, LetsTheInsideBeKeptExactlyWhereverRingsRun)
     }
     Mesh mesh = before;
     InsertedRings rings;
-    TrimResult trimmed;
+    OutwardTriangles trimmed;
     try
     {
       rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
       ASSERT_EQ(FindingsOf(mesh), "");
-      trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+      trimmed = FindOutward(mesh, rings.Vertices, true);
     }
     catch (const Error& error)
     {
@@ -419,7 +409,7 @@ TEST(InsertRings, LetsHundredRingsBeKept)
     Mesh mesh = before;
     const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
     EXPECT_EQ(rings.Inserted.size(), boundary.Points.size());
-    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
     EXPECT_EQ(FindingsOf(mesh), "");
     double kept = 0.0;
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
@@ -454,11 +444,11 @@ TEST(InsertRings, KeepsWhatIsBothInTheRingsAndInTheMesh)
       6 + random.Below(20), false));
     Mesh mesh = before;
     InsertedRings rings;
-    TrimResult trimmed;
+    OutwardTriangles trimmed;
     try
     {
       rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
-      trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+      trimmed = FindOutward(mesh, rings.Vertices, true);
     }
     catch (const Error& error)
     {
@@ -513,7 +503,7 @@ TEST(InsertRings, ThatRunAlongTheBorderOrThroughItsVerticesCutExactly)
     boundary.Add(c.Ring);
     Mesh mesh = before;
     const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
-    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
     EXPECT_EQ(FindingsOf(mesh), "");
     double kept = 0.0;
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
@@ -546,7 +536,7 @@ TEST(InsertRings, DoesNotDependOnTheOrderOfRingsAndPoints)
     Mesh mesh = before;
     const InsertedRings inserted = InsertRings(mesh, boundary.Points, boundary.Lines, true);
     EXPECT_GE(inserted.Inserted.size(), 700u);
-    Trim(mesh, inserted.Vertices, TrimOptions());
+    FindOutward(mesh, inserted.Vertices, true);
     EXPECT_EQ(FindingsOf(mesh), "");
     if (round == 0)
     {
@@ -868,7 +858,7 @@ TEST(InsertRings, TakesManyPointsInOneTriangleInReasonableTime)
   }
   boundary.Add(ring);
   const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
-  const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+  const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
   double kept = 0.0;
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
@@ -906,9 +896,7 @@ double AreaKept(const Boundary& boundary)
   const testing_time::Stopwatch stopwatch;
   const InsertedRings rings =
     InsertRings(mesh, boundary.Points, boundary.Lines, true, silence.Monitor());
-  TrimOptions options;
-  options.Monitor = silence.Monitor();
-  const TrimResult trimmed = Trim(mesh, rings.Vertices, options);
+  const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true, silence.Monitor());
   EXPECT_LT(stopwatch.Seconds(), 1.0);
   EXPECT_LT(silence.Longest, 0.2);
   EXPECT_EQ(FindingsOf(mesh), "");
@@ -1034,7 +1022,7 @@ TEST(InsertRings, InRealCloudsKeepsTheAreaOfThePolygon)
     const double size = 0.3 * std::min(high.X - low.X, high.Y - low.Y);
     AddNest(random, boundary, center, size, 3, false);
     const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
-    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
     double expected = 0.0;
     for (Index ring = 0; ring < 3; ++ring)
     {
@@ -1099,20 +1087,19 @@ TEST(InsertRings, OnLatticesWithHolesNeverFailsAndDecidesEveryTriangle)
       boundary.Add(points);
     }
     Mesh mesh = before;
-    TrimResult trimmed;
+    OutwardTriangles trimmed;
     try
     {
       const InsertedRings inserted = InsertRings(mesh, boundary.Points, boundary.Lines, true);
       cut += inserted.Inserted.size() > boundary.Points.size();
       ASSERT_EQ(FindingsOf(mesh), "");
-      trimmed = Trim(mesh, inserted.Vertices, TrimOptions());
+      trimmed = FindOutward(mesh, inserted.Vertices, true);
     }
     catch (const Error& error)
     {
       const std::string message = error.what();
       ASSERT_TRUE(message.find("crosses its edge") != std::string::npos ||
-        message.find("of the boundary cross") != std::string::npos ||
-        message.find("encloses no triangle") != std::string::npos)
+        message.find("of the boundary cross") != std::string::npos)
         << message;
       continue;
     }
@@ -1152,7 +1139,7 @@ TEST(InsertRings, GoThroughVerticesExactlyOnTheWayToARoundedCrossing)
   const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
   EXPECT_NE(std::find(rings.Vertices.Vertices.begin(), rings.Vertices.Vertices.end(), 2 + 5 * 3),
     rings.Vertices.Vertices.end());
-  Trim(mesh, rings.Vertices, TrimOptions());
+  FindOutward(mesh, rings.Vertices, true);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     EXPECT_GT(testing_surfaces::TwiceArea(mesh, t), 1e-3) << "a sliver beside the edge";
@@ -1177,12 +1164,12 @@ TEST(InsertRings, AlongABorderThatIsStraightButForRounding)
       node(round % 8 < 4 ? 9.3 : 0.0, 19), node(0 - beyond, 10) });
     Mesh mesh = before;
     InsertedRings rings;
-    TrimResult trimmed;
+    OutwardTriangles trimmed;
     try
     {
       rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
       ASSERT_EQ(FindingsOf(mesh), "");
-      trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+      trimmed = FindOutward(mesh, rings.Vertices, true);
     }
     catch (const Error& error)
     {
@@ -1231,7 +1218,7 @@ TEST(InsertRings, AcrossABorderOfTrianglesAsThinAsRounding)
     Mesh mesh = Delaunay(points);
     const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
     ASSERT_EQ(FindingsOf(mesh), "") << round;
-    const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+    const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
     double kept = 0.0;
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
     {
@@ -1268,7 +1255,7 @@ TEST(InsertRings, DoesNotMoveABorderOverAnotherOneThatRunsAlongIt)
       // A border that the point is on is cut there.
       const auto borders = std::count(mesh.Twins.begin(), mesh.Twins.end(), Mesh::Border);
       EXPECT_EQ(borders, units == 0 || units == 1 ? 7 : 6) << units;
-      const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+      const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
       double kept = 0.0;
       for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
       {
@@ -1388,7 +1375,7 @@ TEST(InsertRings, ThatRunAlongThemselvesWithinRounding)
     {
       const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
       moved += !rings.Inserted.empty();
-      Trim(mesh, rings.Vertices, TrimOptions());
+      FindOutward(mesh, rings.Vertices, true);
     }
     catch (const Error& error)
     {
@@ -1424,7 +1411,7 @@ TEST(InsertRings, AcrossBordersThatLieOnEachOther)
       boundary.Add(ring);
       Mesh mesh = both;
       const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
-      const TrimResult trimmed = Trim(mesh, rings.Vertices, TrimOptions());
+      const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
       double kept = 0.0;
       for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
       {

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
-#include "Location.h"
+#include "Surface.h"
 
-#include "Kernel/Trim/Rings.h"
-#include "Kernel/Base/Predicates.h"
+#include "Kernel/Mesh/Holes.h"
+#include "Kernel/Mesh/TriangleSweep.h"
+#include "Kernel/Trim/Outline.h"
+#include "Kernel/Trim/OutwardTriangles.h"
 #include "Kernel/Trim/Trim.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <map>
-#include <string>
+#include <functional>
 
 using namespace elevation;
 using namespace testing_surfaces;
@@ -20,74 +20,280 @@ using namespace testing_surfaces;
 namespace
 {
 
-/** A lattice of size x size points, in random order, all but those that drop(x, y) says. */
-template <typename Drop>
-Mesh LatticeMesh(Random& random, int size, Drop&& drop)
+Surface SurfaceOf(const std::vector<Point2>& points)
 {
-  std::vector<Point2> points = LatticePoints(random, size, size, size * size);
-  points.erase(
-    std::remove_if(points.begin(), points.end(), [&](const Point2& p) { return drop(p.X, p.Y); }),
-    points.end());
-  return Delaunay(points);
+  return testing_surfaces::SurfaceOf(Delaunay(points));
 }
 
-Mesh LatticeMesh(Random& random, int size)
+Surface RandomSurface(Random& random, int count)
 {
-  return LatticeMesh(random, size, [](double, double) { return false; });
-}
-
-Index VertexAt(const Mesh& mesh, double x, double y)
-{
-  return static_cast<Index>(
-    std::find(mesh.Points.begin(), mesh.Points.end(), Point2{ x, y }) - mesh.Points.begin());
-}
-
-void AddRing(const Mesh& mesh, const std::vector<Point2>& places, Rings& rings)
-{
-  for (const Point2& p : places)
+  std::vector<Point2> points;
+  for (int i = 0; i < count; ++i)
   {
-    rings.Vertices.push_back(VertexAt(mesh, p.X, p.Y));
-    ASSERT_LT(rings.Vertices.back(), mesh.NumberOfPoints());
+    points.push_back({ random.Unit(), random.Unit() });
   }
-  rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
+  return SurfaceOf(points);
 }
 
-double KeptTwiceArea(const Mesh& mesh, const TrimResult& trimmed)
+/** Takes out the triangles with the flag. */
+void Remove(Surface& surface, const std::function<bool(double, double)>& isOut)
 {
-  double area = 0.0;
+  std::vector<Index> corners;
+  for (std::size_t h = 0; h < surface.Corners.size(); h += 3)
+  {
+    double x = 0.0, y = 0.0;
+    for (std::size_t i = h; i < h + 3; ++i)
+    {
+      x += surface.At(surface.Corners[i]).X / 3.0;
+      y += surface.At(surface.Corners[i]).Y / 3.0;
+    }
+    if (!isOut(x, y))
+    {
+      corners.insert(corners.end(), surface.Corners.begin() + h, surface.Corners.begin() + h + 3);
+    }
+  }
+  surface.Corners = corners;
+}
+
+void Shuffle(Surface& surface, Random& random)
+{
+  std::vector<std::array<Index, 3>> triangles;
+  for (std::size_t h = 0; h < surface.Corners.size(); h += 3)
+  {
+    const Index* t = &surface.Corners[h];
+    const int first = random.Below(3);
+    triangles.push_back({ { t[first], t[(first + 1) % 3], t[(first + 2) % 3] } });
+  }
+  random.Shuffle(triangles);
+  surface.Corners.clear();
+  for (const std::array<Index, 3>& t : triangles)
+  {
+    surface.Corners.insert(surface.Corners.end(), t.begin(), t.end());
+  }
+}
+
+struct Boundary
+{
+  std::vector<Point2> Points;
+  Rings Lines;
+
+  void Add(const std::vector<Point2>& ring)
+  {
+    for (const Point2& p : ring)
+    {
+      this->Lines.Vertices.push_back(static_cast<Index>(this->Points.size()));
+      this->Points.push_back(p);
+    }
+    this->Lines.Offsets.push_back(static_cast<Index>(this->Lines.Vertices.size()));
+  }
+};
+
+std::vector<Point2> Star(Random& random, Point2 middle, double radius, int corners)
+{
+  std::vector<Point2> ring;
+  const double turn = random.Unit();
+  for (int i = 0; i < corners; ++i)
+  {
+    const double angle = 6.283185307179586 * (i + turn) / corners;
+    const double r = radius * (0.7 + 0.3 * random.Unit());
+    ring.push_back({ middle.X + r * std::cos(angle), middle.Y + r * std::sin(angle) });
+  }
+  return ring;
+}
+
+/** Everything that comes of trimming. */
+struct Everything
+{
+  std::vector<Index> Corners[2]; ///< of the triangles kept, and of the outward ones
+  std::vector<Index> Parents[2];
+  Index NumberOfRecoveredEdges = 0;
+  std::vector<double> Inserted;
+
+  bool operator==(const Everything& other) const
+  {
+    return this->Corners[0] == other.Corners[0] && this->Corners[1] == other.Corners[1] &&
+      this->Parents[0] == other.Parents[0] && this->Parents[1] == other.Parents[1] &&
+      this->NumberOfRecoveredEdges == other.NumberOfRecoveredEdges &&
+      this->Inserted == other.Inserted;
+  }
+
+  void Add(const std::vector<InsertedVertex>& inserted, const std::vector<Point2>& places)
+  {
+    for (std::size_t i = 0; i < inserted.size(); ++i)
+    {
+      this->Inserted.insert(this->Inserted.end(), { places[i].X, places[i].Y });
+      for (int k = 0; k < 3; ++k)
+      {
+        this->Inserted.push_back(inserted[i].Corners[k]);
+        this->Inserted.push_back(inserted[i].Weights[k]);
+      }
+    }
+  }
+};
+
+Mesh MeshOf(const Surface& surface)
+{
+  Mesh mesh;
+  mesh.Triangles = surface.Corners;
+  for (Index i = 0; i < surface.List().Points.Count; ++i)
+  {
+    mesh.Points.push_back(surface.At(i));
+  }
+  mesh.ConnectTwins();
+  return mesh;
+}
+
+/** Step by step, in a mesh of all triangles. @throws Error */
+Everything TrimStepByStep(const Surface& surface, const Boundary& boundary, bool recover)
+{
+  Mesh mesh = MeshOf(surface);
+  const Index points = mesh.NumberOfPoints();
+  const Index triangles = mesh.NumberOfTriangles();
+  FindHoles(mesh);
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, recover);
+  const OutwardTriangles outward = FindOutward(mesh, rings.Vertices, recover);
+  Everything everything;
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    area += trimmed.IsOutward[t] ? 0.0 : TwiceArea(mesh, t);
+    const int side = outward.IsOutward[t];
+    everything.Corners[side].insert(everything.Corners[side].end(), mesh.Triangles.begin() + 3 * t,
+      mesh.Triangles.begin() + 3 * t + 3);
+    everything.Parents[side].push_back(t < triangles ? t : rings.Parents[t - triangles]);
   }
-  return area;
+  everything.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
+  everything.Add(
+    rings.Inserted, std::vector<Point2>(mesh.Points.begin() + points, mesh.Points.end()));
+  return everything;
 }
 
-/** Whether a triangle is inside, by the even-odd rule for its middle, at three times the scale. */
-bool MiddleIsInside(const Mesh& mesh, const Rings& rings, Index t)
+Everything EverythingOf(const Surface& surface, const Trimmed& trimmed)
 {
-  std::vector<Point2> points = mesh.Points;
-  Point2 middle{ 0, 0 };
-  for (Index h = 3 * t; h < 3 * t + 3; ++h)
+  Everything everything;
+  const TrimmedSide* const sides[2] = { &trimmed.Kept, &trimmed.Outward };
+  for (int side = 0; side < 2; ++side)
   {
-    middle.X += mesh.PointOf(mesh.Origin(h)).X;
-    middle.Y += mesh.PointOf(mesh.Origin(h)).Y;
+    everything.Corners[side].assign(sides[side]->Corners.begin(), sides[side]->Corners.end());
+    if (sides[side]->IsWholeList)
+    {
+      EXPECT_TRUE(everything.Corners[side].empty());
+      everything.Corners[side] = surface.Corners;
+    }
+    everything.Parents[side].assign(sides[side]->Parents.begin(), sides[side]->Parents.end());
+    EXPECT_EQ(everything.Corners[side].size(), 3 * everything.Parents[side].size());
   }
-  for (Point2& p : points)
-  {
-    p = { 3 * p.X, 3 * p.Y };
-  }
-  const Location location = Locate(points, rings, middle);
-  EXPECT_NE(location, Location::On);
-  return location == Location::Inside;
+  EXPECT_EQ(
+    static_cast<std::size_t>(trimmed.NumberOfOutwardTriangles), everything.Parents[1].size());
+  everything.NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;
+  everything.Add(trimmed.Inserted, trimmed.Places);
+  return everything;
 }
 
-std::string MessageOf(Mesh mesh, const Rings& rings, bool recover)
+/** @throws Error */
+Everything TrimAlong(
+  const Surface& surface, const Boundary& boundary, bool recover = true, int threads = 1)
 {
   TrimOptions options;
   options.RecoverBoundary = recover;
+  options.NumberOfThreads = threads;
+  const BoundaryLines lines = LinesOf(boundary.Points, boundary.Lines);
+  const Trimmed trimmed = Trim(surface.List(), &lines, options);
+  EXPECT_EQ(trimmed.Boundary.Vertices, boundary.Lines.Vertices);
+  EXPECT_EQ(trimmed.Boundary.Offsets, boundary.Lines.Offsets);
+  EXPECT_EQ(trimmed.GapTolerance, 0.0);
+  return EverythingOf(surface, trimmed);
+}
+
+/** The surface with one triangle clockwise, so that all of it is turned and proven first. */
+Surface Turned(Surface surface, std::size_t triangle)
+{
+  std::swap(surface.Corners[3 * triangle + 1], surface.Corners[3 * triangle + 2]);
+  return surface;
+}
+
+/** Trim() gives what its steps give, in whatever order triangles and corners are. */
+void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random)
+{
+  const Everything expected = TrimStepByStep(surface, boundary, true);
+  EXPECT_FALSE(expected.Corners[1].empty());
+  EXPECT_TRUE(TrimAlong(surface, boundary) == expected);
+  const int count = surface.List().Count;
+  EXPECT_TRUE(TrimAlong(Turned(surface, random.Below(count)), boundary) == expected);
+  Surface shuffled = surface;
+  Shuffle(shuffled, random);
+  EXPECT_TRUE(TrimAlong(shuffled, boundary) == TrimStepByStep(shuffled, boundary, true));
+  // Single precision too: the places are others.
+  std::vector<float> floats(surface.Coordinates.begin(), surface.Coordinates.end());
+  Surface rounded = surface;
+  rounded.Coordinates.assign(floats.begin(), floats.end());
+  TriangleList list = rounded.List();
+  list.Points.Double = nullptr;
+  list.Points.Float = floats.data();
+  const BoundaryLines lines = LinesOf(boundary.Points, boundary.Lines);
+  std::string messages[2] = { "no error", MessageOfTrim(rounded, boundary.Points, boundary.Lines) };
   try
   {
-    Trim(mesh, rings, options);
+    const Trimmed trimmed = Trim(list, &lines, TrimOptions());
+    EXPECT_TRUE(EverythingOf(rounded, trimmed) == TrimAlong(rounded, boundary));
+  }
+  catch (const Error& error)
+  {
+    messages[0] = error.what();
+  }
+  EXPECT_EQ(messages[0], messages[1]);
+}
+
+/** What is extracted is the outline of the mesh, and what is trimmed by it is what is not surface. */
+Rings ExpectSameOutline(const Surface& surface, double tolerance)
+{
+  Mesh mesh = MeshOf(surface);
+  ExtractOptions extraction;
+  extraction.GapTolerance = tolerance;
+  const ExtractedBoundary expected = ExtractBoundary(mesh, extraction);
+  Everything all;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const int side = !expected.IsSurface[t];
+    all.Corners[side].insert(
+      all.Corners[side].end(), mesh.Triangles.begin() + 3 * t, mesh.Triangles.begin() + 3 * t + 3);
+    all.Parents[side].push_back(t);
+  }
+  for (const int threads : { 1, 3, 0 })
+  {
+    TrimOptions options;
+    options.GapTolerance = tolerance;
+    options.NumberOfThreads = threads;
+    // Once more as no sweep takes it.
+    const Surface other = threads > 0 ? surface : Turned(surface, 0);
+    const Trimmed trimmed = Trim(other.List(), nullptr, options);
+    EXPECT_EQ(trimmed.GapTolerance, expected.GapTolerance);
+    EXPECT_EQ(trimmed.NumberOfPointsLeftOut, expected.NumberOfPointsLeftOut);
+    EXPECT_EQ(trimmed.Boundary.Offsets, expected.Vertices.Offsets);
+    EXPECT_EQ(trimmed.Boundary.Vertices, expected.Vertices.Vertices);
+    EXPECT_TRUE(EverythingOf(other, trimmed) == all);
+  }
+  if (expected.Vertices.Count() > 0)
+  {
+    const OutwardTriangles outward = FindOutward(mesh, expected.Vertices, true);
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      EXPECT_NE(outward.IsOutward[t], expected.IsSurface[t]);
+    }
+    EXPECT_EQ(outward.NumberOfRecoveredEdges, 0);
+  }
+  return expected.Vertices;
+}
+
+std::string MessageOf(
+  const Surface& surface, const Boundary& boundary, bool recover = true, int threads = 1)
+{
+  return MessageOfTrim(surface, boundary.Points, boundary.Lines, recover, threads);
+}
+
+std::string MessageOfExtraction(const Surface& surface)
+{
+  try
+  {
+    Trim(surface.List(), nullptr, TrimOptions());
   }
   catch (const Error& error)
   {
@@ -101,429 +307,429 @@ std::string MessageOf(Mesh mesh, const Rings& rings, bool recover)
 
 } // namespace
 
-TEST(Trim, KeepsExactlyTheInsideOfNestedRings)
+TEST(Trim, TakesAHundredRings)
 {
-  Random random(21);
-  Mesh mesh = LatticeMesh(random, 21);
-  const double all = TwiceArea(mesh);
-  Rings rings;
-  AddRing(mesh, { { 1, 1 }, { 19, 3 }, { 17, 19 }, { 4, 17 } }, rings); // land
-  AddRing(mesh, { { 5, 5 }, { 6, 13 }, { 14, 14 }, { 13, 6 } }, rings); // lake, clockwise
-  AddRing(mesh, { { 7, 7 }, { 11, 8 }, { 8, 11 } }, rings);             // island
-  AddRing(mesh, { { 8, 8 }, { 9, 8 }, { 8, 9 } }, rings);               // pond
-  const auto twice = [](const std::vector<Point2>& ring) {
-    double area = 0.0;
-    for (std::size_t i = 0; i < ring.size(); ++i)
-    {
-      const Point2& p = ring[i];
-      const Point2& q = ring[(i + 1) % ring.size()];
-      area += p.X * q.Y - p.Y * q.X;
-    }
-    return std::abs(area);
-  };
-  double expected = 0.0;
-  for (Index ring = 0; ring < rings.Count(); ++ring)
+  Random random(72);
+  const Surface surface = RandomSurface(random, 4000);
+  Boundary boundary;
+  for (int i = 0; i < 100; ++i)
   {
-    std::vector<Point2> places;
-    for (const Index* v = rings.Begin(ring); v != rings.End(ring); ++v)
-    {
-      places.push_back(mesh.PointOf(*v));
-    }
-    expected += (ring % 2 ? -1 : 1) * twice(places);
+    boundary.Add(Star(random, { 0.05 + 0.1 * (i % 10), 0.05 + 0.1 * (i / 10) }, 0.045, 3 + i % 20));
   }
-  const Index count = mesh.NumberOfTriangles();
-  const TrimResult trimmed = Trim(mesh, rings, TrimOptions());
-  EXPECT_EQ(mesh.NumberOfTriangles(), count);
-  EXPECT_EQ(TwiceArea(mesh), all);
-  EXPECT_EQ(KeptTwiceArea(mesh, trimmed), expected);
-  EXPECT_EQ(trimmed.NumberOfOutwardTriangles,
-    std::count(trimmed.IsOutward.begin(), trimmed.IsOutward.end(), 1));
-  EXPECT_GT(trimmed.NumberOfRecoveredEdges, 8);
-  EXPECT_LE(trimmed.NumberOfRecoveredEdges, 14);
+  ExpectSame(surface, boundary, random);
+}
+
+TEST(Trim, IsTheSameAsStepByStepAlongRingsAnywhere)
+{
+  Random random(71);
+  for (int round = 0; round < 12; ++round)
+  {
+    const Surface surface = RandomSurface(random, 200 + 400 * round);
+    Boundary boundary;
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.45, 3 + 5 * round));
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.2, 3 + round));  // a lake
+    boundary.Add(Star(random, { 0.5, 0.5 }, 0.05, 3 + round)); // an island in it
+    ExpectSame(surface, boundary, random);
+  }
+}
+
+TEST(Trim, IsTheSameAlongEdgesAndVerticesOfTheMesh)
+{
+  Random random(72);
+  // Rings between nodes of a lattice: through vertices, along edges and across them, and as
+  // long as the mesh; with a lattice's ties.
+  std::vector<Point2> points = LatticePoints(random, 50, 40, 2000);
+  const Surface surface = SurfaceOf(points);
+  Boundary boundary;
+  boundary.Add({ { 3, 2 }, { 45, 2 }, { 45, 30 }, { 30, 15 }, { 3, 30 } });
+  boundary.Add({ { 10, 5 }, { 20, 5 }, { 20, 12 }, { 10, 12 } });
+  ExpectSame(surface, boundary, random);
+  Boundary all;
+  all.Add({ { 0, 0 }, { 49, 0 }, { 49, 39 }, { 24, 38 }, { 0, 39 } });
+  ExpectSame(surface, all, random);
+}
+
+TEST(Trim, IsTheSameForPartsHolesAndRingsThatLeaveTheMesh)
+{
+  Random random(73);
+  for (int round = 0; round < 6; ++round)
+  {
+    Surface surface = RandomSurface(random, 3000);
+    Remove(surface, [](double x, double y) {
+      return std::fabs(x - 0.45) < 0.08 || std::hypot(x - 0.75, y - 0.6) < 0.1 ||
+        (std::hypot(x - 0.2, y - 0.3) < 0.15 && std::hypot(x - 0.2, y - 0.3) > 0.05);
+    });
+    Boundary boundary;
+    boundary.Add(Star(random, { 0.4, 0.4 }, 0.9, 9));
+    boundary.Add(Star(random, { 0.7, 0.5 }, 0.2, 7));
+    ExpectSame(surface, boundary, random);
+  }
+}
+
+TEST(Trim, KeepsAllInsideAFarRing)
+{
+  Random random(74);
+  const Surface surface = RandomSurface(random, 3000);
+  Boundary boundary;
+  boundary.Add({ { -9, -9 }, { 10, -8 }, { 10, 10 }, { -9, 10 } });
+  const Everything kept = TrimAlong(surface, boundary, false);
+  EXPECT_EQ(kept.Corners[0], surface.Corners);
+  EXPECT_TRUE(kept.Corners[1].empty());
+  EXPECT_EQ(kept.NumberOfRecoveredEdges, 0);
+}
+
+TEST(Trim, LongTrianglesAreNotTakenForTheirCorners)
+{
+  // Few points far apart, and a ring between them that comes near no corner.
+  const Surface surface = SurfaceOf({ { 0, 0 }, { 100, 0 }, { 100, 100 }, { 0, 100 } });
+  Boundary boundary;
+  Random random(75);
+  boundary.Add({ { 45, 40 }, { 55, 40 }, { 55, 60 }, { 45, 60 } });
+  ExpectSame(surface, boundary, random);
+  // A dense mesh with a long triangle over all of it, beside a ring that it does not touch.
+  std::vector<Point2> points;
+  for (int i = 0; i < 4000; ++i)
+  {
+    points.push_back({ random.Unit(), random.Unit() });
+  }
+  points.insert(points.end(), { { -50, 0.5 }, { 60, 0.4 }, { 0.5, 70 } });
+  Boundary small;
+  small.Add(Star(random, { 0.5, 0.5 }, 0.3, 40));
+  ExpectSame(SurfaceOf(points), small, random);
+}
+
+TEST(Trim, IsTheSameOnSeveralThreads)
+{
+  Random random(81);
+  Boundary boundary;
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.45, 60));
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.1, 30));
+  Surface surface = RandomSurface(random, 12000);
+  // As they are, threads share the vertices of one row; dealt out in turns, those of many.
+  for (const std::size_t dealt : { 1, 2, 40 })
+  {
+    const std::vector<Index> corners = surface.Corners;
+    const std::size_t count = corners.size() / 3, piece = count / dealt / 10 + 1;
+    surface.Corners.clear();
+    for (std::size_t first = 0; first < dealt; ++first)
+    {
+      for (std::size_t begin = first * piece; begin < count; begin += dealt * piece)
+      {
+        surface.Corners.insert(surface.Corners.end(), corners.begin() + 3 * begin,
+          corners.begin() + 3 * std::min(begin + piece, count));
+      }
+    }
+    ASSERT_EQ(surface.Corners.size(), corners.size());
+    const Everything expected = TrimStepByStep(surface, boundary, true);
+    for (const int threads : { 1, 2, 4 })
+    {
+      EXPECT_TRUE(TrimAlong(surface, boundary, true, threads) == expected);
+    }
+    ExpectSameOutline(surface, 0.0);
+    surface.Corners = corners;
+  }
+  // What is wrong is seen by any of them.
+  const Everything expected = TrimStepByStep(surface, boundary, true);
+  for (const std::size_t t : { std::size_t(0), surface.Corners.size() / 3 - 1 })
+  {
+    EXPECT_TRUE(TrimAlong(Turned(surface, t), boundary, true, 2) == expected);
+    Surface wrong = surface;
+    wrong.Corners[3 * t] = 12000;
+    EXPECT_HAS(MessageOf(wrong, boundary, true, 2),
+      "Cell " + std::to_string(t) + " names point 12000, but the points are 0 to 11999.");
+  }
+}
+
+TEST(Trim, RefusesByNameWhatIsNoSurfaceOrNoBoundary)
+{
+  Random random(76);
+  const Surface surface = RandomSurface(random, 2000);
+  Boundary boundary;
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.3, 12));
+  ASSERT_EQ(MessageOf(surface, boundary), "no error");
+  EXPECT_HAS(MessageOf(surface, boundary, false), "is not a corner of the mesh");
+  const std::size_t last = surface.Corners.size() - 3;
+  for (const std::size_t h : { std::size_t(0), last / 6 * 3, last })
+  {
+    const std::string cell = std::to_string(h / 3);
+    for (const Index id : { -1, 2000, std::numeric_limits<Index>::max() })
+    {
+      Surface wrong = surface;
+      wrong.Corners[h + 1] = id;
+      EXPECT_HAS(MessageOf(wrong, boundary), "Cell " + cell + " names point " + std::to_string(id));
+    }
+    Surface turned = surface;
+    std::swap(turned.Corners[h], turned.Corners[h + 1]);
+    EXPECT_EQ(MessageOf(turned, boundary), "no error") << "a clockwise triangle";
+    Surface flat = surface;
+    flat.Corners[h] = flat.Corners[h + 1];
+    EXPECT_HAS(MessageOf(flat, boundary), "Cell " + cell + " (points ");
+    Surface twice = surface;
+    twice.Corners.insert(
+      twice.Corners.end(), surface.Corners.begin() + h, surface.Corners.begin() + h + 3);
+    EXPECT_HAS(MessageOf(twice, boundary), "shares the edge of points");
+    for (int i = 0; i < 3; ++i)
+    {
+      for (const double value : { std::nan(""), std::numeric_limits<double>::infinity() })
+      {
+        Surface notFinite = surface;
+        notFinite.Coordinates[3 * surface.Corners[h + 2] + i] = value;
+        EXPECT_HAS(MessageOf(notFinite, boundary),
+          "Point " + std::to_string(surface.Corners[h + 2]) + " of cell ");
+      }
+    }
+  }
+  // A triangle over others, on its own and along an edge.
+  Surface folded = surface;
+  folded.Coordinates.insert(folded.Coordinates.end(), { 0.1, 0.1, 0, 0.9, 0.1, 0, 0.5, 0.9, 0 });
+  folded.Corners.insert(folded.Corners.end(), { 2000, 2001, 2002 });
+  EXPECT_HAS(MessageOf(folded, boundary), "over");
+  folded.Corners[last + 3] = surface.Corners[0];
+  EXPECT_NE(MessageOf(folded, boundary), "no error");
+  // Boundaries that are errors.
+  Boundary crossing;
+  crossing.Add({ { 0.1, 0.1 }, { 0.9, 0.9 }, { 0.9, 0.1 }, { 0.1, 0.9 } });
+  EXPECT_HAS(MessageOf(surface, crossing), "crosses its edge");
+  Boundary outside;
+  outside.Add({ { 3, 3 }, { 4, 3 }, { 3, 4 } });
+  EXPECT_HAS(MessageOf(surface, outside), "encloses no triangle");
+  Boundary flat;
+  flat.Add({ { 0.1, 0.1 }, { 0.9, 0.9 }, { 0.5, 0.5 } });
+  EXPECT_HAS(MessageOf(surface, flat), "encloses no triangle");
+  EXPECT_EQ(MessageOf(Surface(), boundary), "no error");
+}
+
+TEST(TrimAlongTheOutline, IsTheSameAsExtractBoundary)
+{
+  Random random(78);
+  const auto isSea = [](double x, double y) {
+    return x < 0.1 + 0.05 * std::sin(20 * y) || std::hypot(x - 0.5, y - 0.4) < 0.15 ||
+      std::fabs(x - y) < 0.04;
+  };
+  for (int round = 0; round < 8; ++round)
+  {
+    // Random points, then the nodes of a lattice; with islands and lone points at sea.
+    std::vector<Point2> points;
+    for (const Point2& p : LatticePoints(random, 90, 90, 3000 + 400 * round))
+    {
+      const Point2 q =
+        round % 2 ? Point2{ p.X / 90, p.Y / 90 } : Point2{ random.Unit(), random.Unit() };
+      if (!isSea(q.X, q.Y) || random.Below(40) == 0)
+      {
+        points.push_back(q);
+      }
+    }
+    Surface surface = SurfaceOf(points);
+    for (const double tolerance : { 0.0, 1.5, 2.5, 8.0, 1e-9, 1e9 })
+    {
+      ExpectSameOutline(surface, tolerance);
+    }
+    EXPECT_GT(ExpectSameOutline(surface, 0.0).Count(), 1);
+    Remove(surface, [](double x, double y) {
+      return std::hypot(x - 0.7, y - 0.8) < 0.1 || std::fabs(x - 0.4) < 0.02;
+    });
+    ExpectSameOutline(surface, 0.0);
+    if (round < 2)
+    {
+      Surface shuffled = surface;
+      Shuffle(shuffled, random);
+      ExpectSameOutline(shuffled, 0.0);
+    }
+  }
+}
+
+/** Lists triangles, as far as possible, by closed fans. @return how many of these there are */
+int DealOutStars(Surface& surface)
+{
+  const Index count = surface.List().Count;
+  std::vector<std::vector<Index>> at(surface.List().Points.Count); // half-edges that leave a vertex
+  for (Index h = 0; h < 3 * count; ++h)
+  {
+    at[surface.Corners[h]].push_back(h);
+  }
+  std::vector<char> isListed(count, 0);
+  std::vector<Index> corners;
+  int stars = 0;
+  for (Index v = 0; v < surface.List().Points.Count; ++v)
+  {
+    std::vector<Index> star;
+    const auto cornerAfter = [&](Index h, int steps) {
+      return surface.Corners[Mesh::Triangle(h) * 3 + (h + steps) % 3];
+    };
+    Index next = at[v].empty() ? None : cornerAfter(at[v][0], 1);
+    for (std::size_t i = 0; i < at[v].size() && next != None; ++i)
+    {
+      const auto h = std::find_if(at[v].begin(), at[v].end(), [&](Index other) {
+        return cornerAfter(other, 1) == next && !isListed[Mesh::Triangle(other)];
+      });
+      next = h == at[v].end() ? None : cornerAfter(*h, 2);
+      if (next != None)
+      {
+        star.push_back(*h);
+      }
+    }
+    if (star.size() == at[v].size() && !star.empty() && next == cornerAfter(star[0], 1))
+    {
+      ++stars;
+      for (const Index h : star)
+      {
+        isListed[Mesh::Triangle(h)] = 1;
+        corners.insert(corners.end(), { v, cornerAfter(h, 1), cornerAfter(h, 2) });
+      }
+    }
+  }
   for (Index t = 0; t < count; ++t)
   {
-    EXPECT_EQ(MiddleIsInside(mesh, rings, t), !trimmed.IsOutward[t]);
+    if (!isListed[t])
+    {
+      corners.insert(
+        corners.end(), surface.Corners.begin() + 3 * t, surface.Corners.begin() + 3 * t + 3);
+    }
   }
+  surface.Corners = corners;
+  return stars;
 }
 
-TEST(Trim, OfRandomTriangleRingsAgreesWithTheEvenOddRule)
+/** A visitor of a sweep that only looks. */
+struct Nobody
 {
-  // Rings through any points; those that cross are refused, all others decided right.
-  Random random(22);
-  int decided = 0;
-  for (int round = 0; round < 3000; ++round)
+  using Vertex = SweptVertex;
+  void Start(Vertex&) const {}
+  void Begin(const Vertex&, const Vertex&) {}
+  void Visit(Index, const Vertex&, const Vertex&, const Vertex&) {}
+};
+
+TEST(TriangleSweep, ClosedFansLeaveNoSlit)
+{
+  Surface surface;
+  surface.Coordinates = { 0, 0, 0 };
+  for (int i = 0; i < 6; ++i)
   {
-    Mesh mesh = LatticeMesh(random, 6, [&](double, double) { return random.Below(4) == 0; });
-    if (mesh.Triangles.empty())
-    {
-      continue;
-    }
-    Rings rings;
-    for (int ring = 1 + random.Below(3); ring > 0; --ring)
-    {
-      for (int i = 3 + random.Below(2); i > 0; --i)
-      {
-        rings.Vertices.push_back(random.Below(mesh.NumberOfPoints()));
-      }
-      rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
-    }
-    TrimResult trimmed;
-    try
-    {
-      trimmed = Trim(mesh, rings, TrimOptions());
-    }
-    catch (const Error&)
-    {
-      continue;
-    }
-    ++decided;
-    const RingLocator locator(mesh.Points, rings);
-    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-    {
-      const bool isInside = MiddleIsInside(mesh, rings, t);
-      ASSERT_EQ(isInside, !trimmed.IsOutward[t]);
-      // Also when all corners of the triangle are on the rings.
-      ASSERT_EQ(isInside,
-        locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
-          mesh.PointOf(mesh.Origin(3 * t + 2))));
-    }
+    const double angle = 1.0471975511965976 * i;
+    surface.Coordinates.insert(
+      surface.Coordinates.end(), { std::cos(angle), std::sin(angle), 0.0 });
+    surface.Corners.insert(surface.Corners.end(), { 0, 1 + i, 1 + (i + 1) % 6 });
   }
-  EXPECT_GT(decided, 300);
-}
+  const TriangleList list = surface.List();
+  TriangleSweep<Nobody> sweep(list, 1);
+  ASSERT_TRUE(sweep.Run(Nobody(), Progress()));
+  EXPECT_EQ(sweep
+              .Border(
+                7, Progress(), [](Index id) { return id; }, [](Index, const SweptVertex*) {})
+              .size(),
+    6u);
 
-TEST(Trim, DecidesPartsThatTouchNoBoundaryEdge)
-{
-  // Three blocks apart, and a ring around the first alone, along its own outline.
-  Random random(23);
-  const Mesh all = LatticeMesh(random, 12, [](double x, double) { return x == 3 || x == 7; });
-  const Mesh blocks = Without(all, [&](Index t) {
-    double low = 99, high = -1;
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      low = std::min(low, all.PointOf(all.Origin(h)).X);
-      high = std::max(high, all.PointOf(all.Origin(h)).X);
-    }
-    return high - low > 1;
-  });
-  Mesh mesh = blocks;
-  Rings rings;
-  AddRing(mesh, { { 0, 0 }, { 2, 0 }, { 2, 11 }, { 0, 11 } }, rings);
-  TrimResult trimmed = Trim(mesh, rings, TrimOptions());
-  EXPECT_EQ(KeptTwiceArea(mesh, trimmed), 2.0 * 2 * 11);
-  EXPECT_EQ(trimmed.NumberOfRecoveredEdges, 0);
-}
-
-TEST(Trim, LeavesInteriorHolesOpen)
-{
-  Random random(24);
-  const Mesh full = LatticeMesh(random, 8);
-  Mesh mesh = Without(full, [&](Index t) {
-    Point2 sum{ 0, 0 };
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      sum.X += full.PointOf(full.Origin(h)).X;
-      sum.Y += full.PointOf(full.Origin(h)).Y;
-    }
-    return 9 < sum.X && sum.X < 12 && 9 < sum.Y && sum.Y < 12;
-  });
-  ASSERT_EQ(TwiceArea(mesh), 2.0 * 49 - 2);
-  Rings rings;
-  AddRing(mesh, { { 1, 1 }, { 6, 1 }, { 6, 6 }, { 1, 6 } }, rings);
-  const TrimResult trimmed = Trim(mesh, rings, TrimOptions());
-  EXPECT_EQ(KeptTwiceArea(mesh, trimmed), 2.0 * 25 - 2);
-}
-
-TEST(Trim, TakesParcelsSideBySideAsOneSurface)
-{
-  Random random(25);
-  Mesh mesh = LatticeMesh(random, 9);
-  Rings rings;
-  AddRing(mesh, { { 1, 1 }, { 4, 1 }, { 4, 7 }, { 1, 7 } }, rings);
-  AddRing(mesh, { { 4, 2 }, { 7, 2 }, { 7, 6 }, { 4, 6 } }, rings); // shares part of an edge
-  const TrimResult trimmed = Trim(mesh, rings, TrimOptions());
-  EXPECT_EQ(KeptTwiceArea(mesh, trimmed), 2.0 * (3 * 6 + 3 * 4));
-}
-
-TEST(Trim, RefusesMissingEdgesByNameWhenTheyAreNotToBeRecovered)
-{
-  Random random(26);
-  Mesh mesh = LatticeMesh(random, 5);
-  Rings rings;
-  AddRing(mesh, { { 0, 0 }, { 4, 1 }, { 2, 4 } }, rings);
-  const std::string message = MessageOf(mesh, rings, false);
-  EXPECT_HAS(message, "point " + std::to_string(VertexAt(mesh, 0, 0)) + " (0, 0)");
-  EXPECT_HAS(message, "point " + std::to_string(VertexAt(mesh, 4, 1)) + " (4, 1)");
-  EXPECT_HAS(message, "RecoverBoundary");
-  EXPECT_EQ(MessageOf(mesh, rings, true), "no error");
-  Rings straight;
-  AddRing(mesh, { { 0, 0 }, { 3, 0 }, { 3, 3 }, { 0, 3 } }, straight);
-  EXPECT_EQ(MessageOf(mesh, straight, false), "no error");
-}
-
-TEST(Trim, RefusesRingsThatCrossOrLeaveTheMeshOrEncloseNothing)
-{
-  Random random(27);
-  const Mesh mesh = LatticeMesh(random, 8);
-  Rings bow;
-  AddRing(mesh, { { 0, 0 }, { 7, 6 }, { 7, 0 }, { 0, 5 } }, bow);
-  EXPECT_HAS(MessageOf(mesh, bow, true), "crosses the fixed edge");
-  Rings two;
-  AddRing(mesh, { { 0, 0 }, { 5, 1 }, { 1, 6 } }, two);
-  AddRing(mesh, { { 1, 1 }, { 7, 2 }, { 3, 6 } }, two);
-  EXPECT_HAS(MessageOf(mesh, two, true), "crosses the fixed edge");
-  const Mesh pocket = Without(mesh, [&](Index t) {
-    Point2 sum{ 0, 0 };
-    for (Index h = 3 * t; h < 3 * t + 3; ++h)
-    {
-      sum.X += mesh.PointOf(mesh.Origin(h)).X;
-      sum.Y += mesh.PointOf(mesh.Origin(h)).Y;
-    }
-    return 9 < sum.X && sum.X < 12 && 9 < sum.Y;
-  });
-  Rings over;
-  AddRing(mesh, { { 1, 1 }, { 6, 1 }, { 6, 6 }, { 1, 6 } }, over);
-  EXPECT_HAS(MessageOf(pocket, over, true), "leaves the mesh");
-  Rings flat;
-  AddRing(mesh, { { 1, 1 }, { 4, 4 }, { 2, 2 } }, flat);
-  EXPECT_HAS(MessageOf(mesh, flat, true), "encloses no triangle");
-}
-
-TEST(Trim, AlongTheExtractedBoundaryKeepsWhatWasFoundAsSurface)
-{
-  Random random(28);
-  for (int round = 0; round < 50; ++round)
+  Random random(84);
+  for (int round = 0; round < 12; ++round)
   {
-    Mesh mesh = Delaunay(LatticePoints(random, 40, 40, 200 + random.Below(1200)));
-    ExtractOptions options;
-    options.GapTolerance = 2.4 + 3 * random.Unit();
-    const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
-    if (boundary.Vertices.Count() == 0)
+    surface = RandomSurface(random, 1000);
+    EXPECT_GT(DealOutStars(surface), 100);
+    for (const double tolerance : { 0.0, 2.0, 6.0 })
     {
-      continue;
+      ExpectSameOutline(surface, tolerance);
     }
-    TrimOptions exact;
-    exact.RecoverBoundary = false;
-    const TrimResult trimmed = Trim(mesh, boundary.Vertices, exact);
-    double area = 0.0; // around surface counter-clockwise, around lakes clockwise
-    for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)
-    {
-      for (Index i = 0; i < boundary.Vertices.Size(ring); ++i)
-      {
-        const Point2& p = mesh.PointOf(boundary.Vertices.Begin(ring)[i]);
-        const Point2& q =
-          mesh.PointOf(boundary.Vertices.Begin(ring)[(i + 1) % boundary.Vertices.Size(ring)]);
-        area += p.X * q.Y - p.Y * q.X;
-      }
-    }
-    ASSERT_EQ(KeptTwiceArea(mesh, trimmed), area);
   }
+}
+
+TEST(TriangleSweep, ReportsWhileItGoesThroughWhatIsPutOff)
+{
+  // Every other row of squares first, so that both halves of the list share all vertices.
+  constexpr Index side = 300;
+  Surface surface;
+  for (Index i = 0; i < (side + 1) * (side + 1); ++i)
+  {
+    surface.Coordinates.insert(surface.Coordinates.end(),
+      { static_cast<double>(i % (side + 1)), static_cast<double>(i / (side + 1)), 0.0 });
+  }
+  for (Index i = 0; i < side * side; ++i)
+  {
+    const Index row = i / side < side / 2 ? 2 * (i / side) : 2 * (i / side - side / 2) + 1;
+    const Index v = row * (side + 1) + i % side, above = v + side + 1;
+    surface.Corners.insert(surface.Corners.end(), { v, v + 1, above + 1, v, above + 1, above });
+  }
+  const TriangleList list = surface.List();
+  TriangleSweep<Nobody> sweep(list, 2);
+  int reports = 0; // in the last tenth, where that is
+  ASSERT_TRUE(sweep.Run(Nobody(), [&reports](double done) {
+    reports += done >= 0.9;
+    return true;
+  }));
+  EXPECT_GE(reports, sweep.NumberOfRanges() > 1 ? list.Count / 20000 : 0);
+  EXPECT_EQ(sweep
+              .Border(
+                list.Points.Count, Progress(), [](Index id) { return id; },
+                [](Index, const SweptVertex*) {})
+              .size(),
+    4u * side);
+}
+
+TEST(TrimAlongTheOutline, SeesAllOfASmallPiece)
+{
+  // A lattice, and apart from it six points: a triangle in another one. The inner one is not near
+  // the border, but the piece is too small.
+  std::vector<Point2> points;
+  for (int i = 0; i < 900; ++i)
+  {
+    points.push_back({ static_cast<double>(i % 30), static_cast<double>(i / 30) });
+  }
+  Surface surface = SurfaceOf(points);
+  const Index first = 900;
+  surface.Coordinates.insert(surface.Coordinates.end(), { 100, 0, 0, 102, 0, 0, 101, 1.8, 0 });
+  surface.Coordinates.insert(
+    surface.Coordinates.end(), { 100.8, 0.5, 0, 101.2, 0.5, 0, 101, 0.8, 0 });
+  for (const Index corner : { 0, 1, 3, 1, 4, 3, 1, 2, 4, 2, 5, 4, 2, 0, 5, 0, 3, 5, 3, 4, 5 })
+  {
+    surface.Corners.push_back(first + corner);
+  }
+  EXPECT_EQ(ExpectSameOutline(surface, 0.0).Count(), 1);
+  // Without the inner one, all is near the border.
+  surface.Corners.resize(surface.Corners.size() - 3);
+  EXPECT_EQ(ExpectSameOutline(surface, 0.0).Count(), 1);
+}
+
+TEST(TrimAlongTheOutline, RefusesByNameWhatIsNoSurface)
+{
+  Random random(79);
+  const Surface surface = RandomSurface(random, 500);
+  EXPECT_EQ(MessageOfExtraction(surface), "no error");
+  Surface folded = surface;
+  folded.Coordinates.insert(folded.Coordinates.end(), { 0.1, 0.1, 0, 0.9, 0.1, 0, 0.5, 0.9, 0 });
+  folded.Corners.insert(folded.Corners.end(), { 500, 501, 502 });
+  EXPECT_HAS(MessageOfExtraction(folded), "over");
+  Surface turned = surface;
+  std::swap(turned.Corners[0], turned.Corners[1]);
+  EXPECT_EQ(MessageOfExtraction(turned), "no error");
+  Surface large = surface;
+  for (double& value : large.Coordinates)
+  {
+    value *= 1e120;
+  }
+  ExpectSameOutline(large, 0.0);
+  EXPECT_EQ(MessageOfExtraction(Surface()), "no error");
 }
 
 TEST(Trim, StopsWhenAsked)
 {
-  Random random(29);
-  Mesh mesh = LatticeMesh(random, 5);
-  Rings rings;
-  AddRing(mesh, { { 0, 0 }, { 4, 0 }, { 4, 4 } }, rings);
-  TrimOptions options;
-  options.Monitor = [](double fraction) { return fraction < 0.5; };
-  EXPECT_THROW(Trim(mesh, rings, options), Aborted);
-}
-
-namespace
-{
-
-/** The published walk to the letter, along rings of vertices that run clockwise around surface. */
-std::vector<char> WalkAlong(const Mesh& mesh, const Rings& rings)
-{
-  std::map<std::array<Index, 3>, Index> triangleOf;
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  Random random(77);
+  const Surface surface = RandomSurface(random, 3000);
+  Boundary boundary;
+  boundary.Add(Star(random, { 0.5, 0.5 }, 0.3, 12));
+  for (int stop = 0; stop < 3; ++stop)
   {
-    std::array<Index, 3> corners{ mesh.Origin(3 * t), mesh.Origin(3 * t + 1),
-      mesh.Origin(3 * t + 2) };
-    std::sort(corners.begin(), corners.end());
-    triangleOf[corners] = t;
+    int reports = 0;
+    double before = 0.0;
+    const Progress progress = [&](double done) {
+      EXPECT_GE(done, before);
+      EXPECT_LE(done, 1.0);
+      before = done;
+      return ++reports <= 2 * stop;
+    };
+    TrimOptions options;
+    options.Monitor = progress;
+    const BoundaryLines lines = LinesOf(boundary.Points, boundary.Lines);
+    EXPECT_THROW(Trim(surface.List(), &lines, options), Aborted);
+    reports = 0;
+    before = 0.0;
+    EXPECT_THROW(Trim(surface.List(), nullptr, options), Aborted);
   }
-  std::vector<char> isOutward(mesh.NumberOfTriangles(), 0);
-  for (Index ring = 0; ring < rings.Count(); ++ring)
-  {
-    std::vector<Index> walk(rings.Begin(ring), rings.End(ring));
-    for (bool goesOn = true; goesOn;)
-    {
-      goesOn = false;
-      for (std::size_t i = 0; i < walk.size() && walk.size() > 2; ++i)
-      {
-        const std::size_t middle = (i + 1) % walk.size();
-        std::array<Index, 3> corners{ walk[i], walk[middle], walk[(i + 2) % walk.size()] };
-        const Point2& p1 = mesh.PointOf(corners[0]);
-        const Point2& p2 = mesh.PointOf(corners[1]);
-        const Point2& p3 = mesh.PointOf(corners[2]);
-        const Point2 normal{ p2.Y - p1.Y, p1.X - p2.X };
-        std::sort(corners.begin(), corners.end());
-        const auto found = triangleOf.find(corners);
-        if (found != triangleOf.end() && !isOutward[found->second] &&
-          (p3.X - p1.X) * normal.X + (p3.Y - p1.Y) * normal.Y < 0)
-        {
-          isOutward[found->second] = 1;
-          walk.erase(walk.begin() + static_cast<std::ptrdiff_t>(middle));
-          goesOn = true;
-        }
-      }
-    }
-  }
-  return isOutward;
-}
-
-/** A closed curve around the middle of the unit square. */
-std::vector<Point2> Star(Random& random, double least, double most, int corners, bool isClockwise)
-{
-  std::vector<Point2> ring;
-  for (int i = 0; i < corners; ++i)
-  {
-    const double angle = 6.283185307179586 * (i + 0.5 * random.Unit()) / corners;
-    const double radius = least + (most - least) * random.Unit();
-    ring.push_back({ 0.5 + radius * std::cos(angle), 0.5 + radius * std::sin(angle) });
-  }
-  if (isClockwise)
-  {
-    std::reverse(ring.begin(), ring.end());
-  }
-  return ring;
-}
-
-/** A star with a lake, and points around: everywhere, or on the surface alone. */
-Mesh MakeStar(Random& random, int count, bool everywhere, Rings& rings)
-{
-  std::vector<Point2> points = Star(random, 0.25, 0.5, 10 + random.Below(40), true);
-  const Index first = static_cast<Index>(points.size());
-  const std::vector<Point2> lake = Star(random, 0.1, 0.2, 5 + random.Below(15), false);
-  points.insert(points.end(), lake.begin(), lake.end());
-  rings.Offsets = { 0, first, static_cast<Index>(points.size()) };
-  for (Index v = 0; v < rings.Offsets[2]; ++v)
-  {
-    rings.Vertices.push_back(v);
-  }
-  for (int i = 0; i < count; ++i)
-  {
-    const Point2 p{ random.Unit(), random.Unit() };
-    if (everywhere || Locate(points, rings, p) == Location::Inside)
-    {
-      points.push_back(p);
-    }
-  }
-  return Delaunay(points);
-}
-
-TrimResult TrimBy(OutwardTest test, Mesh& mesh, const Rings& rings)
-{
-  TrimOptions options;
-  options.Test = test;
-  return Trim(mesh, rings, options);
-}
-
-} // namespace
-
-TEST(InwardNormal, AgreesWithExactWherePocketsAreShallow)
-{
-  // No point lies outside the surface, so that pockets and lakes have corners on rings alone.
-  Random random(30);
-  for (int round = 0; round < 300; ++round)
-  {
-    Rings rings;
-    Mesh mesh = MakeStar(random, random.Below(500), false, rings);
-    const TrimResult exact = TrimBy(OutwardTest::Exact, mesh, rings);
-    ASSERT_GT(exact.NumberOfOutwardTriangles, 0);
-    for (Index ring = 0; ring < 2; ++ring) // in any direction
-    {
-      if (random.Below(2))
-      {
-        std::reverse(rings.Vertices.begin() + rings.Offsets[ring],
-          rings.Vertices.begin() + rings.Offsets[ring + 1]);
-      }
-    }
-    const TrimResult inward = TrimBy(OutwardTest::InwardNormal, mesh, rings);
-    ASSERT_EQ(inward.IsOutward, exact.IsOutward);
-    ASSERT_EQ(inward.NumberOfOutwardTriangles, exact.NumberOfOutwardTriangles);
-  }
-}
-
-TEST(InwardNormal, IsThePublishedWalk)
-{
-  Random random(36);
-  int less = 0;
-  for (int round = 0; round < 300; ++round)
-  {
-    Rings rings;
-    Mesh mesh = MakeStar(random, random.Below(200), true, rings);
-    const TrimResult inward = TrimBy(OutwardTest::InwardNormal, mesh, rings);
-    ASSERT_EQ(inward.IsOutward, WalkAlong(mesh, rings));
-    ASSERT_EQ(inward.NumberOfOutwardTriangles,
-      std::count(inward.IsOutward.begin(), inward.IsOutward.end(), 1));
-    const TrimResult exact = TrimBy(OutwardTest::Exact, mesh, rings);
-    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-    {
-      ASSERT_TRUE(exact.IsOutward[t] || !inward.IsOutward[t]);
-      less += exact.IsOutward[t] - inward.IsOutward[t];
-    }
-  }
-  EXPECT_GT(less, 1000);
-}
-
-TEST(InwardNormal, KeepsWhatIsBehindAPointInADeepPocket)
-{
-  // A pocket two wide and five deep, open at the top, of points on its rim alone: it is emptied.
-  std::vector<Point2> points{ { 0, 0 }, { 4, 0 }, { 4, 6 }, { 3, 6 }, { 3, 5 }, { 3, 4 }, { 3, 3 },
-    { 3, 2 }, { 3, 1 }, { 1, 1 }, { 1, 2 }, { 1, 3 }, { 1, 4 }, { 1, 5 }, { 1, 6 }, { 0, 6 } };
-  Rings rings;
-  rings.Offsets = { 0, 16 };
-  for (Index v = 0; v < 16; ++v)
-  {
-    rings.Vertices.push_back(v);
-  }
-  const auto twiceOutward = [&](OutwardTest test) {
-    Mesh mesh = Delaunay(points);
-    const TrimResult trimmed = TrimBy(test, mesh, rings);
-    return TwiceArea(mesh) - KeptTwiceArea(mesh, trimmed);
-  };
-  EXPECT_EQ(twiceOutward(OutwardTest::Exact), 20.0);
-  EXPECT_EQ(twiceOutward(OutwardTest::InwardNormal), 20.0);
-  // With a point in the middle of the pocket, the triangles around it stay.
-  points.push_back({ 2, 3.25 });
-  EXPECT_EQ(twiceOutward(OutwardTest::Exact), 20.0);
-  EXPECT_GT(twiceOutward(OutwardTest::InwardNormal), 0.0);
-  EXPECT_LE(twiceOutward(OutwardTest::InwardNormal), 20.0 - 4.0);
-  // With a column of points, nothing is taken: no triangle has two edges on the boundary.
-  points.back() = { 2, 1.5 };
-  for (const double y : { 2.5, 3.5, 4.5, 5.5 })
-  {
-    points.push_back({ 2, y });
-  }
-  EXPECT_EQ(twiceOutward(OutwardTest::Exact), 20.0);
-  EXPECT_EQ(twiceOutward(OutwardTest::InwardNormal), 0.0);
-}
-
-TEST(InwardNormal, KeepsWhatIsBetweenTwoRings)
-{
-  std::vector<Point2> points{ { 0, 0 }, { 2, 0 }, { 2, 2 }, { 0, 2 }, { 5, 0 }, { 7, 0 }, { 7, 2 },
-    { 5, 2 } };
-  Mesh mesh = Delaunay(points);
-  Rings rings;
-  rings.Offsets = { 0, 4, 8 };
-  rings.Vertices = { 0, 1, 2, 3, 4, 5, 6, 7 };
-  EXPECT_EQ(TrimBy(OutwardTest::Exact, mesh, rings).NumberOfOutwardTriangles, 2);
-  EXPECT_EQ(TrimBy(OutwardTest::InwardNormal, mesh, rings).NumberOfOutwardTriangles, 0);
-}
-
-TEST(InwardNormal, RefusesMissingEdgesAsExactDoes)
-{
-  Random random(37);
-  Mesh mesh = LatticeMesh(random, 5);
-  Rings rings;
-  AddRing(mesh, { { 0, 0 }, { 4, 1 }, { 2, 4 } }, rings);
-  TrimOptions options;
-  options.Test = OutwardTest::InwardNormal;
-  options.RecoverBoundary = false;
-  EXPECT_THROW(Trim(mesh, rings, options), Error);
-  options.RecoverBoundary = true;
-  EXPECT_GT(Trim(mesh, rings, options).NumberOfRecoveredEdges, 0);
 }

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Lists of triangles that are no mesh yet, and some of their triangles as a mesh of their own.
+ * Lists of triangles that are no mesh yet, and all or some of their triangles as a mesh.
  */
-#ifndef elevation_Mesh_SubMesh_h
-#define elevation_Mesh_SubMesh_h
+#ifndef elevation_Mesh_TriangleList_h
+#define elevation_Mesh_TriangleList_h
 
 #include "HalfEdgeMesh.h"
 
-#include <algorithm>
+#include <string>
 #include <vector>
 
 namespace elevation
@@ -21,6 +21,7 @@ struct TriangleList
   const Index* Corners = nullptr; ///< three a triangle
   Index Count = 0;
   PointView Points;
+  Index FirstCell = 0; ///< what messages add to the number of a triangle to name it as a cell
 
   const Index* CornersOf(Index t) const { return this->Corners + 3 * static_cast<std::size_t>(t); }
   void PrefetchPoint(Index vertex) const
@@ -71,40 +72,23 @@ inline void ToIds(std::vector<Index>& vertices, const Index* ids, const Progress
   });
 }
 
-/** Some triangles of a list as a mesh, without Twins; its points keep their order. */
-struct SubMesh
-{
-  Mesh Surface;
-  std::vector<Index> Ids; ///< of its points in the list
+/** The message that a triangle names a point that does not exist. */
+std::string NoSuchPoint(std::int64_t cell, std::int64_t id, std::int64_t numberOfPoints);
 
-  SubMesh(const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
-  {
-    const Index count = static_cast<Index>(triangles.size());
-    IdSet corners(list.Points.Count);
-    ForEachStretch(count, Part(progress, 0.0, 0.4), [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i)
-      {
-        Prefetch(list.CornersOf(triangles[std::min(i + 16, count - 1)]));
-        corners.AddAll(list.CornersOf(triangles[i]));
-      }
-    });
-    this->Ids = corners.Number();
-    this->Surface.Points.reserve(this->Ids.size());
-    for (std::size_t i = 0; i < this->Ids.size(); ++i)
-    {
-      list.PrefetchPoint(this->Ids[std::min(i + 16, this->Ids.size() - 1)]);
-      this->Surface.Points.push_back(list.Points.At(this->Ids[i]));
-    }
-    this->Surface.Triangles.reserve(3 * triangles.size());
-    ForEachStretch(count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
-      for (Index i = 3 * begin; i < 3 * end; ++i)
-      {
-        this->Surface.Triangles.push_back(
-          corners.NumberOf(list.CornersOf(triangles[i / 3])[i % 3]));
-      }
-    });
-  }
-};
+/** The numbers of all triangles. */
+std::vector<Index> AllTriangles(const TriangleList& list);
+
+/**
+ * The whole list as a mesh, without Twins: points and triangles as they are, but that triangles
+ * are turned counter-clockwise where they are not. Linear; on up to so many threads.
+ * @throws Error that names the cell: a point that does not exist or is not finite; flat in x,y, as
+ *         is a triangle that has a point twice. Aborted; std::bad_alloc.
+ */
+Mesh MeshOf(const TriangleList& list, int threads = 1, const Progress& progress = Progress());
+
+/** Some triangles, which are right, as a mesh, without Twins; its points keep their order. */
+Mesh PartOf(
+  const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress);
 
 } // namespace elevation
 

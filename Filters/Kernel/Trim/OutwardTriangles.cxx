@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "TrimMesh.h"
+#include "OutwardTriangles.h"
 
-#include "Rings.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Rings.h"
 
 #include <algorithm>
 #include <string>
@@ -53,8 +53,8 @@ std::vector<Segment> SegmentsOf(
       const bool isInside = BeginsInside(mesh, stars, segment.A, segment.B);
       if (isInside != BeginsInside(mesh, stars, segment.B, segment.A))
       {
-        throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
-          NameOf(mesh.Points, segment.B) +
+        throw Error("The boundary's edge from " + NameOf(mesh, segment.A) + " to " +
+          NameOf(mesh, segment.B) +
           " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
           "pass through points of the mesh there; or merge points of the mesh, as "
           "vtkStaticCleanPolyData does, if borders of it lie on each other there.");
@@ -94,8 +94,8 @@ void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>&
       const SegmentStep step = StepAlong(mesh, stars, vertex, segment.B);
       if (step.HalfEdge == None)
       {
-        throw Error("The boundary's edge from " + NameOf(mesh.Points, segment.A) + " to " +
-          NameOf(mesh.Points, segment.B) +
+        throw Error("The boundary's edge from " + NameOf(mesh, segment.A) + " to " +
+          NameOf(mesh, segment.B) +
           " is not an edge of the mesh. Turn RecoverBoundary on, or triangulate with it.");
       }
       isOdd[step.HalfEdge] ^= 1;
@@ -108,18 +108,54 @@ void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>&
   }
 }
 
-/**
- * The published test. A walk with the surface on the right has outward triangles on its left. Two
- * edges of such a triangle follow each other on the walk if and only if it is on the left of both:
- * nothing else has room in its corner. So no walk is kept, but the number of edges of each triangle
- * that are on it by now.
- * @param[in]     isOdd      one flag a half-edge: whether its edge is of the boundary
- * @param[in,out] isOutward  in: the triangles outside, which tell the walk's direction; out: those
- *                           that the test finds
- */
-void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOdd,
+} // namespace
+
+OutwardTriangles FindOutward(
+  Mesh& mesh, const Rings& boundary, bool recover, const Progress& progress)
+{
+  OutwardTriangles result;
+  Report(progress, 0.0);
+  VertexStars stars(mesh, Part(progress, 0.0, 0.35));
+  const std::vector<Segment> segments =
+    SegmentsOf(mesh, stars, boundary, Part(progress, 0.35, 0.4));
+  std::vector<char>& isOnBoundary = result.IsOnBoundary;
+  if (recover)
+  {
+    result.NumberOfRecoveredEdges =
+      RecoverSegments(mesh, stars, segments, isOnBoundary, Part(progress, 0.4, 0.5));
+  }
+  MarkEdges(mesh, stars, segments, isOnBoundary, Part(progress, 0.5, 0.6));
+
+  const RingLocator locator(mesh.Points, boundary);
+  const Parts parts = FindParts(mesh, Part(progress, 0.6, 0.9),
+    [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
+  std::vector<char> isOutward; // one a label
+  for (const Index t : parts.Lowest)
+  {
+    const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)),
+      mesh.PointOf(mesh.Origin(3 * t + 1)), mesh.PointOf(mesh.Origin(3 * t + 2)));
+    isOutward.push_back(!isInside);
+    isOutward.push_back(isInside);
+  }
+  const Index count = mesh.NumberOfTriangles();
+  result.IsOutward.resize(count);
+  ForEachStretch(count, Part(progress, 0.9, 1.0), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      result.IsOutward[t] = isOutward[parts.Labels[t]];
+    }
+  });
+  Report(progress, 1.0);
+  return result;
+}
+
+void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOnBoundary,
   std::vector<char>& isOutward, const Progress& progress)
 {
+  // A walk with the surface on the right has outward triangles on its left. Two edges of such a
+  // triangle follow each other on the walk if and only if it is on the left of both: nothing else has
+  // room in its corner. So no walk is kept, but the number of edges of each triangle that are on it
+  // by now.
   constexpr char isTaken = 4;
   std::vector<char> edges(isOutward.size(), 0);
   std::vector<Index> taken;
@@ -133,7 +169,7 @@ void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOdd,
   ForEachStretch(mesh.NumberOfHalfEdges(), Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
     for (Index h = begin; h < end; ++h)
     {
-      if (isOdd[h])
+      if (isOnBoundary[h])
       {
         walkAlong(h);
       }
@@ -162,75 +198,6 @@ void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOdd,
   {
     isOutward[t] = edges[t] >= 2;
   }
-}
-
-} // namespace
-
-TrimResult Trim(Mesh& mesh, const Rings& boundary, const TrimOptions& options)
-{
-  const Index count = mesh.NumberOfTriangles();
-  TrimResult result;
-  Report(options.Monitor, 0.0);
-  VertexStars stars(mesh, Part(options.Monitor, 0.0, 0.35));
-  const std::vector<Segment> segments =
-    SegmentsOf(mesh, stars, boundary, Part(options.Monitor, 0.35, 0.4));
-  std::vector<char> flags;
-  if (options.RecoverBoundary)
-  {
-    result.NumberOfRecoveredEdges =
-      RecoverSegments(mesh, stars, segments, flags, Part(options.Monitor, 0.4, 0.5));
-  }
-  MarkEdges(mesh, stars, segments, flags, Part(options.Monitor, 0.5, 0.6));
-
-  const RingLocator locator(mesh.Points, boundary);
-  const Parts parts = FindParts(mesh, Part(options.Monitor, 0.6, 0.9),
-    [&flags](Index h) { return static_cast<int>(flags[h]); });
-  std::vector<char> isOutward; // one a label
-  for (const Index t : parts.Lowest)
-  {
-    const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)),
-      mesh.PointOf(mesh.Origin(3 * t + 1)), mesh.PointOf(mesh.Origin(3 * t + 2)));
-    isOutward.push_back(!isInside);
-    isOutward.push_back(isInside);
-  }
-  result.IsOutward.resize(count);
-  ForEachStretch(count, Part(options.Monitor, 0.9, 0.95), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      result.IsOutward[t] = isOutward[parts.Labels[t]];
-      result.NumberOfOutwardTriangles += result.IsOutward[t];
-    }
-  });
-  if (count > 0 && result.NumberOfOutwardTriangles == count)
-  {
-    const std::string name =
-      boundary.Count() > 0 ? NameOf(mesh.Points, boundary.Vertices.front()) : std::string();
-    throw Error("The boundary encloses no triangle of the mesh" +
-      (name.empty() ? name : ". Its first ring begins at" + name.substr(name.find(" ("))) +
-      (boundary.Count() > 1 ? "; of rings in each other, what lies between two is enclosed."
-                            : "."));
-  }
-  if (options.Test == OutwardTest::InwardNormal)
-  {
-    TakeAlongBoundary(mesh, flags, result.IsOutward, Part(options.Monitor, 0.95, 1.0));
-    result.NumberOfOutwardTriangles =
-      static_cast<Index>(std::count(result.IsOutward.begin(), result.IsOutward.end(), 1));
-  }
-  Report(options.Monitor, 1.0);
-  return result;
-}
-
-TrimResult TrimExtracted(const ExtractedBoundary& boundary)
-{
-  TrimResult result;
-  result.IsOutward = boundary.IsSurface;
-  result.NumberOfPointsLeftOut = boundary.NumberOfPointsLeftOut;
-  for (char& flag : result.IsOutward)
-  {
-    flag = !flag;
-    result.NumberOfOutwardTriangles += flag;
-  }
-  return result;
 }
 
 } // namespace elevation

@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeasuredTriangles.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace elevation
+{
+
+namespace
+{
+
+// Coordinates of which the largest is beyond these are taken at another scale: squares of lengths
+// leave the range of float.
+constexpr double LargestUnscaled = 1e15;
+constexpr double LeastUnscaled = 1e-12;
+constexpr Index LargestSample = 4096;
+
+/**
+ * Finds the longest edge of each triangle, tells each vertex its edges, and takes the sample.
+ * Vertices are numbered as they come: what comes next is then near in memory as well, wherever the
+ * points lie.
+ */
+struct Measurer
+{
+  struct Vertex : SweptVertex
+  {
+    Index Number = None;
+    EdgesAtVertex Edges;
+    bool IsChosen = false;
+  };
+
+  static constexpr Index AtOnce = 1024; ///< numbers that one visitor takes
+  const int SampleBits;
+  const Vertex* Vertices; ///< of the list
+  MeasuredTriangles* Measured;
+  double* Longest;                ///< of Measured
+  std::atomic<Index>* Count;      ///< of numbers given to visitors
+  std::vector<Index> Sample = {}; ///< triangles
+  Index Next = 0, End = 0;        ///< numbers to give
+  Index First = None;             ///< number of the first corner
+  Index Last = None;              ///< of the last one
+  double Largest = 0.0;           ///< coordinate
+  double ToLast = 0.0;            ///< square of the length, from the first corner to the last
+
+  void Start(Vertex& vertex) const
+  {
+    vertex.IsChosen = IsChosenForSample(vertex.Place, this->SampleBits);
+  }
+
+  Index NumberOf(Vertex& vertex)
+  {
+    if (vertex.Number == None)
+    {
+      if (this->Next == this->End)
+      {
+        this->Next = this->Count->fetch_add(AtOnce);
+        this->End = this->Next + AtOnce;
+        std::fill_n(this->Measured->Ids.data() + this->Next, AtOnce, None);
+      }
+      this->Measured->Ids[this->Next] = static_cast<Index>(&vertex - this->Vertices);
+      vertex.Number = this->Next++;
+    }
+    return vertex.Number;
+  }
+
+  void Begin(Vertex& p, Vertex& a)
+  {
+    this->Largest = std::max({ this->Largest, std::fabs(p.Place.X), std::fabs(p.Place.Y),
+      std::fabs(a.Place.X), std::fabs(a.Place.Y) });
+    this->ToLast = SquaredLength(p.Place, a.Place);
+    this->First = this->NumberOf(p);
+    this->Last = this->NumberOf(a);
+  }
+
+  void Visit(Index t, Vertex& p, Vertex& a, Vertex& b)
+  {
+    Index* corners = this->Measured->Corners.data() + 3 * static_cast<std::size_t>(t);
+    corners[0] = this->First;
+    corners[1] = this->Last;
+    corners[2] = this->Last = this->NumberOf(b);
+    this->Largest = std::max({ this->Largest, std::fabs(b.Place.X), std::fabs(b.Place.Y) });
+    const double right = this->ToLast;
+    const double opposite = SquaredLength(a.Place, b.Place);
+    this->ToLast = SquaredLength(b.Place, p.Place);
+    this->Longest[t] = std::max(std::max(right, opposite), this->ToLast);
+    p.Edges.Add(right);
+    a.Edges.Add(opposite);
+    b.Edges.Add(this->ToLast);
+    if (p.IsChosen | a.IsChosen | b.IsChosen)
+    {
+      this->Sample.push_back(t);
+    }
+  }
+};
+
+/** What a sweep has told of the vertices, by their numbers, and the border. */
+void TakeVertices(
+  TriangleSweep<Measurer>& sweep, const Progress& progress, MeasuredTriangles& measured)
+{
+  const Index numbers = measured.List.Points.Count;
+  measured.Border = sweep.Border(
+    numbers, progress, [&](Index number) { return measured.Ids[number]; },
+    [&](Index number, const Measurer::Vertex* vertex) {
+      const Measurer::Vertex nobody{};
+      vertex = vertex ? vertex : &nobody;
+      measured.Set(number, vertex->Edges);
+      double* p = measured.Coordinates.data() + 3 * static_cast<std::size_t>(number);
+      p[0] = vertex->Place.X;
+      p[1] = vertex->Place.Y;
+      p[2] = 0.0;
+    });
+}
+
+/**
+ * Adds each edge of the border to the vertex that it leads to, as no half-edge leaves that along it,
+ * and gives the border the numbers of vertices.
+ */
+void AddBorder(
+  TriangleSweep<Measurer>& sweep, const Progress& progress, MeasuredTriangles& measured)
+{
+  std::size_t done = 0;
+  for (BorderEdge& edge : measured.Border)
+  {
+    ReportStep(progress, done++, measured.Border.size());
+    Measurer::Vertex& origin = sweep.At(edge.Origin);
+    Measurer::Vertex& destination = sweep.At(edge.Destination);
+    destination.Edges.Add(SquaredLength(origin.Place, destination.Place));
+    measured.Set(destination.Number, destination.Edges);
+    edge = { origin.Number, destination.Number };
+  }
+}
+
+} // namespace
+
+int SampleBitsOf(Index numberOfTriangles)
+{
+  int bits = 0;
+  while (numberOfTriangles >> bits > LargestSample)
+  {
+    ++bits;
+  }
+  return bits;
+}
+
+bool MeasureBySweep(
+  const TriangleList& list, int threads, const Progress& progress, MeasuredTriangles& measured)
+{
+  const Index count = list.Count;
+  measured.Corners.Resize(3 * static_cast<std::size_t>(count));
+  measured.Longest.Resize(count);
+  TriangleSweep<Measurer> sweep(list, threads);
+  measured.Ids.Resize(static_cast<std::size_t>(list.Points.Count) +
+    static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
+  std::atomic<Index> numbers{ 0 };
+  if (!sweep.Run(
+        Measurer{ SampleBitsOf(count), &sweep.At(0), &measured, measured.Longest.data(), &numbers },
+        Part(progress, 0.0, 0.75)))
+  {
+    return false;
+  }
+  double largest = 0.0;
+  for (const Measurer* measurer : sweep.Visitors())
+  {
+    largest = std::max(largest, measurer->Largest);
+    measured.Sample.insert(measured.Sample.end(), measurer->Sample.begin(), measurer->Sample.end());
+  }
+  std::sort(measured.Sample.begin(), measured.Sample.end());
+  measured.Coordinates.Resize(3 * static_cast<std::size_t>(numbers));
+  measured.SetNumberOfVertices(numbers);
+  measured.List.Corners = measured.Corners.data();
+  measured.List.Count = count;
+  measured.List.Points.Double = measured.Coordinates.data();
+  measured.List.Points.Count = numbers;
+  TakeVertices(sweep, Part(progress, 0.75, 0.85), measured);
+  if (largest > LargestUnscaled || largest < LeastUnscaled ||
+    !CoversOnce(measured.Border, list.Points, Part(progress, 0.85, 0.95)))
+  {
+    return false;
+  }
+  AddBorder(sweep, Part(progress, 0.95, 1.0), measured);
+  return true;
+}
+
+MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress)
+{
+  const Index count = mesh.NumberOfTriangles();
+  // At a scale where squares do not leave the range of double.
+  double largest = 0.0;
+  for (const Index v : mesh.Triangles)
+  {
+    largest = std::max({ largest, std::fabs(mesh.PointOf(v).X), std::fabs(mesh.PointOf(v).Y) });
+  }
+  const double scale =
+    largest > LargestUnscaled || largest < LeastUnscaled ? ScaleToOne(largest) : 1.0;
+  MeasuredTriangles measured;
+  measured.Coordinates.Reserve(3 * mesh.Points.size());
+  for (const Point2& p : mesh.Points)
+  {
+    measured.Coordinates.Append(scale * p.X);
+    measured.Coordinates.Append(scale * p.Y);
+    measured.Coordinates.Append(0.0);
+  }
+  TriangleList& list = measured.List;
+  list.Corners = mesh.Triangles.data();
+  list.Count = count;
+  list.Points.Double = measured.Coordinates.data();
+  list.Points.Count = mesh.NumberOfPoints();
+  measured.Longest.Resize(count);
+  measured.SetNumberOfVertices(list.Points.Count);
+  std::vector<EdgesAtVertex> edges(mesh.Points.size());
+  const int bits = SampleBitsOf(count);
+  ForEachStretch(count, progress, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      measured.Longest[t] = 0.0;
+      bool isInSample = false;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        const BorderEdge edge{ mesh.Origin(h), mesh.Destination(h) };
+        const Point2 origin = list.Points.At(edge.Origin);
+        const double squared = SquaredLength(origin, list.Points.At(edge.Destination));
+        measured.Longest[t] = std::max(measured.Longest[t], squared);
+        edges[edge.Origin].Add(squared);
+        isInSample = isInSample || IsChosenForSample(origin, bits);
+        if (mesh.IsBorder(h))
+        {
+          // No half-edge leaves its other end.
+          edges[edge.Destination].Add(squared);
+          measured.Border.push_back(edge);
+        }
+      }
+      if (isInSample)
+      {
+        measured.Sample.push_back(t);
+      }
+    }
+  });
+  for (Index v = 0; v < list.Points.Count; ++v)
+  {
+    measured.Set(v, edges[v]);
+  }
+  return measured;
+}
+
+} // namespace elevation

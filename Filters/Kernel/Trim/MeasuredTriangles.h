@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What the outline of a surface is told by: the longest edge of each triangle, the shortest edges at
+ * each vertex, the border. One pass over the triangles, over those of a mesh or where they lie.
+ */
+#ifndef elevation_Trim_MeasuredTriangles_h
+#define elevation_Trim_MeasuredTriangles_h
+
+#include "Kernel/Mesh/Mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+namespace elevation
+{
+
+/** The four shortest edges at a vertex, and how many it has. */
+struct EdgesAtVertex
+{
+  /** An edge, each once, in any order. */
+  void Add(double squaredLength)
+  {
+    ++this->Degree;
+    // Without branches: where it belongs cannot be predicted.
+    const float squared = static_cast<float>(squaredLength);
+    for (int i = Shortest - 1; i > 0; --i)
+    {
+      this->Squared[i] = std::min(this->Squared[i], std::max(this->Squared[i - 1], squared));
+    }
+    this->Squared[0] = std::min(this->Squared[0], squared);
+  }
+
+  /** Of a corner: their mean length (of all edges if fewer), but at most twice the second one's. */
+  float ShortSpacing() const
+  {
+    const float second = std::sqrt(this->Squared[1]);
+    float sum = std::sqrt(this->Squared[0]) + second;
+    for (int i = 2; i < Shortest; ++i)
+    {
+      sum += static_cast<std::uint32_t>(i) < this->Degree ? std::sqrt(this->Squared[i]) : 0.0f;
+    }
+    const float number = static_cast<float>(std::min<std::uint32_t>(this->Degree, Shortest));
+    return std::min(sum / number, 2.0f * second);
+  }
+
+  static constexpr int Shortest = 4;
+  std::uint32_t Degree = 0;
+  float Squared[Shortest] = { std::numeric_limits<float>::infinity(),
+    std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+    std::numeric_limits<float>::infinity() }; ///< in their order
+};
+
+/** Triangles, and what a pass over them has told. Vertices may have numbers of their own. */
+struct MeasuredTriangles
+{
+  void SetNumberOfVertices(Index count)
+  {
+    this->Degrees.Resize(count);
+    this->ShortSpacings.Resize(count);
+  }
+
+  /** When all edges of a vertex are known. */
+  void Set(Index vertex, const EdgesAtVertex& edges)
+  {
+    this->Degrees[vertex] = edges.Degree;
+    this->ShortSpacings[vertex] = edges.ShortSpacing();
+  }
+
+  TriangleList List;
+  Buffer<Index> Corners;          ///< what List points to, when it is not the list measured
+  Buffer<double> Coordinates;     ///< the same
+  Buffer<Index> Ids;              ///< of the vertices in the list measured, when they have others
+  Buffer<double> Longest;         ///< one a triangle: the square of its longest edge
+  Buffer<std::uint32_t> Degrees;  ///< one a vertex: how many edges it has; it may have none
+  Buffer<float> ShortSpacings;    ///< one a vertex
+  std::vector<BorderEdge> Border; ///< all
+  std::vector<Index> Sample;      ///< triangles with a vertex chosen for the sample; increasing
+};
+
+inline double SquaredLength(Point2 p, Point2 q)
+{
+  return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
+}
+
+/**
+ * For the typical triangle one vertex in 1, 2, 4 and so on is chosen: as many as are chosen when no
+ * more than a few thousand triangles would be. It is 2 to the power of this.
+ */
+int SampleBitsOf(Index numberOfTriangles);
+/** Whether a vertex is chosen, by its place alone. */
+inline bool IsChosenForSample(Point2 place, int sampleBits)
+{
+  std::uint64_t x, y;
+  place = { place.X + 0.0, place.Y + 0.0 }; // -0.0 is 0.0
+  std::memcpy(&x, &place.X, sizeof(x));
+  std::memcpy(&y, &place.Y, sizeof(y));
+  // Steps that spread every bit over all others, as at the end of Appleby's MurmurHash3.
+  const auto mix = [](std::uint64_t h) {
+    h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDull;
+    h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53ull;
+    return h ^ (h >> 33);
+  };
+  return sampleBits == 0 || mix(mix(x) + y) >> (64 - sampleBits) == 0;
+}
+
+/** Measures the triangles of a mesh (with Twins), at least one. @throws Aborted, std::bad_alloc */
+MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress = Progress());
+
+/**
+ * Measures triangles by one sweep over them (TriangleSweep.h), which proves that they are a mesh
+ * that covers nothing twice.
+ * @return whether it does, and coordinates need no other scale; if not, the result is of no use
+ * @throws Aborted, std::bad_alloc
+ */
+bool MeasureBySweep(
+  const TriangleList& list, int threads, const Progress& progress, MeasuredTriangles& measured);
+
+} // namespace elevation
+
+#endif

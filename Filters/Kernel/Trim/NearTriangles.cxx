@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NearTriangles.h"
+
+#include "Rings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace elevation
+{
+
+namespace
+{
+
+/**
+ * A raster over the box of rings, with some cells around it. A cell that no ring touches is inside
+ * or outside them as a whole. What is beyond the raster is outside, as the cells at its rim are.
+ */
+class RingRaster
+{
+public:
+  enum Kind : char
+  {
+    Inside = 0,
+    Outward = 1,
+    Near = 2 ///< touched by a ring, or perhaps
+  };
+
+  RingRaster(const std::vector<Point2>& points, const Rings& rings, Index numberOfTriangles)
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Point2 low{ infinity, infinity };
+    Point2 high{ -infinity, -infinity };
+    for (const Index id : rings.Vertices)
+    {
+      const Point2& p = points[id];
+      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+    }
+    const double size = std::max({ -low.X, -low.Y, high.X, high.Y });
+    const double width = high.X - low.X;
+    const double height = high.Y - low.Y;
+    // A few triangles a cell.
+    const double cells = std::min(262144.0, std::max(64.0, numberOfTriangles / 8.0));
+    const double columns = std::sqrt(cells * (width / height));
+    this->Side = width / std::min(512.0, std::max(1.0, columns));
+    // No cell is so small that rounding of coordinates could matter; and rings that are no more
+    // than a line, or too large or too small for this, are left to others.
+    this->Usable = size < 1e100 && this->Side > 1e-100 && this->Side > 1e-9 * size &&
+      height > 0.0 && height < 4096.0 * this->Side;
+    if (!this->Usable)
+    {
+      return;
+    }
+    this->Low = { low.X - Margin * this->Side, low.Y - Margin * this->Side };
+    this->Columns = static_cast<Index>(std::ceil(width / this->Side)) + 2 * Margin;
+    this->Rows = static_cast<Index>(std::ceil(height / this->Side)) + 2 * Margin;
+    this->CellsPerUnit = 1.0 / this->Side;
+    this->Kinds.assign(static_cast<std::size_t>(this->Columns) * this->Rows, Outward);
+    this->Draw(points, rings);
+    this->FindInside(points, rings);
+    this->SumUp();
+  }
+
+  bool IsUsable() const { return this->Usable; }
+
+  /** The kind of all that is not farther than Reach() from p, along x and along y. */
+  Kind KindAround(Point2 p) const
+  {
+    return static_cast<Kind>(
+      this->KindsAround[this->CellAt(this->ColumnOf(p.X), this->RowOf(p.Y))]);
+  }
+  double Reach() const { return 0.999 * Around * this->Side; }
+
+  /** The kind of all of a box: Near, when it touches a cell that a ring touches. */
+  Kind KindOf(Point2 low, Point2 high) const
+  {
+    const Index left = this->ColumnOf(low.X), right = this->ColumnOf(high.X);
+    const Index bottom = this->RowOf(low.Y), top = this->RowOf(high.Y);
+    const bool isTouched = this->SumOf(right + 1, top + 1) - this->SumOf(left, top + 1) -
+        this->SumOf(right + 1, bottom) + this->SumOf(left, bottom) >
+      0;
+    return isTouched ? Near : static_cast<Kind>(this->Kinds[this->CellAt(left, bottom)]);
+  }
+
+private:
+  static constexpr Index Around = 2; ///< cells around one that KindAround() looks at
+  // Cells beside the box of the rings: so many that no ring is within reach of those at the rim,
+  // which stand for all beyond; one more, as rings are drawn with a margin.
+  static constexpr Index Margin = Around + 2;
+
+  // Monotone, so that what lies between two points lies between their cells.
+  Index ColumnOf(double x) const
+  {
+    return CellOf((x - this->Low.X) * this->CellsPerUnit, this->Columns);
+  }
+  Index RowOf(double y) const { return CellOf((y - this->Low.Y) * this->CellsPerUnit, this->Rows); }
+  static Index CellOf(double position, Index count)
+  {
+    return static_cast<Index>(std::min(std::max(0.0, position), count - 1.0));
+  }
+  std::size_t CellAt(Index column, Index row) const
+  {
+    return static_cast<std::size_t>(row) * this->Columns + column;
+  }
+  Index SumOf(Index column, Index row) const
+  {
+    return this->Sums[static_cast<std::size_t>(row) * (this->Columns + 1) + column];
+  }
+
+  /** Marks the cells that an edge touches, or comes near by a share of a cell. */
+  void Draw(const std::vector<Point2>& points, const Rings& rings)
+  {
+    const double near = 1e-3 * this->Side;
+    for (Index ring = 0; ring < rings.Count(); ++ring)
+    {
+      for (const Index* v = rings.Begin(ring); v != rings.End(ring); ++v)
+      {
+        Point2 a = points[*v];
+        Point2 b = points[v + 1 == rings.End(ring) ? *rings.Begin(ring) : v[1]];
+        if (b.Y < a.Y)
+        {
+          std::swap(a, b);
+        }
+        const Index last = this->RowOf(b.Y + near);
+        for (Index row = this->RowOf(a.Y - near); row <= last; ++row)
+        {
+          const auto at = [&](double y) {
+            const double share = b.Y > a.Y ? (y - a.Y) / (b.Y - a.Y) : 0.0;
+            return a.X + std::max(0.0, std::min(1.0, share)) * (b.X - a.X);
+          };
+          double from = at(this->Low.Y + row * this->Side - near);
+          double to = at(this->Low.Y + (row + 1) * this->Side + near);
+          if (!(b.Y > a.Y))
+          {
+            to = b.X;
+          }
+          const Index end = this->ColumnOf(std::max(from, to) + near);
+          for (Index column = this->ColumnOf(std::min(from, to) - near); column <= end; ++column)
+          {
+            this->Kinds[this->CellAt(column, row)] = Near;
+          }
+        }
+      }
+    }
+  }
+
+  /** Tells inside from outside, cell by cell from what the cells before and below are. */
+  void FindInside(const std::vector<Point2>& points, const Rings& rings)
+  {
+    const RingLocator locator(points, rings);
+    for (Index row = 1; row < this->Rows; ++row)
+    {
+      for (Index column = 1; column < this->Columns; ++column)
+      {
+        char& kind = this->Kinds[this->CellAt(column, row)];
+        const char before = this->Kinds[this->CellAt(column - 1, row)];
+        const char below = this->Kinds[this->CellAt(column, row - 1)];
+        if (kind == Near)
+        {
+          continue;
+        }
+        if (before != Near || below != Near)
+        {
+          kind = before != Near ? before : below;
+          continue;
+        }
+        const double part = 0.25 * this->Side;
+        const Point2 p{ this->Low.X + (column + 0.5) * this->Side,
+          this->Low.Y + (row + 0.5) * this->Side };
+        kind = locator.IsInside(p, { p.X + part, p.Y }, { p.X, p.Y + part }) ? Inside : Outward;
+      }
+    }
+  }
+
+  void SumUp()
+  {
+    this->Sums.assign(static_cast<std::size_t>(this->Columns + 1) * (this->Rows + 1), 0);
+    for (Index row = 0; row < this->Rows; ++row)
+    {
+      Index sum = 0;
+      for (Index column = 0; column < this->Columns; ++column)
+      {
+        sum += this->Kinds[this->CellAt(column, row)] == Near;
+        this->Sums[static_cast<std::size_t>(row + 1) * (this->Columns + 1) + column + 1] =
+          this->SumOf(column + 1, row) + sum;
+      }
+    }
+    this->KindsAround = this->Kinds;
+    for (Index row = 0; row < this->Rows; ++row)
+    {
+      const Index bottom = std::max(row - Around, 0);
+      const Index top = std::min(row + Around + 1, this->Rows);
+      for (Index column = 0; column < this->Columns; ++column)
+      {
+        const Index left = std::max(column - Around, 0);
+        const Index right = std::min(column + Around + 1, this->Columns);
+        const bool isTouched = this->SumOf(right, top) - this->SumOf(left, top) -
+            this->SumOf(right, bottom) + this->SumOf(left, bottom) >
+          0;
+        if (isTouched)
+        {
+          this->KindsAround[this->CellAt(column, row)] = Near;
+        }
+      }
+    }
+  }
+
+  bool Usable = false;
+  Point2 Low{ 0.0, 0.0 };
+  double Side = 0.0;
+  double CellsPerUnit = 0.0;
+  Index Columns = 0;
+  Index Rows = 0;
+  std::vector<char> Kinds;
+  std::vector<char> KindsAround;
+  std::vector<Index> Sums; ///< of touched cells to the left and below
+};
+
+/** Tells the triangles that no ring touches, and lists the others. */
+struct Classifier
+{
+  using Vertex = SweptVertex;
+
+  const RingRaster& Raster;
+  char* Flags;
+  std::vector<Index> Near;
+  const double Reach;
+  double ReachOfLast = 0.0;
+  char Around = RingRaster::Near;
+
+  static double ReachOf(Point2 p, Point2 q)
+  {
+    return std::max(std::fabs(q.X - p.X), std::fabs(q.Y - p.Y));
+  }
+
+  void Start(Vertex&) const {}
+
+  void Begin(const Vertex& p, const Vertex& a)
+  {
+    this->Around = this->Raster.KindAround(p.Place);
+    this->ReachOfLast = ReachOf(p.Place, a.Place);
+  }
+
+  void Visit(Index t, const Vertex& first, const Vertex& second, const Vertex& third)
+  {
+    const Point2 p = first.Place, a = second.Place, b = third.Place;
+    const double reach = ReachOf(p, b);
+    const bool isShort = (reach <= this->Reach) & (this->ReachOfLast <= this->Reach);
+    this->ReachOfLast = reach;
+    if (isShort & (this->Around != RingRaster::Near))
+    {
+      this->Flags[t] = this->Around;
+      return;
+    }
+    const char kind =
+      this->Raster.KindOf({ std::min({ p.X, a.X, b.X }), std::min({ p.Y, a.Y, b.Y }) },
+        { std::max({ p.X, a.X, b.X }), std::max({ p.Y, a.Y, b.Y }) });
+    this->Flags[t] = kind;
+    if (kind == RingRaster::Near)
+    {
+      this->Near.push_back(t);
+    }
+  }
+};
+
+} // namespace
+
+std::optional<std::vector<Index>> FindNearTriangles(const TriangleList& list,
+  const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress,
+  std::vector<char>& isOutward)
+{
+  const RingRaster raster(points, rings, list.Count);
+  if (!raster.IsUsable())
+  {
+    return std::nullopt;
+  }
+  isOutward.resize(list.Count);
+  TriangleSweep<Classifier> sweep(list, threads);
+  if (!sweep.Run(Classifier{ raster, isOutward.data(), {}, raster.Reach(), 0.0, RingRaster::Near },
+        Part(progress, 0.0, 0.8)))
+  {
+    return std::nullopt;
+  }
+  const std::vector<BorderEdge> border = sweep.Border(
+    list.Points.Count, Part(progress, 0.8, 0.9), [](Index id) { return id; },
+    [](Index, const SweptVertex*) {});
+  if (!CoversOnce(border, list.Points, Part(progress, 0.9, 1.0)))
+  {
+    return std::nullopt;
+  }
+  std::vector<Index> near;
+  for (const Classifier* classifier : sweep.Visitors())
+  {
+    near.insert(near.end(), classifier->Near.begin(), classifier->Near.end());
+  }
+  std::sort(near.begin(), near.end());
+  return near;
+}
+
+} // namespace elevation

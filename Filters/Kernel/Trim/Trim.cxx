@@ -1,0 +1,310 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Trim.h"
+
+#include "NearTriangles.h"
+#include "Outline.h"
+#include "OutwardTriangles.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <optional>
+#include <string>
+
+namespace elevation
+{
+
+namespace
+{
+
+/** What has become of a list of triangles; those not named are as they were. */
+struct Changes
+{
+  std::vector<char> IsOutward; ///< one flag a triangle, those added included
+  std::vector<Index> Changed;  ///< the triangles that have other corners now; increasing
+  std::vector<Index> Corners;  ///< theirs, three each, and behind them those of triangles added
+  std::vector<Index> Parents;  ///< one a triangle added: whose part it is
+};
+
+/** All triangles as a mesh with Twins that covers nothing twice. @throws Error */
+Mesh ProvenMesh(const TriangleList& list, int threads, const Progress& progress)
+{
+  Mesh mesh = MeshOf(list, ResolveNumberOfThreads(threads), Part(progress, 0.0, 0.4));
+  mesh.ConnectTwins(list.FirstCell, Part(progress, 0.4, 0.8));
+  FindHoles(mesh, list.FirstCell, Part(progress, 0.8, 1.0));
+  return mesh;
+}
+
+/** Some triangles that are proven, as a mesh with Twins. */
+Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Progress& progress)
+{
+  Mesh mesh = PartOf(list, near, Part(progress, 0.0, 0.5));
+  mesh.ConnectTwins(list.FirstCell, Part(progress, 0.5, 1.0));
+  return mesh;
+}
+
+/**
+ * Puts what has become of a mesh of near triangles back into the list.
+ * @param[in] near       the triangles of the list that were the first ones of the mesh
+ * @param[in] isOutward  one flag a triangle of the mesh
+ */
+void PutBack(const TriangleList& list, const std::vector<Index>& near, const Mesh& mesh,
+  const std::vector<char>& isOutward, const Progress& progress, Changes& changes)
+{
+  const Index count = static_cast<Index>(near.size());
+  ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      const Index corners[3] = { mesh.IdOf(mesh.Origin(3 * i)), mesh.IdOf(mesh.Origin(3 * i + 1)),
+        mesh.IdOf(mesh.Origin(3 * i + 2)) };
+      bool isOther = true;
+      if (i < count)
+      {
+        changes.IsOutward[near[i]] = isOutward[i];
+        isOther = !std::equal(corners, corners + 3, list.CornersOf(near[i]));
+        if (isOther)
+        {
+          changes.Changed.push_back(near[i]);
+        }
+      }
+      else
+      {
+        changes.IsOutward.push_back(isOutward[i]);
+      }
+      if (isOther)
+      {
+        changes.Corners.insert(changes.Corners.end(), corners, corners + 3);
+      }
+    }
+  });
+}
+
+/** The same for points inserted and triangles added. */
+void PutBackInserted(const std::vector<Index>& near, const Mesh& mesh, InsertedRings& rings,
+  Changes& changes, Trimmed& result)
+{
+  for (const Index parent : rings.Parents)
+  {
+    changes.Parents.push_back(near[parent]);
+  }
+  result.Inserted = std::move(rings.Inserted);
+  for (InsertedVertex& vertex : result.Inserted)
+  {
+    for (Index& corner : vertex.Corners)
+    {
+      corner = mesh.IdOf(corner);
+    }
+  }
+}
+
+/** @throws Error when all is outward */
+void CheckEnclosed(
+  const std::vector<char>& isOutward, const NamedPoints& points, const Rings& rings)
+{
+  if (std::find(isOutward.begin(), isOutward.end(), char(0)) == isOutward.end())
+  {
+    const std::string name = NameOf(points, rings.Vertices.front());
+    throw Error("The boundary encloses no triangle of the mesh. Its first ring begins at" +
+      name.substr(name.find(" (")) +
+      (rings.Count() > 1 ? "; of rings in each other, what lies between two is enclosed." : "."));
+  }
+}
+
+/** Trims along lines. */
+void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimOptions& options,
+  const Progress& progress, Changes& changes, Trimmed& result)
+{
+  const int threads = options.NumberOfThreads;
+  result.Boundary = JoinLines(lines);
+  std::optional<std::vector<Index>> found;
+  if (options.Test == OutwardTest::Exact)
+  {
+    found = FindNearTriangles(list, lines.Points.Places, result.Boundary, threads,
+      Part(progress, 0.0, 0.5), changes.IsOutward);
+  }
+  const std::vector<Index> near = found ? std::move(*found) : AllTriangles(list);
+  changes.IsOutward.resize(list.Count);
+  if (!near.empty())
+  {
+    const Progress making = Part(progress, 0.5, 0.65);
+    Mesh mesh = found ? NearMesh(list, near, making) : ProvenMesh(list, threads, making);
+    const Index before = mesh.NumberOfPoints();
+    InsertedRings rings = InsertRings(
+      mesh, lines.Points, result.Boundary, options.RecoverBoundary, Part(progress, 0.65, 0.8));
+    OutwardTriangles outward =
+      FindOutward(mesh, rings.Vertices, options.RecoverBoundary, Part(progress, 0.8, 0.95));
+    result.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
+    result.Places.assign(
+      mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
+    if (options.Test == OutwardTest::InwardNormal)
+    {
+      CheckEnclosed(outward.IsOutward, lines.Points, result.Boundary);
+      TakeAlongBoundary(mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.95, 0.97));
+    }
+    PutBack(list, near, mesh, outward.IsOutward, Part(progress, 0.97, 1.0), changes);
+    PutBackInserted(near, mesh, rings, changes, result);
+  }
+  CheckEnclosed(changes.IsOutward, lines.Points, result.Boundary);
+  for (Index& vertex : result.Boundary.Vertices)
+  {
+    vertex = lines.Points.IdOf(vertex);
+  }
+}
+
+/** Trims along the outline of the surface. */
+void TrimExtracted(const TriangleList& list, const TrimOptions& options, const Progress& progress,
+  Changes& changes, Trimmed& result)
+{
+  const bool isExact = options.Test == OutwardTest::Exact;
+  const Progress finding = Part(progress, 0.45, 0.9);
+  ExtractOptions extraction;
+  extraction.GapTolerance = options.GapTolerance;
+  extraction.NumberOfThreads = options.NumberOfThreads;
+  extraction.Monitor = finding;
+  MeasuredTriangles measured;
+  ExtractedBoundary found;
+  Mesh mesh; // of all, where a sweep does not do
+  if (isExact && MeasureBySweep(list, options.NumberOfThreads, Part(progress, 0.0, 0.4), measured))
+  {
+    found = FindOutline(std::move(measured), extraction);
+  }
+  else
+  {
+    measured = MeasuredTriangles();
+    mesh = ProvenMesh(list, options.NumberOfThreads, Part(progress, 0.4, 0.45));
+    found = ExtractBoundary(mesh, extraction);
+  }
+  result.Boundary = std::move(found.Vertices);
+  result.GapTolerance = found.GapTolerance;
+  result.NumberOfPointsLeftOut = found.NumberOfPointsLeftOut;
+  std::vector<char>& isOutward = changes.IsOutward;
+  isOutward = std::move(found.IsSurface);
+  for (char& flag : isOutward)
+  {
+    flag = !flag;
+  }
+  if (!isExact && result.Boundary.Count() > 0)
+  {
+    OutwardTriangles outward =
+      FindOutward(mesh, result.Boundary, options.RecoverBoundary, Part(progress, 0.9, 0.95));
+    isOutward = std::move(outward.IsOutward);
+    TakeAlongBoundary(mesh, outward.IsOnBoundary, isOutward, Part(progress, 0.95, 0.97));
+    result.NumberOfPointsLeftOut = 0;
+  }
+  if (mesh.NumberOfTriangles() > 0)
+  {
+    // Which have been turned.
+    PutBack(list, AllTriangles(list), mesh, std::vector<char>(isOutward), Part(progress, 0.97, 1.0),
+      changes);
+  }
+}
+
+/**
+ * Copies the corners of triangles [begin, end).
+ * @param[in,out] changed  the first change from begin on; then from end on
+ */
+void CopyCorners(const TriangleList& list, const Changes& changes, Index begin, Index end,
+  std::vector<Index>::const_iterator& changed, Index* corners)
+{
+  const auto copyNew = [&](std::size_t from, Index to) {
+    std::copy_n(changes.Corners.begin() + 3 * from, 3, corners + 3 * (to - begin));
+  };
+  const Index last = std::min(end, list.Count);
+  if (begin < last)
+  {
+    std::copy(list.CornersOf(begin), list.CornersOf(last), corners);
+  }
+  for (; changed != changes.Changed.end() && *changed < end; ++changed)
+  {
+    copyNew(changed - changes.Changed.begin(), *changed);
+  }
+  for (Index t = std::max(begin, list.Count); t < end; ++t)
+  {
+    copyNew(changes.Changed.size() + t - list.Count, t);
+  }
+}
+
+/** Writes the triangles of both sides. */
+void WriteSides(const TriangleList& list, const Changes& changes, const TrimOptions& options,
+  const Progress& progress, Trimmed& result)
+{
+  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
+  const std::vector<char>& flags = changes.IsOutward;
+  const Index all = static_cast<Index>(flags.size());
+  // How many outward ones come before each range of the triangles.
+  constexpr Index atOnce = 1 << 13;
+  const Index ranges = NumberOfRanges(all, atOnce);
+  std::vector<Index> outwardBefore(ranges + 1, 0);
+  const auto count = [&](Index range, Index begin, Index end) {
+    outwardBefore[range + 1] =
+      static_cast<Index>(std::count(flags.begin() + begin, flags.begin() + end, char(1)));
+  };
+  ForEachRange(all, threads, Part(progress, 0.0, 0.1), count, atOnce);
+  std::partial_sum(outwardBefore.begin(), outwardBefore.end(), outwardBefore.begin());
+  const Index sizes[2] = { all - outwardBefore[ranges], outwardBefore[ranges] };
+  result.NumberOfOutwardTriangles = sizes[1];
+
+  TrimmedSide* const sides[2] = { &result.Kept, &result.Outward };
+  for (const int side : { 0, 1 })
+  {
+    sides[side]->IsWholeList = changes.Corners.empty() && sizes[1 - side] == 0;
+    const std::size_t size = sizes[side];
+    sides[side]->Corners.Resize(sides[side]->IsWholeList ? 0 : 3 * size);
+    sides[side]->Parents.Resize(options.TellParents ? size : 0);
+  }
+  const auto write = [&](Index range, Index t, Index endOfRange) {
+    std::size_t next[2] = { static_cast<std::size_t>(t - outwardBefore[range]),
+      static_cast<std::size_t>(outwardBefore[range]) };
+    auto changed = std::lower_bound(changes.Changed.begin(), changes.Changed.end(), t);
+    while (t < endOfRange)
+    {
+      // Triangles of one side that follow each other.
+      const char flag = flags[t];
+      const char* const first = flags.data() + t;
+      const void* other = std::memchr(first, 1 - flag, static_cast<std::size_t>(endOfRange - t));
+      const Index end =
+        other ? t + static_cast<Index>(static_cast<const char*>(other) - first) : endOfRange;
+      TrimmedSide& side = *sides[static_cast<int>(flag)];
+      std::size_t& place = next[static_cast<int>(flag)];
+      if (!side.IsWholeList)
+      {
+        CopyCorners(list, changes, t, end, changed, side.Corners.data() + 3 * place);
+      }
+      for (Index i = t; i < end && options.TellParents; ++i)
+      {
+        side.Parents[place + (i - t)] = i < list.Count ? i : changes.Parents[i - list.Count];
+      }
+      place += end - t;
+      t = end;
+    }
+  };
+  ForEachRange(all, threads, Part(progress, 0.1, 1.0), write, atOnce);
+}
+
+} // namespace
+
+Trimmed Trim(
+  const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options)
+{
+  Trimmed result;
+  if (triangles.Count == 0)
+  {
+    return result;
+  }
+  Changes changes;
+  const Progress finding = Part(options.Monitor, 0.0, 0.9);
+  if (boundary)
+  {
+    TrimAlong(triangles, *boundary, options, finding, changes, result);
+  }
+  else
+  {
+    TrimExtracted(triangles, options, finding, changes, result);
+  }
+  WriteSides(triangles, changes, options, Part(options.Monitor, 0.9, 1.0), result);
+  Report(options.Monitor, 1.0);
+  return result;
+}
+
+} // namespace elevation
