@@ -972,18 +972,23 @@ private:
         sum += weight;
       }
     };
-    for (std::size_t k = 0; k < count; ++k)
+    // Where a triangle is so small or thin that all shares vanish, its corners count alike.
+    for (int attempt = 0; attempt < 2 && vertex.Corners[0] == None; ++attempt)
     {
-      const auto& [corner, share] = shares[k];
-      if (corner < this->CountBefore)
+      for (std::size_t k = 0; k < count; ++k)
       {
-        add(corner, share);
-        continue;
-      }
-      const InsertedVertex& inserted = this->Result.Inserted[corner - this->CountBefore];
-      for (int i = 0; i < 3; ++i)
-      {
-        add(inserted.Corners[i], share * inserted.Weights[i]);
+        const Index corner = shares[k].first;
+        const double share = attempt == 0 ? shares[k].second : 1.0;
+        if (corner < this->CountBefore)
+        {
+          add(corner, share);
+          continue;
+        }
+        const InsertedVertex& inserted = this->Result.Inserted[corner - this->CountBefore];
+        for (int i = 0; i < 3; ++i)
+        {
+          add(inserted.Corners[i], share * inserted.Weights[i]);
+        }
       }
     }
     for (Index& corner : vertex.Corners)

@@ -1357,6 +1357,27 @@ TEST(InsertRings, InterpolatesAlikeAtAnyScale)
   }
 }
 
+TEST(InsertRings, NamesCornersOfTrianglesWhoseAreasVanish)
+{
+  Mesh mesh;
+  mesh.Points = { { 0, 0 }, { 8, 0 }, { 4, 1e-322 } };
+  mesh.Triangles = { 0, 1, 2 };
+  mesh.ConnectTwins();
+  Boundary boundary;
+  boundary.Add({ { 3, 2e-323 }, { 5, 2e-323 }, { 4, 4e-323 } });
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
+  ASSERT_EQ(rings.Inserted.size(), 3u);
+  for (const InsertedVertex& vertex : rings.Inserted)
+  {
+    for (const Index corner : vertex.Corners)
+    {
+      EXPECT_GE(corner, 0);
+      EXPECT_LT(corner, 3);
+    }
+    EXPECT_NEAR(vertex.Weights[0] + vertex.Weights[1] + vertex.Weights[2], 1.0, 1e-15);
+  }
+}
+
 TEST(InsertRings, ThatRunAlongThemselvesWithinRounding)
 {
   // A strip between three nodes on one line of a turned lattice, and back: it crosses itself once
