@@ -74,10 +74,12 @@ public:
     this->OutputEnd = triangles.end();
   }
 
-  /** Goes on until it is done, or until about a time. */
+  /** Goes on until it is done, or until about a time, or for some ten thousand fans. */
   void GoOn(const RoundClock::time_point& end)
   {
+    constexpr int mostPauses = 128;
     Derived& self = static_cast<Derived&>(*this);
+    int pauses = 0;
     do
     {
       this->Budget.Resume();
@@ -85,7 +87,7 @@ public:
       {
         self.GrowFans();
       }
-    } while (!self.IsDone() && RoundClock::now() < end);
+    } while (!self.IsDone() && ++pauses < mostPauses && RoundClock::now() < end);
   }
 
   /** Moves what it has written down to an end, which moves up. */

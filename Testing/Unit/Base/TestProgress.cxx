@@ -184,12 +184,14 @@ TEST(Progress, OfTriangulatingPointsThatAreSlowIsNotSilent)
     for (const SearchStrategy strategy :
       { SearchStrategy::VoxelTraversal, SearchStrategy::Compactness })
     {
-      testing_time::Silence silence;
-      DelaunayOptions options;
-      options.Strategy = strategy;
-      options.Monitor = silence.Monitor();
-      Triangulate(cloud->View(), options);
-      EXPECT_LT(silence.Longest, 0.4) << (cloud == &circle ? "circle" : "range");
+      const auto triangulate = [&](const Progress& monitor) {
+        DelaunayOptions options;
+        options.Strategy = strategy;
+        options.Monitor = monitor;
+        Triangulate(cloud->View(), options);
+      };
+      EXPECT_LT(testing_time::LongestSilence(0.4, triangulate), 0.4)
+        << (cloud == &circle ? "circle" : "range");
     }
   }
 }
@@ -215,13 +217,14 @@ TEST(Progress, OfTriangulatingPointsOnFewPlacesIsNotSilent)
   {
     for (const LatticeMode mode : { LatticeMode::Automatic, LatticeMode::Off })
     {
-      testing_time::Silence silence;
-      DelaunayOptions options;
-      options.UseLattice = mode;
-      options.Monitor = silence.Monitor();
-      const Triangulation result = Triangulate(cloud->View(), options);
-      EXPECT_LT(silence.Longest, 0.1) << (cloud == &four ? "four" : "crowds");
-      EXPECT_GT(result.NumberOfDuplicates, 3500000);
+      const auto triangulate = [&](const Progress& monitor) {
+        DelaunayOptions options;
+        options.UseLattice = mode;
+        options.Monitor = monitor;
+        EXPECT_GT(Triangulate(cloud->View(), options).NumberOfDuplicates, 3500000);
+      };
+      EXPECT_LT(testing_time::LongestSilence(0.1, triangulate), 0.1)
+        << (cloud == &four ? "four" : "crowds");
     }
   }
 }
@@ -248,22 +251,24 @@ TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
   list.Points.Double = coordinates.data();
   list.Points.Count = 3 * list.Count;
 
-  testing_time::Silence extracting;
   TrimOptions options;
-  options.Monitor = extracting.Monitor();
-  EXPECT_EQ(Trim(list, nullptr, options).Boundary.Count(), side * side);
-  EXPECT_LT(extracting.Longest, 0.12);
+  const auto extract = [&](const Progress& monitor) {
+    options.Monitor = monitor;
+    EXPECT_EQ(Trim(list, nullptr, options).Boundary.Count(), side * side);
+  };
+  EXPECT_LT(testing_time::LongestSilence(0.12, extract), 0.12);
 
-  testing_time::Silence trimming;
-  options.Monitor = trimming.Monitor();
   BoundaryLines lines;
   lines.Points = std::vector<Point2>{ { -1.0, -1.0 }, { 500.5, -1.0 }, { 300.5, 700.5 } };
   lines.Lines.Vertices = { 0, 1, 2 };
   lines.Lines.Offsets.push_back(3);
   lines.IsPolygon = { 1 };
   lines.Cells = { 0 };
-  Trim(list, &lines, options);
-  EXPECT_LT(trimming.Longest, 0.12);
+  const auto trim = [&](const Progress& monitor) {
+    options.Monitor = monitor;
+    Trim(list, &lines, options);
+  };
+  EXPECT_LT(testing_time::LongestSilence(0.12, trim), 0.12);
 }
 
 TEST(Progress, OfConstraintsThatLieOnEachOtherIsNotSilent)
@@ -284,9 +289,10 @@ TEST(Progress, OfConstraintsThatLieOnEachOtherIsNotSilent)
     lines.Cells.push_back(i);
   }
   lines.Points = ends.View();
-  testing_time::Silence silence;
-  DelaunayOptions options;
-  options.Monitor = silence.Monitor();
-  EXPECT_EQ(TriangulateConstrained(cloud.View(), lines, options).NumberOfCrossings, 0);
-  EXPECT_LT(silence.Longest, 0.07);
+  const auto triangulate = [&](const Progress& monitor) {
+    DelaunayOptions options;
+    options.Monitor = monitor;
+    EXPECT_EQ(TriangulateConstrained(cloud.View(), lines, options).NumberOfCrossings, 0);
+  };
+  EXPECT_LT(testing_time::LongestSilence(0.07, triangulate), 0.07);
 }
