@@ -7,8 +7,9 @@
 #ifndef DelaunayMesh_h
 #define DelaunayMesh_h
 
-#include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Mesh/HalfEdgeMesh.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "MeshRules.h"
 
 #include <algorithm>
 #include <array>
@@ -111,25 +112,6 @@ inline std::multiset<Positions> PositionsOf(const elevation::Mesh& mesh)
     triangles.insert(corners);
   }
   return triangles;
-}
-
-/** Twice the area of a triangle; exact for small integers. */
-inline double TwiceArea(const elevation::Mesh& mesh, elevation::Index triangle)
-{
-  const elevation::Point2& a = mesh.PointOf(mesh.Origin(3 * triangle));
-  const elevation::Point2& b = mesh.PointOf(mesh.Origin(3 * triangle + 1));
-  const elevation::Point2& c = mesh.PointOf(mesh.Origin(3 * triangle + 2));
-  return (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
-}
-
-inline double TwiceArea(const elevation::Mesh& mesh)
-{
-  double area = 0.0;
-  for (elevation::Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    area += TwiceArea(mesh, t);
-  }
-  return area;
 }
 
 /** The mesh without the triangles for which drop(t) is true. */

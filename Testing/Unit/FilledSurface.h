@@ -102,10 +102,7 @@ inline Outcome Fill(
 inline void ExpectPatchesFit(const Outcome& run, double relativeAreaError = 0.0)
 {
   const Mesh filled = run.Filled();
-  ValidateOptions rules;
-  rules.Delaunay = false;
-  rules.ConvexHull = false;
-  rules.AllPoints = false;
+  const ValidateOptions rules = testing_surfaces::RulesOfSurface();
   const auto findings = Validate(filled, rules);
   EXPECT_TRUE(findings.empty()) << ToString(findings);
 

@@ -8,6 +8,7 @@
 #define LatticeSurface_h
 
 #include "Kernel/Mesh/HalfEdgeMesh.h"
+#include "MeshRules.h"
 
 #include <string>
 #include <utility>
@@ -66,20 +67,6 @@ inline elevation::Mesh Make(
   mesh.Triangles = std::move(triangles);
   mesh.ConnectTwins();
   return mesh;
-}
-
-/** Twice the sum of the triangles' areas: exact for small integer coordinates. */
-inline double TwiceArea(const elevation::Mesh& mesh)
-{
-  double sum = 0.0;
-  for (elevation::Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    const elevation::Point2& a = mesh.PointOf(mesh.Triangles[3 * t]);
-    const elevation::Point2& b = mesh.PointOf(mesh.Triangles[3 * t + 1]);
-    const elevation::Point2& c = mesh.PointOf(mesh.Triangles[3 * t + 2]);
-    sum += (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
-  }
-  return sum;
 }
 
 } // namespace testing_surfaces

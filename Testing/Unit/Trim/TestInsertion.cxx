@@ -57,23 +57,6 @@ std::string MessageOf(const Mesh& mesh, const Boundary& boundary, bool insert = 
 #define EXPECT_HAS(text, part)                                                                     \
   EXPECT_NE((text).find(part), std::string::npos) << "no \"" << (part) << "\" in: " << (text)
 
-/** What makes a mesh with Twins wrong, as text. */
-std::string FindingsOf(Mesh mesh)
-{
-  std::string text;
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    if (Orientation(mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
-          mesh.PointOf(mesh.Origin(3 * t + 2))) != Positive)
-    {
-      text += "triangle " + std::to_string(t) + " is not counter-clockwise\n";
-    }
-  }
-  const std::vector<Index> twins = mesh.Twins;
-  mesh.ConnectTwins();
-  return text + (twins == mesh.Twins ? "" : "twins are wrong\n");
-}
-
 /** A lattice with steps of 25, turned at random, in map coordinates. */
 struct TurnedLattice
 {
