@@ -297,6 +297,32 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
   return cells;
 }
 
+void PassRings(
+  const Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output)
+{
+  vtkPoints* from = source->GetPoints();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(from ? from->GetDataType() : VTK_FLOAT);
+  vtkPointData* pointData = output->GetPointData();
+  pointData->CopyAllocate(source->GetPointData());
+  vtkNew<vtkCellArray> lines;
+  for (Index ring = 0; ring < rings.Count(); ++ring)
+  {
+    const vtkIdType first = points->GetNumberOfPoints();
+    lines->InsertNextCell(rings.Size(ring) + 1);
+    for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
+    {
+      ReportStep(progress, i, rings.Vertices.size());
+      const vtkIdType id = points->InsertNextPoint(from->GetPoint(rings.Vertices[i]));
+      pointData->CopyData(source->GetPointData(), rings.Vertices[i], id);
+      lines->InsertCellPoint(id);
+    }
+    lines->InsertCellPoint(first);
+  }
+  output->SetPoints(points);
+  output->SetLines(lines);
+}
+
 bool IsFloatingPoint(vtkAbstractArray* array)
 {
   return array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;

@@ -96,6 +96,14 @@ vtkIdType FirstPolygon(vtkPolyData* input);
  */
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads = 1);
 
+/**
+ * Rings as closed lines, with points of their own and the point data that the output's copy flags
+ * ask for.
+ * @param[in] source  has the points that the rings name
+ */
+void PassRings(
+  const Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output);
+
 /** Whether the values are float or double: what can be interpolated. */
 bool IsFloatingPoint(vtkAbstractArray* array);
 

@@ -8,23 +8,18 @@
 #include "MeshConversion.h"
 
 #include "vtkAbstractArray.h"
-#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
-#include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <vector>
 
@@ -173,30 +168,18 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
   add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Method); });
 
-  vtkNew<vtkPoints> points;
-  points->SetDataType(input->GetPoints() ? input->GetPoints()->GetDataType() : VTK_FLOAT);
-  vtkPointData* pointData = output->GetPointData();
-  pointData->CopyAllocate(input->GetPointData());
-  vtkNew<vtkCellArray> lines;
-  std::vector<vtkIdType> line;
-  std::size_t done = 0;
+  elevation::Rings rims;
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
     // A rim runs clockwise: backwards, the hole is on the left.
     const Index rim = holes.Rim(hole);
-    line.clear();
     for (const Index* h = holes.Walks.End(rim); h != holes.Walks.Begin(rim); --h)
     {
-      ReportStep(progress, done++, holes.Walks.Vertices.size());
-      const Index vertex = mesh.Origin(h[-1]);
-      line.push_back(points->InsertNextPoint(input->GetPoint(vertex)));
-      pointData->CopyData(input->GetPointData(), vertex, line.back());
+      rims.Vertices.push_back(mesh.Origin(h[-1]));
     }
-    line.push_back(line.front());
-    lines->InsertNextCell(static_cast<vtkIdType>(line.size()), line.data());
+    rims.Offsets.push_back(static_cast<Index>(rims.Vertices.size()));
   }
-  output->SetPoints(points);
-  output->SetLines(lines);
+  elevation::PassRings(rims, input, progress, output);
 }
 
 /**

@@ -80,8 +80,8 @@
  * with a warning.
  * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
  *
- * Cost: proportional to the size of the input and to the number of new points (a few microseconds
- * each), with sorting of the border.
+ * Cost: proportional to the size of the input and to the number of new points, with sorting of the
+ * border.
  *
  * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation
  * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation

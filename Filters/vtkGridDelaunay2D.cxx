@@ -21,10 +21,9 @@
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkGridDelaunay2D);

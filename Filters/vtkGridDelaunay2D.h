@@ -21,19 +21,19 @@
  * - Complete: points that are not vertices are counted, and listed in the field data.
  *   Coordinates may be of any size a double holds.
  *
- * Lattices: points of a grid, such as inlines and crosslines in map coordinates or the pixels of an
- * elevation model, are ideally on the nodes of a lattice, but rounding moves each of them a little,
- * and then the exact triangulation of the moved points cuts the cells at random and has thin
- * triangles along the border. With LatticeMode Automatic (default) the filter looks for a lattice:
- * an origin and two step vectors, which may be turned, sheared, of unequal lengths, with any number
- * of nodes missing (down to about 1 in 64 of the nodes around the points). Where every point lies
- * on its own node, within LatticeTolerance, the result is the exact Delaunay triangulation of the
- * nodes, in the metric of the two steps and in integers, which is also many times faster. Steps
- * that are perpendicular or equal but for a ten-thousandth count as such. "Lowest" is then by row
- * of the lattice, then column; on a lattice parallel to the axes with exact coordinates the
- * triangles are the same in both modes. No triangle is inverted or flat in the coordinates of the
- * points; where one would be, or a point does not fit, the coordinates are triangulated as they
- * are.
+ * Lattices: points of a grid, such as inlines and crosslines in map coordinates or the pixels of
+ * an elevation model, are ideally on the nodes of a lattice, but rounding moves each of them a
+ * little, and then the exact triangulation of the moved points cuts the cells at random and has
+ * thin triangles along the border. With LatticeMode Automatic (default) the filter looks for a
+ * lattice: an origin and two step vectors, which may be turned, sheared, of unequal lengths, with
+ * any number of nodes missing (down to about 1 in 64 of the nodes around the points). Where every
+ * point lies on its own node, within LatticeTolerance, the result is the exact Delaunay
+ * triangulation of the nodes, in the metric of the two steps and in integers, which is faster,
+ * too. Steps that are perpendicular or equal but for a ten-thousandth count as such. "Lowest" is
+ * then by row of the lattice, then column; on a lattice parallel to the axes with exact
+ * coordinates the triangles are the same in both modes. No triangle is inverted or flat in the
+ * coordinates of the points; where one would be, or a point does not fit, the coordinates are
+ * triangulated as they are.
  *
  * Constraints (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges must
  * be edges of the result: breaklines, faults, outlines. Polygons count as closed lines, nothing is
@@ -74,15 +74,15 @@
  *   the same x,y is the vertex), 2 = not finite (x, y or z);
  * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value);
  * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node
- * x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units;
+ *   x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units;
  * - NumberOfConstraintCrossings, NumberOfAddedPoints (vtkIdTypeArray, one value).
  *
- * Cost: expected time proportional to the number of points for points of even density, n log n and
- * several times as much a point where density is very uneven; no n points take more than n log n.
+ * Cost: expected time proportional to the number of points for points of even density, n log n
+ * where density is very uneven; no n points take more than n log n.
  * Memory during the run, above input and output: about 35 bytes a point with one thread, 45 with
  * several; less than 10 on a lattice that is well filled. Points on which growing would take
  * longer, such as thousands on one circle, are divided and conquered instead, which takes some 90
- * bytes more. Constraints take about as long again as triangulating, one thread, and some 120
+ * bytes more. Constraints take time proportional to the number of points, on one thread, some 120
  * bytes a point, and what their segments cross.
  *
  * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an
@@ -124,8 +124,8 @@ public:
   /**
    * Which of the two searches of the published method finds the third point of an edge: a
    * SearchStrategyType, to which other numbers are clamped. Both give the same triangles, byte for
-   * byte; what differs is the time. COMPACTNESS takes several times as long as VOXEL_TRAVERSAL
-   * (default), and is there to compare the two. On a lattice it plays no part.
+   * byte. VOXEL_TRAVERSAL (default) is the faster one; COMPACTNESS is there to compare the two. On
+   * a lattice it plays no part.
    */
   vtkSetClampMacro(SearchStrategy, int, VOXEL_TRAVERSAL, COMPACTNESS);
   vtkGetMacro(SearchStrategy, int);
