@@ -169,37 +169,6 @@ void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, Tri
   outward->GetFieldData()->PassData(input->GetFieldData());
 }
 
-/**
- * Output 2.
- * @param[in] source  has the points of the rings
- */
-void PassBoundary(
-  const elevation::Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output)
-{
-  vtkPoints* from = source->GetPoints();
-  vtkNew<vtkPoints> points;
-  points->SetDataType(from ? from->GetDataType() : VTK_FLOAT);
-  vtkPointData* pointData = output->GetPointData();
-  pointData->CopyAllOn();
-  pointData->CopyAllocate(source->GetPointData());
-  vtkNew<vtkCellArray> lines;
-  for (Index ring = 0; ring < rings.Count(); ++ring)
-  {
-    const vtkIdType first = points->GetNumberOfPoints();
-    lines->InsertNextCell(rings.Size(ring) + 1);
-    for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
-    {
-      ReportStep(progress, i, rings.Vertices.size());
-      const vtkIdType id = points->InsertNextPoint(from->GetPoint(rings.Vertices[i]));
-      pointData->CopyData(source->GetPointData(), rings.Vertices[i], id);
-      lines->InsertCellPoint(id);
-    }
-    lines->InsertCellPoint(first);
-  }
-  output->SetPoints(points);
-  output->SetLines(lines);
-}
-
 /** In the field data of all outputs. */
 void AddCounts(const Trimmed& trimmed, vtkInformationVector* outputVector)
 {
@@ -299,8 +268,10 @@ int vtkTrimOutwardTriangles::RequestData(
 
     PassSides(input, triangles, trimmed, this->NumberOfThreads, Part(progress, 0.8, 0.96),
       vtkPolyData::GetData(outputVector, 0), vtkPolyData::GetData(outputVector, 1));
-    PassBoundary(trimmed.Boundary, given && hasBoundary ? given : input, Part(progress, 0.96, 1.0),
-      vtkPolyData::GetData(outputVector, 2));
+    vtkPolyData* boundary = vtkPolyData::GetData(outputVector, 2);
+    boundary->GetPointData()->CopyAllOn();
+    elevation::PassRings(
+      trimmed.Boundary, given && hasBoundary ? given : input, Part(progress, 0.96, 1.0), boundary);
     AddCounts(trimmed, outputVector);
     Report(progress, 1.0);
     // Only now, as an abort or an error leaves no counts.
