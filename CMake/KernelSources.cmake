@@ -37,6 +37,7 @@ set(es_kernel_Trim
   Insertion
   OutwardTriangles
   MeasuredTriangles
+  Spacings
   Outline
   Trim)
 set(es_kernel_Fill

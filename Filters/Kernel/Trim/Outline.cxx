@@ -3,6 +3,7 @@
 #include "Outline.h"
 
 #include "Kernel/Base/Base.h"
+#include "Spacings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +21,8 @@ namespace
 // truth and outline was 0.08 to 0.25 of the area within one spacing of the true outline; with less
 // than 2 typical triangles the sea comes in between random points (0.31 with 1.85), with more than
 // 2.25 wider channels are closed.
-constexpr int NeighborOfSpacing = 6;
-constexpr double SpacingPerNeighborDistance = 0.5;
 constexpr double ToleranceOfTypicalTriangle = 2.25;
 constexpr double LargestSpacingInTriangle = 2.0;
-constexpr std::size_t NeighborsOfHub = 64;
 // What leaves no doubt, in parts of the tolerance, but in short spacings. In the same trials, and
 // with clusters and real surveys, the outline by the sixth neighbours alone leaves out one triangle
 // in 10,000 more, at most; lattices the same. With 0.55 the outlines of scan lines were a little
@@ -36,202 +34,6 @@ constexpr double SmallGroup = 0.7;
 constexpr double LeastHeight = 0.1;
 // Smaller ones, whose squares leave the range of double, are taken as this: no spacing is 0.
 constexpr double LeastSpacing = 1e-150;
-
-/** The neighbours of each vertex. */
-struct Neighbors
-{
-  Buffer<std::uint32_t> Offsets;
-  /** Of each vertex a multiple of Group, filled up with the vertex itself. */
-  Buffer<Index> Ids;
-  static constexpr std::uint32_t Group =
-    4; ///< at a time, for an end of loops that can be predicted
-
-  Neighbors(const MeasuredTriangles& measured, const Progress& progress)
-  {
-    const TriangleList& list = measured.List;
-    const Index count = list.Points.Count;
-    this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
-    this->Ids.Resize(3 * static_cast<std::size_t>(list.Count) + measured.Border.size() +
-      (Group - 1) * (static_cast<std::size_t>(count) + 1));
-    // At first where those of each vertex end: they are filled in from there.
-    std::uint32_t sum = 0; // stays below 9 for each point
-    ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
-      for (Index v = begin; v < end; ++v)
-      {
-        const std::uint32_t size = measured.Degrees[v];
-        this->Offsets[v] = sum + size;
-        // More than are needed, as how many cannot be predicted; what comes next overwrites them.
-        std::fill_n(&this->Ids[sum + size], Group - 1, v);
-        sum += (size + Group - 1) / Group * Group;
-      }
-    });
-    this->Offsets[count] = sum;
-    const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
-    ForEachStretch(list.Count, Part(progress, 0.3, 1.0), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-      {
-        const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
-        Prefetch(&this->Offsets[ahead[1]]);
-        Prefetch(&this->Offsets[ahead[2]]);
-        const Index* soon = list.CornersOf(std::min(t + 20, list.Count - 1));
-        Prefetch(&this->Ids[this->Offsets[soon[1]] - 1]);
-        Prefetch(&this->Ids[this->Offsets[soon[2]] - 1]);
-        const Index* corners = list.CornersOf(t);
-        add(corners[0], corners[1]);
-        add(corners[1], corners[2]);
-        add(corners[2], corners[0]);
-      }
-    });
-    for (const BorderEdge& edge : measured.Border)
-    {
-      add(edge.Destination, edge.Origin);
-    }
-  }
-};
-
-/**
- * The spacing at some vertices: half the distance of the 6th nearest vertex.
- * In a Delaunay triangulation the next nearest vertex is always a neighbour of the vertex or of one
- * nearer, so that a search over neighbours finds the right one. It does not pass through vertices
- * with very many neighbours, which would make it quadratic. In other meshes it finds the 6th of
- * those that it comes across, which are the same in any order of vertices: it passes all that are
- * equally near at once, and none as far as the 6th.
- * @param[in]  wanted    best in an order in which neighbours are near each other
- * @param[out] spacings  at the place of each vertex; the others stay as they are
- */
-void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
-  const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings)
-{
-  struct Candidate
-  {
-    double Squared;
-    Index Vertex;
-    bool IsPassed;
-  };
-  const Index* ids = neighbors.Ids.data();
-  constexpr int last = NeighborOfSpacing - 1;
-  constexpr Candidate nothing{ std::numeric_limits<double>::infinity(), None, false };
-  const auto find = [&](Index begin, Index end) {
-    std::vector<Index> found;
-    // Vertices that the one at hand has had among its nearest. One may have taken the place of
-    // another, which then is compared once more with the nearest themselves.
-    constexpr std::uint32_t places = 1024;
-    std::vector<std::uint64_t> known(places, ~std::uint64_t(0));
-    for (Index place = begin; place < end; ++place)
-    {
-      const Index v = wanted[place];
-      const auto keyOf = [v](Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); };
-      // What lies ahead is soon reached, but not in order: ids by way of offsets, and so on.
-      const auto wantedAhead = [&wanted, place, end](
-                                 Index steps) { return wanted[std::min(place + steps, end - 1)]; };
-      Prefetch(&neighbors.Offsets[wantedAhead(16)]);
-      Prefetch(ids + neighbors.Offsets[wantedAhead(12)]);
-      const Index next = wantedAhead(8);
-      list.PrefetchPoint(next);
-      const Index soon = wantedAhead(4);
-      for (std::uint32_t i = 0; i < 8; ++i)
-      {
-        const std::uint32_t j =
-          std::min(neighbors.Offsets[next] + i, neighbors.Offsets[next + 1] - 1);
-        list.PrefetchPoint(ids[j]);
-        Prefetch(&neighbors.Offsets[ids[j]]);
-        const std::uint32_t k =
-          std::min(neighbors.Offsets[soon] + i, neighbors.Offsets[soon + 1] - 1);
-        Prefetch(ids + neighbors.Offsets[ids[k]]);
-      }
-
-      // The nearest vertices found.
-      Candidate nearest[NeighborOfSpacing];
-      std::fill_n(nearest, NeighborOfSpacing, nothing);
-      const Point2 p = list.Points.At(v);
-      const auto squaredTo = [&](Index w) { return SquaredLength(p, list.Points.At(w)); };
-      known[static_cast<std::uint32_t>(v) % places] = keyOf(v);
-      const auto pass = [&](Index passed) {
-        const std::uint32_t first = neighbors.Offsets[passed];
-        const std::uint32_t size = neighbors.Offsets[passed + 1] - first;
-        if (passed != v && size > NeighborsOfHub)
-        {
-          return;
-        }
-        if (found.size() < size)
-        {
-          found.resize(size);
-        }
-        // Those that are near enough, without branches, for which they are cannot be predicted.
-        const double limit = nearest[last].Squared;
-        Index* next = found.data();
-        const Index* groupsEnd = ids + first + size;
-        for (const Index* group = ids + first; group != groupsEnd; group += Neighbors::Group)
-        {
-          for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
-          {
-            const Index w = group[j];
-            *next = w;
-            const int isNear = squaredTo(w) < limit;
-            const int isNew = known[static_cast<std::uint32_t>(w) % places] != keyOf(w);
-            next += isNear & isNew;
-          }
-        }
-        const std::size_t numberFound = next - found.data();
-        for (std::size_t i = 0; i < numberFound; ++i)
-        {
-          const Candidate candidate{ squaredTo(found[i]), found[i], false };
-          bool isKnown = candidate.Vertex == v;
-          for (const Candidate& other : nearest)
-          {
-            isKnown |= other.Vertex == candidate.Vertex;
-          }
-          if (isKnown || !(candidate.Squared < nearest[last].Squared))
-          {
-            continue;
-          }
-          known[static_cast<std::uint32_t>(candidate.Vertex) % places] = keyOf(candidate.Vertex);
-          int at = last;
-          for (; at > 0 && candidate.Squared < nearest[at - 1].Squared; --at)
-          {
-            nearest[at] = nearest[at - 1];
-          }
-          nearest[at] = candidate;
-        }
-      };
-      pass(v);
-      for (Candidate* next = nearest; next != nearest + last;)
-      {
-        if (next->IsPassed || !(next->Squared < nearest[last].Squared))
-        {
-          ++next;
-          continue;
-        }
-        Index equal[NeighborOfSpacing];
-        int numberOfEqual = 0;
-        const double squared = next->Squared;
-        for (; next != nearest + last && next->Squared == squared; ++next)
-        {
-          if (!next->IsPassed)
-          {
-            equal[numberOfEqual++] = next->Vertex;
-            next->IsPassed = true;
-          }
-        }
-        for (int i = 0; i < numberOfEqual; ++i)
-        {
-          pass(equal[i]);
-        }
-        next = nearest; // nearer ones may have come
-      }
-      int k = last;
-      while (k > 0 && nearest[k].Vertex == None)
-      {
-        --k; // there are no more
-      }
-      spacings[v] = SpacingPerNeighborDistance * std::sqrt(nearest[k].Squared);
-    }
-  };
-  const Index count = static_cast<Index>(wanted.size());
-  constexpr Index atOnce = 1 << 11;
-  ForEachRange(
-    count, threads, progress, [&](Index, Index begin, Index end) { find(begin, end); }, atOnce);
-}
 
 /** The parts of triangles with the same flag that are connected by edges. */
 Parts PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
@@ -717,8 +519,7 @@ struct PartialMesh
  * @param[in,out] result    which triangles are surface; its rings
  */
 void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
-  const Buffer<double>& spacings, IdSet near, const Progress& progress,
-  ExtractedBoundary& result)
+  const Buffer<double>& spacings, IdSet near, const Progress& progress, ExtractedBoundary& result)
 {
   const TriangleList& list = measured.List;
   const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
@@ -792,107 +593,165 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
   }
 }
 
+/** The search for the outline; its members are what the steps hand on. */
+class OutlineSearch
+{
+public:
+  OutlineSearch(MeasuredTriangles measured, const ExtractOptions& options)
+    : Measured(std::move(measured))
+    , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
+    , AtBorder(this->Measured.List.Points.Count)
+  {
+    this->Result.GapTolerance = options.GapTolerance;
+  }
+
+  ExtractedBoundary Run(const Progress& progress)
+  {
+    const TriangleList& list = this->Measured.List;
+    this->SortBorder(Part(progress, 0.0, 0.02));
+    const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.25));
+    this->Spacings.Resize(list.Points.Count);
+    if (!(this->Result.GapTolerance > 0.0))
+    {
+      this->ChooseTolerance(neighbors, Part(progress, 0.25, 0.35));
+    }
+    this->KeepWhatIsWithoutDoubt(Part(progress, 0.35, 0.5));
+    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.5, 0.6));
+    this->FindSpacingsOf(doubtful, neighbors, Part(progress, 0.6, 0.74));
+    IdSet near = this->Decide(doubtful, Part(progress, 0.74, 0.75));
+    TraceSurface(this->Measured, this->AtBorder, this->Spacings, std::move(near),
+      Part(progress, 0.75, 0.95), this->Result);
+    this->Result.NumberOfPointsLeftOut =
+      CountLeftOut(list, this->Result.IsSurface, Part(progress, 0.95, 1.0));
+    if (this->Measured.Ids.size() > 0)
+    {
+      ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), Part(progress, 1.0, 1.0));
+    }
+    Report(progress, 1.0);
+    return std::move(this->Result);
+  }
+
+private:
+  void SortBorder(const Progress& progress)
+  {
+    std::vector<BorderEdge>& border = this->Measured.Border;
+    Sort(border.begin(), border.end(), std::less<BorderEdge>(), progress);
+    for (const BorderEdge& edge : border)
+    {
+      this->AtBorder.Add(edge.Origin);
+      this->AtBorder.Add(edge.Destination);
+    }
+  }
+
+  /** At the corners of triangles. */
+  void FindSpacingsOf(
+    const std::vector<Index>& triangles, const Neighbors& neighbors, const Progress& progress)
+  {
+    Report(progress, 0.0);
+    const TriangleList& list = this->Measured.List;
+    const std::vector<Index> corners = CornersOf(list, triangles, Part(progress, 0.0, 0.1));
+    FindSpacings(
+      list, neighbors, corners, this->Threads, Part(progress, 0.1, 1.0), this->Spacings.data());
+    Report(progress, 1.0);
+  }
+
+  /** The longest edge of a triangle in spacings. */
+  double RatioOf(Index t) const
+  {
+    return std::sqrt(this->Measured.Longest[t]) /
+      SpacingOf(this->Spacings, this->Measured.List.CornersOf(t));
+  }
+
+  /** From what the typical triangle measures. */
+  void ChooseTolerance(const Neighbors& neighbors, const Progress& progress)
+  {
+    const std::vector<Index> sample = SampleOf(this->Measured);
+    this->FindSpacingsOf(sample, neighbors, progress);
+    std::vector<double> ratios;
+    for (const Index t : sample)
+    {
+      ratios.push_back(this->RatioOf(t));
+    }
+    const auto median = ratios.begin() + ratios.size() / 2;
+    std::nth_element(ratios.begin(), median, ratios.end());
+    this->Result.GapTolerance = ToleranceOfTypicalTriangle * *median;
+  }
+
+  /** By short spacings. */
+  void KeepWhatIsWithoutDoubt(const Progress& progress)
+  {
+    const TriangleList& list = this->Measured.List;
+    const Buffer<float>& shortSpacings = this->Measured.ShortSpacings;
+    const Buffer<double>& longest = this->Measured.Longest;
+    std::vector<char>& keep = this->Result.IsSurface;
+    keep.resize(list.Count);
+    const double limit = BeyondDoubt * this->Result.GapTolerance;
+    const auto isWithin = [&](Index, Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        const Index* ahead = list.CornersOf(std::min(t + 40, end - 1));
+        Prefetch(&shortSpacings[ahead[1]]);
+        Prefetch(&shortSpacings[ahead[2]]);
+        const double length = limit * SpacingOf(shortSpacings, list.CornersOf(t));
+        keep[t] = longest[t] <= length * length;
+      }
+    };
+    constexpr Index atOnce = 1 << 13;
+    ForEachRange(list.Count, this->Threads, progress, isWithin, atOnce);
+  }
+
+  /** The triangles that are not kept so far, nor in groups too small for a lake. */
+  std::vector<Index> FindDoubtful(const Progress& progress)
+  {
+    const TriangleList& list = this->Measured.List;
+    std::vector<char>& keep = this->Result.IsSurface;
+    std::vector<Index> doubtful;
+    ForEachStretch(list.Count, Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        if (!keep[t])
+        {
+          doubtful.push_back(t);
+        }
+      }
+    });
+    const auto shareOf = [&](Index t) {
+      const double spacing = SpacingOf(this->Measured.ShortSpacings, list.CornersOf(t));
+      return list.ShareOfSquare(t, SmallGroup * this->Result.GapTolerance * spacing);
+    };
+    return DropSmallGroups(list, this->AtBorder, doubtful, shareOf, keep, Part(progress, 0.2, 1.0));
+  }
+
+  /** By spacings. @return the corners at the border of the surface: all that the last steps need */
+  IdSet Decide(const std::vector<Index>& doubtful, const Progress& progress)
+  {
+    IdSet near = this->AtBorder;
+    ForEachStretch(static_cast<Index>(doubtful.size()), progress, [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i)
+      {
+        const Index t = doubtful[i];
+        this->Result.IsSurface[t] = this->RatioOf(t) <= this->Result.GapTolerance;
+        if (!this->Result.IsSurface[t])
+        {
+          near.AddAll(this->Measured.List.CornersOf(t));
+        }
+      }
+    });
+    return near;
+  }
+
+  MeasuredTriangles Measured;
+  const int Threads;
+  IdSet AtBorder;
+  Buffer<double> Spacings; ///< of those vertices for which they are asked
+  ExtractedBoundary Result;
+};
+
 } // namespace
 
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options)
 {
-  const TriangleList& list = measured.List;
-  const Progress& progress = options.Monitor;
-  const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
-  const auto squareOf = [](double value) { return value * value; };
-  ExtractedBoundary result;
-  result.GapTolerance = options.GapTolerance;
-  std::vector<BorderEdge>& border = measured.Border;
-  Sort(border.begin(), border.end(), std::less<BorderEdge>(), Part(progress, 0.0, 0.02));
-  IdSet atBorder(list.Points.Count);
-  for (const BorderEdge& edge : border)
-  {
-    atBorder.Add(edge.Origin);
-    atBorder.Add(edge.Destination);
-  }
-
-  const Buffer<float>& shortSpacings = measured.ShortSpacings;
-  const Neighbors neighbors(measured, Part(progress, 0.02, 0.25));
-  Buffer<double> spacings; // of those vertices for which they are asked
-  spacings.Resize(list.Points.Count);
-  const auto findSpacings = [&](const std::vector<Index>& triangles, const Progress& part) {
-    const std::vector<Index> corners = CornersOf(list, triangles, Part(part, 0.0, 0.1));
-    FindSpacings(list, neighbors, corners, threads, Part(part, 0.1, 1.0), spacings.data());
-  };
-  const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
-  const auto ratioOf = [&](Index t) { return std::sqrt(measured.Longest[t]) / spacingOf(t); };
-  if (!(result.GapTolerance > 0.0))
-  {
-    const std::vector<Index> sample = SampleOf(measured);
-    const Progress finding = Part(progress, 0.25, 0.35);
-    findSpacings(sample, finding);
-    std::vector<double> ratios;
-    for (const Index t : sample)
-    {
-      ratios.push_back(ratioOf(t));
-    }
-    const auto median = ratios.begin() + ratios.size() / 2;
-    std::nth_element(ratios.begin(), median, ratios.end());
-    result.GapTolerance = ToleranceOfTypicalTriangle * *median;
-  }
-
-  std::vector<char>& keep = result.IsSurface;
-  keep.resize(list.Count);
-  const double limit = BeyondDoubt * result.GapTolerance;
-  const auto isWithin = [&](Index, Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      const Index* ahead = list.CornersOf(std::min(t + 40, end - 1));
-      Prefetch(&shortSpacings[ahead[1]]);
-      Prefetch(&shortSpacings[ahead[2]]);
-      keep[t] =
-        measured.Longest[t] <= squareOf(limit * SpacingOf(shortSpacings, list.CornersOf(t)));
-    }
-  };
-  constexpr Index atOnce = 1 << 13;
-  ForEachRange(list.Count, threads, Part(progress, 0.35, 0.5), isWithin, atOnce);
-  std::vector<Index> doubtful;
-  ForEachStretch(list.Count, Part(progress, 0.5, 0.52), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (!keep[t])
-      {
-        doubtful.push_back(t);
-      }
-    }
-  });
-  const auto shortShareOf = [&](Index t) {
-    const double spacing = SpacingOf(shortSpacings, list.CornersOf(t));
-    return list.ShareOfSquare(t, SmallGroup * result.GapTolerance * spacing);
-  };
-  doubtful =
-    DropSmallGroups(list, atBorder, doubtful, shortShareOf, keep, Part(progress, 0.52, 0.6));
-  const Progress finding = Part(progress, 0.6, 0.74);
-  Report(finding, 0.0);
-  findSpacings(doubtful, finding);
-  Report(finding, 1.0);
-  // All that the last steps need are triangles near the border of the surface.
-  IdSet near = atBorder;
-  const Index numberOfDoubtful = static_cast<Index>(doubtful.size());
-  ForEachStretch(numberOfDoubtful, Part(progress, 0.74, 0.75), [&](Index begin, Index end) {
-    for (Index i = begin; i < end; ++i)
-    {
-      const Index t = doubtful[i];
-      keep[t] = ratioOf(t) <= result.GapTolerance;
-      if (!keep[t])
-      {
-        near.AddAll(list.CornersOf(t));
-      }
-    }
-  });
-  TraceSurface(measured, atBorder, spacings, std::move(near), Part(progress, 0.75, 0.95), result);
-  result.NumberOfPointsLeftOut = CountLeftOut(list, result.IsSurface, Part(progress, 0.95, 1.0));
-  if (measured.Ids.size() > 0)
-  {
-    ToIds(result.Vertices.Vertices, measured.Ids.data(), Part(progress, 1.0, 1.0));
-  }
-  Report(progress, 1.0);
-  return result;
+  return OutlineSearch(std::move(measured), options).Run(options.Monitor);
 }
 
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)

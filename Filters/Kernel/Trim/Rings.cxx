@@ -188,6 +188,117 @@ void Append(Rings& rings, const std::vector<Index>& points)
   rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
 }
 
+/** Chains open pieces by their ends: the front of piece i is end 2 i, its back 2 i + 1. */
+class Chains
+{
+public:
+  Chains(const BoundaryLines& lines, const std::vector<Piece>& pieces)
+    : Lines(lines)
+    , Pieces(pieces)
+    , Partners(2 * pieces.size())
+  {
+    for (std::size_t end = 0; end < 2 * pieces.size(); ++end)
+    {
+      if (!pieces[end / 2].IsClosed)
+      {
+        this->EndsAt[this->PlaceOf(end)].push_back(end);
+      }
+    }
+    this->CheckEnds();
+    for (auto& meeting : this->EndsAt)
+    {
+      this->Pair(meeting.first, meeting.second);
+    }
+  }
+
+  /** The ring that a piece is on. @param[in,out] used  one flag a piece: whether a ring has it */
+  std::vector<Index> RingFrom(std::size_t piece, std::vector<char>& used) const
+  {
+    std::vector<Index> ring;
+    for (std::size_t end = 2 * piece; !used[end / 2]; end = this->Partners[end ^ 1])
+    {
+      used[end / 2] = 1;
+      const std::vector<Index>& points = this->Pieces[end / 2].Points;
+      if (end % 2 == 0)
+      {
+        ring.insert(ring.end(), points.begin(), points.end() - 1);
+      }
+      else
+      {
+        ring.insert(ring.end(), points.rbegin(), points.rend() - 1);
+      }
+    }
+    return ring;
+  }
+
+private:
+  Index PointOf(std::size_t end) const
+  {
+    const std::vector<Index>& points = this->Pieces[end / 2].Points;
+    return end % 2 == 0 ? points.front() : points.back();
+  }
+  const Point2& PlaceOf(std::size_t end) const { return this->Lines.Points[this->PointOf(end)]; }
+  const Point2& NextOf(std::size_t end) const
+  {
+    const std::vector<Index>& points = this->Pieces[end / 2].Points;
+    return this->Lines.Points[end % 2 == 0 ? points[1] : points[points.size() - 2]];
+  }
+
+  /** @throws Error naming the first end of a place where they cannot be paired */
+  void CheckEnds() const
+  {
+    for (std::size_t end = 0; end < 2 * this->Pieces.size(); ++end)
+    {
+      const Piece& piece = this->Pieces[end / 2];
+      const std::size_t count = piece.IsClosed ? 0 : this->EndsAt.at(this->PlaceOf(end)).size();
+      if (count % 2 != 0)
+      {
+        throw Error("The boundary is not closed: " + NameOfLine(this->Lines, piece.Line) +
+          " ends at " + NameOf(this->Lines.Points, this->PointOf(end)) +
+          (count == 1
+              ? ", where no other line goes on."
+              : ", where " + std::to_string(count) + " lines end, which cannot be paired."));
+      }
+    }
+  }
+
+  /**
+   * Where more than two end, each goes on in one beside it, so that no rings cross there; and two
+   * that begin alike in each other, as what they have in common cancels out.
+   */
+  void Pair(const Point2& place, std::vector<std::size_t>& ends)
+  {
+    const auto comesBefore = [&](std::size_t e, std::size_t f) {
+      const Point2 p = this->NextOf(e), q = this->NextOf(f);
+      return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
+                                                    : Orientation(place, p, q) == Positive;
+    };
+    std::stable_sort(ends.begin(), ends.end(), comesBefore);
+    std::vector<std::size_t> others;
+    for (const bool areAlike : { true, false })
+    {
+      others.clear();
+      for (const std::size_t end : ends)
+      {
+        if (others.empty() || (areAlike && comesBefore(others.back(), end)))
+        {
+          others.push_back(end);
+          continue;
+        }
+        this->Partners[end] = others.back();
+        this->Partners[others.back()] = end;
+        others.pop_back();
+      }
+      ends = others;
+    }
+  }
+
+  const BoundaryLines& Lines;
+  const std::vector<Piece>& Pieces;
+  std::vector<std::size_t> Partners; ///< one an end
+  std::unordered_map<Point2, std::vector<std::size_t>, HashOfPoint> EndsAt;
+};
+
 } // namespace
 
 void TakePoints(const PointView& points, BoundaryLines& lines)
@@ -211,98 +322,17 @@ void TakePoints(const PointView& points, BoundaryLines& lines)
 Rings JoinLines(const BoundaryLines& lines)
 {
   const std::vector<Piece> pieces = MakePieces(lines);
-  const auto placeOf = [&lines](Index point) { return lines.Points[point]; };
   if (pieces.empty())
   {
     throw Error("The boundary has no line and no polygon.");
   }
-
-  // The ends of open pieces in a place: the front of piece i is 2 i, its back 2 i + 1.
-  const auto placeOfEnd = [&](std::size_t end) {
-    const std::vector<Index>& points = pieces[end / 2].Points;
-    return placeOf(end % 2 == 0 ? points.front() : points.back());
-  };
-  const auto nextOfEnd = [&](std::size_t end) {
-    const std::vector<Index>& points = pieces[end / 2].Points;
-    return placeOf(end % 2 == 0 ? points[1] : points[points.size() - 2]);
-  };
-  std::unordered_map<Point2, std::vector<std::size_t>, HashOfPoint> endsAt;
-  for (std::size_t end = 0; end < 2 * pieces.size(); ++end)
-  {
-    if (!pieces[end / 2].IsClosed)
-    {
-      endsAt[placeOfEnd(end)].push_back(end);
-    }
-  }
-  for (std::size_t end = 0; end < 2 * pieces.size(); ++end)
-  {
-    const auto meeting = endsAt.find(placeOfEnd(end));
-    if (!pieces[end / 2].IsClosed && meeting->second.size() % 2 != 0)
-    {
-      const std::vector<Index>& points = pieces[end / 2].Points;
-      throw Error("The boundary is not closed: " + NameOfLine(lines, pieces[end / 2].Line) +
-        " ends at " + NameOf(lines.Points, end % 2 == 0 ? points.front() : points.back()) +
-        (meeting->second.size() == 1 ? ", where no other line goes on."
-                                     : ", where " + std::to_string(meeting->second.size()) +
-              " lines end, which cannot be paired."));
-    }
-  }
-
-  // Where more than two end, each goes on in one beside it, so that no rings cross there; and two
-  // that begin alike in each other, as what they have in common cancels out.
-  std::vector<std::size_t> partners(2 * pieces.size());
-  for (auto& meeting : endsAt)
-  {
-    const Point2& place = meeting.first;
-    std::vector<std::size_t>& ends = meeting.second;
-    const auto comesBefore = [&](std::size_t e, std::size_t f) {
-      const Point2 p = nextOfEnd(e), q = nextOfEnd(f);
-      return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
-                                                    : Orientation(place, p, q) == Positive;
-    };
-    std::stable_sort(ends.begin(), ends.end(), comesBefore);
-    std::vector<std::size_t> others;
-    const auto pairAll = [&](bool areAlike) {
-      others.clear();
-      for (const std::size_t end : ends)
-      {
-        if (others.empty() || (areAlike && comesBefore(others.back(), end)))
-        {
-          others.push_back(end);
-          continue;
-        }
-        partners[end] = others.back();
-        partners[others.back()] = end;
-        others.pop_back();
-      }
-      ends = others;
-    };
-    pairAll(true);
-    pairAll(false);
-  }
+  const Chains chains(lines, pieces);
   Rings joined;
   std::vector<char> used(pieces.size(), 0);
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
-    if (pieces[i].IsClosed)
-    {
-      Append(joined, pieces[i].Points);
-      continue;
-    }
-    std::vector<Index> ring;
-    for (std::size_t end = 2 * i; !used[end / 2]; end = partners[end ^ 1])
-    {
-      used[end / 2] = 1;
-      const std::vector<Index>& points = pieces[end / 2].Points;
-      if (end % 2 == 0)
-      {
-        ring.insert(ring.end(), points.begin(), points.end() - 1);
-      }
-      else
-      {
-        ring.insert(ring.end(), points.rbegin(), points.rend() - 1);
-      }
-    }
+    const std::vector<Index> ring =
+      pieces[i].IsClosed ? pieces[i].Points : chains.RingFrom(i, used);
     // Two lines along one edge, as of two parcels that share it, cancel out.
     if (ring.size() > 2)
     {

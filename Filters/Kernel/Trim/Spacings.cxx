@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Spacings.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace elevation
+{
+
+Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress)
+{
+  const TriangleList& list = measured.List;
+  const Index count = list.Points.Count;
+  this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
+  this->Ids.Resize(3 * static_cast<std::size_t>(list.Count) + measured.Border.size() +
+    (Group - 1) * (static_cast<std::size_t>(count) + 1));
+  // At first where those of each vertex end: they are filled in from there.
+  std::uint32_t sum = 0; // stays below 9 for each point
+  ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+    {
+      const std::uint32_t size = measured.Degrees[v];
+      this->Offsets[v] = sum + size;
+      // More than are needed, as how many cannot be predicted; what comes next overwrites them.
+      std::fill_n(&this->Ids[sum + size], Group - 1, v);
+      sum += (size + Group - 1) / Group * Group;
+    }
+  });
+  this->Offsets[count] = sum;
+  const auto add = [&](Index a, Index b) { this->Ids[--this->Offsets[a]] = b; };
+  ForEachStretch(list.Count, Part(progress, 0.3, 1.0), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      const Index* ahead = list.CornersOf(std::min(t + 40, list.Count - 1));
+      Prefetch(&this->Offsets[ahead[1]]);
+      Prefetch(&this->Offsets[ahead[2]]);
+      const Index* soon = list.CornersOf(std::min(t + 20, list.Count - 1));
+      Prefetch(&this->Ids[this->Offsets[soon[1]] - 1]);
+      Prefetch(&this->Ids[this->Offsets[soon[2]] - 1]);
+      const Index* corners = list.CornersOf(t);
+      add(corners[0], corners[1]);
+      add(corners[1], corners[2]);
+      add(corners[2], corners[0]);
+    }
+  });
+  for (const BorderEdge& edge : measured.Border)
+  {
+    add(edge.Destination, edge.Origin);
+  }
+}
+
+namespace
+{
+
+/** A search for the nearest vertices of one vertex after another. */
+class NearestVertices
+{
+public:
+  NearestVertices(const TriangleList& list, const Neighbors& neighbors)
+    : List(list)
+    , Around(neighbors)
+    , Known(Places, ~std::uint64_t(0))
+  {
+  }
+
+  /** Asks for what the next vertices need: soon reached, but ids by way of offsets, and so on. */
+  template <typename Ahead>
+  void Prepare(Ahead&& ahead) const
+  {
+    const std::uint32_t* const offsets = this->Around.Offsets.data();
+    const Index* const ids = this->Around.Ids.data();
+    Prefetch(offsets + ahead(16));
+    Prefetch(ids + offsets[ahead(12)]);
+    const Index next = ahead(8);
+    this->List.PrefetchPoint(next);
+    const Index soon = ahead(4);
+    for (std::uint32_t i = 0; i < 8; ++i)
+    {
+      const std::uint32_t j = std::min(offsets[next] + i, offsets[next + 1] - 1);
+      this->List.PrefetchPoint(ids[j]);
+      Prefetch(offsets + ids[j]);
+      const std::uint32_t k = std::min(offsets[soon] + i, offsets[soon + 1] - 1);
+      Prefetch(ids + offsets[ids[k]]);
+    }
+  }
+
+  double SpacingAt(Index v)
+  {
+    this->Vertex = v;
+    this->Place = this->List.Points.At(v);
+    std::fill_n(this->Nearest, NeighborOfSpacing,
+      Candidate{ std::numeric_limits<double>::infinity(), None, false });
+    this->Known[static_cast<std::uint32_t>(v) % Places] = KeyOf(v, v);
+    this->Pass(v);
+    this->PassNearer();
+    int k = Last;
+    while (k > 0 && this->Nearest[k].Vertex == None)
+    {
+      --k; // there are no more
+    }
+    return SpacingPerNeighborDistance * std::sqrt(this->Nearest[k].Squared);
+  }
+
+private:
+  struct Candidate
+  {
+    double Squared;
+    Index Vertex;
+    bool IsPassed;
+  };
+  static constexpr int Last = NeighborOfSpacing - 1;
+  static constexpr std::uint32_t Places = 1024;
+
+  static std::uint64_t KeyOf(Index v, Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); }
+
+  /** Looks at the neighbours of a vertex. */
+  void Pass(Index passed)
+  {
+    const std::uint32_t first = this->Around.Offsets[passed];
+    const std::uint32_t size = this->Around.Offsets[passed + 1] - first;
+    if (passed != this->Vertex && size > NeighborsOfHub)
+    {
+      return;
+    }
+    if (this->Found.size() < size)
+    {
+      this->Found.resize(size);
+    }
+    // Those that are near enough, without branches, for which they are cannot be predicted.
+    const Index v = this->Vertex;
+    const Point2 p = this->Place;
+    const PointView points = this->List.Points;
+    const std::uint64_t* const known = this->Known.data();
+    const double limit = this->Nearest[Last].Squared;
+    Index* const found = this->Found.data();
+    Index* next = found;
+    const Index* const begin = this->Around.Ids.data() + first;
+    for (const Index* group = begin; group != begin + size; group += Neighbors::Group)
+    {
+      for (std::uint32_t j = 0; j < Neighbors::Group; ++j)
+      {
+        const Index w = group[j];
+        *next = w;
+        const int isNear = SquaredLength(p, points.At(w)) < limit;
+        const int isNew = known[static_cast<std::uint32_t>(w) % Places] != KeyOf(v, w);
+        next += isNear & isNew;
+      }
+    }
+    for (const Index* w = found; w != next; ++w)
+    {
+      this->Add({ SquaredLength(p, points.At(*w)), *w, false });
+    }
+  }
+
+  /** Puts a vertex among the nearest, if it is one of them. */
+  void Add(const Candidate& candidate)
+  {
+    bool isKnown = candidate.Vertex == this->Vertex;
+    for (const Candidate& other : this->Nearest)
+    {
+      isKnown |= other.Vertex == candidate.Vertex;
+    }
+    if (isKnown || !(candidate.Squared < this->Nearest[Last].Squared))
+    {
+      return;
+    }
+    this->Known[static_cast<std::uint32_t>(candidate.Vertex) % Places] =
+      KeyOf(this->Vertex, candidate.Vertex);
+    int at = Last;
+    for (; at > 0 && candidate.Squared < this->Nearest[at - 1].Squared; --at)
+    {
+      this->Nearest[at] = this->Nearest[at - 1];
+    }
+    this->Nearest[at] = candidate;
+  }
+
+  /** Passes all that are nearer than the last one, those equally near at once. */
+  void PassNearer()
+  {
+    for (Candidate* next = this->Nearest; next != this->Nearest + Last;)
+    {
+      if (next->IsPassed || !(next->Squared < this->Nearest[Last].Squared))
+      {
+        ++next;
+        continue;
+      }
+      Index equal[NeighborOfSpacing];
+      int numberOfEqual = 0;
+      const double squared = next->Squared;
+      for (; next != this->Nearest + Last && next->Squared == squared; ++next)
+      {
+        if (!next->IsPassed)
+        {
+          equal[numberOfEqual++] = next->Vertex;
+          next->IsPassed = true;
+        }
+      }
+      for (int i = 0; i < numberOfEqual; ++i)
+      {
+        this->Pass(equal[i]);
+      }
+      next = this->Nearest; // nearer ones may have come
+    }
+  }
+
+  const TriangleList& List;
+  const Neighbors& Around;
+  Index Vertex = None;
+  Point2 Place{ 0.0, 0.0 };
+  Candidate Nearest[NeighborOfSpacing];
+  std::vector<Index> Found;
+  // Vertices that the one at hand has had among its nearest. One may have taken the place of
+  // another, which then is compared once more with the nearest themselves.
+  std::vector<std::uint64_t> Known;
+};
+
+} // namespace
+
+void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
+  const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings)
+{
+  constexpr Index atOnce = 1 << 11;
+  const auto find = [&](Index, Index begin, Index end) {
+    NearestVertices search(list, neighbors);
+    for (Index place = begin; place < end; ++place)
+    {
+      search.Prepare([&](Index steps) { return wanted[std::min(place + steps, end - 1)]; });
+      const Index v = wanted[place];
+      spacings[v] = search.SpacingAt(v);
+    }
+  };
+  ForEachRange(static_cast<Index>(wanted.size()), threads, progress, find, atOnce);
+}
+
+} // namespace elevation
