@@ -34,6 +34,7 @@ set(es_kernel_Trim
   Rings
   NearTriangles
   Crossings
+  MeshCutter
   Insertion
   OutwardTriangles
   MeasuredTriangles

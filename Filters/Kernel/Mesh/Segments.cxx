@@ -5,9 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <queue>
 #include <set>
-#include <utility>
 
 namespace elevation
 {
@@ -101,112 +99,99 @@ private:
   std::vector<Ends> Segments; ///< from their lower ends, which rise
 };
 
-/**
- * Remainders of coordinates, their sums and products by a prime 2^31 - 1: as these are exact, what
- * depends on the line alone is equal for all segments on it.
- */
-struct Remainder
-{
-  static constexpr std::uint64_t Prime = 0x7FFFFFFF;
-  std::uint64_t Value;
+// Remainders of coordinates, and of their sums and products, by a prime. As these are exact, what
+// depends on a line alone is equal for all segments on it.
+constexpr std::uint64_t Prime = 0x7FFFFFFF; // 2^31 - 1
 
-  static Remainder Of(double x)
-  {
-    int exponent = 0;
-    const double whole = std::ldexp(std::frexp(std::fabs(x), &exponent), 53);
-    // As 2^31 leaves 1, powers of two repeat.
-    const int power = ((exponent - 53) % 31 + 31) % 31;
-    const std::uint64_t value = ((static_cast<std::uint64_t>(whole) % Prime) << power) % Prime;
-    return { x < 0.0 ? (Prime - value) % Prime : value };
-  }
-  Remainder operator-(Remainder other) const
-  {
-    return { (this->Value + Prime - other.Value) % Prime };
-  }
-  Remainder operator*(Remainder other) const { return { this->Value * other.Value % Prime }; }
-  /** By Fermat's little theorem. */
-  Remainder Inverse() const
-  {
-    Remainder inverse{ 1 }, power = *this;
-    for (std::uint64_t left = Prime - 2; left > 0; left /= 2)
-    {
-      inverse = left % 2 != 0 ? inverse * power : inverse;
-      power = power * power;
-    }
-    return inverse;
-  }
-};
+std::uint64_t RemainderOf(double x)
+{
+  int exponent = 0;
+  const double whole = std::ldexp(std::frexp(std::fabs(x), &exponent), 53);
+  // As 2^31 leaves 1, powers of two repeat.
+  const int power = ((exponent - 53) % 31 + 31) % 31;
+  const std::uint64_t value = ((static_cast<std::uint64_t>(whole) % Prime) << power) % Prime;
+  return x < 0.0 ? (Prime - value) % Prime : value;
+}
 
 /** A number that segments on one line have in common, and hardly any others. */
-std::uint64_t LineNumber(const Ends& s)
+std::uint64_t LineNumber(const Point2& a, const Point2& b)
 {
-  const Remainder x = Remainder::Of(s[0].X), y = Remainder::Of(s[0].Y);
-  const Remainder dx = Remainder::Of(s[1].X) - x, dy = Remainder::Of(s[1].Y) - y;
-  if (dx.Value == 0)
+  const std::uint64_t x = RemainderOf(a.X), y = RemainderOf(a.Y);
+  std::uint64_t power = (RemainderOf(b.X) + Prime - x) % Prime;
+  if (power == 0)
   {
-    return Remainder::Prime << 32 | x.Value;
+    return Prime << 32 | x;
   }
-  const Remainder slope = dy * dx.Inverse();
-  return slope.Value << 32 | (y - slope * x).Value;
+  // Times the inverse of the difference in x, by Fermat's little theorem.
+  std::uint64_t slope = (RemainderOf(b.Y) + Prime - y) % Prime;
+  for (std::uint64_t left = Prime - 2; left > 0; left /= 2)
+  {
+    slope = left % 2 != 0 ? slope * power % Prime : slope;
+    power = power * power % Prime;
+  }
+  return slope << 32 | (y + Prime - slope * x % Prime) % Prime;
 }
+
+struct LinePiece
+{
+  std::uint64_t Line;
+  SegmentPiece Piece;
+};
 
 /**
  * Puts pieces from end to end in the place of some on one line, which overlap one after another and
  * come in the order of their lower ends.
  */
-void JoinRun(const SegmentPiece* begin, const SegmentPiece* end, const std::vector<Point2>& places,
-  std::vector<SegmentPiece>& joined, std::vector<Passage>& passages)
+void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Point2>& places,
+  std::vector<SegmentPiece>& joined, std::vector<Passage>& passages, WorkReporter& work)
 {
-  const auto isLower = [&](Index v, Index w) { return IsLower(places[v], places[w]); };
-  std::vector<const SegmentPiece*> byEnd;
-  std::vector<Index> vertices;
-  for (const SegmentPiece* piece = begin; piece < end; ++piece)
+  if (end - begin == 1)
   {
-    byEnd.push_back(piece);
-    vertices.insert(vertices.end(), { piece->A, piece->B });
+    joined.push_back(begin->Piece);
+    return;
+  }
+  const auto isLower = [&](Index v, Index w) { return IsLower(places[v], places[w]); };
+  std::vector<SegmentPiece> byEnd;
+  std::vector<Index> vertices;
+  for (const LinePiece* entry = begin; entry < end; ++entry)
+  {
+    byEnd.push_back(entry->Piece);
+    vertices.insert(vertices.end(), { entry->Piece.A, entry->Piece.B });
   }
   std::sort(byEnd.begin(), byEnd.end(),
-    [&](const SegmentPiece* p, const SegmentPiece* q) { return isLower(p->B, q->B); });
+    [&](const SegmentPiece& p, const SegmentPiece& q) { return isLower(p.B, q.B); });
   std::sort(vertices.begin(), vertices.end(), isLower);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
-  // Of the pieces that go on from a vertex: the first segment, and the largest units. What has ended
-  // is left in until it comes up.
-  using Entry = std::pair<double, Index>; // and the end
-  std::array<std::priority_queue<Entry>, 3> best;
+  // Of the pieces that go on from a vertex:
+  std::multiset<Index> ranks;
+  std::multiset<double> unitsX, unitsY;
   Index count = 0; // of segments
   auto ending = byEnd.begin();
-  const SegmentPiece* beginning = begin;
-  for (std::size_t i = 0; i < vertices.size(); ++i)
+  for (std::size_t i = 0; i + 1 < vertices.size(); ++i)
   {
+    work.Look();
     const Index v = vertices[i];
-    for (; ending != byEnd.end() && (*ending)->B == v; ++ending)
+    for (; ending->B == v; ++ending)
     {
-      count -= (*ending)->Count;
+      count -= ending->Count;
+      ranks.erase(ranks.find(ending->Rank));
+      unitsX.erase(unitsX.find(ending->Unit.X));
+      unitsY.erase(unitsY.find(ending->Unit.Y));
     }
     if (count > 0)
     {
       passages.push_back({ v, vertices.back(), count });
     }
-    for (; beginning != end && beginning->A == v; ++beginning)
+    for (; begin != end && begin->Piece.A == v; ++begin)
     {
-      count += beginning->Count;
-      best[0].push({ -static_cast<double>(beginning->Rank), beginning->B });
-      best[1].push({ beginning->Unit.X, beginning->B });
-      best[2].push({ beginning->Unit.Y, beginning->B });
+      count += begin->Piece.Count;
+      ranks.insert(begin->Piece.Rank);
+      unitsX.insert(begin->Piece.Unit.X);
+      unitsY.insert(begin->Piece.Unit.Y);
     }
-    if (i + 1 < vertices.size())
-    {
-      for (auto& entries : best)
-      {
-        while (!isLower(v, entries.top().second))
-        {
-          entries.pop();
-        }
-      }
-      joined.push_back({ v, vertices[i + 1], -static_cast<Index>(best[0].top().first), count,
-        { best[1].top().first, best[2].top().first } });
-    }
+    joined.push_back({ v, vertices[i + 1], *ranks.begin(), count,
+      { *unitsX.rbegin(), *unitsY.rbegin() } });
   }
 }
 
@@ -264,67 +249,44 @@ void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
 std::vector<Passage> JoinOverlaps(
   std::vector<SegmentPiece>& pieces, const std::vector<Point2>& places, const Progress& progress)
 {
-  struct Entry
-  {
-    std::uint64_t Line;
-    SegmentPiece Piece;
-  };
-  std::vector<Entry> entries;
-  std::vector<SegmentPiece> joined;
+  std::vector<LinePiece> entries;
   for (const SegmentPiece& piece : pieces)
   {
-    ReportStep(progress, entries.size() + joined.size(), 4 * pieces.size());
-    if (piece.A == piece.B)
-    {
-      joined.push_back(piece);
-    }
-    else
-    {
-      entries.push_back({ LineNumber({ { places[piece.A], places[piece.B] } }), piece });
-    }
+    ReportStep(progress, entries.size(), 4 * pieces.size());
+    // A point is on no line.
+    entries.push_back({ piece.A == piece.B ? ~static_cast<std::uint64_t>(piece.A)
+                                           : LineNumber(places[piece.A], places[piece.B]),
+      piece });
   }
   Sort(
     entries.begin(), entries.end(),
-    [&](const Entry& p, const Entry& q) {
+    [&](const LinePiece& p, const LinePiece& q) {
       return p.Line != q.Line ? p.Line < q.Line : IsLower(places[p.Piece.A], places[q.Piece.A]);
     },
     Part(progress, 0.25, 0.75));
 
   const Progress joining = Part(progress, 0.75, 1.0);
+  WorkReporter work(joining);
   std::vector<Passage> passages;
-  std::vector<SegmentPiece> run;
-  const auto endRun = [&]() {
-    if (run.size() == 1)
-    {
-      joined.push_back(run[0]);
-    }
-    else if (!run.empty())
-    {
-      JoinRun(&run[0], &run[0] + run.size(), places, joined, passages);
-    }
-    run.clear();
-  };
-  Index top = None;
-  for (std::size_t i = 0; i < entries.size(); ++i)
+  pieces.clear();
+  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end)
   {
-    ReportStep(joining, i, entries.size());
-    const SegmentPiece& piece = entries[i].Piece;
-    // The number alone proves nothing.
-    if (run.empty() || entries[i].Line != entries[i - 1].Line ||
-      !IsLower(places[piece.A], places[top]) ||
-      Orientation(places[run[0].A], places[run[0].B], places[piece.A]) != Zero ||
-      Orientation(places[run[0].A], places[run[0].B], places[piece.B]) != Zero)
+    work.Step(begin, entries.size());
+    const Point2 &a = places[entries[begin].Piece.A], &b = places[entries[begin].Piece.B];
+    Point2 top = b;
+    for (; end < entries.size() && entries[end].Line == entries[begin].Line; ++end)
     {
-      endRun();
+      const Point2 &low = places[entries[end].Piece.A], &high = places[entries[end].Piece.B];
+      // The number alone proves nothing.
+      if (end > begin &&
+        (!IsLower(low, top) || Orientation(a, b, low) != Zero || Orientation(a, b, high) != Zero))
+      {
+        break;
+      }
+      top = IsLower(top, high) ? high : top;
     }
-    if (run.empty() || IsLower(places[top], places[piece.B]))
-    {
-      top = piece.B;
-    }
-    run.push_back(piece);
+    JoinRun(&entries[begin], &entries[0] + end, places, pieces, passages, work);
   }
-  endRun();
-  pieces = std::move(joined);
   return passages;
 }
 

@@ -3,11 +3,13 @@
 #include "Constrained.h"
 
 #include "Kernel/Base/Base.h"
+#include "EdgeLimit.h"
 #include "Triangulate.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <unordered_map>
@@ -22,17 +24,14 @@ namespace
 struct Vertex
 {
   Point2 Position;
-  Index Input = None;  ///< the input point that it is
-  Index Source = None; ///< the point of the lines that it is
-  Index From = None;   ///< a crossing: between these vertices
-  Index To = None;
+  Index Input;  ///< the input point that it is
+  Index Source; ///< the point of the lines that it is
+  Index From;   ///< a crossing: between these vertices
+  Index To;
 };
 
-struct Crossing
-{
-  Index P; ///< pieces, P < Q
-  Index Q;
-};
+/** Two pieces, the first one first. */
+using Crossing = std::pair<Index, Index>;
 
 /** Passes 1 to 3: from lines to pieces that do not cross, and what points they add. */
 class Splitting
@@ -112,18 +111,13 @@ private:
 
   const Point2& At(Index vertex) const { return this->Vertices[vertex].Position; }
 
-  Ends EndsOf(Index piece) const
-  {
-    return { { this->At(this->Pieces[piece].A), this->At(this->Pieces[piece].B) } };
-  }
-
   /** Enters the pieces, as they are, in a grid. */
   void EnterInGrid(const Progress& progress)
   {
     this->PieceEnds.resize(this->Pieces.size());
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
     {
-      this->PieceEnds[i] = this->EndsOf(static_cast<Index>(i));
+      this->PieceEnds[i] = { this->At(this->Pieces[i].A), this->At(this->Pieces[i].B) };
     }
     this->Grid = GridOf(this->PieceEnds, progress);
   }
@@ -131,13 +125,53 @@ private:
   /** Pass 1. */
   void Collect(const Progress& progress)
   {
+    const std::vector<Index> vertexOf = this->CollectPoints(Part(progress, 0.0, 0.5));
+    std::vector<char> hasSegment(this->Vertices.size(), 0);
+    for (Index line = 0; line < this->Lines.Count(); ++line)
+    {
+      const Index begin = this->Lines.Offsets[line], end = this->Lines.Offsets[line + 1];
+      for (Index k = begin; k < end; ++k)
+      {
+        const Index next = k + 1 < end ? k + 1 : (this->Lines.IsClosed[line] ? begin : k);
+        Index p = vertexOf[this->Lines.Vertices[k]], q = vertexOf[this->Lines.Vertices[next]];
+        if (p != q)
+        {
+          if (IsLower(this->At(q), this->At(p)))
+          {
+            std::swap(p, q);
+          }
+          const Index rank = static_cast<Index>(this->Segments.size());
+          this->Pieces.push_back({ p, q, rank, 1, UnitsOf(this->At(p), this->At(q)) });
+          this->SegmentLines.push_back(line);
+          this->Segments.push_back({ p, q });
+          hasSegment[p] = hasSegment[q] = 1;
+        }
+      }
+    }
+    this->JoinEqualPieces(Part(progress, 0.6, 1.0));
+    for (SegmentPiece& piece : this->Pieces)
+    {
+      piece.Count = 1; // the same segment in several lines is one
+    }
+    for (std::size_t v = 0; v < hasSegment.size(); ++v)
+    {
+      if (!hasSegment[v])
+      {
+        this->Pieces.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
+      }
+    }
+  }
+
+  /** Makes vertices of the lines' points; of several at one place the first. @return by points */
+  std::vector<Index> CollectPoints(const Progress& progress)
+  {
     const PointView& own = this->Lines.Points;
     std::vector<Index> used;
     for (Index line = 0; line < this->Lines.Count(); ++line)
     {
       for (Index k = this->Lines.Offsets[line]; k < this->Lines.Offsets[line + 1]; ++k)
       {
-        ReportStep(progress, k, 4 * this->Lines.Vertices.size());
+        ReportStep(progress, k, 2 * this->Lines.Vertices.size());
         const Index id = this->Lines.Vertices[k];
         const bool exists = id >= 0 && id < own.Count;
         if (!exists || !std::isfinite(own.At(id).X) || !std::isfinite(own.At(id).Y) ||
@@ -157,61 +191,27 @@ private:
         const Point2 at = own.At(p), other = own.At(q);
         return at != other ? IsLower(at, other) : p < q;
       },
-      Part(progress, 0.25, 0.5));
+      Part(progress, 0.5, 1.0));
     std::vector<Index> vertexOf(own.Count, None); // the source first
     for (std::size_t i = 0, first = 0; i < used.size(); ++i)
     {
       first = i > 0 && own.At(used[i]) == own.At(used[first]) ? first : i;
       vertexOf[used[i]] = used[first];
     }
-    // Vertices by the ids of their sources, which come before what they are the vertex of or not.
-    std::vector<Index> ofSource(own.Count, None);
+    // A source has a lower id than others of its vertex.
     for (Index id = 0; id < own.Count; ++id)
     {
       if (vertexOf[id] == id)
       {
-        ofSource[id] = static_cast<Index>(this->Vertices.size());
-        Vertex vertex;
-        vertex.Position = own.At(id);
-        vertex.Source = id;
-        this->Vertices.push_back(vertex);
+        vertexOf[id] = static_cast<Index>(this->Vertices.size());
+        this->Vertices.push_back({ own.At(id), None, id, None, None });
       }
-    }
-
-    std::vector<char> hasSegment(this->Vertices.size(), 0);
-    Report(progress, 0.5);
-    for (Index line = 0; line < this->Lines.Count(); ++line)
-    {
-      const Index begin = this->Lines.Offsets[line], end = this->Lines.Offsets[line + 1];
-      for (Index k = begin; k < end; ++k)
+      else if (vertexOf[id] != None)
       {
-        const Index next = k + 1 < end ? k + 1 : (this->Lines.IsClosed[line] ? begin : k);
-        const Index p = ofSource[vertexOf[this->Lines.Vertices[k]]];
-        const Index q = ofSource[vertexOf[this->Lines.Vertices[next]]];
-        if (p != q)
-        {
-          const bool isUp = IsLower(this->At(p), this->At(q));
-          this->SegmentLines.push_back(line);
-          this->Segments.push_back({ isUp ? p : q, isUp ? q : p });
-          this->Pieces.push_back(
-            { isUp ? p : q, isUp ? q : p, static_cast<Index>(this->Segments.size()) - 1, 1 });
-          this->Pieces.back().Unit = UnitsOf(this->At(p), this->At(q));
-          hasSegment[p] = hasSegment[q] = 1;
-        }
+        vertexOf[id] = vertexOf[vertexOf[id]];
       }
     }
-    this->JoinEqualPieces(Part(progress, 0.6, 1.0));
-    for (SegmentPiece& piece : this->Pieces)
-    {
-      piece.Count = 1; // the same segment in several lines is one
-    }
-    for (std::size_t v = 0; v < hasSegment.size(); ++v)
-    {
-      if (!hasSegment[v])
-      {
-        this->Pieces.push_back({ static_cast<Index>(v), static_cast<Index>(v), None, 0 });
-      }
-    }
+    return vertexOf;
   }
 
   void JoinEqualPieces(const Progress& progress)
@@ -294,7 +294,8 @@ private:
         }
         this->CutAtCrossings(crossings, !haveCounted, cuts, Part(ofRound, 0.7, 0.9));
         haveCounted = true;
-        this->Unsettled = { this->Pieces[crossings[0].P].Rank, this->Pieces[crossings[0].Q].Rank };
+        const auto [p, q] = crossings[0];
+        this->Unsettled = { this->Pieces[p].Rank, this->Pieces[q].Rank };
       }
       this->Apply(cuts, Part(ofRound, 0.9, 1.0));
     }
@@ -380,8 +381,7 @@ private:
       const Point2 p = this->Points.At(cut.Vertex);
       if (this->Vertices.size() == first || this->Vertices.back().Position != p)
       {
-        this->Vertices.emplace_back();
-        this->Vertices.back().Position = p;
+        this->Vertices.push_back({ p, None, None, None, None });
       }
       const Index vertex = static_cast<Index>(this->Vertices.size()) - 1;
       this->SetInput(vertex, cut.Vertex);
@@ -459,14 +459,8 @@ private:
         crossings.push_back({ static_cast<Index>(i), static_cast<Index>(j) });
       });
     // A pair may be found in every cell that both are in.
-    Sort(
-      crossings.begin(), crossings.end(),
-      [](const Crossing& p, const Crossing& q) { return p.P != q.P ? p.P < q.P : p.Q < q.Q; },
-      Part(progress, 0.8, 1.0));
-    crossings.erase(
-      std::unique(crossings.begin(), crossings.end(),
-        [](const Crossing& p, const Crossing& q) { return p.P == q.P && p.Q == q.Q; }),
-      crossings.end());
+    Sort(crossings.begin(), crossings.end(), std::less<Crossing>(), Part(progress, 0.8, 1.0));
+    crossings.erase(std::unique(crossings.begin(), crossings.end()), crossings.end());
   }
 
   bool CanPassThrough(const SegmentPiece& piece, Index vertex) const
@@ -479,8 +473,7 @@ private:
   bool CutAtEnds(const Crossing& crossing, std::vector<PieceCut>& cuts) const
   {
     const std::size_t before = cuts.size();
-    for (const auto& [piece, other] :
-      { std::make_pair(crossing.P, crossing.Q), std::make_pair(crossing.Q, crossing.P) })
+    for (const auto& [piece, other] : { crossing, Crossing(crossing.second, crossing.first) })
     {
       VisitEndsInReach(this->PieceEnds[other], this->PieceEnds[piece], this->Pieces[piece].Unit,
         this->Reach, [&, bent = piece, to = other](int end) {
@@ -490,28 +483,30 @@ private:
     return cuts.size() > before;
   }
 
+  /** Where two pieces cross, and the vertex that they are cut at. */
+  struct Place
+  {
+    Point2 Position;
+    Crossing Of;
+    Index Vertex;
+  };
+  /** Vertices that one round adds, from the lowest to the highest, by cells of the grid. */
+  using NewVertices = std::unordered_map<std::size_t, std::vector<Index>>;
+
   void CutAtCrossings(const std::vector<Crossing>& crossings, bool areToCount,
     std::vector<PieceCut>& cuts, const Progress& progress)
   {
-    struct Place
-    {
-      Point2 Position;
-      Crossing Of;
-      Index Vertex;
-    };
     std::vector<Place> places;
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
       ReportStep(progress, i, 2 * crossings.size(), 1024);
-      const Crossing& crossing = crossings[i];
-      const SegmentPiece &p = this->Pieces[crossing.P], &q = this->Pieces[crossing.Q];
-      this->Crossings +=
-        areToCount ? static_cast<std::int64_t>(p.Count) * static_cast<std::int64_t>(q.Count) : 0;
-      if (!this->CutAtEnds(crossing, cuts))
+      const auto [p, q] = crossings[i];
+      const std::int64_t segments = this->Pieces[p].Count;
+      this->Crossings += areToCount ? segments * this->Pieces[q].Count : 0;
+      if (!this->CutAtEnds(crossings[i], cuts))
       {
-        places.push_back(
-          { RoundedCrossing(this->At(p.A), this->At(p.B), this->At(q.A), this->At(q.B)), crossing,
-            None });
+        const Ends &s = this->PieceEnds[p], &t = this->PieceEnds[q];
+        places.push_back({ RoundedCrossing(s[0], s[1], t[0], t[1]), crossings[i], None });
       }
     }
     Sort(
@@ -519,70 +514,56 @@ private:
       [](const Place& p, const Place& q) { return IsLower(p.Position, q.Position); },
       Part(progress, 0.5, 0.7));
 
-    NewVertices added{ {}, {}, static_cast<Index>(this->Vertices.size()) };
+    NewVertices added;
     const Progress naming = Part(progress, 0.7, 1.0);
     for (std::size_t i = 0, end = 0; i < places.size(); i = end)
     {
       ReportStep(naming, i, places.size());
-      const Point2 position = places[i].Position;
-      for (; end < places.size() && places[end].Position == position; ++end)
+      for (; end < places.size() && places[end].Position == places[i].Position; ++end)
       {
-        places[end].Vertex = this->FindVertexInReach(added, position, places[end].Of);
+        places[end].Vertex = this->FindVertexInReach(added, places[i].Position, places[end].Of);
       }
-      // Those of the same place that are in reach of none share a new one, which lies on the first.
-      Index vertex = None, first = None;
-      for (std::size_t k = i; k < end; ++k)
-      {
-        Index at = places[k].Vertex;
-        if (at == None)
-        {
-          vertex = at = vertex == None ? this->AddVertex(added, position) : vertex;
-        }
-        for (const Index piece : { places[k].Of.P, places[k].Of.Q })
-        {
-          cuts.push_back({ piece, at });
-          if (at == vertex &&
-            (first == None || this->Pieces[piece].Rank < this->Pieces[first].Rank))
-          {
-            first = piece;
-          }
-        }
-      }
-      if (vertex != None)
-      {
-        this->Vertices[vertex].From = this->Pieces[first].A;
-        this->Vertices[vertex].To = this->Pieces[first].B;
-      }
+      this->CutAtPlace(&places[i], &places[0] + end, added, cuts);
     }
   }
 
-  /** Vertices that one round adds, from the lowest to the highest, by cells of the grid. */
-  struct NewVertices
+  /** Cuts pieces that cross in one place: where no vertex is in reach of two, at a new one. */
+  void CutAtPlace(
+    const Place* begin, const Place* end, NewVertices& added, std::vector<PieceCut>& cuts)
   {
-    std::unordered_map<std::size_t, Index> Last; ///< the last one in a cell
-    std::vector<Index> Before;                   ///< of each, the one in the same cell before it
-    Index First;                                 ///< the first of all
-  };
-
-  Index AddVertex(NewVertices& added, const Point2& position)
-  {
-    const Index vertex = static_cast<Index>(this->Vertices.size());
-    this->Vertices.emplace_back();
-    this->Vertices.back().Position = position;
-    std::size_t cell = 0;
-    this->Grid.FindCell(position, cell); // it is within the box of two pieces
-    Index& last = added.Last.emplace(cell, None).first->second;
-    added.Before.push_back(last);
-    last = vertex;
-    return vertex;
+    Index vertex = None, first = None; // the new one, and the piece that it lies on
+    for (const Place* place = begin; place < end; ++place)
+    {
+      if (place->Vertex == None && vertex == None)
+      {
+        vertex = static_cast<Index>(this->Vertices.size());
+        this->Vertices.push_back({ place->Position, None, None, None, None });
+        std::size_t cell = 0;
+        this->Grid.FindCell(place->Position, cell); // it is within the box of two pieces
+        added[cell].push_back(vertex);
+      }
+      for (const Index piece : { place->Of.first, place->Of.second })
+      {
+        cuts.push_back({ piece, place->Vertex == None ? vertex : place->Vertex });
+        if (place->Vertex == None &&
+          (first == None || this->Pieces[piece].Rank < this->Pieces[first].Rank))
+        {
+          first = piece;
+        }
+      }
+    }
+    if (vertex != None)
+    {
+      this->Vertices[vertex].From = this->Pieces[first].A;
+      this->Vertices[vertex].To = this->Pieces[first].B;
+    }
   }
 
   /** The vertex next to where two pieces cross that both can pass through; None: none in reach. */
-  Index FindVertexInReach(
-    const NewVertices& added, const Point2& p, const Crossing& crossing) const
+  Index FindVertexInReach(const NewVertices& added, const Point2& p, const Crossing& crossing) const
   {
-    const SegmentPiece& one = this->Pieces[crossing.P];
-    const SegmentPiece& other = this->Pieces[crossing.Q];
+    const SegmentPiece& one = this->Pieces[crossing.first];
+    const SegmentPiece& other = this->Pieces[crossing.second];
     // Anything but zero, to divide by.
     const double least = std::numeric_limits<double>::denorm_min();
     const double unitX = std::max({ one.Unit.X, other.Unit.X, least });
@@ -618,11 +599,11 @@ private:
           look(this->Pieces[*i].A);
           look(this->Pieces[*i].B);
         }
-        const auto found = added.Last.find(cell);
-        for (Index v = found == added.Last.end() ? None : found->second;
-             v != None && this->At(v).Y >= p.Y - reachY; v = added.Before[v - added.First])
+        const auto found = added.find(cell);
+        for (std::size_t k = found == added.end() ? 0 : found->second.size();
+             k > 0 && this->At(found->second[k - 1]).Y >= p.Y - reachY; --k)
         {
-          look(v);
+          look(found->second[k - 1]);
         }
       }
     }
@@ -633,7 +614,7 @@ private:
   void Apply(std::vector<PieceCut>& cuts, const Progress& progress)
   {
     SortAlong(
-      cuts, [&](Index piece) { return this->EndsOf(piece); },
+      cuts, [&](Index piece) -> const Ends& { return this->PieceEnds[piece]; },
       [&](Index vertex) { return this->At(vertex); }, Part(progress, 0.0, 0.5));
     std::vector<SegmentPiece> pieces;
     const Progress cutting = Part(progress, 0.5, 0.7);
@@ -778,51 +759,48 @@ bool ComesBefore(const std::vector<Point2>& points, const Corners& p, const Corn
                       : Orientation(points[p[0]], points[p[1]], points[q[1]]) == Positive;
 }
 
-/**
- * Puts the triangles that recovery changed where they belong among the others, and leaves out those
- * with an edge over the limit.
- */
-void WriteTriangles(const Mesh& mesh, bool haveChanged, double limit, const Progress& progress,
-  Buffer<Index>& triangles)
+/** Moves triangles that are as in the mesh to the front. @return the mesh's others, in order */
+std::vector<Corners> TakeOutChanged(
+  const Mesh& mesh, Buffer<Index>& triangles, const Progress& progress)
 {
-  const Index count = mesh.NumberOfTriangles();
-  const auto cornersOf = [&](Index t) {
-    Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1], mesh.Triangles[3 * t + 2] };
-    return corners;
-  };
   std::vector<Corners> changed;
-  if (haveChanged)
-  {
-    Index kept = 0;
-    ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
+  Index kept = 0;
+  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.6), [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1],
+        mesh.Triangles[3 * t + 2] };
+      if (std::equal(corners.begin(), corners.end(), &triangles[3 * t]))
       {
-        Corners corners = cornersOf(t);
-        if (std::equal(corners.begin(), corners.end(), &triangles[3 * t]))
-        {
-          std::copy(corners.begin(), corners.end(), &triangles[3 * kept++]);
-          continue;
-        }
-        std::rotate(corners.begin(),
-          std::min_element(corners.begin(), corners.end(),
-            [&](Index v, Index w) { return IsLower(mesh.PointOf(v), mesh.PointOf(w)); }),
-          corners.end());
-        changed.push_back(corners);
+        std::copy(corners.begin(), corners.end(), &triangles[3 * kept++]);
+        continue;
       }
-    });
-    Sort(
-      changed.begin(), changed.end(),
-      [&](const Corners& p, const Corners& q) { return ComesBefore(mesh.Points, p, q); },
-      Part(progress, 0.3, 0.5));
-  }
+      std::rotate(corners.begin(),
+        std::min_element(corners.begin(), corners.end(),
+          [&](Index v, Index w) { return IsLower(mesh.PointOf(v), mesh.PointOf(w)); }),
+        corners.end());
+      changed.push_back(corners);
+    }
+  });
+  Sort(
+    changed.begin(), changed.end(),
+    [&](const Corners& p, const Corners& q) { return ComesBefore(mesh.Points, p, q); },
+    Part(progress, 0.6, 1.0));
+  return changed;
+}
+
+/** Sorts triangles in among those at the front. */
+void SortIn(std::vector<Corners> changed, const std::vector<Point2>& points,
+  Buffer<Index>& triangles, const Progress& progress)
+{
   // From the end, so that nothing is overwritten before it has moved.
+  const Index count = static_cast<Index>(triangles.size() / 3);
   Index unchanged = count - static_cast<Index>(changed.size());
-  ForEachStretch(count, Part(progress, 0.5, 0.8), [&](Index begin, Index end) {
+  ForEachStretch(count, progress, [&](Index begin, Index end) {
     for (Index t = count - 1 - begin; t > count - 1 - end && !changed.empty(); --t)
     {
       const Index* last = &triangles[3 * (unchanged > 0 ? unchanged - 1 : 0)];
-      if (unchanged > 0 &&
-        ComesBefore(mesh.Points, changed.back(), Corners{ last[0], last[1], last[2] }))
+      if (unchanged > 0 && ComesBefore(points, changed.back(), Corners{ last[0], last[1], last[2] }))
       {
         std::copy_n(last, 3, &triangles[3 * t]);
         --unchanged;
@@ -834,30 +812,26 @@ void WriteTriangles(const Mesh& mesh, bool haveChanged, double limit, const Prog
       }
     }
   });
-  if (limit > 0.0)
-  {
-    const bool isPlain = limit > 1e-150 && limit < 1e150; // squares neither over- nor underflow
-    const auto isShort = [&](Index v, Index w) {
-      const double dx = mesh.PointOf(v).X - mesh.PointOf(w).X;
-      const double dy = mesh.PointOf(v).Y - mesh.PointOf(w).Y;
-      return isPlain ? dx * dx + dy * dy <= limit * limit : std::hypot(dx, dy) <= limit;
-    };
-    std::size_t kept = 0;
-    ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+}
+
+void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
+  Buffer<Index>& triangles, const Progress& progress)
+{
+  const auto pointOf = [&](Index v) { return points[v]; };
+  std::size_t kept = 0;
+  ForEachStretch(
+    static_cast<Index>(triangles.size() / 3), progress, [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
-        const Index p = triangles[3 * t], q = triangles[3 * t + 1], r = triangles[3 * t + 2];
-        if (isShort(p, q) && isShort(q, r) && isShort(r, p))
+        const Corners corners{ triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2] };
+        if (limit.Admits(pointOf, corners[0], corners[1], corners[2]))
         {
-          for (const Index v : { p, q, r })
-          {
-            triangles[kept++] = v;
-          }
+          std::copy(corners.begin(), corners.end(), &triangles[kept]);
+          kept += 3;
         }
       }
     });
-    triangles.Resize(kept);
-  }
+  triangles.Resize(kept);
 }
 } // namespace
 
@@ -907,8 +881,16 @@ ConstrainedTriangulation TriangulateConstrained(
   mesh.ConnectTwins(0, Part(progress, 0.62, 0.8));
   std::vector<char> flags;
   const Index missing = RecoverSegments(mesh, constrained.Pieces, flags, Part(progress, 0.8, 0.95));
-  WriteTriangles(
-    mesh, missing > 0, asked.MaximumEdgeLength, Part(progress, 0.95, 1.0), result.Triangles);
+  if (missing > 0)
+  {
+    SortIn(TakeOutChanged(mesh, result.Triangles, Part(progress, 0.95, 0.975)), mesh.Points,
+      result.Triangles, Part(progress, 0.975, 0.99));
+  }
+  const EdgeLimit limit(asked.MaximumEdgeLength);
+  if (limit.IsSet())
+  {
+    LeaveOutLong(mesh.Points, limit, result.Triangles, Part(progress, 0.99, 1.0));
+  }
   Report(progress, 1.0);
   return constrained;
 }

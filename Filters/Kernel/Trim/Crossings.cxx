@@ -26,56 +26,8 @@ public:
   RingWalks(const std::vector<Point2>& points, const Rings& rings, const std::vector<Ends>& edges,
     const CellGrid& grid, const Progress& progress)
   {
-    struct Cut
-    {
-      std::size_t Edge;
-      Index Point;
-    };
-    std::vector<Cut> cuts;
-    // Where a cell holds very many, a place of many points is looked at once.
-    constexpr std::ptrdiff_t many = 64;
-    std::unordered_map<Point2, std::vector<Index>, HashOfPoint> known;
-    std::vector<Index> through;
-    const Progress cutting = Part(progress, 0.0, 0.5);
-    WorkReporter work(cutting);
-    for (std::size_t i = 0; i < edges.size(); ++i)
-    {
-      work.Step(i, edges.size());
-      const Point2& p = edges[i][0];
-      std::size_t cell = 0;
-      grid.FindCell(p, cell); // there is one
-      through.clear();
-      bool isNew = true;
-      std::vector<Index>* edgesHere = &through;
-      if (grid.End(cell) - grid.Begin(cell) > many)
-      {
-        const auto place = known.try_emplace(p);
-        edgesHere = &place.first->second;
-        isNew = place.second;
-      }
-      for (const Index* edge = grid.Begin(cell); isNew && edge < grid.End(cell); ++edge)
-      {
-        work.Look();
-        const Ends& ends = edges[*edge];
-        if (IsInside(ends, p))
-        {
-          edgesHere->push_back(*edge);
-        }
-      }
-      for (const Index edge : *edgesHere)
-      {
-        work.Look();
-        cuts.push_back({ static_cast<std::size_t>(edge), rings.Vertices[i] });
-      }
-    }
-    Sort(
-      cuts.begin(), cuts.end(),
-      [&](const Cut& p, const Cut& q) {
-        const Ends& edge = edges[p.Edge];
-        return p.Edge != q.Edge ? p.Edge < q.Edge
-                                : IsBefore(edge[0], edge[1], points[p.Point], points[q.Point]);
-      },
-      Part(progress, 0.5, 0.9));
+    const std::vector<PieceCut> cuts =
+      FindCuts(points, rings, edges, grid, Part(progress, 0.0, 0.9));
     const Progress walking = Part(progress, 0.9, 1.0);
     auto cut = cuts.begin();
     for (Index ring = 0; ring < rings.Count(); ++ring)
@@ -92,9 +44,9 @@ public:
       {
         ReportStep(walking, i, edges.size(), 256);
         append(rings.Vertices[i]);
-        for (; cut != cuts.end() && cut->Edge == static_cast<std::size_t>(i); ++cut)
+        for (; cut != cuts.end() && cut->Piece == i; ++cut)
         {
-          append(cut->Point);
+          append(cut->Vertex);
         }
       }
       if (this->At(first) == this->Nodes.back().Position && this->Nodes.size() > first + 1u)
@@ -158,6 +110,52 @@ public:
   }
 
 private:
+  /** The edges, cut at points of the rings that are on them. */
+  static std::vector<PieceCut> FindCuts(const std::vector<Point2>& points, const Rings& rings,
+    const std::vector<Ends>& edges, const CellGrid& grid, const Progress& progress)
+  {
+    std::vector<PieceCut> cuts;
+    // Where a cell holds very many, a place of many points is looked at once.
+    constexpr std::ptrdiff_t many = 64;
+    std::unordered_map<Point2, std::vector<Index>, HashOfPoint> known;
+    std::vector<Index> through;
+    const Progress cutting = Part(progress, 0.0, 0.6);
+    WorkReporter work(cutting);
+    for (std::size_t i = 0; i < edges.size(); ++i)
+    {
+      work.Step(i, edges.size());
+      const Point2& p = edges[i][0];
+      std::size_t cell = 0;
+      grid.FindCell(p, cell); // there is one
+      through.clear();
+      bool isNew = true;
+      std::vector<Index>* edgesHere = &through;
+      if (grid.End(cell) - grid.Begin(cell) > many)
+      {
+        const auto place = known.try_emplace(p);
+        edgesHere = &place.first->second;
+        isNew = place.second;
+      }
+      for (const Index* edge = grid.Begin(cell); isNew && edge < grid.End(cell); ++edge)
+      {
+        work.Look();
+        if (IsInside(edges[*edge], p))
+        {
+          edgesHere->push_back(*edge);
+        }
+      }
+      for (const Index edge : *edgesHere)
+      {
+        work.Look();
+        cuts.push_back({ edge, rings.Vertices[i] });
+      }
+    }
+    SortAlong(
+      cuts, [&](Index edge) { return edges[edge]; }, [&](Index point) { return points[point]; },
+      Part(progress, 0.6, 1.0));
+    return cuts;
+  }
+
   static constexpr int Before = 0;
   static constexpr int After = 1;
 

@@ -20,8 +20,6 @@ namespace elevation
 namespace
 {
 
-// ---------------------------------------------------------------------------------------- matching
-
 /** A hash of a place that is well mixed in all bits. */
 std::uint64_t Mix(const Point2& p)
 {
@@ -33,39 +31,6 @@ std::uint64_t Mix(const Point2& p)
   return (mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull;
 }
 
-/**
- * The points that may be one of those added: all of these, and one in a hundred others. For to look
- * each up in a map is slow.
- */
-class PointSieve
-{
-public:
-  explicit PointSieve(std::size_t capacity)
-  {
-    while (this->Shift > 32 && (std::size_t(1) << (64 - this->Shift)) < 128 * capacity)
-    {
-      --this->Shift;
-    }
-    this->Words.resize((std::size_t(1) << (64 - this->Shift)) / 64);
-  }
-  void Add(const Point2& p)
-  {
-    const std::uint64_t place = Mix(p) >> this->Shift;
-    this->Words[place / 64] |= std::uint64_t(1) << place % 64;
-  }
-  bool MayHold(const Point2& p) const
-  {
-    const std::uint64_t place = Mix(p) >> this->Shift;
-    return this->Words[place / 64] >> place % 64 & 1;
-  }
-
-private:
-  int Shift = 58;
-  std::vector<std::uint64_t> Words;
-};
-
-// --------------------------------------------------------------------------------------- insertion
-
 class Insertion
 {
 public:
@@ -76,8 +41,7 @@ public:
     , Given(rings)
     , MayInsert(insert)
     , Result(result)
-    , CountBefore(mesh.NumberOfPoints())
-    , TrianglesBefore(mesh.NumberOfTriangles())
+    , Cutter(mesh, result.Inserted, result.Parents)
   {
   }
 
@@ -108,6 +72,35 @@ public:
   }
 
 private:
+  struct Place
+  {
+    Index Triangle;
+    Index Point;
+  };
+  /** A piece of an edge of the rings, up to the next piece. */
+  struct Piece
+  {
+    Index Vertex;     ///< where it begins
+    std::size_t Edge; ///< of the given ones
+  };
+  /** A vertex that a piece runs through. */
+  struct Stop
+  {
+    std::size_t Piece;
+    Index Vertex;
+    bool From; ///< whether it comes to the vertex in triangles of it,
+    bool Into; ///< and goes on in such
+  };
+
+  /** Of a piece with the border, where that has no vertex. */
+  struct BorderCrossing
+  {
+    Index Border; ///< of the BorderEdges
+    Point2 Place;
+    std::size_t Piece;
+    bool IsBeyond; ///< the apex of the border's triangle
+  };
+
   std::string NameOfEdge(std::size_t edge) const
   {
     return elevation::NameOfEdge(this->Points, this->Given, edge);
@@ -116,7 +109,7 @@ private:
   std::string NameOfVertex(Index vertex) const
   {
     const std::string name = NameOf(this->Surface, vertex);
-    return vertex < this->CountBefore
+    return this->Cutter.IsGiven(vertex)
       ? name + " of the mesh"
       : "where the boundary has cut it already" + name.substr(name.find(" ("));
   }
@@ -129,16 +122,23 @@ private:
     {
       this->VertexAt.emplace(this->Points[point], None);
     }
-    PointSieve sieve(this->VertexAt.size());
+    // A hundred and more bits a point leave few others over, as to look each up in a map is slow.
+    int bits = 6;
+    while (bits < 30 && std::size_t(1) << bits < 128 * this->VertexAt.size())
+    {
+      ++bits;
+    }
+    const auto bitOf = [=](const Point2& p) { return static_cast<Index>(Mix(p) >> (64 - bits)); };
+    IdSet sieve(Index(1) << bits);
     for (const auto& entry : this->VertexAt)
     {
-      sieve.Add(entry.first);
+      sieve.Add(bitOf(entry.first));
     }
     std::vector<char> isToMatch(mesh.Points.size());
     ForEachStretch(mesh.NumberOfPoints(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
-        isToMatch[v] = sieve.MayHold(mesh.PointOf(v));
+        isToMatch[v] = sieve.Has(bitOf(mesh.PointOf(v)));
       }
     });
     const Progress matching = Part(progress, 0.3, 1.0);
@@ -206,9 +206,9 @@ private:
           Prefetch(&mesh.Points[mesh.Triangles[ahead + 1]]);
           Prefetch(&mesh.Points[mesh.Triangles[ahead + 2]]);
         }
-        const std::array<Point2, 3> corners = this->CornersOf(t);
+        const std::array<Point2, 3> corners = this->Cutter.CornersOf(t);
         grid.Visit(corners, [&](Index i) {
-          if (triangles[i] == None && this->Holds(t, pointOf(i)))
+          if (triangles[i] == None && this->Cutter.Holds(t, pointOf(i)))
           {
             triangles[i] = t;
           }
@@ -269,7 +269,7 @@ private:
     std::vector<Index> work;
     for (const Place& place : this->Located)
     {
-      weights[place.Point] = this->WeightsIn(place.Triangle, this->Points[place.Point]);
+      weights[place.Point] = this->Cutter.WeightsIn(place.Triangle, this->Points[place.Point]);
       std::vector<Index>& waiting = this->Waiting[place.Triangle];
       if (waiting.empty())
       {
@@ -290,58 +290,66 @@ private:
       }
       ReportStep(progress, done++, this->Located.size(), 1024);
       const Index point = found->second.front();
-      const Point2 p = this->Points[point];
-      const Index vertex = this->AddVertex(p, weights.at(point));
+      const Point2& p = this->Points[point];
+      const Index vertex = this->Cutter.AddVertex(p, weights.at(point));
       this->VertexAt.at(p) = vertex;
-      Index on = None; // the edge that the point is on
-      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      const std::vector<Index> parts = this->CutAt(t, vertex);
+      this->PassOn(point, parts);
+      work.insert(work.end(), parts.begin(), parts.end());
+    }
+  }
+
+  /** Cuts a triangle at a vertex in it, or those beside the edge that it is on. @return the parts */
+  std::vector<Index> CutAt(Index t, Index vertex)
+  {
+    const Mesh& mesh = this->Surface;
+    const Point2 p = mesh.PointOf(vertex);
+    Index on = None; // the edge that the point is on
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      if (Orientation(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)), p) == Zero)
       {
-        if (Orientation(this->Surface.PointOf(this->Surface.Origin(h)),
-              this->Surface.PointOf(this->Surface.Destination(h)), p) == Zero)
-        {
-          on = h;
-        }
+        on = h;
       }
-      // The parts: this triangle, perhaps the one beyond the edge, and new ones.
-      std::vector<Index> before{ t };
-      if (on != None && !this->Surface.IsBorder(on))
+    }
+    std::vector<Index> parts{ t };
+    Index next = mesh.NumberOfTriangles();
+    if (on == None)
+    {
+      this->Cutter.CutTriangle(t, vertex);
+    }
+    else
+    {
+      if (!mesh.IsBorder(on))
       {
-        before.push_back(Mesh::Triangle(this->Surface.Twin(on)));
+        parts.push_back(Mesh::Triangle(mesh.Twin(on)));
       }
-      std::vector<Index> parts = before;
-      const Index firstNew = this->Surface.NumberOfTriangles();
-      if (on == None)
+      this->Cutter.CutEdge(on, vertex);
+    }
+    for (; next < mesh.NumberOfTriangles(); ++next)
+    {
+      parts.push_back(next);
+    }
+    return parts;
+  }
+
+  /** Gives the points that wait in triangles which have been cut at one of them to the parts. */
+  void PassOn(Index done, const std::vector<Index>& parts)
+  {
+    std::vector<Index> moving;
+    for (const Index part : parts)
+    {
+      std::vector<Index>& waiting = this->Waiting[part];
+      moving.insert(moving.end(), waiting.begin(), waiting.end());
+      waiting.clear();
+    }
+    for (const Index point : moving)
+    {
+      if (point != done)
       {
-        this->CutTriangle(t, vertex);
-      }
-      else
-      {
-        this->CutEdge(on, vertex);
-      }
-      for (Index part = firstNew; part < this->Surface.NumberOfTriangles(); ++part)
-      {
-        parts.push_back(part);
-      }
-      std::vector<Index> moving;
-      for (const Index part : before)
-      {
-        std::vector<Index>& waiting = this->Waiting[part];
-        moving.insert(moving.end(), waiting.begin(), waiting.end());
-        waiting.clear();
-      }
-      for (const Index other : moving)
-      {
-        if (other == point)
-        {
-          continue;
-        }
         const Index part = *std::find_if(parts.begin(), parts.end(),
-          [&](Index candidate) { return this->Holds(candidate, this->Points[other]); });
-        this->Waiting[part].push_back(other);
-      }
-      for (const Index part : parts)
-      {
-        work.push_back(part);
+          [&](Index candidate) { return this->Cutter.Holds(candidate, this->Points[point]); });
+        this->Waiting[part].push_back(point);
       }
     }
   }
@@ -367,32 +375,30 @@ private:
     this->Result.Vertices.Offsets = this->Given.Offsets;
   }
 
-  /** The half-edges of the border, and their ends. */
-  std::vector<Ends> FindBorder(std::vector<Index>& borders, const Progress& progress) const
+  /** The half-edges of the border, and their ends in a grid. */
+  struct BorderEdges
+  {
+    std::vector<Index> HalfEdges;
+    std::vector<Ends> Segments;
+    CellGrid Grid;
+  };
+  BorderEdges FindBorder(const Progress& progress) const
   {
     const Mesh& mesh = this->Surface;
+    std::vector<Index> halfEdges;
     std::vector<Ends> segments;
     ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
       for (Index h = begin; h < end; ++h)
       {
         if (mesh.IsBorder(h))
         {
-          borders.push_back(h);
+          halfEdges.push_back(h);
           segments.push_back({ mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)) });
         }
       }
     });
-    return segments;
-  }
-
-  /** The number that a half-edge of the border has after cuts; of its first part. */
-  Index NowOf(Index h) const
-  {
-    for (auto next = this->Moved.find(h); next != this->Moved.end(); next = this->Moved.find(h))
-    {
-      h = next->second;
-    }
-    return h;
+    CellGrid grid = GridOf(segments);
+    return { std::move(halfEdges), std::move(segments), std::move(grid) };
   }
 
   /**
@@ -401,45 +407,33 @@ private:
    */
   void TakeInBorder(std::vector<Index>& open, const Progress& progress)
   {
-    Mesh& mesh = this->Surface;
-    std::vector<Index> borders;
-    const std::vector<Ends> segments = this->FindBorder(borders, progress);
-    if (segments.empty())
-    {
-      return;
-    }
-    const CellGrid grid = GridOf(segments);
+    const BorderEdges border = this->FindBorder(progress);
     double reach = 0.0; // of the longest coordinates
-    for (const Ends& segment : segments)
+    for (const Ends& segment : border.Segments)
     {
       const RoundingUnits units = UnitsOf(segment[0], segment[1]);
       reach = std::max({ reach, 2.0 * Reach * units.X, 2.0 * Reach * units.Y });
     }
-    struct Taken
-    {
-      Index Border; // of borders
-      Index Point;
-    };
-    std::vector<Taken> taken;
+    std::vector<PieceCut> taken; // pieces are those of the border
     std::vector<Index> others;
     for (const Index point : open)
     {
       const Point2 p = this->Points[point];
-      Index border = None;
+      Index nearest = None;
       bool isAlone = true; // where two run along each other, one would move into the other
-      grid.Visit(
+      border.Grid.Visit(
         Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
-          const Ends& segment = segments[i];
-          if (i != border &&
+          const Ends& segment = border.Segments[i];
+          if (i != nearest &&
             IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), Reach, p))
           {
-            isAlone = isAlone && border == None;
-            border = i;
+            isAlone = isAlone && nearest == None;
+            nearest = i;
           }
         });
-      if (border != None && isAlone)
+      if (nearest != None && isAlone)
       {
-        taken.push_back({ border, point });
+        taken.push_back({ nearest, point });
       }
       else
       {
@@ -447,30 +441,27 @@ private:
       }
     }
     this->Reserve(taken.size());
-    // Along each border from its first end, as in CutAtBorder.
-    std::sort(taken.begin(), taken.end(), [&](const Taken& a, const Taken& b) {
-      const Ends& border = segments[a.Border];
-      return a.Border != b.Border
-        ? a.Border < b.Border
-        : IsBefore(border[0], border[1], this->Points[a.Point], this->Points[b.Point]);
-    });
+    SortAlong(
+      taken, [&](Index piece) { return border.Segments[piece]; },
+      [&](Index point) { return this->Points[point]; }, Progress());
+    const Mesh& mesh = this->Surface;
     Index h = None;
     for (std::size_t i = 0; i < taken.size(); ++i)
     {
-      if (i == 0 || taken[i - 1].Border != taken[i].Border)
+      if (i == 0 || taken[i - 1].Piece != taken[i].Piece)
       {
-        h = this->NowOf(borders[taken[i].Border]);
+        h = this->Cutter.NowOf(border.HalfEdges[taken[i].Piece]);
       }
-      const Point2 p = this->Points[taken[i].Point];
-      const Index from = mesh.Origin(h), to = mesh.Destination(h);
-      if (!this->CanCut(h, p))
+      const Point2 p = this->Points[taken[i].Vertex];
+      if (!this->Cutter.CanCut(h, p))
       {
-        others.push_back(taken[i].Point);
+        others.push_back(taken[i].Vertex);
         continue;
       }
-      const Index vertex = this->AddVertex(p, this->WeightsBetween(from, to, p));
+      const Index vertex = this->Cutter.AddVertex(
+        p, this->Cutter.WeightsBetween(mesh.Origin(h), mesh.Destination(h), p));
       this->VertexAt.at(p) = vertex;
-      h = this->CutEdge(h, vertex);
+      h = this->Cutter.CutEdge(h, vertex);
     }
     open = std::move(others);
   }
@@ -481,48 +472,63 @@ private:
    */
   bool CutAtBorder(const Progress& progress)
   {
-    Mesh& mesh = this->Surface;
     const std::vector<Ends> pieces = this->EndsOfPieces();
     this->OnTheWay.clear();
     this->IsCut.clear();
-    this->Moved.clear();
-    std::vector<Index> borders;
-    const std::vector<Ends> segments = this->FindBorder(borders, Part(progress, 0.0, 0.3));
-    const CellGrid grid = GridOf(segments);
-    struct Crossing
+    this->Cutter.ForgetMoves();
+    const BorderEdges border = this->FindBorder(Part(progress, 0.0, 0.3));
+    std::vector<BorderCrossing> crossings =
+      this->FindBorderCrossings(pieces, border, Part(progress, 0.3, 0.5));
+    if (!crossings.empty() && !this->MayInsert)
     {
-      Index Border; // of borders
-      Point2 Place;
-      std::size_t Piece;
-      bool IsBeyond; // the apex of the border's triangle
-    };
-    std::vector<Crossing> crossings;
-    std::vector<std::size_t> lastSeen(segments.size(), pieces.size());
-    const Progress looking = Part(progress, 0.3, 0.5);
+      throw Error("The boundary's edge " +
+        this->NameOfEdge(this->Pieces[crossings.front().Piece].Edge) +
+        " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
+    }
+    this->CutBorder(crossings, pieces, border);
+    this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
+    this->CutPieces(pieces);
+    return !this->IsCut.empty();
+  }
+
+  /** Where pieces cross the border away from its vertices. Those that they pass become stops. */
+  std::vector<BorderCrossing> FindBorderCrossings(
+    const std::vector<Ends>& pieces, const BorderEdges& border, const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<BorderCrossing> crossings;
+    std::vector<std::size_t> lastSeen(border.Segments.size(), pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i)
     {
-      ReportStep(looking, i, pieces.size(), 1024);
+      ReportStep(progress, i, pieces.size(), 1024);
       const Ends& edge = pieces[i];
-      grid.Visit(edge, [&](Index border) {
-        if (lastSeen[border] == i)
+      border.Grid.Visit(edge, [&](Index k) {
+        if (lastSeen[k] == i)
         {
           return;
         }
-        lastSeen[border] = i;
-        const Ends& segment = segments[border];
+        lastSeen[k] = i;
+        const Ends& segment = border.Segments[k];
+        const Index h = border.HalfEdges[k];
         if (Cross(edge, segment))
         {
-          if (!this->PassEnds(i, edge, segment, borders[border]))
+          // Through an end of the border's edge that is in reach, if there is one.
+          const bool isInReach =
+            VisitEndsInReach(segment, edge, UnitsOf(edge[0], edge[1]), Reach, [&](int end) {
+              this->AddStop(i, edge, h, end == 0 ? mesh.Origin(h) : mesh.Destination(h));
+            });
+          if (isInReach)
           {
-            const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
-            const Point2& apex = mesh.PointOf(mesh.Apex(borders[border]));
-            crossings.push_back(
-              { border, place, i, IsBefore(segment[0], segment[1], apex, place) });
+            this->MarkCut(i);
+            return;
           }
+          const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
+          crossings.push_back({ k, place, i,
+            IsBefore(segment[0], segment[1], mesh.PointOf(mesh.Apex(h)), place) });
         }
         else if (IsInside(edge, segment[0]))
         {
-          this->AddStop(i, edge, borders[border], mesh.Origin(borders[border]));
+          this->AddStop(i, edge, h, mesh.Origin(h));
         }
         else if (this->MayInsert && IsInside(segment, edge[0]))
         {
@@ -531,30 +537,32 @@ private:
         }
       });
     }
-    if (!crossings.empty() && !this->MayInsert)
-    {
-      throw Error("The boundary's edge " +
-        this->NameOfEdge(this->Pieces[crossings.front().Piece].Edge) +
-        " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
-    }
-    this->Reserve(crossings.size());
+    return crossings;
+  }
 
+  /** Cuts the border at crossings, which become stops of their pieces. */
+  void CutBorder(std::vector<BorderCrossing>& crossings, const std::vector<Ends>& pieces,
+    const BorderEdges& border)
+  {
+    this->Reserve(crossings.size());
     // Along each border from both its ends to the apex: then the part to cut next is the one that
     // is beside the apex, and however thin its triangle is, outwards is room.
-    std::sort(crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) {
-      const Ends& border = segments[a.Border];
-      return a.Border != b.Border  ? a.Border < b.Border
-        : a.IsBeyond != b.IsBeyond ? b.IsBeyond
-        : a.Place != b.Place       ? IsBefore(border[0], border[1], a.Place, b.Place) != a.IsBeyond
-                                   : a.Piece < b.Piece;
-    });
+    std::sort(crossings.begin(), crossings.end(),
+      [&](const BorderCrossing& a, const BorderCrossing& b) {
+        const Ends& ends = border.Segments[a.Border];
+        return a.Border != b.Border  ? a.Border < b.Border
+          : a.IsBeyond != b.IsBeyond ? b.IsBeyond
+          : a.Place != b.Place       ? IsBefore(ends[0], ends[1], a.Place, b.Place) != a.IsBeyond
+                                     : a.Piece < b.Piece;
+      });
+    const Mesh& mesh = this->Surface;
     Index h = None, last = None; // and the vertex of the crossing before
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
-      const Crossing& crossing = crossings[i];
+      const BorderCrossing& crossing = crossings[i];
       if (i == 0 || crossings[i - 1].Border != crossing.Border)
       {
-        h = this->NowOf(borders[crossing.Border]);
+        h = this->Cutter.NowOf(border.HalfEdges[crossing.Border]);
         last = None;
       }
       const bool isSamePlace = last != None && crossings[i - 1].Place == crossing.Place;
@@ -564,7 +572,7 @@ private:
         : crossing.Place == mesh.PointOf(to)   ? to
                                                : None;
       Point2 place = crossing.Place;
-      if (vertex == None && !this->MoveToCut(h, place))
+      if (vertex == None && !this->Cutter.MoveToCut(h, place))
       {
         throw Error("The boundary's edge " + this->NameOfEdge(this->Pieces[crossing.Piece].Edge) +
           " leaves the mesh across a triangle too thin to be cut there, between " +
@@ -573,18 +581,20 @@ private:
       }
       if (vertex == None)
       {
-        vertex = this->AddVertex(place, this->WeightsBetween(from, to, place));
-        const Index after = this->CutEdge(h, vertex);
+        vertex = this->Cutter.AddVertex(place, this->Cutter.WeightsBetween(from, to, place));
+        const Index after = this->Cutter.CutEdge(h, vertex);
         h = crossing.IsBeyond ? h : after;
       }
       last = vertex;
       this->AddStop(crossing.Piece, pieces[crossing.Piece], h, vertex);
-      this->IsCut.push_back(crossing.Piece);
-      this->EdgeOfCut = this->Pieces[crossing.Piece].Edge;
+      this->MarkCut(crossing.Piece);
     }
-    this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
-    this->CutPieces(pieces);
-    return !this->IsCut.empty();
+  }
+
+  void MarkCut(std::size_t piece)
+  {
+    this->IsCut.push_back(piece);
+    this->EdgeOfCut = this->Pieces[piece].Edge;
   }
 
   /**
@@ -594,22 +604,17 @@ private:
   bool CutAtEachOther(const Progress& progress)
   {
     const std::vector<Ends> pieces = this->EndsOfPieces();
-    const CellGrid grid = GridOf(pieces);
     this->OnTheWay.clear();
     std::size_t last = 0; // piece that is cut
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
-      for (const int end : { 0, 1 })
-      {
-        if (IsInReach(pieces[i][0], pieces[i][1], units, Reach, pieces[j][end]))
-        {
-          const Index at = end == 0 ? static_cast<Index>(j) : this->NextOf(static_cast<Index>(j));
-          this->OnTheWay.push_back({ i, this->Pieces[at].Vertex, true, true });
-          last = std::max(last, i);
-        }
-      }
+      VisitEndsInReach(pieces[j], pieces[i], units, Reach, [&](int end) {
+        const Index at = end == 0 ? static_cast<Index>(j) : this->NextOf(static_cast<Index>(j));
+        this->OnTheWay.push_back({ i, this->Pieces[at].Vertex, true, true });
+        last = std::max(last, i);
+      });
     };
-    VisitCrossings(pieces, grid, progress, [&](std::size_t i, std::size_t j) {
+    VisitCrossings(pieces, GridOf(pieces), progress, [&](std::size_t i, std::size_t j) {
       cut(i, j);
       cut(j, i);
     });
@@ -619,31 +624,6 @@ private:
     }
     this->CutPieces(pieces);
     return !this->OnTheWay.empty();
-  }
-
-  /**
-   * Leads a piece that crosses the border through an end of the border's edge that is in reach.
-   * @return whether there is one
-   */
-  bool PassEnds(std::size_t piece, const Ends& edge, const Ends& segment, Index h)
-  {
-    const RoundingUnits units = UnitsOf(edge[0], edge[1]);
-    bool isInReach = false;
-    for (const int end : { 0, 1 })
-    {
-      if (IsInReach(edge[0], edge[1], units, Reach, segment[end]))
-      {
-        this->AddStop(
-          piece, edge, h, end == 0 ? this->Surface.Origin(h) : this->Surface.Destination(h));
-        isInReach = true;
-      }
-    }
-    if (isInReach)
-    {
-      this->IsCut.push_back(piece);
-      this->EdgeOfCut = this->Pieces[piece].Edge;
-    }
-    return isInReach;
   }
 
   /** A vertex on the way of a piece that has these ends; it is an end of h. */
@@ -841,255 +821,6 @@ private:
     }
   }
 
-  // --------------------------------------------------------------------------------------- cutting
-
-  std::array<Point2, 3> CornersOf(Index t) const
-  {
-    const Mesh& mesh = this->Surface;
-    return { { mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
-      mesh.PointOf(mesh.Origin(3 * t + 2)) } };
-  }
-
-  /** Whether the point is in the triangle or on an edge of it. */
-  bool Holds(Index t, const Point2& p) const
-  {
-    const std::array<Point2, 3> corners = this->CornersOf(t);
-    return Orientation(corners[0], corners[1], p) != Negative &&
-      Orientation(corners[1], corners[2], p) != Negative &&
-      Orientation(corners[2], corners[0], p) != Negative;
-  }
-
-  /** Whether the triangle of h leaves two triangles when its edge is led through the place. */
-  bool CanCut(Index h, const Point2& place) const
-  {
-    const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
-    return Orientation(this->Surface.PointOf(this->Surface.Origin(h)), place, apex) == Positive &&
-      Orientation(place, this->Surface.PointOf(this->Surface.Destination(h)), apex) == Positive;
-  }
-
-  /**
-   * Moves a place on the border, within rounding, to where the triangle of h can be cut: rounded,
-   * it may be beyond a thin triangle. Outwards is room where the apex is beside the place.
-   * @return whether one was found
-   */
-  bool MoveToCut(Index h, Point2& place) const
-  {
-    const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
-    const Point2 way = Around(
-      from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
-    const double length = std::hypot(way.X, way.Y);
-    const double step =
-      std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
-    const Point2 outwards{ step * (way.Y / length), -step * (way.X / length) };
-    const Point2 first = place;
-    const auto isFound = [&](double dx, double dy) {
-      place = { first.X + dx, first.Y + dy };
-      return std::isfinite(place.X) && std::isfinite(place.Y) && this->CanCut(h, place);
-    };
-    // The nearest ones, from the middle out, then further outwards.
-    for (int ring = 0; ring <= 3; ++ring)
-    {
-      for (int i = -ring; i <= ring; ++i)
-      {
-        for (int j = -ring; j <= ring; ++j)
-        {
-          if (std::max(std::abs(i), std::abs(j)) == ring && isFound(0.5 * i * step, 0.5 * j * step))
-          {
-            return true;
-          }
-        }
-      }
-    }
-    for (double steps = 4.0; steps <= 64.0; steps *= 2.0)
-    {
-      if (isFound(steps * outwards.X, steps * outwards.Y))
-      {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /** Points as seen from one, at a scale where products and sums stay in the range of double. */
-  template <std::size_t Count>
-  static std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> points)
-  {
-    double largest = std::max(std::fabs(from.X), std::fabs(from.Y));
-    for (const Point2& p : points)
-    {
-      largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
-    }
-    const double scale = ScaleToOne(largest);
-    for (Point2& p : points)
-    {
-      p = { p.X * scale - from.X * scale, p.Y * scale - from.Y * scale };
-    }
-    return points;
-  }
-
-  /** The weights of a place in a triangle, of which corners may be new vertices themselves. */
-  InsertedVertex WeightsIn(Index t, const Point2& p) const
-  {
-    const std::array<Point2, 3> corners = this->CornersOf(t), around = Around(p, corners);
-    std::array<std::pair<Index, double>, 3> shares;
-    for (int i = 0; i < 3; ++i)
-    {
-      const int next = (i + 1) % 3, last = (i + 2) % 3;
-      // On an edge, rounding must not bring in the corner beyond.
-      shares[i] = { this->Surface.Origin(3 * t + i),
-        Orientation(corners[next], corners[last], p) == Zero
-          ? 0.0
-          : std::fabs(around[next].X * around[last].Y - around[next].Y * around[last].X) };
-    }
-    return this->WeightsOf(shares.data(), shares.size());
-  }
-
-  /** The weights of a place on an edge, or so near that it is made one of it. */
-  InsertedVertex WeightsBetween(Index a, Index b, const Point2& p) const
-  {
-    const std::array<Point2, 2> ends =
-      Around(p, Ends{ { this->Surface.PointOf(a), this->Surface.PointOf(b) } });
-    const std::array<std::pair<Index, double>, 2> shares{ { { a, std::hypot(ends[1].X, ends[1].Y) },
-      { b, std::hypot(ends[0].X, ends[0].Y) } } };
-    return this->WeightsOf(shares.data(), shares.size());
-  }
-
-  /** Of vertices that may be new themselves, all on one triangle before, which has three corners. */
-  InsertedVertex WeightsOf(const std::pair<Index, double>* shares, std::size_t count) const
-  {
-    InsertedVertex vertex{ { None, None, None }, { 0.0, 0.0, 0.0 } };
-    double sum = 0.0;
-    const auto add = [&](Index corner, double weight) {
-      if (weight > 0.0)
-      {
-        int i = 0;
-        while (i < 2 && vertex.Corners[i] != corner && vertex.Corners[i] != None)
-        {
-          ++i;
-        }
-        vertex.Corners[i] = corner;
-        vertex.Weights[i] += weight;
-        sum += weight;
-      }
-    };
-    // Where a triangle is so small or thin that all shares vanish, its corners count alike.
-    for (int attempt = 0; attempt < 2 && vertex.Corners[0] == None; ++attempt)
-    {
-      for (std::size_t k = 0; k < count; ++k)
-      {
-        const Index corner = shares[k].first;
-        const double share = attempt == 0 ? shares[k].second : 1.0;
-        if (corner < this->CountBefore)
-        {
-          add(corner, share);
-          continue;
-        }
-        const InsertedVertex& inserted = this->Result.Inserted[corner - this->CountBefore];
-        for (int i = 0; i < 3; ++i)
-        {
-          add(inserted.Corners[i], share * inserted.Weights[i]);
-        }
-      }
-    }
-    for (Index& corner : vertex.Corners)
-    {
-      corner = corner == None ? vertex.Corners[0] : corner;
-    }
-    return Normalized(vertex, sum);
-  }
-
-  static InsertedVertex Normalized(InsertedVertex vertex, double sum)
-  {
-    const bool isUsable = sum > 0.0 && sum < std::numeric_limits<double>::infinity();
-    for (double& weight : vertex.Weights)
-    {
-      // A triangle too thin for the range of double has no ratios.
-      weight = isUsable ? weight / sum : 1.0 / 3.0;
-    }
-    return vertex;
-  }
-
-  Index AddVertex(const Point2& p, const InsertedVertex& inserted)
-  {
-    this->Surface.Points.push_back(p);
-    this->Result.Inserted.push_back(inserted);
-    return this->Surface.NumberOfPoints() - 1;
-  }
-
-  /** Room for a part of a triangle. @return its first half-edge */
-  Index AddPart(Index t)
-  {
-    Mesh& mesh = this->Surface;
-    this->Result.Parents.push_back(
-      t < this->TrianglesBefore ? t : this->Result.Parents[t - this->TrianglesBefore]);
-    mesh.Triangles.resize(mesh.Triangles.size() + 3, None);
-    mesh.Twins.resize(mesh.Twins.size() + 3, Mesh::Border);
-    return mesh.NumberOfHalfEdges() - 3;
-  }
-
-  void SetEdge(Index h, Index origin, Index twin)
-  {
-    this->Surface.Triangles[h] = origin;
-    this->Surface.Twins[h] = twin;
-    if (twin != Mesh::Border)
-    {
-      this->Surface.Twins[twin] = h;
-    }
-  }
-
-  /** Triangle abc becomes abv, and bcv and cav are new. */
-  void CutTriangle(Index t, Index v)
-  {
-    Mesh& mesh = this->Surface;
-    const Index b = mesh.Origin(3 * t + 1);
-    const Index c = mesh.Origin(3 * t + 2);
-    const Index a = mesh.Origin(3 * t);
-    const Index first = this->AddPart(t);
-    const Index second = this->AddPart(t);
-    this->SetEdge(first, b, mesh.Twin(3 * t + 1));
-    this->SetEdge(second, c, mesh.Twin(3 * t + 2));
-    this->SetEdge(3 * t + 1, b, first + 2);
-    this->SetEdge(3 * t + 2, v, second + 1);
-    this->SetEdge(first + 1, c, second + 2);
-    this->SetEdge(first + 2, v, 3 * t + 1);
-    this->SetEdge(second + 1, a, 3 * t + 2);
-    this->SetEdge(second + 2, v, first + 1);
-  }
-
-  /** Cuts the triangles beside an edge. @return the half-edge from v to where h led */
-  Index CutEdge(Index h, Index v)
-  {
-    Mesh& mesh = this->Surface;
-    const Index twin = mesh.Twin(h);
-    const Index after = this->Halve(h, v);
-    if (twin != Mesh::Border)
-    {
-      const Index afterTwin = this->Halve(twin, v);
-      this->SetEdge(h, mesh.Origin(h), afterTwin);
-      this->SetEdge(twin, mesh.Origin(twin), after);
-    }
-    return after;
-  }
-
-  /** Triangle abc with h from a to b becomes avc, and vbc is new; not connected along h. */
-  Index Halve(Index h, Index v)
-  {
-    Mesh& mesh = this->Surface;
-    const Index next = Mesh::Next(h);
-    const Index b = mesh.Origin(next);
-    const Index c = mesh.Apex(h);
-    const Index part = this->AddPart(Mesh::Triangle(h));
-    if (mesh.IsBorder(next))
-    {
-      this->Moved[next] = part + 1;
-    }
-    this->SetEdge(part, v, Mesh::Border);
-    this->SetEdge(part + 1, b, mesh.Twin(next));
-    this->SetEdge(part + 2, c, next);
-    this->Surface.Triangles[next] = v;
-    return part;
-  }
-
   /** In units in the last place: how near the border and a ring take on each other's vertices. */
   static constexpr double Reach = 4.0;
 
@@ -1097,37 +828,15 @@ private:
   static constexpr Index Outside = -2;
   static constexpr Index FirstOutside = -3;
 
-  struct Place
-  {
-    Index Triangle;
-    Index Point;
-  };
-  /** A piece of an edge of the rings, up to the next piece. */
-  struct Piece
-  {
-    Index Vertex;     ///< where it begins
-    std::size_t Edge; ///< of the given ones
-  };
-  /** A vertex that a piece runs through. */
-  struct Stop
-  {
-    std::size_t Piece;
-    Index Vertex;
-    bool From; ///< whether it comes to the vertex in triangles of it,
-    bool Into; ///< and goes on in such
-  };
-
   Mesh& Surface;
   const NamedPoints& Points;
   const Rings& Given;
   const bool MayInsert;
   InsertedRings& Result;
-  const Index CountBefore;
-  const Index TrianglesBefore;
+  MeshCutter Cutter;
   std::unordered_map<Point2, Index, HashOfPoint> VertexAt;
   std::vector<Place> Located;
   std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: points to be inserted
-  std::unordered_map<Index, Index> Moved; ///< half-edges of the border that a cut renumbered
   std::vector<Point2> OutsidePoints;
   std::vector<Piece> Pieces; ///< one after another along each ring
   std::vector<Stop> OnTheWay;

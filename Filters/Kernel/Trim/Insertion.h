@@ -33,19 +33,13 @@
 #ifndef elevation_Trim_Insertion_h
 #define elevation_Trim_Insertion_h
 
+#include "MeshCutter.h"
 #include "Kernel/Mesh/Mesh.h"
 
 #include <vector>
 
 namespace elevation
 {
-
-/** Where a new vertex lies: the sum of its weights, each times a corner of one triangle before. */
-struct InsertedVertex
-{
-  Index Corners[3];
-  double Weights[3]; ///< 0 to 1, 1 together; 0 for what is not on the edge that the vertex is on
-};
 
 struct InsertedRings
 {

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MeshCutter.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+
+/** Points as seen from one, at a scale where products and sums stay in the range of double. */
+template <std::size_t Count>
+std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> points)
+{
+  double largest = std::max(std::fabs(from.X), std::fabs(from.Y));
+  for (const Point2& p : points)
+  {
+    largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+  }
+  const double scale = ScaleToOne(largest);
+  for (Point2& p : points)
+  {
+    p = { p.X * scale - from.X * scale, p.Y * scale - from.Y * scale };
+  }
+  return points;
+}
+
+} // namespace
+
+std::array<Point2, 3> MeshCutter::CornersOf(Index t) const
+{
+  const Mesh& mesh = this->Surface;
+  return { { mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
+    mesh.PointOf(mesh.Origin(3 * t + 2)) } };
+}
+
+bool MeshCutter::Holds(Index t, const Point2& p) const
+{
+  const std::array<Point2, 3> corners = this->CornersOf(t);
+  return Orientation(corners[0], corners[1], p) != Negative &&
+    Orientation(corners[1], corners[2], p) != Negative &&
+    Orientation(corners[2], corners[0], p) != Negative;
+}
+
+bool MeshCutter::CanCut(Index h, const Point2& place) const
+{
+  const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
+  return Orientation(this->Surface.PointOf(this->Surface.Origin(h)), place, apex) == Positive &&
+    Orientation(place, this->Surface.PointOf(this->Surface.Destination(h)), apex) == Positive;
+}
+
+bool MeshCutter::MoveToCut(Index h, Point2& place) const
+{
+  const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
+  const Point2 way = Around(
+    from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
+  const double length = std::hypot(way.X, way.Y);
+  const double step =
+    std::numeric_limits<double>::epsilon() * std::max(std::fabs(place.X), std::fabs(place.Y));
+  const Point2 outwards{ step * (way.Y / length), -step * (way.X / length) };
+  const Point2 first = place;
+  const auto isFound = [&](double dx, double dy) {
+    place = { first.X + dx, first.Y + dy };
+    return std::isfinite(place.X) && std::isfinite(place.Y) && this->CanCut(h, place);
+  };
+  // The nearest ones, from the middle out, then further outwards.
+  for (int ring = 0; ring <= 3; ++ring)
+  {
+    for (int i = -ring; i <= ring; ++i)
+    {
+      for (int j = -ring; j <= ring; ++j)
+      {
+        if (std::max(std::abs(i), std::abs(j)) == ring && isFound(0.5 * i * step, 0.5 * j * step))
+        {
+          return true;
+        }
+      }
+    }
+  }
+  for (double steps = 4.0; steps <= 64.0; steps *= 2.0)
+  {
+    if (isFound(steps * outwards.X, steps * outwards.Y))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+InsertedVertex MeshCutter::WeightsIn(Index t, const Point2& p) const
+{
+  const std::array<Point2, 3> corners = this->CornersOf(t), around = Around(p, corners);
+  std::array<std::pair<Index, double>, 3> shares;
+  for (int i = 0; i < 3; ++i)
+  {
+    const int next = (i + 1) % 3, last = (i + 2) % 3;
+    // On an edge, rounding must not bring in the corner beyond.
+    shares[i] = { this->Surface.Origin(3 * t + i),
+      Orientation(corners[next], corners[last], p) == Zero
+        ? 0.0
+        : std::fabs(around[next].X * around[last].Y - around[next].Y * around[last].X) };
+  }
+  return this->WeightsOf(shares.data(), shares.size());
+}
+
+InsertedVertex MeshCutter::WeightsBetween(Index a, Index b, const Point2& p) const
+{
+  const std::array<Point2, 2> ends =
+    Around(p, Ends{ { this->Surface.PointOf(a), this->Surface.PointOf(b) } });
+  const std::array<std::pair<Index, double>, 2> shares{ { { a, std::hypot(ends[1].X, ends[1].Y) },
+    { b, std::hypot(ends[0].X, ends[0].Y) } } };
+  return this->WeightsOf(shares.data(), shares.size());
+}
+
+InsertedVertex MeshCutter::WeightsOf(
+  const std::pair<Index, double>* shares, std::size_t count) const
+{
+  InsertedVertex vertex{ { None, None, None }, { 0.0, 0.0, 0.0 } };
+  double sum = 0.0;
+  const auto add = [&](Index corner, double weight) {
+    if (weight > 0.0)
+    {
+      int i = 0;
+      while (i < 2 && vertex.Corners[i] != corner && vertex.Corners[i] != None)
+      {
+        ++i;
+      }
+      vertex.Corners[i] = corner;
+      vertex.Weights[i] += weight;
+      sum += weight;
+    }
+  };
+  // Where a triangle is so small or thin that all shares vanish, its corners count alike.
+  for (int attempt = 0; attempt < 2 && vertex.Corners[0] == None; ++attempt)
+  {
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      const Index corner = shares[k].first;
+      const double share = attempt == 0 ? shares[k].second : 1.0;
+      if (corner < this->CountBefore)
+      {
+        add(corner, share);
+        continue;
+      }
+      const InsertedVertex& inserted = this->Inserted[corner - this->CountBefore];
+      for (int i = 0; i < 3; ++i)
+      {
+        add(inserted.Corners[i], share * inserted.Weights[i]);
+      }
+    }
+  }
+  for (Index& corner : vertex.Corners)
+  {
+    corner = corner == None ? vertex.Corners[0] : corner;
+  }
+  const bool isUsable = sum > 0.0 && sum < std::numeric_limits<double>::infinity();
+  for (double& weight : vertex.Weights)
+  {
+    // A triangle too thin for the range of double has no ratios.
+    weight = isUsable ? weight / sum : 1.0 / 3.0;
+  }
+  return vertex;
+}
+
+Index MeshCutter::AddVertex(const Point2& p, const InsertedVertex& inserted)
+{
+  this->Surface.Points.push_back(p);
+  this->Inserted.push_back(inserted);
+  return this->Surface.NumberOfPoints() - 1;
+}
+
+Index MeshCutter::AddPart(Index t)
+{
+  Mesh& mesh = this->Surface;
+  this->Parents.push_back(
+    t < this->TrianglesBefore ? t : this->Parents[t - this->TrianglesBefore]);
+  mesh.Triangles.resize(mesh.Triangles.size() + 3, None);
+  mesh.Twins.resize(mesh.Twins.size() + 3, Mesh::Border);
+  return mesh.NumberOfHalfEdges() - 3;
+}
+
+void MeshCutter::SetEdge(Index h, Index origin, Index twin)
+{
+  this->Surface.Triangles[h] = origin;
+  this->Surface.Twins[h] = twin;
+  if (twin != Mesh::Border)
+  {
+    this->Surface.Twins[twin] = h;
+  }
+}
+
+void MeshCutter::CutTriangle(Index t, Index v)
+{
+  Mesh& mesh = this->Surface;
+  const Index b = mesh.Origin(3 * t + 1);
+  const Index c = mesh.Origin(3 * t + 2);
+  const Index a = mesh.Origin(3 * t);
+  const Index first = this->AddPart(t);
+  const Index second = this->AddPart(t);
+  this->SetEdge(first, b, mesh.Twin(3 * t + 1));
+  this->SetEdge(second, c, mesh.Twin(3 * t + 2));
+  this->SetEdge(3 * t + 1, b, first + 2);
+  this->SetEdge(3 * t + 2, v, second + 1);
+  this->SetEdge(first + 1, c, second + 2);
+  this->SetEdge(first + 2, v, 3 * t + 1);
+  this->SetEdge(second + 1, a, 3 * t + 2);
+  this->SetEdge(second + 2, v, first + 1);
+}
+
+Index MeshCutter::CutEdge(Index h, Index v)
+{
+  Mesh& mesh = this->Surface;
+  const Index twin = mesh.Twin(h);
+  const Index after = this->Halve(h, v);
+  if (twin != Mesh::Border)
+  {
+    const Index afterTwin = this->Halve(twin, v);
+    this->SetEdge(h, mesh.Origin(h), afterTwin);
+    this->SetEdge(twin, mesh.Origin(twin), after);
+  }
+  return after;
+}
+
+Index MeshCutter::Halve(Index h, Index v)
+{
+  Mesh& mesh = this->Surface;
+  const Index next = Mesh::Next(h);
+  const Index b = mesh.Origin(next);
+  const Index c = mesh.Apex(h);
+  const Index part = this->AddPart(Mesh::Triangle(h));
+  if (mesh.IsBorder(next))
+  {
+    this->Moved[next] = part + 1;
+  }
+  this->SetEdge(part, v, Mesh::Border);
+  this->SetEdge(part + 1, b, mesh.Twin(next));
+  this->SetEdge(part + 2, c, next);
+  this->Surface.Triangles[next] = v;
+  return part;
+}
+
+Index MeshCutter::NowOf(Index h) const
+{
+  for (auto next = this->Moved.find(h); next != this->Moved.end(); next = this->Moved.find(h))
+  {
+    h = next->second;
+  }
+  return h;
+}
+
+} // namespace elevation
