@@ -20,7 +20,9 @@ set(es_kernel_Lattice
   Nodes
   Metric)
 set(es_kernel_Triangulate
+  BoxTree
   BinGrid
+  PointWindows
   WideApexSearch
   ApexSearch
   Hull
@@ -58,7 +60,7 @@ set(es_kernel_headers_Mesh
 set(es_kernel_headers_Lattice
   Lattice)
 set(es_kernel_headers_Triangulate
-  EdgeLimit Growth Options WorkBudget)
+  EdgeLimit Growth Instructions Options WorkBudget)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill)
 

@@ -39,7 +39,7 @@ namespace
 using namespace benchmark;
 
 constexpr int MaximumRepeats = 101;
-constexpr std::size_t MaximumCompetitors = 7;
+constexpr std::size_t MaximumCompetitors = 10;
 constexpr Index MostPointsOfVTK = 20000;
 
 // ---- options -----------------------------------------------------------------------------------
@@ -62,6 +62,9 @@ one process and in turn, measures peak memory, and checks the results against ea
   --time-limit S    seconds a code may take for its trial, and for all its timed runs together (it
                     is then left out of further rounds); default 60, 0 is no limit
   --searches        also times vtkGridDelaunay2D without lattices by each of its two searches
+  --instructions LIST
+                    also times the kernel alone, without lattices, with no wider instructions of the
+                    processor than scalar, avx2 or avx512
   --no-cgal         leaves CGAL out
   --vtk             runs vtkDelaunay2D on more than 20000 points too
   --no-vtk          leaves vtkDelaunay2D out
@@ -77,6 +80,7 @@ Examples
   BenchmarkDelaunay --points 100000,886639
   BenchmarkDelaunay --sets U,clustered,tracks,voids --no-vtk
   BenchmarkDelaunay --searches --no-cgal --no-vtk
+  BenchmarkDelaunay --sets U,clustered,tracks --instructions scalar,avx2,avx512 --no-cgal --no-vtk
   BenchmarkDelaunay --points 4000000 --threads 2 --no-cgal --no-vtk
   BenchmarkDelaunay --file Data/jacksboro_fault.vtp --json figures.json
 
@@ -93,6 +97,7 @@ struct Options
   int Repeats = 5;
   unsigned TimeLimit = 60;
   bool UseSearches = false;
+  std::vector<std::string> Instructions;
   bool UseCGAL = true;
   bool UseVTK = true;
   bool UseVTKAlways = false;
@@ -110,6 +115,23 @@ void AddExtraFiles(std::vector<std::string>& files)
   }
   const std::vector<std::string> found = FilesOf(folder);
   files.insert(files.end(), found.begin(), found.end());
+}
+
+/** @throws UsageError when there is no such set, or the processor lacks it */
+elevation::InstructionSet ToInstructions(const std::string& name)
+{
+  const std::array<const char*, 3> names{ "scalar", "avx2", "avx512" };
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+  {
+    throw UsageError("--instructions takes scalar, avx2 and avx512, not \"" + name + "\"");
+  }
+  const auto set = static_cast<elevation::InstructionSet>(found - names.begin());
+  if (set > elevation::WidestInstructions())
+  {
+    throw UsageError("--instructions " + name + ": this processor, or the compiler, lacks them");
+  }
+  return set;
 }
 
 /** @return false when the help was asked for */
@@ -172,6 +194,15 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     else if (option == "--searches")
     {
       options.UseSearches = true;
+    }
+    else if (option == "--instructions")
+    {
+      options.Instructions = Split(value());
+      std::for_each(options.Instructions.begin(), options.Instructions.end(), ToInstructions);
+      if (options.Instructions.size() > 3)
+      {
+        throw UsageError(option + " takes each set once");
+      }
     }
     else if (option == "--no-cgal")
     {
@@ -282,6 +313,10 @@ Competitors MakeCompetitors(const Options& options)
   {
     competitors.push_back(NewGridDelaunaySearch(options.Threads, false));
     competitors.push_back(NewGridDelaunaySearch(options.Threads, true));
+  }
+  for (const std::string& name : options.Instructions)
+  {
+    competitors.push_back(NewKernelDelaunay(options.Threads, ToInstructions(name), name));
   }
 #if defined(ES_BENCHMARK_CGAL)
   if (options.UseCGAL)
@@ -726,7 +761,8 @@ int Run(const Options& options)
     const Results results = Measure(sources[i], options, competitors);
     PrintRows(sources[i].Name, competitors, results, options.TimeLimit);
     isRight = isRight && results[0].Runs > 0;
-    const std::size_t ours = 1 + (options.Threads != 1 ? 2 : 0) + (options.UseSearches ? 2 : 0);
+    const std::size_t ours = 1 + (options.Threads != 1 ? 2 : 0) + (options.UseSearches ? 2 : 0) +
+      options.Instructions.size();
     for (std::size_t k = 0; k < ours; ++k)
     {
       isRight = isRight && results[k].Checked != Verdict::Wrong;

@@ -8,6 +8,7 @@
 #define Competitor_h
 
 #include "Kernel/Base/Memory.h"
+#include "Kernel/Triangulate/Instructions.h"
 
 #include <cstddef>
 #include <memory>
@@ -74,6 +75,10 @@ std::unique_ptr<Competitor> NewGridDelaunayCopies(int threads);
 
 /** The same by the coordinates, without a lattice, with one of its search strategies. */
 std::unique_ptr<Competitor> NewGridDelaunaySearch(int threads, bool isCompactness);
+
+/** The kernel alone, without a lattice, with no wider instructions than these. */
+std::unique_ptr<Competitor> NewKernelDelaunay(
+  int threads, elevation::InstructionSet instructions, const std::string& name);
 
 /** vtkDelaunay2D with its defaults, in the same way. */
 std::unique_ptr<Competitor> NewVTKDelaunay();

@@ -3,20 +3,19 @@
 /**
  * @file
  * Points, segments or triangles in the cells of a grid over them. What touches a cell is found
- * there, and perhaps some that pass it by within a millionth of a cell: a grid answers nothing, it
- * only leaves out.
+ * there, and perhaps some that pass it by within a millionth of a cell. The only index for things
+ * that reach over many cells: BinGrid, BoxTree and LatticeNodes keep points, each in one place.
  *
  * Cost: linear in the things and the cells that they touch, some 30 each at most on average.
  */
 #ifndef elevation_Base_CellGrid_h
 #define elevation_Base_CellGrid_h
 
-#include "Progress.h"
+#include "Extent.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 namespace elevation
@@ -60,7 +59,7 @@ public:
   bool FindCell(const Point2& p, std::size_t& cell) const
   {
     // Not a number is outside, too.
-    if (!(p.X >= this->Low.X && p.X <= this->High.X && p.Y >= this->Low.Y && p.Y <= this->High.Y))
+    if (!this->Whole.Holds(p))
     {
       return false;
     }
@@ -90,23 +89,13 @@ public:
   }
 
 private:
-  struct Box
-  {
-    Point2 Low, High;
-
-    void Add(const Point2& p)
-    {
-      this->Low = { std::min(this->Low.X, p.X), std::min(this->Low.Y, p.Y) };
-      this->High = { std::max(this->High.X, p.X), std::max(this->High.Y, p.Y) };
-    }
-  };
   template <std::size_t Count>
   static Box BoxOf(const std::array<Point2, Count>& corners)
   {
-    Box box{ corners[0], corners[0] };
-    for (std::size_t i = 1; i < Count; ++i)
+    Box box;
+    for (const Point2& corner : corners)
     {
-      box.Add(corners[i]);
+      box.Add(corner);
     }
     return box;
   }
@@ -115,27 +104,21 @@ private:
   template <typename CornersOf>
   void SetExtent(std::size_t count, CornersOf& cornersOf)
   {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Box all{ { infinity, infinity }, { -infinity, -infinity } };
     for (std::size_t i = 0; i < count; ++i)
     {
-      const Box box = BoxOf(cornersOf(i));
-      all.Add(box.Low);
-      all.Add(box.High);
+      this->Whole.Join(BoxOf(cornersOf(i)));
     }
-    this->Low = all.Low;
-    this->High = all.High;
     if (count == 0)
     {
       return;
     }
     // Differences must not leave the range of double.
-    const double largest = std::max({ std::fabs(this->Low.X), std::fabs(this->Low.Y),
-      std::fabs(this->High.X), std::fabs(this->High.Y) });
+    const double largest = std::max({ std::fabs(this->Whole.Low.X), std::fabs(this->Whole.Low.Y),
+      std::fabs(this->Whole.High.X), std::fabs(this->Whole.High.Y) });
     this->Scale = largest > 1e150 ? 0x1p-600 : (largest < 1e-150 ? 0x1p600 : 1.0);
-    this->Corner = { this->Low.X * this->Scale, this->Low.Y * this->Scale };
-    const double width = this->High.X * this->Scale - this->Corner.X;
-    const double height = this->High.Y * this->Scale - this->Corner.Y;
+    this->Corner = { this->Whole.Low.X * this->Scale, this->Whole.Low.Y * this->Scale };
+    const double width = this->Whole.High.X * this->Scale - this->Corner.X;
+    const double height = this->Whole.High.Y * this->Scale - this->Corner.Y;
 
     // How many things it takes to reach from one side to the other, at least one.
     double alongX = 1.0, alongY = 1.0;
@@ -174,8 +157,7 @@ private:
   void ForEachCell(const std::array<Point2, Count>& corners, Visitor&& visit) const
   {
     const Box box = BoxOf(corners);
-    if (!(box.High.X >= this->Low.X && box.Low.X <= this->High.X && box.High.Y >= this->Low.Y &&
-          box.Low.Y <= this->High.Y))
+    if (!this->Whole.Touches(box))
     {
       return;
     }
@@ -235,9 +217,9 @@ private:
     right = std::max(right, last);
   }
 
-  Point2 Low, High; ///< of all that is in the grid
+  Box Whole; ///< around all that is in the grid
   double Scale = 1.0;
-  Point2 Corner{ 0.0, 0.0 }; ///< Low, scaled
+  Point2 Corner{ 0.0, 0.0 }; ///< of the box, scaled
   double PerX = 0.0, PerY = 0.0;
   int Columns = 1, Rows = 1;
   std::vector<std::size_t> Begins;

@@ -16,22 +16,36 @@
 namespace elevation
 {
 
-/** What one look at all points tells. */
-struct Extent
+/** The smallest box around points, with its sides along the axes; no points at first. */
+struct Box
 {
-  Point2 Low{ DBL_MAX, DBL_MAX }, High{ -DBL_MAX, -DBL_MAX }; ///< of the finite points
-  std::vector<Index> NotFinite; ///< ids of points with a coordinate that is not finite, increasing
+  Point2 Low{ DBL_MAX, DBL_MAX }, High{ -DBL_MAX, -DBL_MAX };
 
   double Width() const { return this->High.X - this->Low.X; }
   double Height() const { return this->High.Y - this->Low.Y; }
-  void Add(const Point2& p) { this->Add(p, p); }
-  void Add(const Point2& low, const Point2& high)
+  /** Whether a point is inside or on the border; without branches. */
+  bool Holds(const Point2& p) const
   {
-    this->Low = { low.X < this->Low.X ? low.X : this->Low.X,
-      low.Y < this->Low.Y ? low.Y : this->Low.Y };
-    this->High = { high.X > this->High.X ? high.X : this->High.X,
-      high.Y > this->High.Y ? high.Y : this->High.Y };
+    return (p.X >= this->Low.X) & (p.X <= this->High.X) & (p.Y >= this->Low.Y) &
+      (p.Y <= this->High.Y);
   }
+  bool Touches(const Box& box) const
+  {
+    return box.High.X >= this->Low.X && box.Low.X <= this->High.X && box.High.Y >= this->Low.Y &&
+      box.Low.Y <= this->High.Y;
+  }
+  void Add(const Point2& p) { this->Join({ p, p }); }
+  void Join(const Box& box)
+  {
+    this->Low = { std::min(this->Low.X, box.Low.X), std::min(this->Low.Y, box.Low.Y) };
+    this->High = { std::max(this->High.X, box.High.X), std::max(this->High.Y, box.High.Y) };
+  }
+};
+
+/** What one look at all points tells: the box of those that are finite, and the others. */
+struct Extent : Box
+{
+  std::vector<Index> NotFinite; ///< ids of points with a coordinate that is not finite, increasing
 };
 
 /** How many points are passed over at once: a piece of work for one thread. */
@@ -94,7 +108,7 @@ void ForEachPoint(
 template <typename T, typename Visit>
 void AddToExtent(const T* points, Index begin, Index end, Extent& extent, Visit&& visit)
 {
-  Extent here; // in registers
+  Box here; // in registers
   const T* p = points + 3 * static_cast<std::size_t>(begin);
   for (Index id = begin; id < end; ++id, p += 3)
   {
@@ -108,7 +122,7 @@ void AddToExtent(const T* points, Index begin, Index end, Extent& extent, Visit&
     here.Add({ x, y });
     visit(Point2{ x, y });
   }
-  extent.Add(here.Low, here.High);
+  extent.Join(here);
 }
 
 /**
@@ -136,7 +150,7 @@ Extent FindExtent(const PointView& points, int threads, const Progress& progress
   std::size_t notFinite = 0;
   for (const Extent& piece : pieces)
   {
-    extent.Add(piece.Low, piece.High);
+    extent.Join(piece);
     notFinite += piece.NotFinite.size();
   }
   extent.NotFinite.reserve(notFinite);

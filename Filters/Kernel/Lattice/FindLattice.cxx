@@ -38,9 +38,9 @@ Point2 Minus(const Point2& p, const Point2& q, double times = 1.0)
   return { p.X - times * q.X, p.Y - times * q.Y };
 }
 
-Extent BoxOf(const std::vector<Point2>& points)
+Box BoxOf(const std::vector<Point2>& points)
 {
-  Extent box;
+  Box box;
   for (const Point2& p : points)
   {
     box.Add(p);
@@ -325,7 +325,7 @@ std::vector<Point2> Join(std::vector<std::vector<Point2>> sets, const Progress& 
 /** Cells over a box, to find where most points are. */
 struct Histogram
 {
-  Histogram(const Extent& box, int cells)
+  Histogram(const Box& box, int cells)
     : Low(box.Low)
     , PerX(box.Width() > 0.0 ? cells / box.Width() : 0.0)
     , PerY(box.Height() > 0.0 ? cells / box.Height() : 0.0)
@@ -395,7 +395,7 @@ void KeepFullest(std::vector<Point2>& points)
 {
   while (points.size() > Neighbors)
   {
-    const Extent box = BoxOf(points);
+    const Box box = BoxOf(points);
     const Point2 &low = box.Low, &high = box.High;
     // Halves of the longer side; a box without height has the longer one all the same.
     const bool isWide = box.Width() > box.Height();
@@ -418,7 +418,7 @@ void KeepFullest(std::vector<Point2>& points)
 /** Area a point in the fullest part; where that has no area, a thousandth of the mean of all. */
 double MeanAreaOf(const std::vector<Point2>& points, double ofAll)
 {
-  const Extent box = BoxOf(points);
+  const Box box = BoxOf(points);
   return std::max(box.Width() * box.Height() / points.size(), 1e-3 * ofAll);
 }
 
@@ -650,7 +650,7 @@ private:
   bool IsWithin(double tolerance, double mostNodes) const
   {
     const double far = 1.01 * tolerance + 1e-8;
-    Extent box; // in steps
+    Box box; // in steps
     for (const Point2& p : this->Sample)
     {
       const Point2 steps = this->ToSteps(p);
@@ -733,9 +733,9 @@ private:
    * A cell of the sample's extent, a cell of that, and so on. Where hardly any points differ,
    * everywhere.
    */
-  Extent FullestPlace() const
+  Box FullestPlace() const
   {
-    Extent place = this->Search;
+    Box place = this->Search;
     std::vector<Point2> crowd = this->Sample;
     for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
     {
@@ -755,14 +755,13 @@ private:
   }
 
   /** All points of the place, or of its fullest part. */
-  void GatherAround(const Extent& place, const Progress& progress)
+  void GatherAround(const Box& place, const Progress& progress)
   {
     ForEachRange(this->Points.Count, this->Threads, Part(progress, 0.0, 0.75),
       [&](Index piece, Index begin, Index end) {
         PlaceSet here;
         ForEachPoint(this->Points, begin, end, this->Search.NotFinite, [&](Index, const Point2& p) {
-          if ((p.X >= place.Low.X) & (p.X <= place.High.X) & (p.Y >= place.Low.Y) &
-            (p.Y <= place.High.Y))
+          if (place.Holds(p))
           {
             here.Add(p);
           }

@@ -31,33 +31,18 @@ public:
   {
   }
 
-  /** What the nodes of points lie within. */
-  struct Box
+  /** What the nodes of points lie within, in steps along each. */
+  struct NodeBox : Box
   {
-    double LowI = DBL_MAX, HighI = -DBL_MAX, LowJ = DBL_MAX, HighJ = -DBL_MAX;
-    double FirstI() const { return std::floor(this->LowI + 0.25); }
-    double FirstJ() const { return std::floor(this->LowJ + 0.25); }
-    void Add(const Box& box)
-    {
-      this->LowI = std::min(this->LowI, box.LowI);
-      this->HighI = std::max(this->HighI, box.HighI);
-      this->LowJ = std::min(this->LowJ, box.LowJ);
-      this->HighJ = std::max(this->HighJ, box.HighJ);
-    }
-    double Columns() const { return std::ceil(this->HighI - 0.25) - this->FirstI() + 1.0; }
-    double Rows() const { return std::ceil(this->HighJ - 0.25) - this->FirstJ() + 1.0; }
+    double FirstI() const { return std::floor(this->Low.X + 0.25); }
+    double FirstJ() const { return std::floor(this->Low.Y + 0.25); }
+    double Columns() const { return std::ceil(this->High.X - 0.25) - this->FirstI() + 1.0; }
+    double Rows() const { return std::ceil(this->High.Y - 0.25) - this->FirstJ() + 1.0; }
   };
 
-  void Extend(Box& box, const Point2& p) const
-  {
-    const double i = this->I(p), j = this->J(p);
-    box.LowI = std::min(box.LowI, i);
-    box.HighI = std::max(box.HighI, i);
-    box.LowJ = std::min(box.LowJ, j);
-    box.HighJ = std::max(box.HighJ, j);
-  }
+  void Extend(NodeBox& box, const Point2& p) const { box.Add({ this->I(p), this->J(p) }); }
 
-  void Start(const Box& box)
+  void Start(const NodeBox& box)
   {
     this->FirstI = box.FirstI();
     this->FirstJ = box.FirstJ();
@@ -183,9 +168,9 @@ private:
   };
 
   /** The box of the points' nodes: that of their bounding box, where the lattice is along the axes. */
-  NodeOfPoint::Box FindBox(const Progress& progress) const
+  NodeOfPoint::NodeBox FindBox(const Progress& progress) const
   {
-    NodeOfPoint::Box box;
+    NodeOfPoint::NodeBox box;
     const Point2 &low = this->Search.Low, &high = this->Search.High;
     for (const Point2& p : { low, Point2{ high.X, low.Y }, Point2{ low.X, high.Y }, high })
     {
@@ -198,23 +183,23 @@ private:
       return box;
     }
     // A lattice across the axes: the points themselves tell it better.
-    std::vector<NodeOfPoint::Box> pieces(NumberOfRanges(this->Points.Count));
+    std::vector<NodeOfPoint::NodeBox> pieces(NumberOfRanges(this->Points.Count));
     this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
-      NodeOfPoint::Box here;
+      NodeOfPoint::NodeBox here;
       ForEachPoint(this->Points, begin, end, this->Search.NotFinite,
         [&](Index, const Point2& p) { this->NodeOf.Extend(here, p); });
       pieces[piece] = here;
     });
-    box = NodeOfPoint::Box();
-    for (const NodeOfPoint::Box& piece : pieces)
+    box = NodeOfPoint::NodeBox();
+    for (const NodeOfPoint::NodeBox& piece : pieces)
     {
-      box.Add(piece);
+      box.Join(piece);
     }
     return box;
   }
 
   /** Lays the bitmap over a box of nodes. @return false when it takes too much memory */
-  bool Lay(const NodeOfPoint::Box& box, const Progress& progress)
+  bool Lay(const NodeOfPoint::NodeBox& box, const Progress& progress)
   {
     const double count = this->Points.Count - static_cast<double>(this->Search.NotFinite.size());
     const double columns = box.Columns(), rows = box.Rows();

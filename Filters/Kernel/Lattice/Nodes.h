@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points on the nodes of a lattice, as a bitmap: which nodes are occupied, and by which point.
- *
+ * Points on the nodes of a lattice, as a bitmap: which nodes are occupied, and by which point. The
+ * index for a lattice: a bit a node tells what any other index needs coordinates for.
  * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
  * in the order of their nodes (by row, then column), which the number of bits before a node tells;
  * or the answer that a point does not fit. One pass over the points sets the bits and keeps the

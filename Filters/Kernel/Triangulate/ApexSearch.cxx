@@ -6,10 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#ifdef ELEVATION_HAS_AVX2
-#include <immintrin.h>
-#endif
-
 namespace elevation
 {
 namespace
@@ -128,12 +124,12 @@ Index ApexSearch::Find(Index b, Index end)
     return this->Best;
   }
   // From the node around the origin upwards, until it holds the disc.
-  BinGrid::Step step = this->Grid.Lowest(this->Origin);
+  BoxTree::Step step = this->Grid.Lowest(this->Origin);
   this->LookInto(*step.Node, ~0u);
   while (!step.IsRoot() && !this->HoldsDisc(step))
   {
     const unsigned int others = ~(1u << step.Place);
-    step = this->Grid.Above(step);
+    step = this->Grid.Tree.Above(step);
     this->LookInto(*step.Node, others);
   }
   return this->Best;
@@ -144,7 +140,7 @@ Index ApexSearch::FindAnywhere(Index a, Index b)
   this->Origin = a;
   this->SetEdge(a, b);
   this->Floor = -Infinity;
-  this->LookInto(this->Grid.Nodes[this->Grid.Nodes.size() - 1], ~0u);
+  this->LookInto(this->Grid.Tree.Nodes[this->Grid.Tree.Nodes.size() - 1], ~0u);
   this->Floor = 0.0;
   return this->Best;
 }
@@ -193,15 +189,15 @@ Index ApexSearch::FindByAngle()
 }
 
 /** The lowest node above the origin that has all points of a box, as far as they exist. */
-const BinGrid::Node& ApexSearch::NodeAround(const Box& box) const
+const BoxTree::Node& ApexSearch::NodeAround(const Box& box) const
 {
-  BinGrid::Step step = this->Grid.Lowest(this->Origin);
+  BoxTree::Step step = this->Grid.Lowest(this->Origin);
   while (!step.IsRoot() &&
     !Box{
       step.LowX - this->A.X, step.HighX - this->A.X, step.LowY - this->A.Y, step.HighY - this->A.Y }
        .Holds(box))
   {
-    step = this->Grid.Above(step);
+    step = this->Grid.Tree.Above(step);
   }
   return *step.Node;
 }
@@ -223,7 +219,7 @@ void ApexSearch::LookIntoBox(const Node& node, const Box& box)
       }
       else
       {
-        this->LookIntoBox(this->Grid.Nodes[node.First[place]], box);
+        this->LookIntoBox(this->Grid.Tree.Nodes[node.First[place]], box);
       }
     }
   }
@@ -349,7 +345,7 @@ void ApexSearch::SetDisc(double s)
 }
 
 /** Whether the disc, as far as it is above the origin, lies within the box of a step. */
-bool ApexSearch::HoldsDisc(const BinGrid::Step& step) const
+bool ApexSearch::HoldsDisc(const BoxTree::Step& step) const
 {
   // The radius has been widened by more than the rounding of these differences.
   const double radius = std::sqrt(this->RadiusSquared);
@@ -390,7 +386,7 @@ void ApexSearch::LookInto(const Node& node, unsigned int places)
     }
     else
     {
-      this->LookInto(this->Grid.Nodes[node.First[next]], ~0u);
+      this->LookInto(this->Grid.Tree.Nodes[node.First[next]], ~0u);
     }
     if (left != 0 && this->RadiusSquared < radiusSquared)
     {

@@ -33,9 +33,9 @@ public:
   ApexSearch(const BinGrid& grid, const DelaunayOptions& options, WorkBudget& budget)
     : Grid(grid)
     , Budget(budget)
-    , Around(grid)
+    , Around(grid, options.Instructions)
     , IsByAngle(options.Strategy == SearchStrategy::Compactness)
-    , IsWide(options.UseWideInstructions && WideApexSearch::IsSupported())
+    , IsWide(std::min(options.Instructions, WidestInstructions()) != InstructionSet::Scalar)
   {
   }
 
@@ -70,7 +70,7 @@ public:
   Index FindAnywhere(Index a, Index b);
 
 private:
-  using Node = BinGrid::Node;
+  using Node = BoxTree::Node;
   struct Box;
   struct Region;
 
@@ -83,7 +83,7 @@ private:
   Index BestOf(std::uint64_t candidates);
   double UpperPositionOfBest() const;
   void SetDisc(double s);
-  bool HoldsDisc(const BinGrid::Step& step) const;
+  bool HoldsDisc(const BoxTree::Step& step) const;
   void LookInto(const Node& node, unsigned int places);
   unsigned int Reached(const Node& node, double* distances) const;
   void Compare(Index first, Index count);

@@ -7,50 +7,24 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace elevation
 {
 namespace
 {
-constexpr double Infinity = std::numeric_limits<double>::infinity();
+using Placed = BoxTree::Placed;
+using Node = BoxTree::Node;
+
 // Mean points a bin: fewer make the searches visit many empty bins, more make them look at points
 // in vain.
 constexpr double PointsPerBin = 1.0;
-// A bin with more points is halved until no part has more; evenly spread points hardly fill one so.
-constexpr Index FullBin = 24;
-// A leaf of the tree is at most so many bins of a row, with at most so many points.
-constexpr Index LeafColumns = 16;
-constexpr Index LeafPoints = 32;
 // The input is read in pieces of so many points, each by one thread.
 constexpr Index PiecePoints = 1 << 17;
 // A block of rows holds so many points or a few more, such that the cache of a core does.
 constexpr Index BlockPoints = 1 << 14;
 // Blocks are made of at most so many groups of rows.
 constexpr Index MaximumGroups = 4096;
-
-/**
- * Calls visit(i) for all of [begin, end), and report(fraction) between stretches of them: one row,
- * or one bin, may hold all points.
- */
-template <typename Tell, typename Visit>
-void ForEachReporting(Index begin, Index end, Tell&& report, Visit&& visit)
-{
-  constexpr Index stretch = 1 << 16;
-  for (Index i = begin;;)
-  {
-    for (const Index stop = i + std::min(end - i, stretch); i < stop; ++i)
-    {
-      visit(i);
-    }
-    if (i >= end)
-    {
-      return;
-    }
-    report(static_cast<double>(i - begin) / (end - begin));
-  }
-}
 
 /** Bins along both sides of a box for so many points, as square as its proportions allow. */
 void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
@@ -73,380 +47,6 @@ void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
     isPlain(bins.BinWidth, bins.OriginX, width) && isPlain(bins.BinHeight, bins.OriginY, height);
 }
 
-/** A point on its way to its slot. */
-struct Placed
-{
-  double X, Y;
-  Index Id;
-  Index Bin; ///< among those of its block
-};
-
-struct Box
-{
-  double LowX = DBL_MAX, HighX = -DBL_MAX, LowY = DBL_MAX, HighY = -DBL_MAX;
-
-  void Add(double x, double y)
-  {
-    this->LowX = x < this->LowX ? x : this->LowX;
-    this->HighX = x > this->HighX ? x : this->HighX;
-    this->LowY = y < this->LowY ? y : this->LowY;
-    this->HighY = y > this->HighY ? y : this->HighY;
-  }
-  void Add(const Box& box)
-  {
-    this->Add(box.LowX, box.LowY);
-    this->Add(box.HighX, box.HighY);
-  }
-  bool IsOnePlace() const { return this->LowX == this->HighX && this->LowY == this->HighY; }
-};
-
-/** What a place of a node of the tree holds; no points at all when Size is 0. */
-struct Child
-{
-  Box Bounds;
-  Index First = None;
-  Index Count = 0;
-  Index Size = 0;
-};
-
-/** Appends a node and returns the child that it is. */
-Child AddNode(const Child* children, int count, Buffer<BinGrid::Node>& nodes)
-{
-  BinGrid::Node node;
-  Child joined;
-  node.Size = 0;
-  node.Parent = None;
-  for (int place = 0; place < BinGrid::Node::Places; ++place)
-  {
-    const Child child = place < count ? children[place] : Child();
-    node.LowX[place] = child.Size > 0 ? child.Bounds.LowX : Infinity;
-    node.HighX[place] = child.Size > 0 ? child.Bounds.HighX : -Infinity;
-    node.LowY[place] = child.Size > 0 ? child.Bounds.LowY : Infinity;
-    node.HighY[place] = child.Size > 0 ? child.Bounds.HighY : -Infinity;
-    node.First[place] = child.First;
-    node.Count[place] = child.Count;
-    node.Size += child.Size;
-    if (child.Size > 0)
-    {
-      joined.Bounds.Add(child.Bounds);
-    }
-  }
-  joined.Size = node.Size;
-  joined.First = static_cast<Index>(nodes.size());
-  nodes.Append(node);
-  return joined;
-}
-
-/** Some rows of the grid: bins, slots and points are counted from the first of them. */
-struct Rows
-{
-  double* X;
-  double* Y;
-  Index* Ids;
-  Buffer<Index> Starts;
-  Index Columns;
-
-  Index Count() const { return this->Starts[this->Starts.size() - 1]; }
-  std::pair<Index, Index> Slots(Index row, Index firstColumn, Index lastColumn) const
-  {
-    const Index* starts = this->Starts.data() + static_cast<std::size_t>(row) * this->Columns;
-    return { starts[firstColumn], starts[lastColumn + 1] };
-  }
-};
-
-/** Builds the tree over some rows from the top down, and orders the slots of full bins. */
-class TreeBuilder
-{
-public:
-  /** @param room  for as many points as the rows hold */
-  TreeBuilder(Rows& rows, Placed* room, Buffer<BinGrid::Node>& nodes, const Progress& progress)
-    : Grid(rows)
-    , Points(room)
-    , Nodes(nodes)
-    , Monitor(progress)
-  {
-  }
-
-  Child Build(Index rows) { return this->BuildBins({ 0, rows, 0, this->Grid.Columns }); }
-
-private:
-  /** Bins of some rows and columns, ends excluded. */
-  struct Part
-  {
-    Index FirstRow, EndRow, FirstColumn, EndColumn;
-
-    Index Rows() const { return this->EndRow - this->FirstRow; }
-    Index Columns() const { return this->EndColumn - this->FirstColumn; }
-    double Area() const { return static_cast<double>(this->Rows()) * this->Columns(); }
-  };
-
-  /** Points of a full bin, slots [Begin, End). */
-  struct Heap
-  {
-    Index Begin, End;
-    Box Bounds;
-
-    Index Size() const { return this->End - this->Begin; }
-    bool IsLeaf() const { return this->Size() <= FullBin || this->Bounds.IsOnePlace(); }
-  };
-
-  /** A single child needs no node of its own. */
-  Child Join(const Child* children, int count)
-  {
-    return count == 0 ? Child() : count == 1 ? children[0] : AddNode(children, count, this->Nodes);
-  }
-
-  /** Whether the part is a leaf, nothing, or one bin: not to be divided by rows and columns. */
-  bool IsUndivided(const Part& part) const
-  {
-    if (part.Rows() > 1)
-    {
-      return false;
-    }
-    const auto slots = this->SlotsOf(part);
-    if (part.Columns() == 1 || slots.first == slots.second)
-    {
-      return true;
-    }
-    if (part.Columns() > LeafColumns || slots.second - slots.first > LeafPoints)
-    {
-      return false;
-    }
-    bool isFull = false;
-    for (Index column = part.FirstColumn; column < part.EndColumn && !isFull; ++column)
-    {
-      const auto bin = this->Grid.Slots(part.FirstRow, column, column);
-      isFull = bin.second - bin.first > FullBin;
-    }
-    return !isFull;
-  }
-
-  std::pair<Index, Index> SlotsOf(const Part& part) const
-  {
-    return this->Grid.Slots(part.FirstRow, part.FirstColumn, part.EndColumn - 1);
-  }
-
-  /** Whole leaves or nodes where there are several, so that they are full. */
-  static Index HalfOf(Index count, Index unit)
-  {
-    return count > unit ? (count / 2 + unit - 1) / unit * unit : count / 2;
-  }
-
-  Child BuildBins(const Part& whole)
-  {
-    if (this->IsUndivided(whole))
-    {
-      return this->BuildRun(whole);
-    }
-    // What fits into one node stays together, so that the lowest nodes are full.
-    const auto fits = [](const Part& part) {
-      return part.Rows() <= BinGrid::Node::Places && part.Columns() <= LeafColumns;
-    };
-    const bool isLowest = fits(whole);
-    const auto areaOf = [&](const Part& part) {
-      return this->IsUndivided(part) || (!isLowest && fits(part)) ? 0.0 : part.Area();
-    };
-    Part parts[BinGrid::Node::Places];
-    double areas[BinGrid::Node::Places]; // 0 for what is not divided
-    parts[0] = whole;
-    areas[0] = whole.Area();
-    int count = 1;
-    while (count < BinGrid::Node::Places)
-    {
-      const auto widest = std::max_element(areas, areas + count) - areas;
-      if (areas[widest] == 0.0)
-      {
-        break;
-      }
-      Part& part = parts[widest];
-      Part& other = parts[count++];
-      other = part;
-      if (part.Rows() == 1 || (part.Columns() > part.Rows() && part.Columns() > LeafColumns))
-      {
-        part.EndColumn = other.FirstColumn = part.FirstColumn + HalfOf(part.Columns(), LeafColumns);
-      }
-      else
-      {
-        part.EndRow = other.FirstRow = part.FirstRow + HalfOf(part.Rows(), BinGrid::Node::Places);
-      }
-      areas[widest] = areaOf(part);
-      areas[count - 1] = areaOf(other);
-    }
-    Child children[BinGrid::Node::Places];
-    int filled = 0;
-    for (int i = 0; i < count; ++i)
-    {
-      const Child child = this->BuildBins(parts[i]);
-      if (child.Size > 0)
-      {
-        children[filled++] = child;
-      }
-    }
-    return this->Join(children, filled);
-  }
-
-  /** A leaf of some bins of a row; nothing; or a full bin. */
-  Child BuildRun(const Part& part)
-  {
-    const auto slots = this->SlotsOf(part);
-    const Index count = slots.second - slots.first;
-    this->ReportProgress(count);
-    if (part.Columns() == 1 && count > FullBin)
-    {
-      return this->BuildFullBin(slots);
-    }
-    Child child;
-    for (Index slot = slots.first; slot < slots.second; ++slot)
-    {
-      child.Bounds.Add(this->Grid.X[slot], this->Grid.Y[slot]);
-    }
-    child.First = slots.first;
-    child.Count = child.Size = count;
-    return child;
-  }
-
-  Child BuildFullBin(std::pair<Index, Index> slots)
-  {
-    Heap heap{ slots.first, slots.second, Box() };
-    this->ForEach(slots, [&](Index slot) {
-      this->Points[slot] = { this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot], 0 };
-      heap.Bounds.Add(this->Grid.X[slot], this->Grid.Y[slot]);
-    });
-    return this->BuildHeap(heap);
-  }
-
-  Child BuildHeap(const Heap& whole)
-  {
-    if (whole.IsLeaf())
-    {
-      this->ForEach({ whole.Begin, whole.End }, [&](Index slot) {
-        const Placed& p = this->Points[slot];
-        this->Grid.X[slot] = p.X;
-        this->Grid.Y[slot] = p.Y;
-        this->Grid.Ids[slot] = p.Id;
-      });
-      return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
-    }
-    // What fits into one node stays together, so that the lowest nodes are full.
-    constexpr Index fitting = BinGrid::Node::Places * FullBin;
-    const bool isLowest = whole.Size() <= fitting;
-    Heap heaps[BinGrid::Node::Places];
-    heaps[0] = whole;
-    int count = 1;
-    while (count < BinGrid::Node::Places)
-    {
-      int largest = -1;
-      for (int i = 0; i < count; ++i)
-      {
-        if (!heaps[i].IsLeaf() && (isLowest || heaps[i].Size() > fitting) &&
-          (largest < 0 || heaps[i].Size() > heaps[largest].Size()))
-        {
-          largest = i;
-        }
-      }
-      if (largest < 0)
-      {
-        break;
-      }
-      this->Halve(heaps[largest], heaps[count++]);
-    }
-    Child children[BinGrid::Node::Places];
-    for (int i = 0; i < count; ++i)
-    {
-      children[i] = this->BuildHeap(heaps[i]);
-    }
-    return AddNode(children, count, this->Nodes);
-  }
-
-  /**
-   * Divides a heap across its longer side, near the median. All points with the same coordinate go
-   * to the same part, so that equal points stay together.
-   */
-  void Halve(Heap& heap, Heap& other)
-  {
-    const bool isWide = heap.Bounds.HighX - heap.Bounds.LowX > heap.Bounds.HighY - heap.Bounds.LowY;
-    const auto key = [isWide](const Placed& p) { return isWide ? p.X : p.Y; };
-    Placed* const begin = this->Points + heap.Begin;
-    Placed* const end = this->Points + heap.End;
-
-    // The median of a sample nearly always divides well; else that of all.
-    constexpr Index sampleSize = 31;
-    double sample[sampleSize];
-    const Index size = heap.Size();
-    const Index samples = std::min(size, sampleSize);
-    for (Index i = 0; i < samples; ++i)
-    {
-      sample[i] = key(begin[static_cast<std::int64_t>(i) * size / samples]);
-    }
-    std::nth_element(sample, sample + samples / 2, sample + samples);
-    Placed* middle = this->Divide(heap, key, sample[samples / 2], isWide);
-    if (std::min(middle - begin, end - middle) < size / 8)
-    {
-      std::size_t comparisons = 0;
-      std::nth_element(begin, begin + size / 2, end, [&](const Placed& p, const Placed& q) {
-        if (++comparisons % 65536 == 0)
-        {
-          this->ReportProgress(0);
-        }
-        return key(p) < key(q);
-      });
-      middle = this->Divide(heap, key, key(begin[size / 2]), isWide);
-    }
-
-    other.Begin = heap.Begin + static_cast<Index>(middle - begin);
-    other.End = heap.End;
-    heap.End = other.Begin;
-    for (Heap* half : { &heap, &other })
-    {
-      Box bounds;
-      this->ForEach({ half->Begin, half->End },
-        [&](Index slot) { bounds.Add(this->Points[slot].X, this->Points[slot].Y); });
-      half->Bounds = bounds;
-    }
-  }
-
-  /** Points before the value first, or up to the value when none is before: both parts have some. */
-  template <typename Key>
-  Placed* Divide(const Heap& heap, const Key& key, double value, bool isWide)
-  {
-    const bool hasBefore = (isWide ? heap.Bounds.LowX : heap.Bounds.LowY) < value;
-    Placed* end = this->Points + heap.Begin; // of those before
-    this->ForEach({ heap.Begin, heap.End }, [&](Index slot) {
-      // Without a branch, which could not be predicted.
-      Placed& there = this->Points[slot];
-      const Placed moved = there;
-      const bool isBefore = hasBefore ? key(moved) < value : key(moved) <= value;
-      there = *end;
-      *end = moved;
-      end += isBefore;
-    });
-    return end;
-  }
-
-  template <typename Work>
-  void ForEach(std::pair<Index, Index> slots, Work&& work)
-  {
-    ForEachReporting(
-      slots.first, slots.second, [this](double) { this->ReportProgress(0); }, work);
-  }
-
-  void ReportProgress(Index visited)
-  {
-    this->Visited += visited;
-    if (visited == 0 || this->Visited >= this->NextReport)
-    {
-      Report(this->Monitor, double(this->Visited) / this->Grid.Count());
-      this->NextReport = this->Visited + 65536;
-    }
-  }
-
-  Rows& Grid;
-  Placed* const Points; ///< by slot, of the full bin at hand
-  Buffer<BinGrid::Node>& Nodes;
-  const Progress& Monitor;
-  std::int64_t Visited = 0, NextReport = 0;
-};
-
 /**
  * Orders the slots of a row by (y, x). Spread over the row's height first, they are nearly ordered,
  * which insertion finishes in linear time. Where many are close to each other, these are spread
@@ -456,7 +56,7 @@ class RowSorter
 {
 public:
   /** @param room  for as many points as the rows hold */
-  RowSorter(const Rows& rows, Placed* room, const Progress& progress)
+  RowSorter(const BoxTree::Rows& rows, Placed* room, const Progress& progress)
     : Grid(rows)
     , Entries(static_cast<Entry*>(static_cast<void*>(room)))
     , Monitor(progress)
@@ -589,57 +189,529 @@ private:
     this->Insert(sorted, count);
   }
 
-  const Rows& Grid;
+  const BoxTree::Rows& Grid;
   Entry* const Entries;
   const Progress& Monitor;
   Buffer<Index> Ends[MaximumDepth + 1];
 };
 
-/** Visits the finite ones of the points [begin, end): their id and position. */
-template <typename Value, typename Visit>
-void VisitFinite(const Value* coordinates, Index begin, Index end, double scale, Visit&& visit)
-{
-  for (Index i = begin; i < end; ++i)
-  {
-    const Value* p = coordinates + 3 * static_cast<std::size_t>(i);
-    const double x = p[0], y = p[1], z = p[2];
-    if (x - x + (y - y) + (z - z) == 0.0)
-    {
-      visit(i, x * scale, y * scale);
-    }
-  }
-}
-template <typename Visit>
-void VisitFinite(const PointView& points, Index begin, Index end, double scale, Visit&& visit)
-{
-  if (points.Double)
-  {
-    VisitFinite(points.Double, begin, end, scale, visit);
-  }
-  else
-  {
-    VisitFinite(points.Float, begin, end, scale, visit);
-  }
-}
-} // namespace
-
 /** Rows of bins that are filled by one thread, while its cache holds their points. */
-struct BinGrid::Block
+struct Block
 {
   Index FirstRow, EndRow;
   Index Begin, Count; ///< slots
   Placed* Points;     ///< first its points, then room for as many
-  Child Root;
+  BoxTree::Child Root;
   Buffer<Node> Nodes; ///< children and slots counted from the block's first
   Buffer<Index> Duplicates;
 
   /** In so many pieces what is done with all bins or points is heard of soon. */
-  Index Pieces(const Layout& layout) const
+  Index Pieces(const BinGrid::Layout& layout) const
   {
     const Index bins = (this->EndRow - this->FirstRow) * layout.Columns; // at most as all points
     return 1 + std::max(this->Count, bins) / (16 * BlockPoints);
   }
 };
+
+/** Fills the slots of a block; its members are what the passes hand on. */
+class BlockFiller
+{
+public:
+  BlockFiller(BinGrid& grid, Block& block, const Progress& progress)
+    : Grid(grid)
+    , Own(block)
+    , Monitor(progress)
+    , Rows(block.EndRow - block.FirstRow)
+    , Bins(static_cast<std::size_t>(this->Rows) * grid.Bins.Columns)
+    , Order(grid.Order.data() + block.Begin)
+    , Local{ grid.X.data() + block.Begin, grid.Y.data() + block.Begin,
+      grid.Ids.data() + block.Begin, Buffer<Index>(), grid.Bins.Columns }
+  {
+  }
+
+  void Run(const PointView& points, DuplicatePolicy policy)
+  {
+    this->SortIntoBins();
+    if (this->Own.Pieces(this->Grid.Bins) > 1)
+    {
+      this->Own.Nodes.Reserve(
+        this->Own.Count / 48); // to grow takes long; what is left is not missed
+    }
+    this->Own.Root = BoxTree::Build(
+      this->Local, this->Rows, this->Own.Points, this->Own.Nodes, Part(this->Monitor, 0.1, 0.6));
+    this->SortRows();
+    this->SetDuplicatesAside(points, policy);
+    if (!this->Own.Duplicates.empty())
+    {
+      this->CloseGaps();
+    }
+    const Index* const starts = this->Local.Starts.data();
+    Index* const to = this->Grid.Starts.data() +
+      static_cast<std::size_t>(this->Own.FirstRow) * this->Grid.Bins.Columns;
+    this->ForEach(this->Bins, 1.0, 1.0, [&](Index bin) { to[bin] = starts[bin]; });
+  }
+
+private:
+  /** Calls visit(0) to visit(count - 1), and reports from and to fractions. */
+  template <typename Visit>
+  void ForEach(std::size_t count, double from, double to, Visit&& visit) const
+  {
+    const auto report = [&](double fraction) {
+      Report(this->Monitor, from + fraction * (to - from));
+    };
+    report(0.0);
+    ForEachReporting(0, static_cast<Index>(count), report, visit);
+  }
+
+  /**
+   * Count, prefix sum, fill: while filling, starts[b + 1] runs from the first slot of bin b to its
+   * end, which is the first slot of the next.
+   */
+  void SortIntoBins()
+  {
+    const Placed* const placed = this->Own.Points;
+    const Index begin = this->Own.Begin, count = this->Own.Count;
+    this->Local.Starts.Resize(this->Bins + 1);
+    Index* const starts = this->Local.Starts.data();
+    this->ForEach(this->Bins + 1, 0.0, 0.0, [&](Index bin) { starts[bin] = 0; });
+    this->ForEach(count, 0.0, 0.05, [&](Index i) { ++starts[placed[i].Bin + 1]; });
+    Index sum = 0;
+    this->ForEach(
+      this->Bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
+    const Progress here = Part(this->Monitor, 0.05, 0.05);
+    TakePages(this->Grid.X, begin, begin + count, here);
+    TakePages(this->Grid.Y, begin, begin + count, here);
+    TakePages(this->Grid.Ids, begin, begin + count, here);
+    this->ForEach(count, 0.05, 0.1, [&](Index i) {
+      const Index slot = starts[placed[i].Bin + 1]++;
+      this->Local.X[slot] = placed[i].X;
+      this->Local.Y[slot] = placed[i].Y;
+      this->Local.Ids[slot] = placed[i].Id;
+    });
+  }
+
+  void SortRows()
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    Progress inSort;
+    RowSorter sorter(this->Local, this->Own.Points, inSort);
+    for (Index row = 0; row < this->Rows; ++row)
+    {
+      const auto slots = this->Local.Slots(row, 0, bins.Columns - 1);
+      double& lowest = this->Grid.RowLow[this->Own.FirstRow + row] = DBL_MAX;
+      double& highest = this->Grid.RowHigh[this->Own.FirstRow + row] = -DBL_MAX;
+      if (slots.first < slots.second)
+      {
+        const double done = 0.6 + 0.3 * row / this->Rows;
+        inSort = Part(this->Monitor, done, done);
+        const double low = bins.OriginY + (this->Own.FirstRow + row) * bins.BinHeight;
+        sorter.Sort(slots, low, low + bins.BinHeight, this->Order + slots.first);
+        lowest = this->Local.Y[this->Order[slots.first]];
+        highest = this->Local.Y[this->Order[slots.second - 1]];
+      }
+    }
+  }
+
+  /** Equal points follow each other. */
+  void SetDuplicatesAside(const PointView& points, DuplicatePolicy policy)
+  {
+    const BoxTree::Rows& local = this->Local;
+    Index kept = 0;
+    this->ForEach(this->Own.Count, 0.9, 0.95, [&](Index i) {
+      const Index first = this->Order[kept], slot = this->Order[i];
+      if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
+      {
+        kept = i;
+      }
+      else if (i > kept)
+      {
+        if (IsPreferred(points, policy, local.Ids[slot], local.Ids[first]))
+        {
+          std::swap(local.Ids[slot], local.Ids[first]);
+        }
+        this->IsAside.resize(this->Own.Count, false);
+        this->IsAside[slot] = true;
+        this->Own.Duplicates.Append(local.Ids[slot]);
+      }
+    });
+  }
+
+  void CloseGaps()
+  {
+    Buffer<Index> moved; // the number of slots kept before each
+    moved.Resize(static_cast<std::size_t>(this->Own.Count) + 1);
+    Index kept = 0;
+    this->ForEach(this->Own.Count, 0.95, 0.97, [&](Index slot) {
+      moved[slot] = kept;
+      if (!this->IsAside[slot])
+      {
+        this->Local.X[kept] = this->Local.X[slot];
+        this->Local.Y[kept] = this->Local.Y[slot];
+        this->Local.Ids[kept] = this->Local.Ids[slot];
+        ++kept;
+      }
+    });
+    moved[this->Own.Count] = kept;
+    Index ordered = 0;
+    this->ForEach(this->Own.Count, 0.97, 1.0, [&](Index i) {
+      if (!this->IsAside[this->Order[i]])
+      {
+        this->Order[ordered++] = moved[this->Order[i]];
+      }
+    });
+    Index* const starts = this->Local.Starts.data();
+    this->ForEach(this->Bins + 1, 1.0, 1.0, [&](Index bin) { starts[bin] = moved[starts[bin]]; });
+    const auto move = [&](Index& first, Index& count) {
+      if (count > 0)
+      {
+        count = moved[first + count] - moved[first];
+        first = moved[first];
+      }
+    };
+    for (Node& node : this->Own.Nodes)
+    {
+      for (int place = 0; place < Node::Places; ++place)
+      {
+        move(node.First[place], node.Count[place]);
+      }
+    }
+    move(this->Own.Root.First, this->Own.Root.Count);
+    this->Own.Count = kept;
+  }
+
+  BinGrid& Grid;
+  Block& Own;
+  const Progress& Monitor;
+  const Index Rows;
+  const std::size_t Bins;
+  Index* const Order;
+  BoxTree::Rows Local;
+  std::vector<bool> IsAside; ///< by slot; empty while there are no duplicates
+};
+
+/** One run of the binning; its members are what the passes hand on. */
+class GridBuilder
+{
+public:
+  GridBuilder(BinGrid& grid, const PointView& points, DuplicatePolicy policy, int threads)
+    : Grid(grid)
+    , Points(points)
+    , Policy(policy)
+    , Threads(threads)
+    , Count(points.Count - static_cast<Index>(grid.NotFinite.size()))
+  {
+  }
+
+  void Run(const Box& extent, const Progress& progress)
+  {
+    if (this->Count == 0)
+    {
+      this->Grid.Starts.Append(0);
+      return;
+    }
+    this->Lay(extent);
+    const Progress filling = Part(progress, 0.0, 0.875);
+    this->CountInGroups(Part(filling, 0.0, 0.1));
+    this->MakeBlocks();
+    this->SortIntoBlocks(Part(filling, 0.1, 0.3));
+    this->FillBlocks(Part(filling, 0.3, 1.0));
+    const Progress joining = Part(progress, 0.875, 1.0);
+    this->CloseGaps(Part(joining, 0.0, 0.0));
+    this->Join(joining);
+  }
+
+private:
+  /** Visits (id, x, y), scaled, of a range's finite points. */
+  template <typename Visit>
+  void ForEach(Index begin, Index end, Visit&& visit) const
+  {
+    const double scale = this->Grid.Scale;
+    ForEachPoint(this->Points, begin, end, this->Grid.NotFinite,
+      [&](Index id, const Point2& p) { visit(id, p.X * scale, p.Y * scale); });
+  }
+
+  void Lay(const Box& extent)
+  {
+    const Point2 &low = extent.Low, &high = extent.High;
+    const double greatest = std::max(
+      std::max(std::fabs(low.X), std::fabs(high.X)), std::max(std::fabs(low.Y), std::fabs(high.Y)));
+    if (greatest > 1e60 || (greatest > 0.0 && greatest < 1e-60))
+    {
+      this->ChooseScale(greatest);
+    }
+    const double scale = this->Grid.Scale;
+    this->Grid.Bins.OriginX = low.X * scale;
+    this->Grid.Bins.OriginY = low.Y * scale;
+    ChooseBins(
+      this->Grid.Bins, high.X * scale - low.X * scale, high.Y * scale - low.Y * scale, this->Count);
+  }
+
+  /** For coordinates of which the greatest is given; none when a small one would lose bits. */
+  void ChooseScale(double greatest)
+  {
+    double least = DBL_MAX; // magnitude other than zero
+    this->ForEach(0, this->Points.Count, [&](Index, double x, double y) {
+      for (double magnitude : { std::fabs(x), std::fabs(y) })
+      {
+        least = magnitude > 0.0 ? std::min(least, magnitude) : least;
+      }
+    });
+    int exponent;
+    std::frexp(greatest, &exponent);
+    // The factor itself must not leave the range.
+    const double scale = exponent < -1000 ? std::ldexp(1.0, 1000) : std::ldexp(1.0, -exponent);
+    if (least * scale > DBL_MIN / DBL_EPSILON)
+    {
+      this->Grid.Scale = scale;
+    }
+  }
+
+  /** Counts the points of each piece of the input in each group of rows. */
+  void CountInGroups(const Progress& progress)
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    this->Shift = 3; // the tree's lowest nodes are of eight rows
+    while (bins.Rows >> this->Shift > MaximumGroups)
+    {
+      ++this->Shift;
+    }
+    const int shift = this->Shift;
+    this->Groups = ((bins.Rows - 1) >> shift) + 1;
+    this->Pieces = NumberOfRanges(this->Points.Count, PiecePoints);
+    this->InGroup.assign(this->Pieces * this->Groups, 0);
+    this->Memory.Resize(this->Count);
+    ForEachRange(
+      this->Points.Count, this->Threads, progress,
+      [&](Index piece, Index begin, Index end) {
+        Index* const counts = this->InGroup.data() + static_cast<std::size_t>(piece) * this->Groups;
+        this->ForEach(begin, end, [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
+        TakePages(this->Memory, begin, end);
+      },
+      PiecePoints);
+  }
+
+  /** Blocks of groups, about as many points in each. */
+  void MakeBlocks()
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    this->BlockOf.resize(this->Groups);
+    Index sum = 0;
+    for (Index group = 0; group < this->Groups; ++group)
+    {
+      const Index row = group << this->Shift;
+      if (this->Blocks.empty() || this->Blocks.back().Count >= BlockPoints ||
+        (row - this->Blocks.back().FirstRow) * static_cast<double>(bins.Columns) >= BlockPoints)
+      {
+        this->Blocks.emplace_back();
+        this->Blocks.back().FirstRow = row;
+        this->Blocks.back().Begin = sum;
+        this->Blocks.back().Count = 0;
+        this->Blocks.back().Points = this->Memory.data() + sum;
+      }
+      Block& block = this->Blocks.back();
+      block.EndRow = std::min((group + 1) << this->Shift, bins.Rows);
+      for (std::size_t piece = 0; piece < this->Pieces; ++piece)
+      {
+        block.Count += this->InGroup[piece * this->Groups + group];
+      }
+      sum = block.Begin + block.Count;
+      this->BlockOf[group] = static_cast<Index>(this->Blocks.size()) - 1;
+    }
+  }
+
+  /** Where the points of each piece and block begin: piece after piece, their blocks in a row. */
+  std::vector<Index> BeginsInBlocks() const
+  {
+    const std::size_t blocks = this->Blocks.size();
+    std::vector<Index> begins(this->Pieces * blocks, 0);
+    for (std::size_t piece = 0; piece < this->Pieces; ++piece)
+    {
+      for (Index group = 0; group < this->Groups; ++group)
+      {
+        begins[piece * blocks + this->BlockOf[group]] +=
+          this->InGroup[piece * this->Groups + group];
+      }
+    }
+    for (std::size_t i = 0; i < blocks; ++i)
+    {
+      Index at = this->Blocks[i].Begin;
+      for (std::size_t k = i; k < begins.size(); k += blocks)
+      {
+        at += std::exchange(begins[k], at);
+      }
+    }
+    return begins;
+  }
+
+  void SortIntoBlocks(const Progress& progress)
+  {
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    const std::vector<Block>& blocks = this->Blocks;
+    std::vector<Index> next = this->BeginsInBlocks();
+    ForEachRange(
+      this->Points.Count, this->Threads, progress,
+      [&](Index piece, Index begin, Index end) {
+        Index* const to = next.data() + static_cast<std::size_t>(piece) * blocks.size();
+        this->ForEach(begin, end, [&](Index id, double x, double y) {
+          const Index row = bins.Row(y);
+          const Index block = this->BlockOf[row >> this->Shift];
+          const Index bin = (row - blocks[block].FirstRow) * bins.Columns + bins.Column(x);
+          this->Memory[to[block]++] = { x, y, id, bin };
+        });
+      },
+      PiecePoints);
+  }
+
+  void FillBlocks(const Progress& progress)
+  {
+    const std::size_t count = this->Count;
+    const BinGrid::Layout& bins = this->Grid.Bins;
+    this->Grid.X.Reserve(count + 8);
+    this->Grid.Y.Reserve(count + 8);
+    this->Resize(this->Count);
+    this->Grid.Starts.Resize(static_cast<std::size_t>(bins.Columns) * bins.Rows + 1);
+    this->Grid.RowLow.Resize(bins.Rows);
+    this->Grid.RowHigh.Resize(bins.Rows);
+
+    // The few blocks that are too large to wait for come last, and tell themselves what is done.
+    const auto isLarge = [&bins](const Block& block) { return block.Pieces(bins) > 1; };
+    const double large = std::accumulate(this->Blocks.begin(), this->Blocks.end(), 0.0,
+      [&](double points, const Block& block) { return points + isLarge(block) * block.Count; });
+    double done = 1.0 - large / count;
+    const auto fill = [&](Block& block, const Progress& inBlock) {
+      BlockFiller(this->Grid, block, inBlock).Run(this->Points, this->Policy);
+    };
+    ForEachPiece(static_cast<Index>(this->Blocks.size()), this->Threads, Part(progress, 0.0, done),
+      [&](Index i) {
+        if (!isLarge(this->Blocks[i]))
+        {
+          fill(this->Blocks[i], Progress());
+        }
+      });
+    for (Block& block : this->Blocks)
+    {
+      if (isLarge(block))
+      {
+        const double begin = done;
+        done = std::min(1.0, done + static_cast<double>(block.Count) / count);
+        fill(block, Part(progress, begin, done));
+      }
+    }
+    this->Grid.Room.Recycle(std::move(this->Memory));
+  }
+
+  void Resize(Index slots)
+  {
+    this->Grid.X.Resize(slots);
+    this->Grid.Y.Resize(slots);
+    this->Grid.Ids.Resize(slots);
+    this->Grid.Order.Resize(slots);
+  }
+
+  /** Moves the blocks' slots together, and lists the duplicates. */
+  void CloseGaps(const Progress& progress)
+  {
+    IdSet duplicates(this->Points.Count);
+    std::size_t listed = 0;
+    Index slots = 0;
+    for (Block& block : this->Blocks)
+    {
+      const auto move = [&](auto& values) {
+        std::copy_n(values.begin() + block.Begin, block.Count, values.begin() + slots);
+        Report(progress, 0.0);
+      };
+      if (block.Begin != slots)
+      {
+        move(this->Grid.X);
+        move(this->Grid.Y);
+        move(this->Grid.Ids);
+        move(this->Grid.Order);
+      }
+      block.Begin = slots;
+      slots += block.Count;
+      for (const Index id : block.Duplicates)
+      {
+        ReportStep(progress, listed++, 1);
+        duplicates.Add(id);
+      }
+    }
+    this->Grid.Duplicates = duplicates.List(progress);
+    this->Resize(slots);
+    this->Grid.Starts[this->Grid.Starts.size() - 1] = slots;
+  }
+
+  /** Starts, order and trees of the blocks become those of the grid. */
+  void Join(const Progress& progress)
+  {
+    std::vector<Index> firstNodes, pieces(1, 0); // a large block is worked on in several
+    std::vector<BoxTree::Child> roots;
+    Index nodes = 0;
+    for (const Block& block : this->Blocks)
+    {
+      if (block.Count > 0)
+      {
+        roots.push_back(block.Root);
+        roots.back().First += block.Root.Count > 0 ? block.Begin : nodes;
+      }
+      firstNodes.push_back(nodes);
+      nodes += static_cast<Index>(block.Nodes.size());
+      pieces.push_back(pieces.back() + block.Pieces(this->Grid.Bins));
+    }
+    this->Grid.Tree.Nodes.Reserve(nodes + this->Blocks.size());
+    this->Grid.Tree.Nodes.Resize(nodes);
+    ForEachPiece(pieces.back(), this->Threads, progress, [&](Index piece) {
+      const std::size_t i =
+        std::upper_bound(pieces.begin(), pieces.end(), piece) - pieces.begin() - 1;
+      this->JoinPiece(this->Blocks[i], firstNodes[i], piece - pieces[i], pieces[i + 1] - pieces[i]);
+    });
+    this->Grid.Tree.Join(std::move(roots), this->Grid.NumberOfPoints(), progress);
+  }
+
+  void JoinPiece(Block& block, Index firstNode, std::size_t part, std::size_t parts)
+  {
+    const auto forEach = [&](std::size_t count, auto&& work) {
+      for (std::size_t k = count * part / parts; k < count * (part + 1) / parts; ++k)
+      {
+        work(k);
+      }
+    };
+    const std::size_t columns = this->Grid.Bins.Columns;
+    const Index begin = block.Begin;
+    Index* const starts = this->Grid.Starts.data() + block.FirstRow * columns;
+    forEach(
+      (block.EndRow - block.FirstRow) * columns, [&](std::size_t bin) { starts[bin] += begin; });
+    Index* const order = this->Grid.Order.data() + begin;
+    forEach(block.Count, [&](std::size_t slot) { order[slot] += begin; });
+    forEach(block.Nodes.size(), [&](std::size_t k) {
+      Node& node = this->Grid.Tree.Nodes[firstNode + k] = block.Nodes[k];
+      for (int place = 0; place < Node::Places; ++place)
+      {
+        if (node.First[place] != None)
+        {
+          node.First[place] += node.Count[place] > 0 ? begin : firstNode;
+        }
+      }
+    });
+    if (parts == 1)
+    {
+      block.Nodes = Buffer<Node>();
+    }
+  }
+
+  BinGrid& Grid;
+  const PointView& Points;
+  const DuplicatePolicy Policy;
+  const int Threads;
+  const Index Count; ///< of the finite points
+  int Shift = 0;     ///< a group is 1 << Shift rows
+  Index Groups = 0;
+  std::size_t Pieces = 0;     ///< of the input
+  std::vector<Index> InGroup; ///< piece after piece, the points in each group
+  std::vector<Index> BlockOf; ///< one a group
+  Buffer<Placed> Memory;      ///< the points, block after block
+  std::vector<Block> Blocks;
+};
+} // namespace
 
 BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
   int threads, Extent* known)
@@ -649,478 +721,7 @@ BinGrid::BinGrid(const PointView& points, DuplicatePolicy policy, const Progress
   };
   Extent extent = known ? std::move(*known) : look();
   this->NotFinite = std::move(extent.NotFinite);
-  if (!this->Lay(points, extent))
-  {
-    this->Starts.Append(0);
-    return;
-  }
-  std::vector<Block> blocks = this->Fill(points, policy, Part(progress, 0.2, 0.9), threads);
-  this->Join(blocks, points.Count, Part(progress, 0.9, 1.0), threads);
-}
-
-BinGrid::Step BinGrid::StepTo(Index node) const
-{
-  const Node& own = this->Nodes[node];
-  if (own.Parent == None)
-  {
-    return { &own, 0, -Infinity, Infinity, -Infinity, Infinity };
-  }
-  const Node& parent = this->Nodes[own.Parent];
-  int place = 0;
-  while (parent.First[place] != node || parent.Count[place] > 0)
-  {
-    ++place;
-  }
-  return { &own, place, parent.LowX[place], parent.HighX[place], parent.LowY[place],
-    parent.HighY[place] };
-}
-
-BinGrid::Step BinGrid::Lowest(Index slot) const
-{
-  const Index eight = slot / 8, last = static_cast<Index>(this->LeafNodes.size()) - 1;
-  for (Index at : { eight, std::max(eight - 1, 0), std::min(eight + 1, last) })
-  {
-    const Node& node = this->Nodes[this->LeafNodes[at]];
-    unsigned int isWithin = 0;
-    for (int place = 0; place < Node::Places; ++place)
-    {
-      const unsigned int after = static_cast<unsigned int>(slot - node.First[place]);
-      isWithin |= after < static_cast<unsigned int>(node.Count[place]);
-    }
-    if (isWithin)
-    {
-      return this->StepTo(this->LeafNodes[at]);
-    }
-  }
-  return this->StepTo(this->FindLowest(slot));
-}
-
-/** From the root downwards. */
-Index BinGrid::FindLowest(Index slot) const
-{
-  const Point2 p = this->PointAt(slot);
-  for (Index index = static_cast<Index>(this->Nodes.size()) - 1;;)
-  {
-    // Boxes of siblings have no point in common.
-    const Node& node = this->Nodes[index];
-    int place = 0;
-    while (!(node.LowX[place] <= p.X && p.X <= node.HighX[place] && node.LowY[place] <= p.Y &&
-      p.Y <= node.HighY[place]))
-    {
-      ++place;
-    }
-    if (node.Count[place] > 0)
-    {
-      return index;
-    }
-    index = node.First[place];
-  }
-}
-
-bool BinGrid::Lay(const PointView& points, const Extent& extent)
-{
-  const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
-  if (count == 0)
-  {
-    return false;
-  }
-
-  Point2 low = extent.Low, high = extent.High;
-  const double greatest = std::max(
-    std::max(std::fabs(low.X), std::fabs(high.X)), std::max(std::fabs(low.Y), std::fabs(high.Y)));
-  if (greatest > 1e60 || (greatest > 0.0 && greatest < 1e-60))
-  {
-    double least = DBL_MAX; // magnitude other than zero
-    VisitFinite(points, 0, points.Count, 1.0, [&](Index, double x, double y) {
-      for (double magnitude : { std::fabs(x), std::fabs(y) })
-      {
-        least = magnitude > 0.0 ? std::min(least, magnitude) : least;
-      }
-    });
-    int exponent;
-    std::frexp(greatest, &exponent);
-    // Two steps, because the factor itself may leave the range; only when no small coordinate loses
-    // bits.
-    const double scale = exponent < -1000 ? std::ldexp(1.0, 1000) : std::ldexp(1.0, -exponent);
-    if (least * scale > DBL_MIN / DBL_EPSILON)
-    {
-      this->Scale = scale;
-      for (double* bound : { &low.X, &high.X, &low.Y, &high.Y })
-      {
-        *bound *= scale;
-      }
-    }
-  }
-  this->Bins.OriginX = low.X;
-  this->Bins.OriginY = low.Y;
-  ChooseBins(this->Bins, high.X - low.X, high.Y - low.Y, count);
-  return true;
-}
-
-std::vector<BinGrid::Block> BinGrid::Fill(
-  const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads)
-{
-  const Layout& bins = this->Bins;
-  const Index count = points.Count - static_cast<Index>(this->NotFinite.size());
-
-  // How many points of each piece are in each group of rows.
-  int shift = 3; // the tree's lowest nodes are of eight rows
-  while (bins.Rows >> shift > MaximumGroups)
-  {
-    ++shift;
-  }
-  const Index groups = ((bins.Rows - 1) >> shift) + 1;
-  const std::size_t pieces = NumberOfRanges(points.Count, PiecePoints);
-  std::vector<Index> inGroup(pieces * groups, 0);
-  Buffer<Placed> placed;
-  placed.Resize(count);
-  ForEachRange(
-    points.Count, threads, Part(progress, 0.0, 0.1),
-    [&](Index piece, Index begin, Index end) {
-      Index* const counts = inGroup.data() + static_cast<std::size_t>(piece) * groups;
-      VisitFinite(points, begin, end, this->Scale,
-        [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
-      TakePages(placed, begin, end);
-    },
-    PiecePoints);
-
-  // Blocks of groups, about as many points in each; where each piece's points of a block begin.
-  std::vector<Block> blocks;
-  std::vector<Index> blockOf(groups);
-  Index sum = 0;
-  for (Index group = 0; group < groups; ++group)
-  {
-    const Index row = group << shift, endRow = std::min((group + 1) << shift, bins.Rows);
-    if (blocks.empty() || blocks.back().Count >= BlockPoints ||
-      (row - blocks.back().FirstRow) * static_cast<double>(bins.Columns) >= BlockPoints)
-    {
-      blocks.emplace_back();
-      blocks.back().FirstRow = row;
-      blocks.back().Begin = sum;
-      blocks.back().Count = 0;
-    }
-    blocks.back().EndRow = endRow;
-    for (std::size_t piece = 0; piece < pieces; ++piece)
-    {
-      blocks.back().Count += inGroup[piece * groups + group];
-    }
-    sum = blocks.back().Begin + blocks.back().Count;
-    blockOf[group] = static_cast<Index>(blocks.size()) - 1;
-  }
-  std::vector<Index> next(pieces * blocks.size(), 0);
-  for (std::size_t piece = 0; piece < pieces; ++piece)
-  {
-    for (Index group = 0; group < groups; ++group)
-    {
-      next[piece * blocks.size() + blockOf[group]] += inGroup[piece * groups + group];
-    }
-  }
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-  {
-    Index at = blocks[i].Begin;
-    for (std::size_t k = i; k < next.size(); k += blocks.size())
-    {
-      const Index inPiece = next[k];
-      next[k] = at;
-      at += inPiece;
-    }
-  }
-
-  for (Block& block : blocks)
-  {
-    block.Points = placed.data() + block.Begin;
-  }
-  ForEachRange(
-    points.Count, threads, Part(progress, 0.1, 0.3),
-    [&](Index piece, Index begin, Index end) {
-      Index* const to = next.data() + static_cast<std::size_t>(piece) * blocks.size();
-      VisitFinite(points, begin, end, this->Scale, [&](Index id, double x, double y) {
-        const Index row = bins.Row(y);
-        const Index block = blockOf[row >> shift];
-        const Index bin = (row - blocks[block].FirstRow) * bins.Columns + bins.Column(x);
-        placed[to[block]++] = { x, y, id, bin };
-      });
-    },
-    PiecePoints);
-
-  this->X.Reserve(static_cast<std::size_t>(count) + 8);
-  this->Y.Reserve(static_cast<std::size_t>(count) + 8);
-  this->X.Resize(count);
-  this->Y.Resize(count);
-  this->Ids.Resize(count);
-  this->Order.Resize(count);
-  this->Starts.Resize(static_cast<std::size_t>(bins.Columns) * bins.Rows + 1);
-  this->Starts[this->Starts.size() - 1] = count;
-  this->RowLow.Resize(bins.Rows);
-  this->RowHigh.Resize(bins.Rows);
-
-  // The few blocks that are too large to wait for come last, and tell themselves what is done.
-  const auto isLarge = [&bins](const Block& block) { return block.Pieces(bins) > 1; };
-  const Progress inBlocks = Part(progress, 0.3, 1.0);
-  const double large = std::accumulate(blocks.begin(), blocks.end(), 0.0,
-    [&](double points, const Block& block) { return points + isLarge(block) * block.Count; });
-  double done = 1.0 - large / count;
-  ForEachPiece(static_cast<Index>(blocks.size()), threads, Part(inBlocks, 0.0, done), [&](Index i) {
-    if (!isLarge(blocks[i]))
-    {
-      this->FillBlock(blocks[i], points, policy, Progress());
-    }
-  });
-  for (Block& block : blocks)
-  {
-    if (isLarge(block))
-    {
-      const double begin = done;
-      done = std::min(1.0, done + static_cast<double>(block.Count) / count);
-      this->FillBlock(block, points, policy, Part(inBlocks, begin, done));
-    }
-  }
-  this->Room.Recycle(std::move(placed));
-  return blocks;
-}
-
-void BinGrid::FillBlock(
-  Block& block, const PointView& points, DuplicatePolicy policy, const Progress& progress)
-{
-  const Index rows = block.EndRow - block.FirstRow;
-  const std::size_t firstBin = static_cast<std::size_t>(block.FirstRow) * this->Bins.Columns;
-  const std::size_t bins = static_cast<std::size_t>(rows) * this->Bins.Columns;
-  Rows local{ this->X.data() + block.Begin, this->Y.data() + block.Begin,
-    this->Ids.data() + block.Begin, Buffer<Index>(), this->Bins.Columns };
-
-  // Count, prefix sum, fill: while filling, starts[b + 1] runs from the first slot of bin b to its
-  // end, which is the first slot of the next.
-  local.Starts.Resize(bins + 1);
-  Index* const starts = local.Starts.data();
-  const auto forEach = [&progress](std::size_t count, double from, double to, auto&& visit) {
-    const auto report = [&](double fraction) { Report(progress, from + fraction * (to - from)); };
-    report(0.0);
-    ForEachReporting(0, static_cast<Index>(count), report, visit);
-  };
-  forEach(bins + 1, 0.0, 0.0, [&](Index bin) { starts[bin] = 0; });
-  const Placed* const placed = block.Points;
-  forEach(block.Count, 0.0, 0.05, [&](Index i) { ++starts[placed[i].Bin + 1]; });
-  Index sum = 0;
-  forEach(bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
-  const Progress here = Part(progress, 0.05, 0.05);
-  TakePages(this->X, block.Begin, block.Begin + block.Count, here);
-  TakePages(this->Y, block.Begin, block.Begin + block.Count, here);
-  TakePages(this->Ids, block.Begin, block.Begin + block.Count, here);
-  forEach(block.Count, 0.05, 0.1, [&](Index i) {
-    const Index slot = starts[placed[i].Bin + 1]++;
-    local.X[slot] = placed[i].X;
-    local.Y[slot] = placed[i].Y;
-    local.Ids[slot] = placed[i].Id;
-  });
-
-  if (block.Pieces(this->Bins) > 1)
-  {
-    block.Nodes.Reserve(block.Count / 48); // to grow takes long; nobody misses what is not used
-  }
-  block.Root = TreeBuilder(local, block.Points, block.Nodes, Part(progress, 0.1, 0.6)).Build(rows);
-
-  Index* const order = this->Order.data() + block.Begin;
-  Progress inSort;
-  RowSorter sorter(local, block.Points, inSort);
-  for (Index row = 0; row < rows; ++row)
-  {
-    const auto slots = local.Slots(row, 0, this->Bins.Columns - 1);
-    this->RowLow[block.FirstRow + row] = DBL_MAX;
-    this->RowHigh[block.FirstRow + row] = -DBL_MAX;
-    if (slots.first < slots.second)
-    {
-      const double done = 0.6 + 0.3 * row / rows;
-      inSort = Part(progress, done, done);
-      const double low = this->Bins.OriginY + (block.FirstRow + row) * this->Bins.BinHeight;
-      sorter.Sort(slots, low, low + this->Bins.BinHeight, order + slots.first);
-      this->RowLow[block.FirstRow + row] = local.Y[order[slots.first]];
-      this->RowHigh[block.FirstRow + row] = local.Y[order[slots.second - 1]];
-    }
-  }
-
-  // Equal points follow each other.
-  std::vector<bool> isAside;
-  Index kept = 0;
-  forEach(block.Count, 0.9, 0.95, [&](Index i) {
-    const Index first = order[kept], slot = order[i];
-    if (local.Y[first] != local.Y[slot] || local.X[first] != local.X[slot])
-    {
-      kept = i;
-    }
-    else if (i > kept)
-    {
-      if (IsPreferred(points, policy, local.Ids[slot], local.Ids[first]))
-      {
-        std::swap(local.Ids[slot], local.Ids[first]);
-      }
-      isAside.resize(block.Count, false);
-      isAside[slot] = true;
-      block.Duplicates.Append(local.Ids[slot]);
-    }
-  });
-  if (!block.Duplicates.empty())
-  {
-    // Close the gaps: moved[s] is the number of slots kept before s.
-    Buffer<Index> moved;
-    moved.Resize(static_cast<std::size_t>(block.Count) + 1);
-    kept = 0;
-    forEach(block.Count, 0.95, 0.97, [&](Index slot) {
-      moved[slot] = kept;
-      if (!isAside[slot])
-      {
-        local.X[kept] = local.X[slot];
-        local.Y[kept] = local.Y[slot];
-        local.Ids[kept] = local.Ids[slot];
-        ++kept;
-      }
-    });
-    moved[block.Count] = kept;
-    Index ordered = 0;
-    forEach(block.Count, 0.97, 1.0, [&](Index i) {
-      if (!isAside[order[i]])
-      {
-        order[ordered++] = moved[order[i]];
-      }
-    });
-    forEach(bins + 1, 1.0, 1.0, [&](Index bin) { starts[bin] = moved[starts[bin]]; });
-    const auto move = [&](Index& first, Index& count) {
-      if (count > 0)
-      {
-        count = moved[first + count] - moved[first];
-        first = moved[first];
-      }
-    };
-    for (Node& node : block.Nodes)
-    {
-      for (int place = 0; place < Node::Places; ++place)
-      {
-        move(node.First[place], node.Count[place]);
-      }
-    }
-    move(block.Root.First, block.Root.Count);
-    block.Count = kept;
-  }
-  Index* const to = this->Starts.data() + firstBin;
-  forEach(bins, 1.0, 1.0, [&](Index bin) { to[bin] = starts[bin]; });
-}
-
-void BinGrid::Join(std::vector<Block>& blocks, Index idLimit, const Progress& progress, int threads)
-{
-  // Where the blocks' slots and nodes go. Reports for blocks that hold most points.
-  const Progress here = Part(progress, 0.0, 0.0);
-  IdSet duplicates(idLimit);
-  std::size_t listed = 0;
-  std::vector<Index> firstNodes, pieces(1, 0); // a large block is worked on in several
-  std::vector<Child> roots;
-  Index slots = 0, nodes = 0;
-  for (Block& block : blocks)
-  {
-    const std::size_t from = block.Begin, to = slots, count = block.Count;
-    if (from != to)
-    {
-      std::copy_n(this->X.begin() + from, count, this->X.begin() + to);
-      Report(here, 0.0);
-      std::copy_n(this->Y.begin() + from, count, this->Y.begin() + to);
-      Report(here, 0.0);
-      std::copy_n(this->Ids.begin() + from, count, this->Ids.begin() + to);
-      std::copy_n(this->Order.begin() + from, count, this->Order.begin() + to);
-      Report(here, 0.0);
-    }
-    firstNodes.push_back(nodes);
-    if (block.Count > 0)
-    {
-      roots.push_back(block.Root);
-      roots.back().First += block.Root.Count > 0 ? slots : nodes;
-    }
-    block.Begin = slots;
-    slots += block.Count;
-    nodes += static_cast<Index>(block.Nodes.size());
-    pieces.push_back(pieces.back() + block.Pieces(this->Bins));
-    for (const Index id : block.Duplicates)
-    {
-      ReportStep(here, listed++, 1);
-      duplicates.Add(id);
-    }
-  }
-  this->Duplicates = duplicates.List(here);
-  this->X.Resize(slots);
-  this->Y.Resize(slots);
-  this->Ids.Resize(slots);
-  this->Order.Resize(slots);
-  this->Starts[this->Starts.size() - 1] = slots;
-
-  this->Nodes.Reserve(nodes + blocks.size());
-  this->Nodes.Resize(nodes);
-  ForEachPiece(pieces.back(), threads, progress, [&](Index piece) {
-    const std::size_t i =
-      std::upper_bound(pieces.begin(), pieces.end(), piece) - pieces.begin() - 1;
-    Block& block = blocks[i];
-    const auto forEach = [&](std::size_t count, auto&& work) {
-      const std::size_t part = piece - pieces[i], parts = pieces[i + 1] - pieces[i];
-      for (std::size_t k = count * part / parts; k < count * (part + 1) / parts; ++k)
-      {
-        work(k);
-      }
-    };
-    const std::size_t columns = this->Bins.Columns;
-    Index* const starts = this->Starts.data() + block.FirstRow * columns;
-    forEach((block.EndRow - block.FirstRow) * columns,
-      [&](std::size_t bin) { starts[bin] += block.Begin; });
-    Index* const order = this->Order.data() + block.Begin;
-    forEach(block.Count, [&](std::size_t slot) { order[slot] += block.Begin; });
-    forEach(block.Nodes.size(), [&](std::size_t k) {
-      Node& node = this->Nodes[firstNodes[i] + k] = block.Nodes[k];
-      for (int place = 0; place < Node::Places; ++place)
-      {
-        if (node.First[place] != None)
-        {
-          node.First[place] += node.Count[place] > 0 ? block.Begin : firstNodes[i];
-        }
-      }
-    });
-    if (pieces[i + 1] - pieces[i] == 1)
-    {
-      block.Nodes = Buffer<Node>();
-    }
-  });
-  // Eight blocks after eight, and so on up, until all hang from one root.
-  while (roots.size() > 1 || roots.front().Count > 0)
-  {
-    std::vector<Child> above;
-    for (std::size_t i = 0; i < roots.size(); i += Node::Places)
-    {
-      const auto count = std::min<std::size_t>(Node::Places, roots.size() - i);
-      above.push_back(
-        count == 1 && i > 0 ? roots[i] : AddNode(&roots[i], static_cast<int>(count), this->Nodes));
-    }
-    roots = std::move(above);
-  }
-  this->Nodes.Shrink();
-  Report(progress, 1.0);
-
-  this->LeafNodes.Resize((static_cast<std::size_t>(slots) + 7) / 8);
-  this->Nodes[this->Nodes.size() - 1].Parent = None;
-  for (std::size_t i = this->Nodes.size(); i-- > 0;)
-  {
-    if (i % 65536 == 0)
-    {
-      Report(progress, 1.0);
-    }
-    const Node& node = this->Nodes[i];
-    for (int place = 0; place < Node::Places; ++place)
-    {
-      if (node.Count[place] > 0)
-      {
-        const Index first = node.First[place], end = first + node.Count[place];
-        std::fill(this->LeafNodes.begin() + first / 8, this->LeafNodes.begin() + (end + 7) / 8,
-          static_cast<Index>(i));
-      }
-      else if (node.First[place] != None)
-      {
-        this->Nodes[node.First[place]].Parent = static_cast<Index>(i);
-      }
-    }
-  }
+  GridBuilder(*this, points, policy, threads).Run(extent, Part(progress, 0.2, 1.0));
 }
 
 } // namespace elevation

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points sorted into the bins of a uniform grid over their bounding box, and a tree of boxes over
- * the bins, for the searches of the triangulation.
+ * Points sorted into the bins of a uniform grid over their bounding box. The index for what is
+ * near: a bin is found in one step, with the points of its neighbours, which no other index offers.
  *
  * In: points. Out: the same points in *slots*, row of bins after row of bins, so that the points of
  * neighbouring bins of a row are contiguous; equal points set aside; the rest is a lookup.
- * Where density is even, a bin holds about one point. Where it is not, some bins hold many: the
- * slots of a full bin are ordered by halving its points again and again, whatever their density.
- * The tree joins both: a leaf is a stretch of slots, the bins of part of a row or a few points of a
- * full bin; a node knows the bounding boxes of its eight children. So voids are passed over, and
- * clusters are entered, in a number of steps that is logarithmic in the number of points.
+ * Where density is even, a bin holds about one point. Where it is not, some bins hold many, and a
+ * tree of boxes over the bins leads to few of them (BoxTree.h).
  * The passes: find the bounds and lay the bins; sort the points into blocks of rows, each of which
  * fits into a core's cache; in each block sort the points into bins, build its part of the tree,
  * order its rows by (y, x), set duplicates aside, which are neighbours then; join the blocks. The
@@ -19,7 +16,6 @@
  *
  * The bin of a coordinate is a monotone function of it, also in floating point: all points with x
  * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
- * The boxes of a node's children have no point in common.
  *
  * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 4 for the bins and
  * 3 for the tree (5 in full bins). While it is built, 24 more, and a few more in full bins.
@@ -27,8 +23,8 @@
 #ifndef elevation_Triangulate_BinGrid_h
 #define elevation_Triangulate_BinGrid_h
 
+#include "BoxTree.h"
 #include "Options.h"
-#include "Kernel/Base/Base.h"
 
 #include <utility>
 #include <vector>
@@ -62,33 +58,6 @@ public:
   };
 
   /**
-   * A node of the tree: bounding boxes of the points of up to eight children. The other places hold
-   * the empty box, from infinity to minus infinity, which nothing reaches.
-   */
-  struct Node
-  {
-    static constexpr int Places = 8;
-    double LowX[Places], HighX[Places], LowY[Places], HighY[Places];
-    Index First[Places]; ///< of a leaf the first slot, else the node
-    Index Count[Places]; ///< of a leaf the number of slots, else 0
-    Index Size;          ///< number of points below
-    Index Parent;        ///< None of the root
-  };
-
-  /**
-   * A node on the way from a point up to the root, with the box of its points, which is the whole
-   * plane for the root, and its place in its parent. All points within the box are below the node.
-   */
-  struct Step
-  {
-    const BinGrid::Node* Node;
-    int Place;
-    double LowX, HighX, LowY, HighY;
-
-    bool IsRoot() const { return this->Node->Parent == None; }
-  };
-
-  /**
    * Bins the finite points and sets duplicates aside.
    * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
    * that squares of distances neither over- nor underflow; this is exact, or not done.
@@ -108,10 +77,8 @@ public:
     return { starts[firstColumn], starts[lastColumn + 1] };
   }
 
-  /** The node above the leaf that holds a slot. */
-  Step Lowest(Index slot) const;
-  /** The parent of a node that is not the root. */
-  Step Above(const Step& step) const { return this->StepTo(step.Node->Parent); }
+  /** The node of the tree above the leaf that holds a slot. */
+  BoxTree::Step Lowest(Index slot) const { return this->Tree.Lowest(slot, this->PointAt(slot)); }
 
   Buffer<double> X, Y; ///< coordinates by slot; eight more values may be read than there are
   Buffer<Index> Ids;   ///< the input's point id by slot
@@ -120,8 +87,7 @@ public:
   Buffer<Index> Order;            ///< all slots by increasing (y, x): row after row
   Buffer<Index> Starts;           ///< first slot of each bin, row by row, and the number of slots
   Buffer<double> RowLow, RowHigh; ///< range of y of the points in each row
-  Buffer<Node> Nodes;             ///< the tree, children before parents: the root is the last
-  Buffer<Index> LeafNodes;        ///< for eight slots after eight, a node above one of their leaves
+  BoxTree Tree;
 
   /** Memory that binning has used and nobody uses now: as much as the triangles take. To reuse it
      is cheaper than to ask for other: the system clears what it gives. */
@@ -129,20 +95,6 @@ public:
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite
-
-private:
-  struct Block;
-
-  Step StepTo(Index node) const;
-  Index FindLowest(Index slot) const;
-
-  bool Lay(const PointView& points, const Extent& extent);
-  std::vector<Block> Fill(
-    const PointView& points, DuplicatePolicy policy, const Progress& progress, int threads);
-  void FillBlock(
-    Block& block, const PointView& points, DuplicatePolicy policy, const Progress& progress);
-  /** @param idLimit  the first id that no point has */
-  void Join(std::vector<Block>& blocks, Index idLimit, const Progress& progress, int threads);
 };
 
 } // namespace elevation

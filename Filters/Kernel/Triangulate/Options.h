@@ -7,6 +7,7 @@
 #ifndef elevation_Triangulate_Options_h
 #define elevation_Triangulate_Options_h
 
+#include "Instructions.h"
 #include "Kernel/Lattice/Lattice.h"
 
 #include <vector>
@@ -53,9 +54,9 @@ struct DelaunayOptions
   int NumberOfThreads = 1;
   /** For tests: points in a strip that one thread grows; 0: chosen. */
   Index PointsPerStrip = 0;
-  /** Off: the search without wide instructions, as on processors without them. The result is the
-   * same. */
-  bool UseWideInstructions = true;
+  /** For tests and benchmarks: no wider instructions than these, though the processor has them. The
+   * result is the same. */
+  InstructionSet Instructions = InstructionSet::AVX512;
   /** For tests: by divide and conquer from the start, without growing. The result is the same. */
   bool DivideAtOnce = false;
 };

@@ -13,7 +13,7 @@ using namespace testing_points;
 
 namespace
 {
-struct Box
+struct Bounds
 {
   double LowX, HighX, LowY, HighY;
 };
@@ -22,19 +22,19 @@ struct Box
  * Walks the tree: each slot is in one leaf, boxes are those of their points, boxes of siblings have
  * no point in common, and a leaf is no larger than promised.
  */
-Box ExpectTree(const BinGrid& grid, Index nodeId, std::vector<int>& visits)
+Bounds ExpectTree(const BinGrid& grid, Index nodeId, std::vector<int>& visits)
 {
-  const BinGrid::Node& node = grid.Nodes[nodeId];
-  Box whole{ INFINITY, -INFINITY, INFINITY, -INFINITY };
-  for (int place = 0; place < BinGrid::Node::Places; ++place)
+  const BoxTree::Node& node = grid.Tree.Nodes[nodeId];
+  Bounds whole{ INFINITY, -INFINITY, INFINITY, -INFINITY };
+  for (int place = 0; place < BoxTree::Node::Places; ++place)
   {
-    const Box box{ node.LowX[place], node.HighX[place], node.LowY[place], node.HighY[place] };
+    const Bounds box{ node.LowX[place], node.HighX[place], node.LowY[place], node.HighY[place] };
     if (!(box.LowX <= box.HighX))
     {
       EXPECT_EQ(node.Count[place], 0);
       continue;
     }
-    Box expected{ INFINITY, -INFINITY, INFINITY, -INFINITY };
+    Bounds expected{ INFINITY, -INFINITY, INFINITY, -INFINITY };
     if (node.Count[place] == 0)
     {
       EXPECT_LT(node.First[place], nodeId);
@@ -71,7 +71,7 @@ void ExpectAllFound(const Cloud& cloud, const BinGrid& grid)
   ids.insert(grid.NotFinite.begin(), grid.NotFinite.end());
   EXPECT_EQ(static_cast<Index>(ids.size()), cloud.Count());
   std::vector<int> visits(grid.NumberOfPoints(), 0);
-  ExpectTree(grid, static_cast<Index>(grid.Nodes.size()) - 1, visits);
+  ExpectTree(grid, static_cast<Index>(grid.Tree.Nodes.size()) - 1, visits);
   for (Index slot = 0; slot < grid.NumberOfPoints(); ++slot)
   {
     ASSERT_EQ(visits[slot], 1) << "in one leaf";
@@ -83,22 +83,22 @@ void ExpectAllFound(const Cloud& cloud, const BinGrid& grid)
     ASSERT_TRUE(slots.first <= slot && slot < slots.second) << "point " << grid.Ids[slot];
     ASSERT_LE(grid.RowLow[row], p.Y);
     ASSERT_GE(grid.RowHigh[row], p.Y);
-    BinGrid::Step step = grid.Lowest(slot);
-    const BinGrid::Node& last = *step.Node;
+    BoxTree::Step step = grid.Lowest(slot);
+    const BoxTree::Node& last = *step.Node;
     bool isInLeaf = false;
-    for (int place = 0; place < BinGrid::Node::Places; ++place)
+    for (int place = 0; place < BoxTree::Node::Places; ++place)
     {
       isInLeaf =
         isInLeaf || (last.First[place] <= slot && slot < last.First[place] + last.Count[place]);
     }
     ASSERT_TRUE(isInLeaf) << "the node above the leaf";
     int height = 0;
-    for (; !step.IsRoot(); step = grid.Above(step))
+    for (; !step.IsRoot(); step = grid.Tree.Above(step))
     {
       ASSERT_TRUE(step.LowX <= p.X && p.X <= step.HighX && step.LowY <= p.Y && p.Y <= step.HighY);
       ++height;
     }
-    ASSERT_EQ(step.Node, grid.Nodes.end() - 1) << "the way leads to the root";
+    ASSERT_EQ(step.Node, grid.Tree.Nodes.end() - 1) << "the way leads to the root";
     ASSERT_LE(height, 40) << "the tree is not balanced";
   }
 }
@@ -112,7 +112,7 @@ void ExpectSame(const BinGrid& one, const BinGrid& three)
   EXPECT_TRUE(isSame(one.Order, three.Order) && isSame(one.Starts, three.Starts));
   EXPECT_EQ(one.Duplicates, three.Duplicates);
   EXPECT_TRUE(isSame(one.RowLow, three.RowLow) && isSame(one.RowHigh, three.RowHigh));
-  EXPECT_EQ(one.Nodes.size(), three.Nodes.size());
+  EXPECT_EQ(one.Tree.Nodes.size(), three.Tree.Nodes.size());
 }
 } // namespace
 
@@ -122,7 +122,7 @@ TEST(BinGrid, FindsEveryPointInTheBinOfItsCoordinates)
   const Cloud cloud = RandomCloud(random, 5000);
   const BinGrid grid(cloud.View(), DuplicatePolicy::KeepFirst, Progress());
   ExpectAllFound(cloud, grid);
-  EXPECT_LT(grid.Nodes.size(), 5000u / 25) << "evenly spread points need few nodes";
+  EXPECT_LT(grid.Tree.Nodes.size(), 5000u / 25) << "evenly spread points need few nodes";
 }
 
 TEST(BinGrid, HalvesFullBinsWhereDensityIsUneven)
@@ -157,7 +157,7 @@ TEST(BinGrid, StaysBalancedWhateverTheDensity)
   {
     const BinGrid grid(cloud->View(), DuplicatePolicy::KeepFirst, Progress());
     ExpectAllFound(*cloud, grid);
-    EXPECT_LT(grid.Nodes.size(), 20000u / 8);
+    EXPECT_LT(grid.Tree.Nodes.size(), 20000u / 8);
   }
 }
 

@@ -76,19 +76,24 @@ bool AreSame(const Triangulation& one, const Triangulation& other)
 const std::vector<SearchStrategy> BothStrategies{ SearchStrategy::VoxelTraversal,
   SearchStrategy::Compactness };
 
-/** Each strategy, with wide instructions and without. */
+/** Each strategy with each set of instructions that the processor has. */
 void ExpectSameFromEverySearch(const Cloud& cloud, const Triangulation& expected,
   DelaunayOptions options, const std::vector<SearchStrategy>& strategies = BothStrategies)
 {
   for (const SearchStrategy strategy : strategies)
   {
-    for (const bool isWide : { false, true })
+    for (const InstructionSet set :
+      { InstructionSet::Scalar, InstructionSet::AVX2, InstructionSet::AVX512 })
     {
+      if (set > WidestInstructions())
+      {
+        continue; // TestWideApexSearch says so
+      }
       options.Strategy = strategy;
-      options.UseWideInstructions = isWide;
+      options.Instructions = set;
       EXPECT_TRUE(AreSame(expected, elevation::Triangulate(cloud.View(), options)))
         << (strategy == SearchStrategy::Compactness ? "compactness" : "voxel traversal") << ", "
-        << (isWide ? "wide" : "narrow") << ", changes the triangles";
+        << "instructions " << static_cast<int>(set) << ", changes the triangles";
     }
   }
 }

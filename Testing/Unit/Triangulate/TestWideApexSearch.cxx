@@ -33,10 +33,10 @@ Index Apex(const BinGrid& grid, Index a, Index b)
  * proved holds the apex, as long as the apex is above the vertex.
  * @return the part of the edges for which there was a proof
  */
-double ExpectProofsHold(const Cloud& cloud)
+double ExpectProofsHold(const Cloud& cloud, InstructionSet set)
 {
   const BinGrid grid(cloud.View(), DuplicatePolicy::KeepFirst, Progress());
-  WideApexSearch around(grid);
+  WideApexSearch around(grid, set);
   const Index count = grid.NumberOfPoints();
   int asked = 0, proved = 0;
   for (Index i = 0; i < count; i += 10)
@@ -83,17 +83,99 @@ double ExpectProofsHold(const Cloud& cloud)
   }
   return asked > 0 ? double(proved) / asked : 0.0;
 }
+
+std::string NameOf(InstructionSet set)
+{
+  return set == InstructionSet::AVX2 ? "AVX2" : "AVX512";
+}
+
+class EachInstructionSet : public testing::TestWithParam<InstructionSet>
+{
+protected:
+  void SetUp() override
+  {
+    if (GetParam() > WidestInstructions())
+    {
+      GTEST_SKIP() << "this processor has no " << NameOf(GetParam());
+    }
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(WideApexSearch, EachInstructionSet,
+  testing::Values(InstructionSet::AVX2, InstructionSet::AVX512),
+  [](const testing::TestParamInfo<InstructionSet>& info) { return NameOf(info.param); });
+
+/** Points in a grid of 20 by 20 bins of size 1; vertex and edge are the first two. */
+class BinnedCloud : public Cloud
+{
+public:
+  BinnedCloud()
+  {
+    this->Add(10.5, 8.1);
+    this->Add(10.9, 8.2);
+  }
+  /** So many points spread over a bin. */
+  void Fill(int column, int row, int count)
+  {
+    for (int i = 0; i < count; ++i)
+    {
+      this->Add(column + 0.02 + 0.1 * (i % 3) / 3.0, row + (i + 0.5) / count);
+    }
+  }
+  /** One point in a bin far from the edge, and in two corners, for as many points as bins. */
+  void Finish()
+  {
+    this->Add(0.0, 0.0);
+    this->Add(20.0, 20.0);
+    for (int i = 0; this->Count() < 400; ++i)
+    {
+      this->Add(0.5 + i % 7, 0.5 + i / 7 % 7 + 1e-3 * i);
+    }
+  }
+};
+
+/**
+ * Whether the apex over the edge from the first to the second point is proved, and followed, and is
+ * the last one that was added before Finish().
+ */
+bool IsLastProved(BinnedCloud cloud, InstructionSet set)
+{
+  const Index last = cloud.Count() - 1;
+  cloud.Finish();
+  const BinGrid grid(cloud.View(), DuplicatePolicy::KeepFirst, Progress());
+  EXPECT_TRUE(grid.Bins.Columns == 20 && grid.Bins.Rows == 20 && grid.Bins.BinWidth == 1.0);
+  const auto slotOf = [&grid](Index id) {
+    return static_cast<Index>(std::find(grid.Ids.begin(), grid.Ids.end(), id) - grid.Ids.begin());
+  };
+  const Index a = slotOf(0), b = slotOf(1), apex = slotOf(last);
+  EXPECT_EQ(Apex(grid, a, b), apex) << "the test's own points";
+  WideApexSearch around(grid, set);
+  if (!around.Gather(a))
+  {
+    return false;
+  }
+  const WideApexSearch::Candidates found = around.FindCandidates(b);
+  Index neighbors[WideApexSearch::Capacity];
+  WideApexSearch::Candidates open;
+  const int count = around.Follow(b, apex, neighbors, open);
+  EXPECT_TRUE(count == 0 || neighbors[0] == apex) << "another apex is followed";
+  EXPECT_EQ(count > 0, found.IsProved);
+  int candidates = 0;
+  for (int k = 0; k < 64; ++k)
+  {
+    candidates += found.Bits >> k & 1;
+    EXPECT_TRUE(!found.IsProved || !(found.Bits >> k & 1) || around.SlotOf(k) == apex);
+  }
+  return found.IsProved && candidates == 1;
+}
 } // namespace
 
-TEST(WideApexSearch, ProvesTheApexInEvenAndUnevenDensity)
+TEST_P(EachInstructionSet, ProvesTheApexInEvenAndUnevenDensity)
 {
-  if (!WideApexSearch::IsSupported())
-  {
-    GTEST_SKIP() << "this processor has no AVX2";
-  }
+  const InstructionSet set = GetParam();
   std::mt19937_64 random(31);
-  EXPECT_GT(ExpectProofsHold(RandomCloud(random, 3000)), 0.8);
-  EXPECT_GT(ExpectProofsHold(LatticeCloud(random, 60, 0.5)), 0.8);
+  EXPECT_GT(ExpectProofsHold(RandomCloud(random, 3000), set), 0.8);
+  EXPECT_GT(ExpectProofsHold(LatticeCloud(random, 60, 0.5), set), 0.8);
 
   Cloud denser = RandomCloud(random, 500); // a quarter with ten times the density: smaller windows
   Cloud clustered, tracks, tiny;
@@ -108,8 +190,44 @@ TEST(WideApexSearch, ProvesTheApexInEvenAndUnevenDensity)
     tracks.Add(along, 100.0 * static_cast<double>(random() % 5) + Uniform(random));
     tiny.Add(1e-20 * Uniform(random), 1e-20 * Uniform(random));
   }
-  EXPECT_GT(ExpectProofsHold(denser), 0.7);
-  EXPECT_GT(ExpectProofsHold(clustered), 0.4);
-  ExpectProofsHold(tracks);
-  ExpectProofsHold(tiny);
+  EXPECT_GT(ExpectProofsHold(denser, set), 0.7);
+  EXPECT_GT(ExpectProofsHold(clustered, set), 0.4);
+  EXPECT_GT(ExpectProofsHold(tracks, set), 0.4);
+  EXPECT_GT(ExpectProofsHold(tiny, set), 0.4);
+}
+
+TEST_P(EachInstructionSet, ProvesTheApexThatIsTheLastOfAFullWindow)
+{
+  // Six columns and four rows of bins, of which the last point is the apex; the one before is a
+  // little farther away. Sixteen at a time two vectors hold 32 points, eight at a time five hold 40.
+  for (const int count : { 31, 32, 33, 40, 41 })
+  {
+    BinnedCloud cloud;
+    cloud.Fill(8, 8, std::min(count, 40) - 4 - 3 * (count / 4 - 1));
+    for (int row = 9; row < 12; ++row)
+    {
+      cloud.Fill(8, row, count / 4 - 1);
+    }
+    cloud.Fill(8, 8, count - 40);
+    cloud.Add(10.7, 11.35);
+    cloud.Add(10.71, 11.3);
+    const bool isWidest = GetParam() == InstructionSet::AVX512;
+    EXPECT_EQ(IsLastProved(cloud, GetParam()), count <= (isWidest ? 32 : 40)) << count;
+  }
+}
+
+TEST_P(EachInstructionSet, ProvesTheApexThatIsTheLastOfASmallerWindow)
+{
+  // Too many for a window of six columns. Of three columns and rows, at most seven vectors of eight.
+  for (const int count : { 31, 32, 33, 39, 40, 41, 55, 56, 57 })
+  {
+    BinnedCloud cloud;
+    cloud.Fill(9, 8, 17);
+    cloud.Fill(9, 9, (count - 21) / 2);
+    cloud.Fill(9, 10, count - 21 - (count - 21) / 2);
+    cloud.Fill(13, 8, 20);
+    cloud.Add(10.7, 10.35);
+    cloud.Add(10.71, 10.3);
+    EXPECT_EQ(IsLastProved(cloud, GetParam()), count <= 56) << count;
+  }
 }

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Windows of points: those around a vertex, in single precision relative to it, so that wide
+ * instructions look at eight or sixteen at a time. Beside bins and tree, because these would be
+ * asked for the same points again by each triangle around the vertex.
+ * Around the vertex all points of six columns and four rows of bins are gathered. Where these are
+ * too many, it is three columns and less rows; in full bins, a box in which the density thereabouts
+ * promises about eighteen points. For bins, the coordinates of the four rows are kept as whole
+ * multiples of a unit that is small against the bins, so that differences are exact.
+ * Boxes are taken from the points around a leaf of the tree, its neighborhood, which are gathered
+ * once for all vertices of the leaf and kept while the sweep over the vertices passes through it.
+ *
+ * Cost: constant a vertex; memory in proportion to a row of bins, and to the square root of the
+ * number of points.
+ */
+#ifndef elevation_Triangulate_PointWindows_h
+#define elevation_Triangulate_PointWindows_h
+
+#include "BinGrid.h"
+#include "Instructions.h"
+
+namespace elevation
+{
+
+class PointWindows
+{
+public:
+  static constexpr int Capacity = 56;       ///< points of a window
+  static constexpr int Room = Capacity + 8; ///< whole vectors are written
+  static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
+  static constexpr int MostAround = 120;      ///< points of a neighborhood
+  static constexpr double Roundoff = 0x1p-24; ///< of single precision
+
+  /** What the size of a window tells of rounding; lengths in the window's unit. */
+  struct Bounds
+  {
+    float ReachSquared = 0.0f;    ///< R^2
+    float CoordinateError = 0.0f; ///< e
+    float CrossError = 0.0f, DotError = 0.0f, ComparisonError = 0.0f;
+    float Margin = 0.0f; ///< what a disc must keep from the window's border
+
+    void Set(double reach, double error, double margin);
+  };
+
+  /** The points around a vertex, relative to it; what is not a number is none. */
+  struct Window
+  {
+    alignas(64) float X[Room];
+    alignas(64) float Y[Room];
+    alignas(64) float Square[Room]; ///< x^2 + y^2
+    alignas(64) Index Slots[Room];
+    Index Origin = None;
+    int Vectors = 0; ///< of the lists that are in use; 0 where there is no window
+    int OriginLane = 0;
+    // How far the window certainly reaches from the vertex, but for the margin.
+    float Left = 0.0f, Right = 0.0f, Top = 0.0f;
+    const Bounds* Errors = nullptr;
+    bool IsBox = false;
+    double PerSide = 0.0; ///< units of the box a unit of the grid
+
+    /** Ends the lists of so many points. */
+    void Close(int count, bool isWidest);
+    /** The places of a slot in the lists, as bits. */
+    template <int Vectors>
+    std::uint64_t LanesOf(Index slot) const;
+  };
+
+  /**
+   * The points around a leaf of the tree: those of the boxes of all its points, relative to its
+   * middle. Vertices of a full bin come by their y, from everywhere in it, but only those of some
+   * leaves at a time.
+   */
+  struct Neighborhood
+  {
+    Index First = 0, End = 0;         ///< slots of the leaf
+    int Count = 0;                    ///< 0 where they are too many
+    double CenterX, CenterY, PerSide; ///< sides of the boxes a unit of the grid
+    float X[MostAround + 8], Y[MostAround + 8];
+    Index Slots[MostAround + 8];
+  };
+
+  /** @param isWidest  for instructions that look at sixteen points at a time */
+  PointWindows(const BinGrid& grid, bool isWidest);
+
+  /**
+   * Gathers the window of a vertex. Cheapest when vertices come row by row.
+   * @param[in] next  the vertex of the next call, or None. What is needed for it is begun, while the
+   *                  processor waits for results that the first one's fan depends on.
+   * @return false when there is none: too many points in each that was tried
+   */
+  bool Gather(Index origin, Index next);
+
+  const Window& Current() const { return *this->InUse; }
+
+  /** The place of a point of the grid relative to the window's vertex, in the window's units. */
+  void Place(Index slot, float& x, float& y) const;
+
+private:
+  static constexpr int NumberOfShapes = 3; ///< of windows of bins
+  static constexpr Index MostRows = 4;
+  static constexpr int RowRoom = 40;            // whole vectors are read
+  static constexpr std::size_t MostPerBin = 32; // points in a row of which windows are made
+
+  /** The points of a row of bins in units from the grid's corner. */
+  struct Row
+  {
+    Index Number = None;
+    Index FirstSlot = 0;
+    const Index* Starts = nullptr;  ///< the first slot of each bin, and one more
+    std::vector<std::int32_t> X, Y; ///< and RowRoom more
+    bool IsRead = false;            ///< else there are too many points: most bins are full
+  };
+
+  void EnterRow(Index number);
+  void ReadRow(Row& row);
+  void GatherInto(Window& window);
+  void SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
+    std::int32_t originX, std::int32_t originY) const;
+  bool GatherWidest(Window& window, Index firstColumn);
+  bool GatherEven(Window& window, Index firstColumn);
+  void AddBeyondEight(Window& window, Index firstColumn, const Index* counts) const;
+  bool GatherBins(Window& window, Index column, int shape);
+  bool GatherBox(Window& window);
+  const Neighborhood& Around(Index slot);
+  void GatherNeighborhood(Neighborhood& around, Index slot);
+
+  const BinGrid& Grid;
+  const bool IsWidest;
+  Window Windows[2];
+  Window* InUse = Windows; ///< and the other one is for the next vertex
+
+  // Windows of bins; none when PerUnit is 0.
+  double PerUnit = 0.0; ///< units a unit of the grid
+  Bounds OfShapes[NumberOfShapes];
+  std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
+  std::vector<Index> Nothing;             ///< the starts of a row beyond the last
+  Row Rows[MostRows];                     ///< by their number modulo MostRows
+  Row* Near[MostRows];                    ///< from the current row upwards
+  Index CurrentRow = None;
+  bool AreNearRead = false;
+  std::int32_t TopBounds[NumberOfShapes]; ///< of the windows of the current row's vertices
+  Bounds OfBox;                           ///< of all boxes, whose unit is their side
+  std::vector<Neighborhood> Neighborhoods;
+  /** For eight slots, by their number modulo the size, where their leaf's neighborhood was. */
+  std::vector<Index> Known;
+  std::size_t Oldest = 0;
+};
+
+#ifdef ELEVATION_HAS_AVX2
+template <int Vectors>
+ELEVATION_WIDE_INLINE std::uint64_t PointWindows::Window::LanesOf(Index slot) const
+{
+  std::uint64_t lanes = 0;
+  for (int i = 0; i < Vectors; ++i)
+  {
+    const __m256i isSlot = _mm256_cmpeq_epi32(_mm256_set1_epi32(slot),
+      _mm256_load_si256(reinterpret_cast<const __m256i*>(this->Slots + 8 * i)));
+    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot))) << (8 * i);
+  }
+  return lanes;
+}
+#endif
+
+} // namespace elevation
+
+#endif
