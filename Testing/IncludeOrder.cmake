@@ -6,7 +6,9 @@
 #     Kernel/<Room>/<Room>.h;
 #   - a filter includes faces alone;
 #   - every file of the kernel is in a room and is listed in CMake/KernelSources.cmake, and a file
-#     that is listed is there.
+#     that is listed is there;
+#   - the drawing of the rooms, Documentation/figures/rooms.svg, names each but the faces that hold
+#     nothing of their own.
 # Run as: cmake -DROOT=<top of the source tree> -P IncludeOrder.cmake
 cmake_minimum_required(VERSION 3.18)
 include("${ROOT}/CMake/KernelSources.cmake")
@@ -73,6 +75,15 @@ foreach (file IN LISTS es_kernel_sources es_kernel_headers)
   if (NOT file IN_LIST found)
     list(APPEND wrong "CMake/KernelSources.cmake lists ${file}, which is not there")
   endif ()
+endforeach ()
+
+file(READ "${ROOT}/Documentation/figures/rooms.svg" drawing)
+foreach (room IN LISTS es_kernel_rooms)
+  foreach (name IN LISTS es_kernel_${room} es_kernel_headers_${room})
+    if (NOT drawing MATCHES "[> ]${name}[,<]" AND NOT "${name}" STREQUAL "${room}")
+      list(APPEND wrong "Documentation/figures/rooms.svg does not name ${name}, which is in the room ${room}")
+    endif ()
+  endforeach ()
 endforeach ()
 
 list(LENGTH wrong count)

@@ -17,7 +17,7 @@
  *   5. The steps are reduced [Lagrange], directed along the axes as far as possible, and rounded to
  *      the fewest decimals that move no node noticeably, so that steps that are round stay round.
  * Each step depends on the set of points alone, not on their order. What remains is to check every
- * point (LatticeNodes.h).
+ * point (Nodes.h).
  *
  * Cost: two passes over the coordinates, on several threads, and a fraction of a millisecond.
  */

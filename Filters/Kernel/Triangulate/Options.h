@@ -69,7 +69,7 @@ struct Triangulation
   std::vector<UnusedReason> UnusedReasons; ///< one an unused point
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;
-  bool LatticeFound = false; ///< the triangles are those of the lattice (LatticeDelaunay.h)
+  bool LatticeFound = false; ///< the triangles are those of the lattice (LatticeGrowth.h)
   Lattice Steps;             ///< where found; Origin is the lowest node that is occupied
 };
 

@@ -5,14 +5,16 @@
  * The Delaunay triangulation of points in the x,y plane, grown triangle by triangle over a grid.
  *
  * In: points. Out: triangles (ids of the points), and every point that is not a vertex with the
- * reason. The passes, in the order of the functions in Delaunay.cxx:
- *   1. Bin the finite points into a grid and set duplicates aside (BinGrid.h).
- *   2. Find the convex hull; its edges open the first fans.
- *   3. Grow: the vertices, from the lowest up, complete the fan of triangles of which they are
- *      the lowest vertex. The apex over an edge is found by voxel traversal search [Nguyen]: the
- *      grid is visited from the edge outwards, as far as the best triangle's circle reaches, so
- *      that the circle is proved empty. The published method's other search is there too: of the
- *      points of a box around the edge the one that sees it under the largest angle.
+ * reason. The passes:
+ *   1. If asked for: find a lattice, and triangulate on it (LatticeGrowth.h). Else:
+ *   2. Bin the finite points into a grid and set duplicates aside (BinGrid.h).
+ *   3. Find the convex hull; its edges open the first fans (Hull.h).
+ *   4. Grow: the vertices, from the lowest up, complete the fan of triangles of which they are
+ *      the lowest vertex (Growth.h). The apex over an edge is found by voxel traversal search
+ *      [Nguyen]: the grid is visited from the edge outwards, as far as the best triangle's circle
+ *      reaches, so that the circle is proved empty. The published method's other search is there
+ *      too: of the points of a box around the edge the one that sees it under the largest angle
+ *      (ApexSearch.h).
  * A triangle told to its two upper vertices opens or closes their fans, so that the edge pool of
  * the published method has two entries a vertex and every triangle is looked for once.
  *

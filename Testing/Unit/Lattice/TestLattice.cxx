@@ -141,7 +141,7 @@ void ExpectSameAsGeneral(const Cloud& cloud, const std::string& name)
 
 /**
  * Visits all triangles of sorted, distinct nodes by the definition, in integers, as the numbers of
- * their corners; see TestDelaunay.cxx.
+ * their corners; see TestTriangulate.cxx.
  */
 template <typename Visit>
 void BruteForce(const std::vector<Node>& nodes, const LatticeMetric& metric, Visit&& visit)
@@ -1261,7 +1261,7 @@ TEST(CompareProducts, IsExactForAllNumbers)
 #endif
 }
 
-/** Real clouds, as in TestDelaunay.cxx. */
+/** Real clouds, as in TestTriangulate.cxx. */
 struct RealCloud
 {
   const char* Name;
