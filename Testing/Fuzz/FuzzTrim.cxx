@@ -48,7 +48,7 @@ TrimmedMesh TrimStepByStep(const Surface& surface, const NamedPoints& points, co
     }
     if (options.Test == OutwardTest::InwardNormal)
     {
-      TakeAlongBoundary(mesh, outward.IsOnBoundary, outward.IsOutward);
+      ApplyInwardNormalTest(mesh, outward.IsOnBoundary, outward.IsOutward);
     }
     trimmed.IsOutward = std::move(outward.IsOutward);
     trimmed.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;

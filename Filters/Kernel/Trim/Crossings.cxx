@@ -15,14 +15,14 @@ namespace
 {
 
 /**
- * The rings as walks from place to place, cut wherever a point of one lies on an edge. So two steps
- * are along the same edge, or have no more in common than ends. What a ring runs along forth and
- * straight back is left out.
+ * The rings as walks from place to place, split wherever a point of a ring lies on an edge. So two
+ * steps either follow the same edge or share only end points. Spurs, where a ring goes out and
+ * straight back, are removed.
  */
 class RingWalks
 {
 public:
-  /** @param[in] edges  of all rings, one from each of their points, and a grid of them */
+  /** @param[in] edges  the edge from each point of all rings @param[in] grid  of the edges */
   RingWalks(const std::vector<Point2>& points, const Rings& rings, const std::vector<Ends>& edges,
     const CellGrid& grid, const Progress& progress)
   {
@@ -59,26 +59,26 @@ public:
     }
     for (Index node = 0; node < static_cast<Index>(this->Nodes.size()); ++node)
     {
-      this->LeaveOutSpur(node);
+      this->RemoveSpur(node);
     }
   }
 
   struct Meeting
   {
-    Index First; ///< of the points: where two walks come together,
-    Index Last;  ///< and where they part; the same one, if they have no edge in common
+    Index First; ///< the point where two walks meet
+    Index Last;  ///< the point where they separate; First if they share no edge
     bool IsOfOneRing;
   };
 
   /**
-   * Finds a place where two walks, or two parts of one, come together and leave for the other side
-   * of each other. What one walk runs along in both directions, as a bridge from its outside to
-   * a hole, is nothing to cross, as it cancels out.
-   * @return whether there is one
+   * Finds a place where two walks, or two parts of one, meet and leave on opposite sides of each
+   * other. Edges that one walk traverses in both directions, such as a bridge to a hole, cancel out
+   * and do not count.
+   * @return whether there is a crossing
    */
   bool FindCrossing(Meeting& crossing, const Progress& progress) const
   {
-    std::vector<Index> order; // so that nodes of one place are neighbours
+    std::vector<Index> order; // nodes at the same place are consecutive
     for (Index node = 0; node < static_cast<Index>(this->Nodes.size()); ++node)
     {
       if (this->Nodes[node].Neighbors[After] != None)
@@ -110,12 +110,12 @@ public:
   }
 
 private:
-  /** The edges, cut at points of the rings that are on them. */
+  /** The points of the rings that lie on edges, sorted along each edge. */
   static std::vector<PieceCut> FindCuts(const std::vector<Point2>& points, const Rings& rings,
     const std::vector<Ends>& edges, const CellGrid& grid, const Progress& progress)
   {
     std::vector<PieceCut> cuts;
-    // Where a cell holds very many, a place of many points is looked at once.
+    // In a crowded cell, a place that occurs many times is looked up only once.
     constexpr std::ptrdiff_t many = 64;
     std::unordered_map<Point2, std::vector<Index>, HashOfPoint> known;
     std::vector<Index> through;
@@ -164,21 +164,21 @@ private:
     Point2 Position;
     Index Point;
     Index Ring;
-    Index Neighbors[2]; ///< Before and After; None when it is left out
+    Index Neighbors[2]; ///< Before and After; None when the node is removed
   };
-  /** A way from a place to the next one of a walk. */
+  /** One of the two edges of a walk at a node, leading away from it. */
   struct Strand
   {
     Index Node;
-    int Way;
-    Index Direction; ///< a number that all in this direction have, increasing counter-clockwise
-    Index Other;     ///< the direction of the other way
+    int Way;         ///< Before or After
+    Index Direction; ///< its rank counter-clockwise; equal for strands along the same edge
+    Index Other;     ///< the direction of the node's other strand
   };
 
   const Point2& At(Index node) const { return this->Nodes[node].Position; }
   Index Step(Index node, int way) const { return this->Nodes[node].Neighbors[way]; }
 
-  void LeaveOutSpur(Index node)
+  void RemoveSpur(Index node)
   {
     while (this->Step(node, After) != None &&
       this->At(this->Step(node, Before)) == this->At(this->Step(node, After)))
@@ -196,9 +196,10 @@ private:
     }
   }
 
-  bool FindCrossingAt(const Index* begin, const Index* end, Meeting& crossing, WorkReporter& work) const
+  bool FindCrossingAt(
+    const Index* begin, const Index* end, Meeting& crossing, WorkReporter& work) const
   {
-    // All strands here, around the place.
+    // All strands at this place, sorted by angle.
     const Point2& at = this->At(*begin);
     std::vector<Strand> strands;
     for (const Index* node = begin; node < end; ++node)
@@ -217,7 +218,7 @@ private:
       const Sign turn = to(s) == to(t) ? Zero : Orientation(at, to(s), to(t));
       return turn != Zero ? turn == Positive : s.Node < t.Node;
     });
-    // From each node here: the directions of both its strands.
+    // The directions of both strands of each node.
     std::vector<std::array<Index, 2>> passages(end - begin);
     const auto passageOf = [&](Index node) -> std::array<Index, 2>& {
       return passages[std::lower_bound(begin, end, node) - begin];
@@ -229,7 +230,7 @@ private:
       passageOf(strands[i].Node)[strands[i].Way] = strands[i].Direction;
     }
 
-    // Walks that meet here alone: like brackets, they must be beside or within each other.
+    // Walks that meet only at this place: like brackets, they must be disjoint or nested.
     struct Span
     {
       Index From, To;
@@ -259,7 +260,7 @@ private:
       open.push_back(span);
     }
 
-    // Walks that go on together from here.
+    // Walks that share an edge from here on.
     for (Strand& strand : strands)
     {
       strand.Other = passageOf(strand.Node)[Before + After - strand.Way];
@@ -278,7 +279,7 @@ private:
     return false;
   }
 
-  /** Of walks that go on together: looks at each pair from where the first one comes from. */
+  /** Tests each pair of walks that share an edge, at the place where they meet. */
   bool FindCrossingAlong(
     const Strand* begin, const Strand* end, Meeting& crossing, WorkReporter& work) const
   {
@@ -302,8 +303,8 @@ private:
   }
 
   /**
-   * Whether none of many walks that go on together changes sides with another, as far as that is
-   * told by those that come from beside each other: if none of these do, none of all do.
+   * Whether no two of many walks that share an edge change sides, as far as pairs that arrive from
+   * adjacent directions show it: if no such pair does, none does. False is not a proof.
    */
   bool KeepSides(std::vector<Strand> together, WorkReporter& work) const
   {
@@ -325,15 +326,15 @@ private:
   }
 
   /**
-   * Whether walks that come together and go on so do cross.
-   * @param[out] last  the node of p where they part
+   * Whether two walks that share edges cross.
+   * @param[out] last  the node of p where they separate
    */
   bool ChangeSides(const Strand& p, const Strand& q, WorkReporter& work, Index& last) const
   {
     last = p.Node;
     Index other = q.Node;
     const bool fromLeft = this->IsLeftOf(last, this->At(this->Step(other, After + Before - q.Way)));
-    // It does end: going on and on, both would come to where they were not together yet.
+    // This ends: otherwise both would return to where they had not met yet.
     do
     {
       work.Look();
@@ -343,7 +344,7 @@ private:
     return fromLeft != this->IsLeftOf(last, this->At(this->Step(other, q.Way)));
   }
 
-  /** Whether the way to a point, which is not that of the walk, is on the left of the walk. */
+  /** Whether the direction to a point is on the left of the walk; it must not be the walk's own. */
   bool IsLeftOf(Index node, const Point2& p) const
   {
     const Point2 &before = this->At(this->Step(node, Before)), &at = this->At(node),

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Whether rings cross: two edges between their ends; two rings, or parts of one, where they meet in
- * a point, or run along the same edges and part on the other side. They may touch and nest; and what
- * one ring runs along in both directions, as a bridge to a hole, cancels out: nothing to cross.
+ * Checks whether rings cross: two edges between their ends; or two rings, or two parts of one, that
+ * meet at a point or share a run of edges and leave it on opposite sides. Rings may touch and nest.
+ * The second test ignores edges that one ring traverses in both directions, such as a bridge to a
+ * hole, as they cancel out.
  *
- * Exact. Cost: linear in the edges and the pairs of them that are near each other, and a sort of the
- * points; n log n edges where very many are near each other, as around a point that they share, or
- * the same one many times, but for the pairs of rings that run together from different sides.
+ * In: the points and the rings. Out: nothing, or an Error. Exact.
+ * Cost: linear in the edges and in the pairs of edges that are near each other, plus a sort of the
+ * points. Where very many edges are near each other, as around a shared point or when one edge is
+ * repeated, n log n, plus the pairs of rings that share edges and join them from different sides.
  */
 #ifndef elevation_Trim_Crossings_h
 #define elevation_Trim_Crossings_h
@@ -22,7 +24,7 @@
 namespace elevation
 {
 
-/** How messages name the edge from the ring's point rings.Vertices[edge]. */
+/** The name in messages of the edge that starts at rings.Vertices[edge]. */
 std::string NameOfEdge(const NamedPoints& points, const Rings& rings, std::size_t edge);
 
 /** @throws Error naming the edges, or the points, where rings cross; Aborted; std::bad_alloc */

@@ -20,10 +20,10 @@ namespace elevation
 namespace
 {
 
-/** A hash of a place that is well mixed in all bits. */
+/** A hash of a place; all bits are well mixed. */
 std::uint64_t Mix(const Point2& p)
 {
-  // 0.0 and -0.0 are equal, and go to the same place.
+  // 0.0 and -0.0 have the same hash.
   const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
   std::uint64_t bits[2];
   std::memcpy(bits, coordinates, sizeof(bits));
@@ -52,9 +52,8 @@ public:
     this->LocateOthers(Part(progress, 0.5, 0.75));
     this->InsertLocated(Part(progress, 0.75, 0.8));
     this->StartRings();
-    // The pieces of an edge, and of a border, that has been cut at a rounded place are not quite
-    // where they were: all are looked at again. As rounding rarely leads past anything, one round
-    // more is the rule.
+    // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
+    // the move rarely causes a crossing, one more round is usually enough.
     constexpr int mostRounds = 100;
     bool isCut = this->CutAtBorder(Part(progress, 0.8, 1.0));
     for (int round = 1; isCut; ++round)
@@ -77,28 +76,28 @@ private:
     Index Triangle;
     Index Point;
   };
-  /** A piece of an edge of the rings, up to the next piece. */
+  /** A piece of an edge of the rings; it ends where the next piece begins. */
   struct Piece
   {
     Index Vertex;     ///< where it begins
-    std::size_t Edge; ///< of the given ones
+    std::size_t Edge; ///< of the given rings
   };
   /** A vertex that a piece runs through. */
   struct Stop
   {
     std::size_t Piece;
     Index Vertex;
-    bool From; ///< whether it comes to the vertex in triangles of it,
-    bool Into; ///< and goes on in such
+    bool From; ///< whether the piece arrives through a triangle at the vertex
+    bool Into; ///< whether it leaves through one
   };
 
-  /** Of a piece with the border, where that has no vertex. */
+  /** A crossing of a piece with the border between two vertices. */
   struct BorderCrossing
   {
-    Index Border; ///< of the BorderEdges
+    Index Border; ///< index in BorderEdges
     Point2 Place;
     std::size_t Piece;
-    bool IsBeyond; ///< the apex of the border's triangle
+    bool IsBeyond; ///< whether it is past the foot of the triangle's apex, along the border
   };
 
   std::string NameOfEdge(std::size_t edge) const
@@ -114,7 +113,7 @@ private:
       : "where the boundary has cut it already" + name.substr(name.find(" ("));
   }
 
-  /** Finds the corner of the mesh at each point of the rings. */
+  /** Finds the corners of the mesh at points of the rings. */
   void MatchCorners(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
@@ -122,7 +121,7 @@ private:
     {
       this->VertexAt.emplace(this->Points[point], None);
     }
-    // A hundred and more bits a point leave few others over, as to look each up in a map is slow.
+    // Look-ups in a map are slow; at a hundred or more bits per point, few are made in vain.
     int bits = 6;
     while (bits < 30 && std::size_t(1) << bits < 128 * this->VertexAt.size())
     {
@@ -168,7 +167,7 @@ private:
     }
   }
 
-  /** Finds the triangle at each point that is no corner. */
+  /** Finds the triangle that contains each point that is not a corner. */
   void LocateOthers(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
@@ -184,7 +183,7 @@ private:
     }
     if (!open.empty() && this->MayInsert)
     {
-      this->TakeInBorder(open, Part(progress, 0.0, 0.2));
+      this->SnapBorderToPoints(open, Part(progress, 0.0, 0.2));
     }
     if (open.empty())
     {
@@ -232,7 +231,7 @@ private:
     this->Reserve(this->Located.size());
   }
 
-  /** Room for so many more vertices. @throws Error when these are too many */
+  /** Reserves memory for more vertices. @throws Error when the mesh would exceed the limit */
   void Reserve(std::size_t vertices)
   {
     constexpr std::size_t most = MaximumNumberOfPoints;
@@ -246,7 +245,7 @@ private:
     }
     if (vertices > 0)
     {
-      // Not more than that, as growing by halves would; the points outside come last.
+      // Exactly as much as needed: growth would take more. VertexAt counts the points outside too.
       this->Surface.Points.reserve(this->Surface.Points.size() + this->VertexAt.size() + vertices);
       this->Surface.Triangles.reserve(this->Surface.Triangles.size() + 6 * vertices);
       this->Surface.Twins.reserve(this->Surface.Twins.size() + 6 * vertices);
@@ -255,8 +254,8 @@ private:
 
   void InsertLocated(const Progress& progress)
   {
-    // In an order that depends on nothing but the places, and has no order as seen in a triangle:
-    // then lists of many points are halved or so by each.
+    // In an order that depends only on the places, and is random within a triangle: each cut then
+    // divides the points that wait there about evenly.
     std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
       const Point2& p = this->Points[a.Point];
       const Point2& q = this->Points[b.Point];
@@ -264,7 +263,7 @@ private:
       const std::uint64_t mixedQ = Mix(q);
       return std::tie(a.Triangle, mixedP, p.X, p.Y) < std::tie(b.Triangle, mixedQ, q.X, q.Y);
     });
-    // Weights in the triangles as they are now.
+    // Weights in the triangles before they are cut.
     std::unordered_map<Index, InsertedVertex> weights;
     std::vector<Index> work;
     for (const Place& place : this->Located)
@@ -294,12 +293,12 @@ private:
       const Index vertex = this->Cutter.AddVertex(p, weights.at(point));
       this->VertexAt.at(p) = vertex;
       const std::vector<Index> parts = this->CutAt(t, vertex);
-      this->PassOn(point, parts);
+      this->Redistribute(point, parts);
       work.insert(work.end(), parts.begin(), parts.end());
     }
   }
 
-  /** Cuts a triangle at a vertex in it, or those beside the edge that it is on. @return the parts */
+  /** Cuts a triangle at a vertex inside, or on an edge with its neighbour. @return the parts */
   std::vector<Index> CutAt(Index t, Index vertex)
   {
     const Mesh& mesh = this->Surface;
@@ -333,8 +332,8 @@ private:
     return parts;
   }
 
-  /** Gives the points that wait in triangles which have been cut at one of them to the parts. */
-  void PassOn(Index done, const std::vector<Index>& parts)
+  /** After a cut, hands the points that wait in the parts to those that contain them. */
+  void Redistribute(Index done, const std::vector<Index>& parts)
   {
     std::vector<Index> moving;
     for (const Index part : parts)
@@ -359,7 +358,7 @@ private:
     return vertex >= 0 ? this->Surface.PointOf(vertex) : this->OutsidePoints[FirstOutside - vertex];
   }
 
-  /** The rings as given, by vertices; points outside the mesh have numbers below. */
+  /** The given rings as vertices; points outside the mesh get numbers from FirstOutside down. */
   void StartRings()
   {
     for (const Index point : this->Given.Vertices)
@@ -375,7 +374,7 @@ private:
     this->Result.Vertices.Offsets = this->Given.Offsets;
   }
 
-  /** The half-edges of the border, and their ends in a grid. */
+  /** The half-edges of the border, as segments in a grid. */
   struct BorderEdges
   {
     std::vector<Index> HalfEdges;
@@ -402,25 +401,25 @@ private:
   }
 
   /**
-   * Makes points of the rings that the border passes within rounding vertices of the border, where
-   * they are: the border moves, by as little, rather than that a ring crosses it beside the point.
+   * Makes the rings' points within rounding of the border vertices of it. The border moves to the
+   * points; else a ring would cross it right beside them.
    */
-  void TakeInBorder(std::vector<Index>& open, const Progress& progress)
+  void SnapBorderToPoints(std::vector<Index>& open, const Progress& progress)
   {
     const BorderEdges border = this->FindBorder(progress);
-    double reach = 0.0; // of the longest coordinates
+    double reach = 0.0; // the largest of any border edge
     for (const Ends& segment : border.Segments)
     {
       const RoundingUnits units = UnitsOf(segment[0], segment[1]);
       reach = std::max({ reach, 2.0 * Reach * units.X, 2.0 * Reach * units.Y });
     }
-    std::vector<PieceCut> taken; // pieces are those of the border
+    std::vector<PieceCut> taken; // pieces are border edges
     std::vector<Index> others;
     for (const Index point : open)
     {
       const Point2 p = this->Points[point];
       Index nearest = None;
-      bool isAlone = true; // where two run along each other, one would move into the other
+      bool isAlone = true; // of two borders in reach, one would move into the other
       border.Grid.Visit(
         Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
           const Ends& segment = border.Segments[i];
@@ -450,7 +449,7 @@ private:
     {
       if (i == 0 || taken[i - 1].Piece != taken[i].Piece)
       {
-        h = this->Cutter.NowOf(border.HalfEdges[taken[i].Piece]);
+        h = this->Cutter.CurrentHalfEdge(border.HalfEdges[taken[i].Piece]);
       }
       const Point2 p = this->Points[taken[i].Vertex];
       if (!this->Cutter.CanCut(h, p))
@@ -467,13 +466,13 @@ private:
   }
 
   /**
-   * Gives vertices to the border where pieces of the rings cross it, and to the rings where they
-   * run through the border's vertices. @return whether there was a crossing
+   * Cuts the border where pieces of the rings cross it, and the pieces there and at the vertices
+   * that they run through. @return whether there was a crossing
    */
   bool CutAtBorder(const Progress& progress)
   {
     const std::vector<Ends> pieces = this->EndsOfPieces();
-    this->OnTheWay.clear();
+    this->Stops.clear();
     this->IsCut.clear();
     this->Cutter.ForgetMoves();
     const BorderEdges border = this->FindBorder(Part(progress, 0.0, 0.3));
@@ -486,12 +485,12 @@ private:
         " leaves the mesh where it has no corner. Turn RecoverBoundary on.");
     }
     this->CutBorder(crossings, pieces, border);
-    this->FindOnTheWay(pieces, Part(progress, 0.5, 1.0));
+    this->FindStops(pieces, Part(progress, 0.5, 1.0));
     this->CutPieces(pieces);
     return !this->IsCut.empty();
   }
 
-  /** Where pieces cross the border away from its vertices. Those that they pass become stops. */
+  /** Finds where pieces cross the border between vertices. Vertices that they meet become stops. */
   std::vector<BorderCrossing> FindBorderCrossings(
     const std::vector<Ends>& pieces, const BorderEdges& border, const Progress& progress)
   {
@@ -512,7 +511,7 @@ private:
         const Index h = border.HalfEdges[k];
         if (Cross(edge, segment))
         {
-          // Through an end of the border's edge that is in reach, if there is one.
+          // Rather through an end of the border edge, if one is in reach.
           const bool isInReach =
             VisitEndsInReach(segment, edge, UnitsOf(edge[0], edge[1]), Reach, [&](int end) {
               this->AddStop(i, edge, h, end == 0 ? mesh.Origin(h) : mesh.Destination(h));
@@ -532,7 +531,7 @@ private:
         }
         else if (this->MayInsert && IsInside(segment, edge[0]))
         {
-          // Otherwise it would have become a vertex of this border.
+          // It would be a vertex of this border if no other one were in reach.
           this->RefuseDoubleBorder(this->Pieces[i].Edge, edge[0]);
         }
       });
@@ -545,8 +544,8 @@ private:
     const BorderEdges& border)
   {
     this->Reserve(crossings.size());
-    // Along each border from both its ends to the apex: then the part to cut next is the one that
-    // is beside the apex, and however thin its triangle is, outwards is room.
+    // Along each border edge from both ends towards the foot of the apex. The part that is cut next
+    // is then at the foot, where a place can move outwards however thin the triangle is.
     std::sort(crossings.begin(), crossings.end(),
       [&](const BorderCrossing& a, const BorderCrossing& b) {
         const Ends& ends = border.Segments[a.Border];
@@ -556,13 +555,14 @@ private:
                                      : a.Piece < b.Piece;
       });
     const Mesh& mesh = this->Surface;
-    Index h = None, last = None; // and the vertex of the crossing before
+    Index h = None;
+    Index last = None; // the vertex of the previous crossing
     for (std::size_t i = 0; i < crossings.size(); ++i)
     {
       const BorderCrossing& crossing = crossings[i];
       if (i == 0 || crossings[i - 1].Border != crossing.Border)
       {
-        h = this->Cutter.NowOf(border.HalfEdges[crossing.Border]);
+        h = this->Cutter.CurrentHalfEdge(border.HalfEdges[crossing.Border]);
         last = None;
       }
       const bool isSamePlace = last != None && crossings[i - 1].Place == crossing.Place;
@@ -598,19 +598,19 @@ private:
   }
 
   /**
-   * Pieces that moved may cross others that run along them within rounding: leads them through an
-   * end of these. @return whether there were such
+   * Pieces that moved may cross others that run along them within rounding: cuts them at an end of
+   * these. @return whether any did
    */
   bool CutAtEachOther(const Progress& progress)
   {
     const std::vector<Ends> pieces = this->EndsOfPieces();
-    this->OnTheWay.clear();
-    std::size_t last = 0; // piece that is cut
+    this->Stops.clear();
+    std::size_t last = 0; // the last piece that is cut
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
       VisitEndsInReach(pieces[j], pieces[i], units, Reach, [&](int end) {
         const Index at = end == 0 ? static_cast<Index>(j) : this->NextOf(static_cast<Index>(j));
-        this->OnTheWay.push_back({ i, this->Pieces[at].Vertex, true, true });
+        this->Stops.push_back({ i, this->Pieces[at].Vertex, true, true });
         last = std::max(last, i);
       });
     };
@@ -618,23 +618,23 @@ private:
       cut(i, j);
       cut(j, i);
     });
-    if (!this->OnTheWay.empty())
+    if (!this->Stops.empty())
     {
       this->EdgeOfCut = this->Pieces[last].Edge;
     }
     this->CutPieces(pieces);
-    return !this->OnTheWay.empty();
+    return !this->Stops.empty();
   }
 
-  /** A vertex on the way of a piece that has these ends; it is an end of h. */
+  /** @param[in] ends  of the piece @param[in] vertex  an end of h, on the piece */
   void AddStop(std::size_t piece, const Ends& ends, Index h, Index vertex)
   {
     h = this->Surface.Origin(h) == vertex ? h : Mesh::Next(h);
-    this->OnTheWay.push_back(
+    this->Stops.push_back(
       { piece, vertex, this->IsInFan(h, ends[0]), this->IsInFan(h, ends[1]) });
   }
 
-  /** Whether the way from the origin of h to a point begins in a triangle of the fan around it. */
+  /** Whether the segment from the origin of h to a point begins in a triangle of that fan. */
   bool IsInFan(Index h, const Point2& p) const
   {
     const Mesh& mesh = this->Surface;
@@ -652,7 +652,7 @@ private:
       }
       k = mesh.Twin(Mesh::Next(Mesh::Next(k)));
     } while (k != Mesh::Border && k != h);
-    // The rest, the other way.
+    // The rest of the fan, in the other direction.
     while (k == Mesh::Border && !mesh.IsBorder(h))
     {
       h = Mesh::Next(mesh.Twin(h));
@@ -672,7 +672,7 @@ private:
     return piece + 1 == *end ? *(end - 1) : piece + 1;
   }
 
-  /** From each of the rings' vertices to the next. */
+  /** The ends of each piece. */
   std::vector<Ends> EndsOfPieces() const
   {
     std::vector<Ends> ends;
@@ -686,10 +686,10 @@ private:
   }
 
   /**
-   * Of pieces that cross the border, finds the vertices they run through exactly: the part up to a
-   * crossing, whose place is rounded, would pass beside them.
+   * Finds the vertices that pieces which cross the border run through exactly. Cut at a rounded
+   * crossing alone, the pieces would miss these vertices.
    */
-  void FindOnTheWay(const std::vector<Ends>& pieces, const Progress& progress)
+  void FindStops(const std::vector<Ends>& pieces, const Progress& progress)
   {
     if (this->IsCut.empty())
     {
@@ -723,7 +723,7 @@ private:
     {
       return;
     }
-    // Points that no triangle uses do not count.
+    // Only vertices that a triangle uses become stops.
     ForEachStretch(mesh.NumberOfHalfEdges(), Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
       for (Index h = begin; h < end; ++h)
       {
@@ -740,37 +740,37 @@ private:
     });
   }
 
-  /** Cuts the pieces where vertices are on their way. */
+  /** Cuts the pieces at their stops. */
   void CutPieces(const std::vector<Ends>& pieces)
   {
     const Mesh& mesh = this->Surface;
-    std::sort(this->OnTheWay.begin(), this->OnTheWay.end(), [&](const Stop& a, const Stop& b) {
+    std::sort(this->Stops.begin(), this->Stops.end(), [&](const Stop& a, const Stop& b) {
       if (a.Piece != b.Piece)
       {
         return a.Piece < b.Piece;
       }
       const Ends& piece = pieces[a.Piece];
       const Point2 p = this->PlaceOf(a.Vertex), q = this->PlaceOf(b.Vertex);
-      // At one place a part of the mesh is left before another one is entered.
+      // At one place, the piece leaves a part of the mesh before it enters another.
       return IsBefore(piece[0], piece[1], p, q) ||
         (p == q &&
           std::make_tuple(a.Into - a.From, a.Vertex) < std::make_tuple(b.Into - b.From, b.Vertex));
     });
     std::vector<Piece> cut;
-    cut.reserve(this->Pieces.size() + this->OnTheWay.size());
-    auto stop = this->OnTheWay.begin();
+    cut.reserve(this->Pieces.size() + this->Stops.size());
+    auto stop = this->Stops.begin();
     std::vector<Index> offsets{ 0 };
     const std::vector<Index>& before = this->Result.Vertices.Offsets;
     for (std::size_t ring = 0; ring + 1 < before.size(); ++ring)
     {
-      const Stop* last = nullptr; // none: a vertex of the ring before
+      const Stop* last = nullptr; // the stop added last; null for a vertex of the uncut ring
       const auto add = [&](const Piece& piece, const Stop* at) {
         if (cut.size() > static_cast<std::size_t>(offsets.back()))
         {
           const Index vertex = cut.back().Vertex;
           if (vertex == piece.Vertex)
           {
-            cut.pop_back(); // it leads nowhere
+            cut.pop_back(); // it has no length
           }
           else if ((last || at) && vertex >= 0 && piece.Vertex >= 0 &&
             mesh.PointOf(vertex) == mesh.PointOf(piece.Vertex) &&
@@ -786,7 +786,7 @@ private:
       {
         Piece piece = this->Pieces[i];
         add(piece, nullptr);
-        for (; stop != this->OnTheWay.end() && stop->Piece == static_cast<std::size_t>(i); ++stop)
+        for (; stop != this->Stops.end() && stop->Piece == static_cast<std::size_t>(i); ++stop)
         {
           piece.Vertex = stop->Vertex;
           add(piece, &*stop);
@@ -804,11 +804,10 @@ private:
     throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes" +
       name.substr(name.find(" (")) +
       ", where borders of the mesh lie on each other without points in common. Merge the points, "
-      "as "
-      "vtkStaticCleanPolyData does.");
+      "as vtkStaticCleanPolyData does.");
   }
 
-  /** The points outside the mesh become its last ones. */
+  /** Appends the points outside the mesh to its points. */
   void FinishRings()
   {
     Mesh& mesh = this->Surface;
@@ -821,12 +820,11 @@ private:
     }
   }
 
-  /** In units in the last place: how near the border and a ring take on each other's vertices. */
+  /** In units in the last place: within it, the border and rings snap to each other's vertices. */
   static constexpr double Reach = 4.0;
 
-  /** In place of a vertex: of a point outside the mesh, at first, and the first of such. */
-  static constexpr Index Outside = -2;
-  static constexpr Index FirstOutside = -3;
+  static constexpr Index Outside = -2;      ///< in place of a vertex: the point is outside the mesh
+  static constexpr Index FirstOutside = -3; ///< the first number of points outside
 
   Mesh& Surface;
   const NamedPoints& Points;
@@ -836,10 +834,10 @@ private:
   MeshCutter Cutter;
   std::unordered_map<Point2, Index, HashOfPoint> VertexAt;
   std::vector<Place> Located;
-  std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: points to be inserted
+  std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: points to insert
   std::vector<Point2> OutsidePoints;
-  std::vector<Piece> Pieces; ///< one after another along each ring
-  std::vector<Stop> OnTheWay;
+  std::vector<Piece> Pieces; ///< along each ring
+  std::vector<Stop> Stops;
   std::vector<std::size_t> IsCut; ///< pieces that cross the border
   std::size_t EdgeOfCut = 0;      ///< the edge of one of them
 };

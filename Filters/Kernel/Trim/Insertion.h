@@ -2,33 +2,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Brings rings drawn anywhere into a mesh: their points become vertices, and where they leave the
- * mesh its border gets a vertex.
+ * Inserts rings drawn anywhere into a mesh: their points become vertices, and the border gets a
+ * vertex wherever a ring crosses it.
  *
  * In: a mesh with Twins, rings of points in the plane. Out: the mesh with more vertices, and the
- * rings through these. The passes:
- *   1. Look whether the rings cross each other (Crossings.h).
- *   2. Match the rings' points to corners of the mesh with the same x,y. One that the border passes
- *      within rounding (SnapRounding.h) becomes a vertex of the border, which moves by as little; but not
- *      where two borders do, which must not move into each other.
- *   3. Locate the others: they are binned, and one sweep over the triangles looks into the bins
- *      that each one touches. A point inside a triangle cuts it in three; one on an edge cuts the
- *      two triangles beside it, or the one, at the border.
- *   4. Where an edge of the rings crosses the border, or runs through a vertex of the border, or
- *      crosses it beside such a vertex within rounding, it gets a vertex; again and again until none
- *      crosses, as the place of a crossing is rounded. So each edge of the new rings lies within the
- *      mesh or outside, apart from its ends. Where borders lie on each other it goes from a vertex of
- *      the one to a vertex of the other at the same place.
+ * rings as vertices of it. The passes:
+ *   1. Check that the rings do not cross each other (Crossings.h).
+ *   2. Match the rings' points to corners of the mesh with the same x,y. A point within rounding of
+ *      the border (SnapRounding.h) becomes a vertex of the border, which moves by that little. Not
+ *      where two borders are that near: one would move into the other.
+ *   3. Locate the other points: they are binned, and one sweep over the triangles looks into the
+ *      bins that each triangle touches. A point inside a triangle cuts it in three; a point on an
+ *      edge cuts the one or two triangles of the edge.
+ *   4. An edge of the rings gets a vertex where it crosses the border, and at each vertex of the
+ *      border that it runs through or passes within rounding. As crossings are rounded, this is
+ *      repeated until no edge crosses. Then each edge of the new rings lies inside or outside the
+ *      mesh except for its ends. Where borders coincide, the ring steps from a vertex of one to the
+ *      vertex of the other at the same place.
  *
- * Guarantees: exact, but for the place of a crossing, which is rounded to doubles, and moved by
- * some units in the last place where a triangle is too thin for that, and for what lies within four
- * units of the border and is taken as on it. What the mesh
- * covers stays the same, but for that. All cuts are made in the triangles as they were: no edge is
- * flipped, and the surface through interpolated elevations is the one before.
+ * Guarantees: exact, with two exceptions: crossings are rounded to doubles, and moved by some units
+ * in the last place where a triangle is too thin to be cut there; what lies within four such units
+ * of the border counts as on it. Apart from these the mesh covers the same area. No edge is
+ * flipped, so that interpolated elevations give the same surface as before.
  * The result does not depend on the order of the rings' points.
  *
- * Cost: linear in the triangles, where a point has to be matched or located. Where many points lie
- * in one triangle, each takes about a logarithm of them.
+ * Cost: linear in the triangles if a point has to be matched or located, plus about log m for each
+ * of m points in the same triangle.
  */
 #ifndef elevation_Trim_Insertion_h
 #define elevation_Trim_Insertion_h
@@ -43,22 +42,22 @@ namespace elevation
 
 struct InsertedRings
 {
-  Rings Vertices;                       ///< vertices of the mesh
-  std::vector<InsertedVertex> Inserted; ///< one a vertex after those before
-  std::vector<Index> Parents;           ///< one a triangle after those before: whose part it is
+  Rings Vertices;                       ///< of the mesh
+  std::vector<InsertedVertex> Inserted; ///< one per new vertex
+  std::vector<Index> Parents;           ///< one per new triangle: the input triangle it is part of
 };
 
 /**
- * @param[in,out] mesh  with Twins. New vertices come after those before. After them come the points
- *                      of the rings that are outside the mesh, which no triangle uses. A triangle
- *                      that is cut becomes one of its parts; the other parts come last.
+ * @param[in,out] mesh  with Twins. New vertices are appended, then the rings' points outside the
+ *                      mesh, which no triangle uses. A triangle that is cut becomes one of its
+ *                      parts; the other parts are appended.
  * @param[in]     points  finite
- * @param[in]     rings   ids of the points, at least three a ring
- * @param[in]     insert  off: nothing changes, and what would have to is an Error
- * @throws Error naming the points: two edges of the rings, two rings or parts of one that cross; a
- *         ring's point where two corners of the mesh lie, or a way of it along borders that lie on
- *         each other; a crossing with a triangle so thin that it cannot be cut there; with insert
- *         off, a point or a crossing that the mesh does not have. Aborted; std::bad_alloc.
+ * @param[in]     rings   ids of the points, at least three per ring
+ * @param[in]     insert  off: the mesh stays as it is; an Error if something would be inserted
+ * @throws Error naming the points: rings, or parts of one, that cross; a ring's point where two
+ *         corners of the mesh lie; a ring along coincident borders; a crossing with a triangle too
+ *         thin to be cut there; with insert off, a point or a crossing that the mesh does not have.
+ *         Aborted; std::bad_alloc.
  */
 InsertedRings InsertRings(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
   const Progress& progress = Progress());

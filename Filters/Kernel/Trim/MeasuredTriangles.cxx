@@ -14,16 +14,15 @@ namespace elevation
 namespace
 {
 
-// Coordinates of which the largest is beyond these are taken at another scale: squares of lengths
-// leave the range of float.
+// Outside this range of the largest coordinate, coordinates are scaled: squared lengths would leave
+// the range of float.
 constexpr double LargestUnscaled = 1e15;
 constexpr double LeastUnscaled = 1e-12;
 constexpr Index LargestSample = 4096;
 
 /**
- * Finds the longest edge of each triangle, tells each vertex its edges, and takes the sample.
- * Vertices are numbered as they come: what comes next is then near in memory as well, wherever the
- * points lie.
+ * Finds the longest edge of each triangle, adds the edges to their vertices, and takes the sample.
+ * Vertices are numbered in the order visited, so that later passes access memory locally.
  */
 struct Measurer
 {
@@ -34,18 +33,18 @@ struct Measurer
     bool IsChosen = false;
   };
 
-  static constexpr Index AtOnce = 1024; ///< numbers that one visitor takes
+  static constexpr Index AtOnce = 1024; ///< numbers reserved for a visitor at a time
   const int SampleBits;
   const Vertex* Vertices; ///< of the list
   MeasuredTriangles* Measured;
   double* Longest;                ///< of Measured
-  std::atomic<Index>* Count;      ///< of numbers given to visitors
+  std::atomic<Index>* Count;      ///< of numbers reserved by all visitors
   std::vector<Index> Sample = {}; ///< triangles
-  Index Next = 0, End = 0;        ///< numbers to give
+  Index Next = 0, End = 0;        ///< reserved and not yet used
   Index First = None;             ///< number of the first corner
-  Index Last = None;              ///< of the last one
-  double Largest = 0.0;           ///< coordinate
-  double ToLast = 0.0;            ///< square of the length, from the first corner to the last
+  Index Last = None;              ///< number of the last corner
+  double Largest = 0.0;           ///< absolute value of a coordinate
+  double ToLast = 0.0;            ///< squared length of the edge from the first corner to the last
 
   void Start(Vertex& vertex) const
   {
@@ -98,7 +97,7 @@ struct Measurer
   }
 };
 
-/** What a sweep has told of the vertices, by their numbers, and the border. */
+/** Takes the vertices, by number, and the border from a sweep. */
 void TakeVertices(
   TriangleSweep<Measurer>& sweep, const Progress& progress, MeasuredTriangles& measured)
 {
@@ -117,8 +116,8 @@ void TakeVertices(
 }
 
 /**
- * Adds each edge of the border to the vertex that it leads to, as no half-edge leaves that along it,
- * and gives the border the numbers of vertices.
+ * Adds each border edge to its destination, from which no half-edge runs back along it, and changes
+ * the border from ids to numbers.
  */
 void AddBorder(
   TriangleSweep<Measurer>& sweep, const Progress& progress, MeasuredTriangles& measured)
@@ -189,7 +188,7 @@ bool MeasureBySweep(
 MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress)
 {
   const Index count = mesh.NumberOfTriangles();
-  // At a scale where squares do not leave the range of double.
+  // Scaled if squared lengths would leave the range of float.
   double largest = 0.0;
   for (const Index v : mesh.Triangles)
   {
@@ -229,7 +228,7 @@ MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress)
         isInSample = isInSample || IsChosenForSample(origin, bits);
         if (mesh.IsBorder(h))
         {
-          // No half-edge leaves its other end.
+          // No half-edge runs back from the destination.
           edges[edge.Destination].Add(squared);
           measured.Border.push_back(edge);
         }

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What the outline of a surface is told by: the longest edge of each triangle, the shortest edges at
- * each vertex, the border. One pass over the triangles, over those of a mesh or where they lie.
+ * Measures what the outline of a surface is found from: the longest edge of each triangle, the
+ * shortest edges at each vertex, and the border.
+ *
+ * In: a mesh, or a list of triangles. Cost: linear, one pass over the triangles.
  */
 #ifndef elevation_Trim_MeasuredTriangles_h
 #define elevation_Trim_MeasuredTriangles_h
@@ -22,11 +24,11 @@ namespace elevation
 /** The four shortest edges at a vertex, and how many it has. */
 struct EdgesAtVertex
 {
-  /** An edge, each once, in any order. */
+  /** Call once per edge, in any order. */
   void Add(double squaredLength)
   {
     ++this->Degree;
-    // Without branches: where it belongs cannot be predicted.
+    // Insertion without branches, which would be unpredictable.
     const float squared = static_cast<float>(squaredLength);
     for (int i = Shortest - 1; i > 0; --i)
     {
@@ -35,7 +37,7 @@ struct EdgesAtVertex
     this->Squared[0] = std::min(this->Squared[0], squared);
   }
 
-  /** Of a corner: their mean length (of all edges if fewer), but at most twice the second one's. */
+  /** The mean length of the four (or all, if fewer), but at most twice that of the second. */
   float ShortSpacing() const
   {
     const float second = std::sqrt(this->Squared[1]);
@@ -52,10 +54,10 @@ struct EdgesAtVertex
   std::uint32_t Degree = 0;
   float Squared[Shortest] = { std::numeric_limits<float>::infinity(),
     std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
-    std::numeric_limits<float>::infinity() }; ///< in their order
+    std::numeric_limits<float>::infinity() }; ///< increasing
 };
 
-/** Triangles, and what a pass over them has told. Vertices may have numbers of their own. */
+/** Triangles and their measures. Vertices may be renumbered; see Ids. */
 struct MeasuredTriangles
 {
   void SetNumberOfVertices(Index count)
@@ -64,7 +66,7 @@ struct MeasuredTriangles
     this->ShortSpacings.Resize(count);
   }
 
-  /** When all edges of a vertex are known. */
+  /** Call once all edges of the vertex are known. */
   void Set(Index vertex, const EdgesAtVertex& edges)
   {
     this->Degrees[vertex] = edges.Degree;
@@ -72,14 +74,14 @@ struct MeasuredTriangles
   }
 
   TriangleList List;
-  Buffer<Index> Corners;          ///< what List points to, when it is not the list measured
-  Buffer<double> Coordinates;     ///< the same
-  Buffer<Index> Ids;              ///< of the vertices in the list measured, when they have others
-  Buffer<double> Longest;         ///< one a triangle: the square of its longest edge
-  Buffer<std::uint32_t> Degrees;  ///< one a vertex: how many edges it has; it may have none
-  Buffer<float> ShortSpacings;    ///< one a vertex
-  std::vector<BorderEdge> Border; ///< all
-  std::vector<Index> Sample;      ///< triangles with a vertex chosen for the sample; increasing
+  Buffer<Index> Corners;          ///< owns List's corners, if renumbered
+  Buffer<double> Coordinates;     ///< owns List's points
+  Buffer<Index> Ids;              ///< one per vertex: its id in the input; empty if not renumbered
+  Buffer<double> Longest;         ///< one per triangle: the square of its longest edge
+  Buffer<std::uint32_t> Degrees;  ///< one per vertex: its number of edges, perhaps none
+  Buffer<float> ShortSpacings;    ///< one per vertex
+  std::vector<BorderEdge> Border;
+  std::vector<Index> Sample; ///< triangles with a vertex chosen for the sample; increasing
 };
 
 inline double SquaredLength(Point2 p, Point2 q)
@@ -88,11 +90,11 @@ inline double SquaredLength(Point2 p, Point2 q)
 }
 
 /**
- * For the typical triangle one vertex in 1, 2, 4 and so on is chosen: as many as are chosen when no
- * more than a few thousand triangles would be. It is 2 to the power of this.
+ * To find the typical triangle, one vertex in 2^bits is chosen.
+ * @return the least bits that leave no more than a few thousand triangles
  */
 int SampleBitsOf(Index numberOfTriangles);
-/** Whether a vertex is chosen, by its place alone. */
+/** Whether a vertex is chosen; depends on its place alone. */
 inline bool IsChosenForSample(Point2 place, int sampleBits)
 {
   std::uint64_t x, y;
@@ -112,9 +114,9 @@ inline bool IsChosenForSample(Point2 place, int sampleBits)
 MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress = Progress());
 
 /**
- * Measures triangles by one sweep over them (TriangleSweep.h), which proves that they are a mesh
- * that covers nothing twice.
- * @return whether it does, and coordinates need no other scale; if not, the result is of no use
+ * Measures triangles by one sweep (TriangleSweep.h), which proves that they are a mesh that covers
+ * nothing twice.
+ * @return whether it does, and no scaling is needed; if not, the result is unusable
  * @throws Aborted, std::bad_alloc
  */
 bool MeasureBySweep(

@@ -15,7 +15,7 @@ namespace elevation
 namespace
 {
 
-/** Points as seen from one, at a scale where products and sums stay in the range of double. */
+/** Points relative to one, scaled so that products and sums stay in the range of double. */
 template <std::size_t Count>
 std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> points)
 {
@@ -70,7 +70,7 @@ bool MeshCutter::MoveToCut(Index h, Point2& place) const
     place = { first.X + dx, first.Y + dy };
     return std::isfinite(place.X) && std::isfinite(place.Y) && this->CanCut(h, place);
   };
-  // The nearest ones, from the middle out, then further outwards.
+  // The nearest places in rings around it, then places further outwards.
   for (int ring = 0; ring <= 3; ++ring)
   {
     for (int i = -ring; i <= ring; ++i)
@@ -101,7 +101,7 @@ InsertedVertex MeshCutter::WeightsIn(Index t, const Point2& p) const
   for (int i = 0; i < 3; ++i)
   {
     const int next = (i + 1) % 3, last = (i + 2) % 3;
-    // On an edge, rounding must not bring in the corner beyond.
+    // On an edge, the opposite corner gets exactly 0, whatever the rounding.
     shares[i] = { this->Surface.Origin(3 * t + i),
       Orientation(corners[next], corners[last], p) == Zero
         ? 0.0
@@ -137,7 +137,7 @@ InsertedVertex MeshCutter::WeightsOf(
       sum += weight;
     }
   };
-  // Where a triangle is so small or thin that all shares vanish, its corners count alike.
+  // If all shares underflow, in a tiny or thin triangle, all corners get the same.
   for (int attempt = 0; attempt < 2 && vertex.Corners[0] == None; ++attempt)
   {
     for (std::size_t k = 0; k < count; ++k)
@@ -163,7 +163,7 @@ InsertedVertex MeshCutter::WeightsOf(
   const bool isUsable = sum > 0.0 && sum < std::numeric_limits<double>::infinity();
   for (double& weight : vertex.Weights)
   {
-    // A triangle too thin for the range of double has no ratios.
+    // A sum of 0 or infinity gives no ratios.
     weight = isUsable ? weight / sum : 1.0 / 3.0;
   }
   return vertex;
@@ -246,7 +246,7 @@ Index MeshCutter::Halve(Index h, Index v)
   return part;
 }
 
-Index MeshCutter::NowOf(Index h) const
+Index MeshCutter::CurrentHalfEdge(Index h) const
 {
   for (auto next = this->Moved.find(h); next != this->Moved.end(); next = this->Moved.find(h))
   {

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Cuts triangles of a mesh at new vertices, in place, and keeps where in the triangles before each
- * vertex lies, and which of them each part is of. No edge is flipped.
+ * Cuts triangles of a mesh at new vertices, in place. Records the position of each new vertex in
+ * the original triangles, and the original triangle of each part. No edge is flipped.
+ *
+ * Cost: constant per cut. "Original" is the state when the cutter was constructed.
  */
 #ifndef elevation_Trim_MeshCutter_h
 #define elevation_Trim_MeshCutter_h
@@ -18,21 +20,21 @@
 namespace elevation
 {
 
-/** Where a new vertex lies: the sum of its weights, each times a corner of one triangle before. */
+/** The position of a new vertex: the weighted sum of the corners of one original triangle. */
 struct InsertedVertex
 {
   Index Corners[3];
-  double Weights[3]; ///< 0 to 1, 1 together; 0 for what is not on the edge that the vertex is on
+  double Weights[3]; ///< 0 to 1, their sum is 1; on an edge, the opposite corner's is 0
 };
 
-/** Cuts one mesh again and again; constant time each. Vertices and parts come last. */
+/** Appends new vertices and parts to the mesh. */
 class MeshCutter
 {
 public:
   /**
    * @param[in,out] mesh      with Twins
-   * @param[out]    inserted  one a vertex after those before
-   * @param[out]    parents   one a triangle after those before: whose part it is
+   * @param[out]    inserted  one per new vertex
+   * @param[out]    parents   one per new triangle: the original one that it is part of
    */
   MeshCutter(Mesh& mesh, std::vector<InsertedVertex>& inserted, std::vector<Index>& parents)
     : Surface(mesh)
@@ -43,7 +45,7 @@ public:
   {
   }
 
-  /** Whether the vertex was there before. */
+  /** Whether the vertex is an original one. */
   bool IsGiven(Index vertex) const { return vertex < this->CountBefore; }
 
   std::array<Point2, 3> CornersOf(Index t) const;
@@ -51,47 +53,47 @@ public:
   /** Whether the point is in the triangle or on an edge of it. */
   bool Holds(Index t, const Point2& p) const;
 
-  /** The weights of a place in a triangle, of which corners may be new vertices themselves. */
+  /** The weights of a place in a triangle, whose corners may be new vertices. */
   InsertedVertex WeightsIn(Index t, const Point2& p) const;
 
-  /** The weights of a place on an edge, or so near that it is made one of it. */
+  /** The weights of a place on the edge ab, or so near that the edge is moved to it. */
   InsertedVertex WeightsBetween(Index a, Index b, const Point2& p) const;
 
-  /** Of no triangle as yet. */
+  /** Appends a vertex that no triangle uses yet. */
   Index AddVertex(const Point2& p, const InsertedVertex& inserted);
 
-  /** Triangle abc becomes abv, and bcv and cav are new. */
+  /** Triangle abc becomes abv; bcv and cav are new. */
   void CutTriangle(Index t, Index v);
 
-  /** Cuts the triangles beside an edge. @return the half-edge from v to where h led */
+  /** Cuts the triangles of an edge. @return the half-edge from v to the old destination of h */
   Index CutEdge(Index h, Index v);
 
-  /** Whether the triangle of h leaves two triangles when its edge is led through the place. */
+  /** Whether cutting the edge of h at the place splits the triangle of h into two proper ones. */
   bool CanCut(Index h, const Point2& place) const;
 
   /**
-   * Moves a place on the border, within rounding, to where the triangle of h can be cut: rounded,
-   * it may be beyond a thin triangle. Outwards is room where the apex is beside the place.
-   * @return whether one was found
+   * Moves a place on a border edge, within rounding, so that the triangle of h can be cut there: a
+   * rounded place may lie beyond a thin triangle. At the foot of the apex there is room outwards.
+   * @return whether such a place was found
    */
   bool MoveToCut(Index h, Point2& place) const;
 
-  /** The number that a half-edge of the border has after cuts; of its first part. */
-  Index NowOf(Index h) const;
+  /** The number, after the cuts, of a border half-edge; if it was cut, of its first part. */
+  Index CurrentHalfEdge(Index h) const;
 
-  /** From here on half-edges are numbered as they are. */
+  /** From here on, CurrentHalfEdge() takes the numbers of this moment. */
   void ForgetMoves() { this->Moved.clear(); }
 
 private:
-  /** Of vertices that may be new themselves, all on one triangle before, which has three corners. */
+  /** Sums up shares of vertices, perhaps new, that all lie in one original triangle. */
   InsertedVertex WeightsOf(const std::pair<Index, double>* shares, std::size_t count) const;
 
-  /** Room for a part of a triangle. @return its first half-edge */
+  /** Appends a part of a triangle. @return its first half-edge */
   Index AddPart(Index t);
 
   void SetEdge(Index h, Index origin, Index twin);
 
-  /** Triangle abc with h from a to b becomes avc, and vbc is new; not connected along h. */
+  /** Triangle abc, with h = ab, becomes avc; vbc is new. The caller sets the twins along ab. */
   Index Halve(Index h, Index v);
 
   Mesh& Surface;
@@ -99,7 +101,7 @@ private:
   std::vector<Index>& Parents;
   const Index CountBefore;
   const Index TrianglesBefore;
-  std::unordered_map<Index, Index> Moved; ///< half-edges of the border that a cut renumbered
+  std::unordered_map<Index, Index> Moved; ///< border half-edges that a cut renumbered
 };
 
 } // namespace elevation

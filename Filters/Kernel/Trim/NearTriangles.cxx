@@ -14,8 +14,8 @@ namespace
 {
 
 /**
- * A raster over the box of rings, with some cells around it. A cell that no ring touches is inside
- * or outside them as a whole. What is beyond the raster is outside, as the cells at its rim are.
+ * A raster over the box of the rings and a margin. A cell that no ring touches is entirely inside
+ * or outside. Everything beyond the raster is outside, as the cells at its rim are.
  */
 class RingRaster
 {
@@ -24,7 +24,7 @@ public:
   {
     Inside = 0,
     Outward = 1,
-    Near = 2 ///< touched by a ring, or perhaps
+    Near = 2 ///< perhaps touched by a ring
   };
 
   RingRaster(const std::vector<Point2>& points, const Rings& rings, Index numberOfTriangles)
@@ -41,12 +41,12 @@ public:
     const double size = std::max({ -low.X, -low.Y, high.X, high.Y });
     const double width = high.X - low.X;
     const double height = high.Y - low.Y;
-    // A few triangles a cell.
+    // A few triangles per cell.
     const double cells = std::min(262144.0, std::max(64.0, numberOfTriangles / 8.0));
     const double columns = std::sqrt(cells * (width / height));
     this->Side = width / std::min(512.0, std::max(1.0, columns));
-    // No cell is so small that rounding of coordinates could matter; and rings that are no more
-    // than a line, or too large or too small for this, are left to others.
+    // Cells must be so large that the rounding of coordinates does not matter. Rings without area,
+    // very large or very small ones are not handled.
     this->Usable = size < 1e100 && this->Side > 1e-100 && this->Side > 1e-9 * size &&
       height > 0.0 && height < 4096.0 * this->Side;
     if (!this->Usable)
@@ -65,7 +65,7 @@ public:
 
   bool IsUsable() const { return this->Usable; }
 
-  /** The kind of all that is not farther than Reach() from p, along x and along y. */
+  /** The kind of everything within Reach() of p along x and along y. */
   Kind KindAround(Point2 p) const
   {
     return static_cast<Kind>(
@@ -73,7 +73,7 @@ public:
   }
   double Reach() const { return 0.999 * Around * this->Side; }
 
-  /** The kind of all of a box: Near, when it touches a cell that a ring touches. */
+  /** The kind of everything in a box: Near if it touches a cell that a ring touches. */
   Kind KindOf(Point2 low, Point2 high) const
   {
     const Index left = this->ColumnOf(low.X), right = this->ColumnOf(high.X);
@@ -85,12 +85,12 @@ public:
   }
 
 private:
-  static constexpr Index Around = 2; ///< cells around one that KindAround() looks at
-  // Cells beside the box of the rings: so many that no ring is within reach of those at the rim,
-  // which stand for all beyond; one more, as rings are drawn with a margin.
+  static constexpr Index Around = 2; ///< how many cells KindAround() looks in each direction
+  // Cells around the box of the rings. The cells at the rim stand for everything beyond, so no ring
+  // may be within their reach; one cell more, as rings are drawn slightly thick.
   static constexpr Index Margin = Around + 2;
 
-  // Monotone, so that what lies between two points lies between their cells.
+  // Monotone: a point between two others is in a cell between theirs.
   Index ColumnOf(double x) const
   {
     return CellOf((x - this->Low.X) * this->CellsPerUnit, this->Columns);
@@ -109,7 +109,7 @@ private:
     return this->Sums[static_cast<std::size_t>(row) * (this->Columns + 1) + column];
   }
 
-  /** Marks the cells that an edge touches, or comes near by a share of a cell. */
+  /** Marks the cells that an edge touches, or passes within a fraction of a cell. */
   void Draw(const std::vector<Point2>& points, const Rings& rings)
   {
     const double near = 1e-3 * this->Side;
@@ -146,7 +146,7 @@ private:
     }
   }
 
-  /** Tells inside from outside, cell by cell from what the cells before and below are. */
+  /** Finds the kind of each other cell: that of the cell before or below, or by a location. */
   void FindInside(const std::vector<Point2>& points, const Rings& rings)
   {
     const RingLocator locator(points, rings);
@@ -215,10 +215,10 @@ private:
   Index Rows = 0;
   std::vector<char> Kinds;
   std::vector<char> KindsAround;
-  std::vector<Index> Sums; ///< of touched cells to the left and below
+  std::vector<Index> Sums; ///< how many touched cells lie to the left and below
 };
 
-/** Tells the triangles that no ring touches, and lists the others. */
+/** Classifies the triangles that no ring touches, and lists the others. */
 struct Classifier
 {
   using Vertex = SweptVertex;

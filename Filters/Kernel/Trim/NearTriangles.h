@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Tells the triangles that rings come near from all others, which lie inside or outside as a whole.
+ * Finds the triangles near rings; every other triangle lies entirely inside or outside the rings.
  *
  * The passes:
- *   1. Draw the rings into a raster of cells. Every other cell is inside or outside as a whole.
- *   2. Sweep over the triangles where they lie, once (TriangleSweep.h). A triangle that touches no
- *      cell of a ring is as its cells are; the others are near.
+ *   1. Draw the rings into a raster. A cell that no ring touches is entirely inside or outside.
+ *   2. Sweep over the triangles once (TriangleSweep.h). A triangle that touches no cell of a ring
+ *      is inside or outside as its cells are; the others are near.
  *   3. Prove by the border alone that nothing is covered twice (Holes.h).
  *
- * Cost: that of the sweep, and of the rings.
+ * Cost: linear in the triangles and the cells that the rings touch. The other indexes find edges
+ * near a triangle; only the raster also tells whether a triangle without any is inside.
  */
 #ifndef elevation_Trim_NearTriangles_h
 #define elevation_Trim_NearTriangles_h
@@ -25,9 +26,9 @@ namespace elevation
 
 /**
  * @param[in]  points     of the rings; finite
- * @param[out] isOutward  one flag a triangle; those of the near ones are to be found yet
- * @return the near ones, increasing. Nothing when the triangles are not proven to be a mesh, in the
- *         order that a sweep needs; or rings have no area, or too large or too small a one
+ * @param[out] isOutward  one flag per triangle; without meaning for the near ones
+ * @return the near triangles, increasing; nothing if the sweep does not prove the triangles to be a
+ *         mesh, or if the extent of the rings is zero, too small or too large for a raster
  * @throws Aborted; std::bad_alloc
  */
 std::optional<std::vector<Index>> FindNearTriangles(const TriangleList& list,

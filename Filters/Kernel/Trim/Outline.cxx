@@ -15,27 +15,27 @@ namespace elevation
 namespace
 {
 
-// The figures of the rule (see Outline.h), found by trials: lattices, lattices thinned to a tenth,
+// The constants of the rule (Outline.h), found by trials: lattices, lattices thinned to a tenth,
 // random points, points graded tenfold and scan lines eight times denser along than across, all cut
-// out by outlines with lakes, a fjord, a neck and islands, wider than the tolerance. The area between
-// truth and outline was 0.08 to 0.25 of the area within one spacing of the true outline; with less
-// than 2 typical triangles the sea comes in between random points (0.31 with 1.85), with more than
-// 2.25 wider channels are closed.
+// out by outlines with lakes, a fjord, a neck and islands, wider than the tolerance. The area
+// between the true and the found outline is 0.08 to 0.25 of the area within one spacing of the true
+// one. Below 2, the sea comes in between random points (0.31 with 1.85); above 2.25, wider channels
+// are closed.
 constexpr double ToleranceOfTypicalTriangle = 2.25;
 constexpr double LargestSpacingInTriangle = 2.0;
-// What leaves no doubt, in parts of the tolerance, but in short spacings. In the same trials, and
-// with clusters and real surveys, the outline by the sixth neighbours alone leaves out one triangle
-// in 10,000 more, at most; lattices the same. With 0.55 the outlines of scan lines were a little
-// worse; the mean length not limited by the second edge took gaps between scan lines for surface.
-constexpr double BeyondDoubt = 0.52;
+// The cheaper test: fractions of the tolerance, in short spacings. In the same trials, and with
+// clusters and real surveys, spacings alone would leave out at most one triangle in 10,000 more, in
+// lattices none. With 0.55 the outlines of scan lines are a little worse; without the limit by the
+// second edge, gaps between scan lines are taken for surface.
+constexpr double CertainSurface = 0.52;
 constexpr double SmallGroup = 0.7;
-// A tenth of a spacing is what a line of points wavers by, when it is one; the narrow triangles
-// between points of scan lines eight times denser along than across are seven times as high.
+// A line of points wavers by up to a tenth of a spacing; the narrow triangles between scan lines
+// eight times denser along than across are seven times as high.
 constexpr double LeastHeight = 0.1;
-// Smaller ones, whose squares leave the range of double, are taken as this: no spacing is 0.
+// A lower bound, so that no spacing is 0 and squares stay in the range of double.
 constexpr double LeastSpacing = 1e-150;
 
-/** The parts of triangles with the same flag that are connected by edges. */
+/** The parts of triangles with equal flags, connected by edges. */
 Parts PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
 {
   return FindParts(mesh, progress, [&](Index h) {
@@ -44,8 +44,8 @@ Parts PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const Progr
 }
 
 /**
- * Closes the openings that are smaller than what the tolerance bridges.
- * @param[in] shareOf  shareOf(t): the area of a triangle in parts of what the tolerance bridges
+ * Closes openings smaller than the least lake.
+ * @param[in] shareOf  shareOf(t): the area of a triangle as a fraction of the least lake's
  */
 template <typename ShareOf>
 void CloseSmallOpenings(
@@ -79,7 +79,7 @@ void CloseSmallOpenings(
   {
     piece.Share = shareOf(piece.Triangle);
   }
-  // In the order of size, so that the sum does not depend on the order of the triangles.
+  // Sorted by size, so that the sum does not depend on the order of the triangles.
   Sort(
     pieces.begin(), pieces.end(),
     [](const Piece& p, const Piece& q) {
@@ -102,8 +102,8 @@ void CloseSmallOpenings(
 }
 
 /**
- * Takes out slivers from the outside in, as long as there are any.
- * @param[in] isSliver  isSliver(h): whether the triangle of h is hardly higher than this edge
+ * Drops slivers from the border inwards, as long as there are any.
+ * @param[in] isSliver  isSliver(h): whether the triangle of h is very flat over that edge
  */
 template <typename IsSliver>
 void DropSlivers(
@@ -141,14 +141,14 @@ void DropSlivers(
 }
 
 /**
- * Takes out pieces with too few vertices to have a spacing of their own, if others have more.
- * @return the vertices of pieces that look small, but go on beyond the mesh; if any, nothing is done
+ * Drops pieces with too few vertices for spacings of their own, if others have more.
+ * @return vertices of pieces that look small but continue beyond the mesh; if any, nothing is done
  */
 std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
   const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
-  // More triangles than so few vertices can have.
+  // More triangles than so few vertices can form.
   constexpr Index many = 3 * NeighborOfSpacing + 1;
   std::vector<Index> sizes(parts.Count(), 0);
   std::vector<char> goesOn(parts.Count(), 0);
@@ -200,13 +200,13 @@ std::vector<Index> DropSmallPieces(
 }
 
 /**
- * The border of the triangles to keep, as simple rings of vertices in an order of their positions.
+ * The border of the triangles to keep, as simple rings of vertices, sorted by their positions.
  */
 Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& progress)
 {
   const Progress cutting = Part(progress, 0.6, 0.8);
 
-  // A walk that comes back to a vertex it has passed has closed a ring.
+  // A walk that returns to a vertex on its path closes a ring.
   const Rings walks = TraceBorder(mesh, Part(progress, 0.0, 0.6), keep);
   Rings rings;
   rings.Vertices.reserve(walks.Vertices.size());
@@ -218,7 +218,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
       auto lowest = path.begin() + first;
       for (auto v = lowest + 1; v != path.end(); ++v)
       {
-        // Two vertices may be at one place: then the next ones tell.
+        // Of two vertices at the same place, the next ones decide.
         const auto nextTo = [&](const auto& w) {
           return mesh.PointOf(w + 1 == path.end() ? path[first] : w[1]);
         };
@@ -239,7 +239,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
       const Index vertex = mesh.Origin(*h);
       if (isOnPath[vertex])
       {
-        std::size_t first = path.size() - 1; // most rings are small: back from the end
+        std::size_t first = path.size() - 1; // backwards, as most rings are small
         while (path[first] != vertex)
         {
           --first;
@@ -287,7 +287,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
   return result;
 }
 
-/** The triangles that have a corner in the set, in their order. */
+/** The triangles with a corner in the set, increasing. */
 std::vector<Index> TrianglesAt(
   const TriangleList& list, const IdSet& vertices, const Progress& progress)
 {
@@ -304,7 +304,7 @@ std::vector<Index> TrianglesAt(
   return triangles;
 }
 
-/** How many corners no triangle with the flag has. */
+/** The number of corners that no triangle to keep has. */
 Index CountLeftOut(
   const TriangleList& list, const std::vector<char>& keep, const Progress& progress)
 {
@@ -330,7 +330,7 @@ Index CountLeftOut(
   return leftOut.Count();
 }
 
-/** The corners of triangles, in the order in which those name them. */
+/** The corners of triangles, each once, in order of occurrence. */
 std::vector<Index> CornersOf(
   const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
 {
@@ -351,8 +351,8 @@ std::vector<Index> CornersOf(
 }
 
 /**
- * The spacing of a triangle: the middle one of its corners' three, which the spacing of a point
- * that lies alone is not, nor of two that lie alone; but not far above the least.
+ * The spacing of a triangle: the median of its corners', which ignores the large spacing of an
+ * isolated corner, but not far above the least, in case two corners are isolated.
  */
 template <typename Real>
 double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
@@ -366,8 +366,8 @@ double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
 }
 
 /**
- * Triangles from everywhere: those at some vertices, or all when they are few. Not those of a vertex
- * with very many neighbours, which would outvote all others.
+ * A sample of the triangles: those at chosen vertices, or all if they are few. Vertices with very
+ * many neighbours are not chosen, as their triangles would outvote all others.
  */
 std::vector<Index> SampleOf(const MeasuredTriangles& measured)
 {
@@ -389,10 +389,10 @@ std::vector<Index> SampleOf(const MeasuredTriangles& measured)
 }
 
 /**
- * Takes triangles out of a list that are surface in any case: those of a group, connected by
- * corners and apart from the border, in which there is no room for a lake.
- * @param[in]     shareOf  shareOf(t): the area of a triangle in parts of the least lake's
- * @param[in,out] keep     is set for those taken out
+ * Removes triangles that are surface in any case from a list: groups, connected by corners and away
+ * from the border, without room for a lake.
+ * @param[in]     shareOf  shareOf(t): the area of a triangle as a fraction of the least lake's
+ * @param[in,out] keep     set for the triangles removed
  * @return the others
  */
 template <typename ShareOf>
@@ -400,7 +400,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   const std::vector<Index>& triangles, ShareOf&& shareOf, std::vector<char>& keep,
   const Progress& progress)
 {
-  // Where a vertex has been joined to; to itself where it has not.
+  // Union-find: the parent of each vertex, itself for a root.
   Buffer<Index> joined;
   joined.Resize(list.Points.Count);
   std::iota(joined.begin(), joined.end(), 0);
@@ -456,7 +456,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   return others;
 }
 
-/** Triangles as a mesh with Twins. A half-edge that is its own leads to one that is not here. */
+/** Triangles as a mesh. A half-edge that is its own twin leads to a triangle left out. */
 struct PartialMesh
 {
   /** @param[in] border  sorted */
@@ -468,7 +468,7 @@ struct PartialMesh
     this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));
     if (static_cast<Index>(this->Triangles.size()) == list.Count)
     {
-      return; // nothing goes on beyond all
+      return; // nothing is left out
     }
     ForEachStretch(
       this->Surface.NumberOfHalfEdges(), Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
@@ -511,12 +511,11 @@ struct PartialMesh
 };
 
 /**
- * The last steps: drops slivers, closes small openings, drops small pieces, and traces the border of
- * what is left.
- * @param[in]     spacings  of the corners of triangles that are not surface so far, and perhaps of
- *                          others
- * @param[in]     near      the corners at the border of the surface so far
- * @param[in,out] result    which triangles are surface; its rings
+ * The last steps: drops slivers, closes small openings, drops small pieces, and traces the border
+ * of the rest.
+ * @param[in]     spacings  at least at the corners of triangles that are not yet surface
+ * @param[in]     near      the corners at the border of the surface found so far
+ * @param[in,out] result    in: which triangles are surface; out: the same, and the rings
  */
 void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
   const Buffer<double>& spacings, IdSet near, const Progress& progress, ExtractedBoundary& result)
@@ -528,8 +527,8 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
     const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
     return 2.0 * list.ShareOfSquare(t, spacing) * spacing < LeastHeight * length;
   };
-  // Slivers have two corners at the border, or at slivers that have a corner there: all that are
-  // beside them are in the mesh then.
+  // Slivers have two corners at the border, or at flat triangles with a corner there. Then the mesh
+  // includes all their neighbours.
   IdSet atEdge = near;
   for (const Index t : TrianglesAt(list, near, Part(progress, 0.0, 0.1)))
   {
@@ -539,24 +538,24 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
     }
   }
   near = atEdge;
-  double begin = 0.1; // of the progress that is left
+  double begin = 0.1; // of the round, in the progress
   for (;;)
   {
-    // Few need a second round, and hardly any a third.
+    // A second round is rare, a third even rarer.
     const double end = 0.5 * (1.0 + begin);
     const Progress round = Part(progress, begin, end);
     begin = end;
     std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
     if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
     {
-      // With all of them, this is the last round.
+      // Take all of them; this is then the last round.
       triangles = AllTriangles(list);
     }
     const PartialMesh mesh(
       list, measured.Border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
     std::vector<char> keepHere = mesh.FlagsOf(keep);
-    // In parts of a square of the size that the tolerance bridges. A sliver, which was surface so
-    // far, has hardly an area, and the spacing is not known there.
+    // As a fraction of the least lake. Slivers, which were surface before, have hardly any area,
+    // and their spacings are not known.
     const auto shareOf = [&](Index i) {
       const Index t = mesh.Triangles[i];
       return keep[t] ? 0.0 : list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
@@ -573,7 +572,7 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
     if (std::find(keepHere.begin(), keepHere.end(), char(1)) == keepHere.end() &&
       static_cast<Index>(mesh.Triangles.size()) == list.Count)
     {
-      keepHere = keep; // a surface of nothing else
+      keepHere = keep; // the surface is nothing but slivers
     }
     CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.4, 0.55));
     const std::vector<Index> unknown =
@@ -585,7 +584,7 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
       ToIds(result.Vertices.Vertices, mesh.Surface.Ids.data(), Part(round, 1.0, 1.0));
       return;
     }
-    // To see more of these pieces.
+    // In the next round, include more of these pieces.
     for (const Index vertex : unknown)
     {
       near.Add(mesh.Surface.Ids[vertex]);
@@ -593,7 +592,6 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
   }
 }
 
-/** The search for the outline; its members are what the steps hand on. */
 class OutlineSearch
 {
 public:
@@ -615,7 +613,7 @@ public:
     {
       this->ChooseTolerance(neighbors, Part(progress, 0.25, 0.35));
     }
-    this->KeepWhatIsWithoutDoubt(Part(progress, 0.35, 0.5));
+    this->KeepCertainTriangles(Part(progress, 0.35, 0.5));
     const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.5, 0.6));
     this->FindSpacingsOf(doubtful, neighbors, Part(progress, 0.6, 0.74));
     IdSet near = this->Decide(doubtful, Part(progress, 0.74, 0.75));
@@ -643,7 +641,7 @@ private:
     }
   }
 
-  /** At the corners of triangles. */
+  /** Finds the spacings at the corners of triangles. */
   void FindSpacingsOf(
     const std::vector<Index>& triangles, const Neighbors& neighbors, const Progress& progress)
   {
@@ -662,7 +660,7 @@ private:
       SpacingOf(this->Spacings, this->Measured.List.CornersOf(t));
   }
 
-  /** From what the typical triangle measures. */
+  /** Chooses GapTolerance from the ratio of the median triangle. */
   void ChooseTolerance(const Neighbors& neighbors, const Progress& progress)
   {
     const std::vector<Index> sample = SampleOf(this->Measured);
@@ -677,15 +675,15 @@ private:
     this->Result.GapTolerance = ToleranceOfTypicalTriangle * *median;
   }
 
-  /** By short spacings. */
-  void KeepWhatIsWithoutDoubt(const Progress& progress)
+  /** The cheaper test, by short spacings. */
+  void KeepCertainTriangles(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
     const Buffer<float>& shortSpacings = this->Measured.ShortSpacings;
     const Buffer<double>& longest = this->Measured.Longest;
     std::vector<char>& keep = this->Result.IsSurface;
     keep.resize(list.Count);
-    const double limit = BeyondDoubt * this->Result.GapTolerance;
+    const double limit = CertainSurface * this->Result.GapTolerance;
     const auto isWithin = [&](Index, Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
@@ -700,7 +698,7 @@ private:
     ForEachRange(list.Count, this->Threads, progress, isWithin, atOnce);
   }
 
-  /** The triangles that are not kept so far, nor in groups too small for a lake. */
+  /** The triangles that are not kept yet, without those of groups too small for a lake. */
   std::vector<Index> FindDoubtful(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
@@ -722,7 +720,7 @@ private:
     return DropSmallGroups(list, this->AtBorder, doubtful, shareOf, keep, Part(progress, 0.2, 1.0));
   }
 
-  /** By spacings. @return the corners at the border of the surface: all that the last steps need */
+  /** Tests the doubtful triangles by spacings. @return the corners at the border of the surface */
   IdSet Decide(const std::vector<Index>& doubtful, const Progress& progress)
   {
     IdSet near = this->AtBorder;
@@ -743,7 +741,7 @@ private:
   MeasuredTriangles Measured;
   const int Threads;
   IdSet AtBorder;
-  Buffer<double> Spacings; ///< of those vertices for which they are asked
+  Buffer<double> Spacings; ///< one per vertex, set where it was needed
   ExtractedBoundary Result;
 };
 

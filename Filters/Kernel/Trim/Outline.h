@@ -4,8 +4,8 @@
  * @file
  * The outline of a surface, extracted from its triangles.
  *
- * In: a mesh, or triangles whose edges a pass has measured. Out: rings of vertices, and which
- * triangles they enclose. ExtractBoundary() tells the rule.
+ * In: a mesh, or measured triangles (MeasuredTriangles.h). Out: rings of vertices, and which
+ * triangles they enclose. Linear; ExtractBoundary() states the rule.
  */
 #ifndef elevation_Trim_Outline_h
 #define elevation_Trim_Outline_h
@@ -21,10 +21,10 @@ namespace elevation
 struct ExtractOptions
 {
   /**
-   * How many local spacings an empty stretch may measure and still be surface; 0: from the data.
+   * The largest gap that is still surface, in local spacings; 0: from the data.
    */
   double GapTolerance = 0.0;
-  /** Threads to use; 0: one a core. The result is the same. */
+  /** Threads to use; 0: one per core. The result is the same. */
   int NumberOfThreads = 1;
   Progress Monitor;
 };
@@ -32,12 +32,12 @@ struct ExtractOptions
 struct ExtractedBoundary
 {
   Rings Vertices; ///< mesh vertices; counter-clockwise around surface, clockwise around a lake
-  double GapTolerance = 0.0;       ///< the one used
-  std::vector<char> IsSurface;     ///< one flag a triangle: the surface that the rings go around
+  double GapTolerance = 0.0;       ///< as used
+  std::vector<char> IsSurface;     ///< one flag per triangle: whether the rings enclose it
   Index NumberOfPointsLeftOut = 0; ///< corners of triangles, but of no surface triangle
 };
 
-/** ExtractBoundary() for triangles, at least one, that have been measured. */
+/** ExtractBoundary() for measured triangles, at least one. */
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options);
 
 /**
@@ -45,35 +45,36 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  * islands. Every edge of the outline is an edge of the mesh.
  *
  * The rule:
- *   - The spacing at a vertex is half the distance of its 6th nearest vertex. So it follows the
- *     density. At the rim of a gap, where vertices are on one side only, it is one step on a square
+ *   - The spacing at a vertex is half the distance to its 6th nearest vertex, so it follows the
+ *     density. At the rim of a gap, with vertices on one side only, it is one step on a square
  *     lattice and 0.98 of the mean spacing of random points; away from gaps 0.7 of that. The
- *     spacing of a triangle is the middle one of its corners', but at most twice the least.
- *   - A triangle is surface when its longest edge is at most GapTolerance times its spacing.
- *     0 chooses 2.25 times what the typical (median) triangle of the mesh measures: 4.5 on a square
- *     lattice, about 4.6 for random points, more where points lie dense along lines. The typical
- *     one of a large mesh is that of its triangles at a thousand or two of its vertices, which a
- *     hash of their places chooses; none with more than 64 neighbours.
- *   - What leaves no doubt is not measured so, which would take most of the time. The short spacing
- *     at a vertex is the mean length of its four shortest edges (in float; of all edges if fewer),
- *     but at most twice that of the second. A triangle is surface as well when its longest edge is
- *     at most 0.52 GapTolerance times its short spacing. So are all triangles of a group,
- *     connected by corners, none of them at the border of the mesh, if the group is smaller
- *     than a square with a side of 0.7 GapTolerance short spacings: no lake has room in it.
- *   - A triangle at the border of the surface whose height over the edge there is less than a tenth
- *     of its short spacing is a sliver, and not surface; so is the next one, once it is at the
- *     border, if two of its corners were there from the first, or are corners of such flat triangles
- *     with one there. Slivers count nothing in the size of an opening. So a line of points that
- *     leaves the others is left out, also where it wavers. (Unless no triangle is left.)
+ *     spacing of a triangle is the median of its corners', but at most twice the least.
+ *   - A triangle is surface if its longest edge is at most GapTolerance times its spacing.
+ *     GapTolerance 0 means 2.25 times this ratio of the median triangle: 4.5 on a square lattice,
+ *     about 4.6 for random points, more where points lie dense along lines. In a large mesh, the
+ *     median is taken of the triangles at one or two thousand vertices, which a hash of their
+ *     positions chooses; none with more than 64 neighbours.
+ *   - A cheaper test decides most triangles. The short spacing at a vertex is the mean length of
+ *     its four shortest edges (in float; of all if fewer), but at most twice that of the second. A
+ *     triangle is also surface if its longest edge is at most 0.52 GapTolerance times its short
+ *     spacing. The other triangles are grouped by common corners; a group away from the border of
+ *     the mesh is surface too if it is smaller than a square with a side of 0.7 GapTolerance short
+ *     spacings: it has no room for a lake.
+ *   - A triangle at the border of the surface is a sliver, and not surface, if its height over the
+ *     edge there is less than a tenth of its short spacing. So is the next one that comes to the
+ *     border, if two of its corners were at the border from the start, or are corners of flat
+ *     triangles with a corner there. Slivers do not count in the size of an opening. So a line of
+ *     points that leads away from the others is left out, even if it wavers (unless no triangle
+ *     would be left).
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
- *   - A piece with 6 vertices or fewer, too few for a spacing of their own, is not surface,
- *     unless all pieces are as small.
- * Nothing depends on the order of points or triangles. Rings are simple and start at their lowest
- * vertex; they are in the order of these.
- * Cost: linear (the rings are sorted by their first vertices); for a small part of the vertices
- * about 20 neighbours each are looked at, for all of them when GapTolerance is small.
- * @return no ring when no triangle is surface
+ *   - A piece with 6 vertices or fewer, too few for spacings of their own, is not surface, unless
+ *     all pieces are as small.
+ * The result does not depend on the order of points or triangles. Rings are simple, start at their
+ * lowest vertex, and are sorted by it.
+ * Cost: linear, plus a sort of the rings. About 20 neighbours are looked at for a small part of the
+ * vertices; for all of them if GapTolerance is small.
+ * @return no ring if no triangle is surface
  * @throws Aborted, std::bad_alloc
  */
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options);

@@ -15,7 +15,7 @@ namespace elevation
 namespace
 {
 
-/** Whether the way from a vertex to another begins in a triangle or along an edge. */
+/** Whether the segment from a vertex to another begins in a triangle or along an edge. */
 bool BeginsInside(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 {
   if (StepAlong(mesh, stars, from, to).HalfEdge != None)
@@ -34,8 +34,8 @@ bool BeginsInside(const Mesh& mesh, VertexStars& stars, Index from, Index to)
 }
 
 /**
- * The edges of rings that lie within the mesh, in an order that depends on their places alone:
- * where the mesh is not Delaunay, the order in which they are recovered matters.
+ * The edges of rings inside the mesh, in an order that depends on their positions alone: where the
+ * mesh is not Delaunay, the result depends on the order of recovery.
  */
 std::vector<Segment> SegmentsOf(
   const Mesh& mesh, VertexStars& stars, const Rings& rings, const Progress& progress)
@@ -78,7 +78,7 @@ std::vector<Segment> SegmentsOf(
 }
 
 /**
- * Sets one flag a half-edge: whether the segments run along its edge an odd number of times.
+ * Sets one flag per half-edge: whether the segments run along its edge an odd number of times.
  */
 void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,
   std::vector<char>& isOdd, const Progress& progress)
@@ -149,13 +149,13 @@ OutwardTriangles FindOutward(
   return result;
 }
 
-void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOnBoundary,
+void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBoundary,
   std::vector<char>& isOutward, const Progress& progress)
 {
   // A walk with the surface on the right has outward triangles on its left. Two edges of such a
-  // triangle follow each other on the walk if and only if it is on the left of both: nothing else has
-  // room in its corner. So no walk is kept, but the number of edges of each triangle that are on it
-  // by now.
+  // triangle are consecutive on the walk if and only if the triangle is on the left of both, as
+  // nothing else fits into its corner. So instead of the walk, it is enough to count how many edges
+  // of each triangle are on it.
   constexpr char isTaken = 4;
   std::vector<char> edges(isOutward.size(), 0);
   std::vector<Index> taken;
@@ -185,8 +185,8 @@ void TakeAlongBoundary(const Mesh& mesh, const std::vector<char>& isOnBoundary,
     edges[t] = isTaken;
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
-      // The walk goes on along the third edge, seen from the other side: in an outward triangle,
-      // unless that edge is of the boundary.
+      // The walk continues along the third edge, with the triangle beyond it on the left. That one
+      // is outward unless the edge is on the boundary.
       const Index twin = mesh.Twin(h);
       if (twin != Mesh::Border && edges[Mesh::Triangle(twin)] < 2)
       {

@@ -46,7 +46,7 @@ RingLocator::RingLocator(const std::vector<Point2>& points, const Rings& rings)
     top = std::max(top, points[b].Y);
     heights += points[b].Y - points[a].Y;
   });
-  // As many bins as keep the entries of all edges a few times the number of edges.
+  // So few bins that their entries are no more than a few times the number of edges.
   const double count = static_cast<double>(this->Edges.size());
   const double share = heights / (top - this->Bottom);
   const double bins = share > 0.0 ? std::min(count, 8.0 * count / share) : 1.0;
@@ -102,8 +102,8 @@ void RingLocator::VisitEdgesAt(double y, Visitor&& visit) const
 
 bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) const
 {
-  // p is the lowest corner, q the next one: the inside of the triangle near p is above p and on the
-  // left of pq. The question is asked for a place there, closer to p than anything else.
+  // p is the lowest corner, q the next one: near p, the triangle is above p and on the left of pq.
+  // The point tested lies there, closer to p than anything else.
   const bool lowestIsB = IsLower(b, a) && IsLower(b, c);
   const bool lowestIsC = !lowestIsB && IsLower(c, a);
   const Point2& p = lowestIsB ? b : lowestIsC ? c : a;
@@ -115,8 +115,7 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
       return;
     }
     const Sign side = Orientation(low, high, p);
-    // An edge that goes up from p passes the triangle on its left or on its
-    // right: it does not cut it.
+    // An edge that goes up from p passes the triangle on the left or right, as it does not cut it.
     isInside ^= side == Negative || (side == Zero && Orientation(p, high, q) == Negative);
   });
   return isInside;
@@ -133,7 +132,7 @@ std::string NameOfLine(const BoundaryLines& lines, Index line)
     std::to_string(lines.Cells[line]) + ")";
 }
 
-/** A line without points that repeat the one before; closed ones do not repeat the first. */
+/** A line without consecutive duplicate points; a closed one does not repeat its first point. */
 struct Piece
 {
   std::vector<Index> Points;
@@ -188,7 +187,7 @@ void Append(Rings& rings, const std::vector<Index>& points)
   rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
 }
 
-/** Chains open pieces by their ends: the front of piece i is end 2 i, its back 2 i + 1. */
+/** Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. */
 class Chains
 {
 public:
@@ -211,7 +210,7 @@ public:
     }
   }
 
-  /** The ring that a piece is on. @param[in,out] used  one flag a piece: whether a ring has it */
+  /** The ring of a piece. @param[in,out] used  one flag per piece: whether it is in a ring */
   std::vector<Index> RingFrom(std::size_t piece, std::vector<char>& used) const
   {
     std::vector<Index> ring;
@@ -244,7 +243,7 @@ private:
     return this->Lines.Points[end % 2 == 0 ? points[1] : points[points.size() - 2]];
   }
 
-  /** @throws Error naming the first end of a place where they cannot be paired */
+  /** @throws Error naming the first end at a place with an odd number of them */
   void CheckEnds() const
   {
     for (std::size_t end = 0; end < 2 * this->Pieces.size(); ++end)
@@ -263,8 +262,8 @@ private:
   }
 
   /**
-   * Where more than two end, each goes on in one beside it, so that no rings cross there; and two
-   * that begin alike in each other, as what they have in common cancels out.
+   * Pairs neighbours by angle, so that no rings cross there. First, ends that leave in the same
+   * direction are paired with each other, as what they share cancels out.
    */
   void Pair(const Point2& place, std::vector<std::size_t>& ends)
   {
@@ -295,7 +294,7 @@ private:
 
   const BoundaryLines& Lines;
   const std::vector<Piece>& Pieces;
-  std::vector<std::size_t> Partners; ///< one an end
+  std::vector<std::size_t> Partners; ///< one per end
   std::unordered_map<Point2, std::vector<std::size_t>, HashOfPoint> EndsAt;
 };
 
@@ -333,7 +332,7 @@ Rings JoinLines(const BoundaryLines& lines)
   {
     const std::vector<Index> ring =
       pieces[i].IsClosed ? pieces[i].Points : chains.RingFrom(i, used);
-    // Two lines along one edge, as of two parcels that share it, cancel out.
+    // A ring of two points is two lines along one edge, as of adjacent parcels: they cancel out.
     if (ring.size() > 2)
     {
       Append(joined, ring);

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Closed rings around a surface: joined from lines, and asked what they enclose.
+ * Closed rings around a surface: joins them from lines, and tells what they enclose.
  *
  * Several rings bound a region by the even-odd rule: a place is inside when an odd number of rings
  * goes around it. So rings may nest (lake, island in the lake), in any direction and order, and may
- * touch; what two rings share cancels out.
+ * touch; edges that two rings share cancel out.
  */
 #ifndef elevation_Trim_Rings_h
 #define elevation_Trim_Rings_h
@@ -20,8 +20,9 @@ namespace elevation
 {
 
 /**
- * Tells which triangles lie inside rings, by the even-odd rule. The edges are binned by y, so that
- * a question looks only at those about its height. Linear set-up; keeps a reference to the points.
+ * Tells which triangles lie inside rings, by the even-odd rule. Edges are binned by y, so that a
+ * query tests only those at its height: it casts a ray along x, which would visit many cells of a
+ * CellGrid. Linear set-up; a query is linear in its bin. Keeps a reference to the points.
  */
 class RingLocator
 {
@@ -29,8 +30,8 @@ public:
   RingLocator(const std::vector<Point2>& points, const Rings& rings);
 
   /**
-   * Whether the triangle is inside, which no edge of the rings may cut. Exact, also when all its
-   * corners are on the rings: decided for the place in the triangle next to its lowest corner.
+   * Whether a triangle is inside. No edge of the rings may cut it. Exact, even if all its corners
+   * are on the rings: the point tested lies in the triangle, next to its lowest corner.
    */
   bool IsInside(const Point2& a, const Point2& b, const Point2& c) const;
 
@@ -52,7 +53,7 @@ private:
   double BinsPerUnit = 0.0;
 };
 
-/** Of a place: 0.0 and -0.0 are equal, and have the same hash. */
+/** A hash in which 0.0 and -0.0 are the same. */
 struct HashOfPoint
 {
   std::size_t operator()(const Point2& p) const
@@ -62,30 +63,29 @@ struct HashOfPoint
   }
 };
 
-/** Lines and polygons as they come in, each a list of points. */
+/** Lines and polygons as given, each a list of points. */
 struct BoundaryLines
 {
   NamedPoints Points;
-  Rings Lines;                 ///< numbers of Points; a line is closed only if it returns to its first
-  std::vector<char> IsPolygon; ///< one a line; a polygon closes by itself
-  std::vector<Index> Cells;    ///< one a line; the number that messages use
+  Rings Lines;                 ///< numbers of Points; a line is closed if it ends where it starts
+  std::vector<char> IsPolygon; ///< one per line; a polygon is closed
+  std::vector<Index> Cells;    ///< one per line; the number that messages use
 };
 
 /**
- * Gives lines whose vertices are ids of points those points: they alone are copied, which may be few
- * of very many. From then on the vertices are numbers of Points.
+ * Copies the points that lines use, perhaps few of very many, to lines.Points. Changes the lines'
+ * vertices from ids of the given points to numbers of these.
  */
 void TakePoints(const PointView& points, BoundaryLines& lines);
 
 /**
- * Joins lines to rings. A line is a ring when it returns to its first point (the same id or the
- * same x,y); other lines are chained with each other where their ends meet, so that rings do not
- * cross where more than two do. Two lines that lie on each other and close a ring of two points are
- * left out: they cancel out.
- * @return rings of numbers of the lines' points; no two that follow each other have the same x,y
- * @throws Error naming the line and the point: a point not finite; an end where no other line goes
- *         on; a line that is a ring of fewer than three points; no line at all, or only lines that
- *         cancel each other
+ * Joins lines to rings. A line is a ring if it returns to its first point (the same id or the same
+ * x,y). Other lines are chained where their ends meet; where more than two meet, so that the rings
+ * do not cross. Two lines along the same edge, which form a ring of two points, cancel out.
+ * Linear, plus a sort of the lines that end at the same place.
+ * @return rings of numbers of the lines' points; consecutive points differ in x,y
+ * @throws Error naming the line and the point: a point not finite; an end that cannot be joined; a
+ *         ring of fewer than three points; no line at all, or only lines that cancel out
  */
 Rings JoinLines(const BoundaryLines& lines);
 

@@ -18,14 +18,14 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
   this->Offsets.Resize(static_cast<std::size_t>(count) + 1);
   this->Ids.Resize(3 * static_cast<std::size_t>(list.Count) + measured.Border.size() +
     (Group - 1) * (static_cast<std::size_t>(count) + 1));
-  // At first where those of each vertex end: they are filled in from there.
-  std::uint32_t sum = 0; // stays below 9 for each point
+  // At first the end of each vertex's range, which is filled backwards.
+  std::uint32_t sum = 0; // below 9 per point
   ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
     {
       const std::uint32_t size = measured.Degrees[v];
       this->Offsets[v] = sum + size;
-      // More than are needed, as how many cannot be predicted; what comes next overwrites them.
+      // A fixed number, perhaps too many, is predictable; the next vertex overwrites the excess.
       std::fill_n(&this->Ids[sum + size], Group - 1, v);
       sum += (size + Group - 1) / Group * Group;
     }
@@ -56,7 +56,7 @@ Neighbors::Neighbors(const MeasuredTriangles& measured, const Progress& progress
 namespace
 {
 
-/** A search for the nearest vertices of one vertex after another. */
+/** Searches for the nearest vertices of one vertex after another. */
 class NearestVertices
 {
 public:
@@ -67,7 +67,7 @@ public:
   {
   }
 
-  /** Asks for what the next vertices need: soon reached, but ids by way of offsets, and so on. */
+  /** Prefetches what the next vertices need: offsets first, then the ids that they lead to, etc. */
   template <typename Ahead>
   void Prepare(Ahead&& ahead) const
   {
@@ -95,12 +95,12 @@ public:
     std::fill_n(this->Nearest, NeighborOfSpacing,
       Candidate{ std::numeric_limits<double>::infinity(), None, false });
     this->Known[static_cast<std::uint32_t>(v) % Places] = KeyOf(v, v);
-    this->Pass(v);
-    this->PassNearer();
+    this->Expand(v);
+    this->ExpandNearer();
     int k = Last;
     while (k > 0 && this->Nearest[k].Vertex == None)
     {
-      --k; // there are no more
+      --k; // fewer than six were reached
     }
     return SpacingPerNeighborDistance * std::sqrt(this->Nearest[k].Squared);
   }
@@ -110,19 +110,19 @@ private:
   {
     double Squared;
     Index Vertex;
-    bool IsPassed;
+    bool IsExpanded;
   };
   static constexpr int Last = NeighborOfSpacing - 1;
   static constexpr std::uint32_t Places = 1024;
 
   static std::uint64_t KeyOf(Index v, Index w) { return std::uint64_t(v) << 32 | std::uint32_t(w); }
 
-  /** Looks at the neighbours of a vertex. */
-  void Pass(Index passed)
+  /** Expands a vertex: adds its neighbours that are near enough. */
+  void Expand(Index expanded)
   {
-    const std::uint32_t first = this->Around.Offsets[passed];
-    const std::uint32_t size = this->Around.Offsets[passed + 1] - first;
-    if (passed != this->Vertex && size > NeighborsOfHub)
+    const std::uint32_t first = this->Around.Offsets[expanded];
+    const std::uint32_t size = this->Around.Offsets[expanded + 1] - first;
+    if (expanded != this->Vertex && size > NeighborsOfHub)
     {
       return;
     }
@@ -130,7 +130,7 @@ private:
     {
       this->Found.resize(size);
     }
-    // Those that are near enough, without branches, for which they are cannot be predicted.
+    // Without branches, as they would be unpredictable.
     const Index v = this->Vertex;
     const Point2 p = this->Place;
     const PointView points = this->List.Points;
@@ -156,7 +156,7 @@ private:
     }
   }
 
-  /** Puts a vertex among the nearest, if it is one of them. */
+  /** Adds a vertex to the nearest ones, if it belongs to them. */
   void Add(const Candidate& candidate)
   {
     bool isKnown = candidate.Vertex == this->Vertex;
@@ -178,12 +178,12 @@ private:
     this->Nearest[at] = candidate;
   }
 
-  /** Passes all that are nearer than the last one, those equally near at once. */
-  void PassNearer()
+  /** Expands all that are nearer than the last one, equally near ones together. */
+  void ExpandNearer()
   {
     for (Candidate* next = this->Nearest; next != this->Nearest + Last;)
     {
-      if (next->IsPassed || !(next->Squared < this->Nearest[Last].Squared))
+      if (next->IsExpanded || !(next->Squared < this->Nearest[Last].Squared))
       {
         ++next;
         continue;
@@ -193,17 +193,17 @@ private:
       const double squared = next->Squared;
       for (; next != this->Nearest + Last && next->Squared == squared; ++next)
       {
-        if (!next->IsPassed)
+        if (!next->IsExpanded)
         {
           equal[numberOfEqual++] = next->Vertex;
-          next->IsPassed = true;
+          next->IsExpanded = true;
         }
       }
       for (int i = 0; i < numberOfEqual; ++i)
       {
-        this->Pass(equal[i]);
+        this->Expand(equal[i]);
       }
-      next = this->Nearest; // nearer ones may have come
+      next = this->Nearest; // nearer ones may have been added
     }
   }
 
@@ -213,8 +213,8 @@ private:
   Point2 Place{ 0.0, 0.0 };
   Candidate Nearest[NeighborOfSpacing];
   std::vector<Index> Found;
-  // Vertices that the one at hand has had among its nearest. One may have taken the place of
-  // another, which then is compared once more with the nearest themselves.
+  // A cache of the vertices that have been among the nearest of Vertex. One that has lost its slot
+  // to another is compared with the nearest themselves.
   std::vector<std::uint64_t> Known;
 };
 

@@ -18,13 +18,13 @@ namespace elevation
 namespace
 {
 
-/** What has become of a list of triangles; those not named are as they were. */
+/** The changes to a list of triangles. */
 struct Changes
 {
-  std::vector<char> IsOutward; ///< one flag a triangle, those added included
-  std::vector<Index> Changed;  ///< the triangles that have other corners now; increasing
-  std::vector<Index> Corners;  ///< theirs, three each, and behind them those of triangles added
-  std::vector<Index> Parents;  ///< one a triangle added: whose part it is
+  std::vector<char> IsOutward; ///< one flag per triangle, including those added
+  std::vector<Index> Changed;  ///< the triangles with new corners; increasing
+  std::vector<Index> Corners;  ///< three each: of the changed triangles, then of those added
+  std::vector<Index> Parents;  ///< one per triangle added: the one that it is part of
 };
 
 /** All triangles as a mesh with Twins that covers nothing twice. @throws Error */
@@ -36,7 +36,7 @@ Mesh ProvenMesh(const TriangleList& list, int threads, const Progress& progress)
   return mesh;
 }
 
-/** Some triangles that are proven, as a mesh with Twins. */
+/** Some of the triangles, proven by a sweep, as a mesh with Twins. */
 Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Progress& progress)
 {
   Mesh mesh = PartOf(list, near, Part(progress, 0.0, 0.5));
@@ -45,9 +45,9 @@ Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Pr
 }
 
 /**
- * Puts what has become of a mesh of near triangles back into the list.
- * @param[in] near       the triangles of the list that were the first ones of the mesh
- * @param[in] isOutward  one flag a triangle of the mesh
+ * Records the changes of a mesh of near triangles.
+ * @param[in] near       the triangles of the list that the mesh was made of; parts follow them
+ * @param[in] isOutward  one flag per triangle of the mesh
  */
 void PutBack(const TriangleList& list, const std::vector<Index>& near, const Mesh& mesh,
   const std::vector<char>& isOutward, const Progress& progress, Changes& changes)
@@ -80,7 +80,7 @@ void PutBack(const TriangleList& list, const std::vector<Index>& near, const Mes
   });
 }
 
-/** The same for points inserted and triangles added. */
+/** The same for inserted points and the parents of added triangles. */
 void PutBackInserted(const std::vector<Index>& near, const Mesh& mesh, InsertedRings& rings,
   Changes& changes, Trimmed& result)
 {
@@ -111,7 +111,6 @@ void CheckEnclosed(
   }
 }
 
-/** Trims along lines. */
 void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimOptions& options,
   const Progress& progress, Changes& changes, Trimmed& result)
 {
@@ -140,7 +139,8 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
     if (options.Test == OutwardTest::InwardNormal)
     {
       CheckEnclosed(outward.IsOutward, lines.Points, result.Boundary);
-      TakeAlongBoundary(mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.95, 0.97));
+      ApplyInwardNormalTest(
+        mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.95, 0.97));
     }
     PutBack(list, near, mesh, outward.IsOutward, Part(progress, 0.97, 1.0), changes);
     PutBackInserted(near, mesh, rings, changes, result);
@@ -152,7 +152,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   }
 }
 
-/** Trims along the outline of the surface. */
+/** Trims along the extracted outline. */
 void TrimExtracted(const TriangleList& list, const TrimOptions& options, const Progress& progress,
   Changes& changes, Trimmed& result)
 {
@@ -164,7 +164,7 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   extraction.Monitor = finding;
   MeasuredTriangles measured;
   ExtractedBoundary found;
-  Mesh mesh; // of all, where a sweep does not do
+  Mesh mesh; // of all triangles, if the sweep fails
   if (isExact && MeasureBySweep(list, options.NumberOfThreads, Part(progress, 0.0, 0.4), measured))
   {
     found = FindOutline(std::move(measured), extraction);
@@ -189,12 +189,12 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
     OutwardTriangles outward =
       FindOutward(mesh, result.Boundary, options.RecoverBoundary, Part(progress, 0.9, 0.95));
     isOutward = std::move(outward.IsOutward);
-    TakeAlongBoundary(mesh, outward.IsOnBoundary, isOutward, Part(progress, 0.95, 0.97));
+    ApplyInwardNormalTest(mesh, outward.IsOnBoundary, isOutward, Part(progress, 0.95, 0.97));
     result.NumberOfPointsLeftOut = 0;
   }
   if (mesh.NumberOfTriangles() > 0)
   {
-    // Which have been turned.
+    // Triangles may have been reoriented.
     PutBack(list, AllTriangles(list), mesh, std::vector<char>(isOutward), Part(progress, 0.97, 1.0),
       changes);
   }
@@ -202,7 +202,7 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
 
 /**
  * Copies the corners of triangles [begin, end).
- * @param[in,out] changed  the first change from begin on; then from end on
+ * @param[in,out] changed  in: the first change from begin on; out: from end on
  */
 void CopyCorners(const TriangleList& list, const Changes& changes, Index begin, Index end,
   std::vector<Index>::const_iterator& changed, Index* corners)
@@ -225,14 +225,13 @@ void CopyCorners(const TriangleList& list, const Changes& changes, Index begin, 
   }
 }
 
-/** Writes the triangles of both sides. */
 void WriteSides(const TriangleList& list, const Changes& changes, const TrimOptions& options,
   const Progress& progress, Trimmed& result)
 {
   const int threads = ResolveNumberOfThreads(options.NumberOfThreads);
   const std::vector<char>& flags = changes.IsOutward;
   const Index all = static_cast<Index>(flags.size());
-  // How many outward ones come before each range of the triangles.
+  // How many outward triangles come before each range.
   constexpr Index atOnce = 1 << 13;
   const Index ranges = NumberOfRanges(all, atOnce);
   std::vector<Index> outwardBefore(ranges + 1, 0);
@@ -259,7 +258,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
     auto changed = std::lower_bound(changes.Changed.begin(), changes.Changed.end(), t);
     while (t < endOfRange)
     {
-      // Triangles of one side that follow each other.
+      // A run of triangles on the same side.
       const char flag = flags[t];
       const char* const first = flags.data() + t;
       const void* other = std::memchr(first, 1 - flag, static_cast<std::size_t>(endOfRange - t));

@@ -414,7 +414,7 @@ std::vector<char> OutwardBy(OutwardTest test, Mesh& mesh, const Rings& rings)
   OutwardTriangles outward = FindOutward(mesh, rings, true);
   if (test == OutwardTest::InwardNormal)
   {
-    TakeAlongBoundary(mesh, outward.IsOnBoundary, outward.IsOutward);
+    ApplyInwardNormalTest(mesh, outward.IsOnBoundary, outward.IsOutward);
   }
   return outward.IsOutward;
 }
@@ -426,7 +426,7 @@ Index NumberOf(const std::vector<char>& isOutward)
 
 } // namespace
 
-TEST(TakeAlongBoundary, AgreesWithExactWherePocketsAreShallow)
+TEST(ApplyInwardNormalTest, AgreesWithExactWherePocketsAreShallow)
 {
   // No point lies outside the surface, so that pockets and lakes have corners on rings alone.
   Random random(30);
@@ -448,7 +448,7 @@ TEST(TakeAlongBoundary, AgreesWithExactWherePocketsAreShallow)
   }
 }
 
-TEST(TakeAlongBoundary, IsThePublishedWalk)
+TEST(ApplyInwardNormalTest, IsThePublishedWalk)
 {
   Random random(36);
   int less = 0;
@@ -468,7 +468,7 @@ TEST(TakeAlongBoundary, IsThePublishedWalk)
   EXPECT_GT(less, 1000);
 }
 
-TEST(TakeAlongBoundary, KeepsWhatIsBehindAPointInADeepPocket)
+TEST(ApplyInwardNormalTest, KeepsWhatIsBehindAPointInADeepPocket)
 {
   // A pocket two wide and five deep, open at the top, of points on its rim alone: it is emptied.
   std::vector<Point2> points{ { 0, 0 }, { 4, 0 }, { 4, 6 }, { 3, 6 }, { 3, 5 }, { 3, 4 }, { 3, 3 },
@@ -501,7 +501,7 @@ TEST(TakeAlongBoundary, KeepsWhatIsBehindAPointInADeepPocket)
   EXPECT_EQ(twiceOutward(OutwardTest::InwardNormal), 0.0);
 }
 
-TEST(TakeAlongBoundary, KeepsWhatIsBetweenTwoRings)
+TEST(ApplyInwardNormalTest, KeepsWhatIsBetweenTwoRings)
 {
   std::vector<Point2> points{ { 0, 0 }, { 2, 0 }, { 2, 2 }, { 0, 2 }, { 5, 0 }, { 7, 0 }, { 7, 2 },
     { 5, 2 } };
@@ -513,7 +513,7 @@ TEST(TakeAlongBoundary, KeepsWhatIsBetweenTwoRings)
   EXPECT_EQ(NumberOf(OutwardBy(OutwardTest::InwardNormal, mesh, rings)), 0);
 }
 
-TEST(TakeAlongBoundary, RefusesMissingEdgesAsExactDoes)
+TEST(ApplyInwardNormalTest, RefusesMissingEdgesAsExactDoes)
 {
   Random random(37);
   Mesh mesh = LatticeMesh(random, 5);
