@@ -281,6 +281,23 @@ TEST(Delaunay, KeepsEveryRuleOnAdversarialPoints)
   ExpectValid(roundoffs, "a few roundoffs apart");
 }
 
+TEST(Delaunay, KeepsEveryRuleInATinyCrowdBesideAHugeCoordinate)
+{
+  // Squares of distances underflow, and coordinates do where the huge one is scaled to 1.
+  std::mt19937_64 random(32);
+  for (const double size : { 1e-222, 1e-215, 1e-160 })
+  {
+    Cloud cloud;
+    cloud.Add(1e100, 1e100);
+    for (int i = 0; i < 25; ++i)
+    {
+      const double x = size * Uniform(random);
+      cloud.Add(x, size * Uniform(random));
+    }
+    ExpectValid(cloud, "crowd of " + std::to_string(-std::log10(size)));
+  }
+}
+
 TEST(Delaunay, KeepsEveryRuleOverTheRangeOfDouble)
 {
   std::mt19937_64 random(24);
