@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What every room of the kernel stands on.
+ * Points, predicates, memory, threads and progress: what every room of the kernel builds on.
  */
 #ifndef elevation_Base_Base_h
 #define elevation_Base_Base_h

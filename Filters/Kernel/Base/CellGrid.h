@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points, segments or triangles in the cells of a grid over them. What touches a cell is found
- * there, and perhaps some that pass it by within a millionth of a cell. The only index for things
- * that reach over many cells: BinGrid, BoxTree and LatticeNodes keep points, each in one place.
+ * A uniform grid over items: points, segments or triangles. A cell lists all items that touch it,
+ * and perhaps some that miss it by a millionth of a cell. The only spatial index for items that
+ * span many cells: BinGrid, BoxTree and LatticeNodes store points, each in one place.
  *
- * Cost: linear in the things and the cells that they touch, some 30 each at most on average.
+ * Cost: linear in the items and the cells that they touch, at most about 30 an item on average.
  */
 #ifndef elevation_Base_CellGrid_h
 #define elevation_Base_CellGrid_h
@@ -24,7 +24,7 @@ namespace elevation
 class CellGrid
 {
 public:
-  /** Enters things 0 to count - 1, of which cornersOf(i) are an array of one to three points. */
+  /** Enters items 0 to count - 1; cornersOf(i) is an array of one to three points. */
   template <typename CornersOf>
   CellGrid(std::size_t count, CornersOf&& cornersOf, const Progress& progress = Progress())
   {
@@ -40,26 +40,26 @@ public:
     {
       this->Begins[cell] += this->Begins[cell - 1];
     }
-    this->Things.resize(this->Begins.back());
+    this->Items.resize(this->Begins.back());
     std::vector<std::size_t> next(this->Begins.begin(), this->Begins.end() - 1);
     for (std::size_t i = 0; i < count; ++i)
     {
       ReportStep(progress, count + i, 2 * count);
       this->ForEachCell(cornersOf(i),
-        [&](std::size_t cell) { this->Things[next[cell]++] = static_cast<Index>(i); });
+        [&](std::size_t cell) { this->Items[next[cell]++] = static_cast<Index>(i); });
     }
   }
 
-  /** The things in a cell, in their order. */
+  /** The items of a cell, by increasing number. */
   std::size_t NumberOfCells() const { return this->Begins.size() - 1; }
-  const Index* Begin(std::size_t cell) const { return this->Things.data() + this->Begins[cell]; }
+  const Index* Begin(std::size_t cell) const { return this->Items.data() + this->Begins[cell]; }
   const Index* End(std::size_t cell) const { return this->Begin(cell + 1); }
 
-  /** The cell of a point; false when nothing touches the point. */
+  /** Finds the cell of a point. @return false outside the bounding box of all items */
   bool FindCell(const Point2& p, std::size_t& cell) const
   {
-    // Not a number is outside, too.
-    if (!this->Whole.Holds(p))
+    // NaN counts as outside.
+    if (!this->Whole.Contains(p))
     {
       return false;
     }
@@ -69,7 +69,7 @@ public:
     return true;
   }
 
-  /** Calls visit for all things that may touch a point, once each. */
+  /** Calls visit for all items that may touch a point, once each. */
   template <typename Visitor>
   void Visit(const Point2& p, Visitor&& visit) const
   {
@@ -80,7 +80,7 @@ public:
     }
   }
 
-  /** The same for a segment or triangle; perhaps repeatedly. */
+  /** The same for a segment or triangle; may visit an item repeatedly. */
   template <std::size_t Count, typename Visitor>
   void Visit(const std::array<Point2, Count>& corners, Visitor&& visit) const
   {
@@ -100,7 +100,7 @@ private:
     return box;
   }
 
-  /** Columns and rows follow how far things reach along x and y: lines of one way share few. */
+  /** Fits columns and rows to the items' extents in x and y: parallel lines share few cells. */
   template <typename CornersOf>
   void SetExtent(std::size_t count, CornersOf& cornersOf)
   {
@@ -112,7 +112,7 @@ private:
     {
       return;
     }
-    // Differences must not leave the range of double.
+    // Scaled so that differences stay in the range of double.
     const double largest = std::max({ std::fabs(this->Whole.Low.X), std::fabs(this->Whole.Low.Y),
       std::fabs(this->Whole.High.X), std::fabs(this->Whole.High.Y) });
     this->Scale = largest > 1e150 ? 0x1p-600 : (largest < 1e-150 ? 0x1p600 : 1.0);
@@ -120,7 +120,7 @@ private:
     const double width = this->Whole.High.X * this->Scale - this->Corner.X;
     const double height = this->Whole.High.Y * this->Scale - this->Corner.Y;
 
-    // How many things it takes to reach from one side to the other, at least one.
+    // The sums of the items' extents, in parts of the whole extent, plus one.
     double alongX = 1.0, alongY = 1.0;
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -128,7 +128,7 @@ private:
       alongX += width > 0.0 ? (box.High.X * this->Scale - box.Low.X * this->Scale) / width : 0.0;
       alongY += height > 0.0 ? (box.High.Y * this->Scale - box.Low.Y * this->Scale) / height : 0.0;
     }
-    // Two cells a thing; fewer where things would be in more than some 30 cells each.
+    // Two cells an item; fewer where items would touch more than about 30 cells each.
     const double most = 30.0 * static_cast<double>(count);
     const double cells = std::min(
       { 2.0 * static_cast<double>(count), most * most / (4.0 * alongX * alongY), 100000000.0 });
@@ -136,12 +136,12 @@ private:
       std::min(std::max(std::sqrt(cells * alongY / alongX), 1.0), std::max(cells, 1.0));
     this->Columns = static_cast<int>(columns);
     this->Rows = static_cast<int>(std::max(cells / columns, 1.0));
-    // An extent of which cells would be too small for their inverse is one column or row.
+    // An extent so small that the inverse of a cell's size would overflow is one column or row.
     this->PerX = width > 1e-290 ? this->Columns / width : 0.0;
     this->PerY = height > 1e-290 ? this->Rows / height : 0.0;
   }
 
-  /** A position in columns and rows; differences from the corner lose next to nothing. */
+  /** A position in cells; subtracting the corner first loses hardly any precision. */
   Point2 InCells(const Point2& p) const
   {
     return { (p.X * this->Scale - this->Corner.X) * this->PerX,
@@ -152,33 +152,33 @@ private:
     return position > 0.0 ? (position < count ? static_cast<int>(position) : count - 1) : 0;
   }
 
-  /** Calls visit(cell) for every cell that a thing touches, row by row. */
+  /** Calls visit(cell) for every cell that an item touches, row by row. */
   template <std::size_t Count, typename Visitor>
   void ForEachCell(const std::array<Point2, Count>& corners, Visitor&& visit) const
   {
     const Box box = BoxOf(corners);
-    if (!this->Whole.Touches(box))
+    if (!this->Whole.Intersects(box))
     {
       return;
     }
-    constexpr double margin = 1e-6; // of a cell; rounding is far below, unless far away
-    constexpr double far = 1e8;
+    constexpr double margin = 1e-6; // of a cell
+    constexpr double far = 1e8;     // in cells; within it rounding errors are far below the margin
     const Point2 low = this->InCells(box.Low), high = this->InCells(box.High);
     const int firstRow = CellOf(low.Y - margin, this->Rows);
     const int lastRow = CellOf(high.Y + margin, this->Rows);
     const int firstColumn = CellOf(low.X - margin, this->Columns);
     const int lastColumn = CellOf(high.X + margin, this->Columns);
-    const bool isToNarrow = firstRow < lastRow && firstColumn < lastColumn &&
+    const bool isClippedToRows = firstRow < lastRow && firstColumn < lastColumn &&
       std::max({ -low.X, -low.Y, high.X, high.Y }) < far;
     std::array<Point2, Count> at = corners;
-    for (std::size_t i = 0; i < Count && isToNarrow; ++i)
+    for (std::size_t i = 0; i < Count && isClippedToRows; ++i)
     {
       at[i] = this->InCells(corners[i]);
     }
     for (int row = firstRow; row <= lastRow; ++row)
     {
       int begin = firstColumn, end = lastColumn;
-      if (isToNarrow)
+      if (isClippedToRows)
       {
         double left = high.X, right = low.X;
         for (std::size_t i = 0; i + (Count == 2) < Count; ++i)
@@ -195,7 +195,7 @@ private:
     }
   }
 
-  /** Widens a range of x by what of a segment lies between two heights. */
+  /** Extends a range of x to the part of a segment between bottom and top. */
   static void Widen(
     const Point2& a, const Point2& b, double bottom, double top, double& left, double& right)
   {
@@ -205,7 +205,7 @@ private:
       return;
     }
     double first = std::min(a.X, b.X), last = std::max(a.X, b.X);
-    // Infinite or not a number where it is level.
+    // Infinite or NaN where the segment is horizontal.
     const double slope = (high.X - low.X) / (high.Y - low.Y);
     if (std::isfinite(slope))
     {
@@ -217,13 +217,13 @@ private:
     right = std::max(right, last);
   }
 
-  Box Whole; ///< around all that is in the grid
+  Box Whole; ///< the bounding box of all items
   double Scale = 1.0;
-  Point2 Corner{ 0.0, 0.0 }; ///< of the box, scaled
+  Point2 Corner{ 0.0, 0.0 }; ///< the lower left of the box, scaled
   double PerX = 0.0, PerY = 0.0;
   int Columns = 1, Rows = 1;
   std::vector<std::size_t> Begins;
-  std::vector<Index> Things;
+  std::vector<Index> Items;
 };
 
 } // namespace elevation

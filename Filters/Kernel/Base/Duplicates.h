@@ -12,7 +12,7 @@
 namespace elevation
 {
 
-/** Which of several points with the same x,y is the vertex; among equals the first. */
+/** Which of several points with the same x,y becomes the vertex; of equal z the first. */
 enum class DuplicatePolicy
 {
   KeepFirst,
@@ -21,7 +21,7 @@ enum class DuplicatePolicy
   KeepHighest
 };
 
-/** Whether the policy keeps a point rather than another one with the same x,y. */
+/** Whether the policy prefers point @a id to another one with the same x,y. */
 inline bool IsPreferred(const PointView& points, DuplicatePolicy policy, Index id, Index other)
 {
   if (policy == DuplicatePolicy::KeepLowest || policy == DuplicatePolicy::KeepHighest)

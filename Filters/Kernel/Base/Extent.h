@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Passes over all points, on several threads, and what the first of them tells.
+ * The bounding box and the non-finite points of a cloud, and loops over its points on several
+ * threads. Cost: linear.
  */
 #ifndef elevation_Base_Extent_h
 #define elevation_Base_Extent_h
@@ -16,20 +17,20 @@
 namespace elevation
 {
 
-/** The smallest box around points, with its sides along the axes; no points at first. */
+/** An axis-parallel bounding box; empty at first. */
 struct Box
 {
   Point2 Low{ DBL_MAX, DBL_MAX }, High{ -DBL_MAX, -DBL_MAX };
 
   double Width() const { return this->High.X - this->Low.X; }
   double Height() const { return this->High.Y - this->Low.Y; }
-  /** Whether a point is inside or on the border; without branches. */
-  bool Holds(const Point2& p) const
+  /** Whether a point is inside or on the boundary; without branches. */
+  bool Contains(const Point2& p) const
   {
     return (p.X >= this->Low.X) & (p.X <= this->High.X) & (p.Y >= this->Low.Y) &
       (p.Y <= this->High.Y);
   }
-  bool Touches(const Box& box) const
+  bool Intersects(const Box& box) const
   {
     return box.High.X >= this->Low.X && box.Low.X <= this->High.X && box.High.Y >= this->Low.Y &&
       box.Low.Y <= this->High.Y;
@@ -42,13 +43,13 @@ struct Box
   }
 };
 
-/** What one look at all points tells: the box of those that are finite, and the others. */
+/** The bounding box of the finite points of a cloud, and a list of the others. */
 struct Extent : Box
 {
-  std::vector<Index> NotFinite; ///< ids of points with a coordinate that is not finite, increasing
+  std::vector<Index> NotFinite; ///< ids of points with a non-finite coordinate, increasing
 };
 
-/** How many points are passed over at once: a piece of work for one thread. */
+/** The points of one range: a piece of work for one thread. */
 constexpr Index PointsPerRange = 1 << 16;
 
 inline Index NumberOfRanges(Index count, Index size = PointsPerRange)
@@ -57,9 +58,9 @@ inline Index NumberOfRanges(Index count, Index size = PointsPerRange)
 }
 
 /**
- * Calls work(piece, begin, end) for the ranges of so many ids that make up [0, count), on several
- * threads, and reports between them. A piece is the same range each time, so what it gathers may be
- * kept by piece without locks.
+ * Cuts [0, count) into ranges of @a size ids and calls work(piece, begin, end) for each, on several
+ * threads, reporting in between. The ranges depend on count and size alone, so results can be kept
+ * by piece without locks.
  */
 template <typename Work>
 void ForEachRange(
@@ -71,15 +72,15 @@ void ForEachRange(
   });
 }
 
-/** Visits (id, Point2) of the points of a range but those listed, by increasing id. */
+/** Calls visit(id, point) for the points of a range but those in the sorted list @a skip. */
 template <typename Visit>
 void ForEachPoint(
-  const PointView& points, Index begin, Index end, const std::vector<Index>& but, Visit&& visit)
+  const PointView& points, Index begin, Index end, const std::vector<Index>& skip, Visit&& visit)
 {
-  auto next = std::lower_bound(but.begin(), but.end(), begin);
+  auto next = std::lower_bound(skip.begin(), skip.end(), begin);
   while (begin < end)
   {
-    const Index stop = next != but.end() ? std::min(end, *next) : end;
+    const Index stop = next != skip.end() ? std::min(end, *next) : end;
     if (points.Double)
     {
       const double* p = points.Double + 3 * static_cast<std::size_t>(begin);
@@ -96,7 +97,7 @@ void ForEachPoint(
         visit(begin, Point2{ p[0], p[1] });
       }
     }
-    if (next != but.end() && begin == *next)
+    if (next != skip.end() && begin == *next)
     {
       ++begin;
       ++next;
@@ -113,7 +114,7 @@ void AddToExtent(const T* points, Index begin, Index end, Extent& extent, Visit&
   for (Index id = begin; id < end; ++id, p += 3)
   {
     const double x = p[0], y = p[1], z = p[2];
-    // The difference of a finite number with itself is 0, of any other not a number.
+    // x - x is 0 for finite x, else NaN.
     if (!((x - x) + (y - y) + (z - z) == 0.0))
     {
       extent.NotFinite.push_back(id);
@@ -125,16 +126,13 @@ void AddToExtent(const T* points, Index begin, Index end, Extent& extent, Visit&
   extent.Join(here);
 }
 
-/**
- * The extent of points, which are visited on the way: visit(piece, point) for each that is finite,
- * with the piece as of ForEachRange().
- */
+/** The extent of points. Calls visit(piece, point) for each finite one, as ForEachRange() would. */
 template <typename Visit>
 Extent FindExtent(const PointView& points, int threads, const Progress& progress, Visit&& visit)
 {
   std::vector<Extent> pieces(NumberOfRanges(points.Count));
   ForEachRange(points.Count, threads, progress, [&](Index piece, Index begin, Index end) {
-    Extent here; // not in memory that other threads write next to
+    Extent here; // local, against false sharing
     const auto visitHere = [&](const Point2& p) { visit(piece, p); };
     if (points.Double)
     {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Bits of words, and sets of ids made of them.
+ * Bit counting, and sets of ids as bitmaps. Cost: one bit for each possible id; constant time to
+ * add or look up an id.
  */
 #ifndef elevation_Base_IdSet_h
 #define elevation_Base_IdSet_h
@@ -57,7 +58,7 @@ inline int HighestBit(std::uint64_t bits)
 #endif
 }
 
-/** A set of ids, one bit each: small enough to be asked for any id at any time. */
+/** A set of ids as a bitmap: small, so that lookups in any order are fast. */
 class IdSet
 {
 public:
@@ -76,7 +77,7 @@ public:
   {
     std::for_each(three, three + 3, [this](Index id) { this->Words[WordOf(id)] &= ~BitOf(id); });
   }
-  /** Adds the ids of another set; those that it has already, to @a common as well. */
+  /** Adds the ids of another set; ids that were in both are also added to @a common. */
   void Add(const IdSet& other, IdSet& common)
   {
     for (std::size_t word = 0; word < this->Words.size(); ++word)
@@ -86,7 +87,7 @@ public:
     }
   }
   bool Has(Index id) const { return (this->Words[WordOf(id)] & BitOf(id)) != 0; }
-  /** Whether any of three is in it; without branches. */
+  /** Whether any of three ids is in the set; without branches. */
   bool HasAny(const Index* three) const
   {
     const std::uint32_t a = three[0], b = three[1], c = three[2];
@@ -105,7 +106,7 @@ public:
     return count;
   }
 
-  /** Its ids, increasing: sooner than a list of many is sorted. */
+  /** The ids, increasing; faster than sorting a long list. */
   std::vector<Index> List(const Progress& progress = Progress()) const
   {
     std::vector<Index> ids;
@@ -121,8 +122,8 @@ public:
     return ids;
   }
 
-  /** Lists its ids; from then on NumberOf() tells where in the list an id is. */
-  std::vector<Index> Number()
+  /** Lists the ids, increasing; from then on RankOf() gives the place of an id in the list. */
+  std::vector<Index> ListAndRank()
   {
     this->Before.resize(this->Words.size());
     Index count = 0;
@@ -133,7 +134,7 @@ public:
     }
     return this->List();
   }
-  Index NumberOf(Index id) const
+  Index RankOf(Index id) const
   {
     const std::uint64_t lower = this->Words[WordOf(id)] & (BitOf(id) - 1);
     return this->Before[WordOf(id)] + CountBits(lower);
@@ -147,7 +148,7 @@ private:
   }
 
   std::vector<std::uint64_t> Words;
-  std::vector<Index> Before; ///< how many are set before each word
+  std::vector<Index> Before; ///< the number of ids before each word
 };
 
 } // namespace elevation

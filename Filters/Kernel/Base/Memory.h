@@ -24,8 +24,8 @@ namespace elevation
 {
 
 /**
- * Memory as from malloc, in large pages where it is large and the system leaves that to programs:
- * to take it in small ones costs about as much as to fill it. Null when there is none.
+ * Memory as from malloc. A large block gets huge pages where the system lets programs ask for them:
+ * page faults on small ones cost about as much as filling the block. Null when out of memory.
  */
 inline void* Allocate(std::size_t size)
 {
@@ -34,14 +34,14 @@ inline void* Allocate(std::size_t size)
   void* memory = nullptr;
   if (size >= largePage && posix_memalign(&memory, largePage, size) == 0)
   {
-    madvise(memory, size / page * page, MADV_HUGEPAGE); // a wish: no harm where it fails
+    madvise(memory, size / page * page, MADV_HUGEPAGE); // a hint: failing does no harm
     return memory;
   }
 #endif
   return std::malloc(size);
 }
 
-/** Asks for memory before it is needed: points in any order are spread over all of the bitmap. */
+/** Prefetches memory that is needed soon, where accesses in no order would miss the cache. */
 template <typename T>
 inline void Prefetch(const T* memory)
 {
@@ -53,9 +53,8 @@ inline void Prefetch(const T* memory)
 }
 
 /**
- * A growable array of plain values that are not initialised, in memory from malloc, so that
- * it can be handed over to a VTK array without a copy, and grows without one where the
- * system can move pages.
+ * A growable array of plain, uninitialised values in memory from malloc, which a VTK array can take
+ * over without a copy, and which grows without one where the system can move pages.
  */
 template <typename T>
 class Buffer
@@ -86,7 +85,7 @@ public:
   T& operator[](std::size_t i) { return this->Begin[i]; }
   const T& operator[](std::size_t i) const { return this->Begin[i]; }
 
-  /** Room for @a capacity values; the values already there stay. @throws std::bad_alloc */
+  /** Makes room for @a capacity values; existing values stay. @throws std::bad_alloc */
   void Reserve(std::size_t capacity)
   {
     if (capacity > this->Capacity)
@@ -108,7 +107,7 @@ public:
     }
     this->Begin[this->Length++] = value;
   }
-  /** Gives back what Reserve took and nobody filled. */
+  /** Frees unused capacity. */
   void Shrink()
   {
     if (this->Length > 0 && this->Length != this->Capacity)
@@ -116,7 +115,7 @@ public:
       this->Reallocate(this->Length);
     }
   }
-  /** Takes the memory of another buffer, whose values are lost, in place of its own. */
+  /** Replaces its memory by that of another buffer; the values of both are lost. */
   template <typename Other>
   void Recycle(Buffer<Other>&& other)
   {
@@ -163,12 +162,12 @@ private:
 };
 
 /**
- * Writes into each page of memory that values [begin, end) will be stored in, as far as there are
- * so many, with reports. The system gives a page when it is first used: where values come in any
- * order, the first few of them would wait for all pages.
+ * Writes to each page of the memory of values [begin, end), clipped to the buffer, with reports.
+ * The system allocates a page on its first use: values that come in no order would fault in all
+ * pages at the start, without a report.
  */
 template <typename T>
-void TakePages(Buffer<T>& values, Index begin, Index end, const Progress& progress = Progress())
+void TouchPages(Buffer<T>& values, Index begin, Index end, const Progress& progress = Progress())
 {
   constexpr Index step = std::max<Index>(1, 4096 / sizeof(T));
   end = std::min(end, static_cast<Index>(values.size()));

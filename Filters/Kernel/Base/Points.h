@@ -22,7 +22,7 @@ namespace elevation
 /** Ids of vertices, triangles and half-edges; half the memory traffic of 64 bits. */
 using Index = std::int32_t;
 
-/** A mesh has fewer than 2 triangles a point and 3 half-edges a triangle, all of them an Index. */
+/** With fewer than 2 triangles a point and 3 half-edges a triangle, every id fits an Index. */
 constexpr Index MaximumNumberOfPoints = std::numeric_limits<Index>::max() / 6;
 
 /** No vertex, no triangle, no neighbour. */
@@ -45,8 +45,8 @@ inline bool operator!=(const Point2& p, const Point2& q)
 }
 
 /**
- * The order of points every rule of the kernel uses: by y, then by x. "Lowest" always means first
- * in this order.
+ * The order of points in all rules of the kernel: by y, then by x. "Lowest" always means first in
+ * this order.
  */
 inline bool IsLower(const Point2& p, const Point2& q)
 {
@@ -55,8 +55,8 @@ inline bool IsLower(const Point2& p, const Point2& q)
 }
 
 /**
- * A power of two that brings coordinates near 1, of which the largest is given: there products and
- * squares stay in the range of double. 1 for 0.
+ * A power of two that scales the given largest coordinate to about 1, so that products and squares
+ * stay in the range of double; 1 for 0.
  */
 inline double ScaleToOne(double largest)
 {

@@ -188,7 +188,7 @@ Expansion<2 * M * N> operator*(const Expansion<M>& e, const Expansion<N>& f)
 
 //------------------------------------------------------------------------------------------------
 // Integers of any length, for coordinates whose products leave the range of double. All coordinates
-// of one question are written as multiples of one power of two.
+// of one predicate are multiples of one power of two.
 //------------------------------------------------------------------------------------------------
 
 class BigInteger
@@ -210,7 +210,7 @@ public:
     int shift = valueExponent - 53 - exponent;
     if (shift < 0)
     {
-      bits >>= -shift; // the bits that go are zero
+      bits >>= -shift; // the bits shifted out are zero
       shift = 0;
     }
     this->Limbs.assign(shift / 32, 0);
@@ -297,11 +297,11 @@ public:
     }
     BigInteger rest = *this, d = divisor;
     rest.IsNegative = d.IsNegative = false;
-    // Powers of two in one of them make the whole quotient one of 55 to 57 bits: 53 of a double,
-    // one to round by, and one that tells whether anything follows.
+    // Scaling one of them by a power of two gives the integer quotient 55 to 57 bits: 53 of a
+    // double, a rounding bit and a sticky bit.
     const int shift = 56 - (rest.NumberOfBits() - d.NumberOfBits());
     (shift > 0 ? rest : d) = (shift > 0 ? rest : d) * BigInteger(1.0, -std::abs(shift));
-    // In two digits of 28 bits, each guessed in double and put right.
+    // Long division in two digits of 28 bits, each estimated in double and corrected.
     std::uint64_t quotient = 0;
     for (const int digitShift : { 28, 0 })
     {
@@ -339,7 +339,7 @@ private:
     return bits + 32 * static_cast<int>(this->Limbs.size() - 1);
   }
 
-  /** this / 2^NumberOfBits(), within a rounding. */
+  /** this / 2^NumberOfBits(), up to rounding. */
   double Leading() const
   {
     double value = 0.0;
@@ -376,7 +376,7 @@ private:
   std::vector<std::uint32_t> Limbs; // least significant first, no leading zeros
 };
 
-/** The largest power of two of which every coordinate is a multiple, or a smaller one. */
+/** The exponent of a power of two of which every coordinate is a multiple. */
 int CommonExponent(std::initializer_list<Point2> points)
 {
   int least = 1100;
@@ -411,16 +411,14 @@ bool AreWithin(std::initializer_list<Point2> points, double least, double greate
   return true;
 }
 
-/**
- * Whether a difference is an integer so small that products of four of them are exact in double.
- */
+/** Whether a difference is an integer so small that products of four are exact in double. */
 inline bool IsSmallInteger(double difference)
 {
   return std::fabs(difference) < 4096.0 &&
     difference == static_cast<double>(static_cast<int>(difference));
 }
 
-/** Whether p - d loses nothing to rounding, for each p. */
+/** Whether p - d is free of rounding errors for each p. */
 bool AreExact(std::initializer_list<Point2> points, const Point2& d)
 {
   for (const Point2& p : points)
@@ -487,8 +485,8 @@ Sign ExactOrientation(const Point2& a, const Point2& b, const Point2& c)
 
 Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d)
 {
-  // On lattices co-circular points are the rule, and differences small integers: the determinant is
-  // below 2^53, so every step of it is exact in double.
+  // On lattices, co-circular points are the rule and differences are small integers: the
+  // determinant is below 2^53, so every step of it is exact in double.
   const double adx = a.X - d.X, ady = a.Y - d.Y, bdx = b.X - d.X, bdy = b.Y - d.Y, cdx = c.X - d.X,
                cdy = c.Y - d.Y;
   if (IsSmallInteger(adx) && IsSmallInteger(ady) && IsSmallInteger(bdx) && IsSmallInteger(bdy) &&

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The questions of geometry that decide topology, answered exactly for all finite doubles.
+ * The geometric predicates that decide topology, exact for all finite doubles.
  *
- * Method: a floating-point filter with a proved error bound answers almost always; behind it come
- * floating-point expansions [Shewchuk 1997], and behind those, for coordinates so large or so small
- * that products of four would leave the range of double, integers of any length.
- * Every answer is the sign of the real determinant; nothing here allocates except the last stage
- * and RoundedCrossing().
+ * Method: a floating-point filter with a proved error bound decides nearly always; then come
+ * floating-point expansions [Shewchuk 1997], and last, for coordinates so large or so small that
+ * products of four would leave the range of double, integers of any length. The result is always
+ * the sign of the exact determinant. Only the last stage and RoundedCrossing() allocate memory.
  *
  * [Shewchuk 1997] Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
  * Predicates, Discrete & Computational Geometry 18:305-363.
@@ -32,7 +31,7 @@ enum Sign : int
 
 namespace detail
 {
-/** The same questions by exact arithmetic alone; for the inline functions below and for tests. */
+/** The predicates in exact arithmetic alone; for the inline functions below and for tests. */
 Sign ExactOrientation(const Point2& a, const Point2& b, const Point2& c);
 Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d);
 /** The last stage alone: integers of any length. For tests. */
@@ -45,7 +44,7 @@ Sign IntegerInCircle(const Point2& a, const Point2& b, const Point2& c, const Po
  * @retval Positive  c lies to the left (abc is counter-clockwise)
  * @retval Zero      a, b, c are collinear
  * @retval Negative  c lies to the right
- * Exact for all finite coordinates; constant time but for extreme exponents.
+ * Exact for all finite coordinates; constant time except for extreme exponents.
  */
 inline Sign Orientation(const Point2& a, const Point2& b, const Point2& c)
 {
@@ -92,8 +91,8 @@ inline Sign InCircle(const Point2& a, const Point2& b, const Point2& c, const Po
   const double determinant = alift * (bc - cb) + blift * (ca - ac) + clift * (ab - ba);
   const double magnitude = alift * (std::fabs(bc) + std::fabs(cb)) +
     blift * (std::fabs(ca) + std::fabs(ac)) + clift * (std::fabs(ab) + std::fabs(ba));
-  // Shewchuk's bound is (10 + 96 u) u. The two conditions keep what underflow may lose (at most
-  // 2^-1073 in a lift or a minor) far below the bound.
+  // Shewchuk's bound is (10 + 96 u) u. The conditions keep the loss to underflow (at most 2^-1073
+  // in a lift or a minor) far below the bound.
   constexpr double bound = 11.0 * 1.1102230246251565e-16;
   const double least =
     alift < blift ? (alift < clift ? alift : clift) : (blift < clift ? blift : clift);
@@ -112,10 +111,10 @@ inline Sign InCircle(const Point2& a, const Point2& b, const Point2& c, const Po
 }
 
 /**
- * Where the line through a and b crosses the line through c and d, each coordinate rounded to the
- * nearest double (below 1e-307 to one of the two nearest). So it does not depend on the order of
- * the lines or of their ends, is exact where it can be, and along a segment the crossings come in
- * their true order, or are equal. The lines must not be parallel.
+ * The crossing of line ab with line cd, each coordinate rounded to the nearest double (below 1e-307
+ * to one of the two nearest). So it does not depend on the order of the lines or of their ends, is
+ * exact where a double is, and crossings along a segment keep their true order or coincide. The
+ * lines must not be parallel.
  */
 Point2 RoundedCrossing(const Point2& a, const Point2& b, const Point2& c, const Point2& d);
 

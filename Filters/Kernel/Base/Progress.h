@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * How a long computation reports, is stopped, and fails.
+ * Progress, abort and errors of a long computation.
  */
 #ifndef elevation_Base_Progress_h
 #define elevation_Base_Progress_h
@@ -18,7 +18,7 @@
 namespace elevation
 {
 
-/** What the input does not allow; the message names the offending point, edge or cell. */
+/** Thrown when the input is invalid; the message names the offending point, edge or cell. */
 class Error : public std::runtime_error
 {
 public:
@@ -33,9 +33,9 @@ public:
 };
 
 /**
- * Told the fraction done, which rises in [0, 1]; returns false to stop. Every pass over all points
- * or triangles calls it between stretches of some tens of milliseconds, so that an abort takes
- * effect within half a second. May be empty.
+ * Called with the fraction done, which rises in [0, 1]; returns false to stop. Every pass over all
+ * points or triangles calls it often enough that an abort takes effect within half a second. May be
+ * empty.
  */
 using Progress = std::function<bool(double)>;
 
@@ -48,7 +48,7 @@ inline void Report(const Progress& progress, double fraction)
   }
 }
 
-/** In a loop: reports that @a done of @a count steps are done, at one step in @a stride. */
+/** In a loop: reports @a done of @a count steps, once every @a stride steps. */
 inline void ReportStep(
   const Progress& progress, std::size_t done, std::size_t count, std::size_t stride = 16384)
 {
@@ -59,8 +59,8 @@ inline void ReportStep(
 }
 
 /**
- * Reports in a loop whose steps differ much in work: once in a thousand steps, and once in some ten
- * thousand pieces of work within them.
+ * Reports in a loop whose steps differ much in work: once every thousand steps, and within them
+ * once every 65,536 ticks.
  */
 class WorkReporter
 {
@@ -76,7 +76,8 @@ public:
     this->OfAll = count;
     ReportStep(this->Monitor, done, count, 1024);
   }
-  void Look()
+  /** A small piece of work is done. */
+  void Tick()
   {
     if (++this->Number % 65536 == 0)
     {
@@ -102,12 +103,12 @@ inline Progress Part(const Progress& progress, double begin, double end)
     return progress;
   }
   return [&progress, begin, end](double fraction) {
-    // Rounding must not lead beyond the end, where the next part begins.
+    // Rounding must not pass the end, where the next part begins.
     return progress(std::min(end, begin + fraction * (end - begin)));
   };
 }
 
-/** std::sort of plain values that reports; stopped by an abort, the values are of no use. */
+/** std::sort of plain values with reports; after an abort the values are unusable. */
 template <typename Iterator, typename Less>
 void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
 {
@@ -116,7 +117,7 @@ void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
     std::sort(begin, end, less);
     return;
   }
-  // About as many comparisons as it takes; the fraction stays below 1 when it takes more.
+  // An estimate; the fraction stays at 1 when it takes more comparisons.
   const double count = static_cast<double>(end - begin);
   const double expected = 1.0 + 1.5 * count * std::log2(1.0 + count);
   std::size_t comparisons = 0;
@@ -130,8 +131,8 @@ void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
 }
 
 /**
- * Calls work(begin, end) for one stretch of [0, count) after another, and reports between them, so
- * that the loop inside stays tight.
+ * Calls work(begin, end) for stretches of [0, count), one after another, and reports in between, so
+ * that the inner loop stays tight.
  */
 template <typename Work>
 void ForEachStretch(Index count, const Progress& progress, Work&& work)

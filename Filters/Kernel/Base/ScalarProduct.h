@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The scalar product, the same on every system.
+ * The scalar product, bit for bit the same on every system. Linear.
  */
 #ifndef elevation_Base_ScalarProduct_h
 #define elevation_Base_ScalarProduct_h
@@ -12,7 +12,7 @@
 namespace elevation
 {
 
-/** Four sums side by side, in an order that is ours and not the compiler's. */
+/** Four partial sums, so that the order of additions is not left to the compiler. */
 inline double Dot(const double* a, const double* b, std::size_t count)
 {
   double sums[4] = { 0.0, 0.0, 0.0, 0.0 };

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Whether a point is so near a segment that rounding alone may keep it off, and the order of such
- * points along it. What is in reach may be taken as a vertex of the segment, as in snap rounding:
- * then no vertices pile up beside others.
- * Nothing here decides what lies where; that is for Predicates.h.
+ * Whether a point is so near a segment that rounding alone may separate them, and the order of such
+ * points along the segment. As in snap rounding, a point in reach may become a vertex of the
+ * segment, so that vertices do not cluster. Topology is decided in Predicates.h, not here.
  */
 #ifndef elevation_Base_SnapRounding_h
 #define elevation_Base_SnapRounding_h
@@ -19,7 +18,7 @@
 namespace elevation
 {
 
-/** How far rounding moves what is on a segment, along x and y: about a unit in the last place. */
+/** How far rounding moves a point of a segment in x and y: about a unit in the last place. */
 struct RoundingUnits
 {
   double X = 0.0;
@@ -28,7 +27,7 @@ struct RoundingUnits
 
 namespace detail
 {
-/** The distance from the larger of two coordinates to its neighbour towards zero. */
+/** The distance from the larger magnitude of two coordinates to the next double towards zero. */
 inline double LastPlaceOf(double a, double b)
 {
   const double larger = std::max(std::fabs(a), std::fabs(b));
@@ -36,16 +35,16 @@ inline double LastPlaceOf(double a, double b)
 }
 } // namespace detail
 
-/** The units of the segment from a to b; zeros for one of less than some 2,000 units. */
+/** The units of the segment from a to b; zeros for a segment shorter than about 2,000 units. */
 inline RoundingUnits UnitsOf(const Point2& a, const Point2& b)
 {
-  // Rounding one coordinate moves a crossing along the other one, too; where extents are so unequal
-  // that this would be much of the smaller one, slopes are as unequal, and it is less.
+  // Rounding one coordinate moves a crossing along the other one, too; but less than that where
+  // extents, and so the slope, are very unequal.
   constexpr double part = 0x1p-40;
   const double x = detail::LastPlaceOf(a.X, b.X), y = detail::LastPlaceOf(a.Y, b.Y);
   // Halves, so that no difference overflows.
   const double width = std::fabs(0.5 * b.X - 0.5 * a.X), height = std::fabs(0.5 * b.Y - 0.5 * a.Y);
-  // A segment of few units could be bent to anything near it.
+  // A segment of few units could be snapped to anything nearby.
   if (std::max(width, height) < 1024.0 * std::max(x, y))
   {
     return RoundingUnits();
@@ -60,7 +59,7 @@ inline bool IsAlongX(const Point2& a, const Point2& b)
   return std::fabs(0.5 * b.X - 0.5 * a.X) > std::fabs(0.5 * b.Y - 0.5 * a.Y);
 }
 
-/** Whether p comes after a and before b along the longer of the segment's x and y. */
+/** Whether p lies strictly between a and b along the axis in which the segment is longer. */
 inline bool IsBetween(const Point2& a, const Point2& b, const Point2& p)
 {
   return IsAlongX(a, b) ? std::min(a.X, b.X) < p.X && p.X < std::max(a.X, b.X)
@@ -68,9 +67,9 @@ inline bool IsBetween(const Point2& a, const Point2& b, const Point2& p)
 }
 
 /**
- * Whether p comes before q on the way from a to b, both on the segment but for rounding: by
- * the longer of x and y, along which what is in reach does not change places; where that is equal,
- * by the other one. From b to a it is the other way round.
+ * Whether p comes before q on the way from a to b; both are on the segment but for rounding.
+ * Compares along the axis in which the segment is longer, where points in reach keep their order;
+ * if equal, along the other one. From b to a the order is reversed.
  */
 inline bool IsBefore(const Point2& a, const Point2& b, const Point2& p, const Point2& q)
 {
@@ -82,8 +81,8 @@ inline bool IsBefore(const Point2& a, const Point2& b, const Point2& p, const Po
 }
 
 /**
- * Whether p is between a and b and within so many units of the segment. The same for both
- * directions; never with a reach of 0.
+ * Whether p is between a and b and within @a reach units of the segment. The same for both
+ * directions; always false with a reach of 0.
  */
 inline bool IsInReach(
   const Point2& a, const Point2& b, const RoundingUnits& units, double reach, const Point2& p)

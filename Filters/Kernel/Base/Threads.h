@@ -23,27 +23,24 @@
 namespace elevation
 {
 
-/** How many threads a request means: 0 asks for one a core. */
+/** The number of threads requested; 0 requests one a core. */
 inline int ResolveNumberOfThreads(int requested)
 {
   return requested > 0 ? requested
                        : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/**
- * The same, but no more than there are cores: what is done at once must be done soon, for the next
- * report.
- */
+/** The same, but at most one a core: a thread that waits for a core would delay the next report. */
 inline int ThreadsAtOnce(int requested)
 {
   return std::min(ResolveNumberOfThreads(requested), ResolveNumberOfThreads(0));
 }
 
 /**
- * Calls work(0) to work(count - 1), on up to so many threads at a time; with one thread, in their
- * order on the caller's. What is done must not depend on which thread does it.
- * Where VTK runs without threads by default, as ParaView's does, its own threads are asked for.
- * @throws what the first piece (by its number) that failed has thrown, when all have ended
+ * Calls work(0) to work(count - 1) on up to @a threads threads; with one, in order on the calling
+ * thread. Results must not depend on which thread does a piece.
+ * Where VTK's default backend is sequential, as in ParaView, its STDThread backend is used.
+ * @throws what the failed piece of the lowest number threw, after all have ended
  */
 template <typename Work>
 void ForEachPiece(Index count, int threads, Work&& work)
@@ -89,10 +86,10 @@ void ForEachPiece(Index count, int threads, Work&& work)
 using RoundClock = std::chrono::steady_clock;
 
 /**
- * Calls work(thread, end) on all threads at once, round after round, until all of them return
- * false: there is nothing left to do. Each call works on until about the time @a end, a few
- * hundredths of a second later, so that no thread waits long for another one. Before each round the
- * calling thread reports fraction(). With one thread, all is done on the caller's.
+ * Calls work(thread, end) on all threads at once, round after round, until all calls of a round
+ * return false: no work is left. Each call should return at about the time @a end, so that no
+ * thread waits long for another one. Before each round the calling thread reports fraction(). With
+ * one thread, everything is done on the calling thread.
  */
 template <typename Fraction, typename Work>
 void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&& work)
@@ -115,8 +112,8 @@ void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&&
 }
 
 /**
- * ForEachPiece() for pieces of about a millisecond or less, of which a thread takes the next one
- * when it is done with one; with reports of progress, which the calling thread makes.
+ * ForEachPiece() for pieces of about a millisecond or less: each thread takes the next one when
+ * it is done. The calling thread reports progress.
  */
 template <typename Work>
 void ForEachPiece(Index count, int threads, const Progress& progress, Work&& work)
@@ -134,7 +131,7 @@ void ForEachPiece(Index count, int threads, const Progress& progress, Work&& wor
     return;
   }
   std::atomic<Index> next{ 0 };
-  // All pieces before one that fails have been taken, and are done to the end.
+  // All pieces before a failed one have been taken by then, and run to the end.
   std::mutex failing;
   Index failed = count;
   std::exception_ptr failure;

@@ -761,7 +761,7 @@ private:
       [&](Index piece, Index begin, Index end) {
         PlaceSet here;
         ForEachPoint(this->Points, begin, end, this->Search.NotFinite, [&](Index, const Point2& p) {
-          if (place.Holds(p))
+          if (place.Contains(p))
           {
             here.Add(p);
           }

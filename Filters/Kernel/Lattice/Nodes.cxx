@@ -418,8 +418,8 @@ bool LatticeNodes::Placement::SortIntoStretches(Stretches& sorted, const Progres
   sorted.Nodes.Resize(static_cast<std::size_t>(count));
   sorted.Ids.Resize(static_cast<std::size_t>(count));
   this->ForEachRange(Part(progress, 0.0, 0.5), [&](Index range, Index begin, Index end) {
-    TakePages(sorted.Nodes, begin, end);
-    TakePages(sorted.Ids, begin, end);
+    TouchPages(sorted.Nodes, begin, end);
+    TouchPages(sorted.Ids, begin, end);
     forEachNode(range, begin, end, [](Index, Index) {});
   });
   Index sum = 0, longest = 0;

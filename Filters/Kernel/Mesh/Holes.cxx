@@ -479,7 +479,7 @@ Mesh MeshOfBorder(
     used.Add(border[i].Origin);
     used.Add(border[i].Destination);
   }
-  const std::vector<Index> ids = used.Number();
+  const std::vector<Index> ids = used.ListAndRank();
   mesh.Points.reserve(ids.size());
   for (const Index id : ids)
   {
@@ -491,9 +491,9 @@ Mesh MeshOfBorder(
   for (std::size_t i = 0; i < border.size(); ++i)
   {
     ReportStep(progress, 2 * border.size() + i, 3 * border.size());
-    const Index origin = used.NumberOf(border[i].Origin);
+    const Index origin = used.RankOf(border[i].Origin);
     mesh.Triangles.insert(
-      mesh.Triangles.end(), { origin, used.NumberOf(border[i].Destination), origin });
+      mesh.Triangles.end(), { origin, used.RankOf(border[i].Destination), origin });
     mesh.Twins.insert(mesh.Twins.end(), { Mesh::Border, 0, 0 });
   }
   return mesh;

@@ -170,7 +170,7 @@ void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Poi
   auto ending = byEnd.begin();
   for (std::size_t i = 0; i + 1 < vertices.size(); ++i)
   {
-    work.Look();
+    work.Tick();
     const Index v = vertices[i];
     for (; ending->B == v; ++ending)
     {
@@ -236,7 +236,7 @@ void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
       isSwept = true;
     }
     grid.Visit(segments[i], [&](Index other) {
-      work.Look();
+      work.Tick();
       const std::size_t j = static_cast<std::size_t>(other);
       if (j > i && Cross(segments[i], segments[j]))
       {

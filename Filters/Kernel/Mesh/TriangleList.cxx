@@ -126,7 +126,7 @@ Mesh PartOf(const TriangleList& list, const std::vector<Index>& triangles, const
       corners.AddAll(list.CornersOf(triangles[i]));
     }
   });
-  mesh.Ids = corners.Number();
+  mesh.Ids = corners.ListAndRank();
   mesh.FirstNewId = list.Points.Count;
   mesh.Points.reserve(mesh.Ids.size());
   for (std::size_t i = 0; i < mesh.Ids.size(); ++i)
@@ -138,7 +138,7 @@ Mesh PartOf(const TriangleList& list, const std::vector<Index>& triangles, const
   ForEachStretch(count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
     for (Index i = 3 * begin; i < 3 * end; ++i)
     {
-      mesh.Triangles.push_back(corners.NumberOf(list.CornersOf(triangles[i / 3])[i % 3]));
+      mesh.Triangles.push_back(corners.RankOf(list.CornersOf(triangles[i / 3])[i % 3]));
     }
   });
   return mesh;

@@ -279,9 +279,9 @@ private:
     this->ForEach(
       this->Bins, 0.05, 0.05, [&](Index bin) { sum += std::exchange(starts[bin + 1], sum); });
     const Progress here = Part(this->Monitor, 0.05, 0.05);
-    TakePages(this->Grid.X, begin, begin + count, here);
-    TakePages(this->Grid.Y, begin, begin + count, here);
-    TakePages(this->Grid.Ids, begin, begin + count, here);
+    TouchPages(this->Grid.X, begin, begin + count, here);
+    TouchPages(this->Grid.Y, begin, begin + count, here);
+    TouchPages(this->Grid.Ids, begin, begin + count, here);
     this->ForEach(count, 0.05, 0.1, [&](Index i) {
       const Index slot = starts[placed[i].Bin + 1]++;
       this->Local.X[slot] = placed[i].X;
@@ -485,7 +485,7 @@ private:
       [&](Index piece, Index begin, Index end) {
         Index* const counts = this->InGroup.data() + static_cast<std::size_t>(piece) * this->Groups;
         this->ForEach(begin, end, [&](Index, double, double y) { ++counts[bins.Row(y) >> shift]; });
-        TakePages(this->Memory, begin, end);
+        TouchPages(this->Memory, begin, end);
       },
       PiecePoints);
   }

@@ -414,7 +414,7 @@ private:
       work.Step(v, this->Vertices.size());
       const Point2& p = this->Vertices[v].Position;
       this->Grid.Visit(p, [&](Index piece) {
-        work.Look();
+        work.Tick();
         if (IsInside(this->PieceEnds[piece], p))
         {
           cuts.push_back({ piece, static_cast<Index>(v) });
@@ -638,7 +638,7 @@ private:
       };
       for (; cut != cuts.end() && cut->Piece == static_cast<Index>(i); ++cut)
       {
-        work.Look();
+        work.Tick();
         append(cut->Vertex);
       }
       if (piece.Rank == None)

@@ -138,7 +138,7 @@ private:
       }
       for (const Index* edge = grid.Begin(cell); isNew && edge < grid.End(cell); ++edge)
       {
-        work.Look();
+        work.Tick();
         if (IsInside(edges[*edge], p))
         {
           edgesHere->push_back(*edge);
@@ -146,7 +146,7 @@ private:
       }
       for (const Index edge : *edgesHere)
       {
-        work.Look();
+        work.Tick();
         cuts.push_back({ edge, rings.Vertices[i] });
       }
     }
@@ -209,7 +209,7 @@ private:
     }
     const auto to = [&](const Strand& s) { return this->At(this->Step(s.Node, s.Way)); };
     std::sort(strands.begin(), strands.end(), [&](const Strand& s, const Strand& t) {
-      work.Look();
+      work.Tick();
       const bool isUp = IsLower(at, to(s));
       if (isUp != IsLower(at, to(t)))
       {
@@ -287,7 +287,7 @@ private:
     {
       for (const Strand* q = p + 1; q < end && p->Way == After; ++q)
       {
-        work.Look();
+        work.Tick();
         const Node &first = this->Nodes[p->Node], &second = this->Nodes[q->Node];
         const bool isOfOneRing = first.Ring == second.Ring;
         Index last = None;
@@ -337,7 +337,7 @@ private:
     // This ends: otherwise both would return to where they had not met yet.
     do
     {
-      work.Look();
+      work.Tick();
       last = this->Step(last, p.Way);
       other = this->Step(other, q.Way);
     } while (this->At(this->Step(last, p.Way)) == this->At(this->Step(other, q.Way)));

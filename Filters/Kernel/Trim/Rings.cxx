@@ -307,14 +307,14 @@ void TakePoints(const PointView& points, BoundaryLines& lines)
   {
     used.Add(id);
   }
-  lines.Points.Ids = used.Number();
+  lines.Points.Ids = used.ListAndRank();
   for (const Index id : lines.Points.Ids)
   {
     lines.Points.Places.push_back(points.At(id));
   }
   for (Index& vertex : lines.Lines.Vertices)
   {
-    vertex = used.NumberOf(vertex);
+    vertex = used.RankOf(vertex);
   }
 }
 
