@@ -31,7 +31,7 @@ std::string NameOf(const Mesh& mesh, Index vertex)
 
 namespace
 {
-/** Names the first edge, by its lower and its higher vertex, that is not one of a manifold. */
+/** Names the first edge that is not manifold, in the order of its lower and higher vertex id. */
 [[noreturn]] void ThrowNotManifold(const Mesh& mesh, Index firstCell, const Progress& progress)
 {
   struct Edge
@@ -78,9 +78,9 @@ namespace
 }
 
 /**
- * Pairs the half-edges of a mesh. Vertices are numbered as the triangles name them, so that
- * neighbours lie near in memory. Half-edges that rise, that is, lead to a vertex of a higher number,
- * are listed by their origins; every other half-edge looks there for the one that runs the other way.
+ * Pairs the half-edges of a mesh. Vertices are numbered in the order in which triangles name them,
+ * so that neighbours are near in memory. Rising half-edges, which lead to a vertex of a higher
+ * number, are sorted by origin; each falling one looks for its twin among those of its destination.
  */
 class TwinFinder
 {
@@ -90,7 +90,7 @@ public:
   {
   }
 
-  /** @return false when two half-edges that run the same way have been found; borders aside */
+  /** @return false when two half-edges that run the same way were found; borders not checked */
   bool Run(const Progress& progress)
   {
     this->NumberVertices(Part(progress, 0.0, 0.2));
@@ -101,8 +101,8 @@ public:
   }
 
 private:
-  static constexpr Index Many = 64;  // neighbours of a vertex that are searched in order
-  static constexpr Index AtOnce = 4; // neighbours that are looked at without a branch
+  static constexpr Index Many = 64;  // with more edges at a vertex, binary search
+  static constexpr Index AtOnce = 4; // edges compared without a branch
   static constexpr Index Few = 128;  // triangles at a time
 
   struct RisingEdge
@@ -156,7 +156,7 @@ private:
     }
   }
 
-  /** Ends[v + 1] becomes the number of those that leave vertices up to v. */
+  /** Sets Ends[v + 1] to the number of rising half-edges that leave vertices up to v. */
   void CountRising(const Progress& progress)
   {
     this->Ends.Resize(static_cast<std::size_t>(this->Used) + 1);
@@ -174,7 +174,7 @@ private:
   void ListRising(const Progress& progress)
   {
     const Index total = this->Ends[this->Used];
-    // One more for those that do not rise, and as many as are looked at beyond the end.
+    // One more takes those that do not rise; AtOnce may be read beyond the end.
     this->Rising.Resize(static_cast<std::size_t>(total) + 1 + AtOnce);
     std::fill(this->Rising.begin() + total, this->Rising.end(), RisingEdge{ None, None });
     RisingEdge* const rising = this->Rising.data();
@@ -214,7 +214,7 @@ private:
     ForEachStretch(this->Surface.NumberOfTriangles(), progress, [&](Index begin, Index end) {
       for (; begin < end; begin += Few)
       {
-        // What lies ahead is soon reached, but not in order.
+        // Prefetch what is needed soon, but not in order.
         constexpr Index ahead = 1 << 13, line = 16;
         for (Index h = 3 * begin; h < 3 * begin + 3 * Few; h += line)
         {
@@ -236,7 +236,7 @@ private:
     return isManifold;
   }
 
-  /** @return false when there are several half-edges for the place of one */
+  /** Finds the twin. @return false when the edge has more than two half-edges */
   bool Connect(const FallingEdge& edge)
   {
     const RisingEdge* const rising = this->Rising.data();
@@ -256,7 +256,7 @@ private:
       twin |= rising[k].HalfEdge & -static_cast<Index>(matching);
       matches += matching;
     };
-    // There are rarely more than a few: an end of the loop that can be predicted.
+    // There are rarely more, so the branch at the end of the second loop is predictable.
     for (Index k = first; k < first + AtOnce; ++k)
     {
       look(k);
@@ -279,7 +279,7 @@ private:
   Mesh& Surface;
   Buffer<Index> Corners;     ///< the number of each half-edge's origin
   Index Used = 0;            ///< how many vertices have a number
-  Buffer<Index> Ends;        ///< where each vertex's part of Rising ends; one further on till it is full
+  Buffer<Index> Ends;        ///< where each vertex's part of Rising ends; until filled, begins
   Buffer<RisingEdge> Rising; ///< by their origins
 };
 
@@ -314,9 +314,9 @@ void Mesh::ConnectTwins(Index firstCell, const Progress& progress)
 namespace
 {
 /**
- * Quarter of the turn, counter-clockwise from the direction b->r, in which the direction b->u lies:
- * 0 less than half a turn, 1 half, 2 more. The same direction is -1, no turn: a border back to back
- * with another one, with an empty wedge of no width between them.
+ * Class of the angle from b->r counter-clockwise to b->u: 0 less than half a turn, 1 half a turn, 2
+ * more; -1 for equal directions, where two borders lie back to back with an empty wedge of no width
+ * between them.
  */
 int TurnClass(const Point2& b, const Point2& r, const Point2& u)
 {
@@ -337,7 +337,7 @@ bool TurnsToFirst(const Point2& b, const Point2& r, const Point2& u, const Point
   return uClass != vClass ? uClass < vClass : Orientation(b, u, v) == Positive;
 }
 
-/** Walks along the border of a mesh; its members are what the passes hand on. */
+/** Walks along the border of a mesh; the members carry data between its passes. */
 class BorderWalker
 {
 public:
@@ -357,11 +357,11 @@ public:
   }
 
 private:
-  /** A border that leaves a vertex: the vertex, and the border's place among all. */
+  /** A border that leaves a vertex: the vertex, and the border's place in Borders. */
   using Leave = std::pair<Index, Index>;
   using Place = std::vector<Leave>::const_iterator;
 
-  /** Where more of them meet they are searched in the order of turning from the one in Leaving. */
+  /** Where more meet, they are sorted by angle from the one in Leaving, for binary search. */
   static constexpr std::ptrdiff_t Many = 16;
 
   void FindBorders(const Progress& progress)
@@ -423,8 +423,8 @@ private:
   }
 
   /**
-   * Behind a border a->b the empty wedge at b opens counter-clockwise from b->a; the walk goes on
-   * with the border that closes this wedge.
+   * The border after h = a->b in its walk: the empty wedge at b opens counter-clockwise from b->a,
+   * and the next border closes it.
    */
   Index Following(Index h) const
   {

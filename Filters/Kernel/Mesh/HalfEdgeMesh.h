@@ -25,7 +25,7 @@
 namespace elevation
 {
 
-/** Points, and the ids by which messages name them: their numbers where there are none. */
+/** Points, and the ids by which messages name them; without ids, by their indices. */
 struct NamedPoints
 {
   NamedPoints(std::vector<Point2> places = {}, std::vector<Index> ids = {})
@@ -58,8 +58,8 @@ public:
   std::vector<Index> Triangles; ///< three vertices a triangle, counter-clockwise
   std::vector<Index> Twins;     ///< one a half-edge; filled by ConnectTwins
   /**
-   * Of a part of a larger mesh: the ids there of its points, which messages use. Points added
-   * behind have ids that follow those of the larger mesh.
+   * In a part of a larger mesh, the ids of its points in that mesh, for messages. Points appended
+   * here have ids from FirstNewId on.
    */
   std::vector<Index> Ids;
   Index FirstNewId = 0;
@@ -88,15 +88,15 @@ public:
   }
 
   /**
-   * Fills Twins from Triangles. Linear in time and memory, but for sorting the borders.
-   * @param[in] firstCell  what messages add to the id of a triangle to name it as the user's cell
+   * Fills Twins from Triangles. Linear in time and memory, except for sorting the borders.
+   * @param[in] firstCell  messages name triangle t as cell firstCell + t
    * @throws Error naming the triangle and its edge when an edge has more than two triangles or two
    *         that run the same way (the mesh is not a consistently oriented manifold). Aborted.
    */
   void ConnectTwins(Index firstCell = 0, const Progress& progress = Progress());
 };
 
-/** The order of vertices from the lowest on; only where two are at the same place their ids count. */
+/** Orders vertices from the lowest on; coincident ones by id. */
 struct IsLowerPoint
 {
   const Mesh& Surface;
@@ -109,7 +109,7 @@ struct IsLowerPoint
   }
 };
 
-/** How many half-edges ahead loops over all of them ask for what belongs to their origins. */
+/** How many half-edges ahead loops over all of them prefetch the data of origins. */
 constexpr std::size_t HalfEdgesAhead = 64;
 
 /**
@@ -128,20 +128,20 @@ struct Rings
 };
 
 /**
- * The parts of a mesh (with Twins) that are connected by edges.
- * The triangles of a part may lie on two sides, as edges that lead to the other side tell.
+ * The components of a mesh (with Twins) that are connected by edges. The triangles of a component
+ * are on two sides; each edge tells whether it leads to the other side.
  */
-struct Parts
+struct Components
 {
-  Buffer<Index> Labels;      ///< one a triangle: 2 part + side
-  std::vector<Index> Lowest; ///< one a part: its lowest triangle, which is on side 0; increasing
+  Buffer<Index> Labels;      ///< one a triangle: 2 component + side
+  std::vector<Index> Lowest; ///< one a component: its first triangle, on side 0; increasing
 
   Index Count() const { return static_cast<Index>(this->Lowest.size()); }
-  Index PartOf(Index triangle) const { return this->Labels[triangle] / 2; }
+  Index ComponentOf(Index triangle) const { return this->Labels[triangle] / 2; }
 };
 
-/** Labels of triangles, as of Parts, of which some turn out to be those of one part. */
-class JoinedLabels
+/** Union-find with parity: labels, as in Components, that turn out to be of one component. */
+class LabelSets
 {
 public:
   Index Add()
@@ -149,7 +149,7 @@ public:
     this->JoinedTo.push_back(static_cast<Index>(2 * this->JoinedTo.size()));
     return this->JoinedTo.back();
   }
-  /** @return the one that both go on as */
+  /** @return the label that both become */
   Index Join(Index label, Index other)
   {
     label = this->Find(label);
@@ -163,8 +163,8 @@ public:
     this->JoinedTo[high / 2] = low ^ (high & 1);
     return low;
   }
-  /** Counts only those that have not been joined to others, in their order, and takes the rest out. */
-  void Number(std::vector<Index>& lowest)
+  /** Numbers the labels that were not joined to others, in order; drops the rest of @a lowest. */
+  void Renumber(std::vector<Index>& lowest)
   {
     Index remaining = 0;
     for (std::size_t i = 0; i < this->JoinedTo.size(); ++i)
@@ -182,7 +182,7 @@ public:
     }
     lowest.resize(remaining);
   }
-  /** What a label has been joined to. */
+  /** The label that a label was joined to. */
   Index operator()(Index label) const { return this->JoinedTo[label / 2] ^ (label & 1); }
 
 private:
@@ -191,63 +191,63 @@ private:
     while (this->JoinedTo[label / 2] != (label & ~1))
     {
       const Index next = this->JoinedTo[label / 2];
-      this->JoinedTo[label / 2] = this->JoinedTo[next / 2] ^ (next & 1); // halves the way
+      this->JoinedTo[label / 2] = this->JoinedTo[next / 2] ^ (next & 1); // path halving
       label = (*this)(label);
     }
     return label;
   }
 
-  std::vector<Index> JoinedTo; ///< one a part: to itself while it has not been
+  std::vector<Index> JoinedTo; ///< one a component: itself until it is joined
 };
 
 /**
- * Finds the parts: one sweep over the triangles, each of which joins what its neighbours before it
- * belong to. Linear, but for a logarithm of the parts that have been joined; fast where neighbours
- * lie near in memory.
- * @param[in] relation  relation(h), for a half-edge h that is no border: 0 when the triangles on
- *                      either side of h are on the same side, 1 when they are not, below 0 when h
- *                      does not connect them. Asked for one half-edge of an edge.
+ * Finds the components in one pass, in which each triangle joins the components of its earlier
+ * neighbours. Linear, up to a logarithm of the components joined; fast where neighbours are near in
+ * memory.
+ * @param[in] relation  relation(h), for a half-edge h that is no border: 0 when the triangles
+ *                      at h are on the same side, 1 when they are not, below 0 when h does not
+ *                      connect them. Called for one half-edge of each edge.
  * @throws Aborted, std::bad_alloc
  */
 template <typename Relation>
-Parts FindParts(const Mesh& mesh, const Progress& progress, Relation&& relation)
+Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&& relation)
 {
   const Index count = mesh.NumberOfTriangles();
-  Parts parts;
-  parts.Labels.Resize(count);
-  JoinedLabels joined;
+  Components components;
+  components.Labels.Resize(count);
+  LabelSets joined;
   ForEachStretch(count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Index label = None;
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
-        // Border, which is below 0, is not among those before.
+        // Border, which is below 0, is large as an unsigned number.
         const Index twin = mesh.Twins[h];
         const bool isBefore = static_cast<std::uint32_t>(twin) < static_cast<std::uint32_t>(3 * t);
         const int step = isBefore ? relation(h) : -1;
         if (step >= 0)
         {
-          const Index other = parts.Labels[Mesh::Triangle(twin)] ^ step;
+          const Index other = components.Labels[Mesh::Triangle(twin)] ^ step;
           label = label == None || label == other ? other : joined.Join(label, other);
         }
       }
       if (label == None)
       {
         label = joined.Add();
-        parts.Lowest.push_back(t);
+        components.Lowest.push_back(t);
       }
-      parts.Labels[t] = label;
+      components.Labels[t] = label;
     }
   });
-  joined.Number(parts.Lowest);
+  joined.Renumber(components.Lowest);
   ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
-      parts.Labels[t] = joined(parts.Labels[t]);
+      components.Labels[t] = joined(components.Labels[t]);
     }
   });
-  return parts;
+  return components;
 }
 
 /**
@@ -257,8 +257,8 @@ Parts FindParts(const Mesh& mesh, const Progress& progress, Relation&& relation)
  * empty wedge it runs along, so each walk bounds one empty region of the plane. Every border
  * half-edge is in exactly one walk; a walk starts at its lowest half-edge id, and walks are in the
  * order of their first. The result's Vertices are half-edge ids; their origins are the vertices of
- * the walk. Linear, but for sorting the borders at shared vertices.
- * @param[in] keep  one flag a triangle: the border is that of the triangles with it; empty: all
+ * the walk. Linear, except for sorting the borders at shared vertices.
+ * @param[in] keep  one flag a triangle: traces the border of flagged triangles; empty: of all
  * @throws Aborted
  */
 Rings TraceBorder(const Mesh& mesh, const Progress& progress = Progress(),

@@ -14,7 +14,7 @@ namespace elevation
 
 namespace
 {
-/** The order of half-edges by their origins; those of a pinched vertex by where they lead. */
+/** Orders half-edges by origin, then, at pinched vertices, by destination. */
 struct IsLowerEdge
 {
   const Mesh& Surface;
@@ -29,7 +29,7 @@ struct IsLowerEdge
   }
 };
 
-/** Lets each walk begin with its lowest edge, so that the order of cells does not decide where. */
+/** Starts each walk at its lowest edge, so that the start does not depend on the order of cells. */
 void StartAtLowest(const Mesh& mesh, Rings& walks)
 {
   for (Index walk = 0; walk < walks.Count(); ++walk)
@@ -47,11 +47,10 @@ struct Segment
   Point2 High;
   Index HalfEdge;
   Index Walk;
-  bool
-    IsUp; ///< the half-edge runs upwards: the surface is on the left, the empty side on the right
+  bool IsUp; ///< the half-edge runs upwards: the surface is on the left, nothing on the right
 };
 
-/** The side of a segment, seen along it upwards, on which a point lies: Positive is left. */
+/** The side of a segment, looking upwards along it, on which a point lies: Positive is left. */
 Sign SideOf(const Segment& segment, const Point2& p)
 {
   return Orientation(segment.Low, segment.High, p);
@@ -62,7 +61,7 @@ bool CrossInside(const Segment& s, const Segment& t)
   return SideOf(s, t.Low) * SideOf(s, t.High) < 0 && SideOf(t, s.Low) * SideOf(t, s.High) < 0;
 }
 
-/** From left to right, for segments that are cut by the same sweep line and do not cross. */
+/** Orders segments on the same sweep line that do not cross from left to right. */
 struct IsLeftOf
 {
   using is_transparent = void;
@@ -76,7 +75,7 @@ struct IsLeftOf
     }
     const Segment& s = (*this->Segments)[i];
     const Segment& t = (*this->Segments)[j];
-    // Look at the one that began later; where it begins on the other, at where it goes.
+    // The side of the other on which the later one begins; if on it, the side where it ends.
     const bool tIsLater = !IsLower(t.Low, s.Low);
     const Segment& line = tIsLater ? s : t;
     const Segment& later = tIsLater ? t : s;
@@ -89,7 +88,7 @@ struct IsLeftOf
     {
       return (side == Negative) == tIsLater;
     }
-    // One upon the other, back to back: the surface ends, then begins again.
+    // On one line, back to back: the surface ends, then begins again.
     return s.IsUp != t.IsUp ? s.IsUp : i < j;
   }
   bool operator()(Index i, const Point2& p) const
@@ -102,7 +101,7 @@ struct IsLeftOf
   }
 };
 
-/** The end of a segment at which the sweep stops. */
+/** An end of a segment, where the sweep stops. */
 struct Event
 {
   Point2 At;
@@ -110,7 +109,7 @@ struct Event
   bool IsStart;
 };
 
-/** One run of the sweep; its members are what the passes hand on. */
+/** One run of the sweep; the members carry data between its passes. */
 class BorderSweep
 {
 public:
@@ -122,11 +121,11 @@ public:
   {
   }
 
-  /** @return whether nothing is covered twice; if not, Fault() tells what is */
+  /** @return whether no place is covered twice; if not, Fault() is the error message */
   bool Run(const Progress& progress)
   {
     this->MakeSegments(Part(progress, 0.0, 0.05));
-    this->FindTurns(Part(progress, 0.05, 0.1));
+    this->FindRims(Part(progress, 0.05, 0.1));
     Sort(
       this->Events.begin(), this->Events.end(),
       [](const Event& a, const Event& b) {
@@ -143,7 +142,7 @@ public:
       {
         ++last;
       }
-      if (!this->Stop(first, last))
+      if (!this->ProcessEvents(first, last))
       {
         return false;
       }
@@ -189,8 +188,8 @@ private:
     this->Places.resize(this->Segments.size());
   }
 
-  /** Which walks are rims; each is the border of a region of its own. */
-  void FindTurns(const Progress& progress)
+  /** Finds the walks that are rims; each bounds a region of its own. */
+  void FindRims(const Progress& progress)
   {
     const Rings& walks = this->Result.Walks;
     this->Regions.assign(walks.Count(), NotLocated);
@@ -228,12 +227,12 @@ private:
     this->Result.Touched.assign(this->Rims.size(), 0);
   }
 
-  /** All that happens at one point. @return whether all is right there */
-  bool Stop(std::size_t first, std::size_t last)
+  /** Processes the events at one point. @return whether the surface is valid there */
+  bool ProcessEvents(std::size_t first, std::size_t last)
   {
     const Point2 p = this->Events[first].At;
 
-    // Edges that end here leave the line.
+    // Remove edges that end here.
     Place behind = this->Status.end();
     bool haveEnded = false;
     for (; first < last && !this->Events[first].IsStart; ++first)
@@ -261,7 +260,7 @@ private:
     {
       this->Passing.push_back(*through);
     }
-    // Edges that start here come between the neighbours.
+    // Insert edges that start here between their neighbours.
     for (std::size_t i = first; i < last; ++i)
     {
       const Index segment = this->Events[i].Segment;
@@ -272,7 +271,7 @@ private:
       return false;
     }
 
-    // The first edges of a walk are at its lowest point: what is left of them is empty.
+    // The first edges of a walk start at its lowest point, with an empty region on their left.
     for (Place place = hasLeft ? std::next(left) : this->Status.begin(); place != behind; ++place)
     {
       Index& region = this->Regions[this->Segments[*place].Walk];
@@ -292,7 +291,7 @@ private:
 
   Index RegionOf(Index segment) const { return this->Regions[this->Segments[segment].Walk]; }
 
-  /** From @a begin to @a end, both included: into the surface, out of it, into it, ... */
+  /** Whether edges from @a begin to @a end, both included, enter and leave the surface in turn. */
   bool IsInOrder(Place begin, Place end, const Point2& p)
   {
     if (begin == this->Status.begin() && begin != this->Status.end() && this->Segments[*begin].IsUp)
@@ -314,7 +313,7 @@ private:
       }
       if (s.IsUp == t.IsUp)
       {
-        // Twice in: the right one's triangle lies on covered ground; twice out: the left one's.
+        // Twice in: the triangle of the right edge overlaps; twice out: that of the left edge.
         return this->RefuseOverlap(s.IsUp ? *place : *next, p);
       }
     }
@@ -350,10 +349,10 @@ private:
     return false;
   }
 
-  /** Vertices here that lie inside an edge, or at the same place as another vertex. */
+  /** Marks holes in which a vertex here lies inside an edge or coincides with another vertex. */
   void MarkContacts(const Point2& p, std::size_t last)
   {
-    // The same vertex as seen from different empty regions is no contact.
+    // One vertex seen from different empty regions is no contact.
     const auto vertexAt = [&](const Segment& segment) {
       const Index origin = this->Surface.Origin(segment.HalfEdge);
       return this->Surface.PointOf(origin) == p ? origin
@@ -413,7 +412,7 @@ private:
     }
   }
 
-  /** The regions with their walks, the rim first, then islands from the lowest on. */
+  /** Lists the walks of each hole: the rim, then the islands from the lowest on. */
   void MakeHoles()
   {
     const Index count = static_cast<Index>(this->Rims.size());
@@ -463,11 +462,11 @@ private:
   std::vector<Place> Places;  ///< of each segment in Status
   std::vector<Index> Regions; ///< the empty region of each walk: a hole, or Outside
   std::vector<Index> Rims;    ///< the rim of each hole
-  std::vector<Index> Passing; ///< segments with the present point inside
-  std::string Message;        ///< of what is wrong
+  std::vector<Index> Passing; ///< segments with the current point inside
+  std::string Message;        ///< of the error
 };
 
-/** The border as a mesh of which nothing else is true: half-edge 3i is its i-th. */
+/** A mesh in which half-edge 3i is border edge i, and nothing else is meaningful. */
 Mesh MeshOfBorder(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {

@@ -2,29 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The holes of an elevation surface, told apart from its outer boundaries, and the proof that it is
- * an elevation surface.
+ * Finds the holes of an elevation surface, as distinct from its outer boundaries, and proves that
+ * it is an elevation surface.
  *
  * In: a mesh with counter-clockwise triangles and Twins. Out: its border walks (Mesh.h), and which
  * of them bound which hole. The passes:
  *   1. Trace the border. Each walk has one empty region of the plane on its right.
- *   2. Turn: at the lowest vertex of a walk the empty wedge opens downwards (the walk
- *      is the outside of a component) or not (it is the rim of a hole). A pinched walk
- *      has several wedges there.
- *   3. Sweep the plane upwards over all border edges, kept from left to right. Seen from the left,
- *      edges must enter the surface and leave it in turn, and must not cross. The edge left of an
- *      outside's lowest vertex tells which empty region that component lies in: none, or a hole, of
- *      which it is an island.
+ *   2. Classify each walk. Where the empty wedge at its lowest vertex opens downwards, the walk is
+ *      the outside of a component, else the rim of a hole. A pinched walk has several wedges there.
+ *   3. Sweep a line upwards over all border edges, sorted from left to right. From the left, edges
+ *      must enter the surface and leave it in turn, and must not cross. The edge left of a
+ *      component's lowest vertex tells the empty region around the component: the outside, or a
+ *      hole, in which the component is an island.
  *
- * Why this proves that nothing is covered twice, inside neither: triangles are positive, so how
- * often a point is covered is the winding number of the border around it, and pass 3 shows it to be
- * 0 or 1.
+ * This proves that no place is covered twice, in the interior either: triangles are
+ * counter-clockwise, so the number of triangles over a point is the winding number of the border
+ * around it, which pass 3 shows to be 0 or 1.
  *
  * Borders that touch without sharing a vertex (a vertex inside another border edge, or two points
- * with the same x,y) overlap nothing, but a hole with such a contact has no patch that fits to both
- * sides. It is marked; other holes are not concerned.
+ * with the same x,y) do not overlap, but no patch of a hole with such a contact fits both sides.
+ * The hole is marked; other holes are not affected.
  *
- * All decisions are exact. Cost: linear for the tracing, e log e for e border edges.
+ * All decisions are exact. Cost: linear in the triangles, and e log e for e border edges.
  */
 #ifndef elevation_Mesh_Holes_h
 #define elevation_Mesh_Holes_h
@@ -86,15 +85,15 @@ struct Holes
 /**
  * Finds the holes.
  * @param[in] mesh       triangles counter-clockwise and not flat, Twins filled
- * @param[in] firstCell  what messages add to the id of a triangle to name it as the user's cell
- * @throws Error naming the cell that lies over another one, when the mesh is no elevation surface;
- *         Aborted; std::bad_alloc
+ * @param[in] firstCell  messages name triangle t as cell firstCell + t
+ * @throws Error naming the cell that lies over another one, when the mesh is not an elevation
+ *         surface; Aborted; std::bad_alloc
  */
 Holes FindHoles(const Mesh& mesh, Index firstCell = 0, const Progress& progress = Progress());
 
 /**
- * Whether the border alone proves that nothing is covered twice, for triangles that are
- * counter-clockwise. Where not, FindHoles() names the cell.
+ * Whether the border proves that counter-clockwise triangles cover no place twice. If not,
+ * FindHoles() names the cell.
  * @throws Aborted; std::bad_alloc
  */
 bool CoversOnce(

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The triangle mesh, and what can be asked of it and done to it without knowing where it comes from.
+ * The triangle mesh, and queries and operations that do not depend on where it comes from.
  */
 #ifndef elevation_Mesh_Mesh_h
 #define elevation_Mesh_Mesh_h

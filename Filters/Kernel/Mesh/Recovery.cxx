@@ -26,10 +26,10 @@ class Cavity
 public:
   /** The polygon's vertices counter-clockwise; its last edge, back to the first, is the segment. */
   std::vector<Index> Corners;
-  /** The half-edge that ran along each edge of the polygon (but the last) inside it. */
+  /** For each edge of the polygon but the last, the half-edge that ran along it inside. */
   std::vector<Index> Edges;
 
-  // The triangles that fill it, numbered by themselves as in Mesh. A twin below 0 is ~i for the
+  // The triangles that fill it, numbered on their own as in Mesh. A twin below 0 is ~i for the
   // polygon's edge i.
   std::vector<Index> Triangles;
   std::vector<Index> Twins;
@@ -48,8 +48,8 @@ public:
 
 private:
   /**
-   * Cuts off ears along the polygon. Every corner sees the segment, so what is on the stack bounds,
-   * with the segment, an empty polygon of which every left turn is an ear.
+   * Cuts off ears along the polygon. Every corner sees the segment, so the stack and the segment
+   * bound an empty polygon in which every left turn is an ear.
    */
   void Scan(const Mesh& mesh)
   {
@@ -91,7 +91,7 @@ private:
     }
   }
 
-  /** Flips until every edge inside the polygon is locally Delaunay, ties by the rule. */
+  /** Flips until every edge inside the polygon is locally Delaunay, with ties by the tie rule. */
   void MakeDelaunay(const Mesh& mesh)
   {
     this->Queue.clear();
@@ -152,7 +152,7 @@ private:
   std::vector<Index> Queue;
 };
 
-/** The passes for one segment, and the memory they use again and again. */
+/** The passes for one segment, and the memory they reuse. */
 class Recovery
 {
 public:
@@ -295,8 +295,8 @@ private:
   void WriteBack()
   {
     Mesh& mesh = this->Surface;
-    // What lies beyond the polygons' edges, before it is overwritten. An edge may run into a
-    // polygon and back, so that its twin is an edge of a polygon too.
+    // Save the twins of the polygons' edges before they are overwritten. The twin of a dangling
+    // edge is an edge of a polygon, too.
     this->Old.clear();
     for (const Cavity* side : { &this->Left, &this->Right })
     {
@@ -355,7 +355,7 @@ private:
   void ReconnectEdges()
   {
     Mesh& mesh = this->Surface;
-    // By their ids before, to find the twins that were edges of a polygon.
+    // By their former ids, to find the twins that were edges of a polygon.
     std::sort(this->Old.begin(), this->Old.end(),
       [](const OldEdge& p, const OldEdge& q) { return p.Before < q.Before; });
     for (const OldEdge& edge : this->Old)
@@ -378,7 +378,7 @@ private:
         this->Moved.push_back(edge);
       }
     }
-    // In two steps, for borders of one vertex may exchange their ids.
+    // In two steps, as borders of one vertex may exchange their ids.
     for (const OldEdge& edge : this->Moved)
     {
       this->Stars.ReplaceBorder(mesh.Origin(edge.After), edge.Before, None - 1 - edge.After);

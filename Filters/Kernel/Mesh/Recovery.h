@@ -21,8 +21,8 @@
  * the order of points, triangles or segments.
  *
  * Cost: one linear pass over the mesh for each call; then proportional to the triangles around the
- * ends of the segments and the edges crossed, as long as flips stay local, which they do for data
- * that are spread in the plane (no more than the square of the edges crossed by one segment).
+ * ends of the segments and the edges crossed, as long as flips stay local, as for points spread
+ * over the plane; at worst the square of the edges that a segment crosses.
  *
  * [Lawson 1977] Software for C1 surface interpolation.
  * [Lee & Lin 1986] Generalized Delaunay triangulation for planar graphs.
@@ -44,7 +44,7 @@ struct Segment
   Index B;
 };
 
-/** An edge on the way along a segment: a half-edge that is on it, and the vertex it leads to. */
+/** A step along a segment: a half-edge that is on it, and the vertex it leads to. */
 struct SegmentStep
 {
   Index HalfEdge = None; ///< from or to the vertex asked for; None when there is no such edge
@@ -52,31 +52,29 @@ struct SegmentStep
 };
 
 /**
- * The edge at vertex @a from that lies on the straight way to vertex @a to and does not go beyond
- * it. Exact. Cost: the triangles around @a from, or a search where these are many.
+ * The edge at vertex @a from that lies on the segment to vertex @a to. Exact. Cost: the triangles
+ * around @a from, or a binary search where these are many.
  */
 SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to);
 
 /**
  * Makes every segment an edge of the mesh, or a chain of edges where it runs exactly through other
  * vertices.
- * @param[in,out] mesh         with Twins; the number of triangles is conserved,
- *                             their slots are reused
- * @param[in]     segments     in any order and direction; the same one may come twice, they may
- *                             overlap. A segment from a vertex to itself is left out.
+ * @param[in,out] mesh         with Twins; the number of triangles does not change
+ * @param[in]     segments     in any order and direction; they may repeat and overlap. A
+ *                             segment from a vertex to itself is left out.
  * @param[in,out] constrained  one flag a half-edge: in, edges that must stay (empty: none); out, 1
  *                             for these and for both half-edges of every segment's edges, else 0
- * @param[in]     progress     may be empty
  * @return the number of segments that were not edges or chains of edges before
  * @throws Error naming the two points when a segment crosses a constrained edge (so two segments
  *         cross), leaves the mesh (crosses a hole or the outside), or ends in a point that is not
- *         the corner of any triangle. The mesh then is valid, with the segments before recovered.
+ *         the corner of any triangle. The mesh is then valid, with the earlier segments recovered.
  *         Aborted; std::bad_alloc.
  */
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress = Progress());
 
-/** The same with the stars of the mesh, which afterwards are those of the mesh as it has become. */
+/** The same with the stars of the mesh, which are kept up to date. */
 Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>& segments,
   std::vector<char>& constrained, const Progress& progress = Progress());
 

@@ -14,10 +14,10 @@ namespace
 {
 
 /**
- * Whether any segments cross. A sweep from the lowest point to the highest keeps those that it is
- * on from the left to the right [Shamos & Hoey 1976]. Just below the lowest place where some cross,
- * all that pass through it or end there are neighbours; when those that end are gone, two that
- * cross are beside each other.
+ * Whether any segments cross. A sweep from the lowest point to the highest keeps the segments on
+ * its line from left to right [Shamos & Hoey 1976]. Just below the lowest crossing, the segments
+ * that pass through it or end there are neighbours; once those that end are removed, two that cross
+ * are adjacent.
  */
 class CrossingSweep
 {
@@ -63,7 +63,7 @@ public:
     for (std::size_t i = 0; i <= all.size(); ++i)
     {
       ReportStep(sweeping, i, all.size() + 1, 1024);
-      // First those that end before it begins.
+      // First remove those that end before segment i begins.
       for (; ending != byEnd.end() && (i == all.size() || !IsLower(all[i][0], all[*ending][1]));
            ++ending)
       {
@@ -87,7 +87,7 @@ public:
   }
 
 private:
-  /** Of two that the sweep is on; of two on one line the first. */
+  /** For two on the sweep line; if both are on one line, the first is left of the other. */
   bool IsLeftOf(Index s, Index t) const
   {
     const Ends &first = this->Segments[std::min(s, t)], &second = this->Segments[std::max(s, t)];
@@ -96,25 +96,25 @@ private:
     return side == Zero ? s < t : (side == Positive) == (s > t);
   }
 
-  std::vector<Ends> Segments; ///< from their lower ends, which rise
+  std::vector<Ends> Segments; ///< from lower to upper end, sorted by the lower
 };
 
-// Remainders of coordinates, and of their sums and products, by a prime. As these are exact, what
-// depends on a line alone is equal for all segments on it.
+// Coordinates modulo a prime. Sums and products are exact, so that what depends on a line alone is
+// equal for all segments on it.
 constexpr std::uint64_t Prime = 0x7FFFFFFF; // 2^31 - 1
 
 std::uint64_t RemainderOf(double x)
 {
   int exponent = 0;
   const double whole = std::ldexp(std::frexp(std::fabs(x), &exponent), 53);
-  // As 2^31 leaves 1, powers of two repeat.
+  // 2^31 is 1 modulo the prime, so powers of two repeat.
   const int power = ((exponent - 53) % 31 + 31) % 31;
   const std::uint64_t value = ((static_cast<std::uint64_t>(whole) % Prime) << power) % Prime;
   return x < 0.0 ? (Prime - value) % Prime : value;
 }
 
-/** A number that segments on one line have in common, and hardly any others. */
-std::uint64_t LineNumber(const Point2& a, const Point2& b)
+/** A hash of the line through two points: the same for all segments on it. */
+std::uint64_t LineHash(const Point2& a, const Point2& b)
 {
   const std::uint64_t x = RemainderOf(a.X), y = RemainderOf(a.Y);
   std::uint64_t power = (RemainderOf(b.X) + Prime - x) % Prime;
@@ -139,8 +139,8 @@ struct LinePiece
 };
 
 /**
- * Puts pieces from end to end in the place of some on one line, which overlap one after another and
- * come in the order of their lower ends.
+ * Replaces pieces on one line, which overlap one after another and are sorted by their lower ends,
+ * by pieces from vertex to vertex.
  */
 void JoinRun(const LinePiece* begin, const LinePiece* end, const std::vector<Point2>& places,
   std::vector<SegmentPiece>& joined, std::vector<Passage>& passages, WorkReporter& work)
@@ -207,7 +207,7 @@ bool Cross(const Ends& s, const Ends& t)
   const auto areApart = [](double a, double b, double c, double d) {
     return std::max(a, b) < std::min(c, d) || std::max(c, d) < std::min(a, b);
   };
-  // With an end in common, which some orientation would take long to find out.
+  // Segments with an end in common do not cross; exact orientations would take longer to find out.
   if (areApart(s[0].Y, s[1].Y, t[0].Y, t[1].Y) || areApart(s[0].X, s[1].X, t[0].X, t[1].X) ||
     s[0] == t[0] || s[0] == t[1] || s[1] == t[0] || s[1] == t[1])
   {
@@ -255,7 +255,7 @@ std::vector<Passage> JoinOverlaps(
     ReportStep(progress, entries.size(), 4 * pieces.size());
     // A point is on no line.
     entries.push_back({ piece.A == piece.B ? ~static_cast<std::uint64_t>(piece.A)
-                                           : LineNumber(places[piece.A], places[piece.B]),
+                                           : LineHash(places[piece.A], places[piece.B]),
       piece });
   }
   Sort(
@@ -277,7 +277,7 @@ std::vector<Passage> JoinOverlaps(
     for (; end < entries.size() && entries[end].Line == entries[begin].Line; ++end)
     {
       const Point2 &low = places[entries[end].Piece.A], &high = places[entries[end].Piece.B];
-      // The number alone proves nothing.
+      // Equal hashes prove nothing.
       if (end > begin &&
         (!IsLower(low, top) || Orientation(a, b, low) != Zero || Orientation(a, b, high) != Zero))
       {

@@ -5,7 +5,7 @@
  * Segments in the plane: which of them cross, which points lie on them, and where to cut them.
  * Constraints and boundary rings are both cut with this.
  *
- * Exact, but for what says that it takes rounding into account (SnapRounding.h).
+ * Exact, except where rounding is allowed for explicitly (SnapRounding.h).
  *
  * [Shamos & Hoey 1976] Geometric intersection problems.
  */
@@ -22,15 +22,15 @@
 namespace elevation
 {
 
-/** Of a segment. */
+/** The ends of a segment. */
 using Ends = std::array<Point2, 2>;
 
 CellGrid GridOf(const std::vector<Ends>& segments, const Progress& progress = Progress());
 
-/** Whether each of two segments has the ends of the other on its two sides. */
+/** Whether two segments cross: each has the ends of the other on opposite sides. */
 bool Cross(const Ends& s, const Ends& t);
 
-/** Whether a point lies on the segment, and is none of its ends. */
+/** Whether a point lies on the segment and is not one of its ends. */
 inline bool IsInside(const Ends& s, const Point2& p)
 {
   return std::min(s[0].Y, s[1].Y) <= p.Y && p.Y <= std::max(s[0].Y, s[1].Y) &&
@@ -39,18 +39,18 @@ inline bool IsInside(const Ends& s, const Point2& p)
 }
 
 /**
- * Calls visit(i, j) for segments i < j that cross, by increasing i, and for each in the order of
- * the grid of all of them; perhaps repeatedly.
+ * Calls visit(i, j) for segments i < j that cross, by increasing i, then in the order of the grid
+ * of all segments; perhaps repeatedly.
  *
- * Cost: linear in the segments and the pairs of them that are near each other. Where these are many,
- * a sweep tells before whether any cross: n log n segments if none do.
+ * Cost: linear in the segments and in the pairs that are near each other. Where these are many, a
+ * sweep checks first whether any cross: n log n for n segments if none do.
  */
 void VisitCrossings(const std::vector<Ends>& segments, const CellGrid& grid,
   const Progress& progress, const std::function<void(std::size_t, std::size_t)>& visit);
 
 /**
- * Calls visit(0) and visit(1) for the first and second end of a segment, if the other segment, with
- * its units, runs by within reach. @return whether any is in reach
+ * Calls visit(0) for the first and visit(1) for the second end of a segment if it is in reach of
+ * the other segment, which has these units. @return whether any is
  */
 template <typename Visitor>
 bool VisitEndsInReach(
@@ -75,7 +75,7 @@ struct PieceCut
   Index Vertex;
 };
 
-/** Sorts cuts, or what has these members, by pieces and along each from its first end. */
+/** Sorts cuts, or types with these members, by piece, then along it from its first end. */
 template <typename Cuts, typename EndsOf, typename PlaceOf>
 void SortAlong(Cuts& cuts, EndsOf&& endsOf, PlaceOf&& placeOf, const Progress& progress)
 {
@@ -95,10 +95,10 @@ void SortAlong(Cuts& cuts, EndsOf&& endsOf, PlaceOf&& placeOf, const Progress& p
 /** Part of one or several segments. */
 struct SegmentPiece
 {
-  Index A; ///< vertices; the same one twice: a point that no segment ends in
+  Index A; ///< vertices; equal for a point that no segment ends in
   Index B;
   Index Rank;           ///< the first segment that it is part of
-  Index Count;          ///< of distinct segments that it is part of
+  Index Count;          ///< distinct segments that it is part of
   RoundingUnits Unit = RoundingUnits(); ///< the largest of its segments
 };
 
@@ -116,8 +116,7 @@ struct Passage
  * @param[in]     places  of the vertices, all different
  * @return where pieces have been cut
  *
- * Some that overlap may be left, where differences of their coordinates are multiples of a large
- * prime. Cost: n log n.
+ * Overlaps may remain where coordinate differences are multiples of a large prime. Cost: n log n.
  */
 std::vector<Passage> JoinOverlaps(
   std::vector<SegmentPiece>& pieces, const std::vector<Point2>& places, const Progress& progress);

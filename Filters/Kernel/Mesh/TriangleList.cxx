@@ -25,7 +25,7 @@ bool CopyPoints(
   places.resize(points.Count);
   std::atomic<bool> areFinite{ true };
   const auto copy = [&](Index, Index begin, Index end) {
-    double sum = 0.0; // of numbers times 0: 0, or not a number
+    double sum = 0.0; // of values times 0: 0, or NaN
     for (Index i = begin; i < end; ++i)
     {
       places[i] = points.At(i);
@@ -40,7 +40,7 @@ bool CopyPoints(
   return areFinite;
 }
 
-/** Turns a triangle counter-clockwise, whose corners exist. @throws Error */
+/** Makes a triangle, whose corners exist, counter-clockwise. @throws Error */
 void Turn(const TriangleList& list, Index t, bool areFinite, Mesh& mesh)
 {
   const auto name = [&]() { return std::to_string(static_cast<std::int64_t>(list.FirstCell) + t); };
@@ -88,7 +88,7 @@ Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
   const bool areFinite = CopyPoints(list.Points, threads, Part(progress, 0.0, 0.2), mesh.Points);
   mesh.Triangles.resize(3 * static_cast<std::size_t>(list.Count));
   const auto read = [&](Index, Index begin, Index end) {
-    // Few at a time: their points are asked for before they are needed.
+    // Few at a time, so that their points can be prefetched.
     constexpr Index few = 128;
     for (; begin < end; begin += few)
     {
@@ -114,7 +114,8 @@ Mesh MeshOf(const TriangleList& list, int threads, const Progress& progress)
   return mesh;
 }
 
-Mesh PartOf(const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
+Mesh SubMesh(
+  const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
 {
   Mesh mesh;
   const Index count = static_cast<Index>(triangles.size());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Lists of triangles that are no mesh yet, and all or some of their triangles as a mesh.
+ * Lists of triangles without connectivity, and meshes of all or some of their triangles.
  */
 #ifndef elevation_Mesh_TriangleList_h
 #define elevation_Mesh_TriangleList_h
@@ -15,13 +15,13 @@
 namespace elevation
 {
 
-/** Triangles as they lie in a cell array, and the points that they name; not owned. */
+/** Triangles in the layout of a cell array, and their points; not owned. */
 struct TriangleList
 {
   const Index* Corners = nullptr; ///< three a triangle
   Index Count = 0;
   PointView Points;
-  Index FirstCell = 0; ///< what messages add to the number of a triangle to name it as a cell
+  Index FirstCell = 0; ///< messages name triangle t as cell FirstCell + t
 
   const Index* CornersOf(Index t) const { return this->Corners + 3 * static_cast<std::size_t>(t); }
   void PrefetchPoint(Index vertex) const
@@ -29,7 +29,7 @@ struct TriangleList
     const std::size_t k = 3 * static_cast<std::size_t>(vertex);
     this->Points.Double ? Prefetch(this->Points.Double + k) : Prefetch(this->Points.Float + k);
   }
-  /** The area of a triangle in parts of a square; to the bit the same from any first corner. */
+  /** A triangle's area divided by a square's; bit for bit the same for any first corner. */
   double ShareOfSquare(Index t, double side) const
   {
     Point2 a = this->Points.At(this->CornersOf(t)[0]);
@@ -61,7 +61,7 @@ struct BorderEdge
   }
 };
 
-/** Puts in the place of each vertex its id. */
+/** Replaces each vertex by its id. */
 inline void ToIds(std::vector<Index>& vertices, const Index* ids, const Progress& progress)
 {
   ForEachStretch(static_cast<Index>(vertices.size()), progress, [&](Index begin, Index end) {
@@ -72,22 +72,22 @@ inline void ToIds(std::vector<Index>& vertices, const Index* ids, const Progress
   });
 }
 
-/** The message that a triangle names a point that does not exist. */
+/** The message that a cell has a point that does not exist. */
 std::string NoSuchPoint(std::int64_t cell, std::int64_t id, std::int64_t numberOfPoints);
 
-/** The numbers of all triangles. */
+/** The ids of all triangles. */
 std::vector<Index> AllTriangles(const TriangleList& list);
 
 /**
- * The whole list as a mesh, without Twins: points and triangles as they are, but that triangles
- * are turned counter-clockwise where they are not. Linear; on up to so many threads.
- * @throws Error that names the cell: a point that does not exist or is not finite; flat in x,y, as
- *         is a triangle that has a point twice. Aborted; std::bad_alloc.
+ * The whole list as a mesh without Twins, with clockwise triangles reversed. Linear; on up to
+ * @a threads threads.
+ * @throws Error naming the cell: it has a point that does not exist or is not finite, or is flat in
+ *         x,y, also when it has a point twice. Aborted; std::bad_alloc.
  */
 Mesh MeshOf(const TriangleList& list, int threads = 1, const Progress& progress = Progress());
 
-/** Some triangles, which are right, as a mesh, without Twins; its points keep their order. */
-Mesh PartOf(
+/** Some triangles, known to be valid, as a mesh without Twins; points keep their order. Linear. */
+Mesh SubMesh(
   const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress);
 
 } // namespace elevation

@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * A sweep over the triangles of a list where they lie: one pass that proves them counter-clockwise,
- * finds the border, and shows each of them to a visitor.
+ * One pass over a list of triangles, in place: it proves them counter-clockwise, finds the border,
+ * and passes each triangle to a visitor.
  *
- * What is kept of a vertex is read into one place at first, so that a triangle costs one access to
- * memory for each corner, wherever the points lie. Edges are matched as they come; what stays open
- * is the border. Threads sweep over a range of triangles each; triangles with a vertex that another
- * range has as well are put off to the end.
+ * The data of a vertex are first gathered in one place, so that a triangle costs one memory access
+ * a corner, wherever the points lie. Half-edges are matched as they come; those left open are the
+ * border. Each thread sweeps over a range of triangles; triangles with a vertex that is also in
+ * another range are deferred to the end.
  *
- * Cost: linear; about as much as reading triangles and points, when triangles come in the order in
- * which a sweep over the plane makes them, as those of this kernel do. The edges that are open at a
- * time then have room beside their vertices. Where too many have not, the sweep is given up.
- * Memory: one Visitor::Vertex a point, and a bit for each range.
+ * Cost: linear. The triangles should come in the order of a sweep over the plane, as those of this
+ * kernel do: then the open half-edges fit into the records of their vertices. Where too many do
+ * not, the sweep is given up. Memory: one Visitor::Vertex a point, and a bit a point for each
+ * range.
  */
 #ifndef elevation_Mesh_TriangleSweep_h
 #define elevation_Mesh_TriangleSweep_h
@@ -36,17 +36,17 @@ namespace elevation
 struct SweptVertex
 {
   Point2 Place{ 0.0, 0.0 };
-  Index Upper[2] = { None, None }; ///< of open half-edges: where one leads up to, and down from
-  Index NumberOfOthers = 0; ///< open half-edges of which it is the lower end, without room here
-  Index Unused = 0;         ///< so that none lies in two lines of the cache
+  Index Upper[2] = { None, None }; ///< upper ends of open half-edges: one up, one down
+  Index NumberOfOthers = 0; ///< further open half-edges of which it is the lower end
+  Index Unused = 0;         ///< so that no vertex spans two cache lines
 };
 
-/** A half-edge: its ends, and whether it leads from the lower to the upper, or down. */
+/** A half-edge: its lower and upper end, and whether it leads down (1) or up (0). */
 struct SweptEdge
 {
   SweptEdge(Index a, Point2 placeOfA, Index b, Point2 placeOfB)
     : IsDown(IsLower(placeOfB, placeOfA))
-    , Lower(a ^ ((a ^ b) & -this->IsDown)) // without branches: which way it leads is by chance
+    , Lower(a ^ ((a ^ b) & -this->IsDown)) // without branches: the direction is by chance
     , Upper(a ^ b ^ this->Lower)
   {
   }
@@ -56,25 +56,25 @@ struct SweptEdge
 };
 
 /**
- * The half-edges that have come without their twins so far. Each is known to the lower end of its
- * edge, which has room for one that leads up and one that leads down to it: more are not open at a
- * time when triangles come by their lowest vertices. Others go to a map.
+ * The half-edges whose twins have not come yet. Each is stored at the lower end of its edge, which
+ * has room for one that leads up and one that leads down: no more are open at a time when triangles
+ * come by their lowest vertices. Others go to a hash set.
  */
 template <typename Vertex>
 class OpenEdges
 {
 public:
-  /** @param[in] most  others that the map takes */
+  /** @param[in] most  how many others the set may hold */
   OpenEdges(Vertex* vertices, std::size_t most)
     : Vertices(vertices)
     , Most(most)
   {
   }
 
-  /** A half-edge has come: it finds its twin, or stays open. */
+  /** Matches a half-edge with its open twin; without one, leaves it open. */
   void Add(const SweptEdge& edge)
   {
-    // Most stay open. One that is open already is found in the slow way.
+    // The fast path, as most stay open. A half-edge that is open already takes the slow one.
     Vertex& at = this->Vertices[edge.Lower];
     if ((at.Upper[edge.IsDown] == None) & (at.Upper[1 - edge.IsDown] != edge.Upper) &
       (at.NumberOfOthers == 0))
@@ -88,8 +88,8 @@ public:
   }
 
   /**
-   * Whether both half-edges have found their twins: one up from a vertex to @a right, one down to
-   * it from @a left. If not, nothing is changed.
+   * Matches two half-edges, one up from a vertex to @a right, one down to it from @a left.
+   * @return whether both have an open twin there; if not, nothing is changed
    */
   bool MatchBoth(Vertex& at, Index right, Index left)
   {
@@ -101,7 +101,7 @@ public:
     return areTwins;
   }
 
-  /** Whether the half-edge has found its twin, which then is no longer open. */
+  /** Closes the open twin of a half-edge. @return whether there was one */
   bool Match(const SweptEdge& edge)
   {
     Vertex& at = this->Vertices[edge.Lower];
@@ -133,18 +133,18 @@ public:
     this->Failed = this->Failed || !isNew || this->Others.size() > this->Most;
   }
 
-  /** Adds those in the map of another, which has had other vertices. */
+  /** Adds the set of another range, which had other vertices. */
   void Take(const OpenEdges& other)
   {
     this->Others.insert(other.Others.begin(), other.Others.end());
     this->Failed = this->Failed || other.Failed || this->Others.size() > this->Most;
   }
 
-  /** Too many for the map, or one twice: not an order, or not a surface, for this. */
+  /** Too many for the set (triangles in a bad order), or one twice (not a surface). */
   bool HasFailed() const { return this->Failed; }
 
-  /** Adds what is open: beside a vertex ... */
-  void AddBeside(Index vertex, std::vector<BorderEdge>& border) const
+  /** Appends the open half-edges: those stored at a vertex ... */
+  void AddStoredAt(Index vertex, std::vector<BorderEdge>& border) const
   {
     const Vertex& at = this->Vertices[vertex];
     if ((at.Upper[0] & at.Upper[1]) != None)
@@ -159,7 +159,7 @@ public:
       }
     }
   }
-  /** ... and in the map. */
+  /** ... and in the set. */
   void AddOthers(std::vector<BorderEdge>& border) const
   {
     for (const std::uint64_t key : this->Others)
@@ -181,7 +181,7 @@ private:
   bool Failed = false;
 };
 
-/** Whether a triangle is counter-clockwise and has finite corners: what a filter leaves open. */
+/** Whether a triangle is counter-clockwise with finite corners; where the filter is undecided. */
 inline bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
 {
   for (const double value : { a.X, a.Y, b.X, b.Y, c.X, c.Y })
@@ -196,7 +196,7 @@ inline bool IsExactlyCounterClockwise(Point2 a, Point2 b, Point2 c)
 
 inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 {
-  // The filter of Orientation(), which nothing that is not finite passes.
+  // The filter of Orientation(), which coordinates that are not finite never pass.
   const double left = (a.X - c.X) * (b.Y - c.Y);
   const double right = (a.Y - c.Y) * (b.X - c.X);
   return left - right > 1e-15 * (std::fabs(left) + std::fabs(right)) + 1e-290 ||
@@ -206,10 +206,10 @@ inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 /**
  * The sweep. A visitor has
  *   - Vertex: a SweptVertex, with what the visitor adds;
- *   - Start(Vertex&): called once for each vertex, whose place is known;
- *   - Begin(p, a): told the first corner of triangles that follow each other, and the next;
- *   - Visit(t, p, a, b): each of these triangles.
- * Each range has a visitor of its own; all are copies of one.
+ *   - Start(Vertex&): called once for each vertex, with its Place set;
+ *   - Begin(p, a): begins a fan of consecutive triangles around p, with a the second corner;
+ *   - Visit(t, p, a, b): called for each triangle of the fan.
+ * Each range has a copy of the visitor.
  */
 template <typename Visitor>
 class TriangleSweep
@@ -232,8 +232,8 @@ public:
 
   /**
    * @return whether all triangles are counter-clockwise, with corners that exist and are finite,
-   *         and all elevations are finite, also of points that are no corners; and edges could be
-   *         matched. If not, nothing else is of use.
+   *         all elevations are finite, also of unused points, and edges could be matched. If not,
+   *         no other result is valid.
    * @throws Aborted, std::bad_alloc
    */
   bool Run(const Visitor& visitor, const Progress& progress)
@@ -265,11 +265,11 @@ public:
       }
     }
     isRight = isRight &&
-      this->InRanges(Part(progress, 0.2, 0.9), [this](Range& range) { return this->Go(range); });
-    return isRight && this->Join(Part(progress, 0.9, 1.0));
+      this->InRanges(Part(progress, 0.2, 0.9), [this](Range& range) { return this->Sweep(range); });
+    return isRight && this->SweepDeferred(Part(progress, 0.9, 1.0));
   }
 
-  /** What the visitors have seen; the first one's triangles may not be in order. */
+  /** The visitors, by range; the first one may have visited triangles out of order. */
   std::vector<Visitor*> Visitors()
   {
     std::vector<Visitor*> visitors;
@@ -284,9 +284,8 @@ public:
 
   /**
    * The half-edges without twins, in no order.
-   * @param[in] count, idOf  among idOf(0) ... idOf(count - 1) are all corners, once each, and None
-   * @param[in] visit        visit(i, vertex) is called for all of them, on several threads; with
-   *                         null for None
+   * @param[in] count, idOf  idOf(0) ... idOf(count - 1) are all corners, once each, or None
+   * @param[in] visit        visit(i, vertex) is called for each, on several threads; null for None
    */
   template <typename IdOf, typename Visit>
   std::vector<BorderEdge> Border(Index count, const Progress& progress, IdOf&& idOf, Visit&& visit)
@@ -301,7 +300,7 @@ public:
         const Index id = idOf(i);
         if (id != None)
         {
-          edges.AddBeside(id, here);
+          edges.AddStoredAt(id, here);
         }
         visit(i, id != None ? this->Vertices + id : nullptr);
       }
@@ -325,13 +324,13 @@ public:
   }
 
 private:
-  struct alignas(64) Range // not where other threads write next to
+  struct alignas(64) Range // against false sharing
   {
     Index Begin, End, Next;
     OpenEdges<Vertex> Edges;
     Visitor Seen;
     IdSet Corners;
-    std::vector<Index> PutOff; ///< triangles with a vertex of another range
+    std::vector<Index> Deferred; ///< triangles with a vertex of another range
   };
   struct alignas(Vertex) Storage
   {
@@ -341,7 +340,7 @@ private:
   static constexpr Index FewestInRange = 1 << 12; ///< triangles
   static constexpr Index AtOnce = 1 << 14;        ///< triangles
 
-  /** Makes the vertices. @return whether all elevations are finite */
+  /** Initialises the vertices. @return whether all elevations are finite */
   bool Read(const Visitor& visitor, const Progress& progress)
   {
     std::atomic<bool> areFinite{ true };
@@ -349,7 +348,7 @@ private:
       ForEachRange(
         this->List.Points.Count, this->Threads, progress, [&](Index, Index begin, Index end) {
           const auto* p = coordinates + 3 * static_cast<std::size_t>(begin);
-          double sum = 0.0; // of numbers times 0: 0, or not a number
+          double sum = 0.0; // of values times 0: 0, or NaN
           for (Index v = begin; v < end; ++v, p += 3)
           {
             Vertex* vertex = new (this->Vertices + v) Vertex;
@@ -367,7 +366,7 @@ private:
     return areFinite;
   }
 
-  /** Calls goOn(range) for all ranges until their ends. @return whether all is right */
+  /** Calls goOn(range) until all ranges are done. @return whether all calls returned true */
   template <typename GoOn>
   bool InRanges(const Progress& progress, GoOn&& goOn)
   {
@@ -401,11 +400,11 @@ private:
     });
   }
 
-  /** Whether corners exist. */
+  /** Whether the points of corners [begin, end) exist. */
   bool Exist(std::size_t begin, std::size_t end) const
   {
     const std::uint32_t most = static_cast<std::uint32_t>(this->List.Points.Count - 1);
-    std::uint32_t sign = 0; // of numbers below 0, or beyond the last
+    std::uint32_t sign = 0; // of ids below 0 or beyond the last
     for (std::size_t h = begin; h < end; ++h)
     {
       const std::uint32_t id = static_cast<std::uint32_t>(this->List.Corners[h]);
@@ -414,7 +413,7 @@ private:
     return sign >> 31 == 0;
   }
 
-  /** Goes on with marking the corners of a range. @return whether they exist */
+  /** Marks the next corners of a range. @return whether they exist */
   bool Mark(Range& range)
   {
     const Index begin = range.Next;
@@ -429,10 +428,10 @@ private:
     return exist;
   }
 
-  /** Goes on with sweeping over a range. @return whether all is right so far */
-  bool Go(Range& range)
+  /** Sweeps over the next triangles of a range. @return whether all are valid so far */
+  bool Sweep(Range& range)
   {
-    constexpr std::size_t ahead = 126; // so many corners further on vertices are asked for
+    constexpr std::size_t ahead = 126; // prefetch distance, in corners
     const std::size_t count = 3 * static_cast<std::size_t>(this->List.Count);
     const Index begin = range.Next;
     const Index end = range.Next += std::min(AtOnce, range.End - begin);
@@ -443,18 +442,19 @@ private:
       return false;
     }
     return this->Ranges.size() == 1
-      ? this->Stretch(begin, end, reach, range, [](Index) { return true; })
-      : this->Stretch(begin, end, reach, range, [this](Index v) { return !this->Shared.Has(v); });
+      ? this->SweepTriangles(begin, end, reach, range, [](Index) { return true; })
+      : this->SweepTriangles(
+          begin, end, reach, range, [this](Index v) { return !this->Shared.Has(v); });
   }
 
   /**
-   * Sweeps over some of the triangles, whose corners exist.
-   * @param[in] ahead   so many corners further on exist as well
-   * @param[in] isOurs  isOurs(id): whether triangles may have it; with others they are put off
-   * @return whether all is right so far
+   * Sweeps over triangles [begin, end), whose corners exist.
+   * @param[in] ahead   prefetch distance; so many corners beyond the end exist
+   * @param[in] isOurs  isOurs(id): whether no other range has the vertex; else defers triangles
+   * @return whether all are valid so far
    */
   template <typename IsOurs>
-  bool Stretch(Index begin, Index end, std::size_t ahead, Range& range, IsOurs&& isOurs)
+  bool SweepTriangles(Index begin, Index end, std::size_t ahead, Range& range, IsOurs&& isOurs)
   {
     Vertex* const vertices = this->Vertices;
     OpenEdges<Vertex>& edges = range.Edges;
@@ -469,7 +469,7 @@ private:
       const Index right = ids[1];
       if (!isOurs(first) || !isOurs(right) || !isOurs(ids[2]))
       {
-        range.PutOff.push_back(t);
+        range.Deferred.push_back(t);
         ids += 3;
         ++t;
         continue;
@@ -495,7 +495,7 @@ private:
       } while (ids < lastIds && ids[0] == first && ids[1] == last && isOurs(ids[2]));
       if (!edges.MatchBoth(p, right, last))
       {
-        // Both may find their twins before one that has none takes the room of one of these.
+        // First match both: a match makes room for the other one to stay open.
         const SweptEdge firstEdge(first, p.Place, right, r.Place);
         const bool hasTwin = edges.Match(firstEdge);
         edges.Add(SweptEdge(last, b->Place, first, p.Place));
@@ -508,15 +508,15 @@ private:
     return isRight && !edges.HasFailed();
   }
 
-  /** Goes through what ranges have put off. @return whether all is right */
-  bool Join(const Progress& progress)
+  /** Sweeps over the deferred triangles of all ranges. @return whether all are valid */
+  bool SweepDeferred(const Progress& progress)
   {
     Range& all = this->Ranges[0];
     std::vector<Index> triangles;
     for (Range& range : this->Ranges)
     {
-      triangles.insert(triangles.end(), range.PutOff.begin(), range.PutOff.end());
-      range.PutOff.clear();
+      triangles.insert(triangles.end(), range.Deferred.begin(), range.Deferred.end());
+      range.Deferred.clear();
       if (&range != &all)
       {
         all.Edges.Take(range.Edges);
@@ -537,7 +537,7 @@ private:
       {
         ++end;
       }
-      isRight = this->Stretch(first, end, 0, all, [](Index) { return true; });
+      isRight = this->SweepTriangles(first, end, 0, all, [](Index) { return true; });
     }
     return isRight;
   }

@@ -11,7 +11,7 @@ VertexStars::VertexStars(const Mesh& mesh, const Progress& progress)
   : First(mesh.Points.size(), None)
   , OnBorder(mesh.Points.size(), 0)
 {
-  // From the last half-edge to the first, so that the first one stays.
+  // From the last half-edge to the first, so that the first one is kept.
   const Index count = mesh.NumberOfHalfEdges();
   std::vector<Index> borders;
   ForEachStretch(count, progress, [&](Index begin, Index end) {
@@ -61,7 +61,7 @@ Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
   {
     return None;
   }
-  // Counter-clockwise from a half-edge on.
+  // Searches counter-clockwise from a half-edge.
   const auto look = [&](Index first, Index most) {
     Sign side = Orientation(a, b, mesh.PointOf(mesh.Destination(first)));
     Index h = first;
@@ -98,7 +98,7 @@ Index VertexStars::Toward(const Mesh& mesh, Index from, Index to)
   Index found = lookFromSpoke(Few);
   if (found == None)
   {
-    // Too many have come or gone.
+    // Too many edges have changed: sort anew.
     spokes.clear();
     this->Visit(mesh, from, [&](Index h) {
       spokes.push_back({ mesh.Destination(h), h });

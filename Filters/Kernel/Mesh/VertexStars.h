@@ -5,7 +5,10 @@
  * The star of a vertex: the triangles around it, and the half-edges that leave it.
  *
  * In: a mesh with Twins. At the border a star is a fan of triangles from one border edge to the
- * other; at a pinched vertex it is several fans.
+ * other; at a pinched vertex it is several fans. The only index of connectivity: the others know
+ * where points and triangles are, not which triangles meet at a vertex.
+ *
+ * Cost: linear in time and memory to set up; then one half-edge after another around the vertex.
  */
 #ifndef elevation_Mesh_VertexStars_h
 #define elevation_Mesh_VertexStars_h
@@ -18,10 +21,6 @@
 namespace elevation
 {
 
-/**
- * The stars of the vertices: for each, the half-edges that leave it. Linear in time and memory to set
- * up.
- */
 class VertexStars
 {
 public:
@@ -32,8 +31,8 @@ public:
 
   /**
    * Calls visit(h) for every half-edge that leaves the vertex, fan by fan, counter-clockwise within
-   * a fan, until visit returns false. (An edge whose only half-edge arrives at the vertex is the
-   * last of its fan: it is Previous of the last h, and a border.)
+   * a fan, until visit returns false. (An edge whose only half-edge leads to the vertex is the
+   * last of its fan: Previous of the last h, a border.)
    */
   template <typename Visitor>
   void Visit(const Mesh& mesh, Index vertex, Visitor&& visit) const
@@ -58,9 +57,9 @@ public:
   }
 
   /**
-   * The same for a visitor that waits for the half-edge along which, or in the triangle of which,
-   * the straight way from the vertex to another one begins: where there are many it is searched by
-   * direction, unless fans are pinched. Some may be visited twice.
+   * The same for a visitor that looks for the half-edge along which, or in whose triangle, the
+   * segment to another vertex begins. In a large star, a binary search by direction finds it,
+   * unless the vertex is pinched. Some half-edges may be visited twice.
    */
   template <typename Visitor>
   void VisitToward(const Mesh& mesh, Index vertex, Index to, Visitor&& visit)
@@ -84,7 +83,7 @@ public:
     this->Visit(mesh, vertex, visit);
   }
 
-  /** Tells that half-edge h now leaves its origin, in place of a half-edge that may have gone. */
+  /** Enters half-edge h at its origin, in place of one that may no longer exist. */
   void Replace(const Mesh& mesh, Index h)
   {
     Index& first = this->First[mesh.Origin(h)];
@@ -94,13 +93,13 @@ public:
     }
   }
 
-  /** Tells that the border that leaves the vertex and had the id @a before now has @a after. */
+  /** Changes the id of a border that leaves the vertex from @a before to @a after. */
   void ReplaceBorder(Index vertex, Index before, Index after);
 
 private:
   static constexpr Index Few = 32;
 
-  /** What VisitToward() waits for; None: not found. */
+  /** The half-edge that VisitToward() looks for; None if not found. */
   Index Toward(const Mesh& mesh, Index from, Index to);
 
   template <typename Visitor>
@@ -118,20 +117,20 @@ private:
     return true;
   }
 
-  /** An edge of a vertex as it once was: the half-edge may have gone. */
+  /** An edge of a vertex when its star was sorted; the half-edge may no longer exist. */
   struct Spoke
   {
     Index Vertex; ///< at its other end
     Index HalfEdge;
   };
 
-  // A half-edge that leaves the vertex; for a vertex at the border the one that is a border, from
-  // which the whole fan is reached counter-clockwise.
+  // A half-edge that leaves the vertex; at the border the one that is a border, from which the
+  // whole fan is reached counter-clockwise.
   std::vector<Index> First;
   std::vector<char> OnBorder;
   // The further fans of pinched vertices, each by its outgoing border.
   std::unordered_map<Index, std::vector<Index>> Others;
-  // Of vertices with many triangles, the edges by direction: from the right, counter-clockwise.
+  // The edges of vertices with large stars, by direction: counter-clockwise from +x.
   std::unordered_map<Index, std::vector<Spoke>> Hubs;
 };
 

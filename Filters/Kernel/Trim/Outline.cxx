@@ -36,9 +36,9 @@ constexpr double LeastHeight = 0.1;
 constexpr double LeastSpacing = 1e-150;
 
 /** The parts of triangles with equal flags, connected by edges. */
-Parts PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
+Components PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const Progress& progress)
 {
-  return FindParts(mesh, progress, [&](Index h) {
+  return FindComponents(mesh, progress, [&](Index h) {
     return flags[Mesh::Triangle(h)] == flags[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
   });
 }
@@ -51,7 +51,7 @@ template <typename ShareOf>
 void CloseSmallOpenings(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
-  const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
+  const Components parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
   struct Piece
   {
     Index Part;
@@ -67,8 +67,8 @@ void CloseSmallOpenings(
       {
         const bool isAtBorder =
           mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
-        pieces.push_back({ parts.PartOf(t), 0.0, t });
-        reachesBorder[parts.PartOf(t)] |= isAtBorder;
+        pieces.push_back({ parts.ComponentOf(t), 0.0, t });
+        reachesBorder[parts.ComponentOf(t)] |= isAtBorder;
       }
     }
   });
@@ -147,7 +147,7 @@ void DropSlivers(
 std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Parts parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
+  const Components parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
   // More triangles than so few vertices can form.
   constexpr Index many = 3 * NeighborOfSpacing + 1;
   std::vector<Index> sizes(parts.Count(), 0);
@@ -156,10 +156,10 @@ std::vector<Index> DropSmallPieces(
   ForEachStretch(count, Part(progress, 0.5, 0.7), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
-      sizes[parts.PartOf(t)] += keep[t];
+      sizes[parts.ComponentOf(t)] += keep[t];
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
-        goesOn[parts.PartOf(t)] |= mesh.Twin(h) == h;
+        goesOn[parts.ComponentOf(t)] |= mesh.Twin(h) == h;
       }
     }
   });
@@ -168,9 +168,9 @@ std::vector<Index> DropSmallPieces(
   ForEachStretch(count, Part(progress, 0.7, 0.9), [&](Index begin, Index end) {
     for (Index h = 3 * begin; h < 3 * end; ++h)
     {
-      if (keep[Mesh::Triangle(h)] && sizes[parts.PartOf(Mesh::Triangle(h))] < many)
+      if (keep[Mesh::Triangle(h)] && sizes[parts.ComponentOf(Mesh::Triangle(h))] < many)
       {
-        corners.emplace_back(parts.PartOf(Mesh::Triangle(h)), mesh.Origin(h));
+        corners.emplace_back(parts.ComponentOf(Mesh::Triangle(h)), mesh.Origin(h));
       }
     }
   });
@@ -194,7 +194,7 @@ std::vector<Index> DropSmallPieces(
   }
   for (Index t = 0; anyLarge && unknown.empty() && t < count; ++t)
   {
-    keep[t] = keep[t] && !isSmall[parts.PartOf(t)];
+    keep[t] = keep[t] && !isSmall[parts.ComponentOf(t)];
   }
   return unknown;
 }
@@ -462,7 +462,7 @@ struct PartialMesh
   /** @param[in] border  sorted */
   PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
     const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress)
-    : Surface(PartOf(list, triangles, Part(progress, 0.0, 0.5)))
+    : Surface(SubMesh(list, triangles, Part(progress, 0.0, 0.5)))
     , Triangles(std::move(triangles))
   {
     this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));

@@ -127,7 +127,7 @@ OutwardTriangles FindOutward(
   MarkEdges(mesh, stars, segments, isOnBoundary, Part(progress, 0.5, 0.6));
 
   const RingLocator locator(mesh.Points, boundary);
-  const Parts parts = FindParts(mesh, Part(progress, 0.6, 0.9),
+  const Components parts = FindComponents(mesh, Part(progress, 0.6, 0.9),
     [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
   std::vector<char> isOutward; // one a label
   for (const Index t : parts.Lowest)

@@ -39,7 +39,7 @@ Mesh ProvenMesh(const TriangleList& list, int threads, const Progress& progress)
 /** Some of the triangles, proven by a sweep, as a mesh with Twins. */
 Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Progress& progress)
 {
-  Mesh mesh = PartOf(list, near, Part(progress, 0.0, 0.5));
+  Mesh mesh = SubMesh(list, near, Part(progress, 0.0, 0.5));
   mesh.ConnectTwins(list.FirstCell, Part(progress, 0.5, 1.0));
   return mesh;
 }

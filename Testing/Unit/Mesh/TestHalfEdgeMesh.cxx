@@ -90,7 +90,7 @@ TEST(Mesh, RefusesAnEdgeInWhicheverOrderItsTrianglesCome)
   }
 }
 
-TEST(FindParts, TellsPartsAndSides)
+TEST(FindComponents, TellsComponentsAndSides)
 {
   // Two pieces that touch in a point, and one apart. The sides: left and right of x = 2.
   const Mesh mesh = Draw({ "#### ##", "## # ##", "#### ##", "    #  " });
@@ -99,21 +99,21 @@ TEST(FindParts, TellsPartsAndSides)
       mesh.PointOf(mesh.Origin(3 * t + 2)).X >
       6.0;
   };
-  const Parts parts = FindParts(mesh, Progress(), [&](Index h) {
+  const Components parts = FindComponents(mesh, Progress(), [&](Index h) {
     return isRight(Mesh::Triangle(h)) != isRight(Mesh::Triangle(mesh.Twin(h))) ? 1 : 0;
   });
   ASSERT_EQ(parts.Count(), 3);
   std::vector<Index> seen(3, None);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    Index& lowest = seen[parts.PartOf(t)];
+    Index& lowest = seen[parts.ComponentOf(t)];
     lowest = lowest == None ? t : lowest;
     EXPECT_EQ(parts.Labels[t] % 2 != 0, isRight(t) != isRight(lowest));
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
       if (!mesh.IsBorder(h))
       {
-        EXPECT_EQ(parts.PartOf(Mesh::Triangle(mesh.Twin(h))), parts.PartOf(t));
+        EXPECT_EQ(parts.ComponentOf(Mesh::Triangle(mesh.Twin(h))), parts.ComponentOf(t));
       }
     }
   }
@@ -121,13 +121,13 @@ TEST(FindParts, TellsPartsAndSides)
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
 
   // Edges that lead to the other side do not connect: a left and a right half, and two more.
-  const Parts halves = FindParts(mesh, Progress(), [&](Index h) {
+  const Components halves = FindComponents(mesh, Progress(), [&](Index h) {
     return isRight(Mesh::Triangle(h)) != isRight(Mesh::Triangle(mesh.Twin(h))) ? -1 : 0;
   });
   EXPECT_EQ(halves.Count(), 4);
 }
 
-TEST(FindParts, DoesNotDependOnWhereTheSweepBegins)
+TEST(FindComponents, DoesNotDependOnWhereTheSweepBegins)
 {
   // In random order, parts begin in many places and on both sides before they are joined.
   Mesh mesh = Draw({ "########", "########", "########", "########" });
@@ -144,7 +144,7 @@ TEST(FindParts, DoesNotDependOnWhereTheSweepBegins)
     }
     mesh.ConnectTwins();
     const auto sideOf = [&](Index t) { return static_cast<int>(mesh.Origin(3 * t) % 2); };
-    const Parts parts = FindParts(mesh, Progress(),
+    const Components parts = FindComponents(mesh, Progress(),
       [&](Index h) { return sideOf(Mesh::Triangle(h)) ^ sideOf(Mesh::Triangle(mesh.Twin(h))); });
     ASSERT_EQ(parts.Count(), 1);
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
