@@ -45,8 +45,8 @@ public:
     for (std::size_t i = 0; i < count; ++i)
     {
       ReportStep(progress, count + i, 2 * count);
-      this->ForEachCell(cornersOf(i),
-        [&](std::size_t cell) { this->Items[next[cell]++] = static_cast<Index>(i); });
+      this->ForEachCell(
+        cornersOf(i), [&](std::size_t cell) { this->Items[next[cell]++] = static_cast<Index>(i); });
     }
   }
 

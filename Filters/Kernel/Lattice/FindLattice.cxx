@@ -13,14 +13,14 @@ namespace elevation
 {
 namespace
 {
-constexpr Index FewestPoints = 6;      // fewer than that fit some lattice by chance
+constexpr Index FewestPoints = 6;      // fewer fit some lattice by chance
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
 constexpr std::size_t Vectors = 128;   // shortest of their differences
 constexpr double SampleSize = 1024.0;
 constexpr double WideSampleSize = 16384.0; // in which the fullest place is looked for
-// A remainder of so many steps is taken for none, tried in turn: exact coordinates allow large
-// multiples of the steps, rounded ones do not.
-constexpr std::array<double, 3> Nothings{ 0.02, 0.06, 0.15 };
+// A remainder below so many steps counts as zero; tried in turn. A small value suits exact
+// coordinates at large multiples of the steps; rounded coordinates need a large one.
+constexpr std::array<double, 3> ZeroTolerances{ 0.02, 0.06, 0.15 };
 constexpr int MostCells = 64; // along each side of the first histogram
 
 double Dot(const Point2& p, const Point2& q)
@@ -55,7 +55,7 @@ Point2 InSteps(const Point2& d, const Point2& u, const Point2& v)
   return { Cross(d, v) / area, Cross(u, d) / area };
 }
 
-/** Lagrange's reduction: afterwards u is a shortest vector and v a shortest one beside it. */
+/** Lagrange's reduction: makes u a shortest vector and v a shortest one independent of it. */
 void Reduce(Point2& u, Point2& v)
 {
   for (int guard = 0; guard < 1000; ++guard)
@@ -78,14 +78,14 @@ void Reduce(Point2& u, Point2& v)
   }
 }
 
-/** The vectors seen so far, as a basis of what they generate. */
+/** A basis of the lattice that the vectors inserted so far generate. */
 class Generators
 {
 public:
-  Generators(double leastArea, double leastLength, double nothing)
+  Generators(double leastArea, double leastLength, double zeroTolerance)
     : LeastArea(leastArea)
     , LeastLength(leastLength)
-    , Nothing(nothing)
+    , ZeroTolerance(zeroTolerance)
   {
   }
 
@@ -111,13 +111,13 @@ public:
       {
         return this->Take(set, 1);
       }
-      // The second by the first.
+      // Reduce the second by the first.
       const double times = std::round(Dot(set[1], set[0]) / Dot(set[0], set[0]));
       const Point2 second = Minus(set[1], set[0], times);
       if (times != 0.0 && Dot(second, second) < 0.999 * Dot(set[1], set[1]))
       {
         set[1] = second;
-        if (this->IsNothing(second, set[0]))
+        if (this->IsNegligible(second, set[0]))
         {
           set[1] = set[2];
           --size;
@@ -136,14 +136,15 @@ public:
       {
         return this->Take(set, 2);
       }
-      // The third by both.
+      // Reduce the third by both.
       const Point2 steps = InSteps(set[2], set[0], set[1]);
       const double i = std::round(steps.X), j = std::round(steps.Y);
       if (i == 0.0 && j == 0.0)
       {
-        return false; // cannot be: it would be shorter
+        return false; // impossible: it would be shorter
       }
-      if (std::fabs(steps.X - i) < this->Nothing && std::fabs(steps.Y - j) < this->Nothing)
+      if (std::fabs(steps.X - i) < this->ZeroTolerance &&
+        std::fabs(steps.Y - j) < this->ZeroTolerance)
       {
         return this->Take(set, 2);
       }
@@ -152,14 +153,14 @@ public:
     return false;
   }
 
-  const double LeastArea, LeastLength, Nothing;
+  const double LeastArea, LeastLength, ZeroTolerance;
   int Rank = 0;
   Point2 U{ 0.0, 0.0 }, V{ 0.0, 0.0 };
 
 private:
-  bool IsNothing(const Point2& p, const Point2& than) const
+  bool IsNegligible(const Point2& p, const Point2& than) const
   {
-    return Dot(p, p) < this->Nothing * this->Nothing * Dot(than, than);
+    return Dot(p, p) < this->ZeroTolerance * this->ZeroTolerance * Dot(than, than);
   }
 
   bool Take(const std::array<Point2, 3>& set, int rank)
@@ -171,7 +172,7 @@ private:
   }
 };
 
-/** Least squares: a node and two steps from points whose node is known. */
+/** Least-squares fit of an origin and two steps to points whose nodes are known. */
 class Fit
 {
 public:
@@ -222,10 +223,10 @@ private:
   Point2 P{ 0.0, 0.0 }, PI{ 0.0, 0.0 }, PJ{ 0.0, 0.0 };
 };
 
-/** The same for equal points, and spread evenly over 32 bits. */
+/** A hash of 32 evenly distributed bits, the same for equal points. */
 std::uint64_t HashOf(const Point2& p)
 {
-  const double x = p.X + 0.0, y = p.Y + 0.0; // one zero
+  const double x = p.X + 0.0, y = p.Y + 0.0; // -0 becomes 0
   std::uint64_t a, b;
   std::memcpy(&a, &x, sizeof a);
   std::memcpy(&b, &y, sizeof b);
@@ -234,7 +235,7 @@ std::uint64_t HashOf(const Point2& p)
   return (a ^ (a >> 32)) & 0xffffffffu;
 }
 
-/** The points with a hash below it are a sample of about so many, the same in any order. */
+/** Points with a hash below this limit are a sample of about @a size, whatever their order. */
 std::uint64_t HashLimit(double size, double count)
 {
   return static_cast<std::uint64_t>(std::min(size / count, 1.0) * 0x1p32);
@@ -246,8 +247,8 @@ void SortUnique(std::vector<Point2>& points)
   points.erase(std::unique(points.begin(), points.end()), points.end());
 }
 
-/** Places, each once, however many points there are at it. */
-class alignas(64) PlaceSet // not where other threads write next to
+/** A hash set of distinct points. */
+class alignas(64) PlaceSet // against false sharing
 {
 public:
   void Add(const Point2& p)
@@ -259,7 +260,7 @@ public:
     this->Count += this->Put(p);
   }
 
-  /** In no order that matters. */
+  /** In no particular order. */
   std::vector<Point2> Places() const
   {
     std::vector<Point2> places;
@@ -269,12 +270,12 @@ public:
   }
 
 private:
-  static bool IsTaken(const Point2& slot) { return slot.X == slot.X; } // or not a number
+  static bool IsTaken(const Point2& slot) { return slot.X == slot.X; } // free ones are NaN
 
   /** @return whether the place is new */
   bool Put(const Point2& p)
   {
-    // Those of a sample have a small hash: they differ in its lowest bits.
+    // Hashes of a sample are small: they differ in the lowest bits.
     std::size_t at = HashOf(p) & (this->Slots.size() - 1);
     while (IsTaken(this->Slots[at]))
     {
@@ -303,7 +304,7 @@ private:
   std::size_t Count = 0;
 };
 
-/** The places of several sets, sorted. */
+/** The distinct points of several sets, sorted. */
 std::vector<Point2> Join(std::vector<std::vector<Point2>> sets, const Progress& progress)
 {
   PlaceSet all;
@@ -345,7 +346,7 @@ struct Histogram
     return { this->Low.X + (cell % this->Side + upper) / this->PerX,
       this->Low.Y + (cell / this->Side + upper) / this->PerY };
   }
-  /** Whether the box has cells that numbers can tell apart. */
+  /** Whether the inverse size of the cells is finite, and not 0. */
   bool HasCells() const
   {
     return this->PerX > 0.0 && this->PerX <= DBL_MAX && this->PerY > 0.0 && this->PerY <= DBL_MAX;
@@ -371,10 +372,7 @@ struct Histogram
   std::vector<Index> Counts;
 };
 
-/**
- * Keeps those of distinct points that are in the fullest cell of their box, again and again, until
- * few are left.
- */
+/** Keeps only the points in the fullest cell of their box, repeatedly, until few are left. */
 void KeepFullestCells(std::vector<Point2>& points, const Progress& progress)
 {
   constexpr std::size_t few = 1 << 16;
@@ -397,7 +395,7 @@ void KeepFullest(std::vector<Point2>& points)
   {
     const Box box = BoxOf(points);
     const Point2 &low = box.Low, &high = box.High;
-    // Halves of the longer side; a box without height has the longer one all the same.
+    // Halve the longer side.
     const bool isWide = box.Width() > box.Height();
     const double middle = isWide ? 0.5 * (low.X + high.X) : 0.5 * (low.Y + high.Y);
     const auto isLow = [&](const Point2& p) { return (isWide ? p.X : p.Y) < middle; };
@@ -405,7 +403,7 @@ void KeepFullest(std::vector<Point2>& points)
       static_cast<std::size_t>(std::count_if(points.begin(), points.end(), isLow));
     if (lower == 0 || lower == points.size())
     {
-      points.resize(Neighbors); // a few roundoffs apart
+      points.resize(Neighbors); // only rounding errors apart
       return;
     }
     const bool keepLow = 2 * lower >= points.size();
@@ -415,7 +413,7 @@ void KeepFullest(std::vector<Point2>& points)
   }
 }
 
-/** Area a point in the fullest part; where that has no area, a thousandth of the mean of all. */
+/** The mean area a point in the fullest part, at least a thousandth of that of all points. */
 double MeanAreaOf(const std::vector<Point2>& points, double ofAll)
 {
   const Box box = BoxOf(points);
@@ -457,8 +455,8 @@ std::vector<Point2> ShortestDifferences(const std::vector<Point2>& points)
 }
 
 /**
- * Of the reduced bases of a lattice, the one whose steps lead most nearly along +x and +y. Where
- * there are several, the one with an acute angle, and then the one that is turned to the left.
+ * Chooses the reduced basis of the lattice whose steps are closest to +x and +y. Of several, the
+ * one with an acute angle, then the one that is turned to the left.
  */
 void Direct(Point2& u, Point2& v)
 {
@@ -498,7 +496,7 @@ void Direct(Point2& u, Point2& v)
   v = bestV;
 }
 
-/** The value with the fewest decimals within @a allowed. */
+/** The number with the fewest decimals within @a allowed of a value. */
 double Rounded(double value, double allowed)
 {
   for (int decimals = -9; decimals <= 15; ++decimals)
@@ -514,18 +512,18 @@ double Rounded(double value, double allowed)
   return value;
 }
 
-/** Passes 4 and 5: the lattice of a sample, whose points are relative to the first and go outwards. */
+/** Passes 4 and 5: fits the lattice to a sample, which is relative to its first point, outwards. */
 class OutwardFit
 {
 public:
   OutwardFit(const std::vector<Point2>& sample, const Generators& generators)
     : Sample(sample)
     , Basis(generators)
-    , Between(1.5 * generators.Nothing)
+    , NodeTolerance(1.5 * generators.ZeroTolerance)
   {
   }
 
-  /** @return false when there is none, or more than so many nodes for the sample's box */
+  /** @return false when no lattice fits, or it has more nodes in the sample's box than allowed */
   bool Run(double tolerance, double extent, double mostNodes, Lattice& lattice)
   {
     constexpr int mostRounds = 64;
@@ -538,7 +536,7 @@ public:
     {
       return false;
     }
-    // All of the sample, twice: with the steps directed, and once more with those fitted.
+    // Fit the whole sample twice: from the directed steps, then from the fitted ones.
     Direct(this->Steps.StepU, this->Steps.StepV);
     if (!this->FitAll() || !this->FitAll())
     {
@@ -557,7 +555,7 @@ private:
   enum class Outcome
   {
     Fitted,  ///< all points are on nodes
-    Refined, ///< by a point between the nodes: from the start again
+    Refined, ///< by a point between the nodes: start again
     TooFine
   };
 
@@ -576,7 +574,7 @@ private:
     this->Steps = { { 0.0, 0.0 }, this->Basis.U, this->Basis.V };
     Fit fit;
     std::size_t next = 8;
-    Point2 beside{ 0.0, 0.0 }; // farthest from the line, as long as there is but one step
+    Point2 beside{ 0.0, 0.0 }; // farthest from the line while there is only one step
     for (std::size_t k = 0; k < this->Sample.size(); ++k)
     {
       Point2 rest;
@@ -593,7 +591,7 @@ private:
         next += next / 4;
       }
     }
-    // With one step the other is so short that it was taken for a remainder.
+    // With only one step, the other is so short that it counted as zero.
     return this->Basis.Rank == 1 ? this->Refine(beside) : Outcome::Fitted;
   }
 
@@ -602,7 +600,7 @@ private:
     return this->Basis.Insert(vector) ? Outcome::Refined : Outcome::TooFine;
   }
 
-  /** Whether a point is on a node, as far as there are steps; the rest is what leads from there. */
+  /** Whether a point is on a node of the steps so far; @a rest leads there from the node. */
   bool IsNode(const Point2& p, Fit& fit, Point2& rest) const
   {
     const Point2 &u = this->Steps.StepU, &v = this->Steps.StepV;
@@ -613,12 +611,13 @@ private:
       const double i = std::round(steps.X), j = std::round(steps.Y);
       rest = Minus(Minus(rest, u, i), v, j);
       fit.Add(i, j, p);
-      return std::fabs(steps.X - i) <= this->Between && std::fabs(steps.Y - j) <= this->Between;
+      return std::fabs(steps.X - i) <= this->NodeTolerance &&
+        std::fabs(steps.Y - j) <= this->NodeTolerance;
     }
     if (this->Basis.Rank == 1)
     {
       rest = Minus(rest, u, std::round(Dot(rest, u) / Dot(u, u)));
-      return Dot(rest, rest) <= this->Between * this->Between * Dot(u, u);
+      return Dot(rest, rest) <= this->NodeTolerance * this->NodeTolerance * Dot(u, u);
     }
     return Dot(rest, rest) == 0.0;
   }
@@ -634,7 +633,7 @@ private:
     return fit.Solve(this->Steps.Origin, this->Steps.StepU, this->Steps.StepV);
   }
 
-  /** As far as it moves no node noticeably. */
+  /** Rounds steps and origin so little that no node moves noticeably. */
   void RoundSteps(double extent)
   {
     Point2 &u = this->Steps.StepU, &v = this->Steps.StepV, &origin = this->Steps.Origin;
@@ -646,7 +645,7 @@ private:
     origin.Y = std::fabs(origin.Y) <= 1e-6 * length ? 0.0 : origin.Y;
   }
 
-  /** Whether all points are near nodes, and the nodes not too many: coarser steps may do. */
+  /** Whether all points are near nodes, and the nodes are not too many. */
   bool IsWithin(double tolerance, double mostNodes) const
   {
     const double far = 1.01 * tolerance + 1e-8;
@@ -666,11 +665,11 @@ private:
 
   const std::vector<Point2>& Sample;
   Generators Basis;
-  const double Between; ///< the nodes, in steps
+  const double NodeTolerance; ///< in steps; a point farther off lies between nodes
   Lattice Steps;
 };
 
-/** One run of FindLattice(); its members are what the passes hand on. */
+/** One run of FindLattice(); the members carry data between its passes. */
 class LatticeFinder
 {
 public:
@@ -686,7 +685,7 @@ public:
     this->TakeSample(Part(progress, 0.0, 0.55));
     const double width = this->Search.Width(), height = this->Search.Height();
     const double extent = width + height;
-    // Where squares and quotients might leave the range of double there is no lattice.
+    // There is no lattice where squares and quotients might leave the range of double.
     if (this->Count < FewestPoints || !(width > 1e-60 && height > 1e-60 && extent < 1e60))
     {
       return std::move(this->Search);
@@ -697,14 +696,14 @@ public:
     const double leastArea =
       0.5 * MeanAreaOf(this->Around, width * height / this->Count) / MaximumNodesPerPoint;
     const std::vector<Point2> differences = ShortestDifferences(this->Around);
-    const auto isLattice = [&](double nothing) {
-      Generators generators(leastArea, 1e-9 * extent / this->Count, nothing);
+    const auto isLattice = [&](double zeroTolerance) {
+      Generators generators(leastArea, 1e-9 * extent / this->Count, zeroTolerance);
       return std::all_of(differences.begin(), differences.end(),
                [&](const Point2& vector) { return generators.Insert(vector); }) &&
         OutwardFit(this->Sample, generators)
           .Run(tolerance, extent, MaximumNodesPerPoint * this->Count, this->Search.Steps);
     };
-    this->Search.Found = std::any_of(Nothings.begin(), Nothings.end(), isLattice);
+    this->Search.Found = std::any_of(ZeroTolerances.begin(), ZeroTolerances.end(), isLattice);
     this->Search.Steps.Origin.X += middle.X;
     this->Search.Steps.Origin.Y += middle.Y;
     return std::move(this->Search);
@@ -730,8 +729,8 @@ private:
   }
 
   /**
-   * A cell of the sample's extent, a cell of that, and so on. Where hardly any points differ,
-   * everywhere.
+   * The fullest cell of the sample's extent, the fullest cell of that, and so on; all of the extent
+   * where few points are distinct.
    */
   Box FullestPlace() const
   {
@@ -773,7 +772,7 @@ private:
     KeepFullest(this->Around);
   }
 
-  /** A smaller sample, relative to a point in the middle of the fullest place, from there outwards. */
+  /** Reduces the sample, makes it relative to @a middle, and sorts it outwards. */
   void SortSample(const Point2& middle)
   {
     const std::uint64_t limit = HashLimit(SampleSize, this->Points.Count);
@@ -797,7 +796,7 @@ private:
   const int Threads;
   LatticeSearch Search;
   Index Count = 0;                         ///< of the finite points
-  std::vector<std::vector<Point2>> Pieces; ///< places, by range of the points
+  std::vector<std::vector<Point2>> Pieces; ///< distinct points, by range
   std::vector<Point2> Sample;
   std::vector<Point2> Around; ///< the points of the fullest place
 };

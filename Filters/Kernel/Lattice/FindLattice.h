@@ -8,18 +8,17 @@
  * nodes missing, with coordinates rounded to decimals. Out: the lattice, or the answer that there
  * is none. The passes:
  *   1. Bounding box, and a sample of the whole cloud, chosen by a hash of the coordinates.
- *   2. The fullest place of the sample (a coarse histogram), and all points there.
- *   3. The shortest differences of the points there generate the lattice: an algorithm of Euclid on
- *      vectors, which takes a remainder below a few tolerances for none.
- *   4. From there outwards over the sample the steps are fitted by least squares to more and more
- *      points, so that rounding never amounts to a part of a step. A point between the nodes
- * refines the lattice.
+ *   2. The fullest place of the sample (by a coarse histogram), and all points there.
+ *   3. The shortest differences between these points generate the lattice, by Euclid's algorithm on
+ *      vectors, which treats small remainders as zero.
+ *   4. From there outwards, the steps are fitted by least squares to more and more points of the
+ *      sample, so that rounding errors never add up to a notable part of a step. A point between
+ *      nodes refines the lattice.
  *   5. The steps are reduced [Lagrange], directed along the axes as far as possible, and rounded to
- *      the fewest decimals that move no node noticeably, so that steps that are round stay round.
- * Each step depends on the set of points alone, not on their order. What remains is to check every
- * point (Nodes.h).
+ *      the fewest decimals that move no node noticeably, so that round steps stay round.
+ * Each pass depends on the set of points alone, not on their order. Nodes.h checks every point.
  *
- * Cost: two passes over the coordinates, on several threads, and a fraction of a millisecond.
+ * Cost: two linear passes over the coordinates, on several threads; constant for the samples.
  */
 #ifndef elevation_Lattice_FindLattice_h
 #define elevation_Lattice_FindLattice_h
@@ -32,8 +31,7 @@
 namespace elevation
 {
 
-/** Node (i, j) is at Origin + i StepU + j StepV. The steps are a reduced basis, counter-clockwise.
- */
+/** Node (i, j) is at Origin + i StepU + j StepV. The steps are reduced, and counter-clockwise. */
 struct Lattice
 {
   Point2 Origin{ 0.0, 0.0 };
@@ -48,20 +46,20 @@ struct Lattice
   }
 };
 
-/** A lattice has at most so many nodes a point in the parallelogram of steps around the cloud. */
+/** The most nodes a point that a lattice may have in a parallelogram around the cloud. */
 constexpr double MaximumNodesPerPoint = 64.0;
 
-/** What is known of a cloud after FindLattice. */
+/** The result of FindLattice(). */
 struct LatticeSearch : Extent
 {
   bool Found = false;
-  Lattice Steps; ///< where found; Origin is some node
+  Lattice Steps; ///< if found; Origin is some node
 };
 
 /**
  * Looks for a lattice that the cloud may lie on.
  * @param tolerance  how far a point may lie from its node, along each step, in steps; 0 to 0.25
- * A negative answer comes early; a positive one holds for a sample of the points only.
+ * Most clouds without a lattice are rejected early; a lattice found fits a sample of the points.
  */
 LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress);

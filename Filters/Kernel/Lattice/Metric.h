@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Lengths and circles on a lattice, in integers: exact and as quick as those of doubles.
+ * Lengths and circles on a lattice in integers: exact, and as fast as in doubles. Constant time.
  */
 #ifndef elevation_Lattice_Metric_h
 #define elevation_Lattice_Metric_h
@@ -14,11 +14,11 @@
 namespace elevation
 {
 
-/** The metric of two steps as integers without a common factor. */
+/** The metric of two steps, up to a factor: integers without a common divisor. */
 struct LatticeMetric
 {
   std::int64_t A = 1; ///< squared length of the first step
-  std::int64_t B = 0; ///< product of both
+  std::int64_t B = 0; ///< scalar product of both
   std::int64_t C = 1; ///< squared length of the second
 
   /** @return false when the steps are too unequal for integers of 20 bits */

@@ -12,10 +12,10 @@ namespace elevation
 {
 namespace
 {
-/** What a point may be too far from its node, in steps: rounding is no reason to refuse. */
+/** How far beyond the tolerance a point may be from its node, in steps, because of rounding. */
 constexpr double Roundoff = 1e-8;
 
-/** Work that waits for memory asks for it so many points ahead. */
+/** Points handled at a time, so that their memory can be prefetched. */
 constexpr Index Few = 32;
 
 /** The node of a point, relative to the lower left one. */
@@ -31,7 +31,7 @@ public:
   {
   }
 
-  /** What the nodes of points lie within, in steps along each. */
+  /** A box around the nodes of points, in steps. */
   struct NodeBox : Box
   {
     double FirstI() const { return std::floor(this->Low.X + 0.25); }
@@ -67,8 +67,8 @@ public:
   }
 
   /**
-   * What rounding may do to that distance: where steps are very unequal, i is a small difference of
-   * large numbers. The factors themselves are exact: they tell the lattice that is meant.
+   * A bound on the rounding error of that distance: where steps are very unequal, i is a small
+   * difference of large numbers. The factors count as exact, as they define the lattice.
    */
   double Roundoff(const Point2& low, const Point2& high) const
   {
@@ -89,8 +89,8 @@ private:
 };
 
 /**
- * Whether there are more points than a core has near in memory, and they come in no order. In rows,
- * columns and along paths most points go on with the step of the one before, or with a short one.
+ * Whether the points are too many for a core's cache and come in no order. In rows, in columns and
+ * along paths, most points repeat the step of the point before, or take a short one.
  */
 bool AreScattered(
   const PointView& points, const std::vector<Index>& notFinite, const NodeOfPoint& nodeOf)
@@ -116,7 +116,7 @@ bool AreScattered(
 }
 } // namespace
 
-/** One run of Place(); its members are what the passes hand on. */
+/** One run of Place(); the members carry data between its passes. */
 class LatticeNodes::Placement
 {
 public:
@@ -133,7 +133,7 @@ public:
 
   bool Run(double tolerance, const Progress& progress)
   {
-    if (!this->Lay(this->FindBox(Part(progress, 0.0, 0.2)), Part(progress, 0.2, 0.2)))
+    if (!this->MakeBitmap(this->FindBox(Part(progress, 0.0, 0.2)), Part(progress, 0.2, 0.2)))
     {
       return false;
     }
@@ -143,9 +143,9 @@ public:
       return false;
     }
     IdSet duplicates(this->Points.Count);
-    Stretches sorted;
+    Buckets sorted;
     const bool isSorted =
-      this->IsScattered && this->SortIntoStretches(sorted, Part(progress, 0.5, 0.7));
+      this->IsScattered && this->SortIntoBuckets(sorted, Part(progress, 0.5, 0.7));
     const Progress placing = Part(progress, 0.7, 0.99);
     if (!(isSorted ? this->PlaceSorted(sorted, duplicates, placing)
                    : this->PlaceInOrder(duplicates, placing)))
@@ -158,16 +158,16 @@ public:
   }
 
 private:
-  /** Points by stretches of nodes. */
-  struct Stretches
+  /** Points by buckets of consecutive nodes. */
+  struct Buckets
   {
     std::vector<Index> Begins; ///< where each begins in Nodes and Ids; then the end of the last
-    Buffer<Index> Nodes;       ///< None for points on a node that is taken
+    Buffer<Index> Nodes;       ///< None for points whose node is taken
     Buffer<Index> Ids;         ///< of the points
     Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
   };
 
-  /** The box of the points' nodes: that of their bounding box, where the lattice is along the axes. */
+  /** The box of the points' nodes; on a lattice along the axes, that of their bounding box. */
   NodeOfPoint::NodeBox FindBox(const Progress& progress) const
   {
     NodeOfPoint::NodeBox box;
@@ -182,7 +182,7 @@ private:
     {
       return box;
     }
-    // A lattice across the axes: the points themselves tell it better.
+    // On a lattice askew to the axes, the points themselves give a smaller one.
     std::vector<NodeOfPoint::NodeBox> pieces(NumberOfRanges(this->Points.Count));
     this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
       NodeOfPoint::NodeBox here;
@@ -198,8 +198,8 @@ private:
     return box;
   }
 
-  /** Lays the bitmap over a box of nodes. @return false when it takes too much memory */
-  bool Lay(const NodeOfPoint::NodeBox& box, const Progress& progress)
+  /** Allocates the bitmap for a box of nodes. @return false when it takes too much memory */
+  bool MakeBitmap(const NodeOfPoint::NodeBox& box, const Progress& progress)
   {
     const double count = this->Points.Count - static_cast<double>(this->Search.NotFinite.size());
     const double columns = box.Columns(), rows = box.Rows();
@@ -228,13 +228,13 @@ private:
   }
 
   /**
-   * Writes the node of each point, or None, to Room; where points are not scattered, sets the bits.
+   * Writes the node of each point, or None, to Scratch; unless points are scattered, sets the bits.
    * @return false when a point is too far from its node
    */
   bool FindNodes(double tolerance, const Progress& progress)
   {
-    this->Nodes.Room.Resize(static_cast<std::size_t>(this->Points.Count));
-    Index* const nodes = this->Nodes.Room.data();
+    this->Nodes.Scratch.Resize(static_cast<std::size_t>(this->Points.Count));
+    Index* const nodes = this->Nodes.Scratch.data();
     std::vector<double> offsets(NumberOfRanges(this->Points.Count), 0.0);
     this->Second.resize(offsets.size());
     std::atomic<bool> fits{ true };
@@ -243,7 +243,7 @@ private:
       {
         return;
       }
-      std::vector<Index> second; // not in memory that other threads write next to
+      std::vector<Index> second; // local, against false sharing
       double largest = 0.0;
       for (; begin < end; begin += Few)
       {
@@ -283,24 +283,24 @@ private:
     elevation::ForEachRange(this->Points.Count, this->Threads, progress, work);
   }
 
-  bool PlaceSorted(Stretches& sorted, IdSet& duplicates, const Progress& progress)
+  bool PlaceSorted(Buckets& sorted, IdSet& duplicates, const Progress& progress)
   {
     ForEachPiece(sorted.Count(), this->Threads, Part(progress, 0.0, 0.35),
-      [&](Index stretch) { this->OccupyStretch(sorted, stretch); });
+      [&](Index bucket) { this->OccupyBucket(sorted, bucket); });
     this->CountBefore();
     ForEachPiece(sorted.Count(), this->Threads, Part(progress, 0.35, 0.85),
-      [&](Index stretch) { this->PlaceStretch(sorted, stretch); });
+      [&](Index bucket) { this->PlaceBucket(sorted, bucket); });
     const Progress settling = Part(progress, 0.85, 1.0);
     const Index placed = sorted.Begins.back();
     for (Index i = 0; i < placed && this->Nodes.NumberOfPoints() < placed; ++i)
     {
       ReportStep(settling, static_cast<std::size_t>(i), static_cast<std::size_t>(placed));
-      if (sorted.Nodes[i] == None && !this->Settle(sorted.Ids[i], duplicates))
+      if (sorted.Nodes[i] == None && !this->ResolveDuplicate(sorted.Ids[i], duplicates))
       {
         return false;
       }
     }
-    this->Nodes.Room = std::move(sorted.Nodes);
+    this->Nodes.Scratch = std::move(sorted.Nodes);
     return true;
   }
 
@@ -324,7 +324,7 @@ private:
       for (const Index id : second)
       {
         ReportStep(settling, steps++, static_cast<std::size_t>(this->Points.Count));
-        if (!this->Settle(id, duplicates))
+        if (!this->ResolveDuplicate(id, duplicates))
         {
           return false;
         }
@@ -333,8 +333,8 @@ private:
     return true;
   }
 
-  /** Of two points on one node one is kept. @return false when they are not at the same place */
-  bool Settle(Index id, IdSet& duplicates)
+  /** Keeps one of two points on a node. @return false when they are not at the same place */
+  bool ResolveDuplicate(Index id, IdSet& duplicates)
   {
     Index column, row;
     this->NodeOf(this->Points.At(id), column, row);
@@ -348,7 +348,7 @@ private:
     return isSamePlace;
   }
 
-  /** The lowest node that is occupied. */
+  /** Moves the origin to the lowest occupied node. */
   void FindOrigin()
   {
     Index word = 0;
@@ -363,9 +363,9 @@ private:
       this->NodeOf.FirstI + this->Nodes.ColumnOf(lowest, row), this->NodeOf.FirstJ + row);
   }
 
-  bool SortIntoStretches(Stretches& sorted, const Progress& progress);
-  void OccupyStretch(Stretches& stretches, Index stretch);
-  void PlaceStretch(const Stretches& stretches, Index stretch);
+  bool SortIntoBuckets(Buckets& sorted, const Progress& progress);
+  void OccupyBucket(Buckets& buckets, Index bucket);
+  void PlaceBucket(const Buckets& buckets, Index bucket);
   std::uint64_t SetBits(Index word, std::uint64_t bits, bool isShared);
   void Occupy(Index begin, Index end, std::vector<Index>& second);
   void CountBefore();
@@ -378,7 +378,7 @@ private:
   const int Threads;
   NodeOfPoint NodeOf;
   bool IsScattered = false;               ///< the points come in no order, and are many
-  std::vector<std::vector<Index>> Second; ///< by range: the points on a node that is taken
+  std::vector<std::vector<Index>> Second; ///< by range: the points whose node was taken
 };
 
 bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, double tolerance,
@@ -388,30 +388,30 @@ bool LatticeNodes::Place(const PointView& points, const LatticeSearch& search, d
 }
 
 /**
- * Sorts the nodes in Room, whose memory becomes that of Ids.
- * @return whether points are spread over the stretches; if not, they stay as they are
+ * Sorts the nodes in Scratch, whose memory becomes that of Ids, into buckets.
+ * @return false when points are not spread over the buckets; then nothing changes
  */
-bool LatticeNodes::Placement::SortIntoStretches(Stretches& sorted, const Progress& progress)
+bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& progress)
 {
-  // What belongs to a stretch should fit in a core's own memory, and so should the end of each one.
-  constexpr Index pointsPerStretch = 1 << 14, mostStretches = 512;
-  const Index count = static_cast<Index>(this->Nodes.Room.size());
+  // A bucket should fit into a core's cache, and so should the ends of all buckets.
+  constexpr Index pointsPerBucket = 1 << 14, mostBuckets = 512;
+  const Index count = static_cast<Index>(this->Nodes.Scratch.size());
   const Index last = static_cast<Index>(this->Nodes.Memory.size() * 64 - 1); // node
   int shift = 6;                                                             // words stay whole
-  while (last >> shift >= std::min(mostStretches, count / pointsPerStretch + 1))
+  while (last >> shift >= std::min(mostBuckets, count / pointsPerBucket + 1))
   {
     ++shift;
   }
-  const Index stretches = (last >> shift) + 1;
+  const Index buckets = (last >> shift) + 1;
   const Index ranges = NumberOfRanges(count);
-  std::vector<Index> numbers(static_cast<std::size_t>(ranges) * stretches, 0);
+  std::vector<Index> numbers(static_cast<std::size_t>(ranges) * buckets, 0);
   const auto forEachNode = [&](Index range, Index begin, Index end, auto&& visit) {
-    Index* const here = numbers.data() + static_cast<std::size_t>(range) * stretches;
+    Index* const here = numbers.data() + static_cast<std::size_t>(range) * buckets;
     for (Index id = begin; id < end; ++id)
     {
-      if (this->Nodes.Room[id] != None)
+      if (this->Nodes.Scratch[id] != None)
       {
-        visit(here[this->Nodes.Room[id] >> shift]++, id);
+        visit(here[this->Nodes.Scratch[id] >> shift]++, id);
       }
     }
   };
@@ -422,39 +422,39 @@ bool LatticeNodes::Placement::SortIntoStretches(Stretches& sorted, const Progres
     TouchPages(sorted.Ids, begin, end);
     forEachNode(range, begin, end, [](Index, Index) {});
   });
-  Index sum = 0, longest = 0;
-  for (Index stretch = 0; stretch < stretches; ++stretch)
+  Index sum = 0, largest = 0;
+  for (Index bucket = 0; bucket < buckets; ++bucket)
   {
     sorted.Begins.push_back(sum);
     for (Index range = 0; range < ranges; ++range)
     {
-      sum += std::exchange(numbers[static_cast<std::size_t>(range) * stretches + stretch], sum);
+      sum += std::exchange(numbers[static_cast<std::size_t>(range) * buckets + bucket], sum);
     }
-    longest = std::max(longest, sum - sorted.Begins.back());
+    largest = std::max(largest, sum - sorted.Begins.back());
   }
   sorted.Begins.push_back(sum);
-  // Else a thread would have too much of it, without a report.
-  if (longest / 16 > std::max(pointsPerStretch, count / stretches))
+  // A larger bucket would keep one thread busy too long without a report.
+  if (largest / 16 > std::max(pointsPerBucket, count / buckets))
   {
-    sorted = Stretches(); // gives its memory back
+    sorted = Buckets(); // gives its memory back
     return false;
   }
   this->ForEachRange(Part(progress, 0.5, 1.0), [&](Index range, Index begin, Index end) {
     forEachNode(range, begin, end, [&](Index place, Index id) {
-      sorted.Nodes[place] = this->Nodes.Room[id];
+      sorted.Nodes[place] = this->Nodes.Scratch[id];
       sorted.Ids[place] = id;
     });
   });
-  this->Nodes.Ids = std::move(this->Nodes.Room);
+  this->Nodes.Ids = std::move(this->Nodes.Scratch);
   return true;
 }
 
-/** As Occupy(), for points and words that are near. */
-void LatticeNodes::Placement::OccupyStretch(Stretches& stretches, Index stretch)
+/** As Occupy(), for one bucket. */
+void LatticeNodes::Placement::OccupyBucket(Buckets& buckets, Index bucket)
 {
-  for (Index i = stretches.Begins[stretch]; i < stretches.Begins[stretch + 1]; ++i)
+  for (Index i = buckets.Begins[bucket]; i < buckets.Begins[bucket + 1]; ++i)
   {
-    Index& node = stretches.Nodes[i];
+    Index& node = buckets.Nodes[i];
     const std::uint64_t bit = std::uint64_t(1) << (node & 63);
     if (this->SetBits(node >> 6, bit, false) & bit)
     {
@@ -463,14 +463,14 @@ void LatticeNodes::Placement::OccupyStretch(Stretches& stretches, Index stretch)
   }
 }
 
-/** Writes each id to its place. */
-void LatticeNodes::Placement::PlaceStretch(const Stretches& stretches, Index stretch)
+/** Writes the ids of a bucket to their places. */
+void LatticeNodes::Placement::PlaceBucket(const Buckets& buckets, Index bucket)
 {
-  for (Index i = stretches.Begins[stretch]; i < stretches.Begins[stretch + 1]; ++i)
+  for (Index i = buckets.Begins[bucket]; i < buckets.Begins[bucket + 1]; ++i)
   {
-    if (stretches.Nodes[i] != None)
+    if (buckets.Nodes[i] != None)
     {
-      this->Nodes.Ids[this->Nodes.RankOf(stretches.Nodes[i])] = stretches.Ids[i];
+      this->Nodes.Ids[this->Nodes.RankOf(buckets.Nodes[i])] = buckets.Ids[i];
     }
   }
 }
@@ -488,10 +488,10 @@ std::uint64_t LatticeNodes::Placement::SetBits(Index word, std::uint64_t bits, b
   return before;
 }
 
-/** Sets the bits of points' nodes; those on a node that is taken lose theirs, and are listed. */
+/** Sets the bits of points' nodes; points whose node is taken get None, and are listed. */
 void LatticeNodes::Placement::Occupy(Index begin, Index end, std::vector<Index>& second)
 {
-  Index* const nodes = this->Nodes.Room.data();
+  Index* const nodes = this->Nodes.Scratch.data();
   const bool isShared = this->Threads > 1;
   while (begin < end)
   {
@@ -560,7 +560,7 @@ void LatticeNodes::Placement::CountBefore()
 /** Writes the ids of some points to their places. */
 void LatticeNodes::Placement::PlaceIds(Index begin, Index end)
 {
-  const Index* const nodes = this->Nodes.Room.data();
+  const Index* const nodes = this->Nodes.Scratch.data();
   Index* const ids = this->Nodes.Ids.data();
   std::array<Index, Few> ranks;
   for (; begin < end; begin += Few)

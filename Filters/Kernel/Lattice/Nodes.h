@@ -2,20 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points on the nodes of a lattice, as a bitmap: which nodes are occupied, and by which point. The
- * index for a lattice: a bit a node tells what any other index needs coordinates for.
+ * A bitmap of the nodes of a lattice: which are occupied, and by which points. The index for points
+ * on a lattice: one bit a node replaces the coordinates that any other index needs.
+ *
  * In: points and the lattice they may lie on. Out: one bit a node, row after row; the points' ids
- * in the order of their nodes (by row, then column), which the number of bits before a node tells;
- * or the answer that a point does not fit. One pass over the points sets the bits and keeps the
- * nodes, one over these writes each id to its place; both on several threads. Where many points come
- * scattered, their nodes are sorted into stretches before bits are set: bits and places are then
- * near in memory, and one thread's alone.
+ * in the order of their nodes (by row, then column), where the number of bits before a node is the
+ * place of its id; or the answer that a point does not fit. One pass over the points finds their
+ * nodes and sets the bits, another writes each id to its place; both on several threads. Many
+ * points in random order are first sorted into buckets of nodes, each of one thread and near in
+ * memory.
  *
  * A node's number is 64 times its word plus its bit. Around each row are words of zeros, and above
- * the last row are rows of zeros, so that neighbours may be looked at without a check.
+ * the last row are rows of zeros, so that neighbours need no bounds check.
  *
- * Memory: at most 24 bytes a point for the bitmap (two words and two counts), 4 for the ids, and 4
- * for the nodes, which are left for other use; 4 more while scattered points are placed.
+ * Cost: linear. Memory: at most 24 bytes a point for the bitmap (two words and two counts), 4 for
+ * the ids, and 4 for the nodes, which are then left for other use; 4 more to sort into buckets.
  */
 #ifndef elevation_Lattice_Nodes_h
 #define elevation_Lattice_Nodes_h
@@ -30,16 +31,16 @@ namespace elevation
 class LatticeNodes
 {
 public:
-  /** Columns and rows a search may look beyond the last without a check. */
+  /** Columns and rows beyond the last that may be read without a bounds check. */
   static constexpr Index ColumnsBeyond = 64;
   static constexpr Index RowsBeyond = 16;
-  /** Most columns, and most rows: products of four coordinates and steps then fit 128 bits. */
+  /** The most columns or rows: products of four coordinates and steps then fit into 128 bits. */
   static constexpr Index MaximumSide = 1 << 20;
 
   /**
-   * Puts the points on the nodes.
+   * Assigns the points to nodes.
    * @return false when a point lies farther from its node than the tolerance, two points that are
-   * not equal share one, or the lattice takes too much memory for so few points
+   * not equal share one, or the bitmap takes too much memory for so few points
    */
   bool Place(const PointView& points, const LatticeSearch& search, double tolerance,
     DuplicatePolicy policy, int threads, const Progress& progress);
@@ -53,7 +54,7 @@ public:
   Index ColumnOf(Index node, Index row) const { return node - this->NodeAt(row, 0); }
   std::uint64_t Word(Index word) const { return this->Words[word].load(std::memory_order_relaxed); }
   bool IsOccupied(Index node) const { return (this->Word(node >> 6) >> (node & 63)) & 1; }
-  /** The next node that is occupied after or before this one; there must be one. */
+  /** The nearest occupied node after or before this one; there must be one. */
   Index Following(Index node) const
   {
     Index word = ++node >> 6;
@@ -84,8 +85,8 @@ public:
   Index Columns = 0, Rows = 0, WordsPerRow = 0;
   Buffer<Index> Before;          ///< occupied nodes before each word
   Buffer<Index> Ids;             ///< point ids by rank
-  Buffer<Index> Room;            ///< as much as there are points; of no use after Place
-  double LargestOffset = 0.0;    ///< no point is farther from its node, in steps along each step
+  Buffer<Index> Scratch;         ///< an Index a point; free for other use after Place()
+  double LargestOffset = 0.0;    ///< bound on a point's distance from its node, along each step
   Lattice Steps;                 ///< Origin is the lowest occupied node
   std::vector<Index> Duplicates; ///< ids, increasing
 

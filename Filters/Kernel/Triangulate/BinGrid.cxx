@@ -597,7 +597,7 @@ private:
         fill(block, Part(progress, begin, done));
       }
     }
-    this->Grid.Room.Recycle(std::move(this->Memory));
+    this->Grid.Scratch.Recycle(std::move(this->Memory));
   }
 
   void Resize(Index slots)

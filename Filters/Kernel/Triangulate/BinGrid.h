@@ -91,7 +91,7 @@ public:
 
   /** Memory that binning has used and nobody uses now: as much as the triangles take. To reuse it
      is cheaper than to ask for other: the system clears what it gives. */
-  Buffer<Index> Room;
+  Buffer<Index> Scratch;
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y
   std::vector<Index> NotFinite;  ///< input ids set aside because a coordinate is not finite

@@ -261,7 +261,7 @@ Buffer<Index> GrowOverGrid(
 {
   Growth growth(grid, options);
   return GrowAll(growth, hull, grid.NumberOfPoints(), options, threads,
-    Part(options.Monitor, 0.2, 1.0), std::move(grid.Room));
+    Part(options.Monitor, 0.2, 1.0), std::move(grid.Scratch));
 }
 
 } // namespace elevation

@@ -34,7 +34,7 @@ public:
     , PointsPerStrip(options.PointsPerStrip)
     , Apexes(nodes, metric)
   {
-    this->First.Recycle(std::move(nodes.Room));
+    this->First.Recycle(std::move(nodes.Scratch));
     const Point2 &u = nodes.Steps.StepU, &v = nodes.Steps.StepV;
     // With a shorter limit, some diagonal of a cell may be too long.
     this->UseCells = this->IsProved({ 1, 0 }, { 1, 1 }) &&
