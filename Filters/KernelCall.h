@@ -26,9 +26,9 @@ namespace elevation
 {
 
 /**
- * Progress of the kernel as progress and abort flag of a filter. The kernel reports as often as it
- * suits its loops; observers, which may be slow, hear of each thousandth of the work, and at least
- * every 50 ms.
+ * The kernel's Progress for a filter: its progress and abort flag. The kernel reports as often as
+ * suits its loops; observers, which may be slow, are called at each thousandth of the work, and at
+ * least every 50 ms.
  */
 inline Progress ProgressOf(vtkAlgorithm* filter)
 {
@@ -50,8 +50,8 @@ inline Progress ProgressOf(vtkAlgorithm* filter)
 /**
  * Runs the body of a RequestData. When it throws, every output is emptied; anything but an abort is
  * reported as one error of the filter.
- * @return what RequestData returns: always 1, because with 0 the executive adds an error of its
- *         own, of ten lines that tell the user nothing.
+ * @return what RequestData returns: always 1, because on 0 the executive adds an error of its own
+ *         that tells the user nothing.
  */
 template <typename Body>
 int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
@@ -84,7 +84,7 @@ int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
   return 1;
 }
 
-/** A count as an array of one value, for the output's field data. */
+/** Adds a count to the field data, as an array of one value. */
 inline void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)
 {
   vtkNew<vtkIdTypeArray> array;

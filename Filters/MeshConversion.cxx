@@ -31,7 +31,7 @@ namespace elevation
 
 namespace
 {
-/** Copied at a time, to report between. */
+/** Tuples copied from one report to the next. */
 constexpr vtkIdType TuplesAtOnce = 65536;
 } // namespace
 
@@ -101,9 +101,8 @@ bool HasSingleComponents(vtkCellArray* cells)
 }
 
 /**
- * Looks whether all cell arrays are valid, which vtkCellArray defines but does not ensure. From
- * others nothing may be read.
- * @throws Error that names the first cell at fault
+ * Checks that all cell arrays are valid, which vtkCellArray does not ensure; others cannot be read.
+ * @throws Error naming the first invalid cell
  */
 void CheckCells(vtkPolyData* input, const std::string& owner = "", bool polygonsToo = true)
 {
@@ -147,7 +146,7 @@ void CheckCells(vtkPolyData* input, const std::string& owner = "", bool polygons
 void CheckArrays(vtkPolyData* input, const std::string& owner)
 {
   CheckPointArrays(input, owner);
-  // Polygons may be very many, and are looked at where they are read; without offsets they are -1.
+  // Polygons may be many, and are checked where they are read; without offsets there are -1.
   CheckCells(input, owner, input->GetNumberOfPolys() < 0);
   CheckTuples(input->GetCellData(), input->GetNumberOfCells(),
     owner + (owner.empty() ? "Cell" : " cell"), "cells");
@@ -178,14 +177,14 @@ TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
   };
   const auto areTriangles = [count](const auto* begins) {
     using Id = std::remove_cv_t<std::remove_reference_t<decltype(*begins)>>;
-    Id differing = 0; // some bit of it, where an offset is another one
+    Id differing = 0; // not 0 if any offset differs
     for (Id i = 0; i <= static_cast<Id>(count); ++i)
     {
       differing |= begins[i] ^ (3 * i);
     }
     return differing == 0;
   };
-  // Whether cells are valid is seen at once where all have three ids.
+  // Cells that all have three ids are valid; this check is fast.
   if (count <= 0 || !HasSingleComponents(polygons) ||
     polygons->GetNumberOfConnectivityIds() != 3 * count || !visitOffsets(areTriangles))
   {
@@ -279,7 +278,7 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
   const vtkIdType size = static_cast<vtkIdType>(triangles.size());
   vtkNew<vtkTypeInt32Array> connectivity;
   connectivity->SetArray(triangles.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
-  Buffer<Index> begins; // one cell's after another's, and the last one's end
+  Buffer<Index> begins; // of the cells, then the end of the last
   const Index count = static_cast<Index>(size / 3) + 1;
   begins.Resize(static_cast<std::size_t>(count));
   constexpr Index pieceCells = 1 << 18;
@@ -368,7 +367,7 @@ vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew,
 
 namespace
 {
-/** The tuples of @a input, and behind them new ones without a value. */
+/** The tuples of @a input, followed by new ones without a value. */
 vtkSmartPointer<vtkAbstractArray> Extend(
   vtkAbstractArray* input, vtkIdType numberOfNew, bool areIds, const Progress& progress)
 {
@@ -395,7 +394,7 @@ vtkSmartPointer<vtkAbstractArray> Extend(
   }
   if (vtkArrayDownCast<vtkDataArray>(output.Get()))
   {
-    // In ids 0 names something. As an unsigned number -1 is the largest.
+    // 0 is a valid id. As an unsigned number, -1 is the largest.
     const vtkVariant value =
       IsFloatingPoint(output) ? vtkVariant(vtkMath::Nan()) : vtkVariant(areIds ? -1 : 0);
     const vtkIdType components = output->GetNumberOfComponents();
@@ -408,7 +407,7 @@ vtkSmartPointer<vtkAbstractArray> Extend(
   return output;
 }
 
-/** The new tuples of an array, behind those of the input. */
+/** Sets the new tuples of an array, which follow those of the input. */
 void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNormals,
   const Progress& progress, vtkAbstractArray* output)
 {
@@ -468,7 +467,7 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
     const int index = output->AddArray(after);
     for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
     {
-      // Values repeat from here on, so they are no global ids any more.
+      // As values repeat, they are no longer global ids.
       if (type != vtkDataSetAttributes::GLOBALIDS && input->GetAbstractAttribute(type) == before)
       {
         output->SetActiveAttribute(index, type);

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The only place that knows both the kernel's mesh and vtkPolyData. Private to the module.
+ * The only place that knows both the kernel's mesh and vtkPolyData. Private to the module. All
+ * conversions take linear time; points and 32-bit ids are not copied.
  */
 #ifndef MeshConversion_h
 #define MeshConversion_h
@@ -41,35 +42,35 @@ struct PointsOfDataSet
 PointsOfDataSet ViewPoints(vtkPointSet* input);
 
 /**
- * Looks whether every point (cell) array has as many tuples as there are points (cells), which
- * nothing in VTK ensures. Filters rely on it. For cells, also whether the cell arrays are valid,
- * but for the polygons, which ToMesh and ForEachLine look at.
- * @param[in] owner  what messages put before "Point array": the name of the input, if not the first
- * @throws Error that names the first array that has not, or the cell
+ * Checks that every point (cell) array has as many tuples as there are points (cells): filters rely
+ * on it, and VTK does not ensure it. CheckArrays() also checks that the cell arrays are valid,
+ * except the polygons, which ViewTriangles() and ForEachLine() check.
+ * @param[in] owner  whose arrays they are, for messages; empty for the first input
+ * @throws Error naming the first array or cell that is invalid
  */
 void CheckPointArrays(vtkPointSet* input, const std::string& owner = "");
 void CheckArrays(vtkPolyData* input, const std::string& owner = "");
 
-/** Triangles of a polydata as the kernel reads them; the others keep the memory alive. */
+/** Triangles of a polydata as the kernel reads them; Points and Converted hold the memory. */
 struct TrianglesOfDataSet
 {
   TriangleList View;
   PointsOfDataSet Points;
-  Buffer<Index> Converted; ///< ids of 64 bits; none when they are viewed in place
+  Buffer<Index> Converted; ///< ids, where they have 64 bits; else viewed in place
 };
 
 /**
  * Views the polygons in place when their ids have 32 bits, and copies ids of 64. Vertices and lines
- * are left alone (their cells precede the polygons in the cell numbering: see FirstPolygon).
- * @throws Error that names the cell: not a triangle, or of a cell array that is not valid; or when
- *         there are triangle strips. Whether points exist is left to the kernel.
+ * are ignored (their cells precede the polygons in the cell numbering: see FirstPolygon).
+ * @throws Error naming the cell when it is not a triangle or its cell array is invalid; also when
+ *         there are triangle strips. The kernel checks that points exist.
  */
 TrianglesOfDataSet ViewTriangles(vtkPolyData* input);
 
-/** The triangles as MeshOf() makes a mesh of them, with what that refuses. */
+/** The triangles as a mesh. @throws Error as ViewTriangles() and MeshOf() */
 void ToMesh(vtkPolyData* input, Mesh& mesh, const Progress& progress = Progress(), int threads = 1);
 
-/** A line or polygon as it is visited: point ids, which all exist, and how many there are. */
+/** A line or polygon: its point ids, which all exist, and their number. */
 struct LineOfDataSet
 {
   const vtkIdType* Ids;
@@ -81,8 +82,8 @@ struct LineOfDataSet
 /**
  * Calls visit for each line, then each polygon, of a polydata.
  * @param name  what messages call the polydata: "boundary"
- * @throws Error naming the cell: one with a point that does not exist, or of a cell array that is
- *         not valid; with triangle strips; with more point ids than an Index can count
+ * @throws Error naming the cell when a point does not exist or the cell array is invalid; also when
+ *         there are triangle strips, or more point ids than an Index can count
  */
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
   const std::function<void(const LineOfDataSet&)>& visit);
@@ -92,52 +93,53 @@ vtkIdType FirstPolygon(vtkPolyData* input);
 
 /**
  * Triangles as a cell array; the connectivity is handed over without a copy, the offsets are
- * written on up to so many threads.
+ * written on up to @a threads threads.
  */
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads = 1);
 
 /**
  * Rings as closed lines, with points of their own and the point data that the output's copy flags
  * ask for.
- * @param[in] source  has the points that the rings name
+ * @param[in] source  has the points of the rings
  */
 void PassRings(
   const Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output);
 
-/** Whether the values are float or double: what can be interpolated. */
+/** Whether the values are float or double, so that they can be interpolated. */
 bool IsFloatingPoint(vtkAbstractArray* array);
 
 /** Whether the array holds the flags of ghost points or cells. */
 bool IsGhostArray(vtkAbstractArray* array);
 
-/** Whether an array of @a data is one of global or pedigree ids: what names a point or cell. */
+/** Whether an array of @a data holds global or pedigree ids. */
 bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array);
 
 /**
- * The points of an input, or none, and behind them new ones; place(i, xyz) tells where new point i
- * lies.
+ * The points of an input, if any, followed by new ones; place(i, xyz) sets the coordinates of new
+ * point i.
  * @param[in] type  VTK_FLOAT or VTK_DOUBLE, to which all points are converted
  * @return the input's own points when there are no new ones
  */
 vtkSmartPointer<vtkPoints> AppendPoints(vtkPoints* input, vtkIdType numberOfNew, int type,
   const Progress& progress, const std::function<void(vtkIdType i, double* xyz)>& place);
 
-/** What new points have in one array. A function that is empty leaves them without a value. */
+/** The values of new points in one array. Where a function is empty, they have no value. */
 struct NewValues
 {
-  /** In an array of float or double: component c of new point i. All before i are set by then. */
+  /** In an array of float or double: component c of new point i; earlier ones are set by then. */
   std::function<double(vtkIdType i, int c)> Interpolated;
-  /** In any other array: the point of the input whose value new point i has as well. */
+  /** In any other array: the point of the input whose value new point i gets. */
   std::function<vtkIdType(vtkIdType i)> Nearest;
   /** The first new point to be set; those before it are left alone. */
   vtkIdType First = 0;
 };
 
 /**
- * All arrays of the input, extended by new tuples. These have the values that valuesOf(input array,
- * output array, progress) tells, normals at unit length; or else no value: NaN, 0 or nothing, for
- * ids NaN, -1, the largest number of an unsigned type, or nothing. Flags of ghosts are 0. Global
- * ids are none in the output, as values repeat. The input's own arrays when there are no new tuples.
+ * Passes all arrays of the input, extended by new tuples with the values of valuesOf(input array,
+ * output array, progress), normals at unit length. A tuple without a value gets NaN, 0 or an empty
+ * string; in arrays of ids, -1 in place of 0 (the largest number of an unsigned type). Ghost flags
+ * are 0. As values repeat, global ids are no longer marked as such. Without new tuples, the input's
+ * own arrays are passed.
  */
 void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
   const Progress& progress,

@@ -45,14 +45,14 @@ using elevation::Progress;
 using elevation::Report;
 using elevation::ReportStep;
 
-/** Whether new points get values of an array as they get their z. */
+/** Whether the values of an array at new points are interpolated as z is. */
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
 {
   return elevation::IsFloatingPoint(array) && !elevation::IsGhostArray(array) &&
     !elevation::IsIdArray(pointData, array);
 }
 
-/** The components of all such arrays, one after another. */
+/** The components of all interpolated arrays, one after another. */
 std::vector<elevation::Values> AttributesOf(vtkPointData* pointData)
 {
   std::vector<elevation::Values> attributes;
@@ -69,13 +69,13 @@ std::vector<elevation::Values> AttributesOf(vtkPointData* pointData)
   return attributes;
 }
 
-/** Whether the points of the output are float: what new points must be rounded to. */
+/** Whether the output has float points, so that new points must be rounded to float. */
 bool HasFloatPoints(vtkPolyData* input)
 {
   return input->GetPoints() && input->GetPoints()->GetDataType() == VTK_FLOAT;
 }
 
-/** The points of output 0 with their data: those of the input, and behind them new ones. */
+/** The points of output 0 with their data: those of the input, then new ones. */
 void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
   const Progress& progress, vtkPolyData* output)
 {
@@ -110,7 +110,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   isNew->SetNumberOfTuples(output->GetNumberOfPoints());
   std::fill_n(isNew->GetPointer(0), input->GetNumberOfPoints(), 0);
   std::fill_n(isNew->GetPointer(0) + input->GetNumberOfPoints(), patches.NumberOfPoints(), 1);
-  // An array of the input that it replaces may be active as the scalars, say; this one is not.
+  // An array of the input that it replaces may be the active scalars, say; this one is not.
   output->GetPointData()->RemoveArray(isNew->GetName());
   output->GetPointData()->AddArray(isNew);
 
@@ -171,7 +171,7 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
   elevation::Rings rims;
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
-    // A rim runs clockwise: backwards, the hole is on the left.
+    // A rim runs clockwise; reversed, it has the hole on its left.
     const Index rim = holes.Rim(hole);
     for (const Index* h = holes.Walks.End(rim); h != holes.Walks.Begin(rim); --h)
     {
@@ -182,9 +182,7 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
   elevation::PassRings(rims, input, progress, output);
 }
 
-/**
- * One warning about all that was not filled though the limits allow it; empty when all was.
- */
+/** A warning about holes that failed, and about contacts; empty if there are none. */
 std::string Complaint(const Mesh& mesh, const Holes& holes, const FillResult& patches)
 {
   if (mesh.NumberOfTriangles() == 0)
@@ -285,7 +283,7 @@ int vtkFillElevationHoles::RequestData(
       vtkWarningMacro(<< complaint);
     }
     Report(progress, 1.0);
-    // Only now, as an abort or an error leaves no counts.
+    // Set last, as an abort or an error leaves no counts.
     this->NumberOfHoles = holes.Count();
     this->NumberOfFilledHoles = filled;
   });

@@ -17,11 +17,11 @@
  * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
- *   (floating-point numbers), 0 (integers), or nothing (strings). Arrays of the input called
+ *   (floating-point numbers), 0 (integers), or an empty string. Arrays of the input called
  *   FilledPoint or HoleId are replaced.
- * - Global and pedigree ids: new points and triangles have none, which is -1 (of unsigned types the
- *   largest number, NaN, nothing of strings). When points (triangles) were added, an array of
- *   global ids is no longer marked as such, because this repeats; pedigree ids stay what they are.
+ * - Global and pedigree ids: new points and triangles get -1 (the largest number of an unsigned
+ *   type, NaN, an empty string). As this value repeats, an array of global ids is no longer marked
+ *   as such when points (triangles) were added; an array of pedigree ids stays marked.
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
  *   before they are triangulated, so that the result stays exact.
  *
@@ -34,27 +34,26 @@
  * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
  *   the hole is above 1e150 or below 1e-150.
  * - NumberOfInsertedPoints (vtkIdTypeArray).
- * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType; never ADAPTIVE,
- *   but what it chose, of methods that it mixed the one with the largest share. 0 also where there
- *   are no new points.
+ * - Interpolation (vtkUnsignedCharArray): how z was found, see InterpolationType. In place of
+ *   ADAPTIVE it is the method that was chosen; of mixed methods, the one with the largest share. 0
+ *   also where there are no new points.
  *
  * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
  * The method, for each hole on its own:
- * 1. New points lie on the nodes of the lattice of the surface's points, where it has one and half
- *    of the triangles at the hole's boundary measure no more than 1.75 cells (of a lattice that is
- *    thinned there would be too many), unless a spacing is given. Else they are put into the hole
- *    in rows, one spacing apart, every second row moved by half a spacing; points nearer to the
- *    boundary than 0.6 spacings are left out. The spacing is, unless given, the mean length of the
- *    hole's boundary edges. Where this mean over eight edges in a row is at one place of the
- *    boundary more than three times that at another, points are graded from the one to the other. A
- *    small hole may get none.
+ * 1. If the surface's points lie on a lattice, no spacing is given, and half of the triangles at
+ *    the hole's boundary have an area of at most 1.75 cells (a thinned lattice has too many nodes),
+ *    new points lie on the nodes of the lattice. Else they are put into the hole in rows, one
+ *    spacing apart, every second row shifted by half a spacing; points nearer to the boundary than
+ *    0.6 spacings are left out. Unless given, the spacing is the mean length of the hole's boundary
+ *    edges. Where the mean of eight consecutive edges is more than three times as large at one
+ *    place of the boundary as at another, points are graded between the two. A small hole may get
+ *    none.
  * 2. They are joined with the boundary by a constrained Delaunay triangulation.
- * 3. Where points are not on a lattice, a triangle with an edge of more than 1.6 spacings that is no
- *    edge of the boundary, or with an angle below 20 degrees, gets a point in the centre of its
- *    circle. Edges of the boundary are not split, and no point comes nearer to them than 0.3
- *    spacings; so such triangles remain where the centre of the circle lies nearer to the boundary
- *    than that, or behind it.
+ * 3. Where points are not on a lattice, a triangle with an angle below 20 degrees, or with an edge
+ *    of more than 1.6 spacings that is not a boundary edge, gets a point at its circumcentre.
+ *    Boundary edges are not split, and no point comes nearer to them than 0.3 spacings; so such
+ *    triangles remain where the circumcentre lies nearer to the boundary than that, or beyond it.
  * 4. The z of new points is found from the surface around the hole, see Interpolation.
  *
  * What can be relied on: a patch covers its hole exactly and overlaps nothing; every boundary edge
@@ -62,8 +61,8 @@
  * and triangles do not depend on the order of the input's points and cells, only their ids do.
  *
  * A hole is left open, with status FAILED and a warning that says why, when
- * - it might take more new points than the holes before it leave of MaximumNumberOfInsertedPoints, or
- *   of the 357,913,941 points that a surface has at most;
+ * - it might take more new points than the holes before it leave of MaximumNumberOfInsertedPoints,
+ *   or of the 357,913,941 points that a surface has at most;
  * - its extent is above 1e150, or its extent or spacing is below 1e-150, so that squares leave the
  *   range of double;
  * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
@@ -72,16 +71,14 @@
  *   border of that kind may also join a hole to the outside, so that it is no hole; a
  *   warning names such a point.
  *
- * An error that names the cell, and empty output, is the answer to an input that is no elevation
- * surface: cells other than triangles, triangles that are flat in x,y, an edge with more than two
- * triangles, cells that lie over each other in x,y. So is an error that names the array the answer
- * to a point or cell array that has not as many tuples as there are points or cells, and to a
- * vtkCellArray that is not valid. A surface without holes passes; an input without triangles passes
- * with a warning.
- * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
+ * An input that is not an elevation surface gives empty output, and an error that names the cell:
+ * cells other than triangles, triangles that are flat in x,y, an edge with more than two triangles,
+ * cells that overlap in x,y. So does an invalid vtkCellArray, and a point or cell array whose
+ * number of tuples is not that of the points or cells; the error names the array. A surface without
+ * holes passes; an input without triangles passes with a warning. An abort also leaves empty
+ * output, which counts as up to date: call Modified() to start again.
  *
- * Cost: proportional to the size of the input and to the number of new points, with sorting of the
- * border.
+ * Cost: linear in the size of the input and in the number of new points, plus sorting the border.
  *
  * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation
  * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation
@@ -123,8 +120,8 @@ public:
 
   ///@{
   /**
-   * How z of new points is found, and the values of floating-point arrays with it. An
-   * InterpolationType, to which other numbers are clamped; ADAPTIVE (default).
+   * How z of new points is found, and with it the values of floating-point arrays. An
+   * InterpolationType, to which other numbers are clamped. Default: ADAPTIVE.
    * - NEIGHBOR_MEAN: the mean over the known neighbours, layer by layer from the boundary inwards.
    *   Fast and rough: it flattens what was lost.
    * - MEMBRANE: each new point is the mean of all its neighbours, weighted by the cotangents of the
@@ -135,17 +132,16 @@ public:
    *   it, like a plate that bends as little as it can. Continues planes exactly.
    * - CUBIC_SPLINE: as THIN_PLATE, but smoother: better on calm terrain, worse on noise.
    * - ADAPTIVE: for each hole the one of MEMBRANE, THIN_PLATE and CUBIC_SPLINE that predicts the
-   *   surface around it best. The hole's boundary is moved to up to 32 places beside it, where the
-   *   surface is known, and the methods predict there what is inside. Methods that predict it
+   *   surface around it best. The hole's boundary is moved to up to 32 places beside the hole,
+   *   where the surface is known, and each method predicts what is inside. Methods that predict it
    *   about equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred.
-   *   Output 1 tells the one with the largest share.
+   *   Output 1 has the one with the largest share.
    *
-   * The splines may leave the range of z around the hole, as a lost summit rises above
-   * what is left of it, by at most the distance from the nearest boundary point times the slope of
-   * the surface around the hole: the root mean square of slopes from the boundary to points half as
-   * many edges away as the middle of the hole is, 16 at most. Points that determine no spline,
-   * because they are nearly in one line, give MEMBRANE; z that are not finite around the hole give
-   * NEIGHBOR_MEAN.
+   * The splines may leave the range of z around the hole, as a lost summit did, by at most the
+   * distance from the nearest boundary point times the slope of the surface around the hole. This
+   * is the root mean square of slopes from the boundary to points half as many edges away as the
+   * middle of the hole is, 16 at most. Where the points determine no spline, because they are
+   * nearly on one line, MEMBRANE is used; where z around the hole is not finite, NEIGHBOR_MEAN.
    */
   vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
   vtkGetMacro(Interpolation, int);
@@ -177,13 +173,13 @@ public:
 
   ///@{
   /**
-   * The most new points of all holes together; 100 million (default), for which it takes about 50 GB
-   * of memory. 0: no limit but that of 357,913,941 points of a surface; negative values are taken
-   * as 0. Before the first hole is filled, each is granted, in the order of HoleId, the points that
-   * it may take at most, by its area and spacing, a long thin one also by its length; it fails where
-   * fewer are left, and later ones may still be filled. So which holes fail depends on the input
-   * and this number alone, not on threads or free memory. Holes that other limits leave open are
-   * granted none.
+   * The most new points in all holes together. Default: 100 million, which take about 50 GB of
+   * memory. 0: no limit but that of 357,913,941 points of a surface; negative values are taken as
+   * 0. Before any hole is filled, each, in the order of HoleId, is granted the most points that it
+   * may take, by its area and spacing, and a long thin one also by its length. It fails if fewer
+   * are left; later ones may still be filled. So which holes fail depends on the input and this
+   * number alone, not on threads or free memory. Holes that other limits leave open are granted
+   * none.
    */
   vtkSetClampMacro(MaximumNumberOfInsertedPoints, vtkIdType, 0, VTK_ID_MAX);
   vtkGetMacro(MaximumNumberOfInsertedPoints, vtkIdType);
@@ -215,9 +211,8 @@ public:
   /**
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
    * without threads by default, as in ParaView. The output is the same, byte for byte, for any
-   * number. Small holes are filled several at a time; of holes that take more than some ten
-   * thousand points, one after the other, the points are triangulated on several threads.
-   * Range: 0 to 1024.
+   * number. Small holes are filled several at a time. Holes of more than some ten thousand
+   * points are filled one after the other, each triangulated on several threads. Range: 0 to 1024.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);

@@ -37,7 +37,7 @@ using elevation::Part;
 using elevation::Progress;
 using elevation::ReportStep;
 
-/** The lines and polygons of the constraints; points are seen in place, and must live on. */
+/** The lines and polygons of the constraints; @a points must outlive them. */
 ConstraintLines ToLines(
   vtkPolyData* source, const elevation::PointsOfDataSet& points, const Progress& progress)
 {
@@ -53,7 +53,7 @@ ConstraintLines ToLines(
   return lines;
 }
 
-/** Triangulates points, with the lines of a source when there is one. */
+/** Triangulates points, with the lines of a source if there is one. */
 elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   const elevation::PointView& points, elevation::DelaunayOptions options, const Progress& progress)
 {
@@ -71,7 +71,7 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   return elevation::TriangulateConstrained(points, lines, options);
 }
 
-/** The type of all points: float as long as that is exact. */
+/** The type of the output's points: float if the added ones are exact in it. */
 int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
 {
   bool isFloat = !input || input->GetDataType() == VTK_FLOAT;
@@ -86,7 +86,7 @@ int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
   return isFloat ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-/** The array of the constraints that goes with one of the input; nullptr: none. */
+/** The array of the constraints that matches one of the input, or nullptr. */
 vtkAbstractArray* FindGiven(vtkPointData* source, vtkAbstractArray* array)
 {
   vtkAbstractArray* given = array->GetName() ? source->GetAbstractArray(array->GetName()) : nullptr;
@@ -99,7 +99,7 @@ vtkAbstractArray* FindGiven(vtkPointData* source, vtkAbstractArray* array)
   return given->GetDataType() == array->GetDataType() || canConvert ? given : nullptr;
 }
 
-/** Copies the values of points of the constraints. @return how many points these are */
+/** Copies the values of points of the constraints. @return the number of these points */
 vtkIdType CopyGiven(vtkAbstractArray* given, const std::vector<AddedPoint>& added,
   const Progress& progress, vtkAbstractArray* values)
 {
@@ -124,7 +124,7 @@ vtkIdType CopyGiven(vtkAbstractArray* given, const std::vector<AddedPoint>& adde
   return i;
 }
 
-/** The input's points and arrays, and behind them the added points with their values. */
+/** The input's points and arrays, followed by the added points with their values. */
 void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<AddedPoint>& added,
   const Progress& progress, vtkPolyData* output)
 {
@@ -172,7 +172,7 @@ void AddUnusedPoints(
   fieldData->AddArray(reasons);
 }
 
-/** What the field data tell of points, lines and lattice. */
+/** Adds the field data on points, lines and lattice. */
 void AddReport(const elevation::ConstrainedTriangulation& constrained, const Progress& progress,
   vtkFieldData* fieldData)
 {
@@ -185,7 +185,7 @@ void AddReport(const elevation::ConstrainedTriangulation& constrained, const Pro
   add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
   add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
   add("NumberOfAddedPoints", constrained.Added.size());
-  fieldData->RemoveArray("Lattice"); // an input's, of other points
+  fieldData->RemoveArray("Lattice"); // passed from the input, of other points
   if (triangulation.LatticeFound)
   {
     const elevation::Lattice& lattice = triangulation.Steps;
@@ -273,7 +273,7 @@ int vtkGridDelaunay2D::RequestData(
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
     elevation::Report(progress, 1.0);
-    // Only now, as an abort or an error leaves no counts.
+    // Set last, as an abort or an error leaves no counts.
     this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
     this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
     this->NumberOfConstraintCrossings = static_cast<vtkIdType>(constrained.NumberOfCrossings);

@@ -21,52 +21,52 @@
  * - Complete: points that are not vertices are counted, and listed in the field data.
  *   Coordinates may be of any size a double holds.
  *
- * Lattices: points of a grid, such as inlines and crosslines in map coordinates or the pixels of
- * an elevation model, are ideally on the nodes of a lattice, but rounding moves each of them a
- * little, and then the exact triangulation of the moved points cuts the cells at random and has
- * thin triangles along the border. With LatticeMode Automatic (default) the filter looks for a
+ * Lattices: ideally, the points of a grid, such as inlines and crosslines in map coordinates or the
+ * pixels of an elevation model, are on the nodes of a lattice. But rounding moves each of them a
+ * little, so that their exact triangulation cuts the cells at random and has thin triangles along
+ * the border. With LatticeMode Automatic (default) the filter looks for a
  * lattice: an origin and two step vectors, which may be turned, sheared, of unequal lengths, with
  * any number of nodes missing (down to about 1 in 64 of the nodes around the points). Where every
  * point lies on its own node, within LatticeTolerance, the result is the exact Delaunay
  * triangulation of the nodes, in the metric of the two steps and in integers, which is faster,
- * too. Steps that are perpendicular or equal but for a ten-thousandth count as such. "Lowest" is
+ * too. Steps that are perpendicular or equal to within a ten-thousandth count as such. "Lowest" is
  * then by row of the lattice, then column; on a lattice parallel to the axes with exact
  * coordinates the triangles are the same in both modes. No triangle is inverted or flat in the
  * coordinates of the points; where one would be, or a point does not fit, the coordinates are
  * triangulated as they are.
  *
- * Constraints (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges must
- * be edges of the result: breaklines, faults, outlines. Polygons count as closed lines, nothing is
- * cut out; vertex cells are ignored. The result is the constrained Delaunay triangulation: only
- * edges that are not of a line are locally Delaunay. It is exact and unique as above, whatever the
- * order and direction of the lines. A segment that runs exactly through points is a chain of edges.
+ * Constraints (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges
+ * must be edges of the result: breaklines, faults, outlines. Polygons count as closed lines,
+ * nothing is cut out; vertex cells are ignored. The result is the constrained Delaunay
+ * triangulation: all edges but those of the lines are locally Delaunay. It is exact and unique as
+ * above, whatever the order and direction of the lines. A segment that runs exactly through points
+ * is a chain of edges.
  * - A point of a line with the x,y of an input point is that point, with the input's z. Any
  *   other is added behind the input's points, with its own z (of several with the same x,y the
- *   first). So is the point of a line that has only one. Segments of no length are passed over.
+ *   first). So is the only point of a line of one point. Segments of no length are ignored.
  * - Segments that cross are split at the crossing, rounded to the nearest doubles, where a point is
  *   added if there is none. Its z is interpolated along the segment that comes first in the order
- *   of cells, between the points next to it on that segment. A crossing counts for each pair of
- *   distinct segments that have one point in common which is an end of neither.
+ *   of cells, between the points next to it on that segment. Crossings are counted as pairs of
+ *   distinct segments that have one point in common, which is an end of neither.
  * - When points are added, the output has points and point data of its own. Points stay float only
- *   if the added ones are exact in it, else they are double. Arrays have at the added points the
- *   values of the constraints' array with the same name and number of components (for integers and
- *   strings also of the same type), at crossings values interpolated as z, normals brought to unit
- *   length; where there are none, NaN (float and double), 0 (in global and pedigree ids -1, or the
- *   largest number of an unsigned type) or an empty string. So values repeat: an array of global
- *   ids is no longer marked as such, and pedigree ids of added points tell nothing that the
- *   constraints' array does not.
+ *   if the added ones are exact in it, else they become double. Arrays get their values at added
+ *   points from the constraints' array with the same name and number of components (for integers
+ *   and strings also of the same type); at crossings these are interpolated as z, and normals
+ *   brought to unit length. Where there are none, the value is NaN (float and double), 0 (in global
+ *   and pedigree ids -1, or the largest number of an unsigned type) or an empty string. As values
+ *   may repeat, an array of global ids is no longer marked as such, and pedigree ids of added
+ *   points are those of the constraints' array, if any.
  * - The coordinates are triangulated as they are, never as a lattice: far from lines the triangles
- *   are those of LatticeMode Off without constraints. So on a lattice that rounding has moved, its
- *   cells are cut another way than without lines, each by its own rounding, also far from them.
+ *   are those of LatticeMode Off without constraints. So on a lattice that rounding has moved, each
+ *   cell is cut according to its own rounding, unlike without lines, even far from them.
  * - MaximumEdgeLength applies to the constrained triangulation, also to edges of lines.
- * - Without a point on any line or polygon, everything is as without constraints.
+ * - If no line or polygon has a point, the result is as without constraints.
  *
  * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
- * triangle. An error leaves empty output: more points than can be handled (357,913,941), a point
- * array that has not as many tuples as there are points, constraints with triangle strips, with a
- * vtkCellArray that is not valid, or with a point that does not exist or is not finite (which is
- * named).
- * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
+ * triangle. Errors leave empty output: more points than can be handled (357,913,941); a point array
+ * whose number of tuples is not that of the points; constraints with triangle strips, an invalid
+ * vtkCellArray, or a point that does not exist or is not finite (the error names it).
+ * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
  *
  * Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
@@ -77,13 +77,12 @@
  *   x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units;
  * - NumberOfConstraintCrossings, NumberOfAddedPoints (vtkIdTypeArray, one value).
  *
- * Cost: expected time proportional to the number of points for points of even density, n log n
- * where density is very uneven; no n points take more than n log n.
- * Memory during the run, above input and output: about 35 bytes a point with one thread, 45 with
- * several; less than 10 on a lattice that is well filled. Points on which growing would take
- * longer, such as thousands on one circle, are divided and conquered instead, which takes some 90
- * bytes more. Constraints take time proportional to the number of points, on one thread, some 120
- * bytes a point, and what their segments cross.
+ * Cost: linear expected time for points of even density, n log n where density is very uneven,
+ * which is also the worst case. Memory during the run, above input and output: about 35 bytes a
+ * point with one thread, 45 with several; less than 10 on a lattice that is well filled. Points on
+ * which growing would take longer, such as thousands on one circle, are triangulated by divide and
+ * conquer instead, which takes some 90 bytes more. Constraints take linear time on one thread, time
+ * for what their segments cross, and some 120 bytes a point.
  *
  * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an
  * Elevation Surface of 3D Point Clouds": the third point of an edge is looked for by its voxel

@@ -38,7 +38,7 @@ using elevation::ReportStep;
 using elevation::Trimmed;
 using elevation::TrimmedSide;
 
-/** The boundary's lines, and those points that they name. */
+/** The boundary's lines, and the points that they use. */
 elevation::BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress)
 {
   const elevation::PointsOfDataSet points = elevation::ViewPoints(boundary);
@@ -62,13 +62,13 @@ elevation::BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress
   return lines;
 }
 
-/** The points of outputs 0 and 1 with their data: those of the input, and behind them new ones. */
+/** The points of outputs 0 and 1 with their data: those of the input, then new ones. */
 void PassPoints(
   vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output)
 {
   const std::vector<elevation::InsertedVertex>& inserted = trimmed.Inserted;
   const vtkIdType count = static_cast<vtkIdType>(inserted.size());
-  // In double precision, or the new points would leave the boundary.
+  // In double precision; otherwise rounding would move new points off the boundary.
   output->SetPoints(elevation::AppendPoints(
     input->GetPoints(), count, VTK_DOUBLE, Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
       xyz[0] = trimmed.Places[i].X;
@@ -87,7 +87,7 @@ void PassPoints(
         double value = 0.0;
         for (int k = 0; k < 3; ++k)
         {
-          // A corner beyond the edge that the point is on may be NaN.
+          // For a point on an edge, the value at the opposite corner may be NaN.
           const double weight = inserted[i].Weights[k];
           value += weight > 0.0 ? weight * numbers->GetComponent(inserted[i].Corners[k], c) : 0.0;
         }
@@ -102,8 +102,9 @@ void PassPoints(
 }
 
 /**
- * The cell data of the input's first cells, as many as these are, and of the triangles of one side.
- * @param[in] arePieces  whether triangles are parts of the input's
+ * The cell data of the input's first cells, and of the triangles of one side.
+ * @param[in] firstCells  the number of first cells
+ * @param[in] arePieces   whether triangles may be parts of the input's
  */
 void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
   const Progress& progress, vtkPolyData* output)
@@ -114,7 +115,7 @@ void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& s
   const vtkIdType firstTriangle = elevation::FirstPolygon(input);
   vtkNew<vtkIdList> from;
   vtkNew<vtkIdList> to;
-  constexpr vtkIdType block = 65536; // at a time, to report between
+  constexpr vtkIdType block = 65536; // cells from one report to the next
   for (vtkIdType begin = 0; begin < count; begin += block)
   {
     ReportStep(progress, static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
@@ -131,12 +132,12 @@ void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& s
   }
   if (arePieces)
   {
-    // Pieces have what their triangle has, so the values are no global ids any more.
+    // Parts of a triangle have its values, which are no longer global ids then.
     output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
   }
 }
 
-/** The cells of output 0 or 1, but for vertices and lines. */
+/** The triangles of output 0 or 1. */
 void PassTriangles(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, TrimmedSide& side,
   int threads, vtkPolyData* output)
 {
@@ -169,7 +170,7 @@ void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, Tri
   outward->GetFieldData()->PassData(input->GetFieldData());
 }
 
-/** In the field data of all outputs. */
+/** Adds the counts to the field data of all outputs. */
 void AddCounts(const Trimmed& trimmed, vtkInformationVector* outputVector)
 {
   for (int port = 0; port < 3; ++port)
@@ -274,7 +275,7 @@ int vtkTrimOutwardTriangles::RequestData(
       trimmed.Boundary, given && hasBoundary ? given : input, Part(progress, 0.96, 1.0), boundary);
     AddCounts(trimmed, outputVector);
     Report(progress, 1.0);
-    // Only now, as an abort or an error leaves no counts.
+    // Set last, as an abort or an error leaves no counts.
     this->EffectiveGapTolerance = trimmed.GapTolerance;
     this->NumberOfOutwardTriangles = trimmed.NumberOfOutwardTriangles;
     this->NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class   vtkTrimOutwardTriangles
- * @brief   part a triangulation into the triangles inside and outside the boundary of the surface
+ * @brief   splits a triangulation into the triangles inside and outside the boundary of the surface
  *
  * A Delaunay triangulation covers the convex hull of its points; a surface seldom does. This filter
  * takes away the triangles outside its boundary. x,y is the plane of projection, z the elevation.
@@ -15,8 +15,8 @@
  * - polygons.
  * A place is inside when an odd number of rings goes around it, so rings may nest (a lake, an
  * island in it), in any order and direction. They may touch; edges that two rings share cancel out,
- * so that two parcels side by side are one surface. They may not cross, also not in a point or
- * along edges that they share; nor may one ring cross itself there.
+ * so that two parcels side by side are one surface. They may not cross, not even in a point or
+ * along edges that they share; nor may a ring cross itself.
  *
  * The boundary may be drawn anywhere, and its z plays no part. It becomes edges of the mesh:
  * - A point of it with exactly the x,y of a corner of the mesh is that corner.
@@ -24,29 +24,30 @@
  *   the triangles beside the edge that it is on into two each. Its z and point data are those of
  *   the surface there: linear on the triangle or edge; values that are not floating point (ids,
  *   strings, integers) are those of the nearest corner. So inserting does not change the surface.
- * - What lies outside the mesh or in a hole of it needs no edges: what is kept is both in
- *   the boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is
+ * - Parts outside the mesh or in one of its holes need no edges: what is kept is both inside the
+ *   boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is
  *   inserted in the border, at the crossing, rounded to double precision. (An edge that follows a
  *   border so closely that rounding folds the border over is an error that names it.)
  * - An edge of the boundary that is not an edge of the mesh is recovered: the triangles that it
- *   crosses are replaced by as many others of the same corners; edges among these are
- *   constrained Delaunay within each side of the boundary's edge, and in the whole mesh when it was
- *   Delaunay and no point has been inserted. Only there the surface changes between its points. An
- *   edge that runs through points of the mesh is cut there.
+ *   crosses are replaced by as many others with the same corners. Their edges are
+ *   constrained Delaunay on each side of the boundary's edge, and in the whole mesh if it was
+ *   Delaunay and no point has been inserted. Only there does the surface change between its points.
+ *   An edge that runs through points of the mesh is cut there.
  *
  * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its
  * longest edge is at most GapTolerance times the spacing of the points there; so dense and thin
  * parts of a cloud are both outlined well. The details:
- * - The spacing at a point is half the distance of its 6th nearest point: at the rim of a
+ * - The spacing at a point is half the distance to its 6th nearest point: at the rim of a
  *   gap, where points are on one side only, one step of a square lattice, or the mean spacing
- *   of random points. The spacing of a triangle is the middle one of its three points', but
+ *   of random points. The spacing of a triangle is the median of those of its three points, but
  *   at most twice the least.
- * - Only triangles that are in doubt are measured so: those whose longest edge is more than about
+ * - Only doubtful triangles are measured in this way: those whose longest edge is more than about
  *   half of GapTolerance times the mean of the four shortest edges at their points, and which lie
  *   together where there could be room for a lake, or at the border.
  * - Slivers, triangles at the border whose height is less than a tenth of the mean of the four
- *   shortest edges at their points, are not surface, nor are further ones behind them: a wavering
- *   line of points that leaves the others makes them (unless all of the surface is so thin).
+ *   shortest edges at their points, are not surface, nor are further ones behind them (unless the
+ *   whole surface is so thin). A wavering line of points that leads away from the others makes
+ *   them.
  * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance
  *   spacings. A smaller one is surface.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
@@ -78,16 +79,15 @@
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
  * a ring of fewer than three points, edges or rings that cross each other, a boundary that encloses
- * no triangle; also a point or cell array of an input that has not as many tuples as there are points
- * or cells, and a vtkCellArray that is not valid. A mesh without triangles passes with a warning,
- * and the lines of input 1 are not looked at; so does one of which no triangle is surface (all are
- * outward then).
- * Where borders of the mesh lie on each other without common points, as those of tiles, a ring that
- * passes there may be refused: merge the points, as vtkStaticCleanPolyData does.
- * An abort leaves empty output, too, which counts as up to date: call Modified() to start again.
+ * no triangle; also an invalid vtkCellArray, and a point or cell array of an input whose number of
+ * tuples is not that of the points or cells. A mesh without triangles passes with a warning, and
+ * the lines of input 1 are ignored; so does a mesh in which no triangle is surface (all are outward
+ * then). Where borders of the mesh coincide without common points, as between tiles, a ring that
+ * passes there may be refused: merge the points, as vtkStaticCleanPolyData does. An abort also
+ * leaves empty output, which counts as up to date: call Modified() to start again.
  *
- * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges; where
- * points are inserted, a sweep over the triangles more.
+ * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges; one more
+ * sweep over the triangles where points are inserted.
  *
  * @sa vtkGridDelaunay2D vtkFillElevationHoles
  */
@@ -149,11 +149,11 @@ public:
 
   ///@{
   /**
-   * For the extracted boundary: how many spacings an empty stretch may measure and still be
-   * surface. 0 (default): 2.25 times what the typical (median) triangle's longest edge measures (in
-   * a sample, where there are many), which is 4.5 on a square lattice and about 4.6 on random
-   * points; see GetEffectiveGapTolerance.
-   * Negative values are taken as 0. Not used when a boundary is given.
+   * For the extracted boundary: how many spacings wide an empty stretch may be and still be
+   * surface. 0 (default): 2.25 times the median of the triangles' longest edges, in spacings (of a
+   * sample, where there are many), which is 4.5 on a square lattice and about 4.6 on random points;
+   * see GetEffectiveGapTolerance. Negative values are taken as 0. Not used when a boundary is
+   * given.
    */
   vtkSetClampMacro(GapTolerance, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(GapTolerance, double);
@@ -175,8 +175,8 @@ public:
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
    * without threads by default, as in ParaView. The output is the same, byte for byte, for any
    * number. Several threads read the triangles, measure the spacing of the points for the
-   * boundary that is extracted, and write the outputs; what lies near the boundary has one. Range:
-   * 0 to 1024.
+   * boundary that is extracted, and write the outputs; work near the boundary is done on one.
+   * Range: 0 to 1024.
    */
   vtkSetClampMacro(NumberOfThreads, int, 0, 1024);
   vtkGetMacro(NumberOfThreads, int);
@@ -195,9 +195,9 @@ public:
   vtkGetMacro(NumberOfRecoveredEdges, vtkIdType);
 
   /**
-   * After Update(): the number of points that the extracted boundary leaves out, though triangles
-   * have them: lone points, lines of points that leave the others, and groups too small to be a
-   * surface. They are corners of output 1 alone. 0 when a boundary was given, and with
+   * After Update(): the number of points that the extracted boundary leaves out, though they are
+   * corners of triangles: lone points, lines of points that leave the others, and groups too small
+   * to be a surface. They are corners of output 1 alone. 0 when a boundary was given, and with
    * INWARD_NORMAL, which keeps what no edge of the boundary leads to.
    */
   vtkGetMacro(NumberOfPointsLeftOut, vtkIdType);
