@@ -17,25 +17,25 @@ namespace elevation
 
 namespace
 {
-/** Beyond these, squares of lengths leave the range of double. */
+/** Outside this range, squares of lengths leave the range of double. */
 constexpr double LeastLength = 1e-150;
 constexpr double LargestLength = 1e150;
 
 /**
- * Patches of more points are made one by one and report progress, on one thread those of a quarter
- * of that; others together, up to so many points a thread.
+ * Patches of more than PointsAlone points (on one thread, a quarter of that) are made one by one
+ * and report progress; others together, up to PointsTogether points per thread.
  */
 constexpr double PointsAlone = 10000.0;
 constexpr double PointsTogether = 50000.0;
 
-/** What any patch costs, as so many points; trying methods takes about a millisecond. */
+/** The fixed work for a patch, in points: without, and with trials of the methods. */
 constexpr double PointsPerPatch = 10.0;
 constexpr double PointsPerTrial = 150.0;
 
-/** What a thread takes at a time: patches that have so many points, or one. */
+/** What a thread takes at a time: patches of about this many points in all, or a larger one. */
 constexpr double PointsPerPiece = 250.0;
 
-/** Distance between neighbouring numbers at the size of @a x, as the points are stored. */
+/** Distance between neighbouring numbers near x, in the precision of the points. */
 double StepAt(double x, bool singlePrecision)
 {
   if (singlePrecision)
@@ -47,7 +47,7 @@ double StepAt(double x, bool singlePrecision)
   return std::nextafter(d, std::numeric_limits<double>::infinity()) - d;
 }
 
-/** Whether the square of a length is a number to compute with. */
+/** Whether the square of a length is in the range of double. */
 bool IsMeasurable(double length)
 {
   return length >= LeastLength && length <= LargestLength;
@@ -91,7 +91,7 @@ std::string ToText(double value)
   return text.str();
 }
 
-/** How many new points there may be. */
+/** How many new points are allowed. */
 struct Room
 {
   Room(const Mesh& mesh, const FillOptions& options)
@@ -99,12 +99,12 @@ struct Room
     , Left(std::min<double>(options.MaximumInsertedPoints, OfIds))
   {
   }
-  double OfIds; ///< for all holes
-  double Left;  ///< by those that come before
+  double OfIds; ///< by the largest number of points
+  double Left;  ///< after the holes so far
 };
 
-/** The limits, and what cannot be filled. All that could make a hole run away is stopped here. */
-void Judge(HoleReport& report, bool isTouched, double points, const Room& room,
+/** Refuses holes beyond the limits, and holes that cannot be filled in bounded time and memory. */
+void CheckLimits(HoleReport& report, bool isTouched, double points, const Room& room,
   const FillOptions& options)
 {
   if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
@@ -149,7 +149,7 @@ void Judge(HoleReport& report, bool isTouched, double points, const Room& room,
     (isOurs ? ", or a larger limit." : "."));
 }
 
-/** Elevations and attributes; of the latter one vector each, in the order of vertices. */
+/** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
 void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points,
   const FillOptions& options, const Progress& progress, Patch& patch, HoleReport& report,
   std::vector<std::vector<double>>& attributes)
@@ -177,7 +177,7 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points
   report.Method = heights.Used();
 }
 
-/** What has become of a hole, before it is appended. */
+/** A patch and its attributes, before they are appended. */
 struct FilledHole
 {
   Patch Triangles;
@@ -190,7 +190,7 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
   const std::vector<std::vector<double>>& attributes = filled.Attributes;
   const std::size_t points = patch.Order.size();
   const std::size_t before = static_cast<std::size_t>(result.NumberOfPoints());
-  // Half as much again, so that many small holes do not copy everything each time.
+  // Grows by half, so that many small holes do not copy everything each time.
   const auto room = [](auto& values, std::size_t more) {
     const std::size_t needed = values.size() + more;
     if (needed > values.capacity())
@@ -228,7 +228,6 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
   }
 }
 
-/** Fills all holes of one surface. */
 class HoleFilling
 {
 public:
@@ -273,13 +272,13 @@ public:
 
 private:
   /**
-   * All holes are judged before the first is filled: what one may take does not depend on how the
-   * others turn out.
+   * Checks all holes before the first is filled, so that the room for one does not depend on the
+   * outcome of others.
    */
   void PlanAll()
   {
     const FillOptions& options = this->Options;
-    // Nodes are only for spacings that the user has not set.
+    // Lattice nodes are used only if the user sets no spacing.
     LatticeSearch lattice;
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
       this->Given.Count() > 0)
@@ -305,7 +304,7 @@ private:
       plan.Precision = StepAt(
         std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
       plan.SinglePrecision = options.SinglePrecision;
-      Judge(report, this->Given.Touched[hole] != 0, plan.MostPoints, room, options);
+      CheckLimits(report, this->Given.Touched[hole] != 0, plan.MostPoints, room, options);
       if (report.Status == FillStatus::Filled)
       {
         room.Left = std::max(0.0, room.Left - plan.MostPoints);
@@ -323,8 +322,8 @@ private:
   }
 
   /**
-   * A large patch is made alone and reports progress; others are made together, so many that
-   * threads seldom wait for each other.
+   * A large patch is made alone and reports progress; small ones are made together, enough of them
+   * that threads rarely wait for each other.
    */
   Index EndOfBatch(Index begin, double& done) const
   {
@@ -340,14 +339,14 @@ private:
     return end;
   }
 
-  /** Holes of a batch, and the pieces of them that a thread takes at a time. */
+  /** Holes of a batch, and the pieces that a thread takes at a time. */
   struct Batch
   {
-    std::vector<std::pair<double, Index>> Order; ///< from the most work on, which is negative
+    std::vector<std::pair<double, Index>> Order; ///< (negative work, hole): most work first
     std::vector<std::size_t> Pieces{ 0 };
   };
 
-  /** From the largest on, as what ends last should not take long. */
+  /** The largest holes come first, so that threads finish at about the same time. */
   Batch DivideBatch(Index begin, Index end) const
   {
     Batch batch;
@@ -372,7 +371,7 @@ private:
     return batch;
   }
 
-  /** Patches are made in any order, and appended in that of the holes. */
+  /** Makes patches in any order, and appends them in the order of the holes. */
   void FillBatch(Index begin, Index end, const Progress& progress)
   {
     const Batch batch = this->DivideBatch(begin, end);
@@ -404,7 +403,7 @@ private:
     }
   }
 
-  /** What goes wrong with a hole is its failure, and no other's. */
+  /** An Error fails this hole only. */
   void FillOne(Index hole, const Progress& progress, FilledHole& filled)
   {
     HoleReport& report = this->Result.Reports[hole];
@@ -413,7 +412,7 @@ private:
       filled.Triangles = CollectBoundary(this->Surface, this->Given, hole);
       Patch& patch = filled.Triangles;
       MakePatch(this->Plans[hole], Part(progress, 0.0, 0.4), patch);
-      Arrange(patch, Part(progress, 0.4, 0.45));
+      FindNeighbors(patch, Part(progress, 0.4, 0.45));
       FindNearest(patch, Part(progress, 0.45, 0.5));
       Elevate(this->Surface, this->Stars.get(), this->Points, this->Options,
         Part(progress, 0.5, 1.0), patch, report, filled.Attributes);
@@ -430,7 +429,7 @@ private:
   const Holes& Given;
   const FillOptions& Options;
   const int Threads;
-  double Least = 0.0; ///< work for any patch
+  double Least = 0.0; ///< the fixed work for a patch
   double AllWork = 0.0;
   std::vector<PatchPlan> Plans;
   std::unique_ptr<VertexStars> Stars;

@@ -16,16 +16,16 @@ namespace elevation
 namespace
 {
 /**
- * Most centres of a spline, whose cost is their number's cube. With a hundred fewer the error grew
- * by 2 %, with more it did not fall. More rings than one did not help either: at the same number of
- * centres they leave fewer for the boundary, where the surface is nearest.
+ * Most centres of a spline, whose cost is cubic in them. A hundred fewer give a 2 % larger error,
+ * more give no smaller one. Nor do several rings: they leave fewer centres for the boundary, where
+ * the surface is nearest.
  */
-constexpr std::size_t MostCentres = 300;
+constexpr std::size_t MostCenters = 300;
 
-/** Centres nearer to each other than that many spacings add nothing but rounding. */
+/** Centres closer together than this, in spacings, add nothing but rounding. */
 constexpr double LeastDistance = 0.02;
 
-/** Places where Adaptive tries the methods, new points it compares there, places that suffice. */
+/** Places where Adaptive tries the methods, new points compared there, and places that suffice. */
 constexpr int NumberOfPlaces = 32;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr Index LeastProbes = 32;
@@ -34,37 +34,35 @@ constexpr Index PointsPerProbe = 16;
 constexpr int EnoughPlaces = 2;
 
 /**
- * Shares of membrane, thin plate and cubic spline before anything is tried, and how many
- * observations of their error each place is worth. Neighbouring places overlap, and a single
- * rough one must not decide.
+ * Prior shares of membrane, thin plate and cubic spline, and how many observations of the error a
+ * place counts as. Neighbouring places overlap, and a single rough one must not decide.
  */
 constexpr double LogarithmOfPrior[3] = { 0.0, 1.5, -1.0 };
 constexpr double ObservationsPerPlace = 2.0;
 
 /**
- * What is added to the logarithm of an error that was found at half the size; half of that where
- * the moved points lie anywhere in triangles. Between its points a surface is taken to be flat, so
- * that the smoother methods look better there than they are.
+ * Added to the logarithm of an error found at half the size; half of it where moved points lie
+ * anywhere in triangles. The surface is flat between its points, which favours smoother methods.
  */
 constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.6 };
 
-/** Shares below are not worth computing. */
+/** Smaller shares, relative to the largest, are not worth computing. */
 constexpr double LeastShare = 0.03;
 
-/** Errors below that share of the range are rounding. */
+/** Smaller errors, relative to the range, are rounding. */
 constexpr double LeastError = 1e-9;
 constexpr double LeastSquare = 1e-300;
 
-/** Of the membrane, where methods are only compared. */
+/** Accuracy of the membrane where methods are only compared. */
 constexpr double RoughAccuracy = 1e-2;
 
-/** Points a spline is evaluated at between two reports. */
+/** Points at which a spline is evaluated between two reports. */
 constexpr std::size_t PointsPerReport = 4096;
 
-/** How far beyond the range values may go: slopes of the surface times distance. */
+/** How far values may leave the range, in slopes of the surface times distance. */
 constexpr double SlopeLimit = 1.0;
 
-/** Slopes are measured over that many edges at most. */
+/** Slopes are measured over at most this many edges. */
 constexpr Index MostRings = 16;
 
 constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kernel::Cubic };
@@ -72,8 +70,8 @@ constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::T
   Interpolation::Cubic };
 
 /**
- * Finds the triangle of a mesh that a point lies in, by a walk from a triangle near it. Corners are
- * taken from the lowest on, so that the way and all roundings depend on positions alone.
+ * Finds the triangle that contains a point, by a walk from a triangle nearby. Corners are taken
+ * from the lowest on, so that the walk and all roundings depend on positions alone.
  */
 class Walk
 {
@@ -84,7 +82,7 @@ public:
   {
   }
 
-  /** @return false when the straight way leaves the surface, or nearly so */
+  /** @return false if the walk comes to the border of the surface */
   bool To(const Point2& p)
   {
     constexpr int mostSteps = 1 << 16;
@@ -101,7 +99,7 @@ public:
       const double w[3] = { (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X),
         (b.X - p.X) * (c.Y - p.Y) - (b.Y - p.Y) * (c.X - p.X),
         (c.X - p.X) * (a.Y - p.Y) - (c.Y - p.Y) * (a.X - p.X) };
-      // The first edge to look at changes, so that no walk goes round and round.
+      // The first edge to test changes with each step, so that the walk does not cycle.
       int across = -1;
       for (int k = 0; k < 3 && across < 0; ++k)
       {
@@ -128,7 +126,7 @@ public:
     return false;
   }
 
-  /** Where To() has led: values by linear interpolation. */
+  /** The linearly interpolated value at the point of the last To(). */
   double ValueOf(const Values& values) const
   {
     double value = 0.0;
@@ -139,14 +137,14 @@ public:
     return value;
   }
 
-  /** How much of what is rough from point to point the interpolation takes away; 0 at a point. */
+  /** By how much the interpolation reduces the variance of uncorrelated noise; 0 at a corner. */
   double Smoothing() const
   {
     return 1.0 - this->Shares[0] * this->Shares[0] - this->Shares[1] * this->Shares[1] -
       this->Shares[2] * this->Shares[2];
   }
 
-  /** The corner that counts the most there. */
+  /** The corner with the largest weight. */
   Index Corner() const
   {
     int k = this->Shares[1] > this->Shares[0] ? 1 : 0;
@@ -212,7 +210,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
       low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
       high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
     }
-    this->Centre = { low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
+    this->Center = { low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
     this->Scale = 2.0 / std::max(high.X - low.X, high.Y - low.Y);
     this->CollectRing(*stars);
     this->CollectSlopes(*stars);
@@ -227,13 +225,13 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
   }
   if (wanted == Interpolation::Adaptive)
   {
-    this->ChooseCentres();
-    this->Flat = std::make_unique<Membrane>(patch.Neighbours, Part(progress, 0.0, 0.3));
+    this->ChooseCenters();
+    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, Part(progress, 0.0, 0.3));
     this->Choose(*stars, values, Part(progress, 0.3, 1.0));
   }
   else if (wanted != Interpolation::Membrane)
   {
-    this->ChooseCentres();
+    this->ChooseCenters();
     const int k = wanted == Interpolation::Cubic ? 1 : 0;
     this->Splines[k] = this->MakeSpline(k);
     this->Method = this->Splines[k] ? wanted : Interpolation::Membrane;
@@ -243,13 +241,13 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
   {
     this->Shares[0] = 1.0;
   }
-  if (!this->NeedsFlat())
+  if (!this->NeedsHarmonic())
   {
-    this->Flat.reset();
+    this->Harmonic.reset();
   }
-  else if (!this->Flat)
+  else if (!this->Harmonic)
   {
-    this->Flat = std::make_unique<Membrane>(patch.Neighbours, progress);
+    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, progress);
   }
 }
 
@@ -273,7 +271,7 @@ void Heights::CollectRing(const VertexStars& stars)
     this->Patch.BoundaryIds.end(), std::back_inserter(this->Known), isLower);
 }
 
-/** From each point of the last ring to the point of the boundary that it was reached from. */
+/** Pairs each point of the last ring with the boundary point that it was reached from. */
 void Heights::CollectSlopes(const VertexStars& stars)
 {
   const IsLowerPoint isLower{ this->Surface };
@@ -302,7 +300,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
     found.erase(std::unique(found.begin(), found.end(),
                   [](const Pair& a, const Pair& b) { return a.Away == b.Away; }),
       found.end());
-    // A neighbour is in the same ring, the one before or the next.
+    // A neighbour is in the same ring, the previous one or the next one.
     std::vector<Pair> next;
     std::set_difference(
       found.begin(), found.end(), last.begin(), last.end(), std::back_inserter(next), isBefore);
@@ -319,8 +317,8 @@ void Heights::CollectSlopes(const VertexStars& stars)
   }
 }
 
-/** Always the point that is farthest from those chosen; first on the boundary, then anywhere. */
-void Heights::ChooseCentres()
+/** Farthest-point sampling: first on the boundary, then among all known points. */
+void Heights::ChooseCenters()
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = this->Known.size();
@@ -335,7 +333,7 @@ void Heights::ChooseCentres()
   const double least = LeastDistance * this->Patch.Spacing * this->Scale;
   std::vector<double> squares(count, std::numeric_limits<double>::infinity());
   const auto choose = [&](std::size_t end, std::size_t most) {
-    while (this->Centres.size() < most)
+    while (this->Centers.size() < most)
     {
       const std::size_t best = static_cast<std::size_t>(
         std::max_element(squares.begin(), squares.begin() + static_cast<std::ptrdiff_t>(end)) -
@@ -344,7 +342,7 @@ void Heights::ChooseCentres()
       {
         return;
       }
-      this->Centres.push_back(static_cast<Index>(best));
+      this->Centers.push_back(static_cast<Index>(best));
       for (std::size_t i = 0; i < count; ++i)
       {
         const double square =
@@ -353,29 +351,28 @@ void Heights::ChooseCentres()
       }
     }
   };
-  choose(boundary, MostCentres / 2);
-  choose(count, MostCentres);
-  std::sort(this->Centres.begin(), this->Centres.end());
-  this->AllBoundaryIsCentre = this->Centres.size() >= boundary &&
-    this->Centres[boundary - 1] == static_cast<Index>(boundary) - 1;
+  choose(boundary, MostCenters / 2);
+  choose(count, MostCenters);
+  std::sort(this->Centers.begin(), this->Centers.end());
+  this->AllBoundaryIsCenter = this->Centers.size() >= boundary &&
+    this->Centers[boundary - 1] == static_cast<Index>(boundary) - 1;
 }
 
 std::unique_ptr<Spline> Heights::MakeSpline(int which) const
 {
-  std::vector<Point2> centres;
-  centres.reserve(this->Centres.size());
-  for (const Index place : this->Centres)
+  std::vector<Point2> centers;
+  centers.reserve(this->Centers.size());
+  for (const Index place : this->Centers)
   {
-    centres.push_back(this->Normalized(this->Surface.PointOf(this->Known[place])));
+    centers.push_back(this->Normalized(this->Surface.PointOf(this->Known[place])));
   }
   auto spline = std::make_unique<Spline>();
-  return spline->Prepare(centres, Kernels[which]) ? std::move(spline) : nullptr;
+  return spline->Prepare(centers, Kernels[which]) ? std::move(spline) : nullptr;
 }
 
 /**
- * Tries the methods beside the hole, where the surface is known: its boundary, the other centres and
- * some of its new points, the probes, are moved there, and each method predicts the probes from the
- * rest.
+ * Tries the methods around the hole, where the surface is known: boundary, other centres and some
+ * new points, the probes, are moved there, and each method predicts the probes from the rest.
  */
 class Heights::Trials
 {
@@ -392,7 +389,7 @@ public:
     this->CollectPoints();
   }
 
-  /** @return false where surface is not at each of the moved points */
+  /** @return false if a moved point misses the surface */
   bool At(double angle, double size, const Progress& progress)
   {
     double smoothing = 0.0;
@@ -408,7 +405,7 @@ public:
       value -= shift;
       range = std::max(range, std::fabs(value));
     }
-    // Anywhere in triangles, one half on the mean.
+    // The smoothing is one half on average for points anywhere in triangles.
     const double halvings = std::max(smoothing, -std::log(size) / std::log(2.0));
     for (int method = 0; method < 3 && (method == 0 || this->Splines[method - 1]); ++method)
     {
@@ -419,7 +416,7 @@ public:
         const double error = predicted[k] - this->Moved[this->FirstProbe + k];
         square += error * error;
       }
-      // What is exact but for rounding must not outweigh all other places.
+      // A prediction that is exact up to rounding must not outweigh all other places.
       const double error = 0.5 * std::log(square + std::pow(LeastError * range, 2) + LeastSquare);
       this->Scores[method] -=
         ObservationsPerPlace * (error + PenaltyOfHalfSize[method] * halvings);
@@ -427,7 +424,7 @@ public:
     return true;
   }
 
-  /** The logarithms of the methods' shares, but for a common term. */
+  /** The logarithms of the methods' shares, up to a common term. */
   double Scores[3];
 
 private:
@@ -438,10 +435,10 @@ private:
     {
       this->Points.push_back(this->Of.Surface.PointOf(id));
     }
-    for (const Index place : this->Of.Centres)
+    for (const Index place : this->Of.Centers)
     {
       const bool isAdded = static_cast<std::size_t>(place) < this->Boundary;
-      this->PlaceOfCentre.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
+      this->PlaceOfCenter.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
       if (!isAdded)
       {
         this->Points.push_back(this->Of.Surface.PointOf(this->Of.Known[place]));
@@ -462,14 +459,15 @@ private:
     this->Moved.resize(this->Points.size());
   }
 
-  /** Where the walk to a place begins, the same for any order of points. */
+  /** Where a walk begins; independent of the order of points. */
   Index HalfEdgeAt(Index vertex) const
   {
     const Mesh& surface = this->Of.Surface;
     Index start = None;
     this->Stars.Visit(surface, vertex, [&](Index h) {
       start = start == None ||
-          IsLower(surface.PointOf(surface.Destination(h)), surface.PointOf(surface.Destination(start)))
+          IsLower(
+            surface.PointOf(surface.Destination(h)), surface.PointOf(surface.Destination(start)))
         ? h
         : start;
       return true;
@@ -478,8 +476,8 @@ private:
   }
 
   /**
-   * The values at the moved points: as near as can be, so that what is moved touches the hole with
-   * its ring, and by a step from point to point, as lattices repeat themselves.
+   * Finds the values at the moved points. They move as little as possible, so that their ring
+   * touches the hole, and from a point of the surface to another one, to match a lattice.
    */
   bool Move(const Point2& direction, double size, double& smoothing)
   {
@@ -515,10 +513,11 @@ private:
     return true;
   }
 
-  /** What the membrane makes of values at the boundary, at the probes. */
-  std::vector<double> PredictFlat(const std::vector<double>& rim, const Progress& progress) const
+  /** The probes by the membrane, from values at the boundary. */
+  std::vector<double> PredictHarmonic(
+    const std::vector<double>& rim, const Progress& progress) const
   {
-    const std::vector<double> flat = this->Of.Flat->Solve(rim, RoughAccuracy, progress);
+    const std::vector<double> flat = this->Of.Harmonic->Solve(rim, RoughAccuracy, progress);
     std::vector<double> predicted;
     for (const Index probe : this->Probes)
     {
@@ -527,30 +526,30 @@ private:
     return predicted;
   }
 
-  /** The probes by a method: 0 the membrane, then the splines. */
+  /** The probes by a method: 0 is the membrane, then come the splines. */
   std::vector<double> Predict(int method, const Progress& progress) const
   {
     std::vector<double> rim(
       this->Moved.begin(), this->Moved.begin() + static_cast<std::ptrdiff_t>(this->Boundary));
     if (method == 0)
     {
-      return this->PredictFlat(rim, progress);
+      return this->PredictHarmonic(rim, progress);
     }
     const Spline& spline = *this->Splines[method - 1];
-    std::vector<double> atCentres;
-    for (const Index i : this->PlaceOfCentre)
+    std::vector<double> atCenters;
+    for (const Index i : this->PlaceOfCenter)
     {
-      atCentres.push_back(this->Moved[i]);
+      atCenters.push_back(this->Moved[i]);
     }
-    const Spline::Weights weights = spline.Interpolate(atCentres);
+    const Spline::Weights weights = spline.Interpolate(atCenters);
     std::vector<double> predicted(this->Probes.size(), 0.0);
     spline.Add(weights, &this->Normalized[this->FirstProbe], predicted.size(), predicted.data());
-    if (!this->Of.AllBoundaryIsCentre)
+    if (!this->Of.AllBoundaryIsCenter)
     {
       std::vector<double> there(this->Boundary, 0.0);
       spline.Add(weights, this->Normalized.data(), there.size(), there.data());
       std::transform(rim.begin(), rim.end(), there.begin(), rim.begin(), std::minus<double>());
-      const std::vector<double> missed = this->PredictFlat(rim, progress);
+      const std::vector<double> missed = this->PredictHarmonic(rim, progress);
       std::transform(predicted.begin(), predicted.end(), missed.begin(), predicted.begin(),
         std::plus<double>());
     }
@@ -561,11 +560,11 @@ private:
   const VertexStars& Stars;
   const Values& ValueOf;
   const std::unique_ptr<Spline>* Splines;
-  const std::size_t Boundary;      ///< its number of points, which come first
-  std::size_t FirstProbe = 0;      ///< they come last
+  const std::size_t Boundary; ///< its number of points, which come first
+  std::size_t FirstProbe = 0; ///< probes come last
   std::vector<Point2> Points;
   std::vector<Point2> Normalized;
-  std::vector<Index> PlaceOfCentre; ///< which points the centres are
+  std::vector<Index> PlaceOfCenter; ///< index in Points of each centre
   std::vector<Index> Probes;        ///< numbers of new vertices
   std::vector<double> Moved;        ///< values where the points are moved to
 };
@@ -579,7 +578,7 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
     return;
   }
   Trials trials(*this, stars, values, splines);
-  const int number = this->Flat->IsLarge() ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
+  const int number = this->Harmonic->IsLarge() ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
   int places = 0;
   double begun = 0.0;
   for (const double size : { 1.0, 0.5, 0.25 })
@@ -618,7 +617,7 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
 std::vector<double> Heights::Mean(const Values& values, const Progress& progress) const
 {
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
-  const Adjacency& neighbours = this->Patch.Neighbours;
+  const Adjacency& neighbors = this->Patch.Neighbors;
   std::vector<double> result(this->Patch.NumberOfNewVertices());
   for (std::size_t k = 0; k < this->Patch.Order.size(); ++k)
   {
@@ -626,9 +625,9 @@ std::vector<double> Heights::Mean(const Values& values, const Progress& progress
     const Index i = this->Patch.Order[k] - boundary;
     double sum = 0.0;
     int known = 0;
-    for (std::size_t j = neighbours.Offsets[i]; j < neighbours.Offsets[i + 1]; ++j)
+    for (std::size_t j = neighbors.Offsets[i]; j < neighbors.Offsets[i + 1]; ++j)
     {
-      const Index other = neighbours.Neighbours[j];
+      const Index other = neighbors.Neighbors[j];
       if (other < boundary || this->Patch.Layers[other - boundary] < this->Patch.Layers[i])
       {
         const double value =
@@ -645,21 +644,21 @@ std::vector<double> Heights::Mean(const Values& values, const Progress& progress
   return result;
 }
 
-/** The splines' sum at each vertex; at those of the boundary only where the membrane needs it. */
+/** The sum of the splines at each vertex; at the boundary only if the membrane needs it. */
 std::vector<double> Heights::SumOfSplines(
   const std::vector<double>& known, const Progress& progress) const
 {
-  std::vector<double> atCentres;
-  for (const Index place : this->Centres)
+  std::vector<double> atCenters;
+  for (const Index place : this->Centers)
   {
-    atCentres.push_back(known[place]);
+    atCenters.push_back(known[place]);
   }
   std::vector<double> sums(this->Patch.NumberOfVertices(), 0.0);
-  const std::size_t first = this->Flat ? 0 : this->Patch.BoundaryIds.size();
+  const std::size_t first = this->Harmonic ? 0 : this->Patch.BoundaryIds.size();
   Spline::Weights weights[2];
   for (int s = 0; s < 2; ++s)
   {
-    weights[s] = this->Splines[s] ? this->Splines[s]->Interpolate(atCentres) : Spline::Weights();
+    weights[s] = this->Splines[s] ? this->Splines[s]->Interpolate(atCenters) : Spline::Weights();
     for (double& weight : weights[s])
     {
       weight *= this->Shares[s + 1];
@@ -685,7 +684,7 @@ std::vector<double> Heights::SumOfSplines(
   return sums;
 }
 
-/** The root mean square of the slopes around the hole, in units of the values. */
+/** The root mean square of the slopes around the hole, with values divided by the unit. */
 double Heights::MeanSlope(const Values& values, double unit) const
 {
   double squares = 0.0;
@@ -719,7 +718,7 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   {
     return this->Mean(values, progress);
   }
-  // Within [-1, 1] nothing overflows, and offsets cost no digits.
+  // Scaled to [-1, 1], nothing overflows, and offsets cost no digits.
   const double low = *std::min_element(known.begin(), known.end());
   const double high = *std::max_element(known.begin(), known.end());
   const double middle = 0.5 * low + 0.5 * high;
@@ -739,16 +738,16 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
   if (this->HasSpline())
   {
     const std::vector<double> sums =
-      this->SumOfSplines(known, Part(progress, 0.0, this->Flat ? 0.3 : 1.0));
+      this->SumOfSplines(known, Part(progress, 0.0, this->Harmonic ? 0.3 : 1.0));
     std::transform(rim.begin(), rim.end(), sums.begin(), rim.begin(), std::minus<double>());
     std::copy(sums.begin() + static_cast<std::ptrdiff_t>(boundary), sums.end(), result.begin());
     slope = SlopeLimit * this->MeanSlope(values, unit);
   }
-  if (this->Flat)
+  if (this->Harmonic)
   {
-    // What the splines miss of the boundary; without any, all of it.
+    // What the splines miss at the boundary; without splines, all of it.
     const std::vector<double> flat =
-      this->Flat->Solve(rim, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 1.0));
+      this->Harmonic->Solve(rim, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 1.0));
     std::transform(
       result.begin(), result.end(), flat.begin(), result.begin(), std::plus<double>());
   }

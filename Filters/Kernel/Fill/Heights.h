@@ -4,8 +4,8 @@
  * @file
  * Values at the new points of a patch, from those of the surface around the hole.
  *
- * In: a patch, the surface, the values of its points. Out: one value for each new point. What gives
- * the elevations gives any other attribute in the same way.
+ * In: a patch, the surface, the values of its points. Out: one value for each new point. Elevations
+ * and all other attributes are found in the same way, by one of these methods:
  *
  *   NeighborMean  the mean of the known neighbours, layer by layer from the boundary inwards
  *                 [Nguyen, eq. 2];
@@ -13,46 +13,47 @@
  *   ThinPlate     continues slope and curvature of the surface: a spline (Spline.h) through the
  *                 hole's boundary and the ring of points around it;
  *   Cubic         the same with the smoother spline of r^3;
- *   Adaptive      for each hole the one of the last three that predicts the surface around it best;
+ *   Adaptive      for each hole, whichever of the last three predicts the surface around it best;
  *                 methods that predict it about equally well are mixed.
  *
- * The membrane's means are weighted by the cotangents of the angles that face an edge, which makes
- * it the discrete Laplace equation [Pinkall, Polthier]: on the nodes of a lattice of right angles
- * the mean of the four neighbours along the axes, as eq. 2 has it, whichever way the diagonals run.
+ * Membrane. The means are weighted by the cotangents of the angles opposite an edge, which gives
+ * the discrete Laplace equation [Pinkall, Polthier]. On a lattice with right angles this is the
+ * mean of the four neighbours along the axes, as in eq. 2, whichever way the diagonals run.
  *
- * Splines. Of many points around a hole, 300 are chosen evenly. Where the spline so misses
- * the boundary, the difference is continued by the membrane and added: patches always meet
- * their boundary.
+ * Splines. At most 300 points around a hole, evenly spread, become centres. Where the spline then
+ * misses the boundary, the membrane continues the difference, so that patches always meet their
+ * boundary.
  *
- * Adaptive leaves out what is like the hole: its boundary, its ring and some of its new points are
- * moved to 32 places (four for very large holes) around it, as near as the surface is known there,
- * and each method predicts there the points inside from those around. Splines and membrane depend
- * on where points lie to each other alone, so the factors of the hole serve at all places. A place
- * counts when surface is at each of the moved points; where a hole has less than two such places,
- * points at half the size are tried, then at a quarter.
- * Each place is worth two observations of a normal error, as neighbouring ones overlap: a method's
- * share in the result is its prior share (thin plate 0.76, membrane 0.17, cubic 0.06) divided by
- * the square of its root mean square error at each place. With 32 places one that errs 10 % more
- * than another has a 400th of its share; with one or two the thin plate keeps most. Shares below
- * 3 % of the largest are left out. At reduced size the smoother methods' errors count more, as the surface is flat between its
- * points: by 22 % (thin plate) and 82 % (cubic) for each halving. So they do where points that are
- * moved do not meet points, off lattices: by up to half as much, in logarithms.
+ * Adaptive is a cross-validation. The boundary, the ring and some of the new points are moved to 32
+ * places around the hole (four for very large holes), as close to it as possible, and each method
+ * predicts the surface at the moved new points from that at the others. Splines and membrane depend
+ * only on relative positions, so the hole's factorizations serve at all places. A place counts if
+ * every moved point hits the surface; with fewer than two such places, the points are scaled to
+ * half their size, then to a quarter.
+ * Each place counts as two observations of a normal error, as neighbouring places overlap: the
+ * share of a method in the result is its prior share (thin plate 0.76, membrane 0.17, cubic 0.06),
+ * divided, for each place, by the square of its root mean square error there. With 32 places, a
+ * method with a 10 % larger error gets a 400th of the other's share; with one or two, the thin
+ * plate keeps most. Shares below 3 % of the largest are dropped. At reduced size the errors of the
+ * smoother methods count more, as the surface is flat between its points: by 22 % (thin plate) and
+ * 82 % (cubic) for each halving. Off lattices, where moved points fall between points of the
+ * surface, they count more by up to half as much, in logarithms.
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
- * Splines may leave the range of boundary and ring, as a summit that was lost rises above all that
- * is left of it; but by no more than the distance from the nearest boundary point times
- * the slope of the surface. This is the root mean square of slopes from the boundary to points
- * half as many edges away from it as the middle of the hole is, 16 at most: what is rough near by
- * need not be steep.
+ * Splines may leave the range of boundary and ring, as a summit inside the hole would; but at most
+ * by the distance to the nearest boundary point times the slope of the surface. That slope is the
+ * root mean square of slopes from the boundary to points outside, half as many edges away as the
+ * middle of the hole is, at most 16: over short distances, roughness would count as slope.
  *
- * What a method cannot do, a simpler one does, and Used() tells: splines that points do not
- * determine (all nearly in one line) become the membrane; values that are not finite at the
- * boundary or the ring are left to NeighborMean, which leaves NaN out.
+ * Fallbacks, told by Used(): splines become the membrane if their points are nearly in a line;
+ * values that are not finite at the boundary or the ring are left to NeighborMean, which skips NaN.
  *
- * Guarantees: only points of the surface are used, never those of other patches, so that nothing
- * depends on the order of holes; and everything is taken in the order of positions, so that nothing
- * depends on the order of points and triangles either. Splines and Adaptive continue planes exactly,
- * to rounding.
+ * Guarantees: only points of the surface are used, never those of other patches, so the result does
+ * not depend on the order of holes. Everything is taken in the order of positions, so it does not
+ * depend on the order of points and triangles. Splines and Adaptive continue planes up to rounding.
+ *
+ * Cost, for n new points and c centres: NeighborMean and Membrane about linear in n; splines
+ * c^3 + c n. Adaptive adds one prediction per method and place.
  *
  * [Nguyen] A Complete Method for Reconstructing an Elevation Surface of 3D Point Clouds.
  * [Pinkall, Polthier] Computing discrete minimal surfaces and their conjugates, 1993.
@@ -73,7 +74,7 @@ namespace elevation
 
 class Spline;
 
-/** How values are found. The numbers are what users read in the output. */
+/** Methods of interpolation. Users see these values in the output. */
 enum class Interpolation : unsigned char
 {
   NeighborMean = 0,
@@ -83,63 +84,64 @@ enum class Interpolation : unsigned char
   Cubic = 4
 };
 
-/** The value of a point of the surface, by its id. */
+/** Gives the value at a point of the surface by its id. */
 using Values = std::function<double(Index)>;
 
 class Heights
 {
 public:
-  /** Whether a method asks for the surface around holes. */
+  /** Whether a method uses the surface around the boundary. */
   static bool NeedsSurroundings(Interpolation wanted)
   {
     return wanted != Interpolation::NeighborMean && wanted != Interpolation::Membrane;
   }
 
   /**
-   * Chooses and prepares. Surface, stars and patch must stay; of the patch all is
-   * known that Neighbours.h finds.
+   * Chooses and prepares a method. Keeps references to surface and patch.
    * @param[in] stars   of the surface; may be null for methods that need no surroundings
-   * @param[in] values  what Adaptive judges by: the elevations
+   * @param[in] patch   with everything that Neighbours.h finds
+   * @param[in] values  by which Adaptive chooses: the elevations
    * @throws Aborted, std::bad_alloc
    */
-  Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch, Interpolation wanted,
-    const Values& values, const Progress& progress = Progress());
+  Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch,
+    Interpolation wanted, const Values& values, const Progress& progress = Progress());
   ~Heights();
 
-  /** The method, of several that are mixed the one with the largest share; never Adaptive. */
+  /** The method used; of a mixture the one with the largest share; never Adaptive. */
   Interpolation Used() const { return this->Method; }
 
   /**
-   * One value for each new vertex. Values that are not finite at points that it needs: see above.
+   * One value for each new vertex. For values that are not finite, see Fallbacks above.
    */
   std::vector<double> Apply(const Values& values, const Progress& progress = Progress()) const;
 
 private:
-  /** Places of points as splines want them: around 0, of size about 1. */
+  /** Coordinates for splines: around 0, of size about 1. */
   Point2 Normalized(const Point2& p) const
   {
-    return { (p.X - this->Centre.X) * this->Scale, (p.Y - this->Centre.Y) * this->Scale };
+    return { (p.X - this->Center.X) * this->Scale, (p.Y - this->Center.Y) * this->Scale };
   }
 
   void CollectRing(const VertexStars& stars);
   void CollectSlopes(const VertexStars& stars);
-  void ChooseCentres();
+  void ChooseCenters();
   std::unique_ptr<Spline> MakeSpline(int which) const;
   bool HasSpline() const { return this->Splines[0] || this->Splines[1]; }
-  bool NeedsFlat() const
+  bool NeedsHarmonic() const
   {
-    return !this->AllBoundaryIsCentre || this->Shares[0] > 0.0 || !this->HasSpline();
+    return !this->AllBoundaryIsCenter || this->Shares[0] > 0.0 || !this->HasSpline();
   }
   class Trials;
   void Choose(const VertexStars& stars, const Values& values, const Progress& progress);
-  std::vector<double> SumOfSplines(const std::vector<double>& known, const Progress& progress) const;
+  std::vector<double> SumOfSplines(
+    const std::vector<double>& known, const Progress& progress) const;
   double MeanSlope(const Values& values, double unit) const;
   std::vector<double> Mean(const Values& values, const Progress& progress) const;
 
   const Mesh& Surface;
   const PatchMesh& Patch;
   Interpolation Method;
-  Point2 Centre{ 0.0, 0.0 };
+  Point2 Center{ 0.0, 0.0 };
   double Scale = 1.0;
 
   std::vector<Index> Known; ///< ids: boundary, then the ring around it
@@ -148,12 +150,12 @@ private:
     Index Boundary;
     Index Away;
   };
-  std::vector<Pair> Slopes;   ///< points between which the surface's slope is measured
-  std::vector<Index> Centres; ///< of the splines, places in Known
-  bool AllBoundaryIsCentre = true;
-  std::unique_ptr<Membrane> Flat;
+  std::vector<Pair> Slopes;   ///< pairs of points over which slopes are measured
+  std::vector<Index> Centers; ///< of the splines, indices in Known
+  bool AllBoundaryIsCenter = true;
+  std::unique_ptr<Membrane> Harmonic;
   std::unique_ptr<Spline> Splines[2];   ///< thin plate and cubic; those with a share
-  double Shares[3] = { 0.0, 0.0, 0.0 }; ///< of the membrane and the splines, 1 together
+  double Shares[3] = { 0.0, 0.0, 0.0 }; ///< of the membrane and the splines; their sum is 1
 };
 
 } // namespace elevation

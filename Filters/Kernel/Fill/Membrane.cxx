@@ -13,12 +13,12 @@ namespace elevation
 
 namespace
 {
-/** Of each unknown: the sum of its weights, less those times the unknowns among its neighbours. */
+/** The graph Laplacian of the unknowns: sums of weights on the diagonal, -weights elsewhere. */
 Multigrid::Matrix MatrixOf(const Adjacency& graph, const Progress& progress)
 {
   const Index size = graph.NumberOfUnknowns();
   Multigrid::Matrix matrix(size, size);
-  matrix.reserve(static_cast<Eigen::Index>(graph.Neighbours.size()) + size);
+  matrix.reserve(static_cast<Eigen::Index>(graph.Neighbors.size()) + size);
   std::vector<std::pair<Index, double>> row;
   for (Index i = 0; i < size; ++i)
   {
@@ -27,9 +27,9 @@ Multigrid::Matrix MatrixOf(const Adjacency& graph, const Progress& progress)
     for (std::size_t k = graph.Offsets[i]; k < graph.Offsets[i + 1]; ++k)
     {
       row[0].second += graph.Weights[k];
-      if (graph.Neighbours[k] >= graph.NumberOfKnown)
+      if (graph.Neighbors[k] >= graph.NumberOfKnown)
       {
-        row.emplace_back(graph.Neighbours[k] - graph.NumberOfKnown, -graph.Weights[k]);
+        row.emplace_back(graph.Neighbors[k] - graph.NumberOfKnown, -graph.Weights[k]);
       }
     }
     std::sort(row.begin(), row.end());
@@ -66,9 +66,9 @@ std::vector<double> Membrane::Solve(
   {
     for (std::size_t k = this->Graph.Offsets[i]; k < this->Graph.Offsets[i + 1]; ++k)
     {
-      if (this->Graph.Neighbours[k] < this->Graph.NumberOfKnown)
+      if (this->Graph.Neighbors[k] < this->Graph.NumberOfKnown)
       {
-        right[i] += this->Graph.Weights[k] * known[this->Graph.Neighbours[k]];
+        right[i] += this->Graph.Weights[k] * known[this->Graph.Neighbors[k]];
       }
     }
   }

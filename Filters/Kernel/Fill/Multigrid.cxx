@@ -18,32 +18,32 @@ using Matrix = Multigrid::Matrix;
 using Vector = Multigrid::Vector;
 
 /**
- * So many unknowns are factorised in place of a multigrid cycle. Of a coarse system more are, as
- * it serves more unknowns; but only as many as are factorised in a fraction of a second.
+ * Systems of up to MostUnknowns are factorised. A coarse system may be larger, as it serves more
+ * unknowns, but only so large that it needs no report of progress.
  */
 constexpr double MostUnknowns = 15000.0;
 constexpr double MostUnknownsWithoutReport = 50000.0;
 
-bool IsFactorised(double unknowns, double unknownsOfAll)
+bool IsFactorized(double unknowns, double unknownsOfAll)
 {
   return unknowns <= MostUnknownsWithoutReport &&
     unknowns * unknowns <= MostUnknowns * unknownsOfAll;
 }
 
 /**
- * Constant pieces are too stiff a model of smooth corrections, which come out too small; a factor
- * between 1 and 2 keeps the cycle definite.
+ * Over-correction: piecewise constant corrections of smooth errors come out too small. A factor
+ * between 1 and 2 keeps the cycle positive definite.
  */
 constexpr double Correction = 1.6;
 
-/** More steps than that never were needed; rounding may keep a residual from falling further. */
+/** A limit far above what is needed, in case rounding keeps the residual from falling. */
 constexpr int LargestNumberOfSteps = 500;
 
-/** Which piece each row belongs to: a row and its neighbours, where none of them is in another. */
-class Pieces
+/** Aggregates: a row and its neighbours, if none of them is in another one; then the rest. */
+class Aggregates
 {
 public:
-  Pieces(const Matrix& a, const Progress& progress)
+  Aggregates(const Matrix& a, const Progress& progress)
     : A(a)
     , Of(a.rows(), None)
   {
@@ -71,7 +71,7 @@ public:
   }
 
   const Matrix& A;
-  std::vector<Index> Of; ///< row -> piece
+  std::vector<Index> Of; ///< row -> aggregate
   Index Count = 0;
 
 private:
@@ -79,13 +79,13 @@ private:
   {
     for (Matrix::InnerIterator entry(this->A, i); entry; ++entry)
     {
-      Index& piece = this->Of[entry.index()];
-      piece = piece == None ? this->Count : piece;
+      Index& aggregate = this->Of[entry.index()];
+      aggregate = aggregate == None ? this->Count : aggregate;
     }
     ++this->Count;
   }
 
-  /** What is left joins the piece that it is bound to the most. */
+  /** Rows that are left join the neighbouring aggregate with the strongest connection. */
   void JoinStrongest()
   {
     const std::vector<Index> whole = this->Of;
@@ -104,39 +104,39 @@ private:
   }
 };
 
-/** The matrix of the pieces: sums of entries. */
-Matrix Coarsen(const Pieces& pieces, const Progress& progress)
+/** The coarse matrix: sums of the entries between aggregates. */
+Matrix Coarsen(const Aggregates& aggregates, const Progress& progress)
 {
-  const Matrix& a = pieces.A;
-  // The rows of each piece, side by side.
-  std::vector<Index> begin(static_cast<std::size_t>(pieces.Count) + 1, 0);
-  for (const Index piece : pieces.Of)
+  const Matrix& a = aggregates.A;
+  // The rows, sorted by aggregate.
+  std::vector<Index> begin(static_cast<std::size_t>(aggregates.Count) + 1, 0);
+  for (const Index aggregate : aggregates.Of)
   {
-    ++begin[piece + 1];
+    ++begin[aggregate + 1];
   }
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Index> rows(pieces.Of.size());
+  std::vector<Index> rows(aggregates.Of.size());
   std::vector<Index> next(begin.begin(), begin.end() - 1);
   for (Index i = 0; i < a.rows(); ++i)
   {
-    rows[next[pieces.Of[i]]++] = i;
+    rows[next[aggregates.Of[i]]++] = i;
   }
 
-  Matrix coarse(pieces.Count, pieces.Count);
-  std::vector<double> sums(pieces.Count, 0.0);
+  Matrix coarse(aggregates.Count, aggregates.Count);
+  std::vector<double> sums(aggregates.Count, 0.0);
   std::vector<Index> columns;
-  for (Index c = 0; c < pieces.Count; ++c)
+  for (Index c = 0; c < aggregates.Count; ++c)
   {
-    ReportStep(progress, c, pieces.Count);
+    ReportStep(progress, c, aggregates.Count);
     columns.assign(1, c);
     for (Index k = begin[c]; k < begin[c + 1]; ++k)
     {
       for (Matrix::InnerIterator entry(a, rows[k]); entry; ++entry)
       {
-        const Index column = pieces.Of[entry.index()];
+        const Index column = aggregates.Of[entry.index()];
         if (sums[column] == 0.0 && column != c)
         {
-          columns.push_back(column); // all entries off the diagonal are below zero
+          columns.push_back(column); // its sum stays below zero from now on
         }
         sums[column] += entry.value();
       }
@@ -157,26 +157,26 @@ Matrix Coarsen(const Pieces& pieces, const Progress& progress)
 Multigrid::Multigrid(Matrix matrix, const Progress& progress)
 {
   const double size = static_cast<double>(matrix.rows());
-  // How many levels there will be is not known; that the work goes on is told.
+  // The number of levels is not known, so this reports without advancing.
   const Progress here = Part(progress, 0.0, 0.0);
   this->Levels.push_back({ std::move(matrix), {} });
-  while (!IsFactorised(static_cast<double>(this->Levels.back().A.rows()), size))
+  while (!IsFactorized(static_cast<double>(this->Levels.back().A.rows()), size))
   {
     Level& fine = this->Levels.back();
-    Pieces pieces(fine.A, here);
-    if (pieces.Count > fine.A.rows() - fine.A.rows() / 4)
+    Aggregates aggregates(fine.A, here);
+    if (aggregates.Count > fine.A.rows() - fine.A.rows() / 4)
     {
-      break; // hardly smaller: unknowns with few neighbours, which are quickly factorised
+      break; // hardly smaller: the unknowns have few neighbours and are factorised quickly
     }
-    Matrix coarse = Coarsen(pieces, here);
-    fine.Coarse = std::move(pieces.Of);
+    Matrix coarse = Coarsen(aggregates, here);
+    fine.Coarse = std::move(aggregates.Of);
     this->Levels.push_back({ std::move(coarse), {} });
   }
   Report(progress, 0.0);
   this->Coarsest.compute(this->Levels.back().A);
 }
 
-/** Gauss and Seidel forwards, a correction on the coarser levels, and backwards. */
+/** Gauss-Seidel forwards, a correction on the coarser levels, Gauss-Seidel backwards. */
 Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& progress) const
 {
   if (level + 1 == this->Levels.size())
@@ -184,27 +184,27 @@ Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& 
     return this->Coarsest.solve(right);
   }
   const Matrix& a = this->Levels[level].A;
-  const std::vector<Index>& piece = this->Levels[level].Coarse;
+  const std::vector<Index>& aggregate = this->Levels[level].Coarse;
   const Matrix& next = this->Levels[level + 1].A;
   Report(progress, 0.0);
   Vector x = a.triangularView<Eigen::Lower>().solve(right);
   Report(progress, 0.0);
-  Vector rest = a.triangularView<Eigen::StrictlyUpper>() * x; // below zero: the residual
+  Vector rest = a.triangularView<Eigen::StrictlyUpper>() * x; // the negative residual
   Vector restOfNext = Vector::Zero(next.rows());
   for (Index i = 0; i < a.rows(); ++i)
   {
-    restOfNext[piece[i]] -= rest[i];
+    restOfNext[aggregate[i]] -= rest[i];
   }
   Vector coarse = this->Cycle(level + 1, restOfNext, progress);
   if (level + 2 < this->Levels.size())
   {
-    // A second time: what is cheap is worth being done well.
+    // A W-cycle: coarse levels are cheap.
     restOfNext -= next * coarse;
     coarse += this->Cycle(level + 1, restOfNext, progress);
   }
   for (Index i = 0; i < a.rows(); ++i)
   {
-    x[i] += Correction * coarse[piece[i]];
+    x[i] += Correction * coarse[aggregate[i]];
   }
   Report(progress, 0.0);
   rest = right;
@@ -223,7 +223,7 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
   Vector x = Vector::Zero(a.rows());
   Vector direction = x;
   Vector image = x;
-  // What a residual means for the values, the cycle tells; this is the square of that measure.
+  // The square of the residual's norm, measured by the preconditioner.
   double before = 1.0;
   double first = 0.0;
   double done = 0.0;
@@ -237,7 +237,7 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
     {
       break;
     }
-    // Errors fall by about the same factor with each step.
+    // Each step reduces the error by about the same factor.
     done = std::max(done, 0.5 * std::log(now / first) / std::log(accuracy));
     direction = preconditioned + (step == 0 ? 0.0 : now / before) * direction;
     before = now;

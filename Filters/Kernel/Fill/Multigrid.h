@@ -2,21 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Solves systems of equations of a graph: symmetric, positive definite, no entry off the diagonal
- * above zero.
+ * Solves the linear systems of graphs: symmetric, positive definite, no positive entry off the
+ * diagonal. In: the matrix and a right-hand side. Out: the solution.
  *
- * Two ways, by the size:
- *   - small systems by a sparse Cholesky factorisation, which is Eigen's;
- *   - large ones by conjugate gradients with a multigrid cycle before each step. The coarser systems
- *     are made of the matrix itself: an unknown and its neighbours become one [Vanek, Mandel,
- *     Brezina; the aggregates, not smoothed here]. The coarsest is factorised.
+ * Two methods, by size:
+ *   - small systems: Eigen's sparse Cholesky factorisation;
+ *   - large systems: conjugate gradients, preconditioned by an algebraic multigrid cycle. An
+ *     unknown and its neighbours become one unknown of the coarser system [Vanek, Mandel, Brezina;
+ *     the aggregates, not smoothed here]. The coarsest system is factorised.
  *
- * The cycle is our own, because neither VTK nor Eigen has one. A factorisation of a million unknowns
- * takes minutes without a report and hundreds of bytes each; conjugate gradients with an incomplete
- * factorisation take hundreds of steps.
+ * The cycle is our own, because neither VTK nor Eigen has one. A factorisation of large systems
+ * takes long without a report and hundreds of bytes per unknown; conjugate gradients with an
+ * incomplete factorisation take hundreds of steps.
  *
- * Cost: linear in the unknowns, at most some hundred bytes each. One thread; the same bits each
- * time.
+ * Cost: linear in the unknowns, a few hundred bytes each at most. One thread; the result is the
+ * same each time, to the bit.
  *
  * [Vanek, Mandel, Brezina] Algebraic multigrid by smoothed aggregation for second and fourth order
  * elliptic problems, 1996.
@@ -45,16 +45,15 @@ public:
 
   /**
    * @param[in] right     the right-hand side
-   * @param[in] accuracy  relative to the solution; only large systems are solved the faster the
-   *                      less accurate
+   * @param[in] accuracy  relative to the solution; low accuracy is faster for large systems only
    */
   Vector Solve(Vector right, double accuracy, const Progress& progress) const;
 
-  /** Whether the system is not factorised itself, and a solution takes a while. */
+  /** Whether the system is too large to be factorised, so that a solution takes a while. */
   bool IsLarge() const { return this->Levels.size() > 1; }
 
 private:
-  /** A matrix, and into which row of the next coarser one each of its rows goes. */
+  /** A matrix, and for each of its rows the row of the next coarser one. */
   struct Level
   {
     Matrix A;

@@ -15,13 +15,13 @@ namespace elevation
 namespace
 {
 /**
- * Cotangents are that much at most: coordinates are rounded. No weight is less than the other: in a
- * Delaunay triangulation they are not negative, but for rounding.
+ * Bounds of cotangents and of weights: coordinates are rounded. In a Delaunay triangulation weights
+ * are not negative, except by rounding.
  */
 constexpr double LargestWeight = 1e6;
 constexpr double LeastWeight = 1e-12;
 
-/** The cotangent of the angle at @a c. */
+/** The cotangent of the angle at c. */
 double Cotangent(const Point2& a, const Point2& b, const Point2& c)
 {
   const double ux = a.X - c.X;
@@ -33,12 +33,12 @@ double Cotangent(const Point2& a, const Point2& b, const Point2& c)
   return std::fabs(dot) < LargestWeight * cross ? dot / cross : std::copysign(LargestWeight, dot);
 }
 
-/** A new vertex is inside, so the half-edges that leave it lead to all its neighbours. */
-void CollectNeighbours(PatchMesh& patch, const Progress& progress)
+/** New vertices are interior: the half-edges that leave one lead to all its neighbours. */
+void CollectNeighbors(PatchMesh& patch, const Progress& progress)
 {
   const Index boundary = patch.NumberOfBoundaryVertices();
   const Index count = patch.NumberOfNewVertices();
-  std::vector<std::size_t>& offsets = patch.Neighbours.Offsets;
+  std::vector<std::size_t>& offsets = patch.Neighbors.Offsets;
   offsets.assign(static_cast<std::size_t>(count) + 1, 0);
   for (const Index vertex : patch.Triangles)
   {
@@ -48,8 +48,8 @@ void CollectNeighbours(PatchMesh& patch, const Progress& progress)
     }
   }
   std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-  patch.Neighbours.NumberOfKnown = boundary;
-  patch.Neighbours.Neighbours.resize(offsets[count]);
+  patch.Neighbors.NumberOfKnown = boundary;
+  patch.Neighbors.Neighbors.resize(offsets[count]);
   std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
   for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
   {
@@ -57,27 +57,27 @@ void CollectNeighbours(PatchMesh& patch, const Progress& progress)
     const Index vertex = patch.Triangles[h];
     if (vertex >= boundary)
     {
-      patch.Neighbours.Neighbours[next[vertex - boundary]++] =
+      patch.Neighbors.Neighbors[next[vertex - boundary]++] =
         patch.Triangles[static_cast<std::size_t>(Mesh::Next(static_cast<Index>(h)))];
     }
   }
 }
 
 /**
- * The weight of an edge is half the sum of the cotangents of the two angles that face it. Each
- * half-edge gives its own to both ends.
+ * The weight of an edge is half the sum of the cotangents of the two opposite angles. Each
+ * half-edge adds its share at both ends.
  */
-void WeighNeighbours(PatchMesh& patch, const Progress& progress)
+void WeighNeighbors(PatchMesh& patch, const Progress& progress)
 {
   const Index boundary = patch.NumberOfBoundaryVertices();
-  const std::vector<Index>& neighbours = patch.Neighbours.Neighbours;
-  std::vector<double>& weights = patch.Neighbours.Weights;
-  weights.assign(neighbours.size(), 0.0);
+  const std::vector<Index>& neighbors = patch.Neighbors.Neighbors;
+  std::vector<double>& weights = patch.Neighbors.Weights;
+  weights.assign(neighbors.size(), 0.0);
   const auto add = [&](Index from, Index to, double weight) {
     if (from >= boundary)
     {
-      std::size_t k = patch.Neighbours.Offsets[from - boundary];
-      while (neighbours[k] != to)
+      std::size_t k = patch.Neighbors.Offsets[from - boundary];
+      while (neighbors[k] != to)
       {
         ++k;
       }
@@ -104,14 +104,14 @@ void WeighNeighbours(PatchMesh& patch, const Progress& progress)
   }
 }
 
-/** New vertices by their number of edges from the boundary, each with where it was reached from. */
+/** A breadth-first search from the boundary. */
 void FindLayers(PatchMesh& patch, const Progress& progress)
 {
   constexpr Index unknown = std::numeric_limits<Index>::max();
   const Index boundary = patch.NumberOfBoundaryVertices();
   const Index count = patch.NumberOfNewVertices();
-  const std::vector<std::size_t>& offsets = patch.Neighbours.Offsets;
-  const std::vector<Index>& neighbours = patch.Neighbours.Neighbours;
+  const std::vector<std::size_t>& offsets = patch.Neighbors.Offsets;
+  const std::vector<Index>& neighbors = patch.Neighbors.Neighbors;
   patch.Layers.assign(count, unknown);
   patch.Outward.assign(count, None);
   patch.Order.reserve(count);
@@ -122,8 +122,8 @@ void FindLayers(PatchMesh& patch, const Progress& progress)
   };
   for (Index i = 0; i < count; ++i)
   {
-    const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(offsets[i + 1]);
-    const auto first = std::find_if(neighbours.begin() + static_cast<std::ptrdiff_t>(offsets[i]),
+    const auto end = neighbors.begin() + static_cast<std::ptrdiff_t>(offsets[i + 1]);
+    const auto first = std::find_if(neighbors.begin() + static_cast<std::ptrdiff_t>(offsets[i]),
       end, [boundary](Index other) { return other < boundary; });
     if (first != end)
     {
@@ -136,7 +136,7 @@ void FindLayers(PatchMesh& patch, const Progress& progress)
     const Index i = patch.Order[k] - boundary;
     for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
     {
-      const Index other = neighbours[j] - boundary;
+      const Index other = neighbors[j] - boundary;
       if (other >= 0 && patch.Layers[other] == unknown)
       {
         reach(other, patch.Layers[i] + 1, boundary + i);
@@ -144,7 +144,11 @@ void FindLayers(PatchMesh& patch, const Progress& progress)
     }
   }
 }
-/** The boundary vertices as a balanced k-d tree in place: the middle of a range is its root. */
+
+/**
+ * The boundary vertices as a balanced k-d tree in place: the middle of a range is its root. They
+ * lie along lines in varying density, so most cells of a grid would be empty and some crowded.
+ */
 class NearestBoundary
 {
 public:
@@ -159,7 +163,7 @@ public:
     this->Build(0, this->Tree.size(), true);
   }
 
-  /** The nearest vertex to @a p. @param guess  any vertex; a near one makes it fast */
+  /** The vertex nearest to p. @param guess  any vertex; a near one makes it fast */
   Index Find(const Point2& p, Index guess)
   {
     this->P = p;
@@ -226,10 +230,10 @@ private:
 };
 } // namespace
 
-void Arrange(PatchMesh& patch, const Progress& progress)
+void FindNeighbors(PatchMesh& patch, const Progress& progress)
 {
-  CollectNeighbours(patch, Part(progress, 0.0, 0.5));
-  WeighNeighbours(patch, Part(progress, 0.5, 0.7));
+  CollectNeighbors(patch, Part(progress, 0.0, 0.5));
+  WeighNeighbors(patch, Part(progress, 0.5, 0.7));
   FindLayers(patch, Part(progress, 0.7, 1.0));
 }
 
@@ -244,9 +248,9 @@ void FindNearest(PatchMesh& patch, const Progress& progress)
   patch.Nearest.resize(patch.NumberOfNewVertices());
   for (std::size_t k = 0; k < patch.Order.size(); ++k)
   {
-    // In the middle of a round hole much of the boundary is about equally near.
+    // Reports often: in the middle of a round hole, much of the boundary is about equally near.
     ReportStep(progress, k, patch.Order.size(), 1024);
-    // What is nearest to a neighbour is not far.
+    // The nearest vertex of a neighbour is a good guess.
     const Index vertex = patch.Order[k];
     const Index outward = patch.Outward[vertex - first];
     patch.Nearest[vertex - first] =

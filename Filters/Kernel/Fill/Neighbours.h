@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What surrounds the new vertices of a patch: neighbours and their weights, layers from the boundary
- * inwards, the nearest vertex of the boundary. Linear, but for the search of the nearest, which takes
- * the logarithm of the boundary for each.
+ * The surroundings of the new vertices of a patch: neighbours and their weights, layers from the
+ * boundary inwards, the nearest vertex of the boundary.
+ *
+ * In and out: a patch with its triangles. Cost: linear; the nearest boundary vertex, by a k-d tree,
+ * log b each for b boundary vertices.
  */
 #ifndef elevation_Fill_Neighbours_h
 #define elevation_Fill_Neighbours_h
@@ -14,10 +16,10 @@
 namespace elevation
 {
 
-/** Finds Neighbours, Layers, Outward and Order. */
-void Arrange(PatchMesh& patch, const Progress& progress = Progress());
+/** Finds Neighbors, Layers, Outward and Order. */
+void FindNeighbors(PatchMesh& patch, const Progress& progress = Progress());
 
-/** Finds Nearest; the patch is arranged. */
+/** Finds Nearest; call after FindNeighbors(). */
 void FindNearest(PatchMesh& patch, const Progress& progress = Progress());
 
 } // namespace elevation

@@ -15,45 +15,43 @@ namespace elevation
 
 namespace
 {
-/** Least distance of points from the boundary when they are placed: in spacings, and in steps. */
+/** Least distance of points from the boundary in pass 1: in spacings, and in lattice steps. */
 constexpr double Clearance = 0.6;
 constexpr double ClearanceOfNodes = 0.4;
 
 /**
- * Least distance of points from the boundary and from each other when they refine, in spacings. On
- * rims of unequal edges 0.5 left twice as many small angles, and many more long edges; less than
- * 0.3 gains nothing.
+ * Least distance of points from the boundary and each other in refinement, in spacings. For rims
+ * with unequal edges, 0.5 leaves twice as many small angles and many more long edges; less than 0.3
+ * gains nothing.
  */
 constexpr double ClearanceWhenRefining = 0.3;
 
-/** Longest edge, in spacings. */
-constexpr double LongestEdge = 1.6;
+constexpr double LongestEdge = 1.6; // of interior ones, in spacings
 
-/** The square of twice the sine of 20 degrees: of the shortest edge to the radius, at least. */
+/** Least squared ratio of shortest edge to circumradius: (2 sin 20 degrees)^2. */
 constexpr double LeastEdgeToRadius = 0.46791111376204392;
 
-/** Height of an equilateral triangle: the distance of rows, in spacings. */
+/** The distance of rows in spacings: the height of an equilateral triangle. */
 constexpr double RowHeight = 0.86602540378443864676;
 
-/** Edges of the boundary of which the mean length is the spacing there. */
+/** The spacing at the boundary is the mean length of this many edges. */
 constexpr Index EdgesAround = 8;
 
-/** Where such spacings differ more than that, points are graded. */
+/** If spacings at the boundary differ more than this, points are graded. */
 constexpr double LargestRatioOfSpacings = 3.0;
 
-/** How much the spacing grows with the distance. */
-constexpr double Growth = 0.2;
+constexpr double Growth = 0.2; // of the spacing, per distance
 
 /**
- * The typical triangle on a lattice, in cells, from which on its nodes are too many. It is half a
- * cell where all nodes are there, and one and a half where a quarter of them is.
+ * Largest median triangle, in cells, for which the nodes are used. It is half a cell where the
+ * surface has all nodes, and one and a half where it has a quarter of them.
  */
 constexpr double LargestCellsPerTriangle = 1.75;
 
-/** Below this many steps of the coordinates, rounding would push points onto each other. */
+/** For smaller spacings, in units of precision, rounding would push points onto each other. */
 constexpr double LeastStepsPerSpacing = 4.0;
 
-/** The node nearest to a point; false when it is farther than the tolerance. */
+/** Finds the node nearest to a point. @return false if it is farther than the tolerance */
 bool FindNode(const Lattice& lattice, const Point2& p, Point2& node)
 {
   const double x = p.X - lattice.Origin.X;
@@ -66,8 +64,7 @@ bool FindNode(const Lattice& lattice, const Point2& p, Point2& node)
     std::fabs(node.X) < largest && std::fabs(node.Y) < largest;
 }
 
-/** A stretch of a row that is too near to a boundary edge; the edge crosses the row within it or
- * not. */
+/** A stretch of a row too near to a boundary edge, and whether the edge crosses the row. */
 struct Blocked
 {
   Index Row;
@@ -76,7 +73,7 @@ struct Blocked
   bool Crosses;
 };
 
-/** Rows of points: the point k of a row is at x = (k + shift) Step, y = row RowHeight. */
+/** Rows of points: point k of a row is at x = (k + shift) Step, y = row RowHeight. */
 struct Rows
 {
   double Step;
@@ -85,7 +82,7 @@ struct Rows
   double Clearance;
 };
 
-/** The stretch of a row that is nearer to an edge from @a a up to @a b than the clearance. */
+/** The stretch of a row within the clearance of an edge from a up to b. */
 Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
 {
   const double clearance = rows.Clearance;
@@ -99,7 +96,7 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
     stretch.Begin = std::min(stretch.Begin, begin);
     stretch.End = std::max(stretch.End, end);
   };
-  // The discs around both ends ...
+  // The discs around both ends.
   for (const Point2& p : { a, b })
   {
     const double square = clearance * clearance - (y - p.Y) * (y - p.Y);
@@ -108,7 +105,7 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
       include(p.X - std::sqrt(square), p.X + std::sqrt(square));
     }
   }
-  // ... and the strip between them: its two sides, where the row cuts them.
+  // The strip between them: its two sides, where the row cuts them.
   for (double side : { -clearance, clearance })
   {
     const double ay = a.Y + side * ux;
@@ -138,7 +135,7 @@ std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& poin
     const double to = std::floor((b.Y + rows.Clearance) / rows.RowHeight);
     for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
     {
-      // A long edge at a small spacing comes near to many rows.
+      // With a small spacing, a long edge is near many rows.
       if (++visited % 16384 == 0)
       {
         Report(blocking, static_cast<double>(i) / static_cast<double>(edges.size()));
@@ -160,10 +157,9 @@ std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& poin
 }
 
 /**
- * Visits the points of rows that are inside the boundary and not nearer to it than the clearance.
- * Each boundary edge blocks, in every row it comes near to, the stretch that is nearer than the
- * clearance. Between blocked stretches a row is wholly inside the hole or wholly outside, which
- * the number of crossings on its left tells.
+ * Visits the points of rows that are inside the boundary, by at least the clearance. Each boundary
+ * edge blocks the stretches of rows within the clearance. Between blocked stretches a row is
+ * entirely inside the hole or outside, by the parity of the crossings on the left.
  * @param[in] points    of the boundary, in the coordinates of the rows
  * @param[in] visit     visit(row, k), row after row
  */
@@ -213,10 +209,10 @@ Error BelowPrecision(double spacing)
   return Error(text.str());
 }
 
-/** The lattice's nodes inside. */
+/** Places the lattice's nodes inside. */
 void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
-  // Nodes are counted from one at the boundary, so that their numbers are small.
+  // Nodes are counted from one on the boundary, so that their numbers are small.
   Point2 first;
   FindNode(plan.Steps, patch.At(0), first);
   std::vector<Point2> boundary(patch.NumberOfBoundaryVertices());
@@ -238,7 +234,7 @@ void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
     });
 }
 
-/** Rows one spacing apart; one point is in the centre of the hole's bounding box. */
+/** Places rows of points; one point is at the centre of the hole's bounding box. */
 void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
   Point2 low = patch.At(0);
@@ -249,11 +245,11 @@ void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
     low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
     high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
   }
-  const Point2 centre{ low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
+  const Point2 center{ low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
   std::vector<Point2> boundary(patch.NumberOfBoundaryVertices());
   for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
   {
-    boundary[v] = { patch.At(v).X - centre.X, patch.At(v).Y - centre.Y };
+    boundary[v] = { patch.At(v).X - center.X, patch.At(v).Y - center.Y };
   }
   const double d = plan.Spacing;
   VisitRows({ d, RowHeight * d, 0.5, Clearance * d }, boundary, patch.Edges, progress,
@@ -262,14 +258,14 @@ void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
       {
         throw BelowPrecision(d);
       }
-      const Point2 p = plan.Rounded({ centre.X + x * d, centre.Y + row * (RowHeight * d) });
+      const Point2 p = plan.Rounded({ center.X + x * d, center.Y + row * (RowHeight * d) });
       patch.Points.insert(patch.Points.end(), { p.X, p.Y, 0.0 });
     });
 }
 
 /**
- * One a triangle: 1 inside the hole, else 0. The triangulation covers the convex hull. Across an edge
- * of the boundary, and nowhere else, one goes from the hole to outside it or back.
+ * One flag per triangle: 1 inside the hole, else 0. The triangulation covers the convex hull. Only
+ * crossing a boundary edge leads from inside to outside or back.
  */
 std::vector<char> FindInside(
   const Mesh& mesh, const std::vector<char>& constrained, const Progress& progress)
@@ -303,7 +299,7 @@ std::vector<char> FindInside(
   return isInside;
 }
 
-/** Triangles inside move together, each to the place that the ones before it leave. */
+/** Removes the triangles outside; the others move up. */
 void KeepInside(const std::vector<char>& isInside, Mesh& mesh)
 {
   std::vector<Index> placeOf(isInside.size(), None);
@@ -326,7 +322,7 @@ void KeepInside(const std::vector<char>& isInside, Mesh& mesh)
   mesh.Twins.resize(3 * static_cast<std::size_t>(count));
 }
 
-/** The triangles between boundary and new points inside the hole, as a mesh with Twins. */
+/** The triangles of boundary and new points inside the hole, as a mesh with Twins. */
 Mesh Connect(const Patch& patch, int threads, const Progress& progress)
 {
   PointView view;
@@ -354,7 +350,7 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   return mesh;
 }
 
-/** Puts points into a patch until no triangle is to be refined. Borders of the mesh stay. */
+/** Inserts points into a patch until no triangle needs refinement. Borders of the mesh stay. */
 class Refinement
 {
 public:
@@ -386,9 +382,9 @@ public:
     {
       queue[t] = t;
     }
-    // What is queued again comes after all that is: the largest triangles are cut first.
+    // Round by round: new triangles wait until all older ones, which are larger, have been cut.
     std::vector<Index> next;
-    // Of points that have been placed before, most triangles are good: one pass is nearly all.
+    // With points from pass 1, most triangles are good, and the first round is nearly all the work.
     const double first = this->Spacings.empty() ? static_cast<double>(queue.size()) : 0.0;
     double steps = 0.0;
     while (!queue.empty())
@@ -416,7 +412,7 @@ public:
   }
 
 private:
-  // Squares of lengths are in units of the plan's spacing, so that no product leaves the range.
+  // Squares of lengths are in units of the plan's spacing, so that no product overflows.
   double Square(const Point2& p, const Point2& q) const
   {
     const double x = (q.X - p.X) * this->Unit;
@@ -429,7 +425,7 @@ private:
   {
     Index Base = None; ///< the longest edge
     double Longest = -1.0;
-    double LongestInside = 0.0; ///< that is no edge of the boundary
+    double LongestInside = 0.0; ///< of interior edges
     double Shortest = std::numeric_limits<double>::infinity();
   };
 
@@ -452,12 +448,12 @@ private:
     return lengths;
   }
 
-  /** Puts a point into the centre of a triangle's circle, if it is to be refined and can be. */
+  /** Inserts a point at the circumcentre of a triangle, if it needs refinement and allows it. */
   bool Refine(Index t)
   {
     const Mesh& mesh = this->Patch;
     const Lengths lengths = this->Measure(t);
-    // From the apex over the longest edge, where the centre is always seen from.
+    // From the apex opposite the longest edge: no other edge is between it and the circumcentre.
     const Index corners[3] = { mesh.Apex(lengths.Base), mesh.Origin(lengths.Base),
       mesh.Destination(lengths.Base) };
     const Point2& q = mesh.PointOf(corners[0]);
@@ -468,11 +464,11 @@ private:
     const double uu = u.X * u.X + u.Y * u.Y;
     const double vv = v.X * v.X + v.Y * v.Y;
     const double twice = 2.0 * (u.X * v.Y - u.Y * v.X);
-    const Point2 centre{ (v.Y * uu - u.Y * vv) / twice, (u.X * vv - v.X * uu) / twice };
-    const double square = centre.X * centre.X + centre.Y * centre.Y;
+    const Point2 center{ (v.Y * uu - u.Y * vv) / twice, (u.X * vv - v.X * uu) / twice };
+    const double square = center.X * center.X + center.Y * center.Y;
     if (!(square < std::numeric_limits<double>::infinity()))
     {
-      return false; // as good as flat: the centre is far outside
+      return false; // nearly flat: the circumcentre is far outside
     }
     double spacing = 1.0;
     double mean = 1.0;
@@ -493,15 +489,15 @@ private:
       return false;
     }
     const Point2 p = this->Plan.Rounded(
-      { q.X + centre.X * this->Plan.Spacing, q.Y + centre.Y * this->Plan.Spacing });
+      { q.X + center.X * this->Plan.Spacing, q.Y + center.Y * this->Plan.Spacing });
     const Index place = this->Locate(lengths.Base, p);
     return place != None && !this->IsNearBorder(place, p, clearance * clearance) &&
       this->Insert(place, p, spacing);
   }
 
   /**
-   * The triangle that holds a point, on the straight way from the apex of a half-edge, through this
-   * edge; None where a border is crossed, or rounding leads astray.
+   * The triangle that contains a point, by a straight walk from the apex of a half-edge through
+   * this edge; None if a border is crossed, or rounding misleads the walk.
    */
   Index Locate(Index h, const Point2& p) const
   {
@@ -514,7 +510,7 @@ private:
       {
         return None;
       }
-      // The origin of h is on the right of the way, its destination on the left.
+      // The origin of h is on the right of the walk, its destination on the left.
       const Index twin = mesh.Twin(h);
       h = Orientation(from, p, mesh.PointOf(mesh.Apex(twin))) == Negative ? Mesh::Previous(twin)
                                                                           : Mesh::Next(twin);
@@ -532,9 +528,9 @@ private:
   }
 
   /**
-   * Whether a border is nearer to a point in a triangle. Vertices are not (the point is the
-   * centre of an empty circle that is larger), so each edge that is near is reached in one way.
-   * Rounding might bring a vertex nearer; so many edges are not looked at.
+   * Whether the square distance from a point in a triangle to a border is below a limit. No vertex
+   * is that near, as the point is the centre of a larger empty circle, so each edge that near is
+   * reached on one path only. By rounding a vertex might be: mostEdges is a limit for that case.
    */
   bool IsNearBorder(Index t, const Point2& p, double square)
   {
@@ -574,7 +570,7 @@ private:
     return away.X * away.X + away.Y * away.Y;
   }
 
-  /** Puts a point into a triangle or onto an edge of it, and flips edges until all is Delaunay. */
+  /** Inserts a point in a triangle or on an edge of it, and flips edges until all are Delaunay. */
   bool Insert(Index t, const Point2& p, double spacing)
   {
     Mesh& mesh = this->Patch;
@@ -590,7 +586,7 @@ private:
     }
     if (edges > 1 || (on != None && mesh.IsBorder(on)))
     {
-      return false; // it falls on a vertex by rounding
+      return false; // by rounding it is on a vertex or the border
     }
     const Index vertex = mesh.NumberOfPoints();
     mesh.Points.push_back(p);
@@ -620,8 +616,8 @@ private:
   }
 
   /**
-   * The triangles from a vertex in a triangle, or on an edge of it, to the polygon around. They have
-   * the vertex as their third; their first half-edges are those of the polygon.
+   * Replaces a triangle, or the two at an edge, by triangles from the vertex to the polygon around.
+   * The vertex is their third corner; their first half-edges are those of the polygon.
    */
   void Split(Index t, Index on, Index vertex)
   {
@@ -675,7 +671,7 @@ private:
     }
   }
 
-  /** As everywhere: of co-circular points the lowest is on all edges between them. */
+  /** Delaunay, and of cocircular points the lowest is on all edges between them, as everywhere. */
   bool IsToFlip(Index h) const
   {
     const Mesh& mesh = this->Patch;
@@ -688,7 +684,7 @@ private:
       (side == Zero && IsLower(IsLower(p, q) ? p : q, IsLower(from, to) ? from : to));
   }
 
-  /** Edge h of the polygon gives way to the apex behind it, which becomes a corner. */
+  /** Flips edge h of the polygon: the apex behind it becomes a corner of the polygon. */
   void Flip(Index h)
   {
     Mesh& mesh = this->Patch;
@@ -717,13 +713,13 @@ private:
   const Index BoundaryVertices;
   const double Unit;
   std::vector<double> Spacings; ///< at the vertices, in units; empty: 1
-  double Largest = 0.0;         ///< of them
+  double Largest = 0.0;         ///< of these spacings
   std::vector<Index> Stack;
   std::vector<Index> Star; ///< triangles around the last point that was inserted
 };
 
 /** The median area of the surface's triangles at the vertices of a hole's boundary. */
-double TypicalTriangle(const Mesh& mesh, const Holes& holes, Index hole)
+double MedianTriangleArea(const Mesh& mesh, const Holes& holes, Index hole)
 {
   std::vector<double> areas;
   holes.VisitEdges(hole, [&](Index h) {
@@ -740,7 +736,7 @@ double TypicalTriangle(const Mesh& mesh, const Holes& holes, Index hole)
   return *middle;
 }
 
-/** At the origin of each edge, the mean of the edges before and behind it on its walk. */
+/** At the origin of each edge, the mean length of the edges before and after it on its walk. */
 std::vector<double> SpacingsAlong(
   const Holes& holes, Index hole, const std::vector<double>& lengths)
 {
@@ -788,11 +784,11 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   {
     return plan;
   }
-  // In holes of a few points refinement may need one more.
+  // Holes for only a few points may need one more for refinement.
   constexpr double morePerEdge = 0.125;
   plan.MostPoints += morePerEdge * edges;
   if (isOnLattice &&
-    TypicalTriangle(mesh, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
+    MedianTriangleArea(mesh, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
   {
     plan.Kind = Arrangement::Nodes;
     plan.Steps = *lattice;
@@ -804,7 +800,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
   if (*range.second > LargestRatioOfSpacings * *range.first)
   {
-    // Where the boundary is finer than on average there are more points near it.
+    // More points are near parts of the boundary that are finer than average.
     constexpr double morePerEdgeWhenGraded = 8.0;
     plan.Kind = Arrangement::Graded;
     plan.MostPoints += morePerEdgeWhenGraded * edges;
@@ -840,7 +836,7 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
   patch.Points.reserve(3 * ids.size());
   for (const Index id : ids)
   {
-    // The elevation is not looked at; one that is no number would not be triangulated.
+    // The elevation is not used here; a NaN would keep the point from being triangulated.
     patch.Points.insert(patch.Points.end(), { mesh.PointOf(id).X, mesh.PointOf(id).Y, 0.0 });
   }
   return patch;

@@ -13,15 +13,15 @@ namespace elevation
 
 namespace
 {
-/** Centres whose spread across a line is less than this share of that along it are in line. */
+/** Centres are in a line if their spread across it is below this fraction of that along it. */
 constexpr double LeastSpread = 1e-7;
 
-/** A pivot of less than this share of the largest entry is rounding. */
+/** A pivot below this fraction of the largest entry is rounding. */
 constexpr double LeastPivot = 1e-14;
 
 /**
- * x log x, for x = 0 or normal numbers, right to about 15 digits. Branchless and without a call, so
- * that loops over it become wide instructions; and the same on every system.
+ * x log x for 0 or normal numbers, to about 15 digits. Without branches or calls, so that loops
+ * over it are vectorized; and the same on every system.
  */
 inline double TimesLog(double x)
 {
@@ -34,7 +34,7 @@ inline double TimesLog(double x)
   bits -= (shifted - 1024) << 52;
   double m;
   std::memcpy(&m, &bits, sizeof m);
-  // A whole number below 2^52 in the last places of 2^52 is that number plus 2^52.
+  // With an integer below 2^52 as its mantissa, the double 2^52 becomes 2^52 plus that integer.
   std::uint64_t number = shifted | 0x4330000000000000u;
   double e;
   std::memcpy(&e, &number, sizeof e);
@@ -54,7 +54,7 @@ inline double TimesLog(double x)
   return x * (e * 0.693147180559945309417 + 2.0 * f * series);
 }
 
-/** out[i] += weight f(distance of (x, y) from point i). Half of r^2 log r^2 is r^2 log r. */
+/** out[i] += weight f(distance of (x, y) from point i), with f = r^2 log r = 1/2 r^2 log r^2. */
 void AddThinPlate(
   double x, double y, double weight, const double* px, const double* py, std::size_t n, double* out)
 {
@@ -92,9 +92,9 @@ void AddKernel(Spline::Kernel kernel, double x, double y, double weight, const d
 }
 } // namespace
 
-bool Spline::Prepare(const std::vector<Point2>& centres, Kernel kernel)
+bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
 {
-  const Eigen::Index n = static_cast<Eigen::Index>(centres.size());
+  const Eigen::Index n = static_cast<Eigen::Index>(centers.size());
   if (n < 3)
   {
     return false;
@@ -105,7 +105,7 @@ bool Spline::Prepare(const std::vector<Point2>& centres, Kernel kernel)
   Matrix plane(n, 3);
   for (Eigen::Index i = 0; i < n; ++i)
   {
-    plane.row(i) << 1.0, this->X[i] = centres[i].X, this->Y[i] = centres[i].Y;
+    plane.row(i) << 1.0, this->X[i] = centers[i].X, this->Y[i] = centers[i].Y;
   }
   this->Plane.compute(plane);
   const auto spread = this->Plane.matrixQR().diagonal().cwiseAbs();
@@ -115,7 +115,7 @@ bool Spline::Prepare(const std::vector<Point2>& centres, Kernel kernel)
     return false;
   }
 
-  // Of the matrix and its images the part below the diagonal is enough.
+  // The lower triangle of the symmetric matrix is enough.
   Matrix& a = this->Factor;
   a.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i)

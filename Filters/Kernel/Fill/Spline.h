@@ -6,16 +6,16 @@
  *
  *   s(p) = sum_j w_j f(|p - c_j|) + a + b x + c y,   sum w_j = sum w_j x_j = sum w_j y_j = 0
  *
- * through the values at the centres c_j [Duchon]. f(r) = r^2 log r gives the thin plate, the
- * surface that bends the least; f(r) = r^3 a smoother one. Both continue planes exactly, and do not
+ * through the values at the centres c_j [Duchon]. f(r) = r^2 log r gives the thin plate, which
+ * bends least; f(r) = r^3 gives a smoother surface. Both reproduce planes exactly, and do not
  * depend on the unit of length or the direction of the axes.
  *
- * The conditions are met by a change of basis (Householder's reflections that make a triangle of
- * 1, x, y), in which the matrix is positive definite. Reflections and Cholesky's factor are Eigen's. The
- * factor is made once,
- * and each set of values then takes n^2 steps.
+ * The side conditions are met by a change of basis, the Householder reflections of the QR
+ * factorisation of the columns 1, x, y. In this basis the matrix is positive definite.
+ * QR and Cholesky factorisation are Eigen's.
  *
- * Cost: n^3 / 6 multiplications to set up, n for each value; n^2 numbers.
+ * Cost, for n centres: n^3 / 6 multiplications to set up, n^2 for each set of values, n for each
+ * point; n^2 numbers in memory.
  *
  * [Duchon] Splines minimizing rotation-invariant semi-norms in Sobolev spaces, 1977.
  */
@@ -42,22 +42,22 @@ public:
     Cubic
   };
 
-  /** The weights of the centres, and behind them a, b and c of the plane. */
+  /** The weights of the centres, then a, b and c of the plane. */
   using Weights = std::vector<double>;
 
   /**
-   * @param[in] centres  coordinates of size about 1 around the origin, apart from each other
-   * @return false when they do not determine a surface: fewer than three, or nearly in a line
+   * @param[in] centers  distinct, around the origin, with coordinates of size about 1
+   * @return false if they do not determine a surface: fewer than three, or nearly in a line
    */
-  bool Prepare(const std::vector<Point2>& centres, Kernel kernel);
+  bool Prepare(const std::vector<Point2>& centers, Kernel kernel);
 
-  /** @param[in] values  one for each centre */
+  /** @param[in] values  one per centre */
   Weights Interpolate(const std::vector<double>& values) const;
 
-  /** Adds the surface's values at @a count points to @a values. */
+  /** Adds the spline's values at count points to values. */
   void Add(const Weights& weights, const Point2* points, std::size_t count, double* values) const;
 
-  Index NumberOfCentres() const { return static_cast<Index>(this->X.size()); }
+  Index NumberOfCenters() const { return static_cast<Index>(this->X.size()); }
 
 private:
   using Matrix = Eigen::MatrixXd;
@@ -66,7 +66,7 @@ private:
   std::vector<double> X;
   std::vector<double> Y;
   Eigen::HouseholderQR<Matrix> Plane; ///< of the columns 1, x, y
-  /** Below the diagonal: of the reflected matrix three columns, of the rest Cholesky's factor. */
+  /** Lower triangle: three columns of the transformed matrix, then the rest's Cholesky factor. */
   Matrix Factor;
 };
 

@@ -38,7 +38,7 @@ TEST(Fill, ClosesAHoleOfOneTriangle)
   EXPECT_NEAR(run.Patches.Reports[0].Perimeter, 2.0 + std::sqrt(2.0), 1e-15);
 }
 
-TEST(Fill, PutsTheMissingPointIntoTheCentre)
+TEST(Fill, PutsTheMissingPointIntoTheCenter)
 {
   const Outcome run = Fill(Draw({ "####", "#  #", "#  #", "####" }));
   ExpectPatchesFit(run);
@@ -173,7 +173,7 @@ TEST(Fill, KeepsEdgesLongerThanTheSpacing)
   ExpectPatchesFit(run, 1e-13);
 }
 
-TEST(Fill, TakesTheMeanOfTheKnownNeighbours)
+TEST(Fill, TakesTheMeanOfTheKnownNeighbors)
 {
   FillOptions options;
   options.Method = Interpolation::NeighborMean;
@@ -182,17 +182,17 @@ TEST(Fill, TakesTheMeanOfTheKnownNeighbours)
   ASSERT_EQ(run.Patches.NumberOfPoints(), 1);
   const Mesh patch = run.Patch();
   double sum = 0.0;
-  int neighbours = 0;
+  int neighbors = 0;
   for (Index h = 0; h < patch.NumberOfHalfEdges(); ++h)
   {
     if (patch.Origin(h) == run.Surface.NumberOfPoints())
     {
       sum += run.ElevationOf(patch.Destination(h));
-      ++neighbours;
+      ++neighbors;
     }
   }
-  EXPECT_GE(neighbours, 4);
-  EXPECT_NEAR(run.Patches.Points[2], sum / neighbours, 1e-12);
+  EXPECT_GE(neighbors, 4);
+  EXPECT_NEAR(run.Patches.Points[2], sum / neighbors, 1e-12);
 }
 
 TEST(Fill, GoesInwardLayerByLayer)

@@ -192,7 +192,7 @@ TEST(Heights, DoNotDependOnWhereTheOriginIs)
   }
 }
 
-TEST(Heights, OfTheMembraneAreMeansOfTheirNeighbours)
+TEST(Heights, OfTheMembraneAreMeansOfTheirNeighbors)
 {
   const Elevation hills = [](const Point2& p) { return std::sin(0.3 * p.X) * std::cos(0.2 * p.Y); };
   for (const double radius : { 2.0, 9.0, 30.0, 110.0 }) // the last one by multigrid
@@ -479,11 +479,11 @@ int DepthOf(const Outcome& run)
 double SlopeOver(int rings, const Outcome& run)
 {
   const Mesh& mesh = run.Surface;
-  std::vector<std::set<Index>> neighbours(mesh.NumberOfPoints());
+  std::vector<std::set<Index>> neighbors(mesh.NumberOfPoints());
   for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
-    neighbours[mesh.Origin(h)].insert(mesh.Destination(h));
-    neighbours[mesh.Destination(h)].insert(mesh.Origin(h));
+    neighbors[mesh.Origin(h)].insert(mesh.Destination(h));
+    neighbors[mesh.Destination(h)].insert(mesh.Origin(h));
   }
   std::map<Index, Index> from; // each point to that of the boundary
   std::set<Index> last;
@@ -500,7 +500,7 @@ double SlopeOver(int rings, const Outcome& run)
     std::set<Index> next;
     for (const Index id : last)
     {
-      for (const Index other : neighbours[id])
+      for (const Index other : neighbors[id])
       {
         if (from.count(other) == 0)
         {
@@ -595,7 +595,7 @@ TEST(Heights, MeetALongRim)
   EXPECT_LT(squares, 0.4 * all);
 }
 
-TEST(Heights, OfSplinesHaveAllTheirCentresOnALongRim)
+TEST(Heights, OfSplinesHaveAllTheirCentersOnALongRim)
 {
   // Twice as many boundary points as centres. With half the centres the error near the rim is half as
   // much again, or twice as much.
@@ -660,7 +660,7 @@ TEST(Heights, FallBackToTheMembraneInALine)
   patch.Points = { 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1e-9, 0.0, 0.5, 4e-10, 0.0 };
   patch.Triangles = { 0, 1, 3, 1, 2, 3, 2, 0, 3 };
   patch.Spacing = 0.5;
-  Arrange(patch);
+  FindNeighbors(patch);
   patch.Nearest = { 2 };
   const Values values = [](Index id) { return 3.0 * id; };
   for (const Interpolation method : Smooth)
@@ -743,7 +743,7 @@ TEST(Heights, TakeValuesOfAnySize)
   }
 }
 
-TEST(Spline, GoesThroughItsCentres)
+TEST(Spline, GoesThroughItsCenters)
 {
   std::mt19937 engine(5);
   const auto random = [&] { return static_cast<double>(engine()) / 2147483648.0 - 1.0; };
@@ -751,17 +751,17 @@ TEST(Spline, GoesThroughItsCentres)
   {
     for (const int count : { 3, 4, 5, 7, 50, 201 })
     {
-      std::vector<Point2> centres;
+      std::vector<Point2> centers;
       std::vector<double> values;
       for (int i = 0; i < count; ++i)
       {
-        centres.push_back({ random(), random() });
+        centers.push_back({ random(), random() });
         values.push_back(random());
       }
       Spline spline;
-      ASSERT_TRUE(spline.Prepare(centres, kernel));
-      std::vector<double> found(centres.size(), 0.0);
-      spline.Add(spline.Interpolate(values), centres.data(), centres.size(), found.data());
+      ASSERT_TRUE(spline.Prepare(centers, kernel));
+      std::vector<double> found(centers.size(), 0.0);
+      spline.Add(spline.Interpolate(values), centers.data(), centers.size(), found.data());
       for (int i = 0; i < count; ++i)
       {
         ASSERT_NEAR(found[i], values[i], 1e-8);

@@ -28,7 +28,7 @@ struct Frame
         this->Add(x + 1 < columns ? this->Unknown(x + 1, y) : 2 * columns + rows + y);
         this->Add(y > 0 ? this->Unknown(x, y - 1) : x);
         this->Add(y + 1 < rows ? this->Unknown(x, y + 1) : columns + x);
-        this->Graph.Offsets.push_back(this->Graph.Neighbours.size());
+        this->Graph.Offsets.push_back(this->Graph.Neighbors.size());
       }
     }
   }
@@ -38,9 +38,9 @@ struct Frame
     return this->Graph.NumberOfKnown + y * this->Columns + x;
   }
 
-  void Add(Index neighbour)
+  void Add(Index neighbor)
   {
-    this->Graph.Neighbours.push_back(neighbour);
+    this->Graph.Neighbors.push_back(neighbor);
     this->Graph.Weights.push_back(1.0);
   }
 

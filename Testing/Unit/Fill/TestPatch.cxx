@@ -49,9 +49,9 @@ Mesh Cut(const std::vector<Point2>& points, const std::function<bool(const Point
   for (std::size_t t = 0; t < all.Triangles.size(); t += 3)
   {
     const Index* v = all.Triangles.data() + t;
-    const Point2 centre{ (points[v[0]].X + points[v[1]].X + points[v[2]].X) / 3.0,
+    const Point2 center{ (points[v[0]].X + points[v[1]].X + points[v[2]].X) / 3.0,
       (points[v[0]].Y + points[v[1]].Y + points[v[2]].Y) / 3.0 };
-    if (!isLost(centre))
+    if (!isLost(center))
     {
       mesh.Triangles.insert(mesh.Triangles.end(), v, v + 3);
     }

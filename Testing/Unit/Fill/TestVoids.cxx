@@ -161,17 +161,17 @@ Cloud WithVoids(const Cloud& cloud, double radius)
 {
   std::mt19937_64 random(22);
   const PointView points = cloud.View();
-  std::vector<Point2> centres;
+  std::vector<Point2> centers;
   for (int k = 0; k < 12; ++k)
   {
-    centres.push_back(points.At(static_cast<Index>(random() % cloud.Count())));
+    centers.push_back(points.At(static_cast<Index>(random() % cloud.Count())));
   }
   Cloud rest;
   for (Index i = 0; i < cloud.Count(); ++i)
   {
     const Point2 p = points.At(i);
-    if (std::none_of(centres.begin(), centres.end(), [&](const Point2& centre) {
-          return std::hypot(p.X - centre.X, p.Y - centre.Y) < radius;
+    if (std::none_of(centers.begin(), centers.end(), [&](const Point2& center) {
+          return std::hypot(p.X - center.X, p.Y - center.Y) < radius;
         }))
     {
       rest.Add(p.X, p.Y, points.Elevation(i));
