@@ -14,14 +14,14 @@ namespace
 constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr double UnitRoundoff = 1.1102230246251565e-16; // 2^-53
 
-/** What an exact comparison counts for: its cost in looks. */
+/** The cost of an exact comparison, in points looked at. */
 constexpr std::int64_t WorkOfExact = 10;
-/** So many in one search, points are on one circle or line: growing is given up at once. */
+/** With more exact comparisons in one search, points are on one circle or line: growth ends. */
 constexpr int MostExacts = 2000;
-/** So many in one search take tenths of a second without a report: growing is given up as well. */
+/** With more work in one search, there would be no report for too long: growth ends. */
 constexpr std::int64_t MostLooks = 1 << 25;
 
-/** How far around a vertex bins are looked at before the tree is, and at most how many points. */
+/** How far around a vertex bins are searched before the tree is, and at most how many points. */
 constexpr Index NearColumns = 8, NearRows = 12, MostNear = 256;
 
 double OffInterval(double x, double low, double high)
@@ -30,7 +30,7 @@ double OffInterval(double x, double low, double high)
 }
 
 #ifdef ELEVATION_HAS_AVX2
-/** Of lanes, the one with this number, if it is one. */
+/** The bit of a lane; 0 if there is no lane of this number. */
 unsigned int BitOf(Index number)
 {
   return number >= 0 && number < 32 ? 1u << number : 0u;
@@ -61,14 +61,14 @@ struct ApexSearch::Box
   }
 };
 
-/** The bins around the origin that are looked at before the tree is. */
+/** The bins around the origin that are searched before the tree is. */
 struct ApexSearch::Region
 {
   Index FirstColumn, LastColumn, FirstRow, LastRow;
-  // Bounds of bins are known to a thousandth of a bin, which also is more than the rounding of
-  // what is done with them as long as radii are less than a million bins.
+  // Bounds of bins are known to a thousandth of a bin. That also covers the rounding of
+  // computations with them, as long as radii are less than a million bins.
   double SlackX, SlackY;
-  double MostSquared; ///< of the radii
+  double MostSquared; ///< the square of the largest such radius
 };
 
 void ApexSearch::SetOrigin(Index slot, Index next)
@@ -123,7 +123,7 @@ Index ApexSearch::Find(Index b, Index end)
   {
     return this->Best;
   }
-  // From the node around the origin upwards, until it holds the disc.
+  // From the node around the origin upwards, until a node contains the disc.
   BoxTree::Step step = this->Grid.Lowest(this->Origin);
   this->LookInto(*step.Node, ~0u);
   while (!step.IsRoot() && !this->HoldsDisc(step))
@@ -146,8 +146,8 @@ Index ApexSearch::FindAnywhere(Index a, Index b)
 }
 
 /**
- * Begins a search. A disc through both ends is told by the position s of its centre, in edge
- * lengths along the edge's left normal. On the left of the edge a disc of larger s contains every
+ * Begins a search. A disc through both ends is given by the position s of its centre, in edge
+ * lengths along the edge's left normal. On the left of the edge, a disc of larger s contains every
  * disc of smaller s.
  */
 void ApexSearch::SetEdge(Index a, Index b)
@@ -165,8 +165,8 @@ void ApexSearch::SetEdge(Index a, Index b)
 }
 
 /**
- * The compactness strategy. A box of twice the edge's length around its middle is looked through,
- * then, as long as it holds no point, ever larger ones; then the box of the best point's disc.
+ * The compactness strategy. Searches a box of twice the edge's length around its middle; while it
+ * has no point, ever larger boxes; then the box of the best point's disc.
  */
 Index ApexSearch::FindByAngle()
 {
@@ -188,7 +188,7 @@ Index ApexSearch::FindByAngle()
   return this->Best;
 }
 
-/** The lowest node above the origin that has all points of a box, as far as they exist. */
+/** The lowest node above the origin that contains all points of a box. */
 const BoxTree::Node& ApexSearch::NodeAround(const Box& box) const
 {
   BoxTree::Step step = this->Grid.Lowest(this->Origin);
@@ -207,8 +207,8 @@ void ApexSearch::LookIntoBox(const Node& node, const Box& box)
   this->Budget.Spend(Node::Places);
   for (int place = 0; place < Node::Places; ++place)
   {
-    // Differences round monotonically: relative to the origin, a box still holds its points. The
-    // box of an infinite disc reaches even the empty boxes.
+    // Differences round monotonically: relative to the origin, a box still contains its points. The
+    // box of an infinite disc reaches even the empty boxes, so their First is tested.
     if (node.First[place] != None && node.LowX[place] - this->A.X <= box.HighX &&
       node.HighX[place] - this->A.X >= box.LowX && node.LowY[place] - this->A.Y <= box.HighY &&
       node.HighY[place] - this->A.Y >= box.LowY)
@@ -226,9 +226,9 @@ void ApexSearch::LookIntoBox(const Node& node, const Box& box)
 }
 
 /**
- * The bins around the origin, as far as the disc and the free side reach; fewer when these hold
- * too many points.
- * @return whether the best point is known, because its disc lies within these bins
+ * Searches the bins around the origin, as far as the disc and the left side of the edge reach;
+ * fewer if these have too many points.
+ * @return whether the best point is the apex, because its disc lies within these bins
  */
 bool ApexSearch::LookIntoBins()
 {
@@ -257,7 +257,7 @@ bool ApexSearch::LookIntoBins()
     (region.LastRow == bins.Rows - 1 || this->CenterY + radius < top);
 }
 
-/** Row after row, each as far as the disc reaches by then. */
+/** Row by row, each as far as the disc reaches by then. */
 bool ApexSearch::LookIntoRows(const Region& region)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
@@ -272,7 +272,7 @@ bool ApexSearch::LookIntoRows(const Region& region)
     {
       const double off = OffInterval(this->CenterY, low, high);
       const double halfSquared = this->RadiusSquared - off * off;
-      if (halfSquared < 0.0) // the origin is on the circle: so it is above
+      if (halfSquared < 0.0) // the row is above the disc, whose circle runs through the origin
       {
         break;
       }
@@ -297,7 +297,7 @@ bool ApexSearch::LookIntoRows(const Region& region)
   return true;
 }
 
-/** Nearly always there is one candidate; else exact comparisons decide. */
+/** Nearly always there is one candidate; otherwise exact comparisons decide. */
 Index ApexSearch::BestOf(std::uint64_t candidates)
 {
   Index best = None;
@@ -316,7 +316,7 @@ Index ApexSearch::BestOf(std::uint64_t candidates)
 /** An upper bound of s for the circle through the edge and the best point. */
 double ApexSearch::UpperPositionOfBest() const
 {
-  // s = dot / (2 cross), each with the error of its rounding.
+  // s = dot / (2 cross), each with its rounding error.
   const double dot = this->BestDot + 8.0 * UnitRoundoff * this->BestDotMagnitude;
   const double error = 8.0 * UnitRoundoff * this->BestCrossMagnitude;
   const double cross = dot > 0.0 ? this->BestCross - error : this->BestCross + error;
@@ -325,17 +325,17 @@ double ApexSearch::UpperPositionOfBest() const
   {
     return Infinity;
   }
-  // What underflow may have taken from dot is below 1e-322, hence from s below 1e-160.
+  // The error of dot by underflow is below 1e-322, hence that of s below 1e-160.
   const double position = 0.5 * dot / cross;
   return position + 8.0 * UnitRoundoff * std::fabs(position) + 1e-160;
 }
 
-/** From now on, only what the disc of position s may contain is looked at. */
+/** Restricts the search to the disc of position s. */
 void ApexSearch::SetDisc(double s)
 {
-  // The centre and the radius, relative to the origin, are wrong by at most 25 roundoffs of the
-  // radius; the distance of a box from the centre, when the box holds a point of the disc, by 8
-  // more. The square is widened by four times that, so no point inside is missed.
+  // The errors of centre and radius, relative to the origin, are at most 25 roundoffs of the
+  // radius; that of the distance from the centre to a box with a point of the disc, 8 more. The
+  // square is widened by four times that, so no point inside is missed.
   constexpr double slack = 256.0 * UnitRoundoff;
   const double radiusSquared = this->LengthSquared * (0.25 + s * s) * (1.0 + slack);
   const bool isDisc = radiusSquared < 1e280 && radiusSquared > 1e-280;
@@ -347,7 +347,7 @@ void ApexSearch::SetDisc(double s)
 /** Whether the disc, as far as it is above the origin, lies within the box of a step. */
 bool ApexSearch::HoldsDisc(const BoxTree::Step& step) const
 {
-  // The radius has been widened by more than the rounding of these differences.
+  // The radius is widened by more than the rounding of these differences.
   const double radius = std::sqrt(this->RadiusSquared);
   return this->CenterX - radius > step.LowX - this->A.X &&
     this->CenterX + radius < step.HighX - this->A.X &&
@@ -355,7 +355,7 @@ bool ApexSearch::HoldsDisc(const BoxTree::Step& step) const
 }
 
 /**
- * The children of a node at the given places (as bits) that are reached; as long as there is no
+ * Searches the children of a node at the given places (as bits) that may matter; while there is no
  * disc, those nearest to the edge first.
  */
 void ApexSearch::LookInto(const Node& node, unsigned int places)
@@ -410,7 +410,7 @@ unsigned int ApexSearch::Reached(const Node& node, double* distances) const
   unsigned int reached = 0;
   for (int place = 0; place < Node::Places; ++place)
   {
-    // Differences round monotonically: relative to the origin, a box still holds its points.
+    // Differences round monotonically: relative to the origin, a box still contains its points.
     const double highY = node.HighY[place] - this->A.Y;
     if (node.First[place] == None || !(highY >= this->Floor))
     {
@@ -424,8 +424,8 @@ unsigned int ApexSearch::Reached(const Node& node, double* distances) const
     {
       continue;
     }
-    // The greatest cross product over the box: so are products. The sum is below zero by more
-    // than its rounding only where all points are on the right.
+    // Each product, and so their sum, is the greatest over the box: the cross product. It is below
+    // zero by more than its rounding error only if all points are on the right.
     const double up = this->EdgeX * (this->EdgeX > 0.0 ? highY : lowY);
     const double across = -this->EdgeY * (this->EdgeY < 0.0 ? highX : lowX);
     if (up + across + 16.0 * UnitRoundoff * (std::fabs(up) + std::fabs(across)) < -1e-290)
@@ -441,7 +441,7 @@ unsigned int ApexSearch::Reached(const Node& node, double* distances) const
 }
 
 #ifdef ELEVATION_HAS_AVX2
-/** The same, four children at a time, operation by operation. */
+/** The same operations on four children at a time. */
 __attribute__((target("avx2"))) unsigned int ApexSearch::ReachedWide(
   const Node& node, double* distances) const
 {
@@ -489,7 +489,7 @@ __attribute__((target("avx2"))) unsigned int ApexSearch::ReachedWide(
   return reached;
 }
 
-/** Compares a stretch of slots with the best so far, but for those outside the disc. */
+/** Compares those of a range of slots that are inside the disc with the best so far. */
 __attribute__((target("avx2"))) void ApexSearch::CompareWide(Index first, Index end)
 {
   for (Index slot = first; slot < end; slot += 8)
@@ -498,7 +498,7 @@ __attribute__((target("avx2"))) void ApexSearch::CompareWide(Index first, Index 
   }
 }
 
-/** At most eight slots from this one. */
+/** The same for up to eight slots from this one on. */
 __attribute__((target("avx2"), always_inline)) inline void ApexSearch::CompareEight(
   Index slot, Index end)
 {
@@ -518,9 +518,9 @@ __attribute__((target("avx2"), always_inline)) inline void ApexSearch::CompareEi
 }
 
 /**
- * As far as the disc reaches before: so neither the rows wait for the points, nor are branches
- * taken before it is known which.
- * @return false when nothing was done, because these are too many points
+ * As LookIntoRows(), but as far as the disc reaches at the start: rows do not wait for the points
+ * of others, and branches are predictable.
+ * @return false if nothing was done, because there are too many points or there is no disc
  */
 __attribute__((target("avx2"))) bool ApexSearch::LookIntoRowsWide(const Region& region)
 {
@@ -596,7 +596,7 @@ __attribute__((target("avx2"))) bool ApexSearch::LookIntoRowsWide(const Region& 
   return true;
 }
 
-/** Which of four slots from this one are inside the disc, as bits. */
+/** Which of four slots from this one on are inside the disc, as bits. */
 __attribute__((target("avx2"), always_inline)) inline unsigned int ApexSearch::InDisc(
   Index slot) const
 {
@@ -612,7 +612,7 @@ __attribute__((target("avx2"), always_inline)) inline unsigned int ApexSearch::I
 }
 #endif
 
-/** Compares a stretch of slots with the best so far; the disc shrinks when one is better. */
+/** Compares a range of slots with the best so far; the disc shrinks if one is better. */
 void ApexSearch::Compare(Index first, Index count)
 {
   this->Budget.Spend(count);
@@ -633,10 +633,9 @@ void ApexSearch::Compare(Index first, Index count)
 }
 
 /**
- * Takes the point if it lies on the left of the edge and beats the best so far. With
- * dot = (p-a).(p-b) and cross = (b-a)x(p-a), the quotient dot / cross is the cotangent of the
- * angle under which p sees the edge: of two points, the one with the smaller quotient lies inside
- * the other's circle.
+ * Takes the point if it lies on the left of the edge and is better than the best so far. With
+ * dot = (p-a).(p-b) and cross = (b-a)x(p-a), dot / cross is the cotangent of the angle at p between
+ * a and b: of two points, the one with the smaller quotient lies inside the other's circle.
  */
 bool ApexSearch::CompareOne(Index slot)
 {
@@ -646,7 +645,7 @@ bool ApexSearch::CompareOne(Index slot)
   const double cross = left - right;
   const double crossMagnitude = std::fabs(left) + std::fabs(right);
   const double crossError = 8.0 * UnitRoundoff * crossMagnitude + 1e-290;
-  if (!(cross > crossError)) // also when it is not a number
+  if (!(cross > crossError)) // also for NaN
   {
     if (cross < -crossError || slot == this->Origin || slot == this->Target)
     {
@@ -664,9 +663,8 @@ bool ApexSearch::CompareOne(Index slot)
   if (this->Best != None)
   {
     const double difference = dot * this->BestCross - this->BestDot * cross;
-    // 10 roundoffs cover the rounding, LeastError and what the best's magnitudes have on top
-    // underflow. Where products are too large or not a number, the sign is left to the exact
-    // predicate.
+    // 10 roundoffs cover the rounding; LeastError and the excess of the best's magnitudes cover
+    // underflow. If products are too large or NaN, the exact predicate decides.
     const double error = 16.0 * UnitRoundoff *
         (dotMagnitude * this->BestCrossMagnitude + this->BestDotMagnitude * crossMagnitude) +
       this->LeastError;
@@ -684,7 +682,7 @@ bool ApexSearch::CompareOne(Index slot)
       }
     }
   }
-  // Underflow may take 1e-323 from a cross or a dot product, and either is multiplied by one of
+  // Underflow may change a cross or dot product by 1e-323, and either is multiplied by one of
   // another point, which may be huge.
   constexpr double least = 1e-300;
   this->Best = slot;
@@ -706,9 +704,9 @@ void ApexSearch::CountExact()
 }
 
 /**
- * Whether a point beats another one, exactly; of co-circular points the one that the fan of the
- * lowest vertex of their polygon asks for: that vertex itself, or the neighbour of the edge's
- * other end when the edge leaves from it.
+ * Whether a point is better than another one, exactly. Of cocircular points the better one is the
+ * lowest vertex of their polygon, which is cut into its fan; if that is an end of the edge, the
+ * neighbour of the other end.
  */
 bool ApexSearch::IsBetter(Index slot, Index other) const
 {

@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Looks for the apex of the triangle over an edge, by either strategy.
+ * Searches for the apex of the Delaunay triangle over an edge, by either SearchStrategy.
  *
- * In: a grid and an edge. Out: the apex of the Delaunay triangle on its left; of co-circular points
- * the one that cuts their polygon into the fan of its lowest vertex. Exact: floating-point
- * comparisons decide where their error bounds allow, the exact predicates elsewhere.
+ * In: a grid and an edge. Out: the apex on the left of the edge; of cocircular points, the one that
+ * cuts their polygon into the fan of its lowest vertex. Exact: floating-point comparisons decide
+ * where their error bounds allow, the exact predicates elsewhere.
  *
- * Discs through both ends of the edge form a family: on the left of the edge, the disc of a better
- * apex lies within that of another. So the disc of the best point so far bounds the search, and
- * shrinks with it. The points around the edge's origin come first (WideApexSearch.h); where they do
- * not tell, the bins around it; then the tree of boxes, nearest box first.
+ * The discs through both ends of the edge are ordered: on the left of the edge, the disc of a
+ * better apex lies within that of a worse one. So the disc of the best point found bounds the
+ * search, and shrinks with it. The search looks first among the points around the edge's origin
+ * (WideApexSearch.h), then in the bins around it, then in the tree of boxes, nearest box first.
  *
- * Cost: constant for even density, logarithmic in the number of points where it is not; as many
- * looks as there are points on the circle, which a budget limits.
+ * Cost: constant for even density, logarithmic in the number of points otherwise; linear in the
+ * number of points on the circle, which a budget limits.
  */
 #ifndef elevation_Triangulate_ApexSearch_h
 #define elevation_Triangulate_ApexSearch_h
@@ -29,7 +29,7 @@ namespace elevation
 class ApexSearch
 {
 public:
-  /** @param budget  is charged for points and boxes that are looked at, but for those of windows */
+  /** @param budget  charged for points and boxes that are looked at, except those of windows */
   ApexSearch(const BinGrid& grid, const DelaunayOptions& options, WorkBudget& budget)
     : Grid(grid)
     , Budget(budget)
@@ -40,32 +40,28 @@ public:
   }
 
   /**
-   * The vertex from which edges are grown from now on.
-   * @param[in] next  the vertex of the next call, or None
+   * Sets the vertex whose fan is grown next.
+   * @param[in] next  the vertex of the call after this one, or None
    */
   void SetOrigin(Index slot, Index next);
 
   /**
-   * Appends the origin's neighbours counter-clockwise after the last one in the list, as far as
-   * they are easily told, and not beyond the end of the fan.
+   * Appends the origin's neighbours counter-clockwise after the last one in the list, as far as the
+   * wide search finds them, and not beyond the end of the fan.
    */
   void Follow(Buffer<Index>& fan, Index end);
 
   /**
    * The apex of the Delaunay triangle on the left of the edge from the origin to b.
-   * Only points above the origin are looked for: the caller knows that the origin is the lowest
-   * vertex of the triangle.
-   * @param[in] end  the last neighbour of the fan, which is on the left of the edge: a first guess
-   * @return None when no point lies on the left of the edge
-   * @throws CannotGrow when it looks at too many points
+   * Searches only above the origin: the caller knows that it is the triangle's lowest vertex.
+   * @param[in] end  the last neighbour of the fan, on the left of the edge, as a first guess
+   * @return None if no point lies on the left of the edge
+   * @throws CannotGrow if it looks at too many points
    */
   Index Find(Index b, Index end);
 
   /**
-   * The apex of the Delaunay triangle on the left of any edge of the triangulation, by the tree
-   * alone.
-   * @return None when no point lies on the left of the edge
-   * @throws CannotGrow when it looks at too many points
+   * The same for any edge of the triangulation and all points, by the tree alone.
    */
   Index FindAnywhere(Index a, Index b);
 
@@ -104,19 +100,19 @@ private:
   WideApexSearch Around;
   const bool IsByAngle;
   const bool IsWide;
-  int Exacts = 0;              ///< in the search at hand
-  std::int64_t WorkBefore = 0; ///< when the search at hand began
+  int Exacts = 0;              ///< exact comparisons in this search
+  std::int64_t WorkBefore = 0; ///< the budget's work when this search began
   bool HasAround = false;
   WideApexSearch::Candidates Open; ///< over the edge to OpenEnd
   Index OpenEnd = None;
 
   // The edge.
-  double Floor = 0.0; ///< relative to the origin; what is below is passed over
+  double Floor = 0.0; ///< relative to the origin; boxes below are skipped
   Index Origin = None, Target = None;
   Point2 A{ 0.0, 0.0 }, B{ 0.0, 0.0 };
   double EdgeX = 0.0, EdgeY = 0.0, LengthSquared = 0.0;
 
-  // The disc that is looked at, relative to A.
+  // The disc that bounds the search, relative to A.
   double CenterX = 0.0, CenterY = 0.0, RadiusSquared = 0.0;
 
   // The best point so far.

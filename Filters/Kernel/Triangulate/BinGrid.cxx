@@ -16,17 +16,16 @@ namespace
 using Placed = BoxTree::Placed;
 using Node = BoxTree::Node;
 
-// Mean points a bin: fewer make the searches visit many empty bins, more make them look at points
-// in vain.
+// The mean: with fewer, searches visit many empty bins; with more, they look at points in vain.
 constexpr double PointsPerBin = 1.0;
-// The input is read in pieces of so many points, each by one thread.
+// The input is read in pieces of this many points, each by one thread.
 constexpr Index PiecePoints = 1 << 17;
-// A block of rows holds so many points or a few more, such that the cache of a core does.
+// A block of rows has about this many points, so that it fits into a core's cache.
 constexpr Index BlockPoints = 1 << 14;
-// Blocks are made of at most so many groups of rows.
+// Blocks consist of groups of rows, at most this many in all.
 constexpr Index MaximumGroups = 4096;
 
-/** Bins along both sides of a box for so many points, as square as its proportions allow. */
+/** Chooses the numbers of bins along both sides of a box; bins are as square as possible. */
 void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
 {
   const double number = std::max(1.0, count / PointsPerBin);
@@ -48,9 +47,8 @@ void ChooseBins(BinGrid::Layout& bins, double width, double height, Index count)
 }
 
 /**
- * Orders the slots of a row by (y, x). Spread over the row's height first, they are nearly ordered,
- * which insertion finishes in linear time. Where many are close to each other, these are spread
- * again, and after a few times compared.
+ * Sorts the slots of a row by (y, x): a bucket sort over the row's height, finished by insertion in
+ * linear time. Full buckets are sorted in the same way, or, below a few levels, by comparison.
  */
 class RowSorter
 {
@@ -64,8 +62,8 @@ public:
   }
 
   /**
-   * @param[in] low,high  about where the row's points are
-   * @param[out] order    room for the slots of the row
+   * @param[in]  low,high  about the range of y of the row
+   * @param[out] order     room for the slots of the row
    */
   void Sort(std::pair<Index, Index> slots, double low, double high, Index* order)
   {
@@ -91,7 +89,7 @@ private:
     Index Slot;
   };
 
-  /** Not a lambda, which would be another type, and another Sort(), at every depth. */
+  /** Not a lambda, which would be a new type, and instantiate Sort() again, at every depth. */
   struct Listed
   {
     const Index* Slots;
@@ -127,7 +125,7 @@ private:
 
   /**
    * Sorts the entries that get(0) to get(count - 1) return.
-   * @param[out] sorted  room for them, where they are not yet
+   * @param[out] sorted  room for them; get() must not read it
    * @param[in]  room    for as many slots; get() may read it
    */
   template <typename Get>
@@ -195,7 +193,7 @@ private:
   Buffer<Index> Ends[MaximumDepth + 1];
 };
 
-/** Rows of bins that are filled by one thread, while its cache holds their points. */
+/** Rows of bins that one thread fills, with their points in its cache. */
 struct Block
 {
   Index FirstRow, EndRow;
@@ -205,7 +203,7 @@ struct Block
   Buffer<Node> Nodes; ///< children and slots counted from the block's first
   Buffer<Index> Duplicates;
 
-  /** In so many pieces what is done with all bins or points is heard of soon. */
+  /** The number of pieces for work on all bins or points, so that reports come soon enough. */
   Index Pieces(const BinGrid::Layout& layout) const
   {
     const Index bins = (this->EndRow - this->FirstRow) * layout.Columns; // at most as all points
@@ -213,7 +211,7 @@ struct Block
   }
 };
 
-/** Fills the slots of a block; its members are what the passes hand on. */
+/** Fills the slots of a block. */
 class BlockFiller
 {
 public:
@@ -235,7 +233,7 @@ public:
     if (this->Own.Pieces(this->Grid.Bins) > 1)
     {
       this->Own.Nodes.Reserve(
-        this->Own.Count / 48); // to grow takes long; what is left is not missed
+        this->Own.Count / 48); // growing it takes long
     }
     this->Own.Root = BoxTree::Build(
       this->Local, this->Rows, this->Own.Points, this->Own.Nodes, Part(this->Monitor, 0.1, 0.6));
@@ -252,7 +250,7 @@ public:
   }
 
 private:
-  /** Calls visit(0) to visit(count - 1), and reports from and to fractions. */
+  /** Calls visit(0) to visit(count - 1), and reports fractions between from and to. */
   template <typename Visit>
   void ForEach(std::size_t count, double from, double to, Visit&& visit) const
   {
@@ -264,8 +262,8 @@ private:
   }
 
   /**
-   * Count, prefix sum, fill: while filling, starts[b + 1] runs from the first slot of bin b to its
-   * end, which is the first slot of the next.
+   * Counting sort. While filling, starts[b + 1] runs from the first slot of bin b to its end, which
+   * is the first slot of the next bin.
    */
   void SortIntoBins()
   {
@@ -312,7 +310,7 @@ private:
     }
   }
 
-  /** Equal points follow each other. */
+  /** In the order of rows, equal points are adjacent. */
   void SetDuplicatesAside(const PointView& points, DuplicatePolicy policy)
   {
     const BoxTree::Rows& local = this->Local;
@@ -389,7 +387,6 @@ private:
   std::vector<bool> IsAside; ///< by slot; empty while there are no duplicates
 };
 
-/** One run of the binning; its members are what the passes hand on. */
 class GridBuilder
 {
 public:
@@ -421,7 +418,7 @@ public:
   }
 
 private:
-  /** Visits (id, x, y), scaled, of a range's finite points. */
+  /** Calls visit(id, x, y), scaled, for the finite points of a range. */
   template <typename Visit>
   void ForEach(Index begin, Index end, Visit&& visit) const
   {
@@ -446,10 +443,10 @@ private:
       this->Grid.Bins, high.X * scale - low.X * scale, high.Y * scale - low.Y * scale, this->Count);
   }
 
-  /** For coordinates of which the greatest is given; none when a small one would lose bits. */
+  /** Scales by the greatest magnitude, unless a small coordinate would lose bits. */
   void ChooseScale(double greatest)
   {
-    double least = DBL_MAX; // magnitude other than zero
+    double least = DBL_MAX; // least magnitude above zero
     this->ForEach(0, this->Points.Count, [&](Index, double x, double y) {
       for (double magnitude : { std::fabs(x), std::fabs(y) })
       {
@@ -458,7 +455,7 @@ private:
     });
     int exponent;
     std::frexp(greatest, &exponent);
-    // The factor itself must not leave the range.
+    // The factor itself must not overflow.
     const double scale = exponent < -1000 ? std::ldexp(1.0, 1000) : std::ldexp(1.0, -exponent);
     if (least * scale > DBL_MIN / DBL_EPSILON)
     {
@@ -490,7 +487,7 @@ private:
       PiecePoints);
   }
 
-  /** Blocks of groups, about as many points in each. */
+  /** Joins groups to blocks of about equal numbers of points. */
   void MakeBlocks()
   {
     const BinGrid::Layout& bins = this->Grid.Bins;
@@ -519,7 +516,7 @@ private:
     }
   }
 
-  /** Where the points of each piece and block begin: piece after piece, their blocks in a row. */
+  /** Where the points of each (piece, block) begin, block by block for each piece. */
   std::vector<Index> BeginsInBlocks() const
   {
     const std::size_t blocks = this->Blocks.size();
@@ -573,7 +570,7 @@ private:
     this->Grid.RowLow.Resize(bins.Rows);
     this->Grid.RowHigh.Resize(bins.Rows);
 
-    // The few blocks that are too large to wait for come last, and tell themselves what is done.
+    // The few large blocks come last, and report their own progress.
     const auto isLarge = [&bins](const Block& block) { return block.Pieces(bins) > 1; };
     const double large = std::accumulate(this->Blocks.begin(), this->Blocks.end(), 0.0,
       [&](double points, const Block& block) { return points + isLarge(block) * block.Count; });
@@ -640,10 +637,10 @@ private:
     this->Grid.Starts[this->Grid.Starts.size() - 1] = slots;
   }
 
-  /** Starts, order and trees of the blocks become those of the grid. */
+  /** Joins the starts, order and trees of the blocks to those of the grid. */
   void Join(const Progress& progress)
   {
-    std::vector<Index> firstNodes, pieces(1, 0); // a large block is worked on in several
+    std::vector<Index> firstNodes, pieces(1, 0); // a large block has several pieces
     std::vector<BoxTree::Child> roots;
     Index nodes = 0;
     for (const Block& block : this->Blocks)
@@ -706,9 +703,9 @@ private:
   int Shift = 0;     ///< a group is 1 << Shift rows
   Index Groups = 0;
   std::size_t Pieces = 0;     ///< of the input
-  std::vector<Index> InGroup; ///< piece after piece, the points in each group
-  std::vector<Index> BlockOf; ///< one a group
-  Buffer<Placed> Memory;      ///< the points, block after block
+  std::vector<Index> InGroup; ///< piece by piece, the number of points in each group
+  std::vector<Index> BlockOf; ///< one per group
+  Buffer<Placed> Memory;      ///< the points, block by block
   std::vector<Block> Blocks;
 };
 } // namespace

@@ -2,23 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Points sorted into the bins of a uniform grid over their bounding box. The index for what is
- * near: a bin is found in one step, with the points of its neighbours, which no other index offers.
+ * Points sorted into the bins of a uniform grid over their bounding box: the index for points near
+ * a place. A bin is found in one step, and no other index stores neighbouring bins contiguously.
  *
  * In: points. Out: the same points in *slots*, row of bins after row of bins, so that the points of
- * neighbouring bins of a row are contiguous; equal points set aside; the rest is a lookup.
- * Where density is even, a bin holds about one point. Where it is not, some bins hold many, and a
- * tree of boxes over the bins leads to few of them (BoxTree.h).
- * The passes: find the bounds and lay the bins; sort the points into blocks of rows, each of which
- * fits into a core's cache; in each block sort the points into bins, build its part of the tree,
- * order its rows by (y, x), set duplicates aside, which are neighbours then; join the blocks. The
- * blocks depend on the points alone, so the result is the same for any number of threads.
+ * neighbouring bins of a row are contiguous; duplicates set aside. Where density is even, a bin
+ * holds about one point. Where it is not, some bins hold many, and a tree of boxes over the bins
+ * leads to few of them (BoxTree.h).
+ * The passes: find the bounds and lay out the bins; sort the points into blocks of rows that fit
+ * into a core's cache; in each block sort the points into bins, build a part of the tree, sort the
+ * rows by (y, x), and set duplicates aside, which are then adjacent; join the blocks. The blocks
+ * depend on the points alone, so the result is the same for any number of threads.
  *
  * The bin of a coordinate is a monotone function of it, also in floating point: all points with x
- * in [low, high] are in the columns Column(low) to Column(high). Searches lose nothing by rounding.
+ * in [low, high] are in the columns Column(low) to Column(high). Rounding hides no point.
  *
- * Cost: linear, and n log n where density is uneven; 16 + 8 bytes a point, about 4 for the bins and
- * 3 for the tree (5 in full bins). While it is built, 24 more, and a few more in full bins.
+ * Cost: linear, n log n where density is uneven. Memory: 16 + 8 bytes per point, about 4 for the
+ * bins and 3 for the tree (5 in full bins); during construction 24 more, and a few for full bins.
  */
 #ifndef elevation_Triangulate_BinGrid_h
 #define elevation_Triangulate_BinGrid_h
@@ -35,15 +35,14 @@ namespace elevation
 class BinGrid
 {
 public:
-  /** Where the bins are. */
   struct Layout
   {
     double OriginX = 0.0, OriginY = 0.0; ///< lower left corner of the points' bounding box
-    double PerX = 0.0, PerY = 0.0;       ///< bins a unit of length
+    double PerX = 0.0, PerY = 0.0;       ///< bins per unit of length
     Index Columns = 0, Rows = 0;
     double BinWidth = 0.0, BinHeight = 0.0;
-    /** Whether the bins' bounds are where OriginX + k * BinWidth is, to a thousandth of a bin, and
-     * single precision holds squares. */
+    /** Whether OriginX + k * BinWidth gives the bins' bounds to a thousandth of a bin, and squares
+     * are in the range of float. */
     bool HasPlainBins = false;
 
     Index Column(double x) const { return Cell((x - this->OriginX) * this->PerX, this->Columns); }
@@ -59,10 +58,9 @@ public:
 
   /**
    * Bins the finite points and sets duplicates aside.
-   * Coordinates are multiplied by a power of two where all of them are extremely large or small, so
-   * that squares of distances neither over- nor underflow; this is exact, or not done.
-   * @param threads  how many to use
-   * @param known    the points' extent, which is taken away; null: it is looked for
+   * If coordinates are extremely large or small, they are multiplied by a power of two, so that
+   * squares of distances neither over- nor underflow; only if that is exact for all of them.
+   * @param known  the points' extent, which is moved from; null: not known
    */
   BinGrid(const PointView& points, DuplicatePolicy policy, const Progress& progress,
     int threads = 1, Extent* known = nullptr);
@@ -80,17 +78,17 @@ public:
   /** The node of the tree above the leaf that holds a slot. */
   BoxTree::Step Lowest(Index slot) const { return this->Tree.Lowest(slot, this->PointAt(slot)); }
 
-  Buffer<double> X, Y; ///< coordinates by slot; eight more values may be read than there are
+  Buffer<double> X, Y; ///< coordinates by slot; eight values beyond the end may be read
   Buffer<Index> Ids;   ///< the input's point id by slot
   double Scale = 1.0;  ///< what the input's coordinates were multiplied by
   Layout Bins;
   Buffer<Index> Order;            ///< all slots by increasing (y, x): row after row
-  Buffer<Index> Starts;           ///< first slot of each bin, row by row, and the number of slots
+  Buffer<Index> Starts;           ///< first slot of each bin, row by row; last, the number of slots
   Buffer<double> RowLow, RowHigh; ///< range of y of the points in each row
   BoxTree Tree;
 
-  /** Memory that binning has used and nobody uses now: as much as the triangles take. To reuse it
-     is cheaper than to ask for other: the system clears what it gives. */
+  /** Memory left from binning, as much as the triangles need. Reusing it is cheaper than new
+     memory, which the system clears. */
   Buffer<Index> Scratch;
 
   std::vector<Index> Duplicates; ///< input ids set aside because another point has the same x,y

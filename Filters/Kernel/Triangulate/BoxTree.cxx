@@ -13,13 +13,13 @@ using Child = BoxTree::Child;
 using Node = BoxTree::Node;
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-// A bin with more points is halved until no part has more; evenly spread points hardly fill one so.
+// A bin with more points is halved until no part has more; rare if points are evenly spread.
 constexpr Index FullBin = 24;
-// A leaf of the tree is at most so many bins of a row, with at most so many points.
+// Limits of a leaf that consists of bins of a row.
 constexpr Index LeafColumns = 16;
 constexpr Index LeafPoints = 32;
 
-/** Appends a node and returns the child that it is. */
+/** Appends a node. @return the child to enter it as */
 Child AddNode(const Child* children, std::size_t count, Buffer<Node>& nodes)
 {
   Node node;
@@ -47,7 +47,6 @@ Child AddNode(const Child* children, std::size_t count, Buffer<Node>& nodes)
   return joined;
 }
 
-/** One run of BoxTree::Build(). */
 class TreeBuilder
 {
   using Placed = BoxTree::Placed;
@@ -74,8 +73,8 @@ private:
     double Area() const { return static_cast<double>(this->Rows()) * this->Columns(); }
   };
 
-  /** Points of a full bin, slots [Begin, End). */
-  struct Heap
+  /** Points of a full bin, or of a part of one: slots [Begin, End). */
+  struct Cluster
   {
     Index Begin, End;
     Box Bounds;
@@ -84,13 +83,13 @@ private:
     bool IsLeaf() const { return this->Size() <= FullBin || this->Bounds.Low == this->Bounds.High; }
   };
 
-  /** A single child needs no node of its own. */
+  /** Joins children in a node; a single one needs none. */
   Child Join(const Child* children, int count)
   {
     return count == 0 ? Child() : count == 1 ? children[0] : AddNode(children, count, this->Nodes);
   }
 
-  /** Whether the part is a leaf, nothing, or one bin: not to be divided by rows and columns. */
+  /** Whether the part is a leaf, empty, or one bin: not to be divided by rows and columns. */
   bool IsUndivided(const Part& part) const
   {
     if (part.Rows() > 1)
@@ -120,7 +119,7 @@ private:
     return this->Grid.Slots(part.FirstRow, part.FirstColumn, part.EndColumn - 1);
   }
 
-  /** Whole leaves or nodes where there are several, so that they are full. */
+  /** About half, rounded up to whole units if there are several. */
   static Index HalfOf(Index count, Index unit)
   {
     return count > unit ? (count / 2 + unit - 1) / unit * unit : count / 2;
@@ -132,7 +131,7 @@ private:
     {
       return this->BuildRun(whole);
     }
-    // What fits into one node stays together, so that the lowest nodes are full.
+    // Parts that fit into one node are not divided further, so that the lowest nodes are full.
     const auto fits = [](const Part& part) {
       return part.Rows() <= Node::Places && part.Columns() <= LeafColumns;
     };
@@ -141,7 +140,7 @@ private:
       return this->IsUndivided(part) || (!isLowest && fits(part)) ? 0.0 : part.Area();
     };
     Part parts[Node::Places];
-    double areas[Node::Places]; // 0 for what is not divided
+    double areas[Node::Places]; // 0 for parts that are not divided
     parts[0] = whole;
     areas[0] = whole.Area();
     int count = 1;
@@ -179,7 +178,7 @@ private:
     return this->Join(children, filled);
   }
 
-  /** A leaf of some bins of a row; nothing; or a full bin. */
+  /** A leaf of bins of a row, perhaps empty; or the tree of a full bin. */
   Child BuildRun(const Part& part)
   {
     const auto slots = this->SlotsOf(part);
@@ -201,15 +200,15 @@ private:
 
   Child BuildFullBin(std::pair<Index, Index> slots)
   {
-    Heap heap{ slots.first, slots.second, Box() };
+    Cluster cluster{ slots.first, slots.second, Box() };
     this->ForEach(slots, [&](Index slot) {
       this->Points[slot] = { this->Grid.X[slot], this->Grid.Y[slot], this->Grid.Ids[slot], 0 };
-      heap.Bounds.Add({ this->Grid.X[slot], this->Grid.Y[slot] });
+      cluster.Bounds.Add({ this->Grid.X[slot], this->Grid.Y[slot] });
     });
-    return this->BuildHeap(heap);
+    return this->BuildCluster(cluster);
   }
 
-  Child BuildHeap(const Heap& whole)
+  Child BuildCluster(const Cluster& whole)
   {
     if (whole.IsLeaf())
     {
@@ -221,19 +220,19 @@ private:
       });
       return { whole.Bounds, whole.Begin, whole.Size(), whole.Size() };
     }
-    // What fits into one node stays together, so that the lowest nodes are full.
+    // Parts that fit into one node are not divided further, so that the lowest nodes are full.
     constexpr Index fitting = Node::Places * FullBin;
     const bool isLowest = whole.Size() <= fitting;
-    Heap heaps[Node::Places];
-    heaps[0] = whole;
+    Cluster clusters[Node::Places];
+    clusters[0] = whole;
     int count = 1;
     while (count < Node::Places)
     {
       int largest = -1;
       for (int i = 0; i < count; ++i)
       {
-        if (!heaps[i].IsLeaf() && (isLowest || heaps[i].Size() > fitting) &&
-          (largest < 0 || heaps[i].Size() > heaps[largest].Size()))
+        if (!clusters[i].IsLeaf() && (isLowest || clusters[i].Size() > fitting) &&
+          (largest < 0 || clusters[i].Size() > clusters[largest].Size()))
         {
           largest = i;
         }
@@ -242,38 +241,38 @@ private:
       {
         break;
       }
-      this->Halve(heaps[largest], heaps[count++]);
+      this->Halve(clusters[largest], clusters[count++]);
     }
     Child children[Node::Places];
     for (int i = 0; i < count; ++i)
     {
-      children[i] = this->BuildHeap(heaps[i]);
+      children[i] = this->BuildCluster(clusters[i]);
     }
     return AddNode(children, count, this->Nodes);
   }
 
   /**
-   * Divides a heap across its longer side, near the median. All points with the same coordinate go
+   * Divides a cluster across its longer side, near the median. Points with the same coordinate go
    * to the same part, so that equal points stay together.
    */
-  void Halve(Heap& heap, Heap& other)
+  void Halve(Cluster& cluster, Cluster& other)
   {
-    const bool isWide = heap.Bounds.Width() > heap.Bounds.Height();
+    const bool isWide = cluster.Bounds.Width() > cluster.Bounds.Height();
     const auto key = [isWide](const Placed& p) { return isWide ? p.X : p.Y; };
-    Placed* const begin = this->Points + heap.Begin;
-    Placed* const end = this->Points + heap.End;
+    Placed* const begin = this->Points + cluster.Begin;
+    Placed* const end = this->Points + cluster.End;
 
-    // The median of a sample nearly always divides well; else that of all.
+    // The median of a sample nearly always divides well; if not, the median of all is taken.
     constexpr Index sampleSize = 31;
     double sample[sampleSize];
-    const Index size = heap.Size();
+    const Index size = cluster.Size();
     const Index samples = std::min(size, sampleSize);
     for (Index i = 0; i < samples; ++i)
     {
       sample[i] = key(begin[static_cast<std::int64_t>(i) * size / samples]);
     }
     std::nth_element(sample, sample + samples / 2, sample + samples);
-    Placed* middle = this->Divide(heap, key, sample[samples / 2], isWide);
+    Placed* middle = this->Divide(cluster, key, sample[samples / 2], isWide);
     if (std::min(middle - begin, end - middle) < size / 8)
     {
       std::size_t comparisons = 0;
@@ -284,13 +283,13 @@ private:
         }
         return key(p) < key(q);
       });
-      middle = this->Divide(heap, key, key(begin[size / 2]), isWide);
+      middle = this->Divide(cluster, key, key(begin[size / 2]), isWide);
     }
 
-    other.Begin = heap.Begin + static_cast<Index>(middle - begin);
-    other.End = heap.End;
-    heap.End = other.Begin;
-    for (Heap* half : { &heap, &other })
+    other.Begin = cluster.Begin + static_cast<Index>(middle - begin);
+    other.End = cluster.End;
+    cluster.End = other.Begin;
+    for (Cluster* half : { &cluster, &other })
     {
       Box bounds;
       this->ForEach({ half->Begin, half->End }, [&](Index slot) {
@@ -300,14 +299,14 @@ private:
     }
   }
 
-  /** Points before the value first, or up to the value when none is before: both parts have some. */
+  /** Partitions into points below a value, or not above it if none is below. @return their end */
   template <typename Key>
-  Placed* Divide(const Heap& heap, const Key& key, double value, bool isWide)
+  Placed* Divide(const Cluster& cluster, const Key& key, double value, bool isWide)
   {
-    const bool hasBefore = (isWide ? heap.Bounds.Low.X : heap.Bounds.Low.Y) < value;
-    Placed* end = this->Points + heap.Begin; // of those before
-    this->ForEach({ heap.Begin, heap.End }, [&](Index slot) {
-      // Without a branch, which could not be predicted.
+    const bool hasBefore = (isWide ? cluster.Bounds.Low.X : cluster.Bounds.Low.Y) < value;
+    Placed* end = this->Points + cluster.Begin;
+    this->ForEach({ cluster.Begin, cluster.End }, [&](Index slot) {
+      // Without branches, which would be unpredictable.
       Placed& there = this->Points[slot];
       const Placed moved = there;
       const bool isBefore = hasBefore ? key(moved) < value : key(moved) <= value;
@@ -336,7 +335,7 @@ private:
   }
 
   BoxTree::Rows& Grid;
-  Placed* const Points; ///< by slot, of the full bin at hand
+  Placed* const Points; ///< by slot, of the current full bin
   Buffer<Node>& Nodes;
   const Progress& Monitor;
   std::int64_t Visited = 0, NextReport = 0;
@@ -351,7 +350,7 @@ BoxTree::Child BoxTree::Build(
 
 void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progress)
 {
-  // Eight after eight, and so on up, until all hang from one root.
+  // Level by level, eight at a time, until there is one root.
   while (roots.size() > 1 || roots.front().Count > 0)
   {
     std::vector<Child> above;

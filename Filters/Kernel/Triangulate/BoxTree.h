@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * A tree of boxes over the slots of a BinGrid. The index for uneven density: it passes over voids
- * and enters clusters in a logarithmic number of steps, where a grid visits empty bins, or one bin
- * with most of the points.
- * A leaf is a stretch of slots, the bins of part of a row or a few points of a full bin; a node
- * knows the boxes of its eight children, which have no point in common. The slots of a full bin are
- * ordered by halving its points again and again.
+ * A tree of bounding boxes over the slots of a BinGrid: the index for uneven density. It skips
+ * voids and descends into clusters in a logarithmic number of steps, where a grid visits empty
+ * bins, or one bin with most of the points.
+ *
+ * In: binned points. Out: the tree, and the slots of full bins in the order of its leaves. A leaf
+ * is a range of slots: bins of a row, or a few points of a full bin, which is halved until its
+ * parts are small. A node has the boxes of up to eight children, which have no point in common.
+ * Cost: linear; n log n in full bins.
  */
 #ifndef elevation_Triangulate_BoxTree_h
 #define elevation_Triangulate_BoxTree_h
@@ -24,22 +26,22 @@ class BoxTree
 {
 public:
   /**
-   * Bounding boxes of the points of up to eight children. The other places hold
-   * the empty box, from infinity to minus infinity, which nothing reaches.
+   * Bounding boxes of the points of up to eight children. The other places hold the empty box, from
+   * infinity to minus infinity.
    */
   struct Node
   {
     static constexpr int Places = 8;
     double LowX[Places], HighX[Places], LowY[Places], HighY[Places];
-    Index First[Places]; ///< of a leaf the first slot, else the node
-    Index Count[Places]; ///< of a leaf the number of slots, else 0
+    Index First[Places]; ///< for a leaf the first slot, else the child node
+    Index Count[Places]; ///< for a leaf the number of slots, else 0
     Index Size;          ///< number of points below
-    Index Parent;        ///< None of the root
+    Index Parent;        ///< None for the root
   };
 
   /**
-   * A node on the way from a point up to the root, with the box of its points, which is the whole
-   * plane for the root, and its place in its parent. All points within the box are below the node.
+   * A node on the path from a leaf to the root, its place in its parent, and the box of its points,
+   * for the root the whole plane. All points within the box are below the node.
    */
   struct Step
   {
@@ -56,9 +58,9 @@ public:
   Step Above(const Step& step) const { return this->StepTo(step.Node->Parent); }
 
   Buffer<Node> Nodes;      ///< children before parents: the root is the last
-  Buffer<Index> LeafNodes; ///< for eight slots after eight, a node above one of their leaves
+  Buffer<Index> LeafNodes; ///< for each eight consecutive slots, a node above one of their leaves
 
-  /** A point on its way to its slot. */
+  /** A point that is being sorted into its slot. */
   struct Placed
   {
     double X, Y;
@@ -66,7 +68,7 @@ public:
     Index Bin; ///< among those of its block
   };
 
-  /** Some rows of the grid: bins, slots and points are counted from the first of them. */
+  /** Some rows of the grid: bins and slots are counted from their first. */
   struct Rows
   {
     double* X;
@@ -84,7 +86,7 @@ public:
     }
   };
 
-  /** What a place of a node holds; no points at all when Size is 0. */
+  /** A child to be entered in a node; without points if Size is 0. */
   struct Child
   {
     Box Bounds;
@@ -94,12 +96,13 @@ public:
   };
 
   /**
-   * Builds the tree over so many rows from the top down, and orders the slots of full bins.
-   * @param room  for as many points as the rows hold
+   * Builds the tree over rows from the top down, and orders the slots of full bins.
+   * @param count  of the rows
+   * @param room   for as many points as the rows hold
    */
   static Child Build(
     Rows& rows, Index count, Placed* room, Buffer<Node>& nodes, const Progress& progress);
-  /** Makes one tree of several, whose nodes are among Nodes, over so many slots. */
+  /** Joins trees, whose nodes are in Nodes, into one over all slots. */
   void Join(std::vector<Child> roots, Index slots, const Progress& progress);
 
 private:
@@ -108,8 +111,8 @@ private:
 };
 
 /**
- * Calls visit(i) for all of [begin, end), and report(fraction) between stretches of them: one row,
- * or one bin, may hold all points.
+ * Calls visit(i) for all i in [begin, end), and report(fraction) now and then: one row, or one bin,
+ * may hold all points.
  */
 template <typename Tell, typename Visit>
 void ForEachReporting(Index begin, Index end, Tell&& report, Visit&& visit)

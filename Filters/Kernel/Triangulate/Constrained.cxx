@@ -24,16 +24,16 @@ namespace
 struct Vertex
 {
   Point2 Position;
-  Index Input;  ///< the input point that it is
-  Index Source; ///< the point of the lines that it is
-  Index From;   ///< a crossing: between these vertices
+  Index Input;  ///< the input point at the same place
+  Index Source; ///< the lines' point at the same place
+  Index From;   ///< a crossing: it lies between these vertices
   Index To;
 };
 
-/** Two pieces, the first one first. */
+/** Two pieces that cross, in increasing order. */
 using Crossing = std::pair<Index, Index>;
 
-/** Passes 1 to 3: from lines to pieces that do not cross, and what points they add. */
+/** Passes 1 to 3: from lines to pieces that do not cross, and the points that they add. */
 class Splitting
 {
 public:
@@ -54,7 +54,7 @@ public:
   bool IsEmpty() const { return this->Vertices.empty(); }
   std::int64_t NumberOfCrossings() const { return this->Crossings; }
 
-  /** The points that are added, and the pieces by final ids. */
+  /** The added points, and the pieces by final ids. */
   void GetResult(
     std::vector<AddedPoint>& added, std::vector<Segment>& pieces, const Progress& progress) const
   {
@@ -111,7 +111,7 @@ private:
 
   const Point2& At(Index vertex) const { return this->Vertices[vertex].Position; }
 
-  /** Enters the pieces, as they are, in a grid. */
+  /** Enters the current pieces in a grid. */
   void EnterInGrid(const Progress& progress)
   {
     this->PieceEnds.resize(this->Pieces.size());
@@ -151,7 +151,7 @@ private:
     this->JoinEqualPieces(Part(progress, 0.6, 1.0));
     for (SegmentPiece& piece : this->Pieces)
     {
-      piece.Count = 1; // the same segment in several lines is one
+      piece.Count = 1; // equal segments of several lines count as one
     }
     for (std::size_t v = 0; v < hasSegment.size(); ++v)
     {
@@ -162,7 +162,7 @@ private:
     }
   }
 
-  /** Makes vertices of the lines' points; of several at one place the first. @return by points */
+  /** Makes one vertex of each place of the lines' points. @return the vertex of each point */
   std::vector<Index> CollectPoints(const Progress& progress)
   {
     const PointView& own = this->Lines.Points;
@@ -184,7 +184,7 @@ private:
         used.push_back(id);
       }
     }
-    // By position, so that equal ones are neighbours; the lowest id of them is the vertex.
+    // By position, so that equal points are adjacent; the lowest id is the source of the vertex.
     Sort(
       used.begin(), used.end(),
       [&](Index p, Index q) {
@@ -192,13 +192,13 @@ private:
         return at != other ? IsLower(at, other) : p < q;
       },
       Part(progress, 0.5, 1.0));
-    std::vector<Index> vertexOf(own.Count, None); // the source first
+    std::vector<Index> vertexOf(own.Count, None); // at first, the source
     for (std::size_t i = 0, first = 0; i < used.size(); ++i)
     {
       first = i > 0 && own.At(used[i]) == own.At(used[first]) ? first : i;
       vertexOf[used[i]] = used[first];
     }
-    // A source has a lower id than others of its vertex.
+    // A source has the lowest id of its vertex, so it comes before the others.
     for (Index id = 0; id < own.Count; ++id)
     {
       if (vertexOf[id] == id)
@@ -245,11 +245,11 @@ private:
   void Split(const Progress& progress)
   {
     this->CutAtPoints(Part(progress, 0.0, 0.5));
-    // As the lines run exactly; what follows moves pieces by rounding.
+    // Up to here, pieces follow the lines exactly; the next steps move them by rounding.
     const std::vector<SegmentPiece> pieces = this->Pieces;
     const std::size_t count = this->Vertices.size();
-    // Two units make up for the rounding of an end and of a crossing. Without any it goes where
-    // they are no less than the lines' own lengths, and the grid of the doubles bounds all there is.
+    // Two units cover the rounding of an end and of a crossing. A reach of 0 is for lines no longer
+    // than a few units: the doubles between them are finite in number, so that it ends.
     if (this->Settle(2.0, true, Part(progress, 0.5, 0.9)))
     {
       return;
@@ -266,10 +266,10 @@ private:
 
   /**
    * Cuts until no pieces cross and none runs through a vertex.
-   * @param reach  in units in the last place: two pieces that cross go through an end of one that
-   *               is so near to the other, and through a vertex within twice as much of the place
-   *               where they cross, instead of a new vertex.
-   * @return whether it came to an end
+   * @param reach  in units in the last place. Two pieces that cross are cut at an end of one within
+   *               this reach of the other, or at a vertex within twice the reach of the crossing;
+   *               otherwise at a new vertex.
+   * @return whether it succeeded
    */
   bool Settle(double reach, bool isToCount, const Progress& progress)
   {
@@ -278,7 +278,7 @@ private:
     bool haveCounted = !isToCount;
     for (int round = 0; round < mostRounds; ++round)
     {
-      // Half of what is left for each.
+      // Each round gets half of the remaining progress.
       const Progress ofRound =
         Part(progress, 1.0 - std::ldexp(1.0, -round), 1.0 - std::ldexp(1.0, -round - 1));
       this->EnterInGrid(Part(ofRound, 0.0, 0.2));
@@ -302,13 +302,13 @@ private:
     return false;
   }
 
-  /** Cuts where the lines run exactly: at vertices and input points that are on them. */
+  /** Cuts at vertices and input points that lie exactly on the lines. */
   void CutAtPoints(const Progress& progress)
   {
     this->EnterInGrid(Part(progress, 0.0, 0.2));
     std::vector<PieceCut> cuts;
     std::vector<Passage> passages;
-    // Where there are so many, lines overlap, or run along each other.
+    // With so many, lines overlap or run along each other.
     const std::size_t many = 64 * (this->Vertices.size() + this->Pieces.size());
     if (!this->CutAtVertices(cuts, many, Part(progress, 0.2, 0.3)))
     {
@@ -333,12 +333,12 @@ private:
   }
 
   /**
-   * Finds the input points that are vertices of the lines, and cuts at those that are on segments,
-   * which become vertices.
+   * Finds the input points that are vertices of the lines. Those on segments become vertices, where
+   * the segments are cut.
    */
   void CutAtInputPoints(std::vector<PieceCut>& cuts, const Progress& progress)
   {
-    std::vector<PieceCut> found; // input points as yet
+    std::vector<PieceCut> found; // with input points for vertices
     ForEachStretch(this->Points.Count, Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
       for (Index id = begin; id < end; ++id)
       {
@@ -358,7 +358,7 @@ private:
           if (vertex != None)
           {
             this->SetInput(vertex, id);
-            found.resize(before); // what is on a segment then is the vertex
+            found.resize(before); // there is a vertex already
             break;
           }
           if (IsInside(ends, p))
@@ -385,7 +385,7 @@ private:
       }
       const Index vertex = static_cast<Index>(this->Vertices.size()) - 1;
       this->SetInput(vertex, cut.Vertex);
-      // Duplicates cut once.
+      // Duplicates cut only once.
       if (cuts.size() == firstCut || cuts.back().Vertex != vertex || cuts.back().Piece != cut.Piece)
       {
         cuts.push_back({ cut.Piece, vertex });
@@ -403,8 +403,8 @@ private:
   }
 
   /**
-   * Cuts pieces at the vertices that are on them.
-   * @return false when there is more to look at than @a most; then the cuts are incomplete
+   * Cuts pieces at the vertices on them.
+   * @return false if there is more than most to look at; the cuts are then incomplete
    */
   bool CutAtVertices(std::vector<PieceCut>& cuts, std::size_t most, const Progress& progress)
   {
@@ -424,20 +424,20 @@ private:
     return work.Count() <= most;
   }
 
-  /** Counts the pairs of segments that cross in a vertex: those through it not on one line. */
+  /** Counts the pairs of segments that cross at a vertex: both run through it, not on one line. */
   void CountCrossingsAtVertices(std::vector<Passage>& passages, const Progress& progress)
   {
     Sort(
       passages.begin(), passages.end(),
       [&](const Passage& p, const Passage& q) {
-        // Around one vertex by the direction upwards, which is within half a turn.
+        // Around a vertex, by their direction upwards: these span half a turn.
         return p.Vertex != q.Vertex
           ? p.Vertex < q.Vertex
           : Orientation(this->At(p.Vertex), this->At(p.Toward), this->At(q.Toward)) == Positive;
       },
       Part(progress, 0.0, 0.8));
     const Progress counting = Part(progress, 0.8, 1.0);
-    std::int64_t around = 0, alike = 0; // segments before, of this vertex and of this direction
+    std::int64_t around = 0, alike = 0; // earlier segments at this vertex; in this direction
     for (std::size_t i = 1; i < passages.size(); ++i)
     {
       ReportStep(counting, i, passages.size());
@@ -469,7 +469,7 @@ private:
       IsBetween(this->At(piece.A), this->At(piece.B), this->At(vertex));
   }
 
-  /** Cuts at an end of one of two pieces that cross, where the other one runs by it in reach. */
+  /** Cuts at ends of either piece in reach of the other one. @return whether there are any */
   bool CutAtEnds(const Crossing& crossing, std::vector<PieceCut>& cuts) const
   {
     const std::size_t before = cuts.size();
@@ -483,14 +483,14 @@ private:
     return cuts.size() > before;
   }
 
-  /** Where two pieces cross, and the vertex that they are cut at. */
+  /** Where two pieces cross, and the vertex at which they are cut. */
   struct Place
   {
     Point2 Position;
     Crossing Of;
     Index Vertex;
   };
-  /** Vertices that one round adds, from the lowest to the highest, by cells of the grid. */
+  /** The vertices added in a round, by cells of the grid, from the lowest up. */
   using NewVertices = std::unordered_map<std::size_t, std::vector<Index>>;
 
   void CutAtCrossings(const std::vector<Crossing>& crossings, bool areToCount,
@@ -527,11 +527,11 @@ private:
     }
   }
 
-  /** Cuts pieces that cross in one place: where no vertex is in reach of two, at a new one. */
+  /** Cuts pieces that cross at one place: at a vertex in reach, otherwise at a new one. */
   void CutAtPlace(
     const Place* begin, const Place* end, NewVertices& added, std::vector<PieceCut>& cuts)
   {
-    Index vertex = None, first = None; // the new one, and the piece that it lies on
+    Index vertex = None, first = None; // the new vertex, and the first piece through it
     for (const Place* place = begin; place < end; ++place)
     {
       if (place->Vertex == None && vertex == None)
@@ -539,7 +539,7 @@ private:
         vertex = static_cast<Index>(this->Vertices.size());
         this->Vertices.push_back({ place->Position, None, None, None, None });
         std::size_t cell = 0;
-        this->Grid.FindCell(place->Position, cell); // it is within the box of two pieces
+        this->Grid.FindCell(place->Position, cell); // succeeds: it is in the box of two pieces
         added[cell].push_back(vertex);
       }
       for (const Index piece : { place->Of.first, place->Of.second })
@@ -559,12 +559,12 @@ private:
     }
   }
 
-  /** The vertex next to where two pieces cross that both can pass through; None: none in reach. */
+  /** The nearest vertex in reach of a crossing that both pieces can pass through, or None. */
   Index FindVertexInReach(const NewVertices& added, const Point2& p, const Crossing& crossing) const
   {
     const SegmentPiece& one = this->Pieces[crossing.first];
     const SegmentPiece& other = this->Pieces[crossing.second];
-    // Anything but zero, to divide by.
+    // Not zero, as a divisor.
     const double least = std::numeric_limits<double>::denorm_min();
     const double unitX = std::max({ one.Unit.X, other.Unit.X, least });
     const double unitY = std::max({ one.Unit.Y, other.Unit.Y, least });
@@ -610,7 +610,7 @@ private:
     return nearest;
   }
 
-  /** Puts pieces from cut to cut in the place of those that are cut. */
+  /** Replaces pieces by their parts from cut to cut. */
   void Apply(std::vector<PieceCut>& cuts, const Progress& progress)
   {
     SortAlong(
@@ -651,7 +651,7 @@ private:
     this->JoinEqualPieces(Part(progress, 0.7, 1.0));
   }
 
-  /** Pass 3: the input points that are crossings. All others have been found when cutting. */
+  /** Pass 3: the input points at crossings. All others have been found when cutting. */
   void Match(const Progress& progress)
   {
     std::vector<Index> crossings;
@@ -683,13 +683,13 @@ private:
     });
   }
 
-  /** How far a crossing is from From to To, along the longer of x and y. */
+  /** The fraction of the distance from From to To, by the longer of x and y. */
   double FractionOf(const Vertex& vertex) const
   {
     const Point2 &p = vertex.Position, &a = this->At(vertex.From), &b = this->At(vertex.To);
     const double largest =
       std::max({ std::fabs(a.X), std::fabs(a.Y), std::fabs(b.X), std::fabs(b.Y) });
-    // Quarters, so that no difference overflows; or many times, so that none is lost.
+    // Scaled by 1/4, so that no difference overflows; or up, so that none underflows.
     const double scale = largest < 1e-150 ? 0x1p600 : 0.25;
     const double dx = scale * b.X - scale * a.X, dy = scale * b.Y - scale * a.Y;
     return std::fabs(dx) > std::fabs(dy) ? (scale * p.X - scale * a.X) / dx
@@ -711,7 +711,7 @@ private:
   const DuplicatePolicy Duplicates;
   std::vector<Vertex> Vertices;
   std::vector<SegmentPiece> Pieces; ///< each from its lower end to its upper one
-  std::vector<Ends> PieceEnds;      ///< as they were entered in the grid
+  std::vector<Ends> PieceEnds;      ///< as entered in the grid
   CellGrid Grid{ GridOf({}) };
   std::vector<Segment> Segments;   ///< by rank, which is the order of the lines
   std::vector<Index> SegmentLines; ///< by rank
@@ -720,7 +720,7 @@ private:
   std::array<Index, 2> Unsettled{ { None, None } }; ///< two segments that still cross
 };
 
-/** Input points and added ones in one array; empty when nothing is added. */
+/** Input points and added ones in one array; empty if nothing is added. */
 Buffer<double> JoinPoints(
   const PointView& points, const std::vector<AddedPoint>& added, const Progress& progress)
 {
@@ -749,17 +749,17 @@ Buffer<double> JoinPoints(
   return joined;
 }
 
-/** A triangle from its lowest vertex. */
+/** A triangle, its lowest vertex first. */
 using Corners = std::array<Index, 3>;
 
-/** The order of Triangulate.h: by lowest vertices, then counter-clockwise around them. */
+/** The order of Triangulate.h: by lowest vertex, then counter-clockwise around it. */
 bool ComesBefore(const std::vector<Point2>& points, const Corners& p, const Corners& q)
 {
   return p[0] != q[0] ? IsLower(points[p[0]], points[q[0]])
                       : Orientation(points[p[0]], points[p[1]], points[q[1]]) == Positive;
 }
 
-/** Moves triangles that are as in the mesh to the front. @return the mesh's others, in order */
+/** Moves triangles that are also in the mesh to the front. @return the mesh's others, sorted */
 std::vector<Corners> TakeOutChanged(
   const Mesh& mesh, Buffer<Index>& triangles, const Progress& progress)
 {
@@ -789,7 +789,7 @@ std::vector<Corners> TakeOutChanged(
   return changed;
 }
 
-/** Sorts triangles in among those at the front. */
+/** Merges changed triangles with those at the front. */
 void SortIn(std::vector<Corners> changed, const std::vector<Point2>& points,
   Buffer<Index>& triangles, const Progress& progress)
 {

@@ -13,17 +13,17 @@ namespace
 {
 
 /**
- * One direction of an edge, in the ring of the directions that leave its origin. Numbers 2e and
- * 2e + 1 are the two directions of an edge.
+ * A directed edge, in the ring of those that leave its origin. Spokes 2e and 2e + 1 are the two
+ * directions of an edge.
  */
 struct Spoke
 {
-  Index Origin;   ///< None when the edge has been removed
-  Index Next;     ///< counter-clockwise around the origin; of what is removed, the next such edge
+  Index Origin;   ///< None if the edge is removed
+  Index Next;     ///< counter-clockwise around the origin; if removed, the next removed edge
   Index Previous; ///< clockwise
 };
 
-/** Two spokes on the convex hull of a stretch of points. */
+/** Two spokes on the convex hull of a range of points. */
 struct HullEnds
 {
   Index FromLowest;  ///< from the lowest point, counter-clockwise along the hull
@@ -40,13 +40,13 @@ public:
     , Monitor(progress)
     , Work(static_cast<double>(points.size()) * std::log2(static_cast<double>(points.size())))
   {
-    // At any time the edges form a planar graph: fewer than three a point.
+    // The edges always form a planar graph: fewer than three per point.
     this->Spokes.Reserve(6 * static_cast<std::size_t>(this->Count));
   }
 
   /**
-   * Triangulates the points [begin, end), at least two. They may be separated from all others by a
-   * line, which is what merging asks for: "lower" is "to the left" of the published method, turned.
+   * Triangulates the points [begin, end), at least two. As points are sorted by (y, x), a line
+   * separates both halves; "lower" is "left" in the published method, turned.
    */
   HullEnds Divide(Index begin, Index end)
   {
@@ -69,7 +69,7 @@ public:
     return ends;
   }
 
-  /** Removes the edges between triangles that have one circle. */
+  /** Removes the edges between triangles with the same circumcircle. */
   void RemoveTies(Index hullSpoke, const Progress& progress)
   {
     std::vector<bool> isOnHull(this->Spokes.size() / 2, false);
@@ -84,7 +84,7 @@ public:
     for (spoke = 0; spoke < number; spoke += 2)
     {
       ReportStep(progress, spoke, number, 2 * ReportStride);
-      // Where an edge has been removed before, any other vertex of the polygon is on its circle.
+      // If edges around have been removed before, any vertex of the polygon is on the same circle.
       if (this->Spokes[spoke].Origin != None && !isOnHull[spoke / 2] &&
         this->IsInCircle(this->OriginOf(spoke), this->EndOf(spoke),
           this->EndOf(this->NextLeft(spoke)), this->EndOf(this->NextLeft(Twin(spoke)))) == Zero)
@@ -97,9 +97,9 @@ public:
   /** Cuts the polygons, each into the fan of its lowest vertex. */
   Buffer<Index> CutIntoFans(Index hullSpoke, const Progress& progress) const
   {
-    // Where the spokes to higher vertices begin, counter-clockwise. Every vertex but the lowest has
-    // a lower one among its neighbours, since no two of these are half a turn or more apart but on
-    // the hull, along which one is lower.
+    // The first spoke to a higher vertex, counter-clockwise. Every vertex but the lowest has a
+    // lower neighbour: an angle of half a turn or more between neighbours occurs on the hull only,
+    // and there the next vertex on one side is lower.
     Buffer<Index> firsts;
     firsts.Resize(this->Count);
     firsts[0] = hullSpoke;
@@ -122,7 +122,7 @@ public:
     {
       ReportStep(
         progress, this->Count + lowest, 2 * static_cast<std::size_t>(this->Count), ReportStride);
-      // Between two higher neighbours lies a polygon of which this is the lowest vertex.
+      // This is the lowest vertex of the polygon between two consecutive higher neighbours.
       Index spoke = firsts[lowest];
       for (Index next = this->Spokes[spoke].Next;
            next != firsts[lowest] && this->Target(next) > lowest; next = this->Spokes[spoke].Next)
@@ -142,8 +142,7 @@ public:
   }
 
 private:
-  /** Steps between two reports: a step takes a tenth of a microsecond, but some hundred where
-   * integers of any length decide. */
+  /** Steps between two reports. Exact arithmetic can make a step a thousand times as long. */
   static constexpr Index ReportStride = 256;
 
   static Index Twin(Index spoke) { return spoke ^ 1; }
@@ -154,7 +153,7 @@ private:
   /** The next side of the polygon on the left of a spoke, counter-clockwise along the polygon. */
   Index NextLeft(Index spoke) const { return this->Spokes[Twin(spoke)].Previous; }
 
-  /** An edge that is joined to no other. */
+  /** Adds an edge that is joined to no other. */
   Index AddEdge(Index from, Index to)
   {
     Index spoke = this->Removed;
@@ -229,10 +228,9 @@ private:
   }
 
   /**
-   * The two triangulations are sewn together along the line that parts them, from the lower right
-   * tangent of their hulls to the upper left one. Each new edge is the base of the next triangle,
-   * whose apex is the next neighbour of either end that no other neighbour's circle excludes;
-   * edges it would cross are removed.
+   * Merges two triangulations along the line that separates them, from the right common tangent of
+   * their hulls to the left one. Each new edge is the base of the next triangle, whose apex is the
+   * neighbour of either end with an empty circle; edges that it would cross are removed.
    */
   HullEnds Merge(HullEnds lower, HullEnds upper)
   {
@@ -308,7 +306,7 @@ private:
     }
   }
 
-  /** As InCircle(), of counter-clockwise a, b, c, also in a lattice's metric. */
+  /** InCircle() for counter-clockwise a, b, c; also in a lattice's metric. */
   Sign IsInCircle(const Point2& a, const Point2& b, const Point2& c, const Point2& d) const
   {
     if (!this->Metric)
@@ -324,7 +322,7 @@ private:
       CompareQuotients(ApexAt(*this->Metric, e, from(c)), ApexAt(*this->Metric, e, from(d))));
   }
 
-  /** Reports within a merge, which at the top takes long. */
+  /** Reports within a merge, which takes long at the top level. */
   void Step()
   {
     ++this->Steps;
@@ -345,7 +343,7 @@ private:
   const double Work;     ///< points times levels
   double WorkDone = 0.0; ///< points merged, on all levels
   Index Steps = 0;       ///< of this merge
-  Index StepsAtMost = 0; ///< as many as are counted as progress of this merge
+  Index StepsAtMost = 0; ///< how many of them count as progress
   std::size_t AllSteps = 0;
 };
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Which triangles DelaunayOptions::MaximumEdgeLength leaves in.
+ * The triangles that DelaunayOptions::MaximumEdgeLength admits.
  */
 #ifndef elevation_Triangulate_EdgeLimit_h
 #define elevation_Triangulate_EdgeLimit_h
@@ -17,7 +17,7 @@ namespace elevation
 class EdgeLimit
 {
 public:
-  /** @param length  the longest edge that is left in; 0: no limit */
+  /** @param length  of the longest edge admitted; 0: no limit */
   explicit EdgeLimit(double length)
     : Length(length)
     , IsPlain(length > 1e-150 && length < 1e150)
@@ -26,7 +26,7 @@ public:
 
   bool IsSet() const { return this->Length > 0.0; }
 
-  /** Whether a triangle of vertices stays in; @a pointOf tells the point of a vertex. */
+  /** Whether a triangle of vertices is admitted; pointOf(v) is the point of a vertex. */
   template <typename PointOf>
   bool Admits(const PointOf& pointOf, Index p, Index q, Index r) const
   {

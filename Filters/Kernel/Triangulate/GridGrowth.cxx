@@ -13,15 +13,15 @@ namespace
 {
 
 /**
- * Points and boxes that searches may look at for each vertex before growing is given up; by
- * compactness, which looks at more, ten times as many.
+ * Points and boxes that searches may look at per vertex before growth is given up; for Compactness,
+ * which looks at more, ten times as many.
  */
 constexpr std::int64_t WorkPerVertex = 340;
-/** What a fan counts for beside them. */
+/** The rest of the work for a fan. */
 constexpr std::int64_t WorkPerFan = 40;
 constexpr std::int64_t WorkPerPause = 10000;
 
-/** What is grown: the points of a grid, which are called by their slots. */
+/** Growth over the points of a grid, numbered by their slots. */
 class Growth
 {
 public:
@@ -35,7 +35,7 @@ public:
   class GridStrip;
   std::vector<std::unique_ptr<GridStrip>> MakeStrips(const Hull& hull, int threads);
 
-  /** The points by increasing (y, x); growing has been given up. */
+  /** The points by increasing (y, x), once growth is given up. */
   Buffer<Point2> Places(const Progress& progress)
   {
     this->Pool = Buffer<Ends>();
@@ -50,8 +50,8 @@ public:
     return places;
   }
 
-  /** Puts ids in the place of three of these; false where the edge limit leaves the triangle out. */
-  bool Name(Index* triangle) const
+  /** Changes indices of Places() to ids. @return false if the edge limit leaves the triangle out */
+  bool ToIds(Index* triangle) const
   {
     const Buffer<Index>&order = this->Grid.Order, &ids = this->Grid.Ids;
     const Index p = order[triangle[0]], q = order[triangle[1]], r = order[triangle[2]];
@@ -65,12 +65,12 @@ public:
   static constexpr const LatticeMetric* Metric = nullptr;
 
 private:
-  /** Other ends of the first and the last edge of a fan; None where they are not known yet. */
+  /** The other ends of the first and the last edge of a fan; None if not known yet. */
   using Ends = std::array<Index, 2>;
 
   const BinGrid& Grid;
   const DelaunayOptions& Options;
-  Buffer<Ends> Pool; ///< the edge pool: of the fan above each vertex, counter-clockwise
+  Buffer<Ends> Pool; ///< the edge pool: for the fan of each vertex, counter-clockwise
 };
 
 class Growth::GridStrip : public Strip<GridStrip>
@@ -98,7 +98,7 @@ public:
     return IsLower(this->Grid.PointAt(slot), this->Grid.PointAt(this->Order[this->Begin]));
   }
 
-  bool Tell(Index p, Index q)
+  bool RecordEdge(Index p, Index q)
   {
     const Point2 pPoint = this->Grid.PointAt(p), qPoint = this->Grid.PointAt(q);
     const bool isRising = IsLower(pPoint, qPoint);
@@ -139,8 +139,8 @@ public:
 
 private:
   /**
-   * Slots are in rows as well: so many further on lies what fans soon reach for the first time, in
-   * another order.
+   * Prefetches points some rows above: slots are sorted by rows too, so fans reach these points
+   * soon, in a different order.
    */
   void AskForRowsAbove() const
   {
@@ -157,8 +157,8 @@ private:
   }
 
   /**
-   * Grows the fan of the next vertex, or goes on with it.
-   * @return false when the budget pauses before it is complete
+   * Grows the fan of the next vertex, or continues with it.
+   * @return false if the budget pauses before it is complete
    */
   bool GrowFan(Index lowest)
   {
@@ -205,7 +205,7 @@ private:
     return true;
   }
 
-  /** Writes the triangles of a fan and tells their upper vertices. */
+  /** Writes the triangles of a fan and records their upper edges. */
   void Emit(Index lowest)
   {
     const std::size_t triangles = this->Fan.size() - 1;
@@ -218,7 +218,7 @@ private:
       const Index apex = this->Fan[i];
       this->Write(lowestId, this->Grid.Ids[current], this->Grid.Ids[apex],
         this->Limit.Admits(pointOf, lowest, current, apex));
-      this->Tell(current, apex);
+      this->RecordEdge(current, apex);
       current = apex;
     }
   }
@@ -229,10 +229,10 @@ private:
   const EdgeLimit Limit;
   ApexSearch Search;
   Index Next;
-  Buffer<Index> Fan; ///< of the vertex at hand: its upper neighbours so far, counter-clockwise
+  Buffer<Index> Fan; ///< the upper neighbours of the current vertex so far, counter-clockwise
 };
 
-/** One for each thread. */
+/** One strip per thread. */
 std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& hull, int threads)
 {
   constexpr Index fewestPerStrip = 5000;

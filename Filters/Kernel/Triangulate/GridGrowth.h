@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The triangles of the points of a grid of bins.
+ * Growth of the triangulation of points in a grid of bins.
  */
 #ifndef elevation_Triangulate_GridGrowth_h
 #define elevation_Triangulate_GridGrowth_h
@@ -14,10 +14,11 @@ namespace elevation
 {
 
 /**
- * Grows the triangles of all points of a grid, or divides and conquers them (see Growth.h).
- * @param grid        of which the room is taken
+ * The Delaunay triangles of all points of a grid, by growth or by divide and conquer (Growth.h).
+ * Expected linear for even density, n log n otherwise.
+ * @param grid        its Scratch is moved from
  * @param hull        of its points, which are not all on one line
- * @param options     Monitor is told fractions from 0.2 on
+ * @param options     Monitor gets fractions from 0.2 on
  */
 Buffer<Index> GrowOverGrid(
   BinGrid& grid, const Hull& hull, const DelaunayOptions& options, int threads);

@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Growing a triangulation: what is the same for points in a grid of bins and for nodes of a lattice.
+ * Growth of a triangulation: the common part for points in a grid of bins and nodes of a lattice.
  *
- * The vertices are taken from the lowest up, and each grows the fan of the triangles of which it is
- * the lowest vertex. They are cut into strips, grown at the same time: a strip knows the first and
- * the last edge of the fans of its own vertices only. What triangles from below would have told of
- * them is found by a walk through the triangles that cross the strip's lower border. By Euler's
- * formula the walk also tells how many triangles are below, so that each strip writes its own where
- * they belong. Triangles do not depend on where strips begin: they are the same, byte for byte, for
- * any number of strips.
+ * Vertices are taken from the lowest up; each grows its fan, the triangles whose lowest vertex it
+ * is. A triangle's upper edge is the first or last edge of the fan of its lower end, and is
+ * recorded there. The vertices are divided into strips, grown in parallel. The fan edges that
+ * triangles from below would record in a strip are found by a walk through the triangles that cross
+ * its lower border. By Euler's formula, the walk also gives the number of triangles below, so that
+ * each strip writes its own in their place. The triangles are the same, byte for byte, for any
+ * number of strips.
  *
- * Where searches look at too many points, growing is given up, and the vertices are divided and
- * conquered (DivideAndConquer.h). The triangles are the same, byte for byte.
+ * If searches look at too many points, growth is given up for divide and conquer
+ * (DivideAndConquer.h). The triangles are the same, byte for byte.
+ *
+ * Cost: one apex search per triangle, and per triangle that a walk passes.
  */
 #ifndef elevation_Triangulate_Growth_h
 #define elevation_Triangulate_Growth_h
@@ -40,23 +42,22 @@ namespace elevation
 }
 
 /**
- * A stretch of the vertices that one thread grows, a little at a time. What differs is in a class
- * that derives from it, with its own names of vertices:
- *   bool IsBelow(Index v) const         whether a vertex is below those of the strip
- *   bool Tell(Index p, Index q)         tells the lower end of a triangle's upper edge,
- *                                       counter-clockwise from p to q, of the other one;
- *                                       false when it is above the strip
- *   bool PassCells()                    goes on with the walk as far as no search is needed
- *   Index FindAcross()                  the apex of the triangle on the right of the walk's edge
- *   void GrowFans()                     until the budget pauses or the strip is done
+ * A range of the vertices, grown by one thread at a time. A derived class has the rest, with its
+ * own numbers of vertices:
+ *   bool IsBelow(Index v) const        whether a vertex is below those of the strip
+ *   bool RecordEdge(Index p, Index q)  records a triangle's upper edge, counter-clockwise from p
+ *                                      to q, at its lower end; false if that is above the strip
+ *   bool PassCells()                   continues the walk as far as no search is needed
+ *   Index FindAcross()                 the apex of the triangle on the right of the walk's edge
+ *   void GrowFans()                    until the budget pauses or the strip is done
  *   bool IsDone() const
- *   double Done() const                 how many of the vertices are done, or about so many
+ *   double Done() const                about how many of the vertices are done
  */
 template <typename Derived>
 class Strip
 {
 public:
-  /** @param begin,end  its vertices, counted from the lowest */
+  /** @param begin,end  the strip's vertices, counted from the lowest */
   Strip(const Hull& hull, Index begin, Index end, const WorkBudget& budget)
     : OfAll(hull)
     , Begin(begin)
@@ -67,14 +68,14 @@ public:
   Strip(const Strip&) = delete;
   Strip& operator=(const Strip&) = delete;
 
-  /** Where all triangles are to be written. */
+  /** Sets the memory for all triangles. */
   void SetOutput(Buffer<Index>& triangles)
   {
     this->Output = triangles.begin();
     this->OutputEnd = triangles.end();
   }
 
-  /** Goes on until it is done, or until about a time, or for some ten thousand fans. */
+  /** Grows until the strip is done, until about a time, or for some ten thousand fans. */
   void GoOn(const RoundClock::time_point& end)
   {
     constexpr int mostPauses = 128;
@@ -90,14 +91,14 @@ public:
     } while (!self.IsDone() && ++pauses < mostPauses && RoundClock::now() < end);
   }
 
-  /** Moves what it has written down to an end, which moves up. */
+  /** Moves the strip's triangles down to the end of those before, which moves up. */
   void MoveTo(Index*& end) const
   {
     end = this->OutBegin == end ? this->Out : std::copy(this->OutBegin, this->Out, end);
   }
 
 protected:
-  /** Sees that there is room for triangles of a point. */
+  /** Checks that there is room for the triangles of a point. */
   void NeedRoom(std::size_t triangles, Index id) const
   {
     if (static_cast<std::size_t>(this->OutputEnd - this->Out) < 3 * triangles)
@@ -106,7 +107,7 @@ protected:
     }
   }
 
-  /** There must be room, also for one that is left out. */
+  /** Writes a triangle if it is left in. There must be room in any case. */
   void Write(Index a, Index b, Index c, bool isLeftIn)
   {
     this->Out[0] = a;
@@ -126,9 +127,9 @@ private:
   }
 
   /**
-   * Goes on through the triangles across the lower border, from the left side of the hull to the
-   * right: each edge across is that of two of them.
-   * @return false when it pauses
+   * Continues the walk through the triangles across the lower border, from the left side of the
+   * hull to the right, from edge to edge across it.
+   * @return false if it pauses
    */
   bool Walk()
   {
@@ -164,20 +165,20 @@ private:
         else
         {
           ++this->Pairs;
-          self.Tell(apex, this->High);
+          self.RecordEdge(apex, this->High);
           this->High = apex;
         }
       }
     }
-    // The hull's edges are as those of triangles below.
-    for (Vertex v = right; v + 1 != rightChain.end() && self.Tell(v[1], v[0]); ++v)
+    // The hull's edges count as edges of triangles below.
+    for (Vertex v = right; v + 1 != rightChain.end() && self.RecordEdge(v[1], v[0]); ++v)
     {
     }
-    for (Vertex v = left; v + 1 != leftChain.end() && self.Tell(v[0], v[1]); ++v)
+    for (Vertex v = left; v + 1 != leftChain.end() && self.RecordEdge(v[0], v[1]); ++v)
     {
     }
-    // n vertices joined by triangles, with no hole and b edges around, have 2 n - 2 - b triangles.
-    // Around those above are some edges of the hull and, along the walk, one for each pair.
+    // n vertices, triangulated without holes, with b border edges, have 2 n - 2 - b triangles. The
+    // border of those above consists of hull edges and, along the walk, one edge for each of Pairs.
     const std::size_t below = 2 * static_cast<std::size_t>(this->Begin) + this->Pairs -
       static_cast<std::size_t>((left - leftChain.begin()) + (right - rightChain.begin()));
     this->OutBegin = this->Out = this->Output + 3 * below;
@@ -189,21 +190,21 @@ private:
   Index* OutBegin = nullptr;
 
 protected:
-  Index* Out = nullptr; ///< the end of what it has written; null before the walk is done
+  Index* Out = nullptr; ///< the end of what is written; null before the walk is done
   const Index Begin, End;
   WorkBudget Budget;
-  // The edge across the border that the walk has come to, and the last one.
+  // The walk's current edge across the border, and the last one.
   Index Low = None, High = None, LastLow = None, LastHigh = None;
   std::size_t Pairs = 0; ///< triangles with two vertices above that the walk has passed
 };
 
-/** Grows all strips, as many at a time as there are threads, with a report between rounds. */
+/** Grows all strips, one per thread at a time, with a report between rounds. */
 template <typename AnyStrip>
 void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int threads, Index vertices,
   const Progress& progress)
 {
   const Index number = static_cast<Index>(strips.size());
-  std::vector<Index> atWork(std::max(threads, 1), None); // the strip that a thread is at
+  std::vector<Index> atWork(std::max(threads, 1), None); // the current strip of each thread
   std::atomic<Index> next{ 0 };
   const auto fraction = [&]() {
     double done = 0.0;
@@ -232,8 +233,8 @@ void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int thread
 }
 
 /**
- * The triangles of all vertices, in the order of their lowest ones, each from its lowest one on.
- * @param growth   makes strips; tells places and names of vertices, metric and edge limit
+ * The triangles of all vertices, sorted by their lowest vertex, each starting with it.
+ * @param growth   makes strips; knows positions and ids of vertices, metric and edge limit
  * @param hull     of the vertices, which are not all on one line
  * @param room     memory to write into
  */
@@ -253,7 +254,7 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
         strip->SetOutput(triangles);
       }
       GrowStrips(strips, threads, vertices, progress);
-      // Where the edge limit leaves some out, the strips close up.
+      // Close the gaps of triangles that the edge limit leaves out.
       Index* end = triangles.begin();
       for (const auto& strip : strips)
       {
@@ -281,7 +282,7 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
     ReportStep(naming, t, triangles.size(), 49152);
     Index* const triangle = triangles.data() + kept;
     std::copy_n(triangles.data() + t, 3, triangle);
-    kept += growth.Name(triangle) ? 3 : 0;
+    kept += growth.ToIds(triangle) ? 3 : 0;
   }
   triangles.Resize(kept);
   return triangles;

@@ -27,7 +27,7 @@ Buffer<Index> RowExtremes(const BinGrid& grid, const Progress& progress)
     {
       continue;
     }
-    // In the outermost bins that hold points.
+    // In the outermost bins with points.
     const Index* bounds = &grid.Starts[static_cast<std::size_t>(row) * columns];
     const Index firstEnd = *std::upper_bound(bounds, bounds + columns + 1, slots.first);
     const Index lastBegin = std::lower_bound(bounds, bounds + columns + 1, slots.second)[-1];
@@ -46,7 +46,7 @@ Buffer<Index> RowExtremes(const BinGrid& grid, const Progress& progress)
   return extremes;
 }
 
-/** Where a chain is at a height; wrong by a few roundoffs of the greatest coordinate. */
+/** The x of a chain at a height, with an error of a few roundoffs of the greatest coordinate. */
 double ChainAt(const BinGrid& grid, const std::vector<Index>& chain, double y)
 {
   const auto end = std::lower_bound(chain.begin() + 1, chain.end() - 1, y,
@@ -56,8 +56,8 @@ double ChainAt(const BinGrid& grid, const std::vector<Index>& chain, double y)
 }
 
 /**
- * The points that may be on the convex hull, by increasing (y, x): those not well within the hull
- * of the leftmost and rightmost points of the rows. Nearly all points are.
+ * The points that may be on the convex hull, by increasing (y, x): all but those well within the
+ * hull of the leftmost and rightmost points of the rows, which are nearly all.
  */
 Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const Progress& progress)
 {
@@ -66,11 +66,11 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const 
   const double lowest = grid.Y[leftChain.front()], highest = grid.Y[leftChain.back()];
   const double margin =
     bins.HasPlainBins ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth) : Infinity;
-  double left, right; // of the points well within, in the row at hand
+  double left, right; // range of the points well within, in the current row
   Buffer<Index> candidates;
   const auto add = [&](Index slot) {
     ReportStep(progress, slot, grid.X.size());
-    if (!(grid.X[slot] > left && grid.X[slot] < right)) // also where a chain is not a number
+    if (!(grid.X[slot] > left && grid.X[slot] < right)) // also if a chain is NaN
     {
       candidates.Append(slot);
     }
@@ -84,7 +84,7 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const 
     right = -Infinity;
     if (slots.first < slots.second && low > lowest && high < highest)
     {
-      // A chain is convex: over the row's height it is innermost at its lower or its upper end.
+      // A chain is convex: within the row it is innermost at the lower or the upper end.
       left = margin + std::max(ChainAt(grid, leftChain, low), ChainAt(grid, leftChain, high));
       right = std::min(ChainAt(grid, rightChain, low), ChainAt(grid, rightChain, high)) - margin;
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The convex hull, from which growth begins.
+ * The convex hull, from which growth starts. Linear in the points of a grid.
  *
  * [Andrew 1979] Another efficient algorithm for convex hulls in two dimensions, Information
  * Processing Letters 9(5):216-219.
@@ -18,7 +18,7 @@
 namespace elevation
 {
 
-/** Both sides of the convex hull from its lowest to its highest point, collinear points included. */
+/** Both chains of the convex hull from its lowest to its highest point, with collinear points. */
 struct Hull
 {
   std::vector<Index> RightChain, LeftChain;
@@ -31,16 +31,16 @@ struct Hull
 };
 
 /**
- * The hull of points [Andrew 1979], in linear time.
- * @param candidates  by increasing (y, x); at least one, and all that are on the hull
- * @param turn        turn(p, q, r): the side of r with respect to the line from p to q, a Sign
+ * The hull of sorted points, in linear time [Andrew 1979].
+ * @param candidates  by increasing (y, x); at least one, including all on the hull
+ * @param turn        turn(p, q, r): the Sign of r's side of the line from p to q
  */
 template <typename Turn>
 Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress& progress)
 {
   Hull hull;
-  for (const Sign outside : { Negative, Positive }) // must stay empty: beside the right chain, then
-  {                                                 // beside the left one
+  for (const Sign outside : { Negative, Positive }) // the empty side of the right and left chain
+  {
     std::vector<Index>& chain = outside == Negative ? hull.RightChain : hull.LeftChain;
     for (std::size_t i = 0; i < candidates.size(); ++i)
     {
@@ -56,7 +56,7 @@ Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress&
   return hull;
 }
 
-/** The hull of the points of a grid, of which there is at least one, as slots; in linear time. */
+/** The hull of the points of a grid, at least one, as slots. */
 Hull FindHull(const BinGrid& grid, const Progress& progress);
 
 } // namespace elevation

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Sets of instructions of the processor, and how a function is compiled for one of them.
+ * Instruction sets of the processor, and macros to compile a function for one of them.
  */
 #ifndef elevation_Triangulate_Instructions_h
 #define elevation_Triangulate_Instructions_h
 
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
-/** Defined where functions can be compiled for processors with AVX2 among others that are not. */
+/** Defined if single functions can be compiled for processors with AVX2. */
 #define ELEVATION_HAS_AVX2
 #include <immintrin.h>
 /** A function for processors with AVX2. */
@@ -23,7 +23,7 @@
 namespace elevation
 {
 
-/** What the search for apexes may use: each set includes those before it. */
+/** Instruction sets that the search for apexes may use; each includes those before it. */
 enum class InstructionSet
 {
   Scalar,
@@ -31,7 +31,7 @@ enum class InstructionSet
   AVX512 ///< sixteen
 };
 
-/** The widest that this processor has, and the compiler knows. */
+/** The widest set that both processor and compiler support. */
 inline InstructionSet WidestInstructions()
 {
 #ifdef ELEVATION_HAS_AVX2

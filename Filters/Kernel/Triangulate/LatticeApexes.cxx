@@ -34,12 +34,12 @@ public:
     this->NormalY = gx / this->Root;
   }
 
-  /** A disc is told by the position of its centre, in edge lengths along the edge's left normal. */
+  /** The position of a disc's centre, in edge lengths along the edge's left normal. */
   double PositionOf(const Apex& apex) const
   {
     return 0.5 * static_cast<double>(apex.Dot) / (this->Root * static_cast<double>(apex.Cross));
   }
-  /** Of the disc that is so high over the edge. */
+  /** The same for the disc of a height over the edge. */
   double PositionOfHeight(double height) const
   {
     const double h = height / std::sqrt(this->LengthSquared);
@@ -53,8 +53,8 @@ public:
     this->RadiusSquared = this->LengthSquared * (0.25 + position * position);
     this->CenterX = 0.5 * this->EdgeX + position * this->NormalX;
     this->CenterY = 0.5 * this->EdgeY + position * this->NormalY;
-    // Bounds, in steps, of what lies on the left of the edge: all of it is in the disc of position
-    // 0, where the position is less. A disc so large that rounding might matter is the half-plane.
+    // Bounds, in steps, of the part on the left of the edge. For positions below 0, it lies in the
+    // disc of position 0. A disc so large that rounding might matter is taken as the half-plane.
     const double bound = std::max(position, 0.0);
     const double squared = this->LengthSquared * (0.25 + bound * bound);
     const double halfWidth = std::sqrt(squared * this->C) / this->Root;
@@ -71,11 +71,11 @@ public:
 
   double Left = 0.0, Right = 0.0, Bottom = 0.0, Top = 0.0;
 
-  /** Whether rows of the disc, from begin to end, certainly have none of a range of columns. */
+  /** Whether rows of the disc, from begin to end, certainly miss a range of columns. */
   bool MissesRows(double begin, double end, double left, double right) const
   {
     const double low = begin - this->CenterY, high = end - this->CenterY;
-    // The middles of these rows lie between two columns.
+    // The disc's middles in these rows lie between two columns.
     const double middle = this->CenterX - this->Slant * low;
     const double other = this->CenterX - this->Slant * high;
     const double beside =
@@ -85,8 +85,8 @@ public:
     return !this->IsHalfPlane && (squared < 0.0 || (beside > 0.0 && beside * beside > squared));
   }
 
-  /** Leaves of a range of columns what a row of the disc has, a little more rather than less.
-   * @return false when no column is left */
+  /** Clips a range of columns to a row of the disc, rather too wide than too narrow.
+   * @return false if no column is left */
   bool ClipRow(double y, double& left, double& right) const
   {
     left = std::max(left, this->Left - Slack);
@@ -176,8 +176,8 @@ std::int64_t LatticeApexes::NumberOfGaps() const
 }
 
 /**
- * Over an edge upwards, of nodes above its first one, over one downwards of all of them. The list
- * ends before the first node whose circle is not within range, so it misses nothing.
+ * For an edge upwards, the list is of nodes above its first one; for an edge downwards, of all. It
+ * ends before the first node whose circle exceeds the range, so it misses none.
  */
 const LatticeApexes::Entries* LatticeApexes::MakeList(
   const Offset& e, std::atomic<const Entries*>& slot) const
@@ -217,7 +217,7 @@ const LatticeApexes::Entries* LatticeApexes::MakeList(
   return slot.compare_exchange_strong(list, made.get()) ? made.release() : list;
 }
 
-/** The search for the apex over one edge, row by row. */
+/** A search for the apex over one edge, row by row. */
 class LatticeApexes::RowSearch
 {
 public:
@@ -236,12 +236,12 @@ public:
   }
 
   /**
-   * The first look goes into a disc about one spacing high over the edge, the next ones are four
-   * times as high. The disc of some node on the free side, of which one is known, bounds them all.
+   * Searches a disc about one spacing high over the edge, then discs four times as high each; at
+   * most the disc of the best known node on the left of the edge.
    */
   Offset Run()
   {
-    // So are the nodes beside both ends, in their rows.
+    // Other known nodes are the neighbours of both ends in their rows.
     this->CompareNeighborInRow(this->E);
     if (this->E.Y < 0)
     {
@@ -259,7 +259,7 @@ public:
       }
       if (this->Look(seen))
       {
-        if (!(this->Disc.PositionOf(this->Best) <= seen)) // found beside the disc, by rounding
+        if (!(this->Disc.PositionOf(this->Best) <= seen)) // by rounding, it is outside the disc
         {
           this->Look(this->Disc.PositionOf(this->Best));
         }
@@ -270,7 +270,7 @@ public:
   }
 
 private:
-  /** Compares the node next to one end of an edge in its row, if there is one on the free side. */
+  /** Compares the node next to an end of the edge in its row, if it is on the left of the edge. */
   void CompareNeighborInRow(const Offset& end)
   {
     if (this->E.Y == 0)
@@ -290,7 +290,7 @@ private:
     this->Compare({ end.X + neighbor - node, end.Y });
   }
 
-  /** @return whether a node on the left of the edge is better than the best so far */
+  /** @return whether the node is on the left of the edge and better than the best so far */
   bool Compare(const Offset& p)
   {
     const Apex apex = ApexAt(this->Apexes.Metric, this->E, p);
@@ -303,8 +303,8 @@ private:
   }
 
   /**
-   * Compares all nodes in a disc, which shrinks with the best that is found: over an edge upwards
-   * those above the first node, over one downwards all of them.
+   * Compares the nodes in a disc, which shrinks with each better one: for an edge upwards those
+   * above its first node, for an edge downwards all.
    * @return whether a better one was found
    */
   bool Look(double position)
@@ -320,7 +320,7 @@ private:
     {
       if (y == 0 || y == this->E.Y)
       {
-        continue; // a disc through an end has no node beyond its neighbor in its row
+        continue; // in an end's row, a disc through it has no node beyond the end's neighbour
       }
       const int level = this->BandMissed(y);
       if (level > 0)
@@ -342,14 +342,14 @@ private:
     return isAnyBetter;
   }
 
-  /** The level of the largest band that begins with a row and need not be looked into. */
+  /** The level of the largest band that starts at a row and can be skipped; 0: none. */
   int BandMissed(Index y) const
   {
     const Index row = this->Row + y;
     int level = 0;
     while (level < MostBands && (row & ((1 << BandBits * (level + 1)) - 1)) == 0)
     {
-      // Whether it has no node left of the edge's line within the columns of the disc.
+      // Skipped if no node on the left of the edge's line is within the columns of the disc.
       const RowEnds& ends = this->Apexes.Ends[level + 1][row >> BandBits * (level + 1)];
       const Index top = y + (1 << BandBits * (level + 1)) - 1;
       double left = ends.Left - this->Column, right = ends.Right - this->Column;
@@ -365,10 +365,10 @@ private:
     return level;
   }
 
-  /** Compares what is in the disc, only of occupied columns and left of the edge's line. */
+  /** Compares the nodes of a row in the disc on the left of the edge's line. */
   bool LookIntoRow(Index y)
   {
-    // A node beside the line is at least 2^-20 from it.
+    // A node that is not on the line is at least 2^-20 from it.
     const RowEnds& ends = this->Apexes.EndsOf(this->Row + y);
     double left = ends.Left - this->Column, right = ends.Right - this->Column;
     right = this->E.Y > 0 ? std::min(right, y * this->Slope - 4e-7) : right;

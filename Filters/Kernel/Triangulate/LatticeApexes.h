@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Looks for the apex of the triangle over an edge between nodes of a lattice, in its metric.
+ * Searches for the apex of the triangle over an edge between nodes of a lattice, in its metric.
  *
- * In: the bitmap of nodes, and an edge. Out: the occupied node on its left in whose circle no other
- * one is; of co-circular ones the first as seen from the lower end of the edge. Exact, in integers.
+ * In: the bitmap of nodes, and an edge. Out: the occupied node on its left whose circle is empty;
+ * of cocircular ones the first as seen from the lower end of the edge. Exact, in integers.
  *
- * What can be the apex over an edge does not depend on where the edge is. So for each short edge
- * vector that is asked for more than a few times, the nodes near it are sorted by circle, once: the
- * first occupied one is the apex. What a list does not reach is searched for row by row, in discs
- * that are proved to hold all better nodes; bands of rows with no node in the disc are passed over.
+ * The candidates for the apex over an edge depend only on the edge vector. So for each short vector
+ * that is asked for more than a few times, the nodes near it are sorted by circle, once: the first
+ * occupied one is the apex. Apexes beyond the list are searched row by row, in discs that provably
+ * contain all better nodes; bands of rows with no node in the disc are skipped.
+ *
+ * Cost: constant by list; by rows, linear in the rows, words and nodes looked at.
  */
 #ifndef elevation_Triangulate_LatticeApexes_h
 #define elevation_Triangulate_LatticeApexes_h
@@ -37,8 +39,8 @@ inline std::int64_t Cross(const Offset& p, const Offset& q)
 }
 
 /**
- * An apex over the edge from a node to e: dot / cross is the cotangent of the angle under which it
- * sees the edge; of two, the one with the smaller quotient lies inside the other's circle.
+ * An apex over the edge from a node to e: dot / cross is the cotangent of the angle at the apex; of
+ * two apexes, the one with the smaller quotient lies inside the other's circle.
  */
 struct Apex
 {
@@ -51,24 +53,24 @@ inline Apex ApexAt(const LatticeMetric& metric, const Offset& e, const Offset& p
   return { p, metric.Dot(p.X, p.Y, p.X - e.X, p.Y - e.Y), Cross(e, p) };
 }
 
-/** Sign of the difference of two quotients, multiplied out. */
+/** The sign of the difference of two quotients, without division. */
 inline int CompareQuotients(const Apex& p, const Apex& q)
 {
   return CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
 }
 
 /**
- * Whether p is the apex rather than q over the edge from a node to e. Of co-circular ones it is the
- * first as seen from the lower end of the edge. Over an edge upwards this is the rule for ties: the
- * node is the lowest, and the polygon is cut into its fan. Over an edge downwards it need not be:
- * however the polygon is cut across a border, the nodes above are the same neighbours.
+ * Whether p is a better apex than q over the edge from a node to e; of cocircular ones, the first
+ * as seen from the lower end of the edge. Over an edge upwards this is the rule for ties: the node
+ * is the lowest, and the polygon is cut into its fan. Edges downwards occur only in walks across a
+ * border, where the cut does not matter: the nodes above have the same neighbours.
  */
 bool IsBetter(const Apex& p, const Apex& q, const Offset& e);
 
 class LatticeApexes
 {
 public:
-  /** How far lists go from the first node of an edge: columns to each side, and rows. */
+  /** How far lists reach from the first node of an edge: columns to each side, and rows. */
   static constexpr Index Range = 15;
   static_assert(Range <= LatticeNodes::RowsBeyond, "rows beyond the last are looked at");
   static_assert(Range < LatticeNodes::ColumnsBeyond, "nodes beyond a row are looked at");
@@ -78,7 +80,7 @@ public:
   LatticeApexes& operator=(const LatticeApexes&) = delete;
   ~LatticeApexes();
 
-  /** First and last occupied column of a row, or of a band of them. */
+  /** First and last occupied column of a row, or of a band of rows. */
   struct RowEnds
   {
     Index Left = LatticeNodes::MaximumSide, Right = -1;
@@ -90,8 +92,8 @@ public:
   std::int64_t NumberOfGaps() const;
 
   /**
-   * Looks into the list of an edge, if there is one. Threads may ask at the same time.
-   * @return false when it does not tell the apex
+   * Looks for the apex in the list of an edge vector. Thread-safe.
+   * @return false if there is no list, or the apex is beyond it
    */
   bool FindInList(Index node, const Offset& e, Offset& place)
   {
@@ -114,7 +116,7 @@ public:
    * @param row,column  of the edge's first node
    * @param e           the other one
    * @param known       some node on the left of the edge, as an apex
-   * @param budget      is charged for what is looked at, about a nanosecond each
+   * @param budget      charged in units of about a nanosecond
    */
   Offset Search(
     Index row, Index column, const Offset& e, const Apex& known, WorkBudget& budget) const;
@@ -122,15 +124,15 @@ public:
 private:
   class RowSearch;
 
-  /** For an edge vector, the nodes near it that may be the apex, the best first. */
+  /** For an edge vector, a node near it that may be the apex; lists have the best first. */
   struct Entry
   {
-    Index Step; ///< from the first node of the edge to this one
+    Index Step; ///< from the number of the edge's first node to this one's
     std::int16_t X, Y;
   };
   using Entries = std::vector<Entry>;
 
-  /** The list of a short edge vector, made when it has been asked for a few times, or nullptr. */
+  /** The list of an edge vector; null if it is long, or was asked for only a few times so far. */
   const Entries* ListOf(const Offset& e)
   {
     if (std::abs(e.X) > Longest || std::abs(e.Y) > Longest)
@@ -159,7 +161,7 @@ private:
 
   const LatticeNodes& Nodes;
   const LatticeMetric& Metric;
-  double FirstHeight = 0.0; ///< over an edge, of the first disc that is looked into
+  double FirstHeight = 0.0; ///< of the first disc searched, over its edge
   std::array<std::vector<RowEnds>, MostBands + 1> Ends; ///< of each row, band, band of bands ...
   std::array<Slot, Side * Side> Slots;
 };

@@ -13,15 +13,15 @@ namespace elevation
 namespace
 {
 
-/** Work for each point before growing is given up, and between pauses, in nanoseconds or so. */
+/** Work per point before growth is given up, and between pauses; units of about a nanosecond. */
 constexpr std::int64_t WorkPerPoint = 1000, WorkPerPause = 100000;
 
-/** Thrown where a triangle would be flat or inverted in the coordinates of the points. */
+/** Thrown if a triangle would be flat or inverted in the coordinates of the points. */
 struct IsFlat
 {
 };
 
-/** What is grown: the occupied nodes of a lattice, which are called by their numbers. */
+/** Growth over the occupied nodes of a lattice, by node numbers. */
 class Growth
 {
 public:
@@ -36,7 +36,7 @@ public:
   {
     this->First.Recycle(std::move(nodes.Scratch));
     const Point2 &u = nodes.Steps.StepU, &v = nodes.Steps.StepV;
-    // With a shorter limit, some diagonal of a cell may be too long.
+    // With a shorter limit, a diagonal of a cell may be too long.
     this->UseCells = this->IsProved({ 1, 0 }, { 1, 1 }) &&
       (!this->Limit.IsSet() ||
         options.MaximumEdgeLength > 2.0 * (std::hypot(u.X, u.Y) + std::hypot(v.X, v.Y)));
@@ -46,7 +46,7 @@ public:
   std::vector<std::unique_ptr<LatticeStrip>> MakeStrips(const Hull& hull, int threads);
   Hull FindHull() const;
   Buffer<Point2> Places(const Progress& progress);
-  bool Name(Index* triangle) const;
+  bool ToIds(Index* triangle) const;
 
   const EdgeLimit Limit;
   const LatticeMetric* const Metric;
@@ -60,7 +60,7 @@ private:
   }
   Index FirstWordOf(Index row) const { return this->Nodes.NodeAt(row, 0) / 64; }
 
-  /** Whether no triangle of this shape can be flat or inverted, however far its points are off. */
+  /** Whether no triangle of this shape can be flat or inverted, as far as points are off nodes. */
   bool IsProved(const Offset& p, const Offset& q) const
   {
     const double off = this->Nodes.LargestOffset;
@@ -70,7 +70,7 @@ private:
   }
 
   /**
-   * Whether the limit on edges leaves in a triangle of points; p and q are its upper nodes.
+   * Whether the edge limit admits a triangle of points; p and q are its upper nodes.
    * @throws IsFlat
    */
   bool IsLeftIn(const Offset& p, const Offset& q, Index a, Index b, Index c) const
@@ -87,11 +87,11 @@ private:
   const LatticeNodes& Nodes;
   const Index PointsPerStrip;
   bool UseCells;
-  Buffer<Index> First, Last; ///< first and last neighbour of the fan above a vertex, by rank
+  Buffer<Index> First, Last; ///< by rank: the first and the last neighbour of a vertex's fan
   LatticeApexes Apexes;
 };
 
-/** From the ends of the rows, and all nodes of the lowest and of the highest row. */
+/** From the ends of the rows, and all nodes of the lowest and the highest row. */
 Hull Growth::FindHull() const
 {
   const LatticeNodes& nodes = this->Nodes;
@@ -118,7 +118,7 @@ Hull Growth::FindHull() const
   return elevation::FindHull(candidates, turn, Progress());
 }
 
-/** Columns and rows of the nodes; growing has been given up. */
+/** Columns and rows of the nodes, once growth is given up. */
 Buffer<Point2> Growth::Places(const Progress&)
 {
   this->First = Buffer<Index>();
@@ -140,8 +140,8 @@ Buffer<Point2> Growth::Places(const Progress&)
   return places;
 }
 
-/** Puts ids in the place of three ranks; false where the edge limit leaves the triangle out. */
-bool Growth::Name(Index* triangle) const
+/** Changes ranks to ids. @return false if the edge limit leaves the triangle out */
+bool Growth::ToIds(Index* triangle) const
 {
   std::transform(
     triangle, triangle + 3, triangle, [this](Index rank) { return this->Nodes.Ids[rank]; });
@@ -169,16 +169,16 @@ public:
       (this->EndWord - this->FirstWord);
   }
 
-  /** Node numbers increase with row and column; before a row is a word of zeros. */
+  /** Node numbers increase with row and column; each row starts after a word of zeros. */
   bool IsBelow(Index node) const { return node < 64 * this->FirstWord - 64; }
 
-  bool Tell(Index p, Index q)
+  bool RecordEdge(Index p, Index q)
   {
     return q > p ? this->Set(this->All.Last, this->Nodes.RankOf(p), q)
                  : this->Set(this->All.First, this->Nodes.RankOf(q), p);
   }
 
-  /** What vertices of full cells know of each other is not told. */
+  /** Edges of vertices of full cells need not be recorded. */
   bool PassCells()
   {
     const Index before = this->Low;
@@ -200,7 +200,7 @@ public:
     Offset place;
     if (row < LatticeApexes::Range || !this->All.Apexes.FindInList(this->High, e, place))
     {
-      // The hull's edge is on the left: one of its ends at least is an apex.
+      // At least one end of the hull's edge is on the left, and can be an apex.
       Apex apex = ApexAt(*this->All.Metric, e, this->All.Between(this->High, this->LastHigh));
       const Apex other = ApexAt(*this->All.Metric, e, this->All.Between(this->High, this->LastLow));
       if (apex.Cross <= 0 || (other.Cross > 0 && IsBetter(other, apex, e)))
@@ -242,8 +242,8 @@ private:
 };
 
 /**
- * Strips of about as much work each, all of them with points: several a thread, as what they take
- * is but guessed, unless the walks below them would count.
+ * Strips with points, of about equal work: several per thread, as work is only estimated, unless
+ * the walks would take too much of it.
  */
 std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull& hull, int threads)
 {
@@ -251,7 +251,7 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
   const Index count = nodes.NumberOfPoints();
   this->First.Resize(count);
   this->Last.Resize(count);
-  // In nanoseconds or so; where there are few gaps most points are of full cells.
+  // In units of about a nanosecond. With few gaps, most points are of full cells.
   constexpr double perPoint = 6.0, perGap = 9.0, mostGaps = 10.0, perPointOfWalk = 500.0,
                    least = 20000.0;
   const auto workOf = [&](double points, double gaps) {
@@ -268,7 +268,7 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
     perStrip = std::max((all + (strips - 1.0) * walk) / strips, std::max(2.0 * walk, least));
   }
   std::vector<std::unique_ptr<LatticeStrip>> strips;
-  Index first = 0, firstWord = this->FirstWordOf(0); // of the strip at hand
+  Index first = 0, firstWord = this->FirstWordOf(0); // of the current strip
   double work = 0.0;
   for (Index row = 0; row < nodes.Rows; ++row)
   {
@@ -290,12 +290,12 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
 }
 
 /**
- * The vertices of a strip in turn, until its work pauses. With an obtuse or right angle between
- * the steps, full cells are cut from their lower left corner; with an acute one, from the lower
- * right one to the upper left. A unit edge is in the triangulation wherever both of its nodes are
- * occupied, and so are the triangles of the cut cell: their circles are empty even when all nodes
- * are occupied. This makes the fan of a vertex known when the nodes left, right, above and beside
- * that are occupied, and its first and last edge known when only some are.
+ * Grows the vertices in turn, until the budget pauses. With an obtuse or right angle between the
+ * steps, full cells are cut from the lower left corner to the upper right; with an acute angle,
+ * from the lower right to the upper left. If both nodes of a unit edge are occupied, it is in the
+ * triangulation, and so are the triangles of a full cell: their circles are empty even if all nodes
+ * are occupied. So the fan of a vertex is known if the nodes to the left, right, above and next to
+ * that are occupied; its first or last edge may be known if only some are.
  */
 void Growth::LatticeStrip::GrowFans()
 {
@@ -354,11 +354,11 @@ void Growth::LatticeStrip::GrowFans()
   }
 }
 
-/** The two triangles of each cell; @a here and @a up are the ids from its left end on. */
+/** Writes the two triangles of each cell; here and up are ids from the left end on. */
 void Growth::LatticeStrip::WriteCells(const Index* here, const Index* up, int length, bool isAcute)
 {
   this->NeedRoom(2 * static_cast<std::size_t>(length), *here);
-  const Index* middle = isAcute ? up : up + 1; // the diagonal's end
+  const Index* middle = isAcute ? up : up + 1; // the common upper corner of both triangles
   const Index* last = isAcute ? up - 1 : up;
   Index* out = this->Out;
   for (int i = 0; i < length; ++i, out += 6)
@@ -389,7 +389,7 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
     Offset p;
     if (!this->All.Apexes.FindInList(node, e, p))
     {
-      // The last vertex of the fan is on the free side.
+      // The last vertex of the fan is on the left of the edge.
       const Apex known = ApexAt(*this->All.Metric, e, end);
       p = this->All.Apexes.Search(row, column, e, known, this->Budget);
     }
@@ -408,7 +408,7 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
   }
 }
 
-/** Few points fit some lattice by chance, the more easily the larger the tolerance. */
+/** Whether so few points may fit some lattice by chance, which large tolerances make likely. */
 bool IsByChance(double count, double tolerance)
 {
   // Three points make a lattice; every other one fits with the probability of its node's area; the

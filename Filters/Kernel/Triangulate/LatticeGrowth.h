@@ -4,23 +4,26 @@
  * @file
  * The Delaunay triangulation of the nodes of a lattice, in integers.
  *
- * In: points. Out: the triangles, or the answer that the points are on no lattice. The passes:
- *   1. Find the lattice (FindLattice.h) and put the points on a bitmap of its nodes (Nodes.h).
- *   2. The metric of the two steps, as integers: |i u + j v|^2 = A i^2 + 2 B i j + C j^2 (Metric.h).
+ * In: points. Out: the triangles, or the answer that the points are not on a lattice. The passes:
+ *   1. Find the lattice (FindLattice.h) and enter the points in a bitmap of its nodes (Nodes.h).
+ *   2. Find the metric of the two steps in integers: |i u + j v|^2 = A i^2 + 2 B i j + C j^2
+ *      (Metric.h).
  *   3. Find the convex hull, from the ends of the rows.
  *   4. Grow, or divide and conquer (Growth.h). Where all nodes are occupied, the fan of a vertex is
- *      the two triangles of one cell, and all such vertices of 64 nodes are told at once by a few
- *      operations on words. For others each apex is looked for (LatticeApexes.h).
+ *      the two triangles of one cell; all such vertices among 64 nodes are found at once by a few
+ *      operations on words. For other vertices, each apex is searched for (LatticeApexes.h).
  *
- * Guarantees: exact and unique, as the general path, for the nodes in the metric: no node lies
- * inside a triangle's circle, and co-circular nodes are cut into the fan of the lowest (by row,
- * then column). On a lattice parallel to the axes this is the same set of triangles. No triangle is
- * inverted or flat in the coordinates of the points: where it might be, the answer is "no lattice".
+ * Guarantees: exact and unique, as Triangulate.h, for the nodes in the metric: no node lies inside
+ * a triangle's circle, and cocircular nodes are cut into the fan of the lowest (by row, then
+ * column). On a lattice parallel to the axes this is the same set of triangles. No triangle is
+ * inverted or flat in the coordinates of the points: if one might be, the answer is "no lattice".
  *
- * The metric: steps within a ten-thousandth of a right angle count as perpendicular, and if their
- * lengths agree as well as equal. The squared lengths of other perpendicular steps are a ratio of
- * integers, within 1e-5; other steps have squared lengths and product rounded to 2^-20 of the
- * longest. In it, all tests are exact.
+ * The metric: steps within a ten-thousandth of a right angle count as perpendicular, and then, if
+ * their lengths agree as closely, as equal. The squared lengths of other perpendicular steps get a
+ * ratio of integers, within 1e-5; other steps have squared lengths and product rounded to 2^-20 of
+ * the longest. In this metric, all tests are exact.
+ *
+ * Cost: expected linear in the points.
  */
 #ifndef elevation_Triangulate_LatticeGrowth_h
 #define elevation_Triangulate_LatticeGrowth_h
@@ -32,15 +35,15 @@ namespace elevation
 
 /**
  * Triangulates points on a lattice.
- * @param[in] options  LatticeTolerance is how far a point may lie from its node
- * @param[out] result  as of Triangulate, with LatticeFound; not touched when there is none
- * @param[out] extent  of the points, where there is none
- * @return false when the points are on no lattice, all on one line, or too few to tell
+ * @param[in]  options  with LatticeTolerance
+ * @param[out] result   as of Triangulate(), with LatticeFound; unchanged on false
+ * @param[out] extent   of the points, on false
+ * @return false if the points are on no lattice, all on one line, or too few to tell
  */
 bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent);
 
-/** The same on a lattice that is found already. */
+/** The same on a known lattice. */
 bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   const DelaunayOptions& options, Triangulation& result);
 

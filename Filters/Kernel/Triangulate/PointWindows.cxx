@@ -6,7 +6,7 @@
 #include <cmath>
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes its own intrinsics' undefined values for a mistake.
+// GCC 12 warns of undefined values in its own intrinsics.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
@@ -15,7 +15,7 @@ namespace elevation
 #ifdef ELEVATION_HAS_AVX2
 namespace
 {
-constexpr double PointsInBox = 18.0; // as expected; half of that when it was too much
+constexpr double PointsInBox = 18.0; // expected; halved if there are too many
 constexpr double MostSides = 4.0;    // from the middle of a leaf to the farthest point around it
 constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
 
@@ -40,7 +40,7 @@ ELEVATION_WIDE inline std::int32_t Units(double value, double from, double perUn
   return _mm_cvtsd_si32(_mm_set_sd((value - from) * perUnit)); // to the nearest, as above
 }
 
-/** For the bits of eight places, which of them are set; then any. */
+/** For every eight bits, the places of those that are set, then anything. */
 struct Packing
 {
   alignas(8) std::uint8_t Places[256][8];
@@ -62,7 +62,7 @@ struct Packing
 };
 constexpr Packing Packings;
 
-/** The places that are set. */
+/** The places of the bits that are set. */
 ELEVATION_WIDE_INLINE __m256i PlacesOf(int bits)
 {
   return _mm256_cvtepu8_epi32(
@@ -85,7 +85,7 @@ struct WideBox
         _mm256_cmp_pd(_mm256_loadu_pd(node.HighY + first), this->LowY, _CMP_GE_OQ));
     return _mm256_movemask_pd(_mm256_and_pd(isWithinX, isWithinY));
   }
-  /** Which of four points it holds, as bits. */
+  /** Which of four points it contains, as bits. */
   ELEVATION_WIDE_INLINE int Holds(__m256d x, __m256d y) const
   {
     const __m256d isInX = _mm256_and_pd(
@@ -96,7 +96,7 @@ struct WideBox
   }
 };
 
-/** Adds the points of a leaf that the box holds. @return false when they are too many */
+/** Adds the points of a leaf in the box. @return false if there are too many */
 ELEVATION_WIDE_INLINE bool AddLeaf(const BinGrid& grid, Index slot, Index end, const WideBox& box,
   PointWindows::Neighborhood& around)
 {
@@ -115,7 +115,7 @@ ELEVATION_WIDE_INLINE bool AddLeaf(const BinGrid& grid, Index slot, Index end, c
       y[half] = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(pointY, centerY), scale));
     }
     in &= 255 >> std::max(slot + 8 - end, 0);
-    // Those within come first, the others are overwritten.
+    // Points in the box come first, the others are overwritten.
     const __m256i which = PlacesOf(in);
     const int count = around.Count;
     _mm256_storeu_ps(
@@ -133,7 +133,7 @@ ELEVATION_WIDE_INLINE bool AddLeaf(const BinGrid& grid, Index slot, Index end, c
   return true;
 }
 
-/** All points of the box below a node. @return false when they are too many */
+/** Adds all points of the box below a node. @return false if there are too many */
 ELEVATION_WIDE bool GatherBox(const BinGrid& grid, const BoxTree::Node& top, const Box& extent,
   PointWindows::Neighborhood& around)
 {
@@ -184,7 +184,7 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
   {
     return;
   }
-  // Products of four coordinates stay within single precision, differences within 32 bits.
+  // Products of four coordinates stay in the range of float, differences within 32 bits.
   const double width = bins.BinWidth, height = bins.BinHeight;
   const double extent = std::max(bins.Columns * width, bins.Rows * height);
   const double perUnit = std::min(0x1p30 / extent, 0x1p22 / std::max(width, height));
@@ -195,7 +195,7 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
   this->PerUnit = perUnit;
   for (int shape = 0; shape < NumberOfShapes; ++shape)
   {
-    // From a vertex in the middle columns or at their border, and in the lowest row.
+    // From a vertex in the middle columns, or on their border, and in the lowest row.
     const double across = (Shapes[shape].Columns / 2 + 1) * width * perUnit;
     const double up = Shapes[shape].Rows * height * perUnit;
     const double reach = std::sqrt(across * across + up * up);
@@ -209,7 +209,7 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
     row.X.resize(RowRoom);
     row.Y.resize(RowRoom);
   }
-  // Beyond the grid's border there is nothing.
+  // There are no points beyond the grid's border.
   constexpr std::int32_t far = (1 << 30) - 1;
   this->ColumnBounds.resize(static_cast<std::size_t>(bins.Columns) + 1);
   for (Index column = 1; column < bins.Columns; ++column)
@@ -224,7 +224,7 @@ PointWindows::PointWindows(const BinGrid& grid, bool isWidest)
 void PointWindows::Bounds::Set(double reach, double error, double margin)
 {
   const double square = reach * reach;
-  const double slack = 1.001; // for the roundings here
+  const double slack = 1.001; // for rounding below
   this->ReachSquared = static_cast<float>(square);
   this->CoordinateError = static_cast<float>(slack * error);
   this->CrossError = static_cast<float>(slack * 3.0 * (reach * error + Roundoff * square));
@@ -281,7 +281,7 @@ void PointWindows::GatherInto(Window& window)
   }
 }
 
-/** Reads the rows of the windows of a row's vertices. */
+/** Reads the rows that windows of a row's vertices need. */
 ELEVATION_WIDE void PointWindows::EnterRow(Index number)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
@@ -352,14 +352,14 @@ ELEVATION_WIDE_INLINE void PointWindows::SetBounds(Window& window, int shape, In
   window.Errors = &this->OfShapes[shape];
 }
 
-/** At most 32 points, packed into two vectors. */
+/** Gathers at most 32 points, packed into two vectors. */
 ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColumn)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
   const Index endColumn = std::min(firstColumn + Shapes[0].Columns, bins.Columns);
   firstColumn = std::max(firstColumn, 0);
 
-  // Each row's points overwrite what the vectors hold beyond the end of the row before.
+  // The points of each row overwrite the lanes beyond the previous row.
   const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   __m512i lowX = lanes, highX = lanes, lowY = lanes, highY = lanes, lowSlot = lanes,
           highSlot = lanes;
@@ -418,8 +418,8 @@ ELEVATION_WIDEST bool PointWindows::GatherWidest(Window& window, Index firstColu
 }
 
 /**
- * The first eight points of each row have a vector of their own; what some rows have beyond
- * eight shares the fifth.
+ * Gathers the first eight points of each row in a vector of their own; further points of all rows
+ * share the fifth vector.
  */
 ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
 {
@@ -445,7 +445,7 @@ ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
     const __m256i isBeyond = _mm256_cmpgt_epi32(lanes, _mm256_set1_epi32(count - 1));
     const __m256i unitsX = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + at));
     const __m256i unitsY = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.Y.data() + at));
-    // All bits set is not a number.
+    // All bits set is NaN.
     const __m256 x =
       _mm256_or_ps(_mm256_castsi256_ps(isBeyond), _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsX, x0)));
     const __m256 y = _mm256_cvtepi32_ps(_mm256_sub_epi32(unitsY, y0));
@@ -474,7 +474,7 @@ ELEVATION_WIDE bool PointWindows::GatherEven(Window& window, Index firstColumn)
   return true;
 }
 
-/** The points of rows beyond the eighth: one vector of them. */
+/** Adds the points of rows beyond the eighth, as one vector. */
 ELEVATION_WIDE void PointWindows::AddBeyondEight(
   Window& window, Index firstColumn, const Index* counts) const
 {
@@ -497,7 +497,7 @@ ELEVATION_WIDE void PointWindows::AddBeyondEight(
   _mm256_store_ps(window.Square + 32, _mm256_fmadd_ps(x, x, _mm256_mul_ps(y, y)));
 }
 
-/** A smaller window, packed. */
+/** Gathers a smaller window, packed. */
 ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int shape)
 {
   const BinGrid::Layout& bins = this->Grid.Bins;
@@ -519,7 +519,7 @@ ELEVATION_WIDE bool PointWindows::GatherBins(Window& window, Index column, int s
     }
     for (Index slot = first; slot < end; slot += 8)
     {
-      // Whole vectors: what is too much is overwritten by the next row, or made not a number.
+      // Whole vectors: the excess is overwritten by the next row, or by NaN.
       const int at = count + (slot - first);
       const __m256i unitsX =
         _mm256_loadu_si256(reinterpret_cast<const __m256i*>(row.X.data() + (slot - row.FirstSlot)));
@@ -560,16 +560,16 @@ ELEVATION_WIDE void PointWindows::Window::Close(int count, bool isWidest)
   }
 }
 
-/** The points around the leaf that holds a slot. */
+/** The neighborhood of the leaf of a slot. */
 const PointWindows::Neighborhood& PointWindows::Around(Index slot)
 {
   if (this->Neighborhoods.empty())
   {
-    // A line of equal y runs through about as many leaves as the root of their number: vertices of
-    // these come in turn.
+    // A line of equal y runs through about as many leaves as the root of their number; the vertices
+    // of these leaves alternate.
     const double leaves = this->Grid.NumberOfPoints() / 16.0;
     this->Neighborhoods.resize(static_cast<std::size_t>(16.0 + 2.0 * std::sqrt(leaves)));
-    // So many places that leaves whose vertices come in turn seldom share one.
+    // Enough places that leaves whose vertices alternate rarely share one.
     std::size_t places = 1024;
     while (places < this->Neighborhoods.size() * 64)
     {
@@ -614,8 +614,8 @@ void PointWindows::GatherNeighborhood(Neighborhood& around, Index slot)
     { node.HighX[place], node.HighY[place] } };
   for (double points : { PointsInBox, 0.5 * PointsInBox })
   {
-    // The side of a square with so many points; where points lie in a strip narrower than that, the
-    // length of it.
+    // The side of a square with this many points; if they lie in a narrower strip, the length of a
+    // part with this many.
     double side = std::sqrt(points / size * width * height);
     if (!(side < std::min(width, height)))
     {
@@ -628,7 +628,7 @@ void PointWindows::GatherNeighborhood(Neighborhood& around, Index slot)
     around.PerSide = 1.0 / side;
     around.CenterX = 0.5 * leaf.Low.X + 0.5 * leaf.High.X;
     around.CenterY = 0.5 * leaf.Low.Y + 0.5 * leaf.High.Y;
-    // Of a box of a few roundoffs of the coordinates, rounding makes another one.
+    // A box of only a few roundoffs of the coordinates would be changed by rounding.
     if (!(around.PerSide > 1e-150 && around.PerSide < 1e150 && greatest < 1e10 * side &&
           box.High.X - around.CenterX < MostSides * side &&
           box.High.Y - around.CenterY < MostSides * side))
@@ -649,7 +649,7 @@ void PointWindows::GatherNeighborhood(Neighborhood& around, Index slot)
   around.Count = 0;
 }
 
-/** The points of a box around the vertex, from those around its leaf. */
+/** Gathers the points of a box around the vertex, from the neighborhood of its leaf. */
 ELEVATION_WIDE bool PointWindows::GatherBox(Window& window)
 {
   const Neighborhood& around = this->Around(window.Origin);

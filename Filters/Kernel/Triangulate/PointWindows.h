@@ -2,17 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Windows of points: those around a vertex, in single precision relative to it, so that wide
- * instructions look at eight or sixteen at a time. Beside bins and tree, because these would be
- * asked for the same points again by each triangle around the vertex.
- * Around the vertex all points of six columns and four rows of bins are gathered. Where these are
- * too many, it is three columns and less rows; in full bins, a box in which the density thereabouts
- * promises about eighteen points. For bins, the coordinates of the four rows are kept as whole
- * multiples of a unit that is small against the bins, so that differences are exact.
- * Boxes are taken from the points around a leaf of the tree, its neighborhood, which are gathered
- * once for all vertices of the leaf and kept while the sweep over the vertices passes through it.
+ * Windows of points: the points around a vertex, in single precision relative to it, so that wide
+ * instructions handle eight or sixteen at a time. Bins and tree would be searched for the same
+ * points again for each triangle around the vertex.
  *
- * Cost: constant a vertex; memory in proportion to a row of bins, and to the square root of the
+ * In: a grid and a vertex. Out: the points of six columns and four rows of bins around the vertex;
+ * if these are too many, of three columns and fewer rows; in full bins, of a box that is expected
+ * to contain about eighteen points by the local density. For windows of bins, the coordinates of
+ * the four rows are rounded to multiples of a unit that is small compared with the bins, so that
+ * differences are exact. Boxes are taken from the points around a leaf of the tree, its
+ * neighborhood. These are gathered once for all vertices of the leaf, and kept while the sweep
+ * passes it.
+ *
+ * Cost: constant per vertex; memory proportional to a row of bins and to the square root of the
  * number of points.
  */
 #ifndef elevation_Triangulate_PointWindows_h
@@ -28,12 +30,12 @@ class PointWindows
 {
 public:
   static constexpr int Capacity = 56;       ///< points of a window
-  static constexpr int Room = Capacity + 8; ///< whole vectors are written
+  static constexpr int Room = Capacity + 8; ///< as whole vectors are written
   static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
   static constexpr int MostAround = 120;      ///< points of a neighborhood
   static constexpr double Roundoff = 0x1p-24; ///< of single precision
 
-  /** What the size of a window tells of rounding; lengths in the window's unit. */
+  /** Error bounds for a size of windows; lengths in the window's unit. See WideApexSearch.h. */
   struct Bounds
   {
     float ReachSquared = 0.0f;    ///< R^2
@@ -44,7 +46,7 @@ public:
     void Set(double reach, double error, double margin);
   };
 
-  /** The points around a vertex, relative to it; what is not a number is none. */
+  /** The points around a vertex, relative to it; lanes with NaN are empty. */
   struct Window
   {
     alignas(64) float X[Room];
@@ -52,65 +54,64 @@ public:
     alignas(64) float Square[Room]; ///< x^2 + y^2
     alignas(64) Index Slots[Room];
     Index Origin = None;
-    int Vectors = 0; ///< of the lists that are in use; 0 where there is no window
+    int Vectors = 0; ///< how many vectors of eight are in use; 0 if there is no window
     int OriginLane = 0;
-    // How far the window certainly reaches from the vertex, but for the margin.
+    // How far the window certainly reaches from the vertex, up to the margin.
     float Left = 0.0f, Right = 0.0f, Top = 0.0f;
     const Bounds* Errors = nullptr;
     bool IsBox = false;
-    double PerSide = 0.0; ///< units of the box a unit of the grid
+    double PerSide = 0.0; ///< units of the box per unit of the grid
 
-    /** Ends the lists of so many points. */
+    /** Ends the lists after count points. */
     void Close(int count, bool isWidest);
-    /** The places of a slot in the lists, as bits. */
+    /** The lanes of a slot, as bits. */
     template <int Vectors>
     std::uint64_t LanesOf(Index slot) const;
   };
 
   /**
-   * The points around a leaf of the tree: those of the boxes of all its points, relative to its
-   * middle. Vertices of a full bin come by their y, from everywhere in it, but only those of some
-   * leaves at a time.
+   * The points around a leaf of the tree: those in the boxes of all its points, relative to its
+   * middle. Vertices of a full bin come in the order of y, so several leaves alternate.
    */
   struct Neighborhood
   {
     Index First = 0, End = 0;         ///< slots of the leaf
-    int Count = 0;                    ///< 0 where they are too many
-    double CenterX, CenterY, PerSide; ///< sides of the boxes a unit of the grid
+    int Count = 0;                    ///< 0 if they are too many
+    double CenterX, CenterY, PerSide; ///< box sides per unit of the grid
     float X[MostAround + 8], Y[MostAround + 8];
     Index Slots[MostAround + 8];
   };
 
-  /** @param isWidest  for instructions that look at sixteen points at a time */
+  /** @param isWidest  for instructions on sixteen points at a time */
   PointWindows(const BinGrid& grid, bool isWidest);
 
   /**
    * Gathers the window of a vertex. Cheapest when vertices come row by row.
-   * @param[in] next  the vertex of the next call, or None. What is needed for it is begun, while the
-   *                  processor waits for results that the first one's fan depends on.
-   * @return false when there is none: too many points in each that was tried
+   * @param[in] next  the vertex of the next call, or None. Its window is gathered as well, while
+   *                  the processor waits for results that the first one's fan depends on.
+   * @return false if there are too many points in each window that was tried
    */
   bool Gather(Index origin, Index next);
 
   const Window& Current() const { return *this->InUse; }
 
-  /** The place of a point of the grid relative to the window's vertex, in the window's units. */
+  /** The position of a grid point relative to the window's vertex, in the window's units. */
   void Place(Index slot, float& x, float& y) const;
 
 private:
   static constexpr int NumberOfShapes = 3; ///< of windows of bins
   static constexpr Index MostRows = 4;
-  static constexpr int RowRoom = 40;            // whole vectors are read
-  static constexpr std::size_t MostPerBin = 32; // points in a row of which windows are made
+  static constexpr int RowRoom = 40;            // as whole vectors are read
+  static constexpr std::size_t MostPerBin = 32; // mean in rows for which windows are made
 
   /** The points of a row of bins in units from the grid's corner. */
   struct Row
   {
     Index Number = None;
     Index FirstSlot = 0;
-    const Index* Starts = nullptr;  ///< the first slot of each bin, and one more
-    std::vector<std::int32_t> X, Y; ///< and RowRoom more
-    bool IsRead = false;            ///< else there are too many points: most bins are full
+    const Index* Starts = nullptr;  ///< the first slot of each bin, and the end of the last
+    std::vector<std::int32_t> X, Y; ///< with RowRoom to spare
+    bool IsRead = false;            ///< false if there are too many points: most bins are full
   };
 
   void EnterRow(Index number);
@@ -129,10 +130,10 @@ private:
   const BinGrid& Grid;
   const bool IsWidest;
   Window Windows[2];
-  Window* InUse = Windows; ///< and the other one is for the next vertex
+  Window* InUse = Windows; ///< the other one is for the next vertex
 
   // Windows of bins; none when PerUnit is 0.
-  double PerUnit = 0.0; ///< units a unit of the grid
+  double PerUnit = 0.0; ///< units of windows per unit of the grid
   Bounds OfShapes[NumberOfShapes];
   std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
   std::vector<Index> Nothing;             ///< the starts of a row beyond the last
@@ -140,10 +141,10 @@ private:
   Row* Near[MostRows];                    ///< from the current row upwards
   Index CurrentRow = None;
   bool AreNearRead = false;
-  std::int32_t TopBounds[NumberOfShapes]; ///< of the windows of the current row's vertices
-  Bounds OfBox;                           ///< of all boxes, whose unit is their side
+  std::int32_t TopBounds[NumberOfShapes]; ///< of windows of vertices in the current row
+  Bounds OfBox;                           ///< of all boxes; their unit is their side
   std::vector<Neighborhood> Neighborhoods;
-  /** For eight slots, by their number modulo the size, where their leaf's neighborhood was. */
+  /** A cache: for slot / 8, modulo the size, the index of a neighborhood. */
   std::vector<Index> Known;
   std::size_t Oldest = 0;
 };

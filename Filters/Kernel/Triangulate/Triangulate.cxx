@@ -53,8 +53,7 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   double done = 0.0;
   if (options.Monitor)
   {
-    // Where there is no lattice, or growing is given up, work begins anew; what is reported never
-    // falls.
+    // Without a lattice, or if growth is given up, work starts again; reports must not go back.
     options.Monitor = [&done, &asked](double fraction) {
       done = std::max(done, fraction);
       return asked.Monitor(done);

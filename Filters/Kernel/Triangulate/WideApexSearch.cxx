@@ -10,7 +10,7 @@
 #include <limits>
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes its own intrinsics' undefined values for a mistake.
+// GCC 12 warns of undefined values in its own intrinsics.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
@@ -26,7 +26,7 @@ WideApexSearch::WideApexSearch(const BinGrid& grid, InstructionSet widest)
 #ifdef ELEVATION_HAS_AVX2
 namespace
 {
-/** The least of eight. */
+/** The least of eight values. */
 ELEVATION_WIDE inline float Least(__m256 values)
 {
   __m128 half = _mm_min_ps(_mm256_castps256_ps128(values), _mm256_extractf128_ps(values, 1));
@@ -37,9 +37,9 @@ ELEVATION_WIDE inline float Least(__m256 values)
 } // namespace
 
 /**
- * The end of an edge from the vertex, in the window's units.
- * @param[in] lanes  where it is in the lists, as bits, if it is there
- * @return false when it is too far away
+ * The position of the end of an edge from the vertex, in the window's units.
+ * @param[in] lanes  of the end in the window, as bits; 0 if it is not there
+ * @return false if it is too far away
  */
 ELEVATION_WIDE_INLINE bool WideApexSearch::PlaceEnd(
   Index b, std::uint64_t lanes, float& x, float& y) const
@@ -50,7 +50,7 @@ ELEVATION_WIDE_INLINE bool WideApexSearch::PlaceEnd(
     const int lane = __builtin_ctzll(lanes);
     x = window.X[lane];
     y = window.Y[lane];
-    if (x == x) // else it is beyond the end of a list
+    if (x == x) // NaN is beyond the end of a list
     {
       return true;
     }
@@ -60,8 +60,9 @@ ELEVATION_WIDE_INLINE bool WideApexSearch::PlaceEnd(
 }
 
 /**
- * Whether the disc of a quotient, or a little more, is within the window. Its position s is in edge
- * lengths along the edge's left normal; on the left, a disc of larger s contains those of smaller.
+ * Whether the disc of a quotient, slightly enlarged, is within the window. Its position s is in
+ * edge lengths along the edge's left normal; on the left, a disc of larger s contains those of
+ * smaller s.
  */
 ELEVATION_WIDE_INLINE bool WideApexSearch::IsInWindow(
   float bx, float by, float dot, float cross) const
@@ -100,7 +101,7 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
     const __m256 dot = _mm256_fnmadd_ps(x, endX, _mm256_fnmadd_ps(y, endY, square));
     crosses[i] = cross;
     dots[i] = dot;
-    // The lowest bits of a quotient tell whose it is: so the least of all tells where it is.
+    // The lowest bits of a quotient are replaced by its lane, so the least one tells its lane.
     const __m256 quotient =
       _mm256_or_ps(_mm256_andnot_ps(laneBits, _mm256_mul_ps(dot, _mm256_rcp_ps(cross))),
         _mm256_castsi256_ps(lanes));
@@ -138,8 +139,8 @@ ELEVATION_WIDE_INLINE WideApexSearch::Candidates WideApexSearch::Search(
 }
 
 /**
- * Leaves out the end of the edge to b = (bx, by); what is not a candidate by the errors that its own
- * size allows, rather than the window's; and, told exactly, what is not on the edge's left.
+ * Removes candidates: the end of the edge to b = (bx, by); points excluded by error bounds of their
+ * own size, rather than the window's; and points that are, exactly, not on the left of the edge.
  */
 ELEVATION_WIDE void WideApexSearch::Sift(
   Index b, float bx, float by, int guess, Candidates& candidates) const
@@ -198,13 +199,13 @@ ELEVATION_WIDE void WideApexSearch::Sift(
   candidates.IsProved = candidates.IsProved && candidates.Bits != 0;
 }
 
-/** Looks closer: whether there is but one candidate, the guess, after all. */
+/** Whether sifting leaves only one candidate, which becomes the guess. */
 bool WideApexSearch::IsDecided(
   Index b, float bx, float by, int& guess, Candidates& candidates) const
 {
   if (!candidates.IsProved)
   {
-    candidates.Bits = std::uint64_t(1) << guess; // a start for the search elsewhere
+    candidates.Bits = std::uint64_t(1) << guess; // a first guess for the search elsewhere
     return false;
   }
   this->Sift(b, bx, by, guess, candidates);
@@ -267,7 +268,7 @@ ELEVATION_WIDE_INLINE int WideApexSearch::FollowVectors(
   }
 }
 
-/** A window of two vectors of sixteen, seen along an edge. */
+/** A window of two vectors of sixteen points, with their products for an edge. */
 struct WidestWindow
 {
   __m512 X0, X1, Y0, Y1, Square0, Square1;
@@ -284,8 +285,7 @@ struct WidestWindow
   }
 
   /**
-   * The least quotient of points clearly on the left, in all places; its lowest bits tell whose it
-   * is.
+   * The least quotient of points clearly on the left, in all lanes; its lowest bits are its lane.
    */
   ELEVATION_WIDEST_INLINE __m512 LeastQuotient(__m512 endX, __m512 endY, __m512 clear, __m512 most)
   {
@@ -327,7 +327,7 @@ struct WidestWindow
   }
 };
 
-/** As FollowVectors(), for windows of two vectors of sixteen. */
+/** FollowVectors() for windows of two vectors of sixteen. */
 ELEVATION_WIDEST int WideApexSearch::FollowWidest(
   Index b, Index last, Index* neighbors, Candidates& open) const
 {

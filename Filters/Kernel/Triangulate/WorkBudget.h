@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * How much growing may cost before it is given up for divide and conquer, and when it pauses.
+ * The work that growth may take before it is given up for divide and conquer, and its pauses.
  */
 #ifndef elevation_Triangulate_WorkBudget_h
 #define elevation_Triangulate_WorkBudget_h
@@ -12,20 +12,20 @@
 namespace elevation
 {
 
-/** Thrown where growing is given up, because the searches look at too many points. */
+/** Thrown to give up growth, because the searches look at too many points. */
 struct CannotGrow
 {
 };
 
 /**
- * What the searches of a strip may look at, and have. The unit is the growth's own: it is charged
- * for about what takes the same time.
+ * The work that the searches of a strip have done and may do. Growth over a grid and over a lattice
+ * have units of their own, each proportional to time.
  */
 class WorkBudget
 {
 public:
   /**
-   * @param most      work for each vertex, of many
+   * @param most      work per vertex, in the mean over many
    * @param perPause  work between two looks at the clock
    */
   WorkBudget(std::int64_t most, Index vertices, std::int64_t perPause)
@@ -37,7 +37,7 @@ public:
   void Spend(std::int64_t work) { this->Spent += work; }
   std::int64_t Work() const { return this->Spent; }
 
-  /** @throws CannotGrow when more is spent than there was */
+  /** @throws CannotGrow if more is spent than allowed */
   void Check() const
   {
     if (this->Spent > this->Most)
@@ -46,7 +46,7 @@ public:
     }
   }
 
-  /** From now on, there is some work until the next pause. */
+  /** Sets the next pause. */
   void Resume() { this->Pause = this->Spent + this->PerPause; }
   bool IsPaused() const { return this->Spent >= this->Pause; }
 

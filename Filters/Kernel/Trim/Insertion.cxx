@@ -511,7 +511,7 @@ private:
         const Index h = border.HalfEdges[k];
         if (Cross(edge, segment))
         {
-          // Rather through an end of the border edge, if one is in reach.
+          // Through an end of the border edge instead, if one is in reach.
           const bool isInReach =
             VisitEndsInReach(segment, edge, UnitsOf(edge[0], edge[1]), Reach, [&](int end) {
               this->AddStop(i, edge, h, end == 0 ? mesh.Origin(h) : mesh.Destination(h));
@@ -531,7 +531,7 @@ private:
         }
         else if (this->MayInsert && IsInside(segment, edge[0]))
         {
-          // It would be a vertex of this border if no other one were in reach.
+          // It would be a vertex of this border, if another one were not in reach.
           this->RefuseDoubleBorder(this->Pieces[i].Edge, edge[0]);
         }
       });
@@ -634,7 +634,7 @@ private:
       { piece, vertex, this->IsInFan(h, ends[0]), this->IsInFan(h, ends[1]) });
   }
 
-  /** Whether the segment from the origin of h to a point begins in a triangle of that fan. */
+  /** Whether the segment from the origin of h to a point begins in a triangle at the origin. */
   bool IsInFan(Index h, const Point2& p) const
   {
     const Mesh& mesh = this->Surface;

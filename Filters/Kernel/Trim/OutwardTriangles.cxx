@@ -129,7 +129,7 @@ OutwardTriangles FindOutward(
   const RingLocator locator(mesh.Points, boundary);
   const Components parts = FindComponents(mesh, Part(progress, 0.6, 0.9),
     [&isOnBoundary](Index h) { return static_cast<int>(isOnBoundary[h]); });
-  std::vector<char> isOutward; // one a label
+  std::vector<char> isOutward; // one per label
   for (const Index t : parts.Lowest)
   {
     const bool isInside = locator.IsInside(mesh.PointOf(mesh.Origin(3 * t)),
