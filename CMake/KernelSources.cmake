@@ -54,7 +54,7 @@ set(es_kernel_Fill
 
 # Headers without a source file.
 set(es_kernel_headers_Base
-  Base CellGrid Duplicates Extent IdSet Memory Points Progress ScalarProduct SnapRounding Threads)
+  Base CellGrid Duplicates Extent IdSet Memory Points Progress SnapRounding Threads)
 set(es_kernel_headers_Mesh
   Mesh TriangleSweep)
 set(es_kernel_headers_Lattice

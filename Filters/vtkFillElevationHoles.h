@@ -61,8 +61,8 @@
  * and triangles do not depend on the order of the input's points and cells, only their ids do.
  *
  * A hole is left open, with status FAILED and a warning that says why, when
- * - it might take more new points than the holes before it leave of MaximumNumberOfInsertedPoints,
- *   or of the 357,913,941 points that a surface has at most;
+ * - it might take more new points than smaller holes leave of MaximumNumberOfInsertedPoints, or of
+ *   the 357,913,941 points that a surface has at most;
  * - its extent is above 1e150, or its extent or spacing is below 1e-150, so that squares leave the
  *   range of double;
  * - the spacing is below what the coordinates can tell apart (4 steps of float or double);
@@ -175,11 +175,11 @@ public:
   /**
    * The most new points in all holes together. Default: 100 million, which take about 50 GB of
    * memory. 0: no limit but that of 357,913,941 points of a surface; negative values are taken as
-   * 0. Before any hole is filled, each, in the order of HoleId, is granted the most points that it
+   * 0. Before any hole is filled, each, from the smallest on, is granted the most points that it
    * may take, by its area and spacing, and a long thin one also by its length. It fails if fewer
-   * are left; later ones may still be filled. So which holes fail depends on the input and this
-   * number alone, not on threads or free memory. Holes that other limits leave open are granted
-   * none.
+   * are left, so the largest fail first; of equal ones, those with the largest HoleId. Which holes
+   * fail depends on the input and this number alone, not on threads or free memory. Holes that
+   * other limits leave open are granted none.
    */
   vtkSetClampMacro(MaximumNumberOfInsertedPoints, vtkIdType, 0, VTK_ID_MAX);
   vtkGetMacro(MaximumNumberOfInsertedPoints, vtkIdType);

@@ -15,7 +15,6 @@
 #include "Points.h"
 #include "Predicates.h"
 #include "Progress.h"
-#include "ScalarProduct.h"
 #include "SnapRounding.h"
 #include "Threads.h"
 

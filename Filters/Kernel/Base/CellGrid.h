@@ -51,7 +51,6 @@ public:
   }
 
   /** The items of a cell, by increasing number. */
-  std::size_t NumberOfCells() const { return this->Begins.size() - 1; }
   const Index* Begin(std::size_t cell) const { return this->Items.data() + this->Begins[cell]; }
   const Index* End(std::size_t cell) const { return this->Begin(cell + 1); }
 

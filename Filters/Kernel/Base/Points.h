@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace elevation
@@ -53,6 +54,19 @@ inline bool IsLower(const Point2& p, const Point2& q)
   // Without branches: which of two neighbours is lower cannot be predicted.
   return (p.Y < q.Y) | ((p.Y == q.Y) & (p.X < q.X));
 }
+
+/** A hash in which all bits are well mixed, the same for 0.0 and -0.0. */
+struct HashOfPoint
+{
+  std::size_t operator()(const Point2& p) const
+  {
+    const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
+    std::uint64_t bits[2];
+    std::memcpy(bits, coordinates, sizeof(bits));
+    const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
+    return (mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull;
+  }
+};
 
 /**
  * A power of two that scales the given largest coordinate to about 1, so that products and squares

@@ -91,21 +91,14 @@ std::string ToText(double value)
   return text.str();
 }
 
-/** How many new points are allowed. */
-struct Room
+void Fail(HoleReport& report, const std::string& reason)
 {
-  Room(const Mesh& mesh, const FillOptions& options)
-    : OfIds(MaximumNumberOfPoints - mesh.NumberOfPoints())
-    , Left(std::min<double>(options.MaximumInsertedPoints, OfIds))
-  {
-  }
-  double OfIds; ///< by the largest number of points
-  double Left;  ///< after the holes so far
-};
+  report.Status = FillStatus::Failed;
+  report.Reason = reason;
+}
 
-/** Refuses holes beyond the limits, and holes that cannot be filled in bounded time and memory. */
-void CheckLimits(HoleReport& report, bool isTouched, double points, const Room& room,
-  const FillOptions& options)
+/** Refuses holes beyond the user's limits, and holes that cannot be filled. */
+void CheckLimits(HoleReport& report, bool isTouched, const FillOptions& options)
 {
   if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
   {
@@ -117,36 +110,17 @@ void CheckLimits(HoleReport& report, bool isTouched, double points, const Room& 
     report.Status = FillStatus::TooManyEdges;
     return;
   }
-  const auto fail = [&report](const std::string& reason) {
-    report.Status = FillStatus::Failed;
-    report.Reason = reason;
-  };
   if (isTouched)
   {
-    fail("Borders touch in it without sharing a point: merge points with the same x,y, and split "
-         "edges that have a point inside.");
-    return;
+    Fail(report, "Borders touch in it without sharing a point: merge points with the same x,y, and "
+                 "split edges that have a point inside.");
   }
-  if (!IsMeasurable(report.Size) || report.Spacing < LeastLength)
+  else if (!IsMeasurable(report.Size) || report.Spacing < LeastLength)
   {
-    fail("Its size of " + ToText(report.Size) + " at a spacing of " + ToText(report.Spacing) +
-      " leaves the range of numbers to compute with, " + ToText(LeastLength) + " to " +
-      ToText(LargestLength) + "; scale x and y.");
-    return;
+    Fail(report, "Its size of " + ToText(report.Size) + " at a spacing of " +
+        ToText(report.Spacing) + " leaves the range of numbers to compute with, " +
+        ToText(LeastLength) + " to " + ToText(LargestLength) + "; scale x and y.");
   }
-  // Rows of points count as points: a long thin hole has many rows, though few points.
-  const double rows = report.Perimeter / report.Spacing - report.NumberOfEdges;
-  if (points <= room.Left && rows <= room.Left)
-  {
-    return;
-  }
-  const bool isOurs = options.MaximumInsertedPoints < room.OfIds;
-  fail("It would take up to " + ToText(std::max(points, rows)) + " new points at a spacing of " +
-    ToText(report.Spacing) + ", but " +
-    (isOurs ? "MaximumNumberOfInsertedPoints, " + std::to_string(options.MaximumInsertedPoints)
-            : "the largest number of points, " + std::to_string(MaximumNumberOfPoints)) +
-    ", leaves room for " + ToText(room.Left) + "; a larger spacing helps" +
-    (isOurs ? ", or a larger limit." : "."));
 }
 
 /** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
@@ -272,8 +246,8 @@ public:
 
 private:
   /**
-   * Checks all holes before the first is filled, so that the room for one does not depend on the
-   * outcome of others.
+   * Checks all holes before the first is filled, so that whether one is filled does not depend on
+   * the outcome of others.
    */
   void PlanAll()
   {
@@ -286,7 +260,6 @@ private:
       lattice = FindLattice(
         this->Points, LatticeTolerance, this->Threads, Part(options.Monitor, 0.0, 0.02));
     }
-    Room room(this->Surface, options);
     this->Result.Reports.reserve(this->Given.Count());
     for (Index hole = 0; hole < this->Given.Count(); ++hole)
     {
@@ -304,12 +277,45 @@ private:
       plan.Precision = StepAt(
         std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
       plan.SinglePrecision = options.SinglePrecision;
-      CheckLimits(report, this->Given.Touched[hole] != 0, plan.MostPoints, room, options);
+      CheckLimits(report, this->Given.Touched[hole] != 0, options);
+    }
+    this->GrantPoints();
+  }
+
+  /** Grants each hole the most points that it may take, from the smallest on; others fail. */
+  void GrantPoints()
+  {
+    std::vector<std::pair<double, Index>> order;
+    for (Index hole = 0; hole < this->Given.Count(); ++hole)
+    {
+      const HoleReport& report = this->Result.Reports[hole];
       if (report.Status == FillStatus::Filled)
       {
-        room.Left = std::max(0.0, room.Left - plan.MostPoints);
-        this->AllWork += this->WorkOf(hole);
+        // Rows of points count as points: a long thin hole has many rows, though few points.
+        const double rows = report.Perimeter / report.Spacing - report.NumberOfEdges;
+        order.emplace_back(std::max(rows, this->Plans[hole].MostPoints), hole);
       }
+    }
+    std::sort(order.begin(), order.end());
+    const Index limit = this->Options.MaximumInsertedPoints;
+    const Index ofIds = MaximumNumberOfPoints - this->Surface.NumberOfPoints();
+    double left = std::min(limit, ofIds);
+    for (const auto& [points, hole] : order)
+    {
+      HoleReport& report = this->Result.Reports[hole];
+      if (points <= left)
+      {
+        left -= points;
+        this->AllWork += this->WorkOf(hole);
+        continue;
+      }
+      Fail(report, "It would take up to " + ToText(points) + " new points at a spacing of " +
+          ToText(report.Spacing) + ", but " +
+          (limit < ofIds
+              ? "MaximumNumberOfInsertedPoints, " + std::to_string(limit)
+              : "the largest number of points, " + std::to_string(MaximumNumberOfPoints)) +
+          ", leaves room for " + ToText(left) + "; a larger spacing helps" +
+          (limit < ofIds ? ", or a larger limit." : "."));
     }
   }
 

@@ -59,7 +59,7 @@ struct FillOptions
   Interpolation Method = Interpolation::Adaptive;
   /** Further values of the surface's points, interpolated in the same way as elevations. */
   std::vector<Values> Attributes;
-  /** For all holes together. A hole that may need more than those before it leave fails. */
+  /** For all holes together. A hole that may need more than smaller ones leave fails. */
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
   /** Whether new points are lattice nodes where the surface's points are. */
   LatticeMode UseLattice = LatticeMode::Automatic;

@@ -159,7 +159,8 @@ Multigrid::Multigrid(Matrix matrix, const Progress& progress)
   const double size = static_cast<double>(matrix.rows());
   // The number of levels is not known, so this reports without advancing.
   const Progress here = Part(progress, 0.0, 0.0);
-  this->Levels.push_back({ std::move(matrix), {} });
+  this->Levels.emplace_back();
+  this->Levels.back().A.swap(matrix); // Eigen copies where it is asked to move
   while (!IsFactorized(static_cast<double>(this->Levels.back().A.rows()), size))
   {
     Level& fine = this->Levels.back();
@@ -170,7 +171,8 @@ Multigrid::Multigrid(Matrix matrix, const Progress& progress)
     }
     Matrix coarse = Coarsen(aggregates, here);
     fine.Coarse = std::move(aggregates.Of);
-    this->Levels.push_back({ std::move(coarse), {} });
+    this->Levels.emplace_back();
+    this->Levels.back().A.swap(coarse);
   }
   Report(progress, 0.0);
   this->Coarsest.compute(this->Levels.back().A);

@@ -29,6 +29,7 @@
 #include "vtk_eigen.h"
 #include VTK_EIGEN(SparseCholesky)
 
+#include <deque>
 #include <vector>
 
 namespace elevation
@@ -62,7 +63,7 @@ private:
 
   Vector Cycle(std::size_t level, const Vector& right, const Progress& progress) const;
 
-  std::vector<Level> Levels; ///< from fine to coarse
+  std::deque<Level> Levels; ///< from fine to coarse; never copied, as Eigen would
   Eigen::SimplicialLLT<Matrix> Coarsest;
 };
 

@@ -57,8 +57,6 @@ public:
   /** Adds the spline's values at count points to values. */
   void Add(const Weights& weights, const Point2* points, std::size_t count, double* values) const;
 
-  Index NumberOfCenters() const { return static_cast<Index>(this->X.size()); }
-
 private:
   using Matrix = Eigen::MatrixXd;
 

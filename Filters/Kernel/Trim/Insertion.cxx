@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <tuple>
 #include <unordered_map>
@@ -19,17 +18,6 @@ namespace elevation
 
 namespace
 {
-
-/** A hash of a place; all bits are well mixed. */
-std::uint64_t Mix(const Point2& p)
-{
-  // 0.0 and -0.0 have the same hash.
-  const double coordinates[2] = { p.X + 0.0, p.Y + 0.0 };
-  std::uint64_t bits[2];
-  std::memcpy(bits, coordinates, sizeof(bits));
-  const std::uint64_t mixed = (bits[0] * 0x9E3779B97F4A7C15ull) ^ bits[1];
-  return (mixed ^ (mixed >> 32)) * 0xD6E8FEB86659FD93ull;
-}
 
 class Insertion
 {
@@ -127,7 +115,7 @@ private:
     {
       ++bits;
     }
-    const auto bitOf = [=](const Point2& p) { return static_cast<Index>(Mix(p) >> (64 - bits)); };
+    const auto bitOf = [=](const Point2& p) { return static_cast<Index>(HashOfPoint()(p) >> (64 - bits)); };
     IdSet sieve(Index(1) << bits);
     for (const auto& entry : this->VertexAt)
     {
@@ -259,8 +247,8 @@ private:
     std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
       const Point2& p = this->Points[a.Point];
       const Point2& q = this->Points[b.Point];
-      const std::uint64_t mixedP = Mix(p);
-      const std::uint64_t mixedQ = Mix(q);
+      const std::uint64_t mixedP = HashOfPoint()(p);
+      const std::uint64_t mixedQ = HashOfPoint()(q);
       return std::tie(a.Triangle, mixedP, p.X, p.Y) < std::tie(b.Triangle, mixedQ, q.X, q.Y);
     });
     // Weights in the triangles before they are cut.

@@ -34,13 +34,6 @@ std::array<Point2, Count> Around(const Point2& from, std::array<Point2, Count> p
 
 } // namespace
 
-std::array<Point2, 3> MeshCutter::CornersOf(Index t) const
-{
-  const Mesh& mesh = this->Surface;
-  return { { mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
-    mesh.PointOf(mesh.Origin(3 * t + 2)) } };
-}
-
 bool MeshCutter::Holds(Index t, const Point2& p) const
 {
   const std::array<Point2, 3> corners = this->CornersOf(t);

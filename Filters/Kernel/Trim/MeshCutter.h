@@ -48,7 +48,12 @@ public:
   /** Whether the vertex is an original one. */
   bool IsGiven(Index vertex) const { return vertex < this->CountBefore; }
 
-  std::array<Point2, 3> CornersOf(Index t) const;
+  std::array<Point2, 3> CornersOf(Index t) const
+  {
+    const Index* const corners = &this->Surface.Triangles[3 * t];
+    return { { this->Surface.PointOf(corners[0]), this->Surface.PointOf(corners[1]),
+      this->Surface.PointOf(corners[2]) } };
+  }
 
   /** Whether the point is in the triangle or on an edge of it. */
   bool Holds(Index t, const Point2& p) const;

@@ -53,16 +53,6 @@ private:
   double BinsPerUnit = 0.0;
 };
 
-/** A hash in which 0.0 and -0.0 are the same. */
-struct HashOfPoint
-{
-  std::size_t operator()(const Point2& p) const
-  {
-    const std::hash<double> hash;
-    return hash(p.X) ^ (hash(p.Y) * 0x9E3779B97F4A7C15ull);
-  }
-};
-
 /** Lines and polygons as given, each a list of points. */
 struct BoundaryLines
 {

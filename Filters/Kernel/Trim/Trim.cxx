@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Trim.h"
 
+#include "Crossings.h"
 #include "NearTriangles.h"
 #include "Outline.h"
 #include "OutwardTriangles.h"
@@ -11,6 +12,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace elevation
 {
@@ -44,49 +46,53 @@ Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Pr
   return mesh;
 }
 
+/** The triangles of a list that a mesh was made of; nothing: all of them. Parts follow them. */
+using NearTriangles = std::optional<std::vector<Index>>;
+
 /**
  * Records the changes of a mesh of near triangles.
- * @param[in] near       the triangles of the list that the mesh was made of; parts follow them
  * @param[in] isOutward  one flag per triangle of the mesh
  */
-void PutBack(const TriangleList& list, const std::vector<Index>& near, const Mesh& mesh,
+void PutBack(const TriangleList& list, const NearTriangles& near, const Mesh& mesh,
   const std::vector<char>& isOutward, const Progress& progress, Changes& changes)
 {
-  const Index count = static_cast<Index>(near.size());
+  const Index count = near ? static_cast<Index>(near->size()) : list.Count;
   ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i)
     {
       const Index corners[3] = { mesh.IdOf(mesh.Origin(3 * i)), mesh.IdOf(mesh.Origin(3 * i + 1)),
         mesh.IdOf(mesh.Origin(3 * i + 2)) };
-      bool isOther = true;
-      if (i < count)
+      const Index t = i >= count ? None : near ? (*near)[i] : i;
+      if (t != None && std::equal(corners, corners + 3, list.CornersOf(t)))
       {
-        changes.IsOutward[near[i]] = isOutward[i];
-        isOther = !std::equal(corners, corners + 3, list.CornersOf(near[i]));
-        if (isOther)
-        {
-          changes.Changed.push_back(near[i]);
-        }
+        continue;
       }
-      else
+      if (t != None)
       {
-        changes.IsOutward.push_back(isOutward[i]);
+        changes.Changed.push_back(t);
       }
-      if (isOther)
-      {
-        changes.Corners.insert(changes.Corners.end(), corners, corners + 3);
-      }
+      changes.Corners.insert(changes.Corners.end(), corners, corners + 3);
     }
   });
+  if (!near)
+  {
+    changes.IsOutward = isOutward;
+    return;
+  }
+  for (Index i = 0; i < count; ++i)
+  {
+    changes.IsOutward[(*near)[i]] = isOutward[i];
+  }
+  changes.IsOutward.insert(changes.IsOutward.end(), isOutward.begin() + count, isOutward.end());
 }
 
 /** The same for inserted points and the parents of added triangles. */
-void PutBackInserted(const std::vector<Index>& near, const Mesh& mesh, InsertedRings& rings,
+void PutBackInserted(const NearTriangles& near, const Mesh& mesh, InsertedRings& rings,
   Changes& changes, Trimmed& result)
 {
   for (const Index parent : rings.Parents)
   {
-    changes.Parents.push_back(near[parent]);
+    changes.Parents.push_back(near ? (*near)[parent] : parent);
   }
   result.Inserted = std::move(rings.Inserted);
   for (InsertedVertex& vertex : result.Inserted)
@@ -116,18 +122,21 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
 {
   const int threads = options.NumberOfThreads;
   result.Boundary = JoinLines(lines);
-  std::optional<std::vector<Index>> found;
+  NearTriangles near;
   if (options.Test == OutwardTest::Exact)
   {
-    found = FindNearTriangles(list, lines.Points.Places, result.Boundary, threads,
+    near = FindNearTriangles(list, lines.Points.Places, result.Boundary, threads,
       Part(progress, 0.0, 0.5), changes.IsOutward);
   }
-  const std::vector<Index> near = found ? std::move(*found) : AllTriangles(list);
   changes.IsOutward.resize(list.Count);
-  if (!near.empty())
+  if (near && near->empty())
+  {
+    CheckCrossings(lines.Points, result.Boundary, Part(progress, 0.5, 1.0));
+  }
+  else
   {
     const Progress making = Part(progress, 0.5, 0.65);
-    Mesh mesh = found ? NearMesh(list, near, making) : ProvenMesh(list, threads, making);
+    Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
     const Index before = mesh.NumberOfPoints();
     InsertedRings rings = InsertRings(
       mesh, lines.Points, result.Boundary, options.RecoverBoundary, Part(progress, 0.65, 0.8));
@@ -178,8 +187,7 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   result.Boundary = std::move(found.Vertices);
   result.GapTolerance = found.GapTolerance;
   result.NumberOfPointsLeftOut = found.NumberOfPointsLeftOut;
-  std::vector<char>& isOutward = changes.IsOutward;
-  isOutward = std::move(found.IsSurface);
+  std::vector<char> isOutward = std::move(found.IsSurface);
   for (char& flag : isOutward)
   {
     flag = !flag;
@@ -195,9 +203,9 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   if (mesh.NumberOfTriangles() > 0)
   {
     // Triangles may have been reoriented.
-    PutBack(list, AllTriangles(list), mesh, std::vector<char>(isOutward), Part(progress, 0.97, 1.0),
-      changes);
+    PutBack(list, std::nullopt, mesh, isOutward, Part(progress, 0.97, 1.0), changes);
   }
+  changes.IsOutward = std::move(isOutward);
 }
 
 /**

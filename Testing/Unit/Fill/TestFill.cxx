@@ -380,6 +380,26 @@ TEST(Fill, SharesTheRoomForPointsAmongHoles)
     << run.Patches.Reports[1].Reason;
 }
 
+TEST(Fill, LeavesTheLargestHolesOpenFirst)
+{
+  // The large hole would take up to 69 points, and is the first; the small ones 42 each.
+  const std::vector<std::string> holes{ "###############", "#     #   #   #", "#     #   #   #",
+    "#     #   #   #", "###############" };
+  FillOptions options;
+  options.Spacing = 0.5;
+  for (const Index limit : { 41, 70, 90, 160 })
+  {
+    options.MaximumInsertedPoints = limit;
+    const Outcome run = Fill(Draw(holes), options);
+    ASSERT_EQ(run.Found.Count(), 3);
+    ASSERT_EQ(run.Patches.Reports[0].NumberOfEdges, 16);
+    const Index small = limit < 42 ? 0 : limit < 84 ? 1 : 2;
+    EXPECT_EQ(run.Patches.Reports[0].Status == FillStatus::Filled, limit == 160) << limit;
+    EXPECT_EQ(run.Patches.Reports[1].Status == FillStatus::Filled, small > 0) << limit;
+    EXPECT_EQ(run.Patches.Reports[2].Status == FillStatus::Filled, small > 1) << limit;
+  }
+}
+
 TEST(Fill, GrantsNoPointsToHolesThatOtherLimitsLeaveOpen)
 {
   FillOptions options;

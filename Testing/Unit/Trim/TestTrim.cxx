@@ -493,6 +493,10 @@ TEST(Trim, RefusesByNameWhatIsNoSurfaceOrNoBoundary)
   Boundary outside;
   outside.Add({ { 3, 3 }, { 4, 3 }, { 3, 4 } });
   EXPECT_HAS(MessageOf(surface, outside), "encloses no triangle");
+  Boundary crossingOutside; // with no triangle near
+  crossingOutside.Add({ { -1, -1 }, { 2, -1 }, { 2, 2 }, { -1, 2 } });
+  crossingOutside.Add({ { 3, 3 }, { 4, 4 }, { 4, 3 }, { 3, 4 } });
+  EXPECT_HAS(MessageOf(surface, crossingOutside), "crosses its edge");
   Boundary flat;
   flat.Add({ { 0.1, 0.1 }, { 0.9, 0.9 }, { 0.5, 0.5 } });
   EXPECT_HAS(MessageOf(surface, flat), "encloses no triangle");
