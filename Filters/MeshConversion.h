@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The only place that knows both the kernel's mesh and vtkPolyData. Private to the module. All
+ * Converts vtkPolyData to the arrays of the kernel and back. Private to the module. All
  * conversions take linear time; points and 32-bit ids are not copied.
  */
 #ifndef MeshConversion_h
@@ -10,7 +10,6 @@
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
-#include "Kernel/Trim/Trim.h"
 
 #include "vtkSmartPointer.h"
 

@@ -25,8 +25,6 @@
 
 #include "Kernel/Base/Base.h"
 
-#include <algorithm>
-#include <vector>
 
 namespace elevation
 {

@@ -6,7 +6,6 @@
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 
 namespace elevation

@@ -38,7 +38,6 @@
 #include "Constrained.h"
 #include "Options.h"
 
-#include <vector>
 
 namespace elevation
 {

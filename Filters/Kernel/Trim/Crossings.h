@@ -19,7 +19,6 @@
 #include "Kernel/Mesh/Mesh.h"
 
 #include <string>
-#include <vector>
 
 namespace elevation
 {

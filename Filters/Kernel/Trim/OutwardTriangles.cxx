@@ -6,8 +6,6 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "Rings.h"
 
-#include <algorithm>
-#include <string>
 
 namespace elevation
 {
