@@ -759,20 +759,21 @@ bool ComesBefore(const std::vector<Point2>& points, const Corners& p, const Corn
                       : Orientation(points[p[0]], points[p[1]], points[q[1]]) == Positive;
 }
 
-/** Moves triangles that are also in the mesh to the front. @return the mesh's others, sorted */
-std::vector<Corners> TakeOutChanged(
-  const Mesh& mesh, Buffer<Index>& triangles, const Progress& progress)
+/** Replaces triangles by those of the mesh, of which few are others, in the same order. */
+void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& progress)
 {
+  Corners* const all = reinterpret_cast<Corners*>(triangles.data());
+  Corners* kept = all; // the end of those that have not changed
   std::vector<Corners> changed;
-  Index kept = 0;
-  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.6), [&](Index begin, Index end) {
+  const Index count = mesh.NumberOfTriangles();
+  ForEachStretch(count, Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       Corners corners{ mesh.Triangles[3 * t], mesh.Triangles[3 * t + 1],
         mesh.Triangles[3 * t + 2] };
-      if (std::equal(corners.begin(), corners.end(), &triangles[3 * t]))
+      if (corners == all[t])
       {
-        std::copy(corners.begin(), corners.end(), &triangles[3 * kept++]);
+        *kept++ = corners;
         continue;
       }
       std::rotate(corners.begin(),
@@ -782,35 +783,16 @@ std::vector<Corners> TakeOutChanged(
       changed.push_back(corners);
     }
   });
-  Sort(
-    changed.begin(), changed.end(),
-    [&](const Corners& p, const Corners& q) { return ComesBefore(mesh.Points, p, q); },
-    Part(progress, 0.6, 1.0));
-  return changed;
-}
-
-/** Merges changed triangles with those at the front. */
-void SortIn(std::vector<Corners> changed, const std::vector<Point2>& points,
-  Buffer<Index>& triangles, const Progress& progress)
-{
-  // From the end, so that nothing is overwritten before it has moved.
-  const Index count = static_cast<Index>(triangles.size() / 3);
-  Index unchanged = count - static_cast<Index>(changed.size());
-  ForEachStretch(count, progress, [&](Index begin, Index end) {
-    for (Index t = count - 1 - begin; t > count - 1 - end && !changed.empty(); --t)
-    {
-      const Index* last = &triangles[3 * (unchanged > 0 ? unchanged - 1 : 0)];
-      if (unchanged > 0 && ComesBefore(points, changed.back(), Corners{ last[0], last[1], last[2] }))
-      {
-        std::copy_n(last, 3, &triangles[3 * t]);
-        --unchanged;
-      }
-      else
-      {
-        std::copy(changed.back().begin(), changed.back().end(), &triangles[3 * t]);
-        changed.pop_back();
-      }
-    }
+  const auto comesBefore = [&](const Corners& p, const Corners& q) {
+    return ComesBefore(mesh.Points, p, q);
+  };
+  Sort(changed.begin(), changed.end(), comesBefore, Part(progress, 0.3, 0.6));
+  std::copy(changed.begin(), changed.end(), kept);
+  const Progress merging = Part(progress, 0.6, 1.0);
+  WorkReporter work(merging);
+  std::inplace_merge(all, kept, all + count, [&](const Corners& p, const Corners& q) {
+    work.Tick();
+    return comesBefore(p, q);
   });
 }
 
@@ -833,6 +815,7 @@ void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
     });
   triangles.Resize(kept);
 }
+
 } // namespace
 
 ConstrainedTriangulation TriangulateConstrained(
@@ -883,8 +866,7 @@ ConstrainedTriangulation TriangulateConstrained(
   const Index missing = RecoverSegments(mesh, constrained.Pieces, flags, Part(progress, 0.8, 0.95));
   if (missing > 0)
   {
-    SortIn(TakeOutChanged(mesh, result.Triangles, Part(progress, 0.95, 0.975)), mesh.Points,
-      result.Triangles, Part(progress, 0.975, 0.99));
+    SortInChanged(mesh, result.Triangles, Part(progress, 0.95, 0.99));
   }
   const EdgeLimit limit(asked.MaximumEdgeLength);
   if (limit.IsSet())

@@ -6,7 +6,7 @@
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <unordered_set>
 
 namespace elevation
 {
@@ -117,8 +117,7 @@ private:
     std::vector<PieceCut> cuts;
     // In a crowded cell, a place that occurs many times is looked up only once.
     constexpr std::ptrdiff_t many = 64;
-    std::unordered_map<Point2, std::vector<Index>, HashOfPoint> known;
-    std::vector<Index> through;
+    std::unordered_set<Point2, HashOfPoint> known;
     const Progress cutting = Part(progress, 0.0, 0.6);
     WorkReporter work(cutting);
     for (std::size_t i = 0; i < edges.size(); ++i)
@@ -127,27 +126,17 @@ private:
       const Point2& p = edges[i][0];
       std::size_t cell = 0;
       grid.FindCell(p, cell); // there is one
-      through.clear();
-      bool isNew = true;
-      std::vector<Index>* edgesHere = &through;
-      if (grid.End(cell) - grid.Begin(cell) > many)
+      if (grid.End(cell) - grid.Begin(cell) > many && !known.insert(p).second)
       {
-        const auto place = known.try_emplace(p);
-        edgesHere = &place.first->second;
-        isNew = place.second;
+        continue;
       }
-      for (const Index* edge = grid.Begin(cell); isNew && edge < grid.End(cell); ++edge)
+      for (const Index* edge = grid.Begin(cell); edge < grid.End(cell); ++edge)
       {
         work.Tick();
         if (IsInside(edges[*edge], p))
         {
-          edgesHere->push_back(*edge);
+          cuts.push_back({ *edge, rings.Vertices[i] });
         }
-      }
-      for (const Index edge : *edgesHere)
-      {
-        work.Tick();
-        cuts.push_back({ edge, rings.Vertices[i] });
       }
     }
     SortAlong(

@@ -125,7 +125,8 @@ private:
     ForEachStretch(mesh.NumberOfPoints(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
       for (Index v = begin; v < end; ++v)
       {
-        isToMatch[v] = sieve.Has(bitOf(mesh.PointOf(v)));
+        const Point2& p = mesh.PointOf(v);
+        isToMatch[v] = sieve.Has(bitOf(p)) && this->VertexAt.count(p) > 0;
       }
     });
     const Progress matching = Part(progress, 0.3, 1.0);
@@ -138,20 +139,16 @@ private:
         continue;
       }
       isToMatch[vertex] = 0;
-      const auto found = this->VertexAt.find(mesh.PointOf(vertex));
-      if (found == this->VertexAt.end())
+      Index& found = this->VertexAt.at(mesh.PointOf(vertex));
+      if (found != None)
       {
-        continue;
-      }
-      if (found->second != None)
-      {
-        throw Error("Points " + std::to_string(mesh.IdOf(std::min(found->second, vertex))) +
-          " and " + std::to_string(mesh.IdOf(std::max(found->second, vertex))) +
+        throw Error("Points " + std::to_string(mesh.IdOf(std::min(found, vertex))) + " and " +
+          std::to_string(mesh.IdOf(std::max(found, vertex))) +
           " of the mesh have the same x,y and both are corners of triangles, so that the "
           "boundary's point there is not one place of the mesh. Merge them, as "
           "vtkStaticCleanPolyData does.");
       }
-      found->second = vertex;
+      found = vertex;
     }
   }
 
@@ -506,7 +503,7 @@ private:
             });
           if (isInReach)
           {
-            this->MarkCut(i);
+            this->IsCut.push_back(i);
             return;
           }
           const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
@@ -575,14 +572,8 @@ private:
       }
       last = vertex;
       this->AddStop(crossing.Piece, pieces[crossing.Piece], h, vertex);
-      this->MarkCut(crossing.Piece);
+      this->IsCut.push_back(crossing.Piece);
     }
-  }
-
-  void MarkCut(std::size_t piece)
-  {
-    this->IsCut.push_back(piece);
-    this->EdgeOfCut = this->Pieces[piece].Edge;
   }
 
   /**
@@ -593,23 +584,17 @@ private:
   {
     const std::vector<Ends> pieces = this->EndsOfPieces();
     this->Stops.clear();
-    std::size_t last = 0; // the last piece that is cut
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
       VisitEndsInReach(pieces[j], pieces[i], units, Reach, [&](int end) {
         const Index at = end == 0 ? static_cast<Index>(j) : this->NextOf(static_cast<Index>(j));
         this->Stops.push_back({ i, this->Pieces[at].Vertex, true, true });
-        last = std::max(last, i);
       });
     };
     VisitCrossings(pieces, GridOf(pieces), progress, [&](std::size_t i, std::size_t j) {
       cut(i, j);
       cut(j, i);
     });
-    if (!this->Stops.empty())
-    {
-      this->EdgeOfCut = this->Pieces[last].Edge;
-    }
     this->CutPieces(pieces);
     return !this->Stops.empty();
   }
@@ -744,6 +729,7 @@ private:
         (p == q &&
           std::make_tuple(a.Into - a.From, a.Vertex) < std::make_tuple(b.Into - b.From, b.Vertex));
     });
+    this->EdgeOfCut = this->Stops.empty() ? 0 : this->Pieces[this->Stops.back().Piece].Edge;
     std::vector<Piece> cut;
     cut.reserve(this->Pieces.size() + this->Stops.size());
     auto stop = this->Stops.begin();
@@ -827,7 +813,7 @@ private:
   std::vector<Piece> Pieces; ///< along each ring
   std::vector<Stop> Stops;
   std::vector<std::size_t> IsCut; ///< pieces that cross the border
-  std::size_t EdgeOfCut = 0;      ///< the edge of one of them
+  std::size_t EdgeOfCut = 0;      ///< an edge that has been cut last
 };
 
 } // namespace

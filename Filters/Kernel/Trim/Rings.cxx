@@ -181,12 +181,6 @@ std::vector<Piece> MakePieces(const BoundaryLines& lines)
   return pieces;
 }
 
-void Append(Rings& rings, const std::vector<Index>& points)
-{
-  rings.Vertices.insert(rings.Vertices.end(), points.begin(), points.end());
-  rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
-}
-
 /** Chains open pieces at their ends: the front of piece i is end 2 i, its back is end 2 i + 1. */
 class Chains
 {
@@ -200,7 +194,7 @@ public:
     {
       if (!pieces[end / 2].IsClosed)
       {
-        this->EndsAt[this->PlaceOf(end)].push_back(end);
+        this->EndsAt[this->PlaceAt(end, 0)].push_back(end);
       }
     }
     this->CheckEnds();
@@ -217,30 +211,24 @@ public:
     for (std::size_t end = 2 * piece; !used[end / 2]; end = this->Partners[end ^ 1])
     {
       used[end / 2] = 1;
-      const std::vector<Index>& points = this->Pieces[end / 2].Points;
-      if (end % 2 == 0)
+      for (std::size_t i = 0; i + 1 < this->Pieces[end / 2].Points.size(); ++i)
       {
-        ring.insert(ring.end(), points.begin(), points.end() - 1);
-      }
-      else
-      {
-        ring.insert(ring.end(), points.rbegin(), points.rend() - 1);
+        ring.push_back(this->PointAt(end, i));
       }
     }
     return ring;
   }
 
 private:
-  Index PointOf(std::size_t end) const
+  /** Point i of a piece, counted from an end of it. */
+  Index PointAt(std::size_t end, std::size_t i) const
   {
     const std::vector<Index>& points = this->Pieces[end / 2].Points;
-    return end % 2 == 0 ? points.front() : points.back();
+    return points[end % 2 == 0 ? i : points.size() - 1 - i];
   }
-  const Point2& PlaceOf(std::size_t end) const { return this->Lines.Points[this->PointOf(end)]; }
-  const Point2& NextOf(std::size_t end) const
+  const Point2& PlaceAt(std::size_t end, std::size_t i) const
   {
-    const std::vector<Index>& points = this->Pieces[end / 2].Points;
-    return this->Lines.Points[end % 2 == 0 ? points[1] : points[points.size() - 2]];
+    return this->Lines.Points[this->PointAt(end, i)];
   }
 
   /** @throws Error naming the first end at a place with an odd number of them */
@@ -249,11 +237,11 @@ private:
     for (std::size_t end = 0; end < 2 * this->Pieces.size(); ++end)
     {
       const Piece& piece = this->Pieces[end / 2];
-      const std::size_t count = piece.IsClosed ? 0 : this->EndsAt.at(this->PlaceOf(end)).size();
+      const std::size_t count = piece.IsClosed ? 0 : this->EndsAt.at(this->PlaceAt(end, 0)).size();
       if (count % 2 != 0)
       {
         throw Error("The boundary is not closed: " + NameOfLine(this->Lines, piece.Line) +
-          " ends at " + NameOf(this->Lines.Points, this->PointOf(end)) +
+          " ends at " + NameOf(this->Lines.Points, this->PointAt(end, 0)) +
           (count == 1
               ? ", where no other line goes on."
               : ", where " + std::to_string(count) + " lines end, which cannot be paired."));
@@ -268,7 +256,7 @@ private:
   void Pair(const Point2& place, std::vector<std::size_t>& ends)
   {
     const auto comesBefore = [&](std::size_t e, std::size_t f) {
-      const Point2 p = this->NextOf(e), q = this->NextOf(f);
+      const Point2 p = this->PlaceAt(e, 1), q = this->PlaceAt(f, 1);
       return IsLower(place, p) != IsLower(place, q) ? IsLower(place, p)
                                                     : Orientation(place, p, q) == Positive;
     };
@@ -335,7 +323,8 @@ Rings JoinLines(const BoundaryLines& lines)
     // A ring of two points is two lines along one edge, as of adjacent parcels: they cancel out.
     if (ring.size() > 2)
     {
-      Append(joined, ring);
+      joined.Vertices.insert(joined.Vertices.end(), ring.begin(), ring.end());
+      joined.Offsets.push_back(static_cast<Index>(joined.Vertices.size()));
     }
   }
   if (joined.Vertices.empty())
