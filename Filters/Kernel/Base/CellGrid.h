@@ -131,10 +131,13 @@ private:
     const double most = 30.0 * static_cast<double>(count);
     const double cells = std::min(
       { 2.0 * static_cast<double>(count), most * most / (4.0 * alongX * alongY), 100000000.0 });
-    const double columns =
-      std::min(std::max(std::sqrt(cells * alongY / alongX), 1.0), std::max(cells, 1.0));
+    // Items without width share one column.
+    const double columns = width > 0.0
+      ? std::min(std::max(std::sqrt(cells * alongY / alongX), 1.0), std::max(cells, 1.0))
+      : 1.0;
+    const double rows = width > 0.0 ? cells / columns : std::min(cells, most / alongY);
     this->Columns = static_cast<int>(columns);
-    this->Rows = static_cast<int>(std::max(cells / columns, 1.0));
+    this->Rows = static_cast<int>(std::max(rows, 1.0));
     // An extent so small that the inverse of a cell's size would overflow is one column or row.
     this->PerX = width > 1e-290 ? this->Columns / width : 0.0;
     this->PerY = height > 1e-290 ? this->Rows / height : 0.0;

@@ -11,12 +11,16 @@
 namespace elevation
 {
 
+std::string NameOf(const Point2& p)
+{
+  char text[64];
+  std::snprintf(text, sizeof(text), "(%.10g, %.10g)", p.X, p.Y);
+  return text;
+}
+
 std::string NameOf(Index id, const Point2& p)
 {
-  char text[96];
-  std::snprintf(
-    text, sizeof(text), "point %ld (%.10g, %.10g)", static_cast<long>(id), p.X, p.Y);
-  return text;
+  return "point " + std::to_string(id) + " " + NameOf(p);
 }
 
 std::string NameOf(const NamedPoints& points, Index i)

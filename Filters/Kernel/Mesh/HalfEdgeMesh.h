@@ -43,7 +43,8 @@ struct NamedPoints
 
 class Mesh;
 
-/** A point as messages name it: "point 7 (1.5, 2)". */
+/** A place as messages name it, "(1.5, 2)"; and a point, "point 7 (1.5, 2)". */
+std::string NameOf(const Point2& p);
 std::string NameOf(Index id, const Point2& p);
 std::string NameOf(const NamedPoints& points, Index i);
 std::string NameOf(const Mesh& mesh, Index vertex);
@@ -125,6 +126,12 @@ struct Rings
   Index Size(Index ring) const { return this->Offsets[ring + 1] - this->Offsets[ring]; }
   const Index* Begin(Index ring) const { return this->Vertices.data() + this->Offsets[ring]; }
   const Index* End(Index ring) const { return this->Vertices.data() + this->Offsets[ring + 1]; }
+  /** For the place of a vertex in Vertices, that of the next one on its ring. */
+  Index After(Index place) const
+  {
+    const auto end = std::upper_bound(this->Offsets.begin(), this->Offsets.end(), place);
+    return place + 1 == *end ? end[-1] : place + 1;
+  }
 };
 
 /**

@@ -187,7 +187,10 @@ public:
         continue;
       }
       missing = true;
-      vertex = this->Cross(vertex, segment);
+      vertex = this->FindCrossed(vertex, segment);
+      this->Left.Fill(this->Surface);
+      this->Right.Fill(this->Surface);
+      this->WriteBack();
     }
     return missing;
   }
@@ -202,19 +205,10 @@ private:
     }
   }
 
-  /** Makes an edge from a vertex to the next vertex on the segment, which it returns. */
-  Index Cross(Index from, const Segment& segment)
-  {
-    const Index end = this->FindCrossed(from, segment);
-    for (Cavity* side : { &this->Left, &this->Right })
-    {
-      side->Fill(this->Surface);
-    }
-    this->WriteBack();
-    return end;
-  }
-
-  /** Walks along the segment: collects the crossed triangles and the polygons on either side. */
+  /**
+   * Walks along the segment to the next vertex on it, which it returns: collects the crossed
+   * triangles and the polygons on either side.
+   */
   Index FindCrossed(Index from, const Segment& segment)
   {
     const Mesh& mesh = this->Surface;

@@ -96,14 +96,9 @@ public:
   /** Changes the id of a border that leaves the vertex from @a before to @a after. */
   void ReplaceBorder(Index vertex, Index before, Index after);
 
-private:
-  static constexpr Index Few = 32;
-
-  /** The half-edge that VisitToward() looks for; None if not found. */
-  Index Toward(const Mesh& mesh, Index from, Index to);
-
+  /** Visits one fan, from its first half-edge on or once around. @return whether all of it */
   template <typename Visitor>
-  static bool VisitFan(const Mesh& mesh, Index first, Visitor& visit)
+  static bool VisitFan(const Mesh& mesh, Index first, Visitor&& visit)
   {
     Index h = first;
     do
@@ -116,6 +111,12 @@ private:
     } while (h != Mesh::Border && h != first);
     return true;
   }
+
+private:
+  static constexpr Index Few = 32;
+
+  /** The half-edge that VisitToward() looks for; None if not found. */
+  Index Toward(const Mesh& mesh, Index from, Index to);
 
   /** An edge of a vertex when its star was sorted; the half-edge may no longer exist. */
   struct Spoke

@@ -731,20 +731,21 @@ Buffer<double> JoinPoints(
   }
   joined.Resize(3 * (static_cast<std::size_t>(points.Count) + added.size()));
   double* out = joined.data();
+  const auto append = [&](const Point2& p, double elevation) {
+    for (const double value : { p.X, p.Y, elevation })
+    {
+      *out++ = value;
+    }
+  };
   ForEachStretch(points.Count, progress, [&](Index begin, Index end) {
     for (Index id = begin; id < end; ++id)
     {
-      const Point2 p = points.At(id);
-      *out++ = p.X;
-      *out++ = p.Y;
-      *out++ = points.Elevation(id);
+      append(points.At(id), points.Elevation(id));
     }
   });
   for (const AddedPoint& point : added)
   {
-    *out++ = point.Position.X;
-    *out++ = point.Position.Y;
-    *out++ = point.Elevation;
+    append(point.Position, point.Elevation);
   }
   return joined;
 }
@@ -799,21 +800,14 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
 void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
   Buffer<Index>& triangles, const Progress& progress)
 {
-  const auto pointOf = [&](Index v) { return points[v]; };
-  std::size_t kept = 0;
-  ForEachStretch(
-    static_cast<Index>(triangles.size() / 3), progress, [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-      {
-        const Corners corners{ triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2] };
-        if (limit.Admits(pointOf, corners[0], corners[1], corners[2]))
-        {
-          std::copy(corners.begin(), corners.end(), &triangles[kept]);
-          kept += 3;
-        }
-      }
-    });
-  triangles.Resize(kept);
+  Corners* const all = reinterpret_cast<Corners*>(triangles.data());
+  WorkReporter work(progress);
+  const auto isLong = [&](const Corners& corners) {
+    work.Tick();
+    const auto pointOf = [&](Index v) { return points[v]; };
+    return !limit.Admits(pointOf, corners[0], corners[1], corners[2]);
+  };
+  triangles.Resize(3 * (std::remove_if(all, all + triangles.size() / 3, isLong) - all));
 }
 
 } // namespace

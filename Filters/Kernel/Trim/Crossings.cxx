@@ -351,24 +351,13 @@ private:
 std::string NameOfEdge(const NamedPoints& points, const Rings& rings, std::size_t edge)
 {
   const Index from = static_cast<Index>(edge);
-  const auto end = std::upper_bound(rings.Offsets.begin(), rings.Offsets.end(), from);
-  const Index to = from + 1 == *end ? end[-1] : from + 1;
   return "from " + NameOf(points, rings.Vertices[from]) + " to " +
-    NameOf(points, rings.Vertices[to]);
+    NameOf(points, rings.Vertices[rings.After(from)]);
 }
 
 void CheckCrossings(const NamedPoints& points, const Rings& rings, const Progress& progress)
 {
-  std::vector<Ends> edges;
-  for (Index ring = 0; ring < rings.Count(); ++ring)
-  {
-    for (Index i = 0; i < rings.Size(ring); ++i)
-    {
-      const Index a = rings.Begin(ring)[i];
-      const Index b = rings.Begin(ring)[i + 1 == rings.Size(ring) ? 0 : i + 1];
-      edges.push_back({ points[a], points[b] });
-    }
-  }
+  const std::vector<Ends> edges = EdgesOf(points.Places, rings);
   const CellGrid grid = GridOf(edges);
   VisitCrossings(edges, grid, Part(progress, 0.0, 0.5), [&](std::size_t i, std::size_t j) {
     throw Error("The boundary's edge " + NameOfEdge(points, rings, i) + " crosses its edge " +

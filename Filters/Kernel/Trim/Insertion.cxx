@@ -95,10 +95,9 @@ private:
 
   std::string NameOfVertex(Index vertex) const
   {
-    const std::string name = NameOf(this->Surface, vertex);
     return this->Cutter.IsGiven(vertex)
-      ? name + " of the mesh"
-      : "where the boundary has cut it already" + name.substr(name.find(" ("));
+      ? NameOf(this->Surface, vertex) + " of the mesh"
+      : "where the boundary has cut it already " + NameOf(this->Surface.PointOf(vertex));
   }
 
   /** Finds the corners of the mesh at points of the rings. */
@@ -587,7 +586,7 @@ private:
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
       VisitEndsInReach(pieces[j], pieces[i], units, Reach, [&](int end) {
-        const Index at = end == 0 ? static_cast<Index>(j) : this->NextOf(static_cast<Index>(j));
+        const Index at = end == 0 ? static_cast<Index>(j) : this->Result.Vertices.After(static_cast<Index>(j));
         this->Stops.push_back({ i, this->Pieces[at].Vertex, true, true });
       });
     };
@@ -612,37 +611,15 @@ private:
   {
     const Mesh& mesh = this->Surface;
     const Point2& from = mesh.PointOf(mesh.Origin(h));
-    const auto isIn = [&](Index k) {
-      return Orientation(from, mesh.PointOf(mesh.Destination(k)), p) != Negative &&
-        Orientation(from, p, mesh.PointOf(mesh.Apex(k))) != Negative;
-    };
-    Index k = h;
+    Index first = h; // of the fan; h if it is a full circle
     do
     {
-      if (isIn(k))
-      {
-        return true;
-      }
-      k = mesh.Twin(Mesh::Next(Mesh::Next(k)));
-    } while (k != Mesh::Border && k != h);
-    // The rest of the fan, in the other direction.
-    while (k == Mesh::Border && !mesh.IsBorder(h))
-    {
-      h = Mesh::Next(mesh.Twin(h));
-      if (isIn(h))
-      {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /** The piece after a piece on its ring. */
-  Index NextOf(Index piece) const
-  {
-    const std::vector<Index>& offsets = this->Result.Vertices.Offsets;
-    const auto end = std::upper_bound(offsets.begin(), offsets.end(), piece);
-    return piece + 1 == *end ? *(end - 1) : piece + 1;
+      first = mesh.IsBorder(first) ? first : Mesh::Next(mesh.Twin(first));
+    } while (first != h && !mesh.IsBorder(first));
+    return !VertexStars::VisitFan(mesh, first, [&](Index k) {
+      return Orientation(from, mesh.PointOf(mesh.Destination(k)), p) == Negative ||
+        Orientation(from, p, mesh.PointOf(mesh.Apex(k))) == Negative;
+    });
   }
 
   /** The ends of each piece. */
@@ -653,7 +630,7 @@ private:
     for (Index i = 0; i < static_cast<Index>(this->Pieces.size()); ++i)
     {
       ends.push_back({ this->PlaceOf(this->Pieces[i].Vertex),
-        this->PlaceOf(this->Pieces[this->NextOf(i)].Vertex) });
+        this->PlaceOf(this->Pieces[this->Result.Vertices.After(i)].Vertex) });
     }
     return ends;
   }
@@ -774,9 +751,7 @@ private:
 
   [[noreturn]] void RefuseDoubleBorder(std::size_t edge, const Point2& p) const
   {
-    const std::string name = NameOf(None, p);
-    throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes" +
-      name.substr(name.find(" (")) +
+    throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes " + NameOf(p) +
       ", where borders of the mesh lie on each other without points in common. Merge the points, "
       "as vtkStaticCleanPolyData does.");
   }

@@ -29,18 +29,14 @@ public:
 
   RingRaster(const std::vector<Point2>& points, const Rings& rings, Index numberOfTriangles)
   {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Point2 low{ infinity, infinity };
-    Point2 high{ -infinity, -infinity };
+    Box box;
     for (const Index id : rings.Vertices)
     {
-      const Point2& p = points[id];
-      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+      box.Add(points[id]);
     }
+    const Point2 low = box.Low, high = box.High;
     const double size = std::max({ -low.X, -low.Y, high.X, high.Y });
-    const double width = high.X - low.X;
-    const double height = high.Y - low.Y;
+    const double width = box.Width(), height = box.Height();
     // A few triangles per cell.
     const double cells = std::min(262144.0, std::max(64.0, numberOfTriangles / 8.0));
     const double columns = std::sqrt(cells * (width / height));
@@ -113,34 +109,26 @@ private:
   void Draw(const std::vector<Point2>& points, const Rings& rings)
   {
     const double near = 1e-3 * this->Side;
-    for (Index ring = 0; ring < rings.Count(); ++ring)
+    for (auto [a, b] : EdgesOf(points, rings))
     {
-      for (const Index* v = rings.Begin(ring); v != rings.End(ring); ++v)
+      if (b.Y < a.Y)
       {
-        Point2 a = points[*v];
-        Point2 b = points[v + 1 == rings.End(ring) ? *rings.Begin(ring) : v[1]];
-        if (b.Y < a.Y)
+        std::swap(a, b);
+      }
+      const auto at = [low = a, high = b](double y) {
+        const double share = (y - low.Y) / (high.Y - low.Y);
+        return low.X + std::max(0.0, std::min(1.0, share)) * (high.X - low.X);
+      };
+      const bool isLevel = !(b.Y > a.Y);
+      const Index last = this->RowOf(b.Y + near);
+      for (Index row = this->RowOf(a.Y - near); row <= last; ++row)
+      {
+        const double from = isLevel ? a.X : at(this->Low.Y + row * this->Side - near);
+        const double to = isLevel ? b.X : at(this->Low.Y + (row + 1) * this->Side + near);
+        const Index end = this->ColumnOf(std::max(from, to) + near);
+        for (Index column = this->ColumnOf(std::min(from, to) - near); column <= end; ++column)
         {
-          std::swap(a, b);
-        }
-        const Index last = this->RowOf(b.Y + near);
-        for (Index row = this->RowOf(a.Y - near); row <= last; ++row)
-        {
-          const auto at = [&](double y) {
-            const double share = b.Y > a.Y ? (y - a.Y) / (b.Y - a.Y) : 0.0;
-            return a.X + std::max(0.0, std::min(1.0, share)) * (b.X - a.X);
-          };
-          double from = at(this->Low.Y + row * this->Side - near);
-          double to = at(this->Low.Y + (row + 1) * this->Side + near);
-          if (!(b.Y > a.Y))
-          {
-            to = b.X;
-          }
-          const Index end = this->ColumnOf(std::max(from, to) + near);
-          for (Index column = this->ColumnOf(std::min(from, to) - near); column <= end; ++column)
-          {
-            this->Kinds[this->CellAt(column, row)] = Near;
-          }
+          this->Kinds[this->CellAt(column, row)] = Near;
         }
       }
     }

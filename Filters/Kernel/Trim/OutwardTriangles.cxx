@@ -40,28 +40,23 @@ std::vector<Segment> SegmentsOf(
 {
   std::vector<Segment> segments;
   segments.reserve(rings.Vertices.size());
-  for (Index ring = 0; ring < rings.Count(); ++ring)
+  for (std::size_t i = 0; i < rings.Vertices.size(); ++i)
   {
-    const Index size = rings.Size(ring);
-    const Index* vertices = rings.Begin(ring);
-    for (Index i = 0; i < size; ++i)
+    ReportStep(progress, i, 2 * rings.Vertices.size(), 256);
+    const Segment segment{ rings.Vertices[i], rings.Vertices[rings.After(static_cast<Index>(i))] };
+    const bool isInside = BeginsInside(mesh, stars, segment.A, segment.B);
+    if (isInside != BeginsInside(mesh, stars, segment.B, segment.A))
     {
-      ReportStep(progress, rings.Offsets[ring] + i, 2 * rings.Vertices.size(), 256);
-      const Segment segment{ vertices[i], vertices[i + 1 == size ? 0 : i + 1] };
-      const bool isInside = BeginsInside(mesh, stars, segment.A, segment.B);
-      if (isInside != BeginsInside(mesh, stars, segment.B, segment.A))
-      {
-        throw Error("The boundary's edge from " + NameOf(mesh, segment.A) + " to " +
-          NameOf(mesh, segment.B) +
-          " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
-          "pass through points of the mesh there; or merge points of the mesh, as "
-          "vtkStaticCleanPolyData does, if borders of it lie on each other there.");
-      }
-      if (isInside)
-      {
-        const bool isUp = IsLower(mesh.PointOf(segment.A), mesh.PointOf(segment.B));
-        segments.push_back(isUp ? segment : Segment{ segment.B, segment.A });
-      }
+      throw Error("The boundary's edge from " + NameOf(mesh, segment.A) + " to " +
+        NameOf(mesh, segment.B) +
+        " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
+        "pass through points of the mesh there; or merge points of the mesh, as "
+        "vtkStaticCleanPolyData does, if borders of it lie on each other there.");
+    }
+    if (isInside)
+    {
+      const bool isUp = IsLower(mesh.PointOf(segment.A), mesh.PointOf(segment.B));
+      segments.push_back(isUp ? segment : Segment{ segment.B, segment.A });
     }
   }
   Sort(

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <unordered_map>
 
 namespace elevation
@@ -12,92 +11,22 @@ namespace elevation
 
 // ---------------------------------------------------------------------------------------- location
 
-namespace
+std::vector<Ends> EdgesOf(const std::vector<Point2>& points, const Rings& rings)
 {
-
-template <typename Visitor>
-void VisitEdges(const Rings& rings, Visitor&& visit)
-{
-  for (Index ring = 0; ring < rings.Count(); ++ring)
+  std::vector<Ends> edges;
+  for (Index i = 0; i < static_cast<Index>(rings.Vertices.size()); ++i)
   {
-    const Index* end = rings.End(ring);
-    for (const Index* v = rings.Begin(ring); v != end; ++v)
-    {
-      visit(*v, v + 1 == end ? *rings.Begin(ring) : v[1]);
-    }
+    edges.push_back({ points[rings.Vertices[i]], points[rings.Vertices[rings.After(i)]] });
   }
+  return edges;
 }
-
-} // namespace
 
 RingLocator::RingLocator(const std::vector<Point2>& points, const Rings& rings)
-  : Points(points)
+  : Edges(EdgesOf(points, rings))
+  , ByHeight(this->Edges.size(), [this](std::size_t i) {
+    return Ends{ { { 0.0, this->Edges[i][0].Y }, { 0.0, this->Edges[i][1].Y } } };
+  })
 {
-  double top = -std::numeric_limits<double>::infinity();
-  this->Bottom = std::numeric_limits<double>::infinity();
-  double heights = 0.0;
-  VisitEdges(rings, [&](Index a, Index b) {
-    if (points[b].Y < points[a].Y)
-    {
-      std::swap(a, b);
-    }
-    this->Edges.push_back({ a, b });
-    this->Bottom = std::min(this->Bottom, points[a].Y);
-    top = std::max(top, points[b].Y);
-    heights += points[b].Y - points[a].Y;
-  });
-  // So few bins that their entries are no more than a few times the number of edges.
-  const double count = static_cast<double>(this->Edges.size());
-  const double share = heights / (top - this->Bottom);
-  const double bins = share > 0.0 ? std::min(count, 8.0 * count / share) : 1.0;
-  this->BinOffsets.assign(static_cast<std::size_t>(bins) + 2, 0);
-  this->BinsPerUnit = bins / (top - this->Bottom);
-
-  for (const bool fill : { false, true })
-  {
-    for (std::size_t i = 0; i < this->Edges.size(); ++i)
-    {
-      const Index last = this->BinOf(points[this->Edges[i].High].Y);
-      for (Index bin = this->BinOf(points[this->Edges[i].Low].Y); bin <= last; ++bin)
-      {
-        if (fill)
-        {
-          this->BinEdges[--this->BinOffsets[bin]] = static_cast<Index>(i);
-        }
-        else
-        {
-          ++this->BinOffsets[bin];
-        }
-      }
-    }
-    if (!fill)
-    {
-      for (std::size_t bin = 1; bin < this->BinOffsets.size(); ++bin)
-      {
-        this->BinOffsets[bin] += this->BinOffsets[bin - 1];
-      }
-      this->BinEdges.resize(this->BinOffsets.back());
-    }
-  }
-}
-
-Index RingLocator::BinOf(double y) const
-{
-  // Monotone in y; "not a number" (an infinite range) is bin 0.
-  const double position = (y - this->Bottom) * this->BinsPerUnit;
-  const Index last = static_cast<Index>(this->BinOffsets.size()) - 2;
-  return position > 0.0 ? (position < last ? static_cast<Index>(position) : last) : 0;
-}
-
-template <typename Visitor>
-void RingLocator::VisitEdgesAt(double y, Visitor&& visit) const
-{
-  const Index bin = this->BinOf(y);
-  for (Index i = this->BinOffsets[bin]; i < this->BinOffsets[bin + 1]; ++i)
-  {
-    const Edge& edge = this->Edges[this->BinEdges[i]];
-    visit(this->Points[edge.Low], this->Points[edge.High]);
-  }
 }
 
 bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) const
@@ -109,7 +38,9 @@ bool RingLocator::IsInside(const Point2& a, const Point2& b, const Point2& c) co
   const Point2& p = lowestIsB ? b : lowestIsC ? c : a;
   const Point2& q = lowestIsB ? c : lowestIsC ? a : b;
   bool isInside = false;
-  this->VisitEdgesAt(p.Y, [&](const Point2& low, const Point2& high) {
+  this->ByHeight.Visit(Point2{ 0.0, p.Y }, [&](Index i) {
+    const bool isDown = this->Edges[i][1].Y < this->Edges[i][0].Y;
+    const Point2 &low = this->Edges[i][isDown], &high = this->Edges[i][!isDown];
     if (!(low.Y <= p.Y && p.Y < high.Y))
     {
       return;

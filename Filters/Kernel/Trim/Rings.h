@@ -19,10 +19,12 @@
 namespace elevation
 {
 
+/** The edges of rings: from each vertex to the next. */
+std::vector<Ends> EdgesOf(const std::vector<Point2>& points, const Rings& rings);
+
 /**
- * Tells which triangles lie inside rings, by the even-odd rule. Edges are binned by y, so that a
- * query tests only those at its height: it casts a ray along x, which would visit many cells of a
- * CellGrid. Linear set-up; a query is linear in its bin. Keeps a reference to the points.
+ * Tells which triangles lie inside rings, by the even-odd rule. A query casts a ray along x. So the
+ * grid has one column, and a query tests all edges in its row. Linear set-up.
  */
 class RingLocator
 {
@@ -36,21 +38,8 @@ public:
   bool IsInside(const Point2& a, const Point2& b, const Point2& c) const;
 
 private:
-  struct Edge
-  {
-    Index Low;
-    Index High;
-  };
-  Index BinOf(double y) const;
-  template <typename Visitor>
-  void VisitEdgesAt(double y, Visitor&& visit) const;
-
-  const std::vector<Point2>& Points;
-  std::vector<Edge> Edges;
-  std::vector<Index> BinOffsets;
-  std::vector<Index> BinEdges;
-  double Bottom = 0.0;
-  double BinsPerUnit = 0.0;
+  std::vector<Ends> Edges;
+  CellGrid ByHeight; ///< the edges, all at x = 0
 };
 
 /** Lines and polygons as given, each a list of points. */

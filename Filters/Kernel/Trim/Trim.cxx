@@ -110,9 +110,8 @@ void CheckEnclosed(
 {
   if (std::find(isOutward.begin(), isOutward.end(), char(0)) == isOutward.end())
   {
-    const std::string name = NameOf(points, rings.Vertices.front());
-    throw Error("The boundary encloses no triangle of the mesh. Its first ring begins at" +
-      name.substr(name.find(" (")) +
+    throw Error("The boundary encloses no triangle of the mesh. Its first ring begins at " +
+      NameOf(points[rings.Vertices.front()]) +
       (rings.Count() > 1 ? "; of rings in each other, what lies between two is enclosed." : "."));
   }
 }
