@@ -5,6 +5,7 @@
  * Points and lines -> mesh: every line is a chain of edges, all else is Delaunay, and the order and
  * direction of lines change nothing.
  */
+#include "ConstrainedMesh.h"
 #include "FuzzInput.h"
 
 #include "Kernel/Triangulate/Triangulate.h"
@@ -49,42 +50,10 @@ struct Lines
   }
 };
 
-Cloud AllPoints(const Cloud& cloud, const ConstrainedTriangulation& constrained)
-{
-  Cloud all = cloud;
-  for (const AddedPoint& point : constrained.Added)
-  {
-    all.Add(point.Position.X, point.Position.Y, point.Elevation);
-  }
-  return all;
-}
-
-/** One flag a half-edge: whether a piece runs along it. Fails where a piece is no chain of edges. */
-std::vector<char> MarkPieces(const Mesh& mesh, const std::vector<Segment>& pieces)
-{
-  std::vector<char> flags(mesh.Triangles.size(), 0);
-  VertexStars stars(mesh);
-  for (const Segment& piece : pieces)
-  {
-    for (Index v = piece.A; v != piece.B;)
-    {
-      const SegmentStep step = StepAlong(mesh, stars, v, piece.B);
-      Require(step.HalfEdge != None, "every line is a chain of edges");
-      flags[step.HalfEdge] = 1;
-      if (!mesh.IsBorder(step.HalfEdge))
-      {
-        flags[mesh.Twin(step.HalfEdge)] = 1;
-      }
-      v = step.Vertex;
-    }
-  }
-  return flags;
-}
-
 void RequireRules(const Cloud& cloud, const ConstrainedTriangulation& constrained)
 {
   const Triangulation& result = constrained.Result;
-  const Cloud all = AllPoints(cloud, constrained);
+  const Cloud all = testing_points::AllPoints(cloud, constrained);
   Require(result.UnusedPoints.size() == result.UnusedReasons.size() &&
       std::is_sorted(result.UnusedPoints.begin(), result.UnusedPoints.end()),
     "unused points are listed in order");
@@ -101,7 +70,10 @@ void RequireRules(const Cloud& cloud, const ConstrainedTriangulation& constraine
   }
   Mesh mesh = MeshOf(all, result);
   mesh.ConnectTwins();
-  const std::vector<char> flags = MarkPieces(mesh, constrained.Pieces);
+  std::string failure;
+  const std::vector<char> flags =
+    testing_points::MarkPieces(mesh, constrained.Pieces, failure);
+  RequireNone(failure, "every line is a chain of edges");
   ValidateOptions rules;
   rules.Constrained = &flags;
   rules.UnusedPoints = &result.UnusedPoints;
@@ -112,7 +84,7 @@ void RequireRules(const Cloud& cloud, const ConstrainedTriangulation& constraine
 std::vector<std::array<double, 4>> PlacesOfPieces(
   const Cloud& cloud, const ConstrainedTriangulation& constrained)
 {
-  const Cloud all = AllPoints(cloud, constrained);
+  const Cloud all = testing_points::AllPoints(cloud, constrained);
   std::vector<std::array<double, 4>> places;
   for (const Segment& piece : constrained.Pieces)
   {

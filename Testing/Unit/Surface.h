@@ -8,6 +8,7 @@
 #define Surface_h
 
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 
 #include "Kernel/Trim/Trim.h"
 
@@ -71,15 +72,7 @@ inline std::string MessageOfTrim(const Surface& surface, const elevation::NamedP
   options.RecoverBoundary = recover;
   options.NumberOfThreads = threads;
   const elevation::BoundaryLines lines = LinesOf(points, rings);
-  try
-  {
-    Trim(surface.List(), &lines, options);
-  }
-  catch (const elevation::Error& error)
-  {
-    return error.what();
-  }
-  return "no error";
+  return testing_errors::MessageFrom([&]() { Trim(surface.List(), &lines, options); });
 }
 
 } // namespace testing_surfaces

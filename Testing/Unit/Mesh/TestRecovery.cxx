@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 
 #include "Kernel/Base/Predicates.h"
 #include "Kernel/Mesh/Recovery.h"
@@ -163,15 +164,7 @@ void CheckRandomSegments(Random& random, const std::vector<Point2>& points, int 
 std::string MessageOf(Mesh mesh, const std::vector<Segment>& segments)
 {
   std::vector<char> constrained;
-  try
-  {
-    RecoverSegments(mesh, segments, constrained);
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "no error";
+  return testing_errors::MessageFrom([&]() { RecoverSegments(mesh, segments, constrained); });
 }
 
 } // namespace

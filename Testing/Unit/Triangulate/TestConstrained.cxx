@@ -3,7 +3,9 @@
 //
 // Points triangulated with lines: the rules of the header, one by one, and random lines on random
 // points and on lattices.
+#include "ConstrainedMesh.h"
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 
 #include "Kernel/Triangulate/Constrained.h"
 #include "Kernel/Base/Predicates.h"
@@ -66,41 +68,12 @@ ConstrainedTriangulation Triangulate(
   return TriangulateConstrained(cloud.View(), lines.Get(), options);
 }
 
-/** The input's points and those added. */
-Cloud AllPoints(const Cloud& cloud, const ConstrainedTriangulation& constrained)
-{
-  Cloud all = cloud;
-  for (const AddedPoint& p : constrained.Added)
-  {
-    all.Add(p.Position.X, p.Position.Y, p.Elevation);
-  }
-  return all;
-}
-
-/** Every piece is a chain of edges; marks them. No help of the code that recovers. */
+/** Every piece is a chain of edges; marks them. */
 std::vector<char> MarkPieces(const Mesh& mesh, const std::vector<Segment>& pieces)
 {
-  std::vector<char> constrained(mesh.Triangles.size(), 0);
-  VertexStars stars(mesh);
-  for (const Segment& piece : pieces)
-  {
-    for (Index v = piece.A; v != piece.B;)
-    {
-      const SegmentStep step = StepAlong(mesh, stars, v, piece.B);
-      if (step.HalfEdge == None)
-      {
-        ADD_FAILURE() << NameOf(mesh, piece.A) << " to " << NameOf(mesh, piece.B)
-                      << " is no chain of edges at " << NameOf(mesh, v);
-        return constrained;
-      }
-      constrained[step.HalfEdge] = 1;
-      if (!mesh.IsBorder(step.HalfEdge))
-      {
-        constrained[mesh.Twin(step.HalfEdge)] = 1;
-      }
-      v = step.Vertex;
-    }
-  }
+  std::string failure;
+  const std::vector<char> constrained = testing_points::MarkPieces(mesh, pieces, failure);
+  EXPECT_EQ(failure, "");
   return constrained;
 }
 
@@ -167,15 +140,7 @@ Cloud Square(int size)
 
 std::string MessageOf(const Cloud& cloud, Lines& lines)
 {
-  try
-  {
-    Triangulate(cloud, lines);
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "no error";
+  return testing_errors::MessageFrom([&]() { Triangulate(cloud, lines); });
 }
 
 /** Random lines: of points of the cloud, of nodes of a lattice, or anywhere; some closed. */

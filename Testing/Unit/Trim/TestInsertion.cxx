@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 #include "Location.h"
 #include "PointSets.h"
 #include "Silence.h"
@@ -53,9 +54,6 @@ std::string MessageOf(const Mesh& mesh, const Boundary& boundary, bool insert = 
 {
   return MessageOfTrim(SurfaceOf(mesh), boundary.Points, boundary.Lines, insert);
 }
-
-#define EXPECT_HAS(text, part)                                                                     \
-  EXPECT_NE((text).find(part), std::string::npos) << "no \"" << (part) << "\" in: " << (text)
 
 /** A lattice with steps of 25, turned at random, in map coordinates. */
 struct TurnedLattice

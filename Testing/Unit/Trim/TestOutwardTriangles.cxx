@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 #include "Location.h"
 #include "Surface.h"
 
@@ -85,19 +86,8 @@ bool MiddleIsInside(const Mesh& mesh, const Rings& rings, Index t)
 
 std::string MessageOf(Mesh mesh, const Rings& rings, bool recover)
 {
-  try
-  {
-    FindOutward(mesh, rings, recover);
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "no error";
+  return testing_errors::MessageFrom([&]() { FindOutward(mesh, rings, recover); });
 }
-
-#define EXPECT_HAS(text, part)                                                                     \
-  EXPECT_NE((text).find(part), std::string::npos) << "no \"" << (part) << "\" in: " << (text)
 
 } // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 #include "Location.h"
 
 #include "Kernel/Trim/Rings.h"
@@ -58,19 +59,8 @@ Mesh Lattice4()
 
 std::string MessageOf(const BoundaryLines& lines)
 {
-  try
-  {
-    JoinLines(lines);
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "no error";
+  return testing_errors::MessageFrom([&]() { JoinLines(lines); });
 }
-
-#define EXPECT_HAS(text, part)                                                                     \
-  EXPECT_NE((text).find(part), std::string::npos) << "no \"" << (part) << "\" in: " << (text)
 
 } // namespace
 

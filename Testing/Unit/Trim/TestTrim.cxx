@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayMesh.h"
+#include "ErrorMessage.h"
 #include "Surface.h"
 
 #include "Kernel/Mesh/Holes.h"
@@ -291,19 +292,8 @@ std::string MessageOf(
 
 std::string MessageOfExtraction(const Surface& surface)
 {
-  try
-  {
-    Trim(surface.List(), nullptr, TrimOptions());
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "no error";
+  return testing_errors::MessageFrom([&]() { Trim(surface.List(), nullptr, TrimOptions()); });
 }
-
-#define EXPECT_HAS(text, part)                                                                     \
-  EXPECT_NE((text).find(part), std::string::npos) << "no \"" << (part) << "\" in: " << (text)
 
 } // namespace
 
