@@ -425,8 +425,7 @@ private:
     }
     catch (const Error& error)
     {
-      report.Status = FillStatus::Failed;
-      report.Reason = error.what();
+      Fail(report, error.what());
     }
   }
 

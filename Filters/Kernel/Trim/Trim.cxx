@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Trim.h"
 
-#include "Crossings.h"
 #include "NearTriangles.h"
 #include "Outline.h"
 #include "OutwardTriangles.h"
@@ -49,12 +48,9 @@ Mesh NearMesh(const TriangleList& list, const std::vector<Index>& near, const Pr
 /** The triangles of a list that a mesh was made of; nothing: all of them. Parts follow them. */
 using NearTriangles = std::optional<std::vector<Index>>;
 
-/**
- * Records the changes of a mesh of near triangles.
- * @param[in] isOutward  one flag per triangle of the mesh
- */
+/** Records the triangles of a mesh of near triangles that are others than in the list. */
 void PutBack(const TriangleList& list, const NearTriangles& near, const Mesh& mesh,
-  const std::vector<char>& isOutward, const Progress& progress, Changes& changes)
+  const Progress& progress, Changes& changes)
 {
   const Index count = near ? static_cast<Index>(near->size()) : list.Count;
   ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
@@ -74,16 +70,22 @@ void PutBack(const TriangleList& list, const NearTriangles& near, const Mesh& me
       changes.Corners.insert(changes.Corners.end(), corners, corners + 3);
     }
   });
+}
+
+/** Records the flags of a mesh of near triangles, one per triangle of the mesh. */
+void PutBackFlags(const NearTriangles& near, std::vector<char>&& isOutward, Changes& changes)
+{
   if (!near)
   {
-    changes.IsOutward = isOutward;
+    changes.IsOutward = std::move(isOutward);
     return;
   }
-  for (Index i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < near->size(); ++i)
   {
     changes.IsOutward[(*near)[i]] = isOutward[i];
   }
-  changes.IsOutward.insert(changes.IsOutward.end(), isOutward.begin() + count, isOutward.end());
+  changes.IsOutward.insert(
+    changes.IsOutward.end(), isOutward.begin() + near->size(), isOutward.end());
 }
 
 /** The same for inserted points and the parents of added triangles. */
@@ -128,31 +130,25 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
       Part(progress, 0.0, 0.5), changes.IsOutward);
   }
   changes.IsOutward.resize(list.Count);
-  if (near && near->empty())
+  const Progress making = Part(progress, 0.5, 0.65);
+  Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
+  const Index before = mesh.NumberOfPoints();
+  InsertedRings rings = InsertRings(
+    mesh, lines.Points, result.Boundary, options.RecoverBoundary, Part(progress, 0.65, 0.8));
+  OutwardTriangles outward =
+    FindOutward(mesh, rings.Vertices, options.RecoverBoundary, Part(progress, 0.8, 0.95));
+  result.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
+  result.Places.assign(
+    mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
+  if (options.Test == OutwardTest::InwardNormal)
   {
-    CheckCrossings(lines.Points, result.Boundary, Part(progress, 0.5, 1.0));
+    CheckEnclosed(outward.IsOutward, lines.Points, result.Boundary);
+    ApplyInwardNormalTest(
+      mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.95, 0.97));
   }
-  else
-  {
-    const Progress making = Part(progress, 0.5, 0.65);
-    Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
-    const Index before = mesh.NumberOfPoints();
-    InsertedRings rings = InsertRings(
-      mesh, lines.Points, result.Boundary, options.RecoverBoundary, Part(progress, 0.65, 0.8));
-    OutwardTriangles outward =
-      FindOutward(mesh, rings.Vertices, options.RecoverBoundary, Part(progress, 0.8, 0.95));
-    result.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
-    result.Places.assign(
-      mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
-    if (options.Test == OutwardTest::InwardNormal)
-    {
-      CheckEnclosed(outward.IsOutward, lines.Points, result.Boundary);
-      ApplyInwardNormalTest(
-        mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.95, 0.97));
-    }
-    PutBack(list, near, mesh, outward.IsOutward, Part(progress, 0.97, 1.0), changes);
-    PutBackInserted(near, mesh, rings, changes, result);
-  }
+  PutBack(list, near, mesh, Part(progress, 0.97, 1.0), changes);
+  PutBackFlags(near, std::move(outward.IsOutward), changes);
+  PutBackInserted(near, mesh, rings, changes, result);
   CheckEnclosed(changes.IsOutward, lines.Points, result.Boundary);
   for (Index& vertex : result.Boundary.Vertices)
   {
@@ -202,7 +198,7 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   if (mesh.NumberOfTriangles() > 0)
   {
     // Triangles may have been reoriented.
-    PutBack(list, std::nullopt, mesh, isOutward, Part(progress, 0.97, 1.0), changes);
+    PutBack(list, std::nullopt, mesh, Part(progress, 0.97, 1.0), changes);
   }
   changes.IsOutward = std::move(isOutward);
 }
