@@ -13,6 +13,7 @@ set(es_kernel_Mesh
   Segments
   Recovery
   Holes
+  LongTriangles
   TriangleList
   Validate)
 set(es_kernel_Lattice
@@ -54,13 +55,13 @@ set(es_kernel_Fill
 
 # Headers without a source file.
 set(es_kernel_headers_Base
-  Base CellGrid Duplicates Extent IdSet Memory Points Progress SnapRounding Threads)
+  Base CellGrid Duplicates EdgeLimit Extent IdSet Memory Points Progress SnapRounding Threads)
 set(es_kernel_headers_Mesh
   Mesh TriangleSweep)
 set(es_kernel_headers_Lattice
   Lattice)
 set(es_kernel_headers_Triangulate
-  EdgeLimit Growth Instructions Options WorkBudget)
+  Growth Instructions Options WorkBudget)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill)
 

@@ -143,7 +143,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
 }
 
 /** Output 1: rims with points of their own, and the report as cell data. */
-void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const FillResult& patches,
+void MakeReport(vtkPolyData* input, const Holes& holes, const FillResult& patches,
   const Progress& progress, vtkPolyData* output)
 {
   const auto add = [&](const char* name, auto* array, auto&& valueOf) {
@@ -173,9 +173,9 @@ void MakeReport(vtkPolyData* input, const Mesh& mesh, const Holes& holes, const 
   {
     // A rim runs clockwise; reversed, it has the hole on its left.
     const Index rim = holes.Rim(hole);
-    for (const Index* h = holes.Walks.End(rim); h != holes.Walks.Begin(rim); --h)
+    for (const Index* v = holes.Walks.End(rim); v != holes.Walks.Begin(rim); --v)
     {
-      rims.Vertices.push_back(mesh.Origin(h[-1]));
+      rims.Vertices.push_back(v[-1]);
     }
     rims.Offsets.push_back(static_cast<Index>(rims.Vertices.size()));
   }
@@ -269,7 +269,7 @@ int vtkFillElevationHoles::RequestData(
 
     MakeSurface(
       input, mesh, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);
-    MakeReport(input, mesh, holes, patches, Part(progress, 0.95, 1.0), report);
+    MakeReport(input, holes, patches, Part(progress, 0.95, 1.0), report);
     const vtkIdType filled = std::count_if(patches.Reports.begin(), patches.Reports.end(),
       [](const HoleReport& hole) { return hole.Status == FillStatus::Filled; });
     for (vtkPolyData* output : { surface, report })

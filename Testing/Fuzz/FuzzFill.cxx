@@ -41,8 +41,8 @@ Index NumberOfBorders(const Mesh& mesh)
 }
 
 /** The report of a hole, and how much was put into it. */
-void RequireReport(const Surface& surface, const Holes& holes, Index hole, const FillOptions& options,
-  const FillResult& filled)
+void RequireReport(
+  const Holes& holes, Index hole, const FillOptions& options, const FillResult& filled)
 {
   const HoleReport& report = filled.Reports[hole];
   const Index points = filled.PointOffsets[hole + 1] - filled.PointOffsets[hole];
@@ -84,9 +84,8 @@ void RequireReport(const Surface& surface, const Holes& holes, Index hole, const
       open.insert(edge);
     }
   }
-  holes.VisitEdges(hole, [&](Index h) {
-    const auto edge =
-      open.find({ surface.Triangles.Destination(h), surface.Triangles.Origin(h) });
+  holes.VisitEdges(hole, [&](Index a, Index b) {
+    const auto edge = open.find({ b, a });
     Require(edge != open.end(), "every edge of the hole has a triangle of the patch");
     open.erase(edge);
   });
@@ -105,8 +104,8 @@ void RequirePoints(const Surface& surface, const Holes& holes, Index hole, const
   double least = HUGE_VAL, most = -HUGE_VAL;
   bool areFinite = true;
   std::vector<Index> boundary;
-  holes.VisitEdges(hole, [&](Index h) {
-    boundary.push_back(surface.Triangles.Origin(h));
+  holes.VisitEdges(hole, [&](Index a, Index) {
+    boundary.push_back(a);
     const double z = surface.Points().Elevation(boundary.back());
     areFinite = areFinite && std::isfinite(z);
     least = std::min(least, z);
@@ -181,7 +180,7 @@ void RequireFilled(const Surface& surface, const Holes& holes, const FillOptions
   Index closed = 0;
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
-    RequireReport(surface, holes, hole, options, filled);
+    RequireReport(holes, hole, options, filled);
     RequirePoints(surface, holes, hole, options, filled);
     closed += filled.Reports[hole].Status == FillStatus::Filled ? holes.NumberOfEdges(hole) : 0;
   }

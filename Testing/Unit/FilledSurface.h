@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct Outcome
   Mesh Surface;
   std::vector<double> Coordinates;
   Holes Found;
+  Mesh Rest; ///< the surface without long triangles
   FillResult Patches;
 
   PointView Points() const
@@ -45,6 +47,12 @@ struct Outcome
     const Index count = this->Surface.NumberOfPoints();
     return id < count ? this->Coordinates[3 * id + 2] : this->Patches.Points[3 * (id - count) + 2];
   }
+  /** Whether a triangle of the surface is replaced by a patch. */
+  bool IsReplaced(Index triangle) const
+  {
+    const Index region = this->Found.RegionOf.empty() ? None : this->Found.RegionOf[triangle];
+    return region != None && this->Patches.Reports[region].Status == FillStatus::Replaced;
+  }
   /** The surface with its patches; Twins are not filled. */
   Mesh Filled() const
   {
@@ -54,7 +62,13 @@ struct Outcome
     {
       mesh.Points.push_back({ this->Patches.Points[i], this->Patches.Points[i + 1] });
     }
-    mesh.Triangles = this->Surface.Triangles;
+    for (Index h = 0; h < this->Surface.NumberOfHalfEdges(); ++h)
+    {
+      if (!this->IsReplaced(Mesh::Triangle(h)))
+      {
+        mesh.Triangles.push_back(this->Surface.Origin(h));
+      }
+    }
     mesh.Triangles.insert(
       mesh.Triangles.end(), this->Patches.Triangles.begin(), this->Patches.Triangles.end());
     return mesh;
@@ -73,31 +87,37 @@ inline double Slope(const Point2& p)
   return 2.0 * p.X - 3.0 * p.Y;
 }
 
-/** @param coordinates  x, y, z of the mesh's points */
-inline Outcome Fill(Mesh mesh, std::vector<double> coordinates, const FillOptions& options)
+/**
+ * @param coordinates  x, y, z of the mesh's points
+ * @param longest      triangles with a longer edge are opened; 0: none
+ */
+inline Outcome Fill(
+  Mesh mesh, std::vector<double> coordinates, const FillOptions& options, double longest = 0.0)
 {
   Outcome run;
   run.Surface = std::move(mesh);
   run.Coordinates = std::move(coordinates);
   run.Found = FindHoles(run.Surface);
-  run.Patches = FillHoles(run.Surface, run.Points(), run.Found, options);
+  run.Rest = longest > 0.0 ? OpenLongTriangles(run.Surface, longest, run.Found) : run.Surface;
+  run.Patches = FillHoles(run.Rest, run.Points(), run.Found, options);
   return run;
 }
 
-inline Outcome Fill(
-  Mesh mesh, const FillOptions& options = FillOptions(), const Elevation& elevation = Slope)
+inline Outcome Fill(Mesh mesh, const FillOptions& options = FillOptions(),
+  const Elevation& elevation = Slope, double longest = 0.0)
 {
   std::vector<double> coordinates;
   for (const Point2& p : mesh.Points)
   {
     coordinates.insert(coordinates.end(), { p.X, p.Y, elevation(p) });
   }
-  return Fill(std::move(mesh), std::move(coordinates), options);
+  return Fill(std::move(mesh), std::move(coordinates), options, longest);
 }
 
 /**
  * Everything that is promised of patches, whatever the hole: valid with the surface, nothing
- * covered twice, area conserved, no border but the outer one, Delaunay but for the hole's edges.
+ * covered twice, area conserved, no border but the outer one, Delaunay but for the hole's edges,
+ * inner edges among them.
  */
 inline void ExpectPatchesFit(const Outcome& run, double relativeAreaError = 0.0)
 {
@@ -107,12 +127,13 @@ inline void ExpectPatchesFit(const Outcome& run, double relativeAreaError = 0.0)
   EXPECT_TRUE(findings.empty()) << ToString(findings);
 
   double twiceHoles = 0.0;
+  double twiceReplaced = 0.0;
   Index holeEdges = 0;
   Index triangles = 0;
   for (Index hole = 0; hole < run.Found.Count(); ++hole)
   {
     const HoleReport& report = run.Patches.Reports[hole];
-    if (report.Status != FillStatus::Filled)
+    if (report.Status != FillStatus::Filled && report.Status != FillStatus::Replaced)
     {
       EXPECT_EQ(run.Patches.TriangleOffsets[hole], run.Patches.TriangleOffsets[hole + 1]);
       EXPECT_EQ(run.Patches.PointOffsets[hole], run.Patches.PointOffsets[hole + 1]);
@@ -122,15 +143,34 @@ inline void ExpectPatchesFit(const Outcome& run, double relativeAreaError = 0.0)
     EXPECT_EQ(report.NumberOfInsertedPoints,
       run.Patches.PointOffsets[hole + 1] - run.Patches.PointOffsets[hole]);
     twiceHoles += 2.0 * report.Area;
-    holeEdges += report.NumberOfEdges;
+    EXPECT_EQ(report.Status == FillStatus::Replaced, run.Found.IsRegion(hole));
+    if (run.Found.IsRegion(hole))
+    {
+      twiceReplaced += 2.0 * report.Area;
+    }
+    else
+    {
+      holeEdges += report.NumberOfEdges;
+    }
+    std::vector<Index> inside;
+    run.Found.VisitInnerEdges(hole, [&](Index a, Index b) {
+      inside.insert(inside.end(), { a, b });
+    });
+    run.Found.VisitEdges(hole, [&](Index a, Index) {
+      inside.erase(std::remove(inside.begin(), inside.end(), a), inside.end());
+    });
+    std::sort(inside.begin(), inside.end());
+    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
     // Euler: a polygon of n edges with k islands takes n - 2 + 2 k triangles, and two a point.
     const Index islands = run.Found.Offsets[hole + 1] - run.Found.Offsets[hole] - 1;
-    triangles += report.NumberOfEdges - 2 + 2 * islands + 2 * report.NumberOfInsertedPoints;
+    triangles += report.NumberOfEdges - 2 + 2 * islands + 2 * report.NumberOfInsertedPoints +
+      2 * static_cast<Index>(inside.size());
   }
   EXPECT_EQ(run.Patches.NumberOfTriangles(), triangles);
   EXPECT_NEAR(TwiceArea(run.Patch()), twiceHoles, relativeAreaError * twiceHoles);
   EXPECT_NEAR(
-    TwiceArea(filled), TwiceArea(run.Surface) + twiceHoles, relativeAreaError * TwiceArea(filled));
+    TwiceArea(filled), TwiceArea(run.Surface) + twiceHoles - twiceReplaced,
+    relativeAreaError * TwiceArea(filled));
 
   const auto borders = [](const Mesh& mesh) {
     return std::count(mesh.Twins.begin(), mesh.Twins.end(), Mesh::Border);
@@ -139,11 +179,24 @@ inline void ExpectPatchesFit(const Outcome& run, double relativeAreaError = 0.0)
   connected.ConnectTwins();
   EXPECT_EQ(borders(connected), borders(run.Surface) - holeEdges);
 
-  // The patches' own border edges are those of the holes: the empty circle is asked of the others.
-  Mesh patch = run.Patch();
+  // The empty circle is asked of all edges but those of the holes.
+  const Mesh patch = run.Patch();
+  std::set<std::pair<Index, Index>> given;
+  const auto collect = [&](Index a, Index b) { given.insert({ { a, b }, { b, a } }); };
+  for (Index hole = 0; hole < run.Found.Count(); ++hole)
+  {
+    run.Found.VisitEdges(hole, collect);
+    run.Found.VisitInnerEdges(hole, collect);
+  }
+  std::vector<char> constrained;
+  for (Index h = 0; h < patch.NumberOfHalfEdges(); ++h)
+  {
+    constrained.push_back(given.count({ patch.Origin(h), patch.Destination(h) }) > 0);
+  }
   ValidateOptions delaunay = rules;
   delaunay.Delaunay = true;
   delaunay.Overlap = false;
+  delaunay.Constrained = &constrained;
   const auto circles = Validate(patch, delaunay);
   EXPECT_TRUE(circles.empty()) << ToString(circles);
 }

@@ -62,12 +62,16 @@ Quality Judge(const Outcome& run, const Mesh& all, Index hole, SpacingAt&& spaci
   Quality quality;
   const FillResult& patches = run.Patches;
   const Index firstNew = run.Surface.NumberOfPoints();
-  std::vector<Index> rim;
+  std::vector<std::pair<Index, Index>> rim; // and inner edges
   std::unordered_set<std::uint64_t> rimEdges;
   const auto keyOf = [](Index a, Index b) { return (std::uint64_t(a) << 32) | std::uint64_t(b); };
-  run.Found.VisitEdges(hole, [&](Index h) {
-    rim.push_back(h);
-    rimEdges.insert(keyOf(run.Surface.Destination(h), run.Surface.Origin(h)));
+  run.Found.VisitEdges(hole, [&](Index a, Index b) {
+    rim.emplace_back(a, b);
+    rimEdges.insert(keyOf(b, a));
+  });
+  run.Found.VisitInnerEdges(hole, [&](Index a, Index b) {
+    rim.emplace_back(a, b);
+    rimEdges.insert({ keyOf(a, b), keyOf(b, a) });
   });
   for (Index t = patches.TriangleOffsets[hole]; t < patches.TriangleOffsets[hole + 1]; ++t)
   {
@@ -115,9 +119,9 @@ Quality Judge(const Outcome& run, const Mesh& all, Index hole, SpacingAt&& spaci
     const double uu = u.X * u.X + u.Y * u.Y, ww = w.X * w.X + w.Y * w.Y;
     const Point2 centre{ q.X + (w.Y * uu - u.Y * ww) / twice, q.Y + (u.X * ww - w.X * uu) / twice };
     const double clearance = 0.3 * (1.0 + 1e-9) * spacingAt(centre);
-    const bool isForced = std::any_of(rim.begin(), rim.end(), [&](Index h) {
-      const Point2& from = run.Surface.PointOf(run.Surface.Origin(h));
-      const Point2& to = run.Surface.PointOf(run.Surface.Destination(h));
+    const bool isForced = std::any_of(rim.begin(), rim.end(), [&](const auto& edge) {
+      const Point2& from = run.Surface.PointOf(edge.first);
+      const Point2& to = run.Surface.PointOf(edge.second);
       return SquareToEdge(from, to, centre) < clearance * clearance ||
         (Orientation(from, to, q) * Orientation(from, to, centre) <= 0 &&
           Orientation(q, centre, from) * Orientation(q, centre, to) <= 0);

@@ -9,6 +9,7 @@
 
 #include "CellGrid.h"
 #include "Duplicates.h"
+#include "EdgeLimit.h"
 #include "Extent.h"
 #include "IdSet.h"
 #include "Memory.h"

@@ -53,15 +53,15 @@ bool IsMeasurable(double length)
   return length >= LeastLength && length <= LargestLength;
 }
 
-HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole, double spacing)
+HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole)
 {
   HoleReport report;
   report.NumberOfEdges = holes.NumberOfEdges(hole);
   const auto visitEdges = [&](auto&& visit) {
-    holes.VisitEdges(hole,
-      [&](Index h) { visit(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h))); });
+    holes.VisitEdges(
+      hole, [&](Index a, Index b) { visit(mesh.PointOf(a), mesh.PointOf(b)); });
   };
-  const Point2 origin = mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Rim(hole))));
+  const Point2 origin = mesh.PointOf(*holes.Walks.Begin(holes.Rim(hole)));
   Point2 low = origin;
   Point2 high = origin;
   visitEdges([&](const Point2& a, const Point2& b) {
@@ -70,7 +70,6 @@ HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole, double spac
     high = { std::max(high.X, a.X), std::max(high.Y, a.Y) };
   });
   report.Size = std::hypot(high.X - low.X, high.Y - low.Y);
-  report.Spacing = spacing > 0.0 ? spacing : report.Perimeter / report.NumberOfEdges;
   if (!IsMeasurable(report.Size))
   {
     report.Area = std::numeric_limits<double>::quiet_NaN();
@@ -112,8 +111,7 @@ void CheckLimits(HoleReport& report, bool isTouched, const FillOptions& options)
   }
   if (isTouched)
   {
-    Fail(report, "Borders touch in it without sharing a point: merge points with the same x,y, and "
-                 "split edges that have a point inside.");
+    Fail(report, BordersTouch().what());
   }
   else if (!IsMeasurable(report.Size) || report.Spacing < LeastLength)
   {
@@ -222,7 +220,7 @@ public:
     const bool needsStars = Heights::NeedsSurroundings(this->Options.Method);
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll();
-    if (this->AllWork > 0.0 && needsStars)
+    if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
       this->Stars = std::make_unique<VertexStars>(this->Surface, Part(monitor, 0.02, 0.06));
     }
@@ -260,6 +258,10 @@ private:
       lattice = FindLattice(
         this->Points, LatticeTolerance, this->Threads, Part(options.Monitor, 0.0, 0.02));
     }
+    if (lattice.Found)
+    {
+      this->Stars = std::make_unique<VertexStars>(this->Surface, Part(options.Monitor, 0.02, 0.02));
+    }
     this->Result.Reports.reserve(this->Given.Count());
     for (Index hole = 0; hole < this->Given.Count(); ++hole)
     {
@@ -267,13 +269,13 @@ private:
       {
         Report(options.Monitor, 0.02);
       }
-      this->Result.Reports.push_back(Measure(this->Surface, this->Given, hole, options.Spacing));
+      this->Result.Reports.push_back(Measure(this->Surface, this->Given, hole));
       HoleReport& report = this->Result.Reports.back();
       PatchPlan& plan = this->Plans[hole];
-      plan = PlanPatch(this->Surface, this->Given, hole, report.Area, options.Spacing,
-        lattice.Found ? &lattice.Steps : nullptr);
-      const Index first = *this->Given.Walks.Begin(this->Given.Rim(hole));
-      const Point2& p = this->Surface.PointOf(this->Surface.Origin(first));
+      plan = PlanPatch(this->Surface, this->Stars.get(), this->Given, hole, report.Area,
+        options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
+      report.Spacing = plan.Spacing;
+      const Point2& p = this->Surface.PointOf(*this->Given.Walks.Begin(this->Given.Rim(hole)));
       plan.Precision = StepAt(
         std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
       plan.SinglePrecision = options.SinglePrecision;
@@ -292,8 +294,8 @@ private:
       if (report.Status == FillStatus::Filled)
       {
         // Rows of points count as points: a long thin hole has many rows, though few points.
-        const double rows = report.Perimeter / report.Spacing - report.NumberOfEdges;
-        order.emplace_back(std::max(rows, this->Plans[hole].MostPoints), hole);
+        const PatchPlan& plan = this->Plans[hole];
+        order.emplace_back(std::max(plan.MostRows, plan.MostPoints), hole);
       }
     }
     std::sort(order.begin(), order.end());
@@ -402,6 +404,7 @@ private:
       {
         Append(filled[hole - begin], this->Surface.NumberOfPoints(), this->Result);
         report.NumberOfInsertedPoints = filled[hole - begin].Triangles.NumberOfNewVertices();
+        report.Status = this->Given.IsRegion(hole) ? FillStatus::Replaced : FillStatus::Filled;
       }
       this->Result.PointOffsets.push_back(static_cast<Index>(this->Result.Points.size() / 3));
       this->Result.TriangleOffsets.push_back(

@@ -9,6 +9,9 @@
  *   1. Measure it and compare with the limits.
  *   2. Place points and triangulate them (Patch.h).
  *   3. Find elevations, and other attributes in the same way (Heights.h).
+ * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
+ * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
+ * and the points inside the region.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole, none is split. The rest of the surface stays as it is.
@@ -40,7 +43,8 @@ enum class FillStatus : unsigned char
   Filled = 0,
   TooLarge = 1,
   TooManyEdges = 2,
-  Failed = 3 ///< the report's Reason says why
+  Failed = 3,  ///< the report's Reason says why
+  Replaced = 4 ///< filled: a region of long triangles (LongTriangles.h), which the patch replaces
 };
 
 struct FillOptions
@@ -76,7 +80,7 @@ struct HoleReport
   double Perimeter = 0.0;  ///< length of all edges
   /** Inside the rim, outside the islands; NaN when Size is above 1e150 or below 1e-150. */
   double Area = 0.0;
-  double Spacing = 0.0; ///< as given, or the mean length of the edges
+  double Spacing = 0.0; ///< as given, or the mean length of the edges (Patch.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   std::string Reason; ///< if Failed: a sentence without the hole's name
@@ -93,7 +97,7 @@ struct FillResult
   /** The new points of hole i are PointOffsets[i] to PointOffsets[i+1] - 1; likewise triangles. */
   std::vector<Index> PointOffsets{ 0 };
   std::vector<Index> TriangleOffsets{ 0 };
-  /** One per new point: the nearest point of its hole's boundary; the lowest of several. */
+  /** One per new point: the nearest known point of its hole; the lowest of several. */
   std::vector<Index> NearestBoundaryPoints;
   std::vector<std::vector<double>> Attributes; ///< as in the options, one value per new point
   std::vector<HoleReport> Reports;
@@ -104,9 +108,10 @@ struct FillResult
 
 /**
  * Fills all holes within the limits.
- * @param[in] mesh    the surface, as given to FindHoles()
+ * @param[in] mesh    the surface, as given to FindHoles(); with regions, as OpenLongTriangles()
+ *                    returns it
  * @param[in] points  the same points with their elevations
- * @param[in] holes   from FindHoles()
+ * @param[in] holes   from FindHoles(), OpenLongTriangles()
  * @throws Aborted, std::bad_alloc: which holes fail does not depend on the free memory
  */
 FillResult FillHoles(

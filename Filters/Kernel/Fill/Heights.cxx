@@ -492,8 +492,12 @@ private:
     }
     const double distance = size * (along(end) - near) / this->Of.Scale;
     const Point2 origin = this->Points[end];
-    Walk walk(
-      this->Of.Surface, Mesh::Triangle(this->HalfEdgeAt(this->Of.Patch.BoundaryIds[end])));
+    const Index start = this->HalfEdgeAt(this->Of.Patch.BoundaryIds[end]);
+    if (start == None)
+    {
+      return false; // the surface has no triangle there
+    }
+    Walk walk(this->Of.Surface, Mesh::Triangle(start));
     if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
     {
       return false;

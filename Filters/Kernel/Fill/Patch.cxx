@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numeric>
 #include <sstream>
+#include <unordered_map>
+#include <utility>
 
 namespace elevation
 {
@@ -82,7 +84,7 @@ struct Rows
   double Clearance;
 };
 
-/** The stretch of a row within the clearance of an edge from a up to b. */
+/** The stretch of a row within the clearance of an edge from a up to b, or of a point a = b. */
 Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
 {
   const double clearance = rows.Clearance;
@@ -105,7 +107,7 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
       include(p.X - std::sqrt(square), p.X + std::sqrt(square));
     }
   }
-  // The strip between them: its two sides, where the row cuts them.
+  // The strip between them: its two sides, where the row cuts them. Of a point they are NaN.
   for (double side : { -clearance, clearance })
   {
     const double ay = a.Y + side * ux;
@@ -119,18 +121,21 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
   return stretch;
 }
 
-/** All blocked stretches, row by row from the left. */
+/** All blocked stretches, row by row from the left. Inner edges cross no row. */
 std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& points,
-  const std::vector<Segment>& edges, const Progress& progress)
+  const Patch& patch, const Progress& progress)
 {
   const Progress blocking = Part(progress, 0.0, 0.7);
   std::vector<Blocked> blocked;
   std::size_t visited = 0;
-  for (std::size_t i = 0; i < edges.size(); ++i)
+  const std::size_t count = patch.Edges.size() + patch.InnerEdges.size();
+  for (std::size_t i = 0; i < count; ++i)
   {
-    const bool isUpwards = points[edges[i].A].Y <= points[edges[i].B].Y;
-    const Point2& a = points[isUpwards ? edges[i].A : edges[i].B];
-    const Point2& b = points[isUpwards ? edges[i].B : edges[i].A];
+    const bool isInner = i >= patch.Edges.size();
+    const Segment& edge = isInner ? patch.InnerEdges[i - patch.Edges.size()] : patch.Edges[i];
+    const bool isUpwards = points[edge.A].Y <= points[edge.B].Y;
+    const Point2& a = points[isUpwards ? edge.A : edge.B];
+    const Point2& b = points[isUpwards ? edge.B : edge.A];
     const double from = std::ceil((a.Y - rows.Clearance) / rows.RowHeight);
     const double to = std::floor((b.Y + rows.Clearance) / rows.RowHeight);
     for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
@@ -138,9 +143,10 @@ std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& poin
       // With a small spacing, a long edge is near many rows.
       if (++visited % 16384 == 0)
       {
-        Report(blocking, static_cast<double>(i) / static_cast<double>(edges.size()));
+        Report(blocking, static_cast<double>(i) / static_cast<double>(count));
       }
-      const Blocked stretch = BlockRow(rows, row, a, b);
+      Blocked stretch = BlockRow(rows, row, a, b);
+      stretch.Crosses = stretch.Crosses && !isInner;
       if (stretch.Begin <= stretch.End)
       {
         blocked.push_back(stretch);
@@ -157,17 +163,18 @@ std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& poin
 }
 
 /**
- * Visits the points of rows that are inside the boundary, by at least the clearance. Each boundary
- * edge blocks the stretches of rows within the clearance. Between blocked stretches a row is
- * entirely inside the hole or outside, by the parity of the crossings on the left.
- * @param[in] points    of the boundary, in the coordinates of the rows
+ * Visits the points of rows that are inside the boundary, by at least the clearance, which they
+ * also keep from inner edges. Each edge blocks the stretches of rows within the clearance. Between
+ * blocked stretches a row is entirely inside the hole or outside, by the parity of the crossings
+ * of boundary edges on the left.
+ * @param[in] points    those known, in the coordinates of the rows
  * @param[in] visit     visit(row, k), row after row
  */
 template <typename Visitor>
-void VisitRows(const Rows& rows, const std::vector<Point2>& points,
-  const std::vector<Segment>& edges, const Progress& progress, Visitor&& visit)
+void VisitRows(const Rows& rows, const std::vector<Point2>& points, const Patch& patch,
+  const Progress& progress, Visitor&& visit)
 {
-  std::vector<Blocked> blocked = BlockRows(rows, points, edges, Part(progress, 0.0, 0.6));
+  std::vector<Blocked> blocked = BlockRows(rows, points, patch, Part(progress, 0.0, 0.6));
   const Progress placing = Part(progress, 0.6, 1.0);
   bool isInside = false;
   std::size_t placed = 0;
@@ -222,7 +229,7 @@ void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
     boundary[v] = { boundary[v].X - first.X, boundary[v].Y - first.Y };
   }
   VisitRows(
-    { 1.0, 1.0, 0.0, ClearanceOfNodes }, boundary, patch.Edges, progress, [&](Index row, double x) {
+    { 1.0, 1.0, 0.0, ClearanceOfNodes }, boundary, patch, progress, [&](Index row, double x) {
       const Point2 node{ first.X + x, first.Y + row };
       const Point2 p = plan.Rounded(plan.Steps.Node(node.X, node.Y));
       Point2 found;
@@ -252,7 +259,7 @@ void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
     boundary[v] = { patch.At(v).X - center.X, patch.At(v).Y - center.Y };
   }
   const double d = plan.Spacing;
-  VisitRows({ d, RowHeight * d, 0.5, Clearance * d }, boundary, patch.Edges, progress,
+  VisitRows({ d, RowHeight * d, 0.5, Clearance * d }, boundary, patch, progress,
     [&](Index row, double x) {
       if (d < LeastStepsPerSpacing * plan.Precision)
       {
@@ -299,30 +306,43 @@ std::vector<char> FindInside(
   return isInside;
 }
 
-/** Removes the triangles outside; the others move up. */
-void KeepInside(const std::vector<char>& isInside, Mesh& mesh)
+/** Whether the border of a patch's mesh consists of the boundary's edges. */
+bool IsBoundedBy(const std::vector<Segment>& edges, const Mesh& mesh)
 {
-  std::vector<Index> placeOf(isInside.size(), None);
-  Index count = 0;
-  for (std::size_t t = 0; t < isInside.size(); ++t)
+  std::vector<std::pair<Index, Index>> expected;
+  std::vector<std::pair<Index, Index>> found;
+  for (const Segment& edge : edges)
   {
-    placeOf[t] = isInside[t] == 1 ? count++ : None;
+    expected.emplace_back(edge.B, edge.A);
   }
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
   {
-    for (Index i = 0; i < 3 && placeOf[t] != None; ++i)
+    if (mesh.IsBorder(h))
     {
-      const Index twin = mesh.Twin(3 * t + i);
-      const Index place = twin == Mesh::Border ? None : placeOf[Mesh::Triangle(twin)];
-      mesh.Triangles[3 * placeOf[t] + i] = mesh.Triangles[3 * t + i];
-      mesh.Twins[3 * placeOf[t] + i] = place == None ? Mesh::Border : 3 * place + twin % 3;
+      found.emplace_back(mesh.Origin(h), mesh.Destination(h));
     }
   }
-  mesh.Triangles.resize(3 * static_cast<std::size_t>(count));
-  mesh.Twins.resize(3 * static_cast<std::size_t>(count));
+  std::sort(expected.begin(), expected.end());
+  std::sort(found.begin(), found.end());
+  return expected == found;
 }
 
-/** The triangles of boundary and new points inside the hole, as a mesh with Twins. */
+/** Recovers edges inside the mesh, and cuts it along them: they stay as its border does. */
+void CutAlong(const std::vector<Segment>& edges, Mesh& mesh, const Progress& progress)
+{
+  if (edges.empty())
+  {
+    return;
+  }
+  std::vector<char> constrained;
+  RecoverSegments(mesh, edges, constrained, progress);
+  for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+  {
+    mesh.Twins[h] = constrained[h] ? Mesh::Border : mesh.Twins[h];
+  }
+}
+
+/** The triangles of known and new points inside the hole, as a mesh with Twins. */
 Mesh Connect(const Patch& patch, int threads, const Progress& progress)
 {
   PointView view;
@@ -334,7 +354,9 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   const Triangulation triangulation = Triangulate(view, options);
   if (!triangulation.UnusedPoints.empty())
   {
-    throw Error("New points fall together; a larger spacing helps.");
+    throw triangulation.UnusedPoints.front() < patch.NumberOfBoundaryVertices()
+      ? BordersTouch()
+      : Error("New points fall together; a larger spacing helps.");
   }
   Mesh mesh;
   mesh.Points.resize(patch.NumberOfVertices());
@@ -346,11 +368,19 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   mesh.ConnectTwins(0, Part(progress, 0.6, 0.8));
   std::vector<char> constrained;
   RecoverSegments(mesh, patch.Edges, constrained, Part(progress, 0.8, 0.9));
-  KeepInside(FindInside(mesh, constrained, Part(progress, 0.9, 1.0)), mesh);
+  KeepTriangles(FindInside(mesh, constrained, Part(progress, 0.9, 1.0)), mesh);
+  if (!IsBoundedBy(patch.Edges, mesh))
+  {
+    throw BordersTouch();
+  }
+  CutAlong(patch.InnerEdges, mesh, Part(progress, 1.0, 1.0));
   return mesh;
 }
 
-/** Inserts points into a patch until no triangle needs refinement. Borders of the mesh stay. */
+/**
+ * Inserts points into a patch until no triangle needs refinement. Borders of the mesh stay, and so
+ * do the inner edges, along which it is cut.
+ */
 class Refinement
 {
 public:
@@ -365,11 +395,20 @@ public:
       return;
     }
     this->Spacings.resize(mesh.NumberOfPoints(), std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < patch.Edges.size(); ++i)
+    const double* next = plan.Spacings.data();
+    const auto set = [&](Index vertex) {
+      double& spacing = this->Spacings[vertex];
+      spacing = std::min(spacing, *next * this->Unit);
+      this->Largest = std::max(this->Largest, *next++ * this->Unit);
+    };
+    for (const Segment& edge : patch.Edges)
     {
-      double& spacing = this->Spacings[patch.Edges[i].A];
-      spacing = std::min(spacing, plan.Spacings[i] * this->Unit);
-      this->Largest = std::max(this->Largest, plan.Spacings[i] * this->Unit);
+      set(edge.A);
+    }
+    for (const Segment& edge : patch.InnerEdges)
+    {
+      set(edge.A);
+      set(edge.B);
     }
   }
 
@@ -718,19 +757,27 @@ private:
   std::vector<Index> Star; ///< triangles around the last point that was inserted
 };
 
-/** The median area of the surface's triangles at the vertices of a hole's boundary. */
-double MedianTriangleArea(const Mesh& mesh, const Holes& holes, Index hole)
+/**
+ * The median area of the surface's triangles at the vertices of a hole's boundary; infinite where
+ * there are none.
+ */
+double MedianTriangleArea(
+  const Mesh& mesh, const VertexStars& stars, const Holes& holes, Index hole)
 {
   std::vector<double> areas;
-  holes.VisitEdges(hole, [&](Index h) {
-    const Point2& p = mesh.PointOf(mesh.Origin(h));
-    for (; h != Mesh::Border; h = mesh.Twin(Mesh::Previous(h)))
-    {
+  holes.VisitEdges(hole, [&](Index origin, Index) {
+    const Point2& p = mesh.PointOf(origin);
+    stars.Visit(mesh, origin, [&](Index h) {
       const Point2& a = mesh.PointOf(mesh.Destination(h));
       const Point2& b = mesh.PointOf(mesh.Apex(h));
       areas.push_back(0.5 * ((a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)));
-    }
+      return true;
+    });
   });
+  if (areas.empty())
+  {
+    return std::numeric_limits<double>::infinity();
+  }
   const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
   std::nth_element(areas.begin(), middle, areas.end());
   return *middle;
@@ -760,25 +807,108 @@ std::vector<double> SpacingsAlong(
   }
   return spacings;
 }
+
+/**
+ * Appends the spacings at both ends of each inner edge: the mean length of the inner edges there,
+ * or the mean spacing where there are none.
+ */
+void AddInnerSpacings(const Holes& holes, Index hole, const std::vector<double>& lengths,
+  double mean, std::vector<double>& spacings)
+{
+  std::unordered_map<Index, std::pair<double, double>> sums; // of lengths, and their number
+  const double* length = lengths.data();
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) {
+    for (const Index end : { a, b })
+    {
+      sums[end].first += *length;
+      sums[end].second += 1.0;
+    }
+    ++length;
+  });
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) {
+    for (const Index end : { a, b })
+    {
+      const auto& [sum, number] = sums[end];
+      spacings.push_back(a == b ? mean : sum / number);
+    }
+  });
+}
+
+/** The mean of those lengths that are not above a limit; the limit if all are. */
+double MeanWithin(double limit, const std::vector<double>& lengths)
+{
+  double sum = 0.0;
+  double number = 0.0;
+  for (const double length : lengths)
+  {
+    if (length > 0.0 && length <= limit)
+    {
+      sum += length;
+      number += 1.0;
+    }
+  }
+  return number > 0.0 ? sum / number : limit;
+}
+
+/** The lengths of a hole's edges, then those of its inner edges. */
+struct EdgeLengths
+{
+  std::vector<double> Boundary;
+  std::vector<double> Inner;
+};
+
+EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
+{
+  EdgeLengths lengths;
+  const auto lengthOf = [&](Index a, Index b) {
+    const Point2& p = mesh.PointOf(a);
+    const Point2& q = mesh.PointOf(b);
+    return std::hypot(q.X - p.X, q.Y - p.Y);
+  };
+  lengths.Boundary.reserve(holes.NumberOfEdges(hole));
+  holes.VisitEdges(hole, [&](Index a, Index b) { lengths.Boundary.push_back(lengthOf(a, b)); });
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) { lengths.Inner.push_back(lengthOf(a, b)); });
+  return lengths;
+}
+
+/** Whether all known points of a hole are nodes, and the ends of its edges are different ones. */
+bool IsOnLattice(const Mesh& mesh, const Holes& holes, Index hole, const Lattice& lattice)
+{
+  bool isOnLattice = true;
+  const auto check = [&](Index a, Index b) {
+    Point2 i, j;
+    isOnLattice = isOnLattice && FindNode(lattice, mesh.PointOf(a), i) &&
+      FindNode(lattice, mesh.PointOf(b), j) && (i != j || a == b);
+  };
+  holes.VisitEdges(hole, check);
+  holes.VisitInnerEdges(hole, check);
+  return isOnLattice;
+}
 } // namespace
 
-PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double area, double spacing,
-  const Lattice* lattice)
+PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
+  double area, double spacing, const Lattice* lattice)
 {
   PatchPlan plan;
-  const double edges = holes.NumberOfEdges(hole);
-  bool isOnLattice = lattice && !(spacing > 0.0);
-  std::vector<double> lengths;
-  lengths.reserve(holes.NumberOfEdges(hole));
-  holes.VisitEdges(hole, [&](Index h) {
-    const Point2& a = mesh.PointOf(mesh.Origin(h));
-    const Point2& b = mesh.PointOf(mesh.Destination(h));
-    lengths.push_back(std::hypot(b.X - a.X, b.Y - a.Y));
-    Point2 i, j;
-    isOnLattice = isOnLattice && FindNode(*lattice, a, i) && FindNode(*lattice, b, j) && i != j;
-  });
-  plan.Spacing =
-    spacing > 0.0 ? spacing : std::accumulate(lengths.begin(), lengths.end(), 0.0) / edges;
+  const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
+  const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
+  const double perimeter = std::accumulate(lengths.Boundary.begin(), lengths.Boundary.end(), 0.0);
+  if (spacing > 0.0)
+  {
+    plan.Spacing = spacing;
+  }
+  else if (holes.IsRegion(hole))
+  {
+    std::vector<double> all = lengths.Boundary;
+    all.insert(all.end(), lengths.Inner.begin(), lengths.Inner.end());
+    plan.Spacing = MeanWithin(holes.LongestEdge, all);
+  }
+  else
+  {
+    plan.Spacing = perimeter / edges;
+  }
+  const double length = std::accumulate(lengths.Inner.begin(), lengths.Inner.end(), perimeter);
+  plan.MostRows = length / plan.Spacing - edges;
   plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
   if (spacing > 0.0)
   {
@@ -787,8 +917,8 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   // Holes for only a few points may need one more for refinement.
   constexpr double morePerEdge = 0.125;
   plan.MostPoints += morePerEdge * edges;
-  if (isOnLattice &&
-    MedianTriangleArea(mesh, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
+  if (lattice && IsOnLattice(mesh, holes, hole, *lattice) &&
+    MedianTriangleArea(mesh, *stars, holes, hole) <= LargestCellsPerTriangle * lattice->Area())
   {
     plan.Kind = Arrangement::Nodes;
     plan.Steps = *lattice;
@@ -796,7 +926,8 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
     return plan;
   }
 
-  plan.Spacings = SpacingsAlong(holes, hole, lengths);
+  plan.Spacings = SpacingsAlong(holes, hole, lengths.Boundary);
+  AddInnerSpacings(holes, hole, lengths.Inner, plan.Spacing, plan.Spacings);
   const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
   if (*range.second > LargestRatioOfSpacings * *range.first)
   {
@@ -812,15 +943,25 @@ PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double are
   return plan;
 }
 
+Error BordersTouch()
+{
+  return Error("Borders touch in it without sharing a point: merge points with the same x,y, and "
+               "split edges that have a point inside.");
+}
+
 Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
 {
   Patch patch;
   const Index edges = holes.NumberOfEdges(hole);
   patch.BoundaryIds.reserve(edges);
   patch.Edges.reserve(edges);
-  holes.VisitEdges(hole, [&](Index h) {
-    patch.BoundaryIds.push_back(mesh.Origin(h));
-    patch.Edges.push_back({ mesh.Origin(h), mesh.Destination(h) });
+  holes.VisitEdges(hole, [&](Index a, Index b) {
+    patch.BoundaryIds.push_back(a);
+    patch.Edges.push_back({ a, b });
+  });
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) {
+    patch.BoundaryIds.insert(patch.BoundaryIds.end(), { a, b });
+    patch.InnerEdges.push_back({ a, b });
   });
   std::vector<Index>& ids = patch.BoundaryIds;
   const IsLowerPoint isLower{ mesh };
@@ -829,9 +970,12 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
   const auto vertexOf = [&](Index id) {
     return static_cast<Index>(std::lower_bound(ids.begin(), ids.end(), id, isLower) - ids.begin());
   };
-  for (Segment& edge : patch.Edges)
+  for (std::vector<Segment>* segments : { &patch.Edges, &patch.InnerEdges })
   {
-    edge = { vertexOf(edge.A), vertexOf(edge.B) };
+    for (Segment& edge : *segments)
+    {
+      edge = { vertexOf(edge.A), vertexOf(edge.B) };
+    }
   }
   patch.Points.reserve(3 * ids.size());
   for (const Index id : ids)
@@ -848,6 +992,13 @@ void MakePatch(const PatchPlan& plan, const Progress& progress, Patch& patch)
   const Progress placing = Part(progress, 0.0, 0.1);
   if (plan.Kind == Arrangement::Nodes)
   {
+    // Between neighbouring nodes there are edges anyway; a longer edge would block nodes.
+    std::vector<Segment> points;
+    for (const Segment& edge : patch.InnerEdges)
+    {
+      points.insert(points.end(), { { edge.A, edge.A }, { edge.B, edge.B } });
+    }
+    patch.InnerEdges = std::move(points);
     PlaceNodes(plan, placing, patch);
   }
   else if (plan.Kind == Arrangement::Even)

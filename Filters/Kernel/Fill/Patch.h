@@ -4,7 +4,8 @@
  * @file
  * The triangles of a patch: places new points in x,y and triangulates them.
  *
- * In: the boundary of a hole. Out: new points inside, and triangles of boundary and new points.
+ * In: the boundary of a hole, and points and edges that it has inside (regions of long triangles,
+ * LongTriangles.h). Out: new points inside, and triangles of known and new points.
  *
  * There are three arrangements of points:
  *   Nodes   If the hole's boundary lies on the surface's lattice, and the lattice is not thinned:
@@ -16,6 +17,11 @@
  *   Even    Otherwise, and always if the user sets a spacing: rows one spacing apart, every other
  *           one shifted by half a step, so that triangles are nearly equilateral. The default
  *           spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
+ * In a region, the mean is that of all edges, of the boundary and inside, that are not long: those
+ * along the surface's own border may be. (It is the limit where all are.) Long edges count in
+ * Graded, which so makes points sparser towards a long border, and away from lines; the spacing at
+ * a point inside is the mean length of the inner edges there. With Nodes, inner edges are not kept
+ * as such: those between neighbouring nodes come by themselves, longer ones get a node inside.
  *
  * The passes:
  *   1. Nodes and Even: place the points, at least 0.6 spacings, or 0.4 lattice steps, from the
@@ -26,8 +32,8 @@
  *      longer than 1.6 spacings, gets a point at its circumcentre [Chew 1989, Ruppert 1995]. This
  *      places all the points of Graded.
  *
- * Limits of refinement: boundary edges are not split, and no point comes closer to them than 0.3
- * spacings. So a triangle is not refined if its circumcentre is behind a boundary edge or that
+ * Limits of refinement: boundary edges and inner edges are not split, and no point comes closer to
+ * them than 0.3 spacings. So a triangle is not refined if its circumcentre is behind a boundary edge or that
  * close to one. All other triangles of Even and Graded have angles of at least 20 degrees and
  * interior edges of at most 1.6 spacings: a longer interior edge has such an exception on both
  * sides. With Graded, the spacing of a triangle is the mean of those at its corners. If the
@@ -35,7 +41,7 @@
  * exceptions.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
- * boundary edges are those of the hole. Refinement ends even without a limit on points: a new point
+ * boundary edges are those of the hole, and inner edges are edges of it. Refinement ends even without a limit on points: a new point
  * keeps 0.3 spacings from all others that it sees, so discs of half that radius around new points
  * are disjoint and inside the hole, which bounds their number.
  *
@@ -72,11 +78,13 @@ enum class Arrangement : unsigned char
 struct PatchPlan
 {
   Arrangement Kind = Arrangement::Even;
-  double Spacing = 0.0;         ///< for Even; else the mean length of the boundary's edges
-  std::vector<double> Spacings; ///< for Graded: at the origin of each edge, as of VisitEdges()
+  double Spacing = 0.0; ///< for Even; else the mean length of the edges
+  /** For Graded: at the origin of each edge, as of VisitEdges(); at both ends of inner edges. */
+  std::vector<double> Spacings;
   /** An upper bound of the number of new points; above 0, not a whole number. */
   double MostPoints = 0.0;
-  Lattice Steps; ///< for Nodes
+  double MostRows = 0.0; ///< how many more rows than edges the edges can meet
+  Lattice Steps;         ///< for Nodes
   /** The distance between neighbouring numbers at the largest coordinate of the hole. */
   double Precision = 0.0;
   /** Round new x,y to float before they are triangulated. */
@@ -98,7 +106,8 @@ struct PatchPlan
 
 /**
  * Chooses the arrangement for a hole.
- * @param[in] mesh     the surface
+ * @param[in] mesh     the surface, without long triangles
+ * @param[in] stars    its stars; may be null if lattice is
  * @param[in] holes    its holes
  * @param[in] hole     number of the hole
  * @param[in] area     of the hole
@@ -106,10 +115,13 @@ struct PatchPlan
  * @param[in] lattice  of the surface; null: none
  * @return a plan; the caller sets Precision and the members after it
  */
-PatchPlan PlanPatch(const Mesh& mesh, const Holes& holes, Index hole, double area, double spacing,
-  const Lattice* lattice);
+PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
+  double area, double spacing, const Lattice* lattice);
 
-/** A hole with vertices numbered from 0: first those of the boundary, then new ones. */
+/**
+ * A hole with vertices numbered from 0: first those of the boundary, then new ones. Points of the
+ * surface inside a region are known, and count as boundary vertices.
+ */
 struct PatchMesh
 {
   std::vector<Index> BoundaryIds; ///< vertex -> id in the surface; from the lowest point on
@@ -139,10 +151,14 @@ struct PatchMesh
 /** A hole that is being filled. */
 struct Patch : PatchMesh
 {
-  std::vector<Segment> Edges; ///< of the boundary; the hole lies on their right
+  std::vector<Segment> Edges;      ///< of the boundary; the hole lies on their right
+  std::vector<Segment> InnerEdges; ///< as of VisitInnerEdges()
 };
 
-/** Makes a patch with the vertices and edges of its boundary. n log n. */
+/** The error of a hole in which borders touch without sharing a vertex. */
+Error BordersTouch();
+
+/** Makes a patch with its known vertices, and the edges between them that stay. n log n. */
 Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole);
 
 /**

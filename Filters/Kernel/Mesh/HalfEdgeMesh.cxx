@@ -502,4 +502,26 @@ Rings TraceBorder(const Mesh& mesh, const Progress& progress, const std::vector<
   return BorderWalker(mesh, keep).Run(progress);
 }
 
+void KeepTriangles(const std::vector<char>& keep, Mesh& mesh)
+{
+  std::vector<Index> placeOf(keep.size(), None);
+  Index count = 0;
+  for (std::size_t t = 0; t < keep.size(); ++t)
+  {
+    placeOf[t] = keep[t] ? count++ : None;
+  }
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (Index i = 0; i < 3 && placeOf[t] != None; ++i)
+    {
+      const Index twin = mesh.Twin(3 * t + i);
+      const Index place = twin == Mesh::Border ? None : placeOf[Mesh::Triangle(twin)];
+      mesh.Triangles[3 * placeOf[t] + i] = mesh.Triangles[3 * t + i];
+      mesh.Twins[3 * placeOf[t] + i] = place == None ? Mesh::Border : 3 * place + twin % 3;
+    }
+  }
+  mesh.Triangles.resize(3 * static_cast<std::size_t>(count));
+  mesh.Twins.resize(3 * static_cast<std::size_t>(count));
+}
+
 } // namespace elevation

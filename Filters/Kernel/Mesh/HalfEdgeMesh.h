@@ -271,6 +271,12 @@ Components FindComponents(const Mesh& mesh, const Progress& progress, Relation&&
 Rings TraceBorder(const Mesh& mesh, const Progress& progress = Progress(),
   const std::vector<char>& keep = std::vector<char>());
 
+/**
+ * Removes triangles from a mesh with Twins; the others move up, points stay. Linear.
+ * @param[in] keep  one flag a triangle
+ */
+void KeepTriangles(const std::vector<char>& keep, Mesh& mesh);
+
 } // namespace elevation
 
 #endif

@@ -455,7 +455,7 @@ private:
 
   const Mesh& Surface;
   const Index FirstCell;
-  Holes& Result;
+  Holes& Result; ///< its Walks consist of half-edges
   std::vector<Segment> Segments;
   std::vector<Event> Events;
   std::set<Index, IsLeftOf> Status;
@@ -508,6 +508,10 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
   if (!sweep.Run(Part(progress, 0.5, 1.0)))
   {
     throw Error(sweep.Fault());
+  }
+  for (Index& h : holes.Walks.Vertices)
+  {
+    h = mesh.Origin(h);
   }
   return holes;
 }

@@ -5,8 +5,8 @@
  * Finds the holes of an elevation surface, as distinct from its outer boundaries, and proves that
  * it is an elevation surface.
  *
- * In: a mesh with counter-clockwise triangles and Twins. Out: its border walks (Mesh.h), and which
- * of them bound which hole. The passes:
+ * In: a mesh with counter-clockwise triangles and Twins. Out: its border walks (HalfEdgeMesh.h), and
+ * which of them bound which hole. The passes:
  *   1. Trace the border. Each walk has one empty region of the plane on its right.
  *   2. Classify each walk. Where the empty wedge at its lowest vertex opens downwards, the walk is
  *      the outside of a component, else the rim of a hole. A pinched walk has several wedges there.
@@ -39,19 +39,28 @@ namespace elevation
 struct Holes
 {
   /**
-   * All walks of the border, as TraceBorder gives them: half-edges, the surface on their left. Each
-   * begins with its lowest half-edge.
+   * All walks of the border, as TraceBorder gives them, as rings of vertices: the surface is on
+   * their left. Each begins with its lowest edge. Then those of regions (below).
    */
   Rings Walks;
   /**
    * Hole i is bounded by the walks Loops[Offsets[i]] (its rim, clockwise) to Loops[Offsets[i+1] -
    * 1] (the outsides of its islands, counter-clockwise, from the lowest on). Holes are in the order
-   * of their rims.
+   * of their rims; regions follow.
    */
   std::vector<Index> Offsets{ 0 };
   std::vector<Index> Loops;
-  /** One a hole: 1 when borders touch in it without sharing a vertex. */
+  /** One a hole: 1 when borders touch in it without sharing a vertex; regions: 0. */
   std::vector<char> Touched;
+
+  /**
+   * The last holes are regions of triangles with long edges, see LongTriangles.h. Region r has the
+   * inner edges InnerEnds[2 InnerOffsets[r]] to InnerEnds[2 InnerOffsets[r+1] - 1], two ends each.
+   */
+  std::vector<Index> InnerOffsets{ 0 };
+  std::vector<Index> InnerEnds;
+  std::vector<Index> RegionOf; ///< one a triangle: its region's number as a hole, or None
+  double LongestEdge = 0.0;    ///< the length above which edges are long
 
   Index NumberOfContacts = 0;         ///< vertices that touch a border without sharing a vertex
   std::vector<Index> ContactVertices; ///< the first few of them
@@ -67,17 +76,32 @@ struct Holes
     }
     return edges;
   }
-  /** Calls visit(h) for the half-edges of rim and islands of a hole, which lies on their right. */
+  /** Calls visit(a, b) for the edges of rim and islands of a hole, which lies on their right. */
   template <typename Visitor>
   void VisitEdges(Index hole, Visitor&& visit) const
   {
     for (Index i = this->Offsets[hole]; i < this->Offsets[hole + 1]; ++i)
     {
-      const Index walk = this->Loops[i];
-      for (const Index* h = this->Walks.Begin(walk); h != this->Walks.End(walk); ++h)
+      const Index* const begin = this->Walks.Begin(this->Loops[i]);
+      const Index* const end = this->Walks.End(this->Loops[i]);
+      for (const Index* v = begin; v != end; ++v)
       {
-        visit(*h);
+        visit(*v, v + 1 == end ? *begin : v[1]);
       }
+    }
+  }
+
+  Index NumberOfRegions() const { return static_cast<Index>(this->InnerOffsets.size()) - 1; }
+  bool IsRegion(Index hole) const { return hole >= this->Count() - this->NumberOfRegions(); }
+  /** Calls visit(a, b) for the inner edges of a hole that is a region, else not at all. */
+  template <typename Visitor>
+  void VisitInnerEdges(Index hole, Visitor&& visit) const
+  {
+    const Index region = hole - (this->Count() - this->NumberOfRegions());
+    for (Index i = region < 0 ? 0 : this->InnerOffsets[region];
+         region >= 0 && i < this->InnerOffsets[region + 1]; ++i)
+    {
+      visit(this->InnerEnds[2 * std::size_t(i)], this->InnerEnds[2 * std::size_t(i) + 1]);
     }
   }
 };

@@ -9,6 +9,7 @@
 
 #include "HalfEdgeMesh.h"
 #include "Holes.h"
+#include "LongTriangles.h"
 #include "Recovery.h"
 #include "Segments.h"
 #include "TriangleList.h"

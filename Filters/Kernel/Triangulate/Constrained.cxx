@@ -3,7 +3,6 @@
 #include "Constrained.h"
 
 #include "Kernel/Base/Base.h"
-#include "EdgeLimit.h"
 #include "Triangulate.h"
 
 #include <algorithm>

@@ -21,7 +21,6 @@
 #define elevation_Triangulate_Growth_h
 
 #include "DivideAndConquer.h"
-#include "EdgeLimit.h"
 #include "Hull.h"
 #include "Options.h"
 #include "WorkBudget.h"

@@ -423,7 +423,7 @@ TEST(Patch, IsGradedWhereEdgesDiffer)
   ASSERT_EQ(run.Found.Count(), 1);
   ExpectPatchesFit(run, 1e-9);
   const HoleReport& report = run.Patches.Reports[0];
-  const PatchPlan plan = PlanPatch(run.Surface, run.Found, 0, report.Area, 0.0, nullptr);
+  const PatchPlan plan = PlanPatch(run.Surface, nullptr, run.Found, 0, report.Area, 0.0, nullptr);
   ASSERT_EQ(plan.Kind, Arrangement::Graded);
   EXPECT_LT(report.NumberOfInsertedPoints, 0.9 * plan.MostPoints) << "the limit is not reached";
   const double lost = static_cast<double>(LostPoints(run.Surface).size());
@@ -482,9 +482,9 @@ TEST(Patch, TakesItsSpacingsFromBothSidesOfAVertex)
   ASSERT_EQ(run.Found.Count(), 1);
   std::vector<Point2> rim;
   run.Found.VisitEdges(
-    0, [&](Index h) { rim.push_back(run.Surface.PointOf(run.Surface.Origin(h))); });
+    0, [&](Index a, Index) { rim.push_back(run.Surface.PointOf(a)); });
   const PatchPlan plan =
-    PlanPatch(run.Surface, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr);
+    PlanPatch(run.Surface, nullptr, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr);
   ASSERT_EQ(plan.Kind, Arrangement::Graded);
   ASSERT_EQ(plan.Spacings.size(), rim.size());
   const std::size_t count = rim.size();
@@ -541,12 +541,12 @@ TEST(Patch, IsAsFineAtAPinchedVertexAsItsFinerSide)
     ASSERT_EQ(run.Found.Count(), 1);
     ExpectPatchesFit(run, 1e-12);
     const PatchPlan plan =
-      PlanPatch(run.Surface, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr);
+      PlanPatch(run.Surface, nullptr, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr);
     ASSERT_EQ(plan.Kind, Arrangement::Graded);
     std::vector<double> there;
     std::size_t i = 0;
-    run.Found.VisitEdges(0, [&](Index h) {
-      if (run.Surface.Origin(h) == 0)
+    run.Found.VisitEdges(0, [&](Index a, Index) {
+      if (a == 0)
       {
         there.push_back(plan.Spacings[i]);
       }
@@ -629,7 +629,7 @@ TEST(Patch, StopsWithinOneLargeHole)
   const Index count = run.Patches.NumberOfPoints();
   EXPECT_GT(count, 10000);
   EXPECT_GT(reports, count / 2000);
-  EXPECT_EQ(PlanPatch(run.Surface, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr).Kind,
+  EXPECT_EQ(PlanPatch(run.Surface, nullptr, run.Found, 0, run.Patches.Reports[0].Area, 0.0, nullptr).Kind,
     Arrangement::Graded);
   for (const double until : { 0.25, 0.6 })
   {

@@ -79,7 +79,7 @@ public:
     , Largest(*std::max_element(ofEdges.begin(), ofEdges.end()))
   {
     run.Found.VisitEdges(
-      hole, [&](Index h) { this->Origins.push_back(run.Surface.PointOf(run.Surface.Origin(h))); });
+      hole, [&](Index a, Index) { this->Origins.push_back(run.Surface.PointOf(a)); });
   }
   double operator()(const Point2& p) const
   {
@@ -130,12 +130,13 @@ Index ExpectFilled(const Cloud& cloud, double longestEdge)
   }
 
   const Mesh all = run.Filled();
+  const VertexStars stars(run.Surface);
   for (Index hole = 0; hole < run.Found.Count(); ++hole)
   {
     const HoleReport& report = run.Patches.Reports[hole];
     EXPECT_EQ(report.Status, FillStatus::Filled) << report.Reason;
-    const PatchPlan plan = PlanPatch(
-      run.Surface, run.Found, hole, report.Area, 0.0, lattice.Found ? &lattice.Steps : nullptr);
+    const PatchPlan plan = PlanPatch(run.Surface, &stars, run.Found, hole, report.Area, 0.0,
+      lattice.Found ? &lattice.Steps : nullptr);
     const Quality quality = plan.Kind == Arrangement::Graded
       ? Judge(run, all, hole, GradedSpacing(run, hole, plan.Spacings))
       : Judge(run, all, hole, [&report](const Point2&) { return report.Spacing; });

@@ -62,13 +62,11 @@ TEST(Holes, HaveTheEdgesOfTheirRim)
   EXPECT_EQ(holes.NumberOfEdges(0), 8);
   EXPECT_EQ(NumberOfIslands(holes, 0), 0);
   double twiceArea = 0.0;
-  const Index rim = holes.Rim(0);
-  for (const Index* h = holes.Walks.Begin(rim); h != holes.Walks.End(rim); ++h)
-  {
-    const Point2& a = mesh.PointOf(mesh.Origin(*h));
-    const Point2& b = mesh.PointOf(mesh.Destination(*h));
+  holes.VisitEdges(0, [&](Index from, Index to) {
+    const Point2& a = mesh.PointOf(from);
+    const Point2& b = mesh.PointOf(to);
     twiceArea += a.X * b.Y - a.Y * b.X;
-  }
+  });
   EXPECT_EQ(twiceArea, -8.0) << "a rim runs clockwise";
 }
 
@@ -185,15 +183,22 @@ TEST(Holes, OfThousandsAreAllFound)
 
 namespace
 {
-/** With walks that begin at their least half-edge and islands in the order of walks. */
+/** With walks that begin at their least edge by ids, and islands in the order of walks. */
 Holes ById(Holes holes)
 {
-  std::vector<Index>& edges = holes.Walks.Vertices;
+  std::vector<Index>& vertices = holes.Walks.Vertices;
   for (Index walk = 0; walk < holes.Walks.Count(); ++walk)
   {
-    const auto begin = edges.begin() + holes.Walks.Offsets[walk];
-    const auto end = edges.begin() + holes.Walks.Offsets[walk + 1];
-    std::rotate(begin, std::min_element(begin, end), end);
+    const Index begin = holes.Walks.Offsets[walk], end = holes.Walks.Offsets[walk + 1];
+    const auto edgeAt = [&](Index i) {
+      return std::make_pair(vertices[i], vertices[holes.Walks.After(i)]);
+    };
+    Index least = begin;
+    for (Index i = begin; i < end; ++i)
+    {
+      least = edgeAt(i) < edgeAt(least) ? i : least;
+    }
+    std::rotate(vertices.begin() + begin, vertices.begin() + least, vertices.begin() + end);
   }
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
@@ -236,7 +241,7 @@ TEST(Holes, BeginWithTheLowestEdgeOfEachWalk)
   ASSERT_EQ(holes.Count(), 1);
   ASSERT_EQ(holes.Loops.size(), 4u);
   const auto startOf = [&](Index loop) {
-    return mesh.PointOf(mesh.Origin(*holes.Walks.Begin(holes.Loops[loop])));
+    return mesh.PointOf(*holes.Walks.Begin(holes.Loops[loop]));
   };
   EXPECT_EQ(startOf(0), (Point2{ 1.0, 1.0 }));
   EXPECT_EQ(startOf(1), (Point2{ 2.0, 2.0 }));
@@ -424,9 +429,9 @@ TEST(Holes, BeginAtAPinchedVertexWithTheEdgeToTheLowestOneInAnyOrderOfCells)
     const Mesh mesh = Make(points, triangles);
     const Holes holes = FindHoles(mesh);
     ASSERT_EQ(holes.Count(), 1);
-    const Index first = *holes.Walks.Begin(holes.Rim(0));
-    EXPECT_EQ(mesh.Origin(first), 3);
-    EXPECT_EQ(mesh.Destination(first), 6) << order;
+    const Index* const first = holes.Walks.Begin(holes.Rim(0));
+    EXPECT_EQ(first[0], 3);
+    EXPECT_EQ(first[1], 6) << order;
     std::rotate(cells.begin(), cells.begin() + 1, cells.end());
   }
 }

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The triangles that DelaunayOptions::MaximumEdgeLength admits.
+ * The edges and triangles that a MaximumEdgeLength admits.
  */
-#ifndef elevation_Triangulate_EdgeLimit_h
-#define elevation_Triangulate_EdgeLimit_h
+#ifndef elevation_Base_EdgeLimit_h
+#define elevation_Base_EdgeLimit_h
 
-#include "Kernel/Base/Base.h"
+#include "Points.h"
 
 #include <cmath>
 
@@ -35,7 +35,7 @@ public:
         this->IsShort(pointOf(r), pointOf(p)));
   }
 
-private:
+  /** Whether an edge is at most as long as the limit. */
   bool IsShort(const Point2& p, const Point2& q) const
   {
     const double dx = p.X - q.X, dy = p.Y - q.Y;
@@ -43,6 +43,7 @@ private:
                          : std::hypot(dx, dy) <= this->Length;
   }
 
+private:
   const double Length;
   const bool IsPlain; ///< squares neither over- nor underflow
 };

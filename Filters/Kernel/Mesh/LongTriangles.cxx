@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LongTriangles.h"
+
+#include "Kernel/Base/Base.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace elevation
+{
+
+namespace
+{
+/** One run; the members carry data between its passes. */
+class RegionFinder
+{
+public:
+  RegionFinder(const Mesh& mesh, double longest, Holes& holes)
+    : Surface(mesh)
+    , Limit(longest)
+    , Result(holes)
+  {
+    holes.LongestEdge = longest;
+  }
+
+  void Run(const Progress& progress)
+  {
+    this->FindRegions(Part(progress, 0.0, 0.5));
+    this->TraceBorders(Part(progress, 0.5, 0.7));
+    this->FindRims();
+    this->CollectInnerEdges(Part(progress, 0.7, 1.0));
+  }
+
+  /** One flag a triangle: 1 if it is not long. */
+  std::vector<char> Others() const
+  {
+    std::vector<char> keep(this->Result.RegionOf.size());
+    std::transform(this->Result.RegionOf.begin(), this->Result.RegionOf.end(), keep.begin(),
+      [](Index region) { return region == None; });
+    return keep;
+  }
+
+private:
+  /** Numbers the regions from the first triangle on, behind the other holes. */
+  void FindRegions(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    const Index count = mesh.NumberOfTriangles();
+    std::vector<char> isLong(count);
+    ForEachStretch(count, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        isLong[t] = !this->Limit.Admits([&](Index v) -> const Point2& { return mesh.PointOf(v); },
+          mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
+      }
+    });
+    const Components parts = FindComponents(mesh, Part(progress, 0.5, 1.0), [&](Index h) {
+      return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
+    });
+    std::vector<Index> numbers(parts.Count(), None);
+    Index number = this->FirstRegion = this->Result.Count();
+    for (Index part = 0; part < parts.Count(); ++part)
+    {
+      numbers[part] = isLong[parts.Lowest[part]] ? number++ : None;
+    }
+    this->NumberOfRegions = number - this->FirstRegion;
+    this->Result.RegionOf.resize(count);
+    for (Index t = 0; t < count; ++t)
+    {
+      this->Result.RegionOf[t] = numbers[parts.ComponentOf(t)];
+    }
+  }
+
+  Index RegionAt(Index h) const
+  {
+    return h == Mesh::Border ? None : this->Result.RegionOf[Mesh::Triangle(h)];
+  }
+  bool IsBorder(Index h) const
+  {
+    return this->RegionAt(h) != None && this->RegionAt(this->Surface.Twin(h)) == None;
+  }
+  /** The border that follows a border around the same region. */
+  Index After(Index h) const
+  {
+    h = Mesh::Next(h);
+    while (!this->IsBorder(h))
+    {
+      h = Mesh::Next(this->Surface.Twin(h));
+    }
+    return h;
+  }
+
+  /** Appends the walks around each region, reversed, so that the region is on their right. */
+  void TraceBorders(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<Index>& vertices = this->Result.Walks.Vertices;
+    std::vector<char> seen(mesh.NumberOfHalfEdges(), 0);
+    this->OnBorder.assign(mesh.NumberOfPoints(), 0);
+    this->FirstWalk = this->Result.Walks.Count();
+    for (Index start = 0; start < mesh.NumberOfHalfEdges(); ++start)
+    {
+      ReportStep(progress, start, mesh.NumberOfHalfEdges());
+      if (seen[start] || !this->IsBorder(start))
+      {
+        continue;
+      }
+      const std::size_t first = vertices.size();
+      for (Index h = start; !seen[h]; h = this->After(h))
+      {
+        seen[h] = 1;
+        vertices.push_back(mesh.Origin(h));
+        this->OnBorder[mesh.Origin(h)] = 1;
+      }
+      std::reverse(vertices.begin() + static_cast<std::ptrdiff_t>(first), vertices.end());
+      this->StartAtLowest(first);
+      this->Result.Walks.Offsets.push_back(static_cast<Index>(vertices.size()));
+      this->RegionOfWalk.push_back(this->RegionAt(start) - this->FirstRegion);
+    }
+  }
+
+  /** Whether edge ab is lower than edge cd: by origin, then, at pinched vertices, by destination. */
+  bool IsLowerEdge(Index a, Index b, Index c, Index d) const
+  {
+    const IsLowerPoint isLower{ this->Surface };
+    return a == c ? isLower(b, d) : isLower(a, c);
+  }
+
+  /** Turns the last walk, which begins at a place in Vertices, so that its lowest edge is first. */
+  void StartAtLowest(std::size_t first)
+  {
+    std::vector<Index>& v = this->Result.Walks.Vertices;
+    const auto next = [&](std::size_t i) { return v[i + 1 == v.size() ? first : i + 1]; };
+    std::size_t lowest = first;
+    for (std::size_t i = first + 1; i < v.size(); ++i)
+    {
+      lowest = this->IsLowerEdge(v[i], next(i), v[lowest], next(lowest)) ? i : lowest;
+    }
+    std::rotate(v.begin() + static_cast<std::ptrdiff_t>(first),
+      v.begin() + static_cast<std::ptrdiff_t>(lowest), v.end());
+  }
+
+  /**
+   * Lists the walks of each region from the lowest on. The first is the rim: only the rim passes
+   * the region's lowest vertex, as below this vertex is the outside, which only the rim meets.
+   */
+  void FindRims()
+  {
+    Holes& holes = this->Result;
+    std::vector<Index> walks(this->RegionOfWalk.size());
+    std::iota(walks.begin(), walks.end(), 0);
+    std::sort(walks.begin(), walks.end(), [&](Index a, Index b) {
+      const Index* u = holes.Walks.Begin(this->FirstWalk + a);
+      const Index* v = holes.Walks.Begin(this->FirstWalk + b);
+      return this->RegionOfWalk[a] != this->RegionOfWalk[b]
+        ? this->RegionOfWalk[a] < this->RegionOfWalk[b]
+        : this->IsLowerEdge(u[0], u[1], v[0], v[1]);
+    });
+    std::size_t i = 0;
+    for (Index region = 0; region < this->NumberOfRegions; ++region)
+    {
+      for (; i < walks.size() && this->RegionOfWalk[walks[i]] == region; ++i)
+      {
+        holes.Loops.push_back(this->FirstWalk + walks[i]);
+      }
+      holes.Offsets.push_back(static_cast<Index>(holes.Loops.size()));
+      holes.Touched.push_back(0);
+    }
+  }
+
+  struct InnerEdge
+  {
+    Index Region;
+    Index Low;
+    Index High;
+  };
+
+  void CollectInnerEdges(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    const IsLowerPoint isLower{ mesh };
+    std::vector<InnerEdge> edges;
+    std::vector<char> isJoined(mesh.NumberOfPoints(), 0);
+    const Progress collecting = Part(progress, 0.0, 0.5);
+    for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+    {
+      ReportStep(collecting, h, mesh.NumberOfHalfEdges());
+      const Index a = mesh.Origin(h);
+      const Index b = mesh.Destination(h);
+      if (this->RegionAt(h) != None && (!this->OnBorder[a] || !this->OnBorder[b]) &&
+        isLower(a, b) && this->Limit.IsShort(mesh.PointOf(a), mesh.PointOf(b)))
+      {
+        edges.push_back({ this->RegionAt(h) - this->FirstRegion, a, b });
+        isJoined[a] = isJoined[b] = 1;
+      }
+    }
+    for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+    {
+      const Index a = mesh.Origin(h);
+      if (this->RegionAt(h) != None && !this->OnBorder[a] && !isJoined[a])
+      {
+        edges.push_back({ this->RegionAt(h) - this->FirstRegion, a, a });
+        isJoined[a] = 1;
+      }
+    }
+    Sort(
+      edges.begin(), edges.end(),
+      [&](const InnerEdge& s, const InnerEdge& t) {
+        return s.Region != t.Region ? s.Region < t.Region
+                                    : this->IsLowerEdge(s.Low, s.High, t.Low, t.High);
+      },
+      Part(progress, 0.5, 1.0));
+    std::size_t i = 0;
+    for (Index region = 0; region < this->NumberOfRegions; ++region)
+    {
+      for (; i < edges.size() && edges[i].Region == region; ++i)
+      {
+        this->Result.InnerEnds.push_back(edges[i].Low);
+        this->Result.InnerEnds.push_back(edges[i].High);
+      }
+      this->Result.InnerOffsets.push_back(static_cast<Index>(i));
+    }
+  }
+
+  const Mesh& Surface;
+  const EdgeLimit Limit;
+  Holes& Result;
+  Index FirstRegion = 0; ///< its number as a hole
+  Index NumberOfRegions = 0;
+  Index FirstWalk = 0;
+  std::vector<Index> RegionOfWalk; ///< one a walk from FirstWalk on, counted from FirstRegion
+  std::vector<char> OnBorder;      ///< one a vertex: 1 on the border of a region
+};
+} // namespace
+
+Mesh OpenLongTriangles(const Mesh& mesh, double longest, Holes& holes, const Progress& progress)
+{
+  RegionFinder finder(mesh, longest, holes);
+  finder.Run(Part(progress, 0.0, 0.9));
+  Mesh rest = mesh;
+  KeepTriangles(finder.Others(), rest);
+  Report(progress, 1.0);
+  return rest;
+}
+
+} // namespace elevation
