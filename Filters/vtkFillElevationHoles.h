@@ -137,11 +137,14 @@ public:
    *   about equally well are mixed; the fewer places there are, the more THIN_PLATE is preferred.
    *   Output 1 has the one with the largest share.
    *
-   * The splines may leave the range of z around the hole, as a lost summit did, by at most the
-   * distance from the nearest boundary point times the slope of the surface around the hole. This
-   * is the root mean square of slopes from the boundary to points half as many edges away as the
-   * middle of the hole is, 16 at most. Where the points determine no spline, because they are
-   * nearly on one line, MEMBRANE is used; where z around the hole is not finite, NEIGHBOR_MEAN.
+   * The splines may leave the range of z of the hole's boundary, as a lost summit did, by at most
+   * the distance from the nearest boundary point times the median slope around the hole: upwards
+   * only where most of the surface rises towards the hole, downwards only where most of it falls.
+   * ADAPTIVE also stays within twice the median steepness, times that distance, of MEMBRANE, so
+   * that noise, outliers and a cliff beside the hole do not make hills. Slopes are those from the
+   * boundary to points half as many edges away as the middle of the hole is, 16 at most. Where the
+   * points determine no spline, because they are nearly on one line, MEMBRANE is used; where z
+   * around the hole is not finite, NEIGHBOR_MEAN.
    */
   vtkSetClampMacro(Interpolation, int, NEIGHBOR_MEAN, CUBIC_SPLINE);
   vtkGetMacro(Interpolation, int);

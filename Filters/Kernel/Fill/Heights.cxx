@@ -24,26 +24,35 @@ constexpr std::size_t MostCenters = 300;
 /** Centres closer together than this, in spacings, add nothing but rounding. */
 constexpr double LeastDistance = 0.02;
 
-/** Places where Adaptive tries the methods, new points compared there, and places that suffice. */
+/**
+ * Places where Adaptive tries the methods, new points compared there, and places that suffice. With
+ * two in place of eight, the prior would decide for large holes, whose places rarely fit.
+ */
 constexpr int NumberOfPlaces = 32;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr Index LeastProbes = 32;
 constexpr Index MostProbes = 100;
 constexpr Index PointsPerProbe = 16;
-constexpr int EnoughPlaces = 2;
+constexpr int EnoughPlaces = 4;
 
 /**
  * Prior shares of membrane, thin plate and cubic spline, and how many observations of the error a
  * place counts as. Neighbouring places overlap, and a single rough one must not decide.
  */
-constexpr double LogarithmOfPrior[3] = { 0.0, 1.5, -1.0 };
+constexpr double LogarithmOfPrior[3] = { 0.0, 1.0, 0.0 };
 constexpr double ObservationsPerPlace = 2.0;
+
+/**
+ * Of the square of the least error at a place, what is taken for noise of the surface, which no
+ * method can predict. It is part of all errors and would make them look alike.
+ */
+constexpr double ShareOfNoise = 0.8;
 
 /**
  * Added to the logarithm of an error found at half the size; half of it where moved points lie
  * anywhere in triangles. The surface is flat between its points, which favours smoother methods.
  */
-constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.6 };
+constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.4 };
 
 /** Smaller shares, relative to the largest, are not worth computing. */
 constexpr double LeastShare = 0.03;
@@ -58,8 +67,14 @@ constexpr double RoughAccuracy = 1e-2;
 /** Points at which a spline is evaluated between two reports. */
 constexpr std::size_t PointsPerReport = 4096;
 
-/** How far values may leave the range, in slopes of the surface times distance. */
-constexpr double SlopeLimit = 1.0;
+/**
+ * How far Adaptive may leave the membrane, in median slopes of the surface times distance. With 1
+ * domes and valleys are cut off, with 3 splines swing beside a cliff.
+ */
+constexpr double SlopeLimit = 2.0;
+
+/** Accuracy of the membrane that bounds, on large patches. */
+constexpr double BoundAccuracy = 1e-4;
 
 /** Slopes are measured over at most this many edges. */
 constexpr Index MostRings = 16;
@@ -185,6 +200,29 @@ bool AllFinite(const std::vector<double>& values)
 {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
+
+/** The mean of the two in the middle, so that opposite values have opposite medians; 0 of none. */
+double Median(std::vector<double> values)
+{
+  if (values.empty())
+  {
+    return 0.0;
+  }
+  const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), upper, values.end());
+  return values.size() % 2 ? *upper : 0.5 * (*std::max_element(values.begin(), upper) + *upper);
+}
+
+/** The k-th of 0 to count - 1, a power of two, in an order whose beginnings are evenly spread. */
+int Spread(int k, int count)
+{
+  int result = 0;
+  for (int bit = 1; bit < count; bit *= 2)
+  {
+    result = 2 * result + (k & bit ? 1 : 0);
+  }
+  return result;
+}
 } // namespace
 
 Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch,
@@ -240,11 +278,8 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
   {
     this->Shares[0] = 1.0;
   }
-  if (!this->NeedsHarmonic())
-  {
-    this->Harmonic.reset();
-  }
-  else if (!this->Harmonic)
+  this->IsByTrials = wanted == Interpolation::Adaptive;
+  if (this->NeedsHarmonic() && !this->Harmonic)
   {
     this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, progress);
   }
@@ -406,19 +441,26 @@ public:
     }
     // The smoothing is one half on average for points anywhere in triangles.
     const double halvings = std::max(smoothing, -std::log(size) / std::log(2.0));
-    for (int method = 0; method < 3 && (method == 0 || this->Splines[method - 1]); ++method)
+    double squares[3];
+    int methods = 0;
+    for (; methods < 3 && (methods == 0 || this->Splines[methods - 1]); ++methods)
     {
-      const std::vector<double> predicted = this->Predict(method, progress);
-      double square = 0.0;
+      const std::vector<double> predicted = this->Predict(methods, progress);
+      squares[methods] = 0.0;
       for (std::size_t k = 0; k < predicted.size(); ++k)
       {
         const double error = predicted[k] - this->Moved[this->FirstProbe + k];
-        square += error * error;
+        squares[methods] += error * error;
       }
+    }
+    const double noise = ShareOfNoise * *std::min_element(squares, squares + methods);
+    for (int method = 0; method < methods; ++method)
+    {
       // A prediction that is exact up to rounding must not outweigh all other places.
-      const double error = 0.5 * std::log(square + std::pow(LeastError * range, 2) + LeastSquare);
-      this->Scores[method] -=
-        ObservationsPerPlace * (error + PenaltyOfHalfSize[method] * halvings);
+      const double square =
+        squares[method] - noise + std::pow(LeastError * range, 2) + LeastSquare;
+      this->Scores[method] -= ObservationsPerPlace *
+        (0.5 * std::log(square) + PenaltyOfHalfSize[method] * halvings);
     }
     return true;
   }
@@ -586,12 +628,12 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
   double begun = 0.0;
   for (const double size : { 1.0, 0.5, 0.25 })
   {
-    const int enough = size == 1.0 ? number : EnoughPlaces;
+    const int enough = size == 1.0 ? number : std::min(number, EnoughPlaces);
     for (int k = 0; k < number && places < enough; ++k)
     {
       const double done = begun + (1.0 - begun) * 0.8 * k / number;
       Report(progress, done);
-      const double angle = 2.0 * 3.14159265358979323846 * k / number;
+      const double angle = 2.0 * 3.14159265358979323846 * Spread(k, number) / number;
       places += trials.At(angle, size, Part(progress, done, done)) ? 1 : 0;
     }
     begun += (1.0 - begun) * 0.8;
@@ -657,7 +699,7 @@ std::vector<double> Heights::SumOfSplines(
     atCenters.push_back(known[place]);
   }
   std::vector<double> sums(this->Patch.NumberOfVertices(), 0.0);
-  const std::size_t first = this->Harmonic ? 0 : this->Patch.BoundaryIds.size();
+  const std::size_t first = this->NeedsHarmonic() ? 0 : this->Patch.BoundaryIds.size();
   Spline::Weights weights[2];
   for (int s = 0; s < 2; ++s)
   {
@@ -687,24 +729,65 @@ std::vector<double> Heights::SumOfSplines(
   return sums;
 }
 
-/** The root mean square of the slopes around the hole, with values divided by the unit. */
-double Heights::MeanSlope(const Values& values, double unit) const
+/** The slopes around the hole, with values divided by the unit. */
+Heights::RimSlopes Heights::MeasureSlopes(const Values& values, double unit) const
 {
-  double squares = 0.0;
-  double number = 0.0;
+  std::vector<double> slopes;
   for (const Pair& pair : this->Slopes)
   {
     const Point2& a = this->Surface.PointOf(pair.Boundary);
     const Point2& b = this->Surface.PointOf(pair.Away);
-    const double rise = (values(pair.Away) - values(pair.Boundary)) / unit /
+    const double slope = (values(pair.Boundary) - values(pair.Away)) / unit /
       (std::hypot(b.X - a.X, b.Y - a.Y) * this->Scale);
-    if (std::isfinite(rise))
+    if (std::isfinite(slope))
     {
-      squares += rise * rise;
-      number += 1.0;
+      slopes.push_back(this->Scale * slope);
     }
   }
-  return this->Scale * std::sqrt(squares / std::max(1.0, number));
+  RimSlopes result;
+  result.Inward = Median(slopes);
+  std::transform(
+    slopes.begin(), slopes.end(), slopes.begin(), [](double slope) { return std::fabs(slope); });
+  result.Steepness = Median(std::move(slopes));
+  return result;
+}
+
+/**
+ * Scales values of new points back and keeps them within the bounds that Heights.h tells.
+ * @param[in] scaled  values at the boundary, (value - middle) / unit
+ */
+void Heights::Bound(const std::vector<double>& scaled, const Values& values, double middle,
+  double unit, const Progress& progress, std::vector<double>& result) const
+{
+  const Index boundary = this->Patch.NumberOfBoundaryVertices();
+  double lowest = values(this->Known[0]);
+  double highest = lowest;
+  for (Index i = 1; i < boundary; ++i)
+  {
+    lowest = std::min(lowest, values(this->Known[i]));
+    highest = std::max(highest, values(this->Known[i]));
+  }
+  RimSlopes slopes;
+  std::vector<double> flat;
+  if (this->HasSpline())
+  {
+    slopes = this->MeasureSlopes(values, unit);
+    flat = this->IsByTrials ? this->Harmonic->Solve(scaled, BoundAccuracy, progress) : flat;
+  }
+  for (std::size_t i = 0; i < result.size(); ++i)
+  {
+    const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
+    const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
+    const double distance = std::hypot(p.X - q.X, p.Y - q.Y);
+    const double rise = slopes.Inward * distance;
+    if (!flat.empty())
+    {
+      const double room = SlopeLimit * slopes.Steepness * distance;
+      result[i] = std::max(flat[i] - room, std::min(flat[i] + room, result[i]));
+    }
+    result[i] = std::max(lowest + unit * std::min(0.0, rise),
+      std::min(highest + unit * std::max(0.0, rise), middle + unit * result[i]));
+  }
 }
 
 std::vector<double> Heights::Apply(const Values& values, const Progress& progress) const
@@ -736,35 +819,25 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
     value = (value - middle) / unit;
   }
 
-  std::vector<double> rim(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(boundary));
-  double slope = 0.0;
+  const std::vector<double> rim(
+    known.begin(), known.begin() + static_cast<std::ptrdiff_t>(boundary));
+  std::vector<double> missed = rim;
   if (this->HasSpline())
   {
     const std::vector<double> sums =
-      this->SumOfSplines(known, Part(progress, 0.0, this->Harmonic ? 0.3 : 1.0));
-    std::transform(rim.begin(), rim.end(), sums.begin(), rim.begin(), std::minus<double>());
+      this->SumOfSplines(known, Part(progress, 0.0, this->NeedsHarmonic() ? 0.3 : 0.8));
+    std::transform(rim.begin(), rim.end(), sums.begin(), missed.begin(), std::minus<double>());
     std::copy(sums.begin() + static_cast<std::ptrdiff_t>(boundary), sums.end(), result.begin());
-    slope = SlopeLimit * this->MeanSlope(values, unit);
   }
-  if (this->Harmonic)
+  if (this->NeedsHarmonic())
   {
     // What the splines miss at the boundary; without splines, all of it.
     const std::vector<double> flat =
-      this->Harmonic->Solve(rim, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 1.0));
+      this->Harmonic->Solve(missed, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 0.8));
     std::transform(
       result.begin(), result.end(), flat.begin(), result.begin(), std::plus<double>());
   }
-  for (std::size_t i = 0; i < result.size(); ++i)
-  {
-    double room = 0.0;
-    if (slope > 0.0)
-    {
-      const Point2 p = this->Patch.At(static_cast<Index>(boundary + i));
-      const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
-      room = slope * std::hypot(p.X - q.X, p.Y - q.Y) * unit;
-    }
-    result[i] = std::max(low - room, std::min(high + room, middle + unit * result[i]));
-  }
+  this->Bound(rim, values, middle, unit, Part(progress, 0.8, 1.0), result);
   return result;
 }
 

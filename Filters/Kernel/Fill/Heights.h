@@ -28,22 +28,25 @@
  * places around the hole (four for very large holes), as close to it as possible, and each method
  * predicts the surface at the moved new points from that at the others. Splines and membrane depend
  * only on relative positions, so the hole's factorizations serve at all places. A place counts if
- * every moved point hits the surface; with fewer than two such places, the points are scaled to
- * half their size, then to a quarter.
+ * every moved point hits the surface; with fewer than four such places, others are added with the
+ * points scaled to half their size, then to a quarter, until there are four.
  * Each place counts as two observations of a normal error, as neighbouring places overlap: the
- * share of a method in the result is its prior share (thin plate 0.76, membrane 0.17, cubic 0.06),
- * divided, for each place, by the square of its root mean square error there. With 32 places, a
- * method with a 10 % larger error gets a 400th of the other's share; with one or two, the thin
- * plate keeps most. Shares below 3 % of the largest are dropped. At reduced size the errors of the
- * smoother methods count more, as the surface is flat between its points: by 22 % (thin plate) and
- * 82 % (cubic) for each halving. Off lattices, where moved points fall between points of the
- * surface, they count more by up to half as much, in logarithms.
+ * share of a method in the result is its prior share (thin plate 0.58, the others 0.21), divided,
+ * for each place, by the mean square of its errors there. Of these squares 0.8 times the least one
+ * is subtracted first: it is taken for noise of the surface, which no method can predict, and which
+ * would make all methods look alike. Shares below 3 % of the largest are dropped. At reduced size
+ * the errors of the smoother methods count more, as the surface is flat between its points: by 22 %
+ * (thin plate) and 49 % (cubic) for each halving. Off lattices, where moved points fall between
+ * points of the surface, they count more by up to half as much, in logarithms.
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
- * Splines may leave the range of boundary and ring, as a summit inside the hole would; but at most
- * by the distance to the nearest boundary point times the slope of the surface. That slope is the
- * root mean square of slopes from the boundary to points outside, half as many edges away as the
- * middle of the hole is, at most 16: over short distances, roughness would count as slope.
+ * Splines may leave that range, as a summit inside the hole would; but at most by the distance to
+ * the nearest boundary point times the median of the slopes around the hole, with their signs: above
+ * the range only if most of the surface rises towards the hole, below it only if most of it falls.
+ * Adaptive also keeps within twice the median steepness, times that distance, of the membrane.
+ * So single points, noise and a cliff along a part of the boundary do not make hills. Slopes are
+ * those from the boundary to points outside, half as many edges away as the middle of the hole is,
+ * at most 16: over short distances, roughness would count as slope.
  *
  * Fallbacks, told by Used(): splines become the membrane if their points are nearly in a line;
  * values that are not finite at the boundary or the ring are left to NeighborMean, which skips NaN.
@@ -135,7 +138,15 @@ private:
   void Choose(const VertexStars& stars, const Values& values, const Progress& progress);
   std::vector<double> SumOfSplines(
     const std::vector<double>& known, const Progress& progress) const;
-  double MeanSlope(const Values& values, double unit) const;
+  /** Medians of the slopes around the hole. */
+  struct RimSlopes
+  {
+    double Inward = 0.0;    ///< rising towards the hole
+    double Steepness = 0.0; ///< either way
+  };
+  RimSlopes MeasureSlopes(const Values& values, double unit) const;
+  void Bound(const std::vector<double>& scaled, const Values& values, double middle, double unit,
+    const Progress& progress, std::vector<double>& result) const;
   std::vector<double> Mean(const Values& values, const Progress& progress) const;
 
   const Mesh& Surface;
@@ -153,6 +164,7 @@ private:
   std::vector<Pair> Slopes;   ///< pairs of points over which slopes are measured
   std::vector<Index> Centers; ///< of the splines, indices in Known
   bool AllBoundaryIsCenter = true;
+  bool IsByTrials = false; ///< chosen by Adaptive
   std::unique_ptr<Membrane> Harmonic;
   std::unique_ptr<Spline> Splines[2];   ///< thin plate and cubic; those with a share
   double Shares[3] = { 0.0, 0.0, 0.0 }; ///< of the membrane and the splines; their sum is 1
