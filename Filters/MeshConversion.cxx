@@ -10,6 +10,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdList.h"
 #include "vtkMath.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -319,6 +320,29 @@ void PassRings(
   }
   output->SetPoints(points);
   output->SetLines(lines);
+}
+
+void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
+  const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
+  vtkDataSetAttributes* output)
+{
+  output->CopyAllOn();
+  output->CopyAllocate(input, count);
+  vtkNew<vtkIdList> from;
+  vtkNew<vtkIdList> to;
+  for (vtkIdType begin = 0; begin < count; begin += TuplesAtOnce)
+  {
+    ReportStep(progress, static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
+    const vtkIdType size = std::min(TuplesAtOnce, count - begin);
+    from->SetNumberOfIds(size);
+    to->SetNumberOfIds(size);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      to->SetId(i, begin + i);
+      from->SetId(i, sourceOf(begin + i));
+    }
+    output->CopyData(input, from, to);
+  }
 }
 
 bool IsFloatingPoint(vtkAbstractArray* array)

@@ -104,6 +104,14 @@ vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads
 void PassRings(
   const Rings& rings, vtkPolyData* source, const Progress& progress, vtkPolyData* output);
 
+/**
+ * Copies chosen tuples of all arrays, flagged as in the input.
+ * @param[in] sourceOf  the tuple of the input that tuple i of the output is
+ */
+void CopyTuples(vtkDataSetAttributes* input, vtkIdType count,
+  const std::function<vtkIdType(vtkIdType i)>& sourceOf, const Progress& progress,
+  vtkDataSetAttributes* output);
+
 /** Whether the values are float or double, so that they can be interpolated. */
 bool IsFloatingPoint(vtkAbstractArray* array);
 

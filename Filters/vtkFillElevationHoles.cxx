@@ -31,9 +31,12 @@ static_assert(vtkFillElevationHoles::NEIGHBOR_MEAN == int(elevation::Interpolati
     vtkFillElevationHoles::ADAPTIVE == int(elevation::Interpolation::Adaptive) &&
     vtkFillElevationHoles::CUBIC_SPLINE == int(elevation::Interpolation::Cubic),
   "the kernel's names are those of the filter");
+static_assert(vtkFillElevationHoles::REPLACED == int(elevation::FillStatus::Replaced),
+  "the kernel's statuses are those of the filter");
 
 namespace
 {
+using elevation::FillOptions;
 using elevation::FillResult;
 using elevation::FillStatus;
 using elevation::HoleReport;
@@ -99,9 +102,57 @@ void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
     });
 }
 
+/** The triangles of the input that no patch replaces, in order. */
+std::vector<Index> ListKept(const Mesh& mesh, const Holes& holes, const FillResult& patches)
+{
+  std::vector<Index> kept;
+  kept.reserve(mesh.NumberOfTriangles());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Index region = holes.RegionOf.empty() ? elevation::None : holes.RegionOf[t];
+    if (region == elevation::None || patches.Reports[region].Status != FillStatus::Replaced)
+    {
+      kept.push_back(t);
+    }
+  }
+  return kept;
+}
+
+/** The cells of output 0 with their data: those of the input that are kept, then new ones. */
+void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& kept,
+  const FillResult& patches, const Progress& progress, vtkPolyData* output)
+{
+  output->SetVerts(input->GetVerts());
+  output->SetLines(input->GetLines());
+  elevation::Buffer<Index> triangles;
+  triangles.Resize(3 * kept.size() + patches.Triangles.size());
+  auto end = triangles.begin();
+  for (const Index t : kept)
+  {
+    end = std::copy_n(mesh.Triangles.begin() + 3 * std::ptrdiff_t(t), 3, end);
+  }
+  std::copy(patches.Triangles.begin(), patches.Triangles.end(), end);
+  output->SetPolys(elevation::ToCellArray(std::move(triangles)));
+
+  vtkCellData* cellData = input->GetCellData();
+  vtkNew<vtkCellData> ofKept;
+  const vtkIdType first = elevation::FirstPolygon(input);
+  if (static_cast<Index>(kept.size()) < mesh.NumberOfTriangles())
+  {
+    const auto sourceOf = [&](vtkIdType cell) {
+      return cell < first ? cell : first + kept[cell - first];
+    };
+    elevation::CopyTuples(cellData, first + static_cast<vtkIdType>(kept.size()), sourceOf,
+      Part(progress, 0.0, 0.5), ofKept);
+    cellData = ofKept;
+  }
+  elevation::PassExtended(cellData, patches.NumberOfTriangles(), output->GetCellData(),
+    Part(progress, 0.5, 1.0), nullptr);
+}
+
 /** Output 0. */
-void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,
-  const Progress& progress, vtkPolyData* output)
+void MakeSurface(vtkPolyData* input, const Mesh& mesh, const Holes& holes,
+  const FillResult& patches, bool interpolate, const Progress& progress, vtkPolyData* output)
 {
   Report(progress, 0.0);
   PassPoints(input, patches, interpolate, Part(progress, 0.0, 0.6), output);
@@ -115,23 +166,16 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   output->GetPointData()->AddArray(isNew);
 
   Report(progress, 0.6);
-  output->SetVerts(input->GetVerts());
-  output->SetLines(input->GetLines());
-  elevation::Buffer<Index> triangles;
-  triangles.Resize(mesh.Triangles.size() + patches.Triangles.size());
-  std::copy(mesh.Triangles.begin(), mesh.Triangles.end(), triangles.begin());
-  std::copy(
-    patches.Triangles.begin(), patches.Triangles.end(), triangles.begin() + mesh.Triangles.size());
-  output->SetPolys(elevation::ToCellArray(std::move(triangles)));
-
-  elevation::PassExtended(input->GetCellData(), patches.NumberOfTriangles(), output->GetCellData(),
-    Part(progress, 0.7, 0.9), nullptr);
+  const std::vector<Index> kept = ListKept(mesh, holes, patches);
+  PassCells(input, mesh, kept, patches, Part(progress, 0.6, 0.9), output);
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
   holeIds->SetName("HoleId");
-  holeIds->SetNumberOfTuples(input->GetNumberOfCells() + patches.NumberOfTriangles());
+  const vtkIdType ofInput =
+    elevation::FirstPolygon(input) + static_cast<vtkIdType>(kept.size());
+  holeIds->SetNumberOfTuples(ofInput + patches.NumberOfTriangles());
   vtkIdType* holeId = holeIds->GetPointer(0);
-  holeId = std::fill_n(holeId, input->GetNumberOfCells(), -1);
+  holeId = std::fill_n(holeId, ofInput, -1);
   for (std::size_t hole = 0; hole < patches.Reports.size(); ++hole)
   {
     holeId = std::fill_n(holeId, patches.TriangleOffsets[hole + 1] - patches.TriangleOffsets[hole],
@@ -198,7 +242,7 @@ std::string Complaint(const Mesh& mesh, const Holes& holes, const FillResult& pa
     if (report.Status == FillStatus::Failed && ++failed <= listed)
     {
       text << "Hole " << hole << " (" << report.NumberOfEdges << " edges) was not filled. "
-           << report.Reason << "\n";
+           << report.Reason << (holes.IsRegion(hole) ? " It keeps its triangles." : "") << "\n";
     }
   }
   if (failed > listed)
@@ -219,6 +263,34 @@ std::string Complaint(const Mesh& mesh, const Holes& holes, const FillResult& pa
     complaint.pop_back();
   }
   return complaint;
+}
+
+/** The kernel's options, but for what the input tells. */
+FillOptions OptionsOf(vtkFillElevationHoles* filter)
+{
+  FillOptions options;
+  options.MaximumHoleSize = filter->GetMaximumHoleSize();
+  options.MaximumHoleEdges =
+    static_cast<Index>(std::min<vtkIdType>(filter->GetMaximumHoleEdges(), VTK_INT_MAX));
+  options.Spacing = filter->GetSpacing();
+  options.Method = static_cast<elevation::Interpolation>(filter->GetInterpolation());
+  const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
+  options.MaximumInsertedPoints = static_cast<Index>(
+    most > 0 ? std::min<vtkIdType>(most, elevation::MaximumNumberOfPoints)
+             : elevation::MaximumNumberOfPoints);
+  options.NumberOfThreads = filter->GetNumberOfThreads();
+  return options;
+}
+
+/** @throws Error if the limit is no length */
+void CheckMaximumEdgeLength(double length)
+{
+  if (!(length >= 0.0))
+  {
+    std::ostringstream text;
+    text << "MaximumEdgeLength is " << length << "; it must be 0 (off) or a length in x,y.";
+    throw elevation::Error(text.str());
+  }
 }
 } // namespace
 
@@ -241,37 +313,39 @@ int vtkFillElevationHoles::RequestData(
   return elevation::CallKernel(this, outputVector, [&]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
     Report(progress, 0.0);
+    CheckMaximumEdgeLength(this->MaximumEdgeLength);
     elevation::CheckArrays(input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
     Mesh mesh;
     elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1));
     mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
-    const Holes holes = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
+    Holes holes = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
+    Mesh opened;
+    const bool opens = this->MaximumEdgeLength > 0.0;
+    if (opens)
+    {
+      opened = elevation::OpenLongTriangles(
+        mesh, this->MaximumEdgeLength, holes, Part(progress, 0.3, 0.35));
+    }
 
-    elevation::FillOptions options;
-    options.MaximumHoleSize = this->MaximumHoleSize;
-    options.MaximumHoleEdges =
-      static_cast<Index>(std::min<vtkIdType>(this->MaximumHoleEdges, VTK_INT_MAX));
-    options.Spacing = this->Spacing;
-    options.Method = static_cast<elevation::Interpolation>(this->Interpolation);
+    FillOptions options = OptionsOf(this);
     if (this->InterpolatePointData)
     {
       options.Attributes = AttributesOf(input->GetPointData());
     }
     options.SinglePrecision = HasFloatPoints(input);
-    options.MaximumInsertedPoints = static_cast<Index>(this->MaximumNumberOfInsertedPoints > 0
-        ? std::min<vtkIdType>(this->MaximumNumberOfInsertedPoints, elevation::MaximumNumberOfPoints)
-        : elevation::MaximumNumberOfPoints);
-    options.NumberOfThreads = this->NumberOfThreads;
-    options.Monitor = Part(progress, 0.3, 0.8);
-    const FillResult patches = elevation::FillHoles(mesh, points.View, holes, options);
+    options.Monitor = Part(progress, opens ? 0.35 : 0.3, 0.8);
+    const FillResult patches =
+      elevation::FillHoles(opens ? opened : mesh, points.View, holes, options);
 
     MakeSurface(
-      input, mesh, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);
+      input, mesh, holes, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);
     MakeReport(input, holes, patches, Part(progress, 0.95, 1.0), report);
     const vtkIdType filled = std::count_if(patches.Reports.begin(), patches.Reports.end(),
-      [](const HoleReport& hole) { return hole.Status == FillStatus::Filled; });
+      [](const HoleReport& hole) {
+        return hole.Status == FillStatus::Filled || hole.Status == FillStatus::Replaced;
+      });
     for (vtkPolyData* output : { surface, report })
     {
       elevation::AddCount(output->GetFieldData(), "NumberOfHoles", holes.Count());
@@ -299,6 +373,7 @@ const char* vtkFillElevationHoles::GetInterpolationAsString() const
 void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";

@@ -11,8 +11,11 @@
  * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
  * Holes may be nested, pinched, and may share vertices.
  *
+ * Voids that triangles with long edges bridge are no holes: see MaximumEdgeLength, which opens them.
+ *
  * Output 0, the surface: the points and cells of the input first, with their ids, then the new
- * points and triangles. The triangles are counter-clockwise seen from +z: a clockwise one of the
+ * points and triangles. (Where MaximumEdgeLength lets patches replace triangles of the input, these
+ * are left out, and the ids of later cells are lower.) The triangles are counter-clockwise seen from +z: a clockwise one of the
  * input is turned over (its last two points change places); nothing else of the input changes.
  * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
@@ -29,7 +32,8 @@
  * Cell data:
  * - HoleId (vtkIdTypeArray): 0, 1, 2, ...
  * - Status (vtkUnsignedCharArray): see HoleStatusType.
- * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands.
+ * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands; in a
+ *   region of MaximumEdgeLength, no others.
  * - Perimeter (vtkDoubleArray): the length of all these edges in x,y.
  * - Area (vtkDoubleArray): in x,y, inside the rim and outside the islands; NaN where the extent of
  *   the hole is above 1e150 or below 1e-150.
@@ -106,6 +110,7 @@ public:
     TOO_LARGE = 1,      ///< left open because of MaximumHoleSize
     TOO_MANY_EDGES = 2, ///< left open because of MaximumHoleEdges
     FAILED = 3,         ///< could not be filled; a warning says why
+    REPLACED = 4,       ///< filled: long triangles bridged it, see MaximumEdgeLength
   };
 
   /** How z of new points is found: the values of Interpolation, and of the array of output 1. */
@@ -154,6 +159,37 @@ public:
   void SetInterpolationToAdaptive() { this->SetInterpolation(ADAPTIVE); }
   void SetInterpolationToCubicSpline() { this->SetInterpolation(CUBIC_SPLINE); }
   const char* GetInterpolationAsString() const;
+  ///@}
+
+  ///@{
+  /**
+   * The length in x,y, in input units, above which an edge is long. A region of triangles with a
+   * long edge, connected by edges, is then a hole too: a patch replaces its triangles, and output 1
+   * lists it behind the other holes, with status REPLACED. 0 (default): none. A negative value or
+   * NaN is an error.
+   *
+   * - The rim of a region is its border: along the rest of the surface, along the surface's own
+   *   outer border, along a hole, which is filled apart. Regions may enclose islands and holes,
+   *   pinch at vertices, and cover the whole surface.
+   * - Points of the input inside a region (all of their triangles have a long edge: survey lines
+   *   far apart) stay vertices with their z, and are known as those of the rim are, whichever
+   *   Interpolation is used. Edges at them that are not long stay edges: the tracks along lines.
+   * - The long triangles are no evidence of the surface: z is found from the others, and from the
+   *   points inside.
+   * - Where the surface's points lie on a lattice, the nodes of a region are filled as those of a
+   *   hole; edges that are kept inside are then those between nodes. Without Spacing, the default
+   *   is the mean length of all edges of a region, on its rim and inside, that are not long (if
+   *   there are none: MaximumEdgeLength). As in holes, points are graded where lengths differ more
+   *   than threefold, long edges of the rim included: they become sparser away from lines and
+   *   towards a border with long edges. So their number stays in proportion to the points of the
+   *   input, however far apart lines are.
+   * - MaximumHoleSize, MaximumHoleEdges and MaximumNumberOfInsertedPoints apply as to holes. A
+   *   region that is not filled keeps its triangles.
+   *
+   * Cost: one more pass over the triangles.
+   */
+  vtkSetMacro(MaximumEdgeLength, double);
+  vtkGetMacro(MaximumEdgeLength, double);
   ///@}
 
   ///@{
@@ -233,6 +269,7 @@ protected:
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  double MaximumEdgeLength = 0.0;
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;

@@ -11,7 +11,6 @@
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -109,27 +108,13 @@ void PassPoints(
 void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
   const Progress& progress, vtkPolyData* output)
 {
-  output->GetCellData()->CopyAllOn();
   const vtkIdType count = firstCells + static_cast<vtkIdType>(side.Parents.size());
-  output->GetCellData()->CopyAllocate(input->GetCellData(), count);
   const vtkIdType firstTriangle = elevation::FirstPolygon(input);
-  vtkNew<vtkIdList> from;
-  vtkNew<vtkIdList> to;
-  constexpr vtkIdType block = 65536; // cells from one report to the next
-  for (vtkIdType begin = 0; begin < count; begin += block)
-  {
-    ReportStep(progress, static_cast<std::size_t>(begin), static_cast<std::size_t>(count));
-    const vtkIdType size = std::min(block, count - begin);
-    from->SetNumberOfIds(size);
-    to->SetNumberOfIds(size);
-    for (vtkIdType i = 0; i < size; ++i)
-    {
-      const vtkIdType cell = begin + i;
-      to->SetId(i, cell);
-      from->SetId(i, cell < firstCells ? cell : firstTriangle + side.Parents[cell - firstCells]);
-    }
-    output->GetCellData()->CopyData(input->GetCellData(), from, to);
-  }
+  const auto sourceOf = [&](vtkIdType cell) -> vtkIdType {
+    return cell < firstCells ? cell : firstTriangle + side.Parents[cell - firstCells];
+  };
+  elevation::CopyTuples(
+    input->GetCellData(), count, sourceOf, progress, output->GetCellData());
   if (arePieces)
   {
     // Parts of a triangle have its values, which are no longer global ids then.

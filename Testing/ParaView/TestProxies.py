@@ -26,6 +26,7 @@ OTHER_VALUES = {
         "NumberOfThreads": 2,
     },
     "FillElevationHoles": {
+        "MaximumEdgeLength": 1.5,
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
         "MaximumNumberOfInsertedPoints": 5000,

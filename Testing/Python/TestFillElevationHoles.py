@@ -48,6 +48,7 @@ class TestFillElevationHoles(unittest.TestCase):
 
     def test_defaults(self):
         fill = vtkFillElevationHoles()
+        self.assertEqual(fill.GetMaximumEdgeLength(), 0.0)
         self.assertEqual(fill.GetMaximumHoleSize(), 0.0)
         self.assertEqual(fill.GetMaximumHoleEdges(), 0)
         self.assertEqual(fill.GetMaximumNumberOfInsertedPoints(), 100_000_000)
@@ -57,12 +58,12 @@ class TestFillElevationHoles(unittest.TestCase):
         self.assertTrue(fill.GetInterpolatePointData())
         self.assertEqual(fill.GetNumberOfThreads(), 0)
         self.assertEqual(
-            (fill.FILLED, fill.TOO_LARGE, fill.TOO_MANY_EDGES, fill.FAILED), (0, 1, 2, 3))
+            (fill.FILLED, fill.TOO_LARGE, fill.TOO_MANY_EDGES, fill.FAILED, fill.REPLACED), (0, 1, 2, 3, 4))
 
     def test_every_property_is_printed(self):
         text = str(vtkFillElevationHoles())
         for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints", "Spacing", "Interpolation", "InterpolatePointData",
-                     "NumberOfThreads", "NumberOfHoles", "NumberOfFilledHoles"):
+                     "NumberOfThreads", "NumberOfHoles", "NumberOfFilledHoles", "MaximumEdgeLength"):
             self.assertIn(name + ":", text)
 
     def test_the_number_of_threads_does_not_change_a_byte(self):
