@@ -63,7 +63,8 @@ set(es_kernel_headers_Lattice
 set(es_kernel_headers_Triangulate
   Growth Instructions Options WorkBudget)
 set(es_kernel_headers_Trim)
-set(es_kernel_headers_Fill)
+set(es_kernel_headers_Fill
+  Walk)
 
 set(es_kernel_headers)
 set(es_kernel_sources)

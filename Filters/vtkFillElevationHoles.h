@@ -145,8 +145,9 @@ public:
    * The splines may leave the range of z of the hole's boundary, as a lost summit did, by at most
    * the distance from the nearest boundary point times the median slope around the hole: upwards
    * only where most of the surface rises towards the hole, downwards only where most of it falls.
-   * ADAPTIVE also stays within twice the median steepness, times that distance, of MEMBRANE, so
-   * that noise, outliers and a cliff beside the hole do not make hills. Slopes are those from the
+   * ADAPTIVE also stays within three times the median steepness, times that distance, of MEMBRANE.
+   * Points around the hole that stand apart, as outliers and those beyond a cliff, are no part of
+   * what is continued. So they and noise do not make hills. Slopes are those from the
    * boundary to points half as many edges away as the middle of the hole is, 16 at most. Where the
    * points determine no spline, because they are nearly on one line, MEMBRANE is used; where z
    * around the hole is not finite, NEIGHBOR_MEAN.

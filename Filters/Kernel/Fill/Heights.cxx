@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Heights.h"
 
-#include "Spline.h"
 #include "Kernel/Base/Base.h"
+#include "Spline.h"
+#include "Walk.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <numeric>
 
 namespace elevation
 {
@@ -69,9 +72,17 @@ constexpr std::size_t PointsPerReport = 4096;
 
 /**
  * How far Adaptive may leave the membrane, in median slopes of the surface times distance. With 1
- * domes and valleys are cut off, with 3 splines swing beside a cliff.
+ * domes and valleys are cut off.
  */
-constexpr double SlopeLimit = 2.0;
+constexpr double SlopeLimit = 3.0;
+
+/**
+ * An edge is steep from so many median slopes of edges at the boundary on. With 5 LiDAR scans gain,
+ * with 8 only cliffs and outliers are found. Points that steep edges cut off are no centres of
+ * splines if they are less than this part of what all edges join.
+ */
+constexpr double SteepEdge = 5.0;
+constexpr double LeastPart = 0.25;
 
 /** Accuracy of the membrane that bounds, on large patches. */
 constexpr double BoundAccuracy = 1e-4;
@@ -82,119 +93,6 @@ constexpr Index MostRings = 16;
 constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kernel::Cubic };
 constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
   Interpolation::Cubic };
-
-/**
- * Finds the triangle that contains a point, by a walk from a triangle nearby. Corners are taken
- * from the lowest on, so that the walk and all roundings depend on positions alone.
- */
-class Walk
-{
-public:
-  Walk(const Mesh& mesh, Index start)
-    : Surface(mesh)
-    , Triangle(start)
-  {
-  }
-
-  /** @return false if the walk comes to the border of the surface */
-  bool To(const Point2& p)
-  {
-    constexpr int mostSteps = 1 << 16;
-    Index t = this->Triangle;
-    for (int step = 0; step < mostSteps; ++step)
-    {
-      const Index first = this->Lowest(t);
-      const Point2& a = this->Surface.PointOf(this->Surface.Origin(first));
-      const Point2& b = this->Surface.PointOf(this->Surface.Destination(first));
-      const Point2& c = this->Surface.PointOf(this->Surface.Apex(first));
-      // Twice the areas that p makes with the three edges.
-      const double area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
-      const double tolerance = -1e-9 * area;
-      const double w[3] = { (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X),
-        (b.X - p.X) * (c.Y - p.Y) - (b.Y - p.Y) * (c.X - p.X),
-        (c.X - p.X) * (a.Y - p.Y) - (c.Y - p.Y) * (a.X - p.X) };
-      // The first edge to test changes with each step, so that the walk does not cycle.
-      int across = -1;
-      for (int k = 0; k < 3 && across < 0; ++k)
-      {
-        const int edge = (k + step) % 3;
-        across = w[edge] < tolerance ? edge : -1;
-      }
-      if (across < 0)
-      {
-        const double sum = w[0] + w[1] + w[2];
-        for (int k = 0; k < 3; ++k)
-        {
-          this->Shares[k] = sum > 0.0 ? std::max(0.0, w[(k + 1) % 3] / sum) : 1.0 / 3.0;
-        }
-        this->Triangle = t;
-        return true;
-      }
-      const Index twin = this->Surface.Twin(HalfEdge(first, across));
-      if (twin == Mesh::Border)
-      {
-        return false;
-      }
-      t = Mesh::Triangle(twin);
-    }
-    return false;
-  }
-
-  /** The linearly interpolated value at the point of the last To(). */
-  double ValueOf(const Values& values) const
-  {
-    double value = 0.0;
-    for (int k = 0; k < 3; ++k)
-    {
-      value += this->Shares[k] * values(this->CornerOf(k));
-    }
-    return value;
-  }
-
-  /** By how much the interpolation reduces the variance of uncorrelated noise; 0 at a corner. */
-  double Smoothing() const
-  {
-    return 1.0 - this->Shares[0] * this->Shares[0] - this->Shares[1] * this->Shares[1] -
-      this->Shares[2] * this->Shares[2];
-  }
-
-  /** The corner with the largest weight. */
-  Index Corner() const
-  {
-    int k = this->Shares[1] > this->Shares[0] ? 1 : 0;
-    k = this->Shares[2] > this->Shares[k] ? 2 : k;
-    return this->CornerOf(k);
-  }
-
-private:
-  static Index HalfEdge(Index first, int steps)
-  {
-    return steps == 0 ? first : steps == 1 ? Mesh::Next(first) : Mesh::Previous(first);
-  }
-
-  /** The half-edge of a triangle that leaves its lowest corner. */
-  Index Lowest(Index t) const
-  {
-    Index lowest = 3 * t;
-    for (Index h = 3 * t + 1; h < 3 * t + 3; ++h)
-    {
-      lowest = IsLower(this->Surface.PointOf(this->Surface.Origin(h)),
-                 this->Surface.PointOf(this->Surface.Origin(lowest)))
-        ? h
-        : lowest;
-    }
-    return lowest;
-  }
-
-  Index CornerOf(int k) const
-  {
-    return this->Surface.Origin(HalfEdge(this->Lowest(this->Triangle), k));
-  }
-
-  const Mesh& Surface;
-  Index Triangle;
-  double Shares[3] = { 1.0, 0.0, 0.0 };
-};
 
 bool AllFinite(const std::vector<double>& values)
 {
@@ -211,6 +109,45 @@ double Median(std::vector<double> values)
   const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), upper, values.end());
   return values.size() % 2 ? *upper : 0.5 * (*std::max_element(values.begin(), upper) + *upper);
+}
+
+/** Between two of some numbered points. */
+struct SlopingEdge
+{
+  Index Ends[2];
+  double Slope;
+};
+
+/** For each point the number of points that edges up to a slope join it to, itself included. */
+std::vector<Index> SizesOfParts(Index count, const std::vector<SlopingEdge>& edges, double steepest)
+{
+  std::vector<Index> next(count);
+  std::iota(next.begin(), next.end(), Index(0));
+  const auto rootOf = [&next](Index i) {
+    while (next[i] != i)
+    {
+      i = next[i] = next[next[i]];
+    }
+    return i;
+  };
+  for (const SlopingEdge& edge : edges)
+  {
+    if (edge.Slope <= steepest)
+    {
+      next[rootOf(edge.Ends[0])] = rootOf(edge.Ends[1]);
+    }
+  }
+  std::vector<Index> ofRoot(count, 0);
+  for (Index i = 0; i < count; ++i)
+  {
+    ++ofRoot[rootOf(i)];
+  }
+  std::vector<Index> sizes(count);
+  for (Index i = 0; i < count; ++i)
+  {
+    sizes[i] = ofRoot[rootOf(i)];
+  }
+  return sizes;
 }
 
 /** The k-th of 0 to count - 1, a power of two, in an order whose beginnings are evenly spread. */
@@ -262,13 +199,13 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
   }
   if (wanted == Interpolation::Adaptive)
   {
-    this->ChooseCenters();
+    this->ChooseCenters(*stars, values);
     this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, Part(progress, 0.0, 0.3));
     this->Choose(*stars, values, Part(progress, 0.3, 1.0));
   }
   else if (wanted != Interpolation::Membrane)
   {
-    this->ChooseCenters();
+    this->ChooseCenters(*stars, values);
     const int k = wanted == Interpolation::Cubic ? 1 : 0;
     this->Splines[k] = this->MakeSpline(k);
     this->Method = this->Splines[k] ? wanted : Interpolation::Membrane;
@@ -351,8 +288,59 @@ void Heights::CollectSlopes(const VertexStars& stars)
   }
 }
 
+/**
+ * Which of the known points stand apart: parts of the boundary and its ring that only steep edges
+ * join to the rest, and that are small beside it.
+ */
+std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& values) const
+{
+  const IsLowerPoint isLower{ this->Surface };
+  const Index count = static_cast<Index>(this->Known.size());
+  const auto middle =
+    this->Known.begin() + static_cast<std::ptrdiff_t>(this->Patch.BoundaryIds.size());
+  const auto placeOf = [&](Index id) {
+    const bool isBoundary = std::binary_search(this->Known.begin(), middle, id, isLower);
+    const auto begin = isBoundary ? this->Known.begin() : middle;
+    const auto end = isBoundary ? middle : this->Known.end();
+    const auto found = std::lower_bound(begin, end, id, isLower);
+    return found != end && *found == id ? static_cast<Index>(found - this->Known.begin()) : None;
+  };
+  std::vector<SlopingEdge> edges;
+  std::vector<double> slopes;
+  for (Index i = 0; i < count; ++i)
+  {
+    const Index id = this->Known[i];
+    const Point2& p = this->Surface.PointOf(id);
+    stars.Visit(this->Surface, id, [&](Index h) {
+      for (const Index other : { this->Surface.Destination(h), this->Surface.Apex(h) })
+      {
+        const Index place = placeOf(other);
+        const Point2& q = this->Surface.PointOf(other);
+        const double slope =
+          std::fabs(values(other) - values(id)) / std::hypot(q.X - p.X, q.Y - p.Y);
+        if (place > i && !std::isnan(slope))
+        {
+          edges.push_back({ { i, place }, slope });
+          slopes.push_back(slope);
+        }
+      }
+      return true;
+    });
+  }
+  const double limit = SteepEdge * Median(std::move(slopes));
+  const std::vector<Index> gentle = SizesOfParts(count, edges, limit);
+  const std::vector<Index> all =
+    SizesOfParts(count, edges, std::numeric_limits<double>::infinity());
+  std::vector<char> isStray(count);
+  for (Index i = 0; i < count; ++i)
+  {
+    isStray[i] = gentle[i] < LeastPart * all[i] ? 1 : 0;
+  }
+  return isStray;
+}
+
 /** Farthest-point sampling: first on the boundary, then among all known points. */
-void Heights::ChooseCenters()
+void Heights::ChooseCenters(const VertexStars& stars, const Values& values)
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = this->Known.size();
@@ -366,6 +354,11 @@ void Heights::ChooseCenters()
   }
   const double least = LeastDistance * this->Patch.Spacing * this->Scale;
   std::vector<double> squares(count, std::numeric_limits<double>::infinity());
+  const std::vector<char> isStray = this->FindStrays(stars, values);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    squares[i] = isStray[i] ? -1.0 : squares[i];
+  }
   const auto choose = [&](std::size_t end, std::size_t most) {
     while (this->Centers.size() < most)
     {
@@ -457,10 +450,9 @@ public:
     for (int method = 0; method < methods; ++method)
     {
       // A prediction that is exact up to rounding must not outweigh all other places.
-      const double square =
-        squares[method] - noise + std::pow(LeastError * range, 2) + LeastSquare;
-      this->Scores[method] -= ObservationsPerPlace *
-        (0.5 * std::log(square) + PenaltyOfHalfSize[method] * halvings);
+      const double square = squares[method] - noise + std::pow(LeastError * range, 2) + LeastSquare;
+      this->Scores[method] -=
+        ObservationsPerPlace * (0.5 * std::log(square) + PenaltyOfHalfSize[method] * halvings);
     }
     return true;
   }
@@ -595,8 +587,8 @@ private:
       spline.Add(weights, this->Normalized.data(), there.size(), there.data());
       std::transform(rim.begin(), rim.end(), there.begin(), rim.begin(), std::minus<double>());
       const std::vector<double> missed = this->PredictHarmonic(rim, progress);
-      std::transform(predicted.begin(), predicted.end(), missed.begin(), predicted.begin(),
-        std::plus<double>());
+      std::transform(
+        predicted.begin(), predicted.end(), missed.begin(), predicted.begin(), std::plus<double>());
     }
     return predicted;
   }
@@ -834,8 +826,7 @@ std::vector<double> Heights::Apply(const Values& values, const Progress& progres
     // What the splines miss at the boundary; without splines, all of it.
     const std::vector<double> flat =
       this->Harmonic->Solve(missed, 1e-10, Part(progress, this->HasSpline() ? 0.3 : 0.0, 0.8));
-    std::transform(
-      result.begin(), result.end(), flat.begin(), result.begin(), std::plus<double>());
+    std::transform(result.begin(), result.end(), flat.begin(), result.begin(), std::plus<double>());
   }
   this->Bound(rim, values, middle, unit, Part(progress, 0.8, 1.0), result);
   return result;

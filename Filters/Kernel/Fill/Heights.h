@@ -20,9 +20,12 @@
  * the discrete Laplace equation [Pinkall, Polthier]. On a lattice with right angles this is the
  * mean of the four neighbours along the axes, as in eq. 2, whichever way the diagonals run.
  *
- * Splines. At most 300 points around a hole, evenly spread, become centres. Where the spline then
- * misses the boundary, the membrane continues the difference, so that patches always meet their
- * boundary.
+ * Splines. At most 300 points around a hole, evenly spread, become centres; not those that stand
+ * apart, as outliers and what is beyond a cliff. Of the edges between boundary and ring points
+ * those are steep that have more than five times the median slope; a part that steep edges cut off
+ * stands apart if it has less than a quarter of the points that all edges join it to. Where the
+ * spline then misses the boundary, the membrane continues the difference, so that patches always
+ * meet their boundary.
  *
  * Adaptive is a cross-validation. The boundary, the ring and some of the new points are moved to 32
  * places around the hole (four for very large holes), as close to it as possible, and each method
@@ -41,12 +44,12 @@
  *
  * Bounds. NeighborMean and Membrane stay between the least and the greatest value of the boundary.
  * Splines may leave that range, as a summit inside the hole would; but at most by the distance to
- * the nearest boundary point times the median of the slopes around the hole, with their signs: above
- * the range only if most of the surface rises towards the hole, below it only if most of it falls.
- * Adaptive also keeps within twice the median steepness, times that distance, of the membrane.
- * So single points, noise and a cliff along a part of the boundary do not make hills. Slopes are
- * those from the boundary to points outside, half as many edges away as the middle of the hole is,
- * at most 16: over short distances, roughness would count as slope.
+ * the nearest boundary point times the median of the slopes around the hole, with their signs:
+ * upwards only if most of the surface rises towards the hole, downwards only if most of it falls.
+ * Adaptive also keeps within three times the median steepness, times that distance, of the
+ * membrane. So single points and noise do not make hills. Slopes are those from the boundary to
+ * points outside, half as many edges away as the middle of the hole is, at most 16: over short
+ * distances, roughness would count as slope.
  *
  * Fallbacks, told by Used(): splines become the membrane if their points are nearly in a line;
  * values that are not finite at the boundary or the ring are left to NeighborMean, which skips NaN.
@@ -64,11 +67,11 @@
 #ifndef elevation_Fill_Heights_h
 #define elevation_Fill_Heights_h
 
-#include "Patch.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Patch.h"
+#include "Walk.h"
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -86,9 +89,6 @@ enum class Interpolation : unsigned char
   Adaptive = 3,
   Cubic = 4
 };
-
-/** Gives the value at a point of the surface by its id. */
-using Values = std::function<double(Index)>;
 
 class Heights
 {
@@ -127,7 +127,8 @@ private:
 
   void CollectRing(const VertexStars& stars);
   void CollectSlopes(const VertexStars& stars);
-  void ChooseCenters();
+  std::vector<char> FindStrays(const VertexStars& stars, const Values& values) const;
+  void ChooseCenters(const VertexStars& stars, const Values& values);
   std::unique_ptr<Spline> MakeSpline(int which) const;
   bool HasSpline() const { return this->Splines[0] || this->Splines[1]; }
   bool NeedsHarmonic() const

@@ -599,7 +599,7 @@ double OverTheBest(const Mesh& mesh, const Elevation& known, const Elevation& tr
 
 TEST(Heights, OfAdaptiveStayCalmOnLevelNoise)
 {
-  // With and without outliers upwards; small holes, and large ones that hardly fit beside themselves.
+  // With and without outliers upwards; small holes, and large ones that hardly fit beside them.
   const Elevation level = [](const Point2&) { return 0.0; };
   for (const double outlier : { 0.0, 20.0 })
   {
@@ -612,6 +612,23 @@ TEST(Heights, OfAdaptiveStayCalmOnLevelNoise)
       const double middle = 1.2 * radius + 14.0;
       const Mesh mesh = Sheet(static_cast<int>(2.0 * middle), Disc(middle, middle, radius));
       EXPECT_LT(OverTheBest(mesh, noise, level), 1.1) << radius << " " << outlier;
+    }
+  }
+}
+
+TEST(Heights, OfAdaptiveIgnoreACliffAlongTheRim)
+{
+  // Gentle hills; beside the hole they stand 30 higher or lower.
+  const Mesh mesh = Sheet(80, Disc(40, 40, 12));
+  for (const double height : { 30.0, -30.0 })
+  {
+    for (const double gap : { 0.5, 1.5, 2.5 })
+    {
+      const Elevation hills = [](const Point2& p) { return std::sin(0.1 * p.X + 0.07 * p.Y); };
+      const Elevation cliff = [&](const Point2& p) {
+        return hills(p) + (p.X > 52.0 + gap ? height : 0.0);
+      };
+      EXPECT_LT(OverTheBest(mesh, cliff, hills), 1.1) << height << " " << gap;
     }
   }
 }

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Values of a surface at places near to each other.
+ *
+ * In: a mesh, a triangle to begin with, places one after another. Out: the triangle that contains a
+ * place, and linearly interpolated values there. Cost: the number of triangles between the places.
+ */
+#ifndef elevation_Fill_Walk_h
+#define elevation_Fill_Walk_h
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Mesh/Mesh.h"
+
+#include <algorithm>
+#include <functional>
+
+namespace elevation
+{
+
+/** Gives the value at a point of the surface by its id. */
+using Values = std::function<double(Index)>;
+
+/**
+ * Finds the triangle that contains a point, by a walk from a triangle nearby. Corners are taken
+ * from the lowest on, so that the walk and all roundings depend on positions alone.
+ */
+class Walk
+{
+public:
+  Walk(const Mesh& mesh, Index start)
+    : Surface(mesh)
+    , Triangle(start)
+  {
+  }
+
+  /** @return false if the walk comes to the border of the surface */
+  bool To(const Point2& p)
+  {
+    constexpr int mostSteps = 1 << 16;
+    Index t = this->Triangle;
+    for (int step = 0; step < mostSteps; ++step)
+    {
+      const Index first = this->Lowest(t);
+      const Point2& a = this->Surface.PointOf(this->Surface.Origin(first));
+      const Point2& b = this->Surface.PointOf(this->Surface.Destination(first));
+      const Point2& c = this->Surface.PointOf(this->Surface.Apex(first));
+      // Twice the areas that p makes with the three edges.
+      const double area = (b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X);
+      const double tolerance = -1e-9 * area;
+      const double w[3] = { (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X),
+        (b.X - p.X) * (c.Y - p.Y) - (b.Y - p.Y) * (c.X - p.X),
+        (c.X - p.X) * (a.Y - p.Y) - (c.Y - p.Y) * (a.X - p.X) };
+      // The first edge to test changes with each step, so that the walk does not cycle.
+      int across = -1;
+      for (int k = 0; k < 3 && across < 0; ++k)
+      {
+        const int edge = (k + step) % 3;
+        across = w[edge] < tolerance ? edge : -1;
+      }
+      if (across < 0)
+      {
+        const double sum = w[0] + w[1] + w[2];
+        for (int k = 0; k < 3; ++k)
+        {
+          this->Shares[k] = sum > 0.0 ? std::max(0.0, w[(k + 1) % 3] / sum) : 1.0 / 3.0;
+        }
+        this->Triangle = t;
+        return true;
+      }
+      const Index twin = this->Surface.Twin(HalfEdge(first, across));
+      if (twin == Mesh::Border)
+      {
+        return false;
+      }
+      t = Mesh::Triangle(twin);
+    }
+    return false;
+  }
+
+  /** The linearly interpolated value at the point of the last To(). */
+  double ValueOf(const Values& values) const
+  {
+    double value = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      value += this->Shares[k] * values(this->CornerOf(k));
+    }
+    return value;
+  }
+
+  /** By how much the interpolation reduces the variance of uncorrelated noise; 0 at a corner. */
+  double Smoothing() const
+  {
+    return 1.0 - this->Shares[0] * this->Shares[0] - this->Shares[1] * this->Shares[1] -
+      this->Shares[2] * this->Shares[2];
+  }
+
+  /** The corner with the largest weight. */
+  Index Corner() const
+  {
+    int k = this->Shares[1] > this->Shares[0] ? 1 : 0;
+    k = this->Shares[2] > this->Shares[k] ? 2 : k;
+    return this->CornerOf(k);
+  }
+
+private:
+  static Index HalfEdge(Index first, int steps)
+  {
+    return steps == 0 ? first : steps == 1 ? Mesh::Next(first) : Mesh::Previous(first);
+  }
+
+  /** The half-edge of a triangle that leaves its lowest corner. */
+  Index Lowest(Index t) const
+  {
+    Index lowest = 3 * t;
+    for (Index h = 3 * t + 1; h < 3 * t + 3; ++h)
+    {
+      lowest = IsLower(this->Surface.PointOf(this->Surface.Origin(h)),
+                 this->Surface.PointOf(this->Surface.Origin(lowest)))
+        ? h
+        : lowest;
+    }
+    return lowest;
+  }
+
+  Index CornerOf(int k) const
+  {
+    return this->Surface.Origin(HalfEdge(this->Lowest(this->Triangle), k));
+  }
+
+  const Mesh& Surface;
+  Index Triangle;
+  double Shares[3] = { 1.0, 0.0, 0.0 };
+};
+
+} // namespace elevation
+
+#endif
