@@ -322,12 +322,9 @@ int vtkFillElevationHoles::RequestData(
     mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
     Holes holes = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
     Mesh opened;
-    const bool opens = this->MaximumEdgeLength > 0.0;
-    if (opens)
-    {
-      opened = elevation::OpenLongTriangles(
-        mesh, this->MaximumEdgeLength, holes, Part(progress, 0.3, 0.35));
-    }
+    const bool isOpened = this->MaximumEdgeLength > 0.0 &&
+      elevation::OpenLongTriangles(
+        mesh, this->MaximumEdgeLength, holes, opened, Part(progress, 0.3, 0.35));
 
     FillOptions options = OptionsOf(this);
     if (this->InterpolatePointData)
@@ -335,9 +332,9 @@ int vtkFillElevationHoles::RequestData(
       options.Attributes = AttributesOf(input->GetPointData());
     }
     options.SinglePrecision = HasFloatPoints(input);
-    options.Monitor = Part(progress, opens ? 0.35 : 0.3, 0.8);
+    options.Monitor = Part(progress, 0.35, 0.8);
     const FillResult patches =
-      elevation::FillHoles(opens ? opened : mesh, points.View, holes, options);
+      elevation::FillHoles(isOpened ? opened : mesh, points.View, holes, options);
 
     MakeSurface(
       input, mesh, holes, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);

@@ -107,6 +107,7 @@ TAKES = {
     "--boundary": "a file",
     "--outward-test": "one of " + ", ".join(OUTWARD_TESTS),
     "--gap-tolerance": NUMBER,
+    "--open-edge-length": NUMBER,
     "--maximum-hole-size": NUMBER,
     "--maximum-hole-edges": "a whole number of 0 or more",
     "--spacing": NUMBER,
@@ -165,6 +166,7 @@ def make_parser():
     add("--gap-tolerance", type=number_at_least_zero, default=0.0)
     add("--no-recover-boundary", action="store_true")
     add("--no-trim", action="store_true")
+    add("--open-edge-length", type=number_at_least_zero)
     add("--maximum-hole-size", type=number_at_least_zero, default=0.0)
     add("--maximum-hole-edges", type=count_at_least_zero, default=0)
     add("--spacing", type=number_at_least_zero, default=0.0)
@@ -193,7 +195,8 @@ def parse_arguments(arguments):
     ):
         parser.error("--no-trim leaves nothing for the trimming options to do")
     if options.no_fill and (
-        options.maximum_hole_size
+        options.open_edge_length
+        or options.maximum_hole_size
         or options.maximum_hole_edges
         or options.spacing
         or options.interpolation
@@ -248,6 +251,7 @@ class Run:
         self.progress = Progress(sys.stderr.isatty() and not options.quiet)
         self.times = {}
         self.notes = []
+        self.why_opened = None
         self.updating = False
         self.stopped = False
         self.display = VirtualDisplay()
@@ -340,6 +344,8 @@ def reconstruct(run, cloud, breaklines, boundary):
     if not options.no_fill:
         fill = vtkFillElevationHoles()
         fill.SetInputData(last.GetOutput())
+        length, run.why_opened = length_to_open(last.GetOutput(), options)
+        fill.SetMaximumEdgeLength(length)
         fill.SetMaximumHoleSize(options.maximum_hole_size)
         fill.SetMaximumHoleEdges(options.maximum_hole_edges)
         fill.SetSpacing(options.spacing)
@@ -349,6 +355,45 @@ def reconstruct(run, cloud, breaklines, boundary):
         fill.SetNumberOfThreads(options.threads)
         run.update("fill", "filling holes", fill)
     return delaunay, trim, fill
+
+
+# Above this multiple, edges bridge missing nodes of a grid, or the space between survey lines.
+CELL_DIAGONALS = 1.5
+SPACINGS_ALONG = 2.0
+# Triangles of lines: the longest edge is this multiple of the shortest.
+LEAST_RATIO_OF_LINES = 6.0
+# A full grid has triangles of half a cell; a thinned one, whose nodes are not missing, larger ones.
+MOST_CELLS_OF_FULL_GRID = 0.75
+
+
+def length_to_open(surface, options):
+    """The length above which edges are opened, to be filled like holes, and why; (0, None): none."""
+    if options.open_edge_length is not None:
+        return options.open_edge_length, "as given"
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    if options.boundary or len(triangles) == 0:
+        # The edges of a boundary may be long where nothing is missing.
+        return 0.0, None
+    xy = vtk_to_numpy(surface.GetPoints().GetData())[:, :2].astype("f8")
+    a, b, c = (xy[triangles[:, i]] for i in range(3))
+    area = 0.5 * numpy.abs(
+        (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    )
+    lattice = lattice_of(surface.GetFieldData())
+    if lattice:
+        u, v = (numpy.array(step) for step in lattice["steps"])
+        cell = abs(u[0] * v[1] - u[1] * v[0])
+        if numpy.median(area) <= MOST_CELLS_OF_FULL_GRID * cell:
+            diagonal = float(max(numpy.hypot(*(u + v)), numpy.hypot(*(u - v))))
+            return CELL_DIAGONALS * diagonal, f"{CELL_DIAGONALS:g} diagonals of the grid's cells"
+    lengths = numpy.sort(
+        numpy.column_stack([numpy.hypot(*(q - p).T) for p, q in ((a, b), (b, c), (c, a))]), axis=1
+    )
+    is_between = lengths[:, 2] > LEAST_RATIO_OF_LINES * lengths[:, 0]
+    if area[is_between].sum() > 0.5 * area.sum():
+        along = float(numpy.median(lengths[is_between, 0]))
+        return SPACINGS_ALONG * along, f"{SPACINGS_ALONG:g} spacings of {along:.4g} along lines"
+    return 0.0, None
 
 
 def check_spacing(points, options):
@@ -402,7 +447,7 @@ def why_no_triangle(points, options):
 REASONS = {1: "same x,y as another point", 2: "not finite"}
 LONELY = "in no triangle below the edge limit"
 OUTSIDE = "outside the boundary"
-STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed"}
+STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced"}
 
 
 def lattice_of(fields):
@@ -506,6 +551,8 @@ def make_report(run, cloud, delaunay, trim, fill):
         for hole in holes:
             by_status[hole["status"]] = by_status.get(hole["status"], 0) + 1
         report["holes"] = {
+            "open_edge_length": fill.GetMaximumEdgeLength(),
+            "open_edge_length_is": run.why_opened,
             "found": fill.GetNumberOfHoles(),
             "filled": fill.GetNumberOfFilledHoles(),
             "by_status": by_status,
@@ -652,8 +699,16 @@ def print_report(report, options):
             f"{holes['found']:,} found, {holes['filled']:,} filled with "
             f"{counted(holes['inserted_points'], 'point')}",
         )
+        if holes["open_edge_length"]:
+            count = holes["by_status"].get("replaced", 0)
+            line("", f"{count:,} of them were bridged by triangles")
+            line(
+                "",
+                f"an edge is a bridge above {holes['open_edge_length']:.4g} "
+                f"({holes['open_edge_length_is']}); see --open-edge-length",
+            )
         for status, count in holes["by_status"].items():
-            if status != "filled":
+            if status not in ("filled", "replaced"):
                 some = [h for h in holes["list"] if h["status"] == status][:5]
                 more = ", ..." if count > len(some) else ""
                 if status == "too many edges":

@@ -444,7 +444,9 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
             renderer.AddActor(lines_actor(points, outline(filled), FILLED, 2.0, 1))
             legend.append(("filled hole", FILLED))
     if holes is not None and holes.GetNumberOfLines():
-        still_open = vtk_to_numpy(holes.GetCellData().GetArray("Status")) != 0
+        # 0: filled; 4: triangles that bridged it were replaced
+        status = vtk_to_numpy(holes.GetCellData().GetArray("Status"))
+        still_open = (status != 0) & (status != 4)
         pairs = segments([p for p, o in zip(line_cells(holes), still_open) if o])
         if len(pairs):
             renderer.AddActor(lines_actor(frame.of(holes), pairs, OPEN, 3.5, 2))

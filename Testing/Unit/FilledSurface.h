@@ -98,7 +98,10 @@ inline Outcome Fill(
   run.Surface = std::move(mesh);
   run.Coordinates = std::move(coordinates);
   run.Found = FindHoles(run.Surface);
-  run.Rest = longest > 0.0 ? OpenLongTriangles(run.Surface, longest, run.Found) : run.Surface;
+  if (!(longest > 0.0) || !OpenLongTriangles(run.Surface, longest, run.Found, run.Rest))
+  {
+    run.Rest = run.Surface;
+  }
   run.Patches = FillHoles(run.Rest, run.Points(), run.Found, options);
   return run;
 }

@@ -871,6 +871,26 @@ EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
   return lengths;
 }
 
+/**
+ * An upper bound of the number of graded points, which does not grow with the distance of lines. As
+ * the spacing grows with the distance from an edge, there are 1 / Growth points at each of its
+ * sides, twice to be safe; and around a lone point as many as the integral over rings tells. Far
+ * from all of these, the spacing is the largest.
+ */
+double MostGradedPoints(const EdgeLengths& lengths, double area, double mean, double largest)
+{
+  constexpr double perSide = 2.0 / Growth;
+  const double reach = Growth * std::sqrt(area) / mean;
+  const double perPoint = 2.0 * 6.3 / (Growth * Growth) * std::log1p(reach);
+  double most = 2.0 * area / largest / largest / RowHeight;
+  most += perSide * static_cast<double>(lengths.Boundary.size());
+  for (const double length : lengths.Inner)
+  {
+    most += length > 0.0 ? 2.0 * perSide : perPoint;
+  }
+  return most;
+}
+
 /** Whether all known points of a hole are nodes, and the ends of its edges are different ones. */
 bool IsOnLattice(const Mesh& mesh, const Holes& holes, Index hole, const Lattice& lattice)
 {
@@ -935,6 +955,11 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     constexpr double morePerEdgeWhenGraded = 8.0;
     plan.Kind = Arrangement::Graded;
     plan.MostPoints += morePerEdgeWhenGraded * edges;
+    if (holes.IsRegion(hole))
+    {
+      plan.MostPoints = std::min(
+        plan.MostPoints, MostGradedPoints(lengths, area, plan.Spacing, *range.second));
+    }
   }
   else
   {

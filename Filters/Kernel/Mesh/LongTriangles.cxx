@@ -24,12 +24,17 @@ public:
     holes.LongestEdge = longest;
   }
 
-  void Run(const Progress& progress)
+  /** @return whether there are regions */
+  bool Run(const Progress& progress)
   {
-    this->FindRegions(Part(progress, 0.0, 0.5));
+    if (!this->FindRegions(Part(progress, 0.0, 0.5)))
+    {
+      return false;
+    }
     this->TraceBorders(Part(progress, 0.5, 0.7));
     this->FindRims();
     this->CollectInnerEdges(Part(progress, 0.7, 1.0));
+    return true;
   }
 
   /** One flag a triangle: 1 if it is not long. */
@@ -42,8 +47,8 @@ public:
   }
 
 private:
-  /** Numbers the regions from the first triangle on, behind the other holes. */
-  void FindRegions(const Progress& progress)
+  /** Numbers the regions from the first triangle on, behind the other holes. @return if any */
+  bool FindRegions(const Progress& progress)
   {
     const Mesh& mesh = this->Surface;
     const Index count = mesh.NumberOfTriangles();
@@ -55,6 +60,10 @@ private:
           mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2));
       }
     });
+    if (std::find(isLong.begin(), isLong.end(), 1) == isLong.end())
+    {
+      return false;
+    }
     const Components parts = FindComponents(mesh, Part(progress, 0.5, 1.0), [&](Index h) {
       return isLong[Mesh::Triangle(h)] && isLong[Mesh::Triangle(mesh.Twin(h))] ? 0 : -1;
     });
@@ -70,6 +79,7 @@ private:
     {
       this->Result.RegionOf[t] = numbers[parts.ComponentOf(t)];
     }
+    return true;
   }
 
   Index RegionAt(Index h) const
@@ -234,14 +244,18 @@ private:
 };
 } // namespace
 
-Mesh OpenLongTriangles(const Mesh& mesh, double longest, Holes& holes, const Progress& progress)
+bool OpenLongTriangles(
+  const Mesh& mesh, double longest, Holes& holes, Mesh& rest, const Progress& progress)
 {
   RegionFinder finder(mesh, longest, holes);
-  finder.Run(Part(progress, 0.0, 0.9));
-  Mesh rest = mesh;
+  if (!finder.Run(Part(progress, 0.0, 0.9)))
+  {
+    return false;
+  }
+  rest = mesh;
   KeepTriangles(finder.Others(), rest);
   Report(progress, 1.0);
-  return rest;
+  return true;
 }
 
 } // namespace elevation

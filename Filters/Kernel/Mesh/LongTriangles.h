@@ -37,11 +37,13 @@ namespace elevation
  * @param[in]     mesh     the surface, as given to FindHoles()
  * @param[in]     longest  the length of the longest edge that is not long; above 0
  * @param[in,out] holes    from FindHoles(); out: with the regions
- * @return the mesh without long triangles, with the same points
+ * @param[out]    rest     the mesh without long triangles, with the same points; empty if none is
+ *                         long
+ * @return whether any triangle is long
  * @throws Aborted; std::bad_alloc
  */
-Mesh OpenLongTriangles(
-  const Mesh& mesh, double longest, Holes& holes, const Progress& progress = Progress());
+bool OpenLongTriangles(const Mesh& mesh, double longest, Holes& holes, Mesh& rest,
+  const Progress& progress = Progress());
 
 } // namespace elevation
 
