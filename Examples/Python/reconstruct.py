@@ -195,7 +195,7 @@ def parse_arguments(arguments):
     ):
         parser.error("--no-trim leaves nothing for the trimming options to do")
     if options.no_fill and (
-        options.open_edge_length
+        options.open_edge_length is not None
         or options.maximum_hole_size
         or options.maximum_hole_edges
         or options.spacing
@@ -360,8 +360,10 @@ def reconstruct(run, cloud, breaklines, boundary):
 # Above this multiple, edges bridge missing nodes of a grid, or the space between survey lines.
 CELL_DIAGONALS = 1.5
 SPACINGS_ALONG = 2.0
-# Triangles of lines: the longest edge is this multiple of the shortest.
-LEAST_RATIO_OF_LINES = 6.0
+# Triangles of lines: the longest edge is this multiple of the shortest. They cover more than half of
+# a survey of lines at least 10 spacings apart, also with jitter of half a spacing, and at most a
+# tenth of anything else.
+LEAST_RATIO_OF_LINES = 3.0
 # A full grid has triangles of half a cell; a thinned one, whose nodes are not missing, larger ones.
 MOST_CELLS_OF_FULL_GRID = 0.75
 
@@ -391,7 +393,7 @@ def length_to_open(surface, options):
     )
     is_between = lengths[:, 2] > LEAST_RATIO_OF_LINES * lengths[:, 0]
     if area[is_between].sum() > 0.5 * area.sum():
-        along = float(numpy.median(lengths[is_between, 0]))
+        along = float(numpy.median(lengths[:, 0]))
         return SPACINGS_ALONG * along, f"{SPACINGS_ALONG:g} spacings of {along:.4g} along lines"
     return 0.0, None
 

@@ -5,6 +5,7 @@
 import json
 import math
 import os
+import random
 import shutil
 import signal
 import subprocess
@@ -160,6 +161,47 @@ class Report(Program):
                 self.assertAlmostEqual(
                     report["holes"]["list"][0]["size"], math.sqrt(32), msg="a box of 4 x 4"
                 )
+
+    def test_missing_nodes_of_a_grid_are_filled(self):
+        # Of 2 x 2 nodes, which triangles bridge.
+        rows = [p for p in SHEET if not (4 <= p[0] <= 5 and 4 <= p[1] <= 5)]
+        name = self.file("bridged.xyz", text_of(rows))
+        holes = self.report(name)["holes"]
+        self.assertAlmostEqual(holes["open_edge_length"], 1.5 * math.sqrt(2))
+        self.assertEqual(holes["open_edge_length_is"], "1.5 diagonals of the grid's cells")
+        self.assertEqual(holes["by_status"], {"replaced": 1})
+        self.assertEqual((holes["filled"], holes["inserted_points"]), (1, 4))
+        for words in ("1 found, 1 filled", "1 of them were bridged", "--open-edge-length"):
+            self.assertIn(words, self.output)
+        self.assertEqual(self.report(name, "--open-edge-length", "0")["holes"]["found"], 0)
+        holes = self.report(name, "--open-edge-length", "2.9")["holes"]
+        self.assertEqual((holes["open_edge_length_is"], holes["found"]), ("as given", 1))
+        # Where a grid is thinned, nodes are not missing; with a boundary, edges may be long anyway.
+        thin = random.Random(2).sample(SHEET, len(SHEET) // 3)
+        report = self.report(self.file("thin.xyz", text_of(thin)))
+        self.assertEqual(report["holes"]["open_edge_length"], 0)
+        ring = self.file("ring.xyz", "1 1\n10 1\n10 10\n1 10\n1 1\n")
+        self.assertEqual(self.report(name, "--boundary", ring)["holes"]["open_edge_length"], 0)
+
+    def test_the_space_between_survey_lines_is_filled(self):
+        rows = []
+        for line in range(6):
+            for k in range(80):
+                x = 40 * line + 0.3 * math.sin(37 * k + line)
+                y = k + 0.3 * math.cos(29 * k + 5 * line)
+                rows.append((x, y, 0.1 * x - 0.2 * y))
+        name = self.file("lines.xyz", text_of(rows))
+        report = self.report(name, "--no-trim")
+        holes = report["holes"]
+        self.assertGreater(holes["open_edge_length"], 1.6)
+        self.assertLess(holes["open_edge_length"], 2.6)
+        self.assertIn("along lines", holes["open_edge_length_is"])
+        self.assertGreater(holes["by_status"]["replaced"], 0)
+        self.assertGreater(holes["inserted_points"], len(rows))
+        self.assertLess(holes["inserted_points"], 15 * len(rows))
+        self.assertEqual(report["points_unused"], 0)
+        self.assertLess(report["distance"]["maximum"], 1e-6)
+        self.assertIn("along lines); see --open-edge-length", self.output)
 
     def test_interpolation_is_handed_on_and_reported(self):
         name = self.file("holed.xyz", text_of(HOLED))
@@ -762,6 +804,8 @@ class BadInput(Program):
             ("a second file: other.xyz", (name, "other.xyz")),
             ("unknown option", (name, "--fast")),
             ("--no-trim leaves nothing", (name, "--no-trim", "--boundary", name)),
+            ("--open-edge-length takes a number of 0 or", (name, "--open-edge-length", "nan")),
+            ("--no-fill leaves nothing", (name, "--no-fill", "--open-edge-length", "0")),
             ("--no-fill leaves nothing", (name, "--no-fill", "--spacing", "3")),
             ("--no-fill leaves nothing", (name, "--no-fill", "--interpolation", "membrane")),
             ("--no-picture leaves nothing", (name, "--no-picture", "--view", "top")),

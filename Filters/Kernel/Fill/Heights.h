@@ -20,12 +20,12 @@
  * the discrete Laplace equation [Pinkall, Polthier]. On a lattice with right angles this is the
  * mean of the four neighbours along the axes, as in eq. 2, whichever way the diagonals run.
  *
- * Splines. At most 300 points around a hole, evenly spread, become centres; not those that stand
- * apart, as outliers and what is beyond a cliff. Of the edges between boundary and ring points
- * those are steep that have more than five times the median slope; a part that steep edges cut off
- * stands apart if it has less than a quarter of the points that all edges join it to. Where the
- * spline then misses the boundary, the membrane continues the difference, so that patches always
- * meet their boundary.
+ * Splines. At most 300 points around a hole, evenly spread, become centres (with points inside, one
+ * more for each of them, up to 1500); not those that stand apart, as outliers and what is beyond a
+ * cliff. Of the edges between boundary and ring points those are steep that have more than five
+ * times the median slope; a part that steep edges cut off stands apart if it has less than a
+ * quarter of the points that all edges join it to. Where the spline then misses the boundary, the
+ * membrane continues the difference, so that patches always meet their boundary.
  *
  * Adaptive is a cross-validation. The boundary, the ring and some of the new points are moved to 32
  * places around the hole (four for very large holes), as close to it as possible, and each method

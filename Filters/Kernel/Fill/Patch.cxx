@@ -1002,6 +1002,13 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
       edge = { vertexOf(edge.A), vertexOf(edge.B) };
     }
   }
+  std::vector<char> isInside(ids.size(), 1);
+  for (const Segment& edge : patch.Edges)
+  {
+    isInside[edge.A] = 0;
+  }
+  patch.NumberOfPointsInside =
+    static_cast<Index>(std::count(isInside.begin(), isInside.end(), 1));
   patch.Points.reserve(3 * ids.size());
   for (const Index id : ids)
   {

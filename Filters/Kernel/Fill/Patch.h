@@ -127,6 +127,7 @@ struct PatchMesh
   std::vector<Index> BoundaryIds; ///< vertex -> id in the surface; from the lowest point on
   std::vector<double> Points;     ///< x, y and room for z of all vertices
   std::vector<Index> Triangles;   ///< inside the hole
+  Index NumberOfPointsInside = 0; ///< of them those inside a region
   double Spacing = 0.0;
 
   // Found by Neighbours.h, one for each new vertex.
