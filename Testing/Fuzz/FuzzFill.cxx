@@ -3,7 +3,8 @@
 /**
  * @file
  * Surface -> filled surface: holes reported as filled are closed by patches that fit, others are left
- * alone for the reason that is told, counts agree, and elevations are within bounds.
+ * alone for the reason that is told, counts agree, and elevations are within bounds. Regions of long
+ * triangles are replaced by patches, or keep their triangles.
  */
 #include "FuzzSurface.h"
 
@@ -18,10 +19,25 @@ namespace
 {
 using namespace fuzz;
 
-/** The surface with its patches, with Twins; or the patches alone. */
-Mesh Joined(const Surface& surface, const FillResult& filled, bool patchesAlone)
+bool IsClosed(const HoleReport& report)
+{
+  return report.Status == FillStatus::Filled || report.Status == FillStatus::Replaced;
+}
+
+/** The surface with its patches; or the patches alone. */
+Mesh Joined(
+  const Surface& surface, const Holes& holes, const FillResult& filled, bool patchesAlone)
 {
   Mesh mesh = surface.Triangles;
+  mesh.Triangles.clear();
+  for (Index h = 0; h < surface.Triangles.NumberOfHalfEdges(); ++h)
+  {
+    const Index region = holes.RegionOf.empty() ? None : holes.RegionOf[Mesh::Triangle(h)];
+    if (region == None || !IsClosed(filled.Reports[region]))
+    {
+      mesh.Triangles.push_back(surface.Triangles.Origin(h));
+    }
+  }
   for (std::size_t i = 0; i < filled.Points.size(); i += 3)
   {
     mesh.Points.push_back({ filled.Points[i], filled.Points[i + 1] });
@@ -56,16 +72,23 @@ void RequireReport(
   Require((report.Status == FillStatus::TooManyEdges) == (hasTooMany && !isTooLarge),
     "holes with too many edges are told");
   Require((report.Status == FillStatus::Failed) == !report.Reason.empty(), "failures have a reason");
-  Require(report.Status != FillStatus::Filled || !holes.Touched[hole],
+  Require(!IsClosed(report) || !holes.Touched[hole],
     "a hole in which borders touch is not filled");
-  if (report.Status != FillStatus::Filled)
+  Require(!IsClosed(report) || (report.Status == FillStatus::Replaced) == holes.IsRegion(hole),
+    "regions have a status of their own");
+  if (!IsClosed(report))
   {
     Require(points == 0 && triangles == 0, "what is not filled gets nothing");
     return;
   }
   // Euler: a polygon of n edges with k islands takes n - 2 + 2 k triangles, and two a point.
   const Index islands = holes.Offsets[hole + 1] - holes.Offsets[hole] - 1;
-  Require(triangles == report.NumberOfEdges - 2 + 2 * islands + 2 * points, "a patch is complete");
+  std::set<Index> inside;
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) { inside.insert({ a, b }); });
+  holes.VisitEdges(hole, [&](Index a, Index) { inside.erase(a); });
+  const Index known = static_cast<Index>(inside.size());
+  Require(triangles == report.NumberOfEdges - 2 + 2 * (islands + points + known),
+    "a patch is complete");
   Require(points <= options.MaximumInsertedPoints, "no more points than allowed");
   Require(report.Method != Interpolation::Adaptive, "the method used is told");
 
@@ -104,12 +127,17 @@ void RequirePoints(const Surface& surface, const Holes& holes, Index hole, const
   double least = HUGE_VAL, most = -HUGE_VAL;
   bool areFinite = true;
   std::vector<Index> boundary;
-  holes.VisitEdges(hole, [&](Index a, Index) {
+  const auto add = [&](Index a, Index) {
     boundary.push_back(a);
     const double z = surface.Points().Elevation(boundary.back());
     areFinite = areFinite && std::isfinite(z);
     least = std::min(least, z);
     most = std::max(most, z);
+  };
+  holes.VisitEdges(hole, add);
+  holes.VisitInnerEdges(hole, [&](Index a, Index b) {
+    add(a, b);
+    add(b, a);
   });
   const bool allFinite = std::all_of(surface.Xyz.begin(), surface.Xyz.end(), [](double value) {
     return std::isfinite(value) && std::fabs(value) < 1e100;
@@ -184,16 +212,30 @@ void RequireFilled(const Surface& surface, const Holes& holes, const FillOptions
     RequirePoints(surface, holes, hole, options, filled);
     closed += filled.Reports[hole].Status == FillStatus::Filled ? holes.NumberOfEdges(hole) : 0;
   }
-  Mesh all = Joined(surface, filled, false);
+  Mesh all = Joined(surface, holes, filled, false);
   RequireNone(SurfaceFindings(all), "filled");
   all.ConnectTwins();
   Require(NumberOfBorders(all) == NumberOfBorders(surface.Triangles) - closed,
     "holes reported as filled are closed, and no other border is");
 
-  // Edges of the boundary are those of one patch alone: all others must be Delaunay.
+  // All edges but those of holes, and those kept inside of regions, must be Delaunay.
+  const Mesh patches = Joined(surface, holes, filled, true);
+  std::set<std::pair<Index, Index>> given;
+  const auto add = [&](Index a, Index b) { given.insert({ { a, b }, { b, a } }); };
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    holes.VisitEdges(hole, add);
+    holes.VisitInnerEdges(hole, add);
+  }
+  std::vector<char> constrained;
+  for (Index h = 0; h < patches.NumberOfHalfEdges(); ++h)
+  {
+    constrained.push_back(given.count({ patches.Origin(h), patches.Destination(h) }) > 0);
+  }
   ValidateOptions rules;
   rules.ConvexHull = rules.AllPoints = rules.Overlap = false;
-  RequireNone(ToString(Validate(Joined(surface, filled, true), rules)), "patches");
+  rules.Constrained = &constrained;
+  RequireNone(ToString(Validate(patches, rules)), "patches");
 }
 } // namespace
 
@@ -230,14 +272,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Show("corners of the surface", surface.Triangles.Triangles);
   RequireNone(SurfaceFindings(surface.Triangles), "the input");
 
-  const Holes holes = FindHoles(surface.Triangles);
-  const FillResult filled = FillHoles(surface.Triangles, surface.Points(), holes, options);
+  Holes holes = FindHoles(surface.Triangles);
+  const double longest = limit % 4 >= 2 ? limit * limit / 65536.0 * surface.Largest : 0.0;
+  Mesh opened;
+  const bool isOpened =
+    longest > 0.0 && OpenLongTriangles(surface.Triangles, longest, holes, opened);
+  const Mesh& rest = isOpened ? opened : surface.Triangles;
+  const FillResult filled = FillHoles(rest, surface.Points(), holes, options);
   RequireFilled(surface, holes, options, filled);
   if (bits & 128)
   {
     FillOptions other = options;
     other.NumberOfThreads = 3;
-    RequireSame(filled, FillHoles(surface.Triangles, surface.Points(), holes, other));
+    RequireSame(filled, FillHoles(rest, surface.Points(), holes, other));
   }
   return 0;
 }
