@@ -64,7 +64,7 @@ set(es_kernel_headers_Triangulate
   Growth Instructions Options WorkBudget)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
-  Walk)
+  Trials Walk)
 
 set(es_kernel_headers)
 set(es_kernel_sources)

@@ -164,6 +164,14 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const Holes& holes,
   // An array of the input that it replaces may be the active scalars, say; this one is not.
   output->GetPointData()->RemoveArray(isNew->GetName());
   output->GetPointData()->AddArray(isNew);
+  vtkNew<vtkDoubleArray> errors;
+  errors->SetName("FilledError");
+  errors->SetNumberOfTuples(output->GetNumberOfPoints());
+  std::fill_n(errors->GetPointer(0), input->GetNumberOfPoints(), 0.0);
+  std::copy(patches.StandardErrors.begin(), patches.StandardErrors.end(),
+    errors->GetPointer(0) + input->GetNumberOfPoints());
+  output->GetPointData()->RemoveArray(errors->GetName());
+  output->GetPointData()->AddArray(errors);
 
   Report(progress, 0.6);
   const std::vector<Index> kept = ListKept(mesh, holes, patches);

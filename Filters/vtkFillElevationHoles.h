@@ -18,10 +18,15 @@
  * are left out, and the ids of later cells are lower.) The triangles are counter-clockwise seen from +z: a clockwise one of the
  * input is turned over (its last two points change places); nothing else of the input changes.
  * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
+ * - Point array FilledError (vtkDoubleArray): the standard error of the z of new points, in units of
+ *   z, 0 for points of the input: of 100 new points some 68 are within one of the truth, some 95
+ *   within two. It follows from the errors that the method makes beside the hole, where the surface
+ *   is known, by distance from the hole's boundary. NaN where there is no such place, and with
+ *   NEIGHBOR_MEAN, which is not tried.
  * - Cell array HoleId (vtkIdTypeArray): the hole a new triangle lies in, -1 for cells of the input.
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
  *   (floating-point numbers), 0 (integers), or an empty string. Arrays of the input called
- *   FilledPoint or HoleId are replaced.
+ *   FilledPoint, FilledError or HoleId are replaced.
  * - Global and pedigree ids: new points and triangles get -1 (the largest number of an unsigned
  *   type, NaN, an empty string). As this value repeats, an array of global ids is no longer marked
  *   as such when points (triangles) were added; an array of pedigree ids stays marked.

@@ -140,6 +140,7 @@ void TestArrays(int precision)
     "the clockwise one of the input too");
 
   auto* filled = Named<vtkUnsignedCharArray>(output->GetPointData(), "FilledPoint");
+  auto* errors = Named<vtkDoubleArray>(output->GetPointData(), "FilledError");
   auto* amplitude = Named<vtkDoubleArray>(output->GetPointData(), "Amplitude");
   auto* normals = Named<vtkFloatArray>(output->GetPointData(), "Normals");
   auto* numbers = Named<vtkIntArray>(output->GetPointData(), "Number");
@@ -161,6 +162,7 @@ void TestArrays(int precision)
       before->GetPoint(i, q);
       Check(p[0] == q[0] && p[1] == q[1] && p[2] == q[2], "input points are unchanged and first");
       Check(ghosts->GetValue(i) == 1, "values of input points are unchanged");
+      Check(errors->GetValue(i) == 0.0, "points of the input have no error of filling");
       continue;
     }
     const double tolerance = precision == VTK_FLOAT ? 1e-4 : 1e-10;
@@ -516,6 +518,39 @@ void TestRefusals()
   });
 }
 
+/** What FilledError holds by each method. */
+void TestErrors()
+{
+  std::vector<std::string> sheet(21, std::string(21, '#'));
+  for (int row = 9; row < 12; ++row)
+  {
+    sheet[row].replace(9, 3, "...");
+  }
+  auto input = MakeFlatSheet(sheet);
+  vtkPoints* points = input->GetPoints();
+  for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    points->GetPoint(i, p);
+    points->SetPoint(i, p[0], p[1], std::sin(p[0]) * std::cos(p[1]));
+  }
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  for (int method = 0; method < 5; ++method)
+  {
+    fill->SetInterpolation(method);
+    fill->Update();
+    auto* errors = Named<vtkDoubleArray>(fill->GetOutput()->GetPointData(), "FilledError");
+    Check(errors->GetNumberOfTuples() > points->GetNumberOfPoints(), "there are new points");
+    for (vtkIdType i = points->GetNumberOfPoints(); i < errors->GetNumberOfTuples(); ++i)
+    {
+      const double error = errors->GetValue(i);
+      Check(method > 0 ? error > 0.0 && error < 2.0 : std::isnan(error),
+        "new points have an error by every method but the mean of neighbours");
+    }
+  }
+}
+
 /** Arrays of the input that have the names of arrays of the output, and are active. */
 void TestReplacedArrays()
 {
@@ -711,6 +746,7 @@ int TestFillElevationHoles(int, char*[])
   TestUnlimitedSpacing();
   TestRefusals();
   TestSurfacesThatPass();
+  TestErrors();
   TestReplacedArrays();
   TestNumberOfInsertedPoints();
   TestAbort();

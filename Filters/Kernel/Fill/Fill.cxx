@@ -124,7 +124,7 @@ void CheckLimits(HoleReport& report, bool isTouched, const FillOptions& options)
 /** Finds elevations and attributes; of each attribute one vector, in the order of vertices. */
 void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points,
   const FillOptions& options, const Progress& progress, Patch& patch, HoleReport& report,
-  std::vector<std::vector<double>>& attributes)
+  std::vector<std::vector<double>>& attributes, std::vector<double>& errors)
 {
   const Values elevation = [&points](Index id) { return points.Elevation(id); };
   const Heights heights(mesh, stars, patch, options.Method, elevation, Part(progress, 0.0, 0.5));
@@ -147,6 +147,7 @@ void Elevate(const Mesh& mesh, const VertexStars* stars, const PointView& points
     }
   }
   report.Method = heights.Used();
+  errors = heights.StandardErrors();
 }
 
 /** A patch and its attributes, before they are appended. */
@@ -154,6 +155,7 @@ struct FilledHole
 {
   Patch Triangles;
   std::vector<std::vector<double>> Attributes;
+  std::vector<double> Errors;
 };
 
 void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
@@ -173,6 +175,7 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
   room(result.Points, 3 * points);
   room(result.Triangles, patch.Triangles.size());
   room(result.NearestBoundaryPoints, points);
+  room(result.StandardErrors, points);
   for (std::vector<double>& values : result.Attributes)
   {
     room(values, points);
@@ -188,6 +191,7 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
   {
     const auto point = patch.Points.begin() + 3 * std::ptrdiff_t(patch.Order[k]);
     result.Points.insert(result.Points.end(), point, point + 3);
+    result.StandardErrors.push_back(filled.Errors[patch.Order[k] - first]);
     result.NearestBoundaryPoints.push_back(ids[patch.Nearest[patch.Order[k] - first]]);
     for (std::size_t i = 0; i < attributes.size(); ++i)
     {
@@ -217,7 +221,7 @@ public:
   FillResult Run()
   {
     const Progress& monitor = this->Options.Monitor;
-    const bool needsStars = Heights::NeedsSurroundings(this->Options.Method);
+    const bool needsStars = this->Options.Method != Interpolation::NeighborMean;
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll();
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
@@ -424,7 +428,7 @@ private:
       FindNeighbors(patch, Part(progress, 0.4, 0.45));
       FindNearest(patch, Part(progress, 0.45, 0.5));
       Elevate(this->Surface, this->Stars.get(), this->Points, this->Options,
-        Part(progress, 0.5, 1.0), patch, report, filled.Attributes);
+        Part(progress, 0.5, 1.0), patch, report, filled.Attributes, filled.Errors);
     }
     catch (const Error& error)
     {

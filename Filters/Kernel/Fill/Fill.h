@@ -99,6 +99,8 @@ struct FillResult
   std::vector<Index> TriangleOffsets{ 0 };
   /** One per new point: the nearest known point of its hole; the lowest of several. */
   std::vector<Index> NearestBoundaryPoints;
+  /** One per new point: of its elevation; NaN where nothing can be told. */
+  std::vector<double> StandardErrors;
   std::vector<std::vector<double>> Attributes; ///< as in the options, one value per new point
   std::vector<HoleReport> Reports;
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Heights.h"
 
-#include "Kernel/Base/Base.h"
 #include "Spline.h"
-#include "Walk.h"
+#include "Trials.h"
+#include "Kernel/Base/Base.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,45 +33,13 @@ constexpr std::size_t MostCentersWithPointsInside = 1500;
 /** Centres closer together than this, in spacings, add nothing but rounding. */
 constexpr double LeastDistance = 0.02;
 
-/**
- * Places where Adaptive tries the methods, new points compared there, and places that suffice. With
- * two in place of eight, the prior would decide for large holes, whose places rarely fit.
- */
+/** Places where the methods are tried, and places that suffice with moved points at reduced size. */
 constexpr int NumberOfPlaces = 32;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
-constexpr Index LeastProbes = 32;
-constexpr Index MostProbes = 100;
-constexpr Index PointsPerProbe = 16;
 constexpr int EnoughPlaces = 4;
-
-/**
- * Prior shares of membrane, thin plate and cubic spline, and how many observations of the error a
- * place counts as. Neighbouring places overlap, and a single rough one must not decide.
- */
-constexpr double LogarithmOfPrior[3] = { 0.0, 1.0, 0.0 };
-constexpr double ObservationsPerPlace = 2.0;
-
-/**
- * Of the square of the least error at a place, what is taken for noise of the surface, which no
- * method can predict. It is part of all errors and would make them look alike.
- */
-constexpr double ShareOfNoise = 0.8;
-
-/**
- * Added to the logarithm of an error found at half the size; half of it where moved points lie
- * anywhere in triangles. The surface is flat between its points, which favours smoother methods.
- */
-constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.4 };
 
 /** Smaller shares, relative to the largest, are not worth computing. */
 constexpr double LeastShare = 0.03;
-
-/** Smaller errors, relative to the range, are rounding. */
-constexpr double LeastError = 1e-9;
-constexpr double LeastSquare = 1e-300;
-
-/** Accuracy of the membrane where methods are only compared. */
-constexpr double RoughAccuracy = 1e-2;
 
 /** Points at which a spline is evaluated between two reports. */
 constexpr std::size_t PointsPerReport = 4096;
@@ -83,11 +51,11 @@ constexpr std::size_t PointsPerReport = 4096;
 constexpr double SlopeLimit = 3.0;
 
 /**
- * An edge is steep from so many median slopes of edges at the boundary on. With 5 LiDAR scans gain,
+ * An edge is steep from so many median slopes of edges at the boundary on. With 5 LiDAR scans lose,
  * with 8 only cliffs and outliers are found. Points that steep edges cut off are no centres of
  * splines if they are less than this part of what all edges join.
  */
-constexpr double SteepEdge = 5.0;
+constexpr double SteepEdge = 6.0;
 constexpr double LeastPart = 0.25;
 
 /** Accuracy of the membrane that bounds, on large patches. */
@@ -99,11 +67,6 @@ constexpr Index MostRings = 16;
 constexpr Spline::Kernel Kernels[2] = { Spline::Kernel::ThinPlate, Spline::Kernel::Cubic };
 constexpr Interpolation Methods[3] = { Interpolation::Membrane, Interpolation::ThinPlate,
   Interpolation::Cubic };
-
-bool AllFinite(const std::vector<double>& values)
-{
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-}
 
 /** The mean of the two in the middle, so that opposite values have opposite medians; 0 of none. */
 double Median(std::vector<double> values)
@@ -180,18 +143,18 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     this->Method = Interpolation::NeighborMean;
     return;
   }
-  if (NeedsSurroundings(wanted))
+  Point2 low = patch.At(0);
+  Point2 high = low;
+  for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
   {
-    Point2 low = patch.At(0);
-    Point2 high = low;
-    for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
-    {
-      const Point2 p = patch.At(v);
-      low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-      high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-    }
-    this->Center = { low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
-    this->Scale = 2.0 / std::max(high.X - low.X, high.Y - low.Y);
+    const Point2 p = patch.At(v);
+    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
+    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
+  }
+  this->Center = { low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
+  this->Scale = 2.0 / std::max(high.X - low.X, high.Y - low.Y);
+  if (wanted != Interpolation::Membrane)
+  {
     this->CollectRing(*stars);
     this->CollectSlopes(*stars);
   }
@@ -203,29 +166,13 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
       return;
     }
   }
-  if (wanted == Interpolation::Adaptive)
-  {
-    this->ChooseCenters(*stars, values);
-    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, Part(progress, 0.0, 0.3));
-    this->Choose(*stars, values, Part(progress, 0.3, 1.0));
-  }
-  else if (wanted != Interpolation::Membrane)
-  {
-    this->ChooseCenters(*stars, values);
-    const int k = wanted == Interpolation::Cubic ? 1 : 0;
-    this->Splines[k] = this->MakeSpline(k);
-    this->Method = this->Splines[k] ? wanted : Interpolation::Membrane;
-    this->Shares[k + 1] = 1.0;
-  }
-  if (!this->HasSpline())
-  {
-    this->Shares[0] = 1.0;
-  }
   this->IsByTrials = wanted == Interpolation::Adaptive;
-  if (this->NeedsHarmonic() && !this->Harmonic)
+  this->MakeCandidates(wanted, *stars, values);
+  if (this->IsCandidate[0] || !this->AllBoundaryIsCenter)
   {
-    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, progress);
+    this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, Part(progress, 0.0, 0.3));
   }
+  this->Choose(*stars, values, Part(progress, 0.3, 1.0));
 }
 
 Heights::~Heights() = default;
@@ -405,225 +352,30 @@ std::unique_ptr<Spline> Heights::MakeSpline(int which) const
   return spline->Prepare(centers, Kernels[which]) ? std::move(spline) : nullptr;
 }
 
-/**
- * Tries the methods around the hole, where the surface is known: boundary, other centres and some
- * new points, the probes, are moved there, and each method predicts the probes from the rest.
- */
-class Heights::Trials
+/** Makes the splines that are wanted; where there is none, the membrane takes their place. */
+void Heights::MakeCandidates(Interpolation wanted, const VertexStars& stars, const Values& values)
 {
-public:
-  Trials(const Heights& heights, const VertexStars& stars, const Values& values,
-    const std::unique_ptr<Spline>* splines)
-    : Of(heights)
-    , Stars(stars)
-    , ValueOf(values)
-    , Splines(splines)
-    , Boundary(heights.Patch.BoundaryIds.size())
+  if (wanted != Interpolation::Membrane)
   {
-    std::copy_n(LogarithmOfPrior, 3, this->Scores);
-    this->CollectPoints();
-  }
-
-  /** @return false if a moved point misses the surface */
-  bool At(double angle, double size, const Progress& progress)
-  {
-    double smoothing = 0.0;
-    if (!this->Move({ std::cos(angle), std::sin(angle) }, size, smoothing) ||
-      !AllFinite(this->Moved))
+    this->ChooseCenters(stars, values);
+    for (int k = 0; k < 2; ++k)
     {
-      return false;
-    }
-    const double shift = this->Moved[0];
-    double range = 0.0;
-    for (double& value : this->Moved)
-    {
-      value -= shift;
-      range = std::max(range, std::fabs(value));
-    }
-    // The smoothing is one half on average for points anywhere in triangles.
-    const double halvings = std::max(smoothing, -std::log(size) / std::log(2.0));
-    double squares[3];
-    int methods = 0;
-    for (; methods < 3 && (methods == 0 || this->Splines[methods - 1]); ++methods)
-    {
-      const std::vector<double> predicted = this->Predict(methods, progress);
-      squares[methods] = 0.0;
-      for (std::size_t k = 0; k < predicted.size(); ++k)
+      if (this->IsByTrials ? k == 0 || this->Splines[0] : wanted == Methods[k + 1])
       {
-        const double error = predicted[k] - this->Moved[this->FirstProbe + k];
-        squares[methods] += error * error;
+        this->Splines[k] = this->MakeSpline(k);
       }
+      this->IsCandidate[k + 1] = this->Splines[k] != nullptr;
     }
-    const double noise = ShareOfNoise * *std::min_element(squares, squares + methods);
-    for (int method = 0; method < methods; ++method)
-    {
-      // A prediction that is exact up to rounding must not outweigh all other places.
-      const double square = squares[method] - noise + std::pow(LeastError * range, 2) + LeastSquare;
-      this->Scores[method] -=
-        ObservationsPerPlace * (0.5 * std::log(square) + PenaltyOfHalfSize[method] * halvings);
-    }
-    return true;
   }
+  this->IsCandidate[0] = this->IsByTrials || !this->HasSpline();
+}
 
-  /** The logarithms of the methods' shares, up to a common term. */
-  double Scores[3];
-
-private:
-  void CollectPoints()
-  {
-    const PatchMesh& patch = this->Of.Patch;
-    for (const Index id : patch.BoundaryIds)
-    {
-      this->Points.push_back(this->Of.Surface.PointOf(id));
-    }
-    for (const Index place : this->Of.Centers)
-    {
-      const bool isAdded = static_cast<std::size_t>(place) < this->Boundary;
-      this->PlaceOfCenter.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
-      if (!isAdded)
-      {
-        this->Points.push_back(this->Of.Surface.PointOf(this->Of.Known[place]));
-      }
-    }
-    this->FirstProbe = this->Points.size();
-    const Index count = patch.NumberOfNewVertices();
-    const Index number = std::min({ count, LeastProbes + count / PointsPerProbe, MostProbes });
-    for (Index k = 0; k < number; ++k)
-    {
-      this->Probes.push_back(static_cast<Index>((2 * std::int64_t(k) + 1) * count / (2 * number)));
-      this->Points.push_back(patch.At(static_cast<Index>(this->Boundary) + this->Probes.back()));
-    }
-    for (const Point2& p : this->Points)
-    {
-      this->Normalized.push_back(this->Of.Normalized(p));
-    }
-    this->Moved.resize(this->Points.size());
-  }
-
-  /** Where a walk begins; independent of the order of points. */
-  Index HalfEdgeAt(Index vertex) const
-  {
-    const Mesh& surface = this->Of.Surface;
-    Index start = None;
-    this->Stars.Visit(surface, vertex, [&](Index h) {
-      start = start == None ||
-          IsLower(
-            surface.PointOf(surface.Destination(h)), surface.PointOf(surface.Destination(start)))
-        ? h
-        : start;
-      return true;
-    });
-    return start;
-  }
-
-  /**
-   * Finds the values at the moved points. They move as little as possible, so that their ring
-   * touches the hole, and from a point of the surface to another one, to match a lattice.
-   */
-  bool Move(const Point2& direction, double size, double& smoothing)
-  {
-    const auto along = [&](std::size_t i) {
-      return this->Normalized[i].X * direction.X + this->Normalized[i].Y * direction.Y;
-    };
-    double near = std::numeric_limits<double>::infinity();
-    std::size_t end = 0;
-    for (std::size_t i = 0; i < this->FirstProbe; ++i)
-    {
-      near = std::min(near, along(i));
-      end = i < this->Boundary && along(i) - along(end) > 0.0 ? i : end;
-    }
-    const double distance = size * (along(end) - near) / this->Of.Scale;
-    const Point2 origin = this->Points[end];
-    const Index start = this->HalfEdgeAt(this->Of.Patch.BoundaryIds[end]);
-    if (start == None)
-    {
-      return false; // the surface has no triangle there
-    }
-    Walk walk(this->Of.Surface, Mesh::Triangle(start));
-    if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
-    {
-      return false;
-    }
-    const Point2 target = this->Of.Surface.PointOf(walk.Corner());
-    for (std::size_t i = 0; i < this->Points.size(); ++i)
-    {
-      if (!walk.To({ target.X + size * (this->Points[i].X - origin.X),
-            target.Y + size * (this->Points[i].Y - origin.Y) }))
-      {
-        return false;
-      }
-      this->Moved[i] = walk.ValueOf(this->ValueOf);
-      smoothing += walk.Smoothing() / static_cast<double>(this->Points.size());
-    }
-    return true;
-  }
-
-  /** The probes by the membrane, from values at the boundary. */
-  std::vector<double> PredictHarmonic(
-    const std::vector<double>& rim, const Progress& progress) const
-  {
-    const std::vector<double> flat = this->Of.Harmonic->Solve(rim, RoughAccuracy, progress);
-    std::vector<double> predicted;
-    for (const Index probe : this->Probes)
-    {
-      predicted.push_back(flat[probe]);
-    }
-    return predicted;
-  }
-
-  /** The probes by a method: 0 is the membrane, then come the splines. */
-  std::vector<double> Predict(int method, const Progress& progress) const
-  {
-    std::vector<double> rim(
-      this->Moved.begin(), this->Moved.begin() + static_cast<std::ptrdiff_t>(this->Boundary));
-    if (method == 0)
-    {
-      return this->PredictHarmonic(rim, progress);
-    }
-    const Spline& spline = *this->Splines[method - 1];
-    std::vector<double> atCenters;
-    for (const Index i : this->PlaceOfCenter)
-    {
-      atCenters.push_back(this->Moved[i]);
-    }
-    const Spline::Weights weights = spline.Interpolate(atCenters);
-    std::vector<double> predicted(this->Probes.size(), 0.0);
-    spline.Add(weights, &this->Normalized[this->FirstProbe], predicted.size(), predicted.data());
-    if (!this->Of.AllBoundaryIsCenter)
-    {
-      std::vector<double> there(this->Boundary, 0.0);
-      spline.Add(weights, this->Normalized.data(), there.size(), there.data());
-      std::transform(rim.begin(), rim.end(), there.begin(), rim.begin(), std::minus<double>());
-      const std::vector<double> missed = this->PredictHarmonic(rim, progress);
-      std::transform(
-        predicted.begin(), predicted.end(), missed.begin(), predicted.begin(), std::plus<double>());
-    }
-    return predicted;
-  }
-
-  const Heights& Of;
-  const VertexStars& Stars;
-  const Values& ValueOf;
-  const std::unique_ptr<Spline>* Splines;
-  const std::size_t Boundary; ///< its number of points, which come first
-  std::size_t FirstProbe = 0; ///< probes come last
-  std::vector<Point2> Points;
-  std::vector<Point2> Normalized;
-  std::vector<Index> PlaceOfCenter; ///< index in Points of each centre
-  std::vector<Index> Probes;        ///< numbers of new vertices
-  std::vector<double> Moved;        ///< values where the points are moved to
-};
-
+/** Tries the candidates beside the hole, and finds their shares and their errors. */
 void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
 {
-  this->Method = Interpolation::Membrane;
-  std::unique_ptr<Spline> splines[2] = { this->MakeSpline(0), this->MakeSpline(1) };
-  if (!splines[0])
-  {
-    return;
-  }
-  Trials trials(*this, stars, values, splines);
-  const int number = this->Harmonic->IsLarge() ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
+  Trials trials(*this, stars, values);
+  const bool isLarge = this->Harmonic && this->Harmonic->IsLarge();
+  const int number = isLarge ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
   int places = 0;
   double begun = 0.0;
   for (const double size : { 1.0, 0.5, 0.25 })
@@ -638,25 +390,55 @@ void Heights::Choose(const VertexStars& stars, const Values& values, const Progr
     }
     begun += (1.0 - begun) * 0.8;
   }
-  const double* scores = trials.Scores;
-  const int methods = splines[1] ? 3 : 2;
-  const int best = static_cast<int>(std::max_element(scores, scores + methods) - scores);
-  double sum = 0.0;
-  for (int i = 0; i < methods; ++i)
+  int best = -1;
+  for (int i = 0; i < 3; ++i)
   {
-    const double share = std::exp(scores[i] - scores[best]);
+    if (this->IsCandidate[i] && (best < 0 || trials.Scores[i] > trials.Scores[best]))
+    {
+      best = i;
+    }
+  }
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const double share =
+      this->IsCandidate[i] ? std::exp(trials.Scores[i] - trials.Scores[best]) : 0.0;
     this->Shares[i] = share < LeastShare ? 0.0 : share;
     sum += this->Shares[i];
   }
-  for (int i = 0; i < methods; ++i)
+  for (int i = 0; i < 3; ++i)
   {
     this->Shares[i] /= sum;
-    if (i > 0 && this->Shares[i] > 0.0)
+    if (i > 0 && !(this->Shares[i] > 0.0))
     {
-      this->Splines[i - 1] = std::move(splines[i - 1]);
+      this->Splines[i - 1].reset();
     }
   }
   this->Method = Methods[best];
+  this->ErrorCurve = trials.ErrorsByDistance(this->Shares);
+}
+
+std::vector<double> Heights::StandardErrors() const
+{
+  const Index boundary = this->Patch.NumberOfBoundaryVertices();
+  std::vector<double> result(
+    this->Patch.NumberOfNewVertices(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < result.size() && !this->ErrorCurve.empty(); ++i)
+  {
+    const Point2 p = this->Patch.At(boundary + static_cast<Index>(i));
+    const Point2 q = this->Patch.At(this->Patch.Nearest[i]);
+    const double distance = std::hypot(p.X - q.X, p.Y - q.Y);
+    const auto after = std::upper_bound(this->ErrorCurve.begin(), this->ErrorCurve.end(), distance,
+      [](double d, const std::pair<double, double>& entry) { return d < entry.first; });
+    if (after == this->ErrorCurve.begin() || after == this->ErrorCurve.end())
+    {
+      result[i] = (after == this->ErrorCurve.begin() ? *after : after[-1]).second;
+      continue;
+    }
+    const double share = (distance - after[-1].first) / (after->first - after[-1].first);
+    result[i] = after[-1].second + share * (after->second - after[-1].second);
+  }
+  return result;
 }
 
 std::vector<double> Heights::Mean(const Values& values, const Progress& progress) const

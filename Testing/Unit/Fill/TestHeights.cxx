@@ -648,6 +648,77 @@ TEST(Heights, LeaveTheRangeOfTheRimWithMostSlopesOnly)
   }
 }
 
+TEST(Heights, TellTheirErrors)
+{
+  // Hills with noise, ten times others; discs and a ring around an island.
+  for (const Interpolation method : { Interpolation::Membrane, Interpolation::ThinPlate,
+         Interpolation::Cubic, Interpolation::Adaptive })
+  {
+    int within[2] = { 0, 0 };
+    int count = 0;
+    for (int seed = 0; seed < 10; ++seed)
+    {
+      const Elevation hills = [seed](const Point2& p) {
+        return std::sin(0.2 * p.X + seed) * std::cos(0.15 * p.Y + 2.0 * seed) +
+          0.05 * Noise({ p.X + 100.0 * seed, p.Y });
+      };
+      const double inner = seed % 2 ? 3.0 : 0.0;
+      const Mesh mesh = Sheet(60, [inner](double x, double y) {
+        const double r = std::hypot(x - 30.0, y - 30.0);
+        return r < 8.0 && r >= inner;
+      });
+      const Outcome run = Fill(mesh, hills, method);
+      const std::vector<double>& errors = run.Patches.StandardErrors;
+      ASSERT_EQ(errors.size(), static_cast<std::size_t>(run.Patches.NumberOfPoints()));
+      for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+      {
+        const double miss = std::fabs(run.Value(i) - hills(run.At(i)));
+        within[0] += miss <= errors[i] ? 1 : 0;
+        within[1] += miss <= 2.0 * errors[i] ? 1 : 0;
+        ++count;
+      }
+    }
+    EXPECT_GT(within[0], 0.55 * count) << static_cast<int>(method);
+    EXPECT_LT(within[0], 0.85 * count) << static_cast<int>(method);
+    EXPECT_GT(within[1], 0.88 * count) << static_cast<int>(method);
+  }
+}
+
+TEST(Heights, HaveLargerErrorsFartherInside)
+{
+  const Elevation hills = [](const Point2& p) { return std::sin(0.3 * p.X) * std::cos(0.3 * p.Y); };
+  const Mesh mesh = Sheet(80, Disc(40, 40, 10));
+  for (const double scale : { 1.0, 1e6 })
+  {
+    const Outcome run = Fill(
+      mesh, [&](const Point2& p) { return scale * hills(p); }, Interpolation::Adaptive);
+    double nearRim = 0.0;
+    double inside = 0.0;
+    for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)
+    {
+      const double r = std::hypot(run.At(i).X - 40.0, run.At(i).Y - 40.0);
+      const double error = run.Patches.StandardErrors[i] / scale;
+      nearRim = r > 9.0 ? std::max(nearRim, error) : nearRim;
+      inside = r < 2.0 ? std::max(inside, error) : inside;
+    }
+    EXPECT_GT(nearRim, 0.0) << scale;
+    EXPECT_GT(inside, 2.0 * nearRim) << scale;
+    EXPECT_LT(inside, 2.0) << scale;
+  }
+}
+
+TEST(Heights, HaveNoErrorsWhereNothingWasTried)
+{
+  const auto allNaN = [](const Outcome& run) {
+    const std::vector<double>& errors = run.Patches.StandardErrors;
+    return !errors.empty() &&
+      std::all_of(errors.begin(), errors.end(), [](double e) { return std::isnan(e); });
+  };
+  EXPECT_TRUE(allNaN(Fill(Sheet(60, Disc(30, 30, 8)), Noise, Interpolation::NeighborMean)));
+  EXPECT_TRUE(allNaN(Fill(Sheet(20, Disc(10, 10, 9.4)), Noise, Interpolation::Adaptive)));
+  EXPECT_FALSE(allNaN(Fill(Sheet(60, Disc(30, 30, 8)), Noise, Interpolation::Adaptive)));
+}
+
 TEST(Heights, MeetALongRim)
 {
   // Four times as many boundary points as a spline takes of them, and waves that need them all.

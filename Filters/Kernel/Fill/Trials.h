@@ -1,0 +1,353 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * How well the methods of Heights.h predict the surface around a hole.
+ *
+ * In: a hole with its centres and splines, and the directions and sizes in which to move it. Out:
+ * the logarithms of the methods' shares, and errors by distance from the boundary. Heights.h tells
+ * the rules. Only Heights.cxx includes this file.
+ */
+#ifndef elevation_Fill_Trials_h
+#define elevation_Fill_Trials_h
+
+#include "Heights.h"
+#include "Spline.h"
+#include "Walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace elevation
+{
+
+/** New points that are compared at a place. */
+constexpr Index LeastProbes = 32;
+constexpr Index MostProbes = 100;
+constexpr Index PointsPerProbe = 16;
+
+/**
+ * Prior shares of membrane, thin plate and cubic spline, and how many observations of the error a
+ * place counts as. Neighbouring places overlap, and a single rough one must not decide.
+ */
+constexpr double LogarithmOfPrior[3] = { 0.0, 1.0, 0.0 };
+constexpr double ObservationsPerPlace = 2.0;
+
+/**
+ * Of the square of the least error at a place, what is taken for noise of the surface, which no
+ * method can predict. It is part of all errors and would make them look alike.
+ */
+constexpr double ShareOfNoise = 0.8;
+
+/**
+ * Added to the logarithm of an error found at half the size; half of it where moved points lie
+ * anywhere in triangles. The surface is flat between its points, which favours smoother methods.
+ */
+constexpr double PenaltyOfHalfSize[3] = { 0.0, 0.2, 0.4 };
+
+/** Smaller errors, relative to the range, are rounding. */
+constexpr double LeastError = 1e-9;
+
+/** Accuracy of the membrane where methods are only compared. */
+constexpr double RoughAccuracy = 1e-2;
+
+/**
+ * The standard error at a distance from the boundary: that of the probes in one of at most four
+ * classes of distance, of at least four probes each. It is as large as 68 %, and half as large as
+ * 95 % of the errors are at most. Errors at half the size count by this factor more.
+ */
+constexpr std::size_t MostClasses = 4;
+constexpr std::size_t ProbesPerClass = 4;
+constexpr double FirstQuantile = 0.683;
+constexpr double SecondQuantile = 0.95;
+constexpr double GrowthOfErrors = 1.5;
+
+inline bool AllFinite(const std::vector<double>& values)
+{
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+/**
+ * Tries the methods around the hole, where the surface is known: boundary, other centres and some
+ * new points, the probes, are moved there, and each method predicts the probes from the rest.
+ */
+class Heights::Trials
+{
+public:
+  Trials(const Heights& heights, const VertexStars& stars, const Values& values)
+    : Of(heights)
+    , Stars(stars)
+    , ValueOf(values)
+    , Boundary(heights.Patch.BoundaryIds.size())
+  {
+    std::copy_n(LogarithmOfPrior, 3, this->Scores);
+    this->CollectPoints();
+  }
+
+  /** @return false if a moved point misses the surface */
+  bool At(double angle, double size, const Progress& progress)
+  {
+    double smoothing = 0.0;
+    if (!this->Move({ std::cos(angle), std::sin(angle) }, size, smoothing) ||
+      !AllFinite(this->Moved))
+    {
+      return false;
+    }
+    const double shift = this->Moved[0];
+    double range = 0.0;
+    for (double& value : this->Moved)
+    {
+      value -= shift;
+      range = std::max(range, std::fabs(value));
+    }
+    if (!std::isfinite(range))
+    {
+      return false;
+    }
+    // Scaled to [-1, 1], nothing overflows.
+    const double unit = range > 0.0 ? range : 1.0;
+    for (double& value : this->Moved)
+    {
+      value /= unit;
+    }
+    // The smoothing is one half on average for points anywhere in triangles.
+    const double halvings = std::max(smoothing, -std::log(size) / std::log(2.0));
+    double squares[3] = { 0.0, 0.0, 0.0 };
+    double least = std::numeric_limits<double>::infinity();
+    for (int method = 0; method < 3; ++method)
+    {
+      if (!this->Of.IsCandidate[method])
+      {
+        continue;
+      }
+      const std::vector<double> predicted = this->Predict(method, progress);
+      for (std::size_t k = 0; k < predicted.size(); ++k)
+      {
+        const double error = predicted[k] - this->Moved[this->FirstProbe + k];
+        squares[method] += error * error;
+        this->Misses[method].push_back(error * unit);
+      }
+      least = std::min(least, squares[method]);
+    }
+    this->Growths.push_back(std::pow(GrowthOfErrors, -std::log(size) / std::log(2.0)));
+    const double noise = ShareOfNoise * least;
+    for (int method = 0; method < 3; ++method)
+    {
+      // A prediction that is exact up to rounding must not outweigh all other places.
+      const double square = squares[method] - noise + LeastError * LeastError;
+      this->Scores[method] -=
+        ObservationsPerPlace * (0.5 * std::log(square) + PenaltyOfHalfSize[method] * halvings);
+    }
+    return true;
+  }
+
+  /** The logarithms of the methods' shares, up to a common term. */
+  double Scores[3];
+
+  /**
+   * The standard error of the methods' mixture as a function of the distance from the boundary.
+   * @return pairs of distance and error, from near to far; none if nothing was tried
+   */
+  std::vector<std::pair<double, double>> ErrorsByDistance(const double* shares) const
+  {
+    const std::size_t probes = this->Probes.size();
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t k = 0; k < probes; ++k)
+    {
+      const PatchMesh& patch = this->Of.Patch;
+      const Point2& p = this->Points[this->FirstProbe + k];
+      const Point2 q = patch.At(patch.Nearest[this->Probes[k]]);
+      order.emplace_back(std::hypot(p.X - q.X, p.Y - q.Y), k);
+    }
+    std::sort(order.begin(), order.end());
+    const std::size_t classes =
+      std::max<std::size_t>(1, std::min(MostClasses, probes / ProbesPerClass));
+    std::vector<std::pair<double, double>> result;
+    for (std::size_t c = 0; c < classes && !this->Growths.empty(); ++c)
+    {
+      const std::size_t end = (c + 1) * probes / classes;
+      double distance = 0.0;
+      std::vector<double> errors;
+      for (std::size_t i = c * probes / classes; i < end; ++i)
+      {
+        distance += order[i].first / static_cast<double>(end - c * probes / classes);
+        for (std::size_t place = 0; place < this->Growths.size(); ++place)
+        {
+          double error = 0.0;
+          for (int method = 0; method < 3; ++method)
+          {
+            error += shares[method] > 0.0
+              ? shares[method] * this->Misses[method][place * probes + order[i].second]
+              : 0.0;
+          }
+          errors.push_back(std::fabs(error) * this->Growths[place]);
+        }
+      }
+      result.emplace_back(distance,
+        std::max(Quantile(errors, FirstQuantile), 0.5 * Quantile(errors, SecondQuantile)));
+    }
+    return result;
+  }
+
+private:
+  /** The value that a share of all values does not exceed. */
+  static double Quantile(std::vector<double>& values, double share)
+  {
+    const std::size_t last = values.size() - 1;
+    const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(last)));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  }
+
+  void CollectPoints()
+  {
+    const PatchMesh& patch = this->Of.Patch;
+    for (const Index id : patch.BoundaryIds)
+    {
+      this->Points.push_back(this->Of.Surface.PointOf(id));
+    }
+    for (const Index place : this->Of.Centers)
+    {
+      const bool isAdded = static_cast<std::size_t>(place) < this->Boundary;
+      this->PlaceOfCenter.push_back(isAdded ? place : static_cast<Index>(this->Points.size()));
+      if (!isAdded)
+      {
+        this->Points.push_back(this->Of.Surface.PointOf(this->Of.Known[place]));
+      }
+    }
+    this->FirstProbe = this->Points.size();
+    const Index count = patch.NumberOfNewVertices();
+    const Index number = std::min({ count, LeastProbes + count / PointsPerProbe, MostProbes });
+    for (Index k = 0; k < number; ++k)
+    {
+      this->Probes.push_back(static_cast<Index>((2 * std::int64_t(k) + 1) * count / (2 * number)));
+      this->Points.push_back(patch.At(static_cast<Index>(this->Boundary) + this->Probes.back()));
+    }
+    for (const Point2& p : this->Points)
+    {
+      this->Normalized.push_back(this->Of.Normalized(p));
+    }
+    this->Moved.resize(this->Points.size());
+  }
+
+  /** Where a walk begins; independent of the order of points. */
+  Index HalfEdgeAt(Index vertex) const
+  {
+    const Mesh& surface = this->Of.Surface;
+    Index start = None;
+    this->Stars.Visit(surface, vertex, [&](Index h) {
+      start = start == None ||
+          IsLower(
+            surface.PointOf(surface.Destination(h)), surface.PointOf(surface.Destination(start)))
+        ? h
+        : start;
+      return true;
+    });
+    return start;
+  }
+
+  /**
+   * Finds the values at the moved points. They move as little as possible, so that their ring
+   * touches the hole, and from a point of the surface to another one, to match a lattice.
+   */
+  bool Move(const Point2& direction, double size, double& smoothing)
+  {
+    const auto along = [&](std::size_t i) {
+      return this->Normalized[i].X * direction.X + this->Normalized[i].Y * direction.Y;
+    };
+    double near = std::numeric_limits<double>::infinity();
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < this->FirstProbe; ++i)
+    {
+      near = std::min(near, along(i));
+      end = i < this->Boundary && along(i) - along(end) > 0.0 ? i : end;
+    }
+    const double distance = size * (along(end) - near) / this->Of.Scale;
+    const Point2 origin = this->Points[end];
+    const Index start = this->HalfEdgeAt(this->Of.Patch.BoundaryIds[end]);
+    if (start == None)
+    {
+      return false; // the surface has no triangle there
+    }
+    Walk walk(this->Of.Surface, Mesh::Triangle(start));
+    if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
+    {
+      return false;
+    }
+    const Point2 target = this->Of.Surface.PointOf(walk.Corner());
+    for (std::size_t i = 0; i < this->Points.size(); ++i)
+    {
+      if (!walk.To({ target.X + size * (this->Points[i].X - origin.X),
+            target.Y + size * (this->Points[i].Y - origin.Y) }))
+      {
+        return false;
+      }
+      this->Moved[i] = walk.ValueOf(this->ValueOf);
+      smoothing += walk.Smoothing() / static_cast<double>(this->Points.size());
+    }
+    return true;
+  }
+
+  /** The probes by the membrane, from values at the boundary. */
+  std::vector<double> PredictHarmonic(
+    const std::vector<double>& rim, const Progress& progress) const
+  {
+    const std::vector<double> flat = this->Of.Harmonic->Solve(rim, RoughAccuracy, progress);
+    std::vector<double> predicted;
+    for (const Index probe : this->Probes)
+    {
+      predicted.push_back(flat[probe]);
+    }
+    return predicted;
+  }
+
+  /** The probes by a method: 0 is the membrane, then come the splines. */
+  std::vector<double> Predict(int method, const Progress& progress) const
+  {
+    std::vector<double> rim(
+      this->Moved.begin(), this->Moved.begin() + static_cast<std::ptrdiff_t>(this->Boundary));
+    if (method == 0)
+    {
+      return this->PredictHarmonic(rim, progress);
+    }
+    const Spline& spline = *this->Of.Splines[method - 1];
+    std::vector<double> atCenters;
+    for (const Index i : this->PlaceOfCenter)
+    {
+      atCenters.push_back(this->Moved[i]);
+    }
+    const Spline::Weights weights = spline.Interpolate(atCenters);
+    std::vector<double> predicted(this->Probes.size(), 0.0);
+    spline.Add(weights, &this->Normalized[this->FirstProbe], predicted.size(), predicted.data());
+    if (!this->Of.AllBoundaryIsCenter)
+    {
+      std::vector<double> there(this->Boundary, 0.0);
+      spline.Add(weights, this->Normalized.data(), there.size(), there.data());
+      std::transform(rim.begin(), rim.end(), there.begin(), rim.begin(), std::minus<double>());
+      const std::vector<double> missed = this->PredictHarmonic(rim, progress);
+      std::transform(
+        predicted.begin(), predicted.end(), missed.begin(), predicted.begin(), std::plus<double>());
+    }
+    return predicted;
+  }
+
+  const Heights& Of;
+  const VertexStars& Stars;
+  const Values& ValueOf;
+  const std::size_t Boundary; ///< its number of points, which come first
+  std::size_t FirstProbe = 0; ///< probes come last
+  std::vector<Point2> Points;
+  std::vector<Point2> Normalized;
+  std::vector<Index> PlaceOfCenter; ///< index in Points of each centre
+  std::vector<Index> Probes;        ///< numbers of new vertices
+  std::vector<double> Moved;        ///< values where the points are moved to
+  std::vector<double> Misses[3];    ///< errors of each method at all probes, place by place
+  std::vector<double> Growths;      ///< of errors at each place, to full size
+};
+
+} // namespace elevation
+
+#endif
