@@ -19,6 +19,7 @@
 #include "vtkFillHolesFilter.h"
 #include "vtkGridDelaunay2D.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -28,8 +29,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <map>
 #include <random>
+#include <set>
 
 namespace
 {
@@ -44,13 +47,17 @@ greatest error at the lost points.
 
   --file FILE       a surface's points: .vtp, .f64, .csv or .xyz; may be given several times
   --extra           all .vtp and .f64 files of the folder ELEVATION_SURFACE_EXTRA_DATA
-  --made            surfaces that are made: dome, ridges, noise
+  --made            surfaces that are made: dome, ridges, noise; level_noise and level_outliers (1 % of the
+                    points up to 3 too high), compared with the level; cliff, hills that stand higher or
+                    lower on one side of each hole
   --shapes LIST     of disc,strip,blob,island; default all four
   --points LIST     lost points of a hole; default 10,50,200,1000,5000
   --holes N         holes of each shape and size; default 6
   --seed N          of their places; default 1
   --details         also a table for each shape and size
   --csv FILE        writes the errors of every hole by every method
+  --reliability FILE  writes, for every hole, how many errors of Adaptive are up to 0, 0.25, 0.5 ... times
+                    FilledError, by thirds of the distance from the rim
   --help            shows this text
 
 Without --file, --extra and --made: --made. The exit code is 1 when a hole was left open by
@@ -63,6 +70,7 @@ struct Options
   bool Made = false;
   bool Details = false;
   std::string Csv;
+  std::string Reliability;
   std::vector<std::string> Shapes{ "disc", "strip", "blob", "island" };
   std::vector<Index> Points{ 10, 50, 200, 1000, 5000 };
   int Holes = 6;
@@ -113,6 +121,10 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     else if (option == "--csv")
     {
       options.Csv = value;
+    }
+    else if (option == "--reliability")
+    {
+      options.Reliability = value;
     }
     else if (option == "--shapes")
     {
@@ -181,29 +193,66 @@ Coordinates MakeGrid(const std::function<double(double, double)>& elevation)
   return points;
 }
 
-std::vector<PointSource> MadeSurfaces()
+/** Points, and what they are compared with where that is not what was measured. */
+struct TestSurface : PointSource
 {
+  std::function<double(double, double)> Truth;
+  bool HasCliff = false; ///< on one side of each hole
+};
+
+double Normal(Random& random)
+{
+  const double radius = std::sqrt(-2.0 * std::log(1.0 - random()));
+  return radius * std::cos(6.283185307179586 * random());
+}
+
+double Hills(double x, double y)
+{
+  return 3.0 * std::sin(0.08 * x + 0.03 * y) + 2.0 * std::cos(0.07 * y - 0.05 * x);
+}
+
+/** Level ground with white noise of 0.05, and a share of points that are 0.5 to 3 too high. */
+Coordinates MakeLevel(double outliers)
+{
+  Random random(11);
+  return MakeGrid([&](double, double) {
+    const double z = 0.05 * Normal(random);
+    return random() < outliers ? z + 0.5 + 2.5 * random() : z;
+  });
+}
+
+std::vector<TestSurface> MadeSurfaces()
+{
+  const auto level = [](double, double) { return 0.0; };
   return {
-    { "dome",
+    { { "dome",
       [] {
         return MakeGrid([](double x, double y) {
           const double square = (x - 80.0) * (x - 80.0) + (y - 80.0) * (y - 80.0);
           return 40.0 * std::exp(-square / 5000.0);
         });
-      } },
-    { "ridges",
+      } }, nullptr },
+    { { "ridges",
       [] {
         return MakeGrid([](double x, double y) {
           return 3.0 * std::sin(0.2 * x + 0.05 * y) + 2.0 * std::cos(0.11 * y - 0.07 * x);
         });
-      } },
-    { "noise",
+      } }, nullptr },
+    { { "noise",
       [] {
         Random random(7);
         return MakeGrid([&random](double x, double y) {
           return 0.02 * x + 0.01 * y + random() + random() + random() + random() - 2.0;
         });
-      } },
+      } }, nullptr },
+    { { "level_noise", [] { return MakeLevel(0.0); } }, level },
+    { { "level_outliers", [] { return MakeLevel(0.01); } }, level },
+    { { "cliff",
+        [] {
+          Random random(13);
+          return MakeGrid([&random](double x, double y) { return Hills(x, y) + 0.02 * Normal(random); });
+        } },
+      Hills, true },
   };
 }
 
@@ -376,6 +425,40 @@ bool CutHole(
   return !hole.Lost.empty();
 }
 
+/**
+ * Raises or lowers what is beyond a line along the narrow side of the hole, up to two spacings away
+ * from it.
+ */
+void AddCliff(const Surface& surface, Random& random, Hole& hole)
+{
+  const auto reachOf = [&hole](double angle) {
+    double reach = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < hole.Lost.size(); i += 3)
+    {
+      reach = std::max(
+        reach, std::cos(angle) * hole.Lost[i] + std::sin(angle) * hole.Lost[i + 1]);
+    }
+    return reach;
+  };
+  constexpr double pi = 3.14159265358979323846;
+  double best = 0.0;
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 32; ++k)
+  {
+    const double width = reachOf(pi * k / 32) + reachOf(pi * k / 32 + pi);
+    best = width < narrowest - 1e-9 ? pi * k / 32 : best;
+    narrowest = std::min(narrowest, width);
+  }
+  best += random() < 0.5 ? pi : 0.0;
+  const double foot = reachOf(best) + 2.0 * surface.Spacing * random();
+  const double height = (random() < 0.5 ? -1.0 : 1.0) * (5.0 + 15.0 * random());
+  for (std::size_t i = 0; i < hole.Points.size(); i += 3)
+  {
+    const double at = std::cos(best) * hole.Points[i] + std::sin(best) * hole.Points[i + 1];
+    hole.Points[i + 2] += at > foot ? height : 0.0;
+  }
+}
+
 // ---- errors -------------------------------------------------------------------------------------
 
 struct Errors
@@ -398,11 +481,13 @@ struct Errors
   }
 };
 
-/** The lost points beside the triangles that lie over them; bins make it fast. */
-Errors Compare(
+/**
+ * The vertical distance of each lost point from the triangles that lie over it; -1 where there is
+ * none. Bins make it fast.
+ */
+std::vector<double> DistancesOf(
   const Coordinates& points, const std::vector<Index>& triangles, const Coordinates& lost)
 {
-  Errors errors;
   const std::size_t count = lost.size() / 3;
   double low[2] = { lost[0], lost[1] };
   double high[2] = { lost[0], lost[1] };
@@ -457,7 +542,14 @@ Errors Compare(
       }
     }
   }
-  for (const double e : error)
+  return error;
+}
+
+Errors Compare(
+  const Coordinates& points, const std::vector<Index>& triangles, const Coordinates& lost)
+{
+  Errors errors;
+  for (const double e : DistancesOf(points, triangles, lost))
   {
     if (e < 0.0)
     {
@@ -519,8 +611,87 @@ struct Filled
 {
   Coordinates Points;
   std::vector<Index> Patch;
+  std::vector<double> StandardErrors; ///< FilledError
   int Used = -1; ///< Interpolation of the largest hole
 };
+
+/** How many errors lie within multiples of FilledError, by thirds of the distance from the rim. */
+struct Reliability
+{
+  static constexpr int Steps = 12; ///< of a quarter; one more class holds what is beyond
+  std::size_t Counts[3][Steps + 1] = {};
+  std::size_t Untold = 0;
+
+  void Add(const Reliability& other)
+  {
+    for (int third = 0; third < 3; ++third)
+    {
+      for (int step = 0; step <= Steps; ++step)
+      {
+        this->Counts[third][step] += other.Counts[third][step];
+      }
+    }
+    this->Untold += other.Untold;
+  }
+  /** The share of errors within a number of quarters; of one third, or of all if below 0. */
+  double Share(int quarters, int third = -1) const
+  {
+    double within = 0.0;
+    double all = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      for (int step = 0; step <= Steps && (third < 0 || third == k); ++step)
+      {
+        within += step < quarters ? static_cast<double>(this->Counts[k][step]) : 0.0;
+        all += static_cast<double>(this->Counts[k][step]);
+      }
+    }
+    return within / std::max(1.0, all);
+  }
+};
+
+Reliability CompareErrors(const Filled& filled, const Coordinates& lost, vtkIdType known)
+{
+  const std::vector<double> misses = DistancesOf(filled.Points, filled.Patch, lost);
+  // The same with FilledError in place of z.
+  Coordinates points = filled.Points;
+  for (std::size_t i = 0; i < filled.StandardErrors.size(); ++i)
+  {
+    points[3 * i + 2] = filled.StandardErrors[i];
+  }
+  Coordinates places = lost;
+  for (std::size_t i = 2; i < places.size(); i += 3)
+  {
+    places[i] = 0.0;
+  }
+  const std::vector<double> told = DistancesOf(points, filled.Patch, places);
+  std::vector<double> away(misses.size(), std::numeric_limits<double>::infinity());
+  for (const Index id : std::set<Index>(filled.Patch.begin(), filled.Patch.end()))
+  {
+    for (std::size_t k = 0; k < away.size() && id < known; ++k)
+    {
+      away[k] = std::min(away[k], std::hypot(points[3 * std::size_t(id)] - places[3 * k],
+                                    points[3 * std::size_t(id) + 1] - places[3 * k + 1]));
+    }
+  }
+  const double depth = *std::max_element(away.begin(), away.end());
+  Reliability result;
+  for (std::size_t k = 0; k < misses.size(); ++k)
+  {
+    if (misses[k] < 0.0 || !(told[k] >= 0.0))
+    {
+      ++result.Untold;
+      continue;
+    }
+    const int third = std::min(2, static_cast<int>(3.0 * away[k] / depth));
+    // An error of 0 is within one of 0.
+    const double ratio = misses[k] > 0.0 ? 4.0 * misses[k] / told[k] : 0.0;
+    const int step =
+      ratio > 0.0 ? static_cast<int>(std::ceil(std::min(ratio, Reliability::Steps + 1.0))) - 1 : 0;
+    ++result.Counts[third][step];
+  }
+  return result;
+}
 
 /** @param interpolation  below 0: the linear patch, without new points */
 Filled FillWithUs(const Hole& hole, int interpolation)
@@ -540,6 +711,11 @@ Filled FillWithUs(const Hole& hole, int interpolation)
   Filled filled;
   filled.Points = PointsOf(mesh);
   filled.Patch = TrianglesOf(mesh, static_cast<vtkIdType>(hole.Triangles.size() / 3));
+  vtkDataArray* errors = mesh->GetPointData()->GetArray("FilledError");
+  for (vtkIdType i = 0; i < errors->GetNumberOfTuples(); ++i)
+  {
+    filled.StandardErrors.push_back(errors->GetComponent(i, 0));
+  }
   vtkCellData* report = vtkPolyData::SafeDownCast(fill->GetOutputDataObject(1))->GetCellData();
   double most = -1.0;
   for (vtkIdType i = 0; i < fill->GetNumberOfHoles(); ++i)
@@ -754,6 +930,7 @@ struct Result
   Index Points = 0; ///< asked for
   Row Methods;
   int Used = -1; ///< by Adaptive
+  Reliability OfErrors;
 };
 
 void PrintHeader(const char* first)
@@ -792,6 +969,7 @@ struct Summary
   std::vector<double> Ratios;
   std::vector<double> RatiosWithoutIslands;
   std::vector<std::string> Better; ///< peers that were better than Adaptive, with the surface
+  Reliability OfErrors;
   bool IsWhole = true;
 };
 
@@ -831,8 +1009,39 @@ void WriteCsv(std::FILE* file, const std::string& surface, const std::vector<Res
   }
 }
 
-/** Cuts one hole and fills it by all methods but GDAL, which follows for all holes at once. */
-Result FillOne(const Hole& hole, const Point2& at, double around, bool& isWhole)
+void WriteReliability(
+  std::FILE* file, const std::string& surface, const std::vector<Result>& results)
+{
+  for (std::size_t number = 0; number < results.size(); ++number)
+  {
+    const Result& result = results[number];
+    for (int third = 0; third < 3; ++third)
+    {
+      std::fprintf(file, "%s,%s,%d,%zu,%d", surface.c_str(), result.Shape.c_str(),
+        int(result.Points), number, third);
+      for (const std::size_t count : result.OfErrors.Counts[third])
+      {
+        std::fprintf(file, ",%zu", count);
+      }
+      std::fprintf(file, "\n");
+    }
+  }
+}
+
+void PrintReliability(const Reliability& errors)
+{
+  std::printf("%-28s within one %.1f %%, two %.1f %%; within one by thirds from the rim %.1f, %.1f, "
+              "%.1f %%; not told %zu\n",
+    "  FilledError", 100.0 * errors.Share(4), 100.0 * errors.Share(8), 100.0 * errors.Share(4, 0),
+    100.0 * errors.Share(4, 1), 100.0 * errors.Share(4, 2), errors.Untold);
+}
+
+/**
+ * Fills one hole by all methods but GDAL, which follows for all holes at once.
+ * @param measured  the lost points with noise, where the hole has them without
+ */
+Result FillOne(const Hole& hole, const Coordinates& measured, const Point2& at, double around,
+  bool& isWhole)
 {
   Result result;
   Row& row = result.Methods;
@@ -849,6 +1058,8 @@ Result FillOne(const Hole& hole, const Point2& at, double around, bool& isWhole)
     if (i == vtkFillElevationHoles::ADAPTIVE)
     {
       result.Used = filled.Used;
+      result.OfErrors =
+        CompareErrors(filled, measured, static_cast<vtkIdType>(hole.Points.size() / 3));
     }
   }
   row["best"] = row["Membrane"];
@@ -868,10 +1079,12 @@ Result FillOne(const Hole& hole, const Point2& at, double around, bool& isWhole)
   return result;
 }
 
-void Run(const PointSource& source, const Options& options, std::FILE* csv, Summary& summary)
+void Run(const TestSurface& source, const Options& options, std::FILE* csv, std::FILE* reliability,
+  Summary& summary)
 {
   const Surface surface = MakeSurface(source.Make());
   Random random(options.Seed);
+  Random cliffs(options.Seed);
   std::vector<Result> results;
   std::vector<HoleRaster> rasters;
   std::vector<Coordinates> lost;
@@ -893,7 +1106,16 @@ void Run(const PointSource& source, const Options& options, std::FILE* csv, Summ
           continue;
         }
         ++done;
-        results.push_back(FillOne(hole, at, (reach + 4.0) * surface.Spacing, summary.IsWhole));
+        if (source.HasCliff)
+        {
+          AddCliff(surface, cliffs, hole);
+        }
+        const Coordinates measured = hole.Lost;
+        for (std::size_t i = 0; source.Truth && i < hole.Lost.size(); i += 3)
+        {
+          hole.Lost[i + 2] = source.Truth(hole.Lost[i], hole.Lost[i + 1]);
+        }
+        results.push_back(FillOne(hole, measured, at, (reach + 4.0) * surface.Spacing, summary.IsWhole));
         results.back().Shape = shapeName;
         results.back().Points = size;
         if (HasGDAL())
@@ -922,6 +1144,10 @@ void Run(const PointSource& source, const Options& options, std::FILE* csv, Summ
   if (csv)
   {
     WriteCsv(csv, source.Name, results);
+  }
+  if (reliability)
+  {
+    WriteReliability(reliability, source.Name, results);
   }
 
   Row row;
@@ -959,6 +1185,13 @@ void Run(const PointSource& source, const Options& options, std::FILE* csv, Summ
     std::printf(" %12zu", row[method].Uncovered);
   }
   std::printf("\n");
+  Reliability ofErrors;
+  for (const Result& result : results)
+  {
+    ofErrors.Add(result.OfErrors);
+  }
+  PrintReliability(ofErrors);
+  summary.OfErrors.Add(ofErrors);
   std::fflush(stdout);
   if (row.count("CGAL"))
   {
@@ -986,6 +1219,29 @@ void PrintRatios(const char* what, const std::vector<double>& ratios)
       sum / static_cast<double>(ratios.size()), *std::max_element(ratios.begin(), ratios.end()));
   }
 }
+
+/** @return null without a path */
+std::FILE* Open(const std::string& path, const char* header)
+{
+  std::FILE* file = path.empty() ? nullptr : std::fopen(path.c_str(), "w");
+  if (!file && !path.empty())
+  {
+    throw elevation::Error(path + ": cannot be written");
+  }
+  if (file)
+  {
+    std::fprintf(file, "%s\n", header);
+  }
+  return file;
+}
+
+void Close(std::FILE* file, const std::string& path)
+{
+  if (file && std::fclose(file) != 0)
+  {
+    throw elevation::Error(path + ": cannot be written");
+  }
+}
 } // namespace
 
 int main(int argc, char* argv[])
@@ -998,28 +1254,22 @@ int main(int argc, char* argv[])
       std::printf("%s", Usage);
       return 0;
     }
-    std::vector<PointSource> sources;
+    std::vector<TestSurface> sources;
     for (const std::string& file : options.Files)
     {
-      sources.push_back(FileSource(file));
+      sources.push_back({ FileSource(file), nullptr });
     }
     if (options.Made)
     {
-      for (const PointSource& made : MadeSurfaces())
+      for (const TestSurface& made : MadeSurfaces())
       {
         sources.push_back(made);
       }
     }
-    std::FILE* csv = nullptr;
-    if (!options.Csv.empty())
-    {
-      csv = std::fopen(options.Csv.c_str(), "w");
-      if (!csv)
-      {
-        throw elevation::Error(options.Csv + ": cannot be written");
-      }
-      std::fprintf(csv, "surface,shape,points,hole,method,covered,uncovered,squares,greatest\n");
-    }
+    std::FILE* csv =
+      Open(options.Csv, "surface,shape,points,hole,method,covered,uncovered,squares,greatest");
+    std::FILE* reliability = Open(options.Reliability,
+      "surface,shape,points,hole,third,0.25,0.5,0.75,1,1.25,1.5,1.75,2,2.25,2.5,2.75,3,more");
 #ifndef ES_BENCHMARK_CGAL
     std::printf("Without CGAL, which was not found when this was built.\n");
 #endif
@@ -1029,14 +1279,13 @@ int main(int argc, char* argv[])
     }
     PrintHeader("surface");
     Summary summary;
-    for (const PointSource& source : sources)
+    for (const TestSurface& source : sources)
     {
-      Run(source, options, csv, summary);
+      Run(source, options, csv, reliability, summary);
     }
-    if (csv && std::fclose(csv) != 0)
-    {
-      throw elevation::Error(options.Csv + ": cannot be written");
-    }
+    Close(csv, options.Csv);
+    Close(reliability, options.Reliability);
+    PrintReliability(summary.OfErrors);
     PrintRatios("all holes", summary.Ratios);
     PrintRatios("without islands", summary.RatiosWithoutIslands);
     for (const std::string& better : summary.Better)
