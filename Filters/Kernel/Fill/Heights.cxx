@@ -26,9 +26,10 @@ constexpr std::size_t MostCenters = 300;
 
 /**
  * The same with points inside, as those of survey lines: one patch is then the whole surface. With
- * 300, the error between lines at 10 spacings is above that of flat triangles, with 1500 0.6 of it.
+ * 300, the error between lines at 10 spacings is above that of flat triangles. With more, an abort
+ * waits too long.
  */
-constexpr std::size_t MostCentersWithPointsInside = 1500;
+constexpr std::size_t MostCentersWithPointsInside = 1000;
 
 /** Centres closer together than this, in spacings, add nothing but rounding. */
 constexpr double LeastDistance = 0.02;
@@ -167,7 +168,7 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     }
   }
   this->IsByTrials = wanted == Interpolation::Adaptive;
-  this->MakeCandidates(wanted, *stars, values);
+  this->MakeCandidates(wanted, *stars, values, Part(progress, 0.0, 0.0));
   if (this->IsCandidate[0] || !this->AllBoundaryIsCenter)
   {
     this->Harmonic = std::make_unique<Membrane>(patch.Neighbors, Part(progress, 0.0, 0.3));
@@ -293,7 +294,8 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
 }
 
 /** Farthest-point sampling: first on the boundary, then among all known points. */
-void Heights::ChooseCenters(const VertexStars& stars, const Values& values)
+void Heights::ChooseCenters(
+  const VertexStars& stars, const Values& values, const Progress& progress)
 {
   const std::size_t boundary = this->Patch.BoundaryIds.size();
   const std::size_t count = this->Known.size();
@@ -322,6 +324,7 @@ void Heights::ChooseCenters(const VertexStars& stars, const Values& values)
       {
         return;
       }
+      ReportStep(progress, this->Centers.size(), most, 16);
       this->Centers.push_back(static_cast<Index>(best));
       for (std::size_t i = 0; i < count; ++i)
       {
@@ -353,11 +356,12 @@ std::unique_ptr<Spline> Heights::MakeSpline(int which) const
 }
 
 /** Makes the splines that are wanted; where there is none, the membrane takes their place. */
-void Heights::MakeCandidates(Interpolation wanted, const VertexStars& stars, const Values& values)
+void Heights::MakeCandidates(
+  Interpolation wanted, const VertexStars& stars, const Values& values, const Progress& progress)
 {
   if (wanted != Interpolation::Membrane)
   {
-    this->ChooseCenters(stars, values);
+    this->ChooseCenters(stars, values, progress);
     for (int k = 0; k < 2; ++k)
     {
       if (this->IsByTrials ? k == 0 || this->Splines[0] : wanted == Methods[k + 1])

@@ -21,7 +21,7 @@
  * mean of the four neighbours along the axes, as in eq. 2, whichever way the diagonals run.
  *
  * Splines. At most 300 points around a hole, evenly spread, become centres (with points inside, one
- * more for each of them, up to 1500); not those that stand apart, as outliers and what is beyond a
+ * more for each of them, up to 1000); not those that stand apart, as outliers and what is beyond a
  * cliff. Of the edges between boundary and ring points those are steep that have more than six
  * times the median slope; a part that steep edges cut off stands apart if it has less than a
  * quarter of the points that all edges join it to. Where the spline then misses the boundary, the
@@ -135,7 +135,7 @@ private:
   void CollectRing(const VertexStars& stars);
   void CollectSlopes(const VertexStars& stars);
   std::vector<char> FindStrays(const VertexStars& stars, const Values& values) const;
-  void ChooseCenters(const VertexStars& stars, const Values& values);
+  void ChooseCenters(const VertexStars& stars, const Values& values, const Progress& progress);
   std::unique_ptr<Spline> MakeSpline(int which) const;
   bool HasSpline() const { return this->Splines[0] || this->Splines[1]; }
   bool NeedsHarmonic() const
@@ -143,7 +143,8 @@ private:
     return !this->AllBoundaryIsCenter || this->Shares[0] > 0.0 || !this->HasSpline();
   }
   class Trials;
-  void MakeCandidates(Interpolation wanted, const VertexStars& stars, const Values& values);
+  void MakeCandidates(Interpolation wanted, const VertexStars& stars, const Values& values,
+    const Progress& progress);
   void Choose(const VertexStars& stars, const Values& values, const Progress& progress);
   std::vector<double> SumOfSplines(
     const std::vector<double>& known, const Progress& progress) const;
