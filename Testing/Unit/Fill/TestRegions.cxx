@@ -249,6 +249,61 @@ TEST(Regions, OnALatticeGetItsNodes)
   }
 }
 
+TEST(Regions, OnALatticeGetNodesBetweenPointsInsideToo)
+{
+  // Two points in a void are joined by an edge that is not long, through the node between them.
+  std::vector<Point2> points;
+  for (int y = 0; y <= 12; ++y)
+  {
+    for (int x = 0; x <= 12; ++x)
+    {
+      if (std::hypot(x - 6.0, y - 6.0) > 4.2 || (y == 6 && (x == 5 || x == 7)))
+      {
+        points.push_back({ double(x), double(y) });
+      }
+    }
+  }
+  const Outcome run = Fill(Delaunay(points), FillOptions(), Slope, 1.5 * std::sqrt(2.0));
+  ASSERT_EQ(run.Found.NumberOfRegions(), 1);
+  EXPECT_EQ(run.Found.InnerEnds.size(), 2u);
+  bool isThere = false;
+  for (std::size_t i = 0; i < run.Patches.Points.size(); i += 3)
+  {
+    isThere = isThere || (run.Patches.Points[i] == 6.0 && run.Patches.Points[i + 1] == 6.0);
+  }
+  EXPECT_TRUE(isThere);
+}
+
+TEST(Regions, BetweenLinesFollowTheCurvatureAcrossThem)
+{
+  // Hills of four distances between lines: a membrane is as flat as triangles are.
+  const auto hills = [](const Point2& p) {
+    return std::sin(p.X * 1.5707963 / 20.0) * std::cos(p.Y * 1.5707963 / 20.0);
+  };
+  const Mesh mesh = Delaunay(Lines(6, 8, 1200, 20.0, 0.2));
+  const auto errorOf = [&](Interpolation method) {
+    const Outcome run = Fill(mesh, ByMethod(method), hills, 1.5);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < run.Patches.Points.size(); i += 3)
+    {
+      const double* p = &run.Patches.Points[i];
+      squares += std::pow(p[2] - hills({ p[0], p[1] }), 2);
+    }
+    return std::sqrt(3.0 * squares / static_cast<double>(run.Patches.Points.size()));
+  };
+  EXPECT_LT(errorOf(Interpolation::Adaptive), 0.5 * errorOf(Interpolation::Membrane));
+}
+
+TEST(Regions, MayTakePointsInProportionToThoseOfLines)
+{
+  const Mesh mesh = Delaunay(Lines(8, 5, 100, 2000.0, 0.2));
+  FillOptions options;
+  options.MaximumInsertedPoints = 60 * mesh.NumberOfPoints();
+  const Outcome run = Fill(mesh, options, Slope, 1.5);
+  ExpectRegionsFit(run);
+  EXPECT_GT(run.Patches.NumberOfPoints(), mesh.NumberOfPoints());
+}
+
 TEST(Regions, BeyondALimitKeepTheirTriangles)
 {
   const Mesh mesh = Delaunay(CloudWithVoids(7, 600));
