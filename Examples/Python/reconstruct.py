@@ -50,6 +50,7 @@ class WrongOption(Failure):
 
 SEARCH_STRATEGIES = ("voxel-traversal", "compactness")
 INTERPOLATIONS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-spline")
+COLOURS = ("elevation", "error")
 OUTWARD_TESTS = ("exact", "inward-normal")
 LATTICE_MODES = ("automatic", "off")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
@@ -116,6 +117,7 @@ TAKES = {
     "--picture": "a file, or nothing",
     "--view": "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35",
     "--exaggeration": NUMBER,
+    "--colours": "one of " + ", ".join(COLOURS),
     "--report": "a file",
 }
 
@@ -178,6 +180,7 @@ def make_parser():
     add("--no-picture", action="store_true")
     add("--view", type=view_angles)
     add("--exaggeration", type=number_at_least_zero, default=0.0)
+    add("--colours", choices=COLOURS)
     add("--report")
     add("--quiet", action="store_true")
     return parser
@@ -203,7 +206,11 @@ def parse_arguments(arguments):
         or options.no_interpolate_point_data
     ):
         parser.error("--no-fill leaves nothing for the filling options to do")
-    if options.no_picture and (options.picture is not None or options.view or options.exaggeration):
+    if options.no_fill and options.colours == "error":
+        parser.error("--no-fill leaves no errors to draw: --colours error is for filled holes")
+    if options.no_picture and (
+        options.picture is not None or options.view or options.exaggeration or options.colours
+    ):
         parser.error("--no-picture leaves nothing for the picture options to do")
     stem = os.path.splitext(os.path.basename(options.file))[0]
     if options.output is None:
@@ -867,6 +874,7 @@ def work(options, results):
                         fill.GetOutput(1) if fill else None,
                         options.view,
                         options.exaggeration,
+                        options.colours == "error",
                     ),
                 ),
             )

@@ -41,6 +41,7 @@ from vtkmodules.vtkRenderingCore import (
 # Both maps rise evenly in lightness, so that they keep their order in grey and for colour-blind
 # eyes. Colours are mixed in CIE Lab between the stops.
 LAND = ("#1f4e5f", "#2f7a72", "#6fa06a", "#c3b56b", "#e6cf9c", "#faf3e3")
+ERROR = ("#f1efe9", "#f0c987", "#dc7a4a", "#a62f3f", "#4a1030")
 SEA = ("#13203c", "#1b456e", "#2a729b", "#559fb4", "#8cc4c4", "#cfe9dc")
 
 INK = (0.13, 0.14, 0.16)
@@ -159,15 +160,22 @@ def colour(text):
     return tuple(int(text[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
 
 
-def colour_map(low, high):
-    stops = SEA if high <= 0 and low < 0 else LAND
+def colour_map(low, high, stops=None):
+    stops = stops or (SEA if high <= 0 and low < 0 else LAND)
     result = vtkColorTransferFunction()
     result.SetColorSpaceToLab()
     if high <= low:
         high = low + 1.0
     for i, stop in enumerate(stops):
         result.AddRGBPoint(low + (high - low) * i / (len(stops) - 1), *colour(stop))
+    result.SetNanColor(*OPEN)
     return result
+
+
+def error_colours(errors):
+    """The colours of standard errors: up to what 98 % of those above 0 are."""
+    told = errors[numpy.isfinite(errors) & (errors > 0.0)]
+    return colour_map(0.0, float(numpy.percentile(told, 98)) if len(told) else 1.0, ERROR)
 
 
 def poly_data(points, polys=None, lines=None):
@@ -375,13 +383,16 @@ def round_text(value):
     return text.rstrip("0").rstrip(".")
 
 
-def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=None):
+def draw(
+    surface, path, title, subtitle, holes=None, view=None, exaggeration=None, show_errors=False
+):
     """Renders the surface into a PNG file.
 
     surface   vtkPolyData with triangles; with a cell array HoleId, patches are outlined
     holes     None, or the second output of vtkFillElevationHoles
     view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
     exaggeration  None, or the factor for z
+    show_errors   colours tell FilledError, a point array of vtkFillElevationHoles, not elevation
     Returns {"bearing", "height", "exaggeration"} as used. Takes about a second for 300,000
     triangles where a software renderer draws.
     """
@@ -414,13 +425,17 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     normals.ConsistencyOff()
     normals.Update()
     shaded = normals.GetOutput()
-    elevation = numpy_to_vtk(numpy.ascontiguousarray(real[:, 2]), deep=True)
-    elevation.SetName("Elevation")
-    shaded.GetPointData().SetScalars(elevation)
+    shown = real[:, 2]
+    if show_errors:
+        shown = vtk_to_numpy(surface.GetPointData().GetArray("FilledError"))
+        colours = error_colours(shown)
+    scalars = numpy_to_vtk(numpy.ascontiguousarray(shown), deep=True)
+    scalars.SetName("Shown")
+    shaded.GetPointData().SetScalars(scalars)
     actor = actor_of(shaded)
     actor.GetMapper().SetLookupTable(colours)
     actor.GetMapper().InterpolateScalarsBeforeMappingOn()
-    actor.GetMapper().SetScalarRange(low, high)
+    actor.GetMapper().SetScalarRange(*colours.GetRange())
     look = actor.GetProperty()
     look.SetInterpolationToPhong()
     look.SetAmbient(0.22)
@@ -462,7 +477,8 @@ def draw(surface, path, title, subtitle, holes=None, view=None, exaggeration=Non
     if is_cut:
         scales.append("outliers cut: colours of 99 % of the points")
     add_frame(renderer, width, tall, title, subtitle, legend, scales)
-    add_scalar_bar(renderer, colours, width, tall)
+    title = "standard error" if show_errors else "elevation"
+    add_scalar_bar(renderer, colours, title, width, tall)
     pixels = tall / (2.0 * scale)
     if stretch != 1.0:
         # The scale bar then holds along the strip.
@@ -564,10 +580,10 @@ def add_frame(renderer, width, tall, title, subtitle, legend, scales):
         add_text(renderer, "   \u00b7   ".join(scales[1:]), LEFT, 84, 22)
 
 
-def add_scalar_bar(renderer, colours, width, tall):
+def add_scalar_bar(renderer, colours, title, width, tall):
     bar = vtkScalarBarActor()
     bar.SetLookupTable(colours)
-    bar.SetTitle("elevation")
+    bar.SetTitle(title)
     low, high = colours.GetRange()
     step = nice_number((high - low) / 5.0, (1.0, 2.0, 5.0))
     ticks = numpy.arange(math.ceil(low / step), math.floor(high / step) + 1) * step

@@ -604,6 +604,18 @@ class Pictures(Program):
     @unittest.skipIf(
         sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
     )
+    def test_colours_can_tell_the_errors_of_what_is_filled(self):
+        # Points of the file have none, and are the palest colour; the filled hole is not.
+        usual = self.picture("--view", "top").astype(int)
+        errors = self.picture("--view", "top", "--colours", "error").astype(int)
+        self.assertEqual(usual.shape, errors.shape)
+        pale = errors.max(axis=2) - errors.min(axis=2) < 25
+        self.assertGreater(pale.mean(), 0.6)
+        self.assertGreater((errors != usual).any(axis=2).mean(), 0.1)
+
+    @unittest.skipIf(
+        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
+    )
     def test_outliers_strips_and_odd_names_leave_something_to_see(self):
         import numpy
         from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -809,6 +821,9 @@ class BadInput(Program):
             ("--no-fill leaves nothing", (name, "--no-fill", "--spacing", "3")),
             ("--no-fill leaves nothing", (name, "--no-fill", "--interpolation", "membrane")),
             ("--no-picture leaves nothing", (name, "--no-picture", "--view", "top")),
+            ("--no-picture leaves nothing", (name, "--no-picture", "--colours", "error")),
+            ("--no-fill leaves no errors", (name, "--no-fill", "--colours", "error")),
+            ("--colours takes one of elevation, error", (name, "--colours", "slope")),
         ):
             with self.subTest(arguments=arguments):
                 done = self.call(*arguments)
