@@ -248,16 +248,16 @@ void Heights::CollectSlopes(const VertexStars& stars)
  */
 std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& values) const
 {
-  const IsLowerPoint isLower{ this->Surface };
   const Index count = static_cast<Index>(this->Known.size());
-  const auto middle =
-    this->Known.begin() + static_cast<std::ptrdiff_t>(this->Patch.BoundaryIds.size());
-  const auto placeOf = [&](Index id) {
-    const bool isBoundary = std::binary_search(this->Known.begin(), middle, id, isLower);
-    const auto begin = isBoundary ? this->Known.begin() : middle;
-    const auto end = isBoundary ? middle : this->Known.end();
-    const auto found = std::lower_bound(begin, end, id, isLower);
-    return found != end && *found == id ? static_cast<Index>(found - this->Known.begin()) : None;
+  std::vector<std::pair<Index, Index>> places; // by id
+  for (Index i = 0; i < count; ++i)
+  {
+    places.emplace_back(this->Known[i], i);
+  }
+  std::sort(places.begin(), places.end());
+  const auto placeOf = [&places](Index id) {
+    const auto found = std::lower_bound(places.begin(), places.end(), std::make_pair(id, Index(0)));
+    return found != places.end() && found->first == id ? found->second : None;
   };
   std::vector<SlopingEdge> edges;
   std::vector<double> slopes;
@@ -266,17 +266,21 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
     const Index id = this->Known[i];
     const Point2& p = this->Surface.PointOf(id);
     stars.Visit(this->Surface, id, [&](Index h) {
-      for (const Index other : { this->Surface.Destination(h), this->Surface.Apex(h) })
+      // An edge with two triangles is met from both ends, one with one triangle from one.
+      const Index other = this->Surface.Destination(h);
+      const Index place = placeOf(other);
+      const bool isBorder = this->Surface.Twin(h) == Mesh::Border;
+      if (place == None || (place < i && !isBorder))
       {
-        const Index place = placeOf(other);
-        const Point2& q = this->Surface.PointOf(other);
-        const double slope =
-          std::fabs(values(other) - values(id)) / std::hypot(q.X - p.X, q.Y - p.Y);
-        if (place > i && !std::isnan(slope))
-        {
-          edges.push_back({ { i, place }, slope });
-          slopes.push_back(slope);
-        }
+        return true;
+      }
+      const Point2& q = this->Surface.PointOf(other);
+      const double slope = std::fabs(values(other) - values(id)) / std::hypot(q.X - p.X, q.Y - p.Y);
+      if (!std::isnan(slope))
+      {
+        // The median is that over the edges of all triangles.
+        edges.push_back({ { i, place }, slope });
+        slopes.insert(slopes.end(), isBorder ? 1 : 2, slope);
       }
       return true;
     });
