@@ -42,6 +42,8 @@ set(es_kernel_Trim
   OutwardTriangles
   MeasuredTriangles
   Spacings
+  PartialMesh
+  Scales
   Outline
   Trim)
 set(es_kernel_Fill

@@ -18,10 +18,9 @@ namespace
 // the range of float.
 constexpr double LargestUnscaled = 1e15;
 constexpr double LeastUnscaled = 1e-12;
-constexpr Index LargestSample = 4096;
 
 /**
- * Finds the longest edge of each triangle, adds the edges to their vertices, and takes the sample.
+ * Finds the longest edge of each triangle, adds the edges to their vertices.
  * Vertices are numbered in the order visited, so that later passes access memory locally.
  */
 struct Measurer
@@ -30,26 +29,20 @@ struct Measurer
   {
     Index Number = None;
     EdgesAtVertex Edges;
-    bool IsChosen = false;
   };
 
   static constexpr Index AtOnce = 1024; ///< numbers reserved for a visitor at a time
-  const int SampleBits;
   const Vertex* Vertices; ///< of the list
   MeasuredTriangles* Measured;
   double* Longest;                ///< of Measured
   std::atomic<Index>* Count;      ///< of numbers reserved by all visitors
-  std::vector<Index> Sample = {}; ///< triangles
   Index Next = 0, End = 0;        ///< reserved and not yet used
   Index First = None;             ///< number of the first corner
   Index Last = None;              ///< number of the last corner
   double Largest = 0.0;           ///< absolute value of a coordinate
   double ToLast = 0.0;            ///< squared length of the edge from the first corner to the last
 
-  void Start(Vertex& vertex) const
-  {
-    vertex.IsChosen = IsChosenForSample(vertex.Place, this->SampleBits);
-  }
+  void Start(Vertex&) const {}
 
   Index NumberOf(Vertex& vertex)
   {
@@ -90,10 +83,6 @@ struct Measurer
     p.Edges.Add(right);
     a.Edges.Add(opposite);
     b.Edges.Add(this->ToLast);
-    if (p.IsChosen | a.IsChosen | b.IsChosen)
-    {
-      this->Sample.push_back(t);
-    }
   }
 };
 
@@ -136,16 +125,6 @@ void AddBorder(
 
 } // namespace
 
-int SampleBitsOf(Index numberOfTriangles)
-{
-  int bits = 0;
-  while (numberOfTriangles >> bits > LargestSample)
-  {
-    ++bits;
-  }
-  return bits;
-}
-
 bool MeasureBySweep(
   const TriangleList& list, int threads, const Progress& progress, MeasuredTriangles& measured)
 {
@@ -157,7 +136,7 @@ bool MeasureBySweep(
     static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
   std::atomic<Index> numbers{ 0 };
   if (!sweep.Run(
-        Measurer{ SampleBitsOf(count), &sweep.At(0), &measured, measured.Longest.data(), &numbers },
+        Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers },
         Part(progress, 0.0, 0.75)))
   {
     return false;
@@ -166,9 +145,7 @@ bool MeasureBySweep(
   for (const Measurer* measurer : sweep.Visitors())
   {
     largest = std::max(largest, measurer->Largest);
-    measured.Sample.insert(measured.Sample.end(), measurer->Sample.begin(), measurer->Sample.end());
   }
-  std::sort(measured.Sample.begin(), measured.Sample.end());
   measured.Coordinates.Resize(3 * static_cast<std::size_t>(numbers));
   measured.SetNumberOfVertices(numbers);
   measured.List.Corners = measured.Corners.data();
@@ -212,12 +189,10 @@ MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress)
   measured.Longest.Resize(count);
   measured.SetNumberOfVertices(list.Points.Count);
   std::vector<EdgesAtVertex> edges(mesh.Points.size());
-  const int bits = SampleBitsOf(count);
   ForEachStretch(count, progress, [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       measured.Longest[t] = 0.0;
-      bool isInSample = false;
       for (Index h = 3 * t; h < 3 * t + 3; ++h)
       {
         const BorderEdge edge{ mesh.Origin(h), mesh.Destination(h) };
@@ -225,17 +200,12 @@ MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress)
         const double squared = SquaredLength(origin, list.Points.At(edge.Destination));
         measured.Longest[t] = std::max(measured.Longest[t], squared);
         edges[edge.Origin].Add(squared);
-        isInSample = isInSample || IsChosenForSample(origin, bits);
         if (mesh.IsBorder(h))
         {
           // No half-edge runs back from the destination.
           edges[edge.Destination].Add(squared);
           measured.Border.push_back(edge);
         }
-      }
-      if (isInSample)
-      {
-        measured.Sample.push_back(t);
       }
     }
   });

@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -81,33 +80,11 @@ struct MeasuredTriangles
   Buffer<std::uint32_t> Degrees;  ///< one per vertex: its number of edges, perhaps none
   Buffer<float> ShortSpacings;    ///< one per vertex
   std::vector<BorderEdge> Border;
-  std::vector<Index> Sample; ///< triangles with a vertex chosen for the sample; increasing
 };
 
 inline double SquaredLength(Point2 p, Point2 q)
 {
   return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
-}
-
-/**
- * To find the typical triangle, one vertex in 2^bits is chosen.
- * @return the least bits that leave no more than a few thousand triangles
- */
-int SampleBitsOf(Index numberOfTriangles);
-/** Whether a vertex is chosen; depends on its place alone. */
-inline bool IsChosenForSample(Point2 place, int sampleBits)
-{
-  std::uint64_t x, y;
-  place = { place.X + 0.0, place.Y + 0.0 }; // -0.0 is 0.0
-  std::memcpy(&x, &place.X, sizeof(x));
-  std::memcpy(&y, &place.Y, sizeof(y));
-  // Steps that spread every bit over all others, as at the end of Appleby's MurmurHash3.
-  const auto mix = [](std::uint64_t h) {
-    h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDull;
-    h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53ull;
-    return h ^ (h >> 33);
-  };
-  return sampleBits == 0 || mix(mix(x) + y) >> (64 - sampleBits) == 0;
 }
 
 /** Measures the triangles of a mesh (with Twins), at least one. @throws Aborted, std::bad_alloc */

@@ -3,7 +3,8 @@
 #include "Outline.h"
 
 #include "Kernel/Base/Base.h"
-#include "Spacings.h"
+#include "PartialMesh.h"
+#include "Scales.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +18,11 @@ namespace
 
 // The constants of the rule (Outline.h), found by trials: lattices, lattices thinned to a tenth,
 // random points, points graded tenfold and scan lines eight times denser along than across, all cut
-// out by outlines with lakes, a fjord, a neck and islands, wider than the tolerance. The area
-// between the true and the found outline is 0.08 to 0.25 of the area within one spacing of the true
-// one. Below 2, the sea comes in between random points (0.31 with 1.85); above 2.25, wider channels
-// are closed.
-constexpr double ToleranceOfTypicalTriangle = 2.25;
+// out by outlines with lakes, a fjord, a neck and islands, wider than the tolerance.
+constexpr double DefaultTolerance = 4.5;
 constexpr double LargestSpacingInTriangle = 2.0;
+// The edges of a bay, in tolerances. Between 1.5 and 2.2, outlines come nearer to the true ones.
+constexpr double LongestInBay = 2.2;
 // The cheaper test: fractions of the tolerance, in short spacings. In the same trials, and with
 // clusters and real surveys, spacings alone would leave out at most one triangle in 10,000 more, in
 // lattices none. With 0.55 the outlines of scan lines are a little worse; without the limit by the
@@ -43,62 +43,77 @@ Components PartsOfFlags(const Mesh& mesh, const std::vector<char>& flags, const 
   });
 }
 
+/** Flags of triangles while the outline is sought. */
+enum Flag : char
+{
+  Outside = 0,
+  Surface = 1,
+  Bay = 2 ///< surface if it belongs to a small bay
+};
+
+/** In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1. */
+constexpr std::int64_t Whole = std::int64_t(1) << 30;
+std::int64_t ToWhole(double share)
+{
+  return static_cast<std::int64_t>(std::min(1.0, share) * static_cast<double>(Whole));
+}
+
 /**
- * Closes openings smaller than the least lake.
+ * Closes connected openings smaller than the least lake. Others become Outside.
+ * @param[in] flag     of their triangles. Outside: lakes, which do not reach the border of the mesh.
+ *                     Bay: bays, which have surface along at least half of their border.
  * @param[in] shareOf  shareOf(t): the area of a triangle as a fraction of the least lake's
  */
 template <typename ShareOf>
 void CloseSmallOpenings(
-  const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
+  const Mesh& mesh, Flag flag, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
   const Components parts = PartsOfFlags(mesh, keep, Part(progress, 0.0, 0.5));
-  struct Piece
+  struct Opening
   {
-    Index Part;
-    double Share;
-    Index Triangle;
+    std::int64_t Share = 0;
+    std::int64_t Open = 0; ///< length of the border, less twice that along surface
+    double Longest = 0.0;  ///< square of its longest edge
+    bool ReachesBorder = false;
   };
-  std::vector<Piece> pieces;
-  std::vector<char> reachesBorder(parts.Count(), 0);
-  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.5, 0.7), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (!keep[t])
+  std::vector<Opening> openings(parts.Count());
+  const auto lengthOf = [&](Index h) {
+    return SquaredLength(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)));
+  };
+  const auto visit = [&](const Progress& passing, auto&& look) {
+    ForEachStretch(mesh.NumberOfTriangles(), passing, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
       {
-        const bool isAtBorder =
-          mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
-        pieces.push_back({ parts.ComponentOf(t), 0.0, t });
-        reachesBorder[parts.ComponentOf(t)] |= isAtBorder;
+        if (keep[t] == flag)
+        {
+          look(t, openings[parts.ComponentOf(t)]);
+        }
       }
+    });
+  };
+  visit(Part(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
+    opening.Share += ToWhole(shareOf(t));
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      opening.ReachesBorder |= mesh.IsBorder(h);
+      opening.Longest = std::max(opening.Longest, lengthOf(h));
     }
   });
-  pieces.erase(std::remove_if(pieces.begin(), pieces.end(),
-                 [&](const Piece& piece) { return reachesBorder[piece.Part] != 0; }),
-    pieces.end());
-  for (Piece& piece : pieces)
-  {
-    piece.Share = shareOf(piece.Triangle);
-  }
-  // Sorted by size, so that the sum does not depend on the order of the triangles.
-  Sort(
-    pieces.begin(), pieces.end(),
-    [](const Piece& p, const Piece& q) {
-      return p.Part != q.Part ? p.Part < q.Part : p.Share < q.Share;
-    },
-    Part(progress, 0.7, 1.0));
-  for (auto first = pieces.begin(); first != pieces.end();)
-  {
-    double sum = 0.0;
-    auto last = first;
-    for (; last != pieces.end() && last->Part == first->Part; ++last)
+  visit(Part(progress, 0.7, 0.9), [&](Index t, Opening& opening) {
+    for (Index h = 3 * t; h < 3 * t + 3 && flag == Bay && opening.Share < Whole; ++h)
     {
-      sum += last->Share;
+      const char beside =
+        mesh.IsBorder(h) ? static_cast<char>(Outside) : keep[Mesh::Triangle(mesh.Twin(h))];
+      const std::int64_t length =
+        beside == Bay ? 0 : ToWhole(std::sqrt(lengthOf(h) / opening.Longest)) >> 8;
+      opening.Open += beside == Surface ? -length : length;
     }
-    for (; first != last; ++first)
-    {
-      keep[first->Triangle] = sum < 1.0;
-    }
-  }
+  });
+  visit(Part(progress, 0.9, 1.0), [&](Index t, const Opening& opening) {
+    const bool isClosed =
+      opening.Share < Whole && (flag == Bay ? opening.Open <= 0 : !opening.ReachesBorder);
+    keep[t] = isClosed ? Surface : Outside;
+  });
 }
 
 /**
@@ -111,11 +126,11 @@ void DropSlivers(
 {
   std::vector<Index> dropped;
   const auto look = [&](Index t) {
-    for (Index h = 3 * t; h < 3 * t + 3 && keep[t]; ++h)
+    for (Index h = 3 * t; h < 3 * t + 3 && keep[t] == Surface; ++h)
     {
-      if ((mesh.IsBorder(h) || !keep[Mesh::Triangle(mesh.Twin(h))]) && isSliver(h))
+      if ((mesh.IsBorder(h) || keep[Mesh::Triangle(mesh.Twin(h))] != Surface) && isSliver(h))
       {
-        keep[t] = 0;
+        keep[t] = Outside;
         dropped.push_back(t);
       }
     }
@@ -287,23 +302,6 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
   return result;
 }
 
-/** The triangles with a corner in the set, increasing. */
-std::vector<Index> TrianglesAt(
-  const TriangleList& list, const IdSet& vertices, const Progress& progress)
-{
-  std::vector<Index> triangles;
-  ForEachStretch(list.Count, progress, [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (vertices.HasAny(list.CornersOf(t)))
-      {
-        triangles.push_back(t);
-      }
-    }
-  });
-  return triangles;
-}
-
 /** The number of corners that no triangle to keep has. */
 Index CountLeftOut(
   const TriangleList& list, const std::vector<char>& keep, const Progress& progress)
@@ -330,26 +328,6 @@ Index CountLeftOut(
   return leftOut.Count();
 }
 
-/** The corners of triangles, each once, in order of occurrence. */
-std::vector<Index> CornersOf(
-  const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
-{
-  IdSet known(list.Points.Count);
-  std::vector<Index> corners;
-  ForEachStretch(static_cast<Index>(triangles.size()), progress, [&](Index begin, Index end) {
-    for (Index i = 3 * begin; i < 3 * end; ++i)
-    {
-      const Index vertex = list.CornersOf(triangles[i / 3])[i % 3];
-      if (!known.Has(vertex))
-      {
-        known.Add(vertex);
-        corners.push_back(vertex);
-      }
-    }
-  });
-  return corners;
-}
-
 /**
  * The spacing of a triangle: the median of its corners', which ignores the large spacing of an
  * isolated corner, but not far above the least, in case two corners are isolated.
@@ -363,29 +341,6 @@ double SpacingOf(const Buffer<Real>& spacings, const Index* corners)
   const Real least = std::min({ a, b, c });
   const Real middle = std::max(std::min(a, b), std::min(std::max(a, b), c));
   return std::max<double>(LeastSpacing, std::min<double>(middle, LargestSpacingInTriangle * least));
-}
-
-/**
- * A sample of the triangles: those at chosen vertices, or all if they are few. Vertices with very
- * many neighbours are not chosen, as their triangles would outvote all others.
- */
-std::vector<Index> SampleOf(const MeasuredTriangles& measured)
-{
-  const TriangleList& list = measured.List;
-  const int bits = SampleBitsOf(list.Count);
-  std::vector<Index> sample;
-  for (const Index t : measured.Sample)
-  {
-    const Index* corners = list.CornersOf(t);
-    if (bits == 0 || std::any_of(corners, corners + 3, [&](Index v) {
-          return measured.Degrees[v] <= NeighborsOfHub &&
-            IsChosenForSample(list.Points.At(v), bits);
-        }))
-    {
-      sample.push_back(t);
-    }
-  }
-  return sample.empty() ? AllTriangles(list) : sample;
 }
 
 /**
@@ -411,8 +366,6 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     }
     return v;
   };
-  // In whole numbers, so that the sum does not depend on the order of the triangles.
-  constexpr std::int64_t whole = std::int64_t(1) << 30;
   Buffer<std::int64_t> sums;
   sums.Resize(list.Points.Count);
   std::fill(sums.begin(), sums.end(), 0);
@@ -423,9 +376,9 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
       const Index* ahead = list.CornersOf(triangles[std::min(i + 16, count - 1)]);
       const Index* corners = list.CornersOf(triangles[i]);
       const bool isAtBorder = atBorder.HasAny(corners);
-      const double share = isAtBorder ? 1.0 : std::min(1.0, shareOf(triangles[i]));
+      const double share = isAtBorder ? 1.0 : shareOf(triangles[i]);
       Index root = find(corners[0]);
-      sums[root] += static_cast<std::int64_t>(share * static_cast<double>(whole));
+      sums[root] += ToWhole(share);
       for (int k = 0; k < 3; ++k)
       {
         list.PrefetchPoint(ahead[k]);
@@ -446,7 +399,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     for (Index i = begin; i < end; ++i)
     {
       const Index t = triangles[i];
-      keep[t] = sums[find(list.CornersOf(t)[0])] < whole;
+      keep[t] = sums[find(list.CornersOf(t)[0])] < Whole;
       if (!keep[t])
       {
         others.push_back(t);
@@ -456,72 +409,18 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   return others;
 }
 
-/** Triangles as a mesh. A half-edge that is its own twin leads to a triangle left out. */
-struct PartialMesh
-{
-  /** @param[in] border  sorted */
-  PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
-    const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress)
-    : Surface(SubMesh(list, triangles, Part(progress, 0.0, 0.5)))
-    , Triangles(std::move(triangles))
-  {
-    this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));
-    if (static_cast<Index>(this->Triangles.size()) == list.Count)
-    {
-      return; // nothing is left out
-    }
-    ForEachStretch(
-      this->Surface.NumberOfHalfEdges(), Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
-        for (Index h = begin; h < end; ++h)
-        {
-          if (this->Surface.IsBorder(h))
-          {
-            const BorderEdge edge{ this->Surface.IdOf(this->Surface.Origin(h)),
-              this->Surface.IdOf(this->Surface.Destination(h)) };
-            if (!atBorder.Has(edge.Origin) || !atBorder.Has(edge.Destination) ||
-              !std::binary_search(border.begin(), border.end(), edge))
-            {
-              this->Surface.Twins[h] = h;
-            }
-          }
-        }
-      });
-  }
-
-  Mesh Surface;
-  const std::vector<Index> Triangles; ///< their ids in the list
-
-  std::vector<char> FlagsOf(const std::vector<char>& flags) const
-  {
-    std::vector<char> ofThese;
-    ofThese.reserve(this->Triangles.size());
-    for (const Index t : this->Triangles)
-    {
-      ofThese.push_back(flags[t]);
-    }
-    return ofThese;
-  }
-  void PutFlags(const std::vector<char>& ofThese, std::vector<char>& flags) const
-  {
-    for (std::size_t i = 0; i < ofThese.size(); ++i)
-    {
-      flags[this->Triangles[i]] = ofThese[i];
-    }
-  }
-};
-
 /**
- * The last steps: drops slivers, closes small openings, drops small pieces, and traces the border
- * of the rest.
- * @param[in]     spacings  at least at the corners of triangles that are not yet surface
- * @param[in]     near      the corners at the border of the surface found so far
- * @param[in,out] result    in: which triangles are surface; out: the same, and the rings
+ * The last steps: drops slivers, closes small bays and lakes, drops small pieces, and traces the
+ * border of the rest.
+ * @param[in]     spacingOf  spacingOf(t): of triangles that are not yet surface
+ * @param[in]     near       the corners at the border of the surface found so far
+ * @param[in,out] result     in: a Flag for each triangle; out: Outside or Surface, and the rings
  */
+template <typename SpacingOfTriangle>
 void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
-  const Buffer<double>& spacings, IdSet near, const Progress& progress, ExtractedBoundary& result)
+  SpacingOfTriangle&& spacingOf, IdSet near, const Progress& progress, ExtractedBoundary& result)
 {
   const TriangleList& list = measured.List;
-  const auto spacingOf = [&](Index t) { return SpacingOf(spacings, list.CornersOf(t)); };
   std::vector<char>& keep = result.IsSurface;
   const auto isSliverOver = [&](Index t, double length) {
     const double spacing = SpacingOf(measured.ShortSpacings, list.CornersOf(t));
@@ -558,7 +457,7 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
     // and their spacings are not known.
     const auto shareOf = [&](Index i) {
       const Index t = mesh.Triangles[i];
-      return keep[t] ? 0.0 : list.ShareOfSquare(t, result.GapTolerance * spacingOf(t));
+      return keep[t] == Surface ? 0.0 : list.ShareOfSquare(t, spacingOf(t));
     };
     const auto isSliver = [&](Index h) {
       const Index t = mesh.Triangles[Mesh::Triangle(h)];
@@ -569,12 +468,13 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
             mesh.Surface.PointOf(mesh.Surface.Destination(h)))));
     };
     DropSlivers(mesh.Surface, isSliver, keepHere, Part(round, 0.3, 0.4));
-    if (std::find(keepHere.begin(), keepHere.end(), char(1)) == keepHere.end() &&
+    if (std::find(keepHere.begin(), keepHere.end(), char(Surface)) == keepHere.end() &&
       static_cast<Index>(mesh.Triangles.size()) == list.Count)
     {
       keepHere = keep; // the surface is nothing but slivers
     }
-    CloseSmallOpenings(mesh.Surface, shareOf, keepHere, Part(round, 0.4, 0.55));
+    CloseSmallOpenings(mesh.Surface, Bay, shareOf, keepHere, Part(round, 0.4, 0.48));
+    CloseSmallOpenings(mesh.Surface, Outside, shareOf, keepHere, Part(round, 0.48, 0.55));
     const std::vector<Index> unknown =
       DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.55, 0.8));
     if (unknown.empty())
@@ -598,9 +498,11 @@ public:
   OutlineSearch(MeasuredTriangles measured, const ExtractOptions& options)
     : Measured(std::move(measured))
     , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
+    , IsAutomatic(!(options.GapTolerance > 0.0))
+    , Tolerance(this->IsAutomatic ? DefaultTolerance : options.GapTolerance)
     , AtBorder(this->Measured.List.Points.Count)
   {
-    this->Result.GapTolerance = options.GapTolerance;
+    this->Result.GapTolerance = this->Tolerance;
   }
 
   ExtractedBoundary Run(const Progress& progress)
@@ -609,16 +511,19 @@ public:
     this->SortBorder(Part(progress, 0.0, 0.02));
     const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.25));
     this->Spacings.Resize(list.Points.Count);
-    if (!(this->Result.GapTolerance > 0.0))
+    this->KeepCertainTriangles(Part(progress, 0.25, 0.45));
+    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.45, 0.55));
+    if (this->IsAutomatic)
     {
-      this->ChooseTolerance(neighbors, Part(progress, 0.25, 0.35));
+      this->Scales = FindScales(this->Measured, neighbors, this->AtBorder, this->CornersNear(doubtful),
+        this->Threads, Part(progress, 0.55, 0.65), this->Spacings.data());
+      this->Result.GapTolerance *= this->TypicalScale();
     }
-    this->KeepCertainTriangles(Part(progress, 0.35, 0.5));
-    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.5, 0.6));
-    this->FindSpacingsOf(doubtful, neighbors, Part(progress, 0.6, 0.74));
-    IdSet near = this->Decide(doubtful, Part(progress, 0.74, 0.75));
-    TraceSurface(this->Measured, this->AtBorder, this->Spacings, std::move(near),
-      Part(progress, 0.75, 0.95), this->Result);
+    this->FindSpacingsOf(doubtful, neighbors, Part(progress, 0.65, 0.74));
+    this->Decide(doubtful, Part(progress, 0.74, 0.75));
+    TraceSurface(
+      this->Measured, this->AtBorder, [&](Index t) { return this->ToleranceOf(t); },
+      this->CornersNear(doubtful), Part(progress, 0.75, 0.95), this->Result);
     this->Result.NumberOfPointsLeftOut =
       CountLeftOut(list, this->Result.IsSurface, Part(progress, 0.95, 1.0));
     if (this->Measured.Ids.size() > 0)
@@ -653,26 +558,41 @@ private:
     Report(progress, 1.0);
   }
 
-  /** The longest edge of a triangle in spacings. */
-  double RatioOf(Index t) const
+  /** The scale of the median vertex. */
+  double TypicalScale() const
   {
-    return std::sqrt(this->Measured.Longest[t]) /
-      SpacingOf(this->Spacings, this->Measured.List.CornersOf(t));
+    std::vector<float> scales = this->Scales;
+    const auto median = scales.begin() + static_cast<std::ptrdiff_t>(scales.size() / 2);
+    std::nth_element(scales.begin(), median, scales.end());
+    return median == scales.end() ? 1.0 : *median;
   }
 
-  /** Chooses GapTolerance from the ratio of the median triangle. */
-  void ChooseTolerance(const Neighbors& neighbors, const Progress& progress)
+  /** The longest edge that a triangle may have. */
+  double ToleranceOf(Index t) const
   {
-    const std::vector<Index> sample = SampleOf(this->Measured);
-    this->FindSpacingsOf(sample, neighbors, progress);
-    std::vector<double> ratios;
-    for (const Index t : sample)
+    const Index* const corners = this->Measured.List.CornersOf(t);
+    double spacing = SpacingOf(this->Spacings, corners);
+    for (int k = 0; k < 3 && !this->Scales.empty(); ++k)
     {
-      ratios.push_back(this->RatioOf(t));
+      // Not at once, as the largest spacing replaces the median.
+      const double scale = this->Scales[corners[k]];
+      spacing =
+        std::max(spacing, std::min(1.0, scale - 1.0) * scale * this->Spacings[corners[k]]);
     }
-    const auto median = ratios.begin() + ratios.size() / 2;
-    std::nth_element(ratios.begin(), median, ratios.end());
-    this->Result.GapTolerance = ToleranceOfTypicalTriangle * *median;
+    return this->Tolerance * spacing;
+  }
+
+  /** The same for triangles in bays. */
+  double ToleranceOfBay(Index t) const
+  {
+    const Index* const corners = this->Measured.List.CornersOf(t);
+    double spacing = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const double scale = this->Scales.empty() ? 1.0 : this->Scales[corners[k]];
+      spacing = std::max(spacing, scale * this->Spacings[corners[k]]);
+    }
+    return LongestInBay * this->Tolerance * spacing;
   }
 
   /** The cheaper test, by short spacings. */
@@ -683,7 +603,7 @@ private:
     const Buffer<double>& longest = this->Measured.Longest;
     std::vector<char>& keep = this->Result.IsSurface;
     keep.resize(list.Count);
-    const double limit = CertainSurface * this->Result.GapTolerance;
+    const double limit = CertainSurface * this->Tolerance;
     const auto isWithin = [&](Index, Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
@@ -715,33 +635,47 @@ private:
     });
     const auto shareOf = [&](Index t) {
       const double spacing = SpacingOf(this->Measured.ShortSpacings, list.CornersOf(t));
-      return list.ShareOfSquare(t, SmallGroup * this->Result.GapTolerance * spacing);
+      return list.ShareOfSquare(t, SmallGroup * this->Tolerance * spacing);
     };
     return DropSmallGroups(list, this->AtBorder, doubtful, shareOf, keep, Part(progress, 0.2, 1.0));
   }
 
-  /** Tests the doubtful triangles by spacings. @return the corners at the border of the surface */
-  IdSet Decide(const std::vector<Index>& doubtful, const Progress& progress)
+  /** The corners of triangles that are not surface, and those at the border. */
+  IdSet CornersNear(const std::vector<Index>& triangles) const
   {
     IdSet near = this->AtBorder;
+    for (const Index t : triangles)
+    {
+      if (this->Result.IsSurface[t] != Surface)
+      {
+        near.AddAll(this->Measured.List.CornersOf(t));
+      }
+    }
+    return near;
+  }
+
+  /** Tests the doubtful triangles by spacings. */
+  void Decide(const std::vector<Index>& doubtful, const Progress& progress)
+  {
     ForEachStretch(static_cast<Index>(doubtful.size()), progress, [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i)
       {
         const Index t = doubtful[i];
-        this->Result.IsSurface[t] = this->RatioOf(t) <= this->Result.GapTolerance;
-        if (!this->Result.IsSurface[t])
-        {
-          near.AddAll(this->Measured.List.CornersOf(t));
-        }
+        const double longest = std::sqrt(this->Measured.Longest[t]);
+        this->Result.IsSurface[t] = longest <= this->ToleranceOf(t) ? Surface
+          : longest <= this->ToleranceOfBay(t)                      ? Bay
+                                                                    : Outside;
       }
     });
-    return near;
   }
 
   MeasuredTriangles Measured;
   const int Threads;
+  const bool IsAutomatic;
+  const double Tolerance; ///< at scale 1
   IdSet AtBorder;
-  Buffer<double> Spacings; ///< one per vertex, set where it was needed
+  Buffer<double> Spacings;   ///< one per vertex, set where it was needed
+  std::vector<float> Scales; ///< one per vertex, or none
   ExtractedBoundary Result;
 };
 

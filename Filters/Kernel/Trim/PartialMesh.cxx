@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PartialMesh.h"
+
+#include <algorithm>
+
+namespace elevation
+{
+
+std::vector<Index> TrianglesAt(
+  const TriangleList& list, const IdSet& vertices, const Progress& progress)
+{
+  std::vector<Index> triangles;
+  ForEachStretch(list.Count, progress, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (vertices.HasAny(list.CornersOf(t)))
+      {
+        triangles.push_back(t);
+      }
+    }
+  });
+  return triangles;
+}
+
+std::vector<Index> CornersOf(
+  const TriangleList& list, const std::vector<Index>& triangles, const Progress& progress)
+{
+  IdSet known(list.Points.Count);
+  std::vector<Index> corners;
+  ForEachStretch(static_cast<Index>(triangles.size()), progress, [&](Index begin, Index end) {
+    for (Index i = 3 * begin; i < 3 * end; ++i)
+    {
+      const Index vertex = list.CornersOf(triangles[i / 3])[i % 3];
+      if (!known.Has(vertex))
+      {
+        known.Add(vertex);
+        corners.push_back(vertex);
+      }
+    }
+  });
+  return corners;
+}
+
+PartialMesh::PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
+  const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress)
+  : Surface(SubMesh(list, triangles, Part(progress, 0.0, 0.5)))
+  , Triangles(std::move(triangles))
+{
+  this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));
+  if (static_cast<Index>(this->Triangles.size()) == list.Count)
+  {
+    return; // nothing is left out
+  }
+  ForEachStretch(
+    this->Surface.NumberOfHalfEdges(), Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+      for (Index h = begin; h < end; ++h)
+      {
+        if (this->Surface.IsBorder(h))
+        {
+          const BorderEdge edge{ this->Surface.IdOf(this->Surface.Origin(h)),
+            this->Surface.IdOf(this->Surface.Destination(h)) };
+          if (!atBorder.Has(edge.Origin) || !atBorder.Has(edge.Destination) ||
+            !std::binary_search(border.begin(), border.end(), edge))
+          {
+            this->Surface.Twins[h] = h;
+          }
+        }
+      }
+    });
+}
+
+std::vector<char> PartialMesh::FlagsOf(const std::vector<char>& flags) const
+{
+  std::vector<char> ofThese;
+  ofThese.reserve(this->Triangles.size());
+  for (const Index t : this->Triangles)
+  {
+    ofThese.push_back(flags[t]);
+  }
+  return ofThese;
+}
+
+void PartialMesh::PutFlags(const std::vector<char>& ofThese, std::vector<char>& flags) const
+{
+  for (std::size_t i = 0; i < ofThese.size(); ++i)
+  {
+    flags[this->Triangles[i]] = ofThese[i];
+  }
+}
+
+} // namespace elevation

@@ -1,0 +1,573 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scales.h"
+
+#include "PartialMesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace elevation
+{
+
+namespace
+{
+
+// The constants of the rule (Scales.h), found by trials: survey lines 2 to 200 times as far apart as
+// their points, even and uneven, with and without cross lines, jittered by up to half a spacing;
+// tracks that cross at random; roads of 3 to 15 rows of points; swaths beside and across lines.
+constexpr std::size_t LeastThinGroup = 10;
+constexpr Index LeastInner = 20;
+constexpr double LongestShortEdge = 6.0; // spacings
+constexpr double SpacingsOfUnit = 2.0;
+constexpr double LeastWidth = 1.2;
+constexpr double WidthOfLength = 2.5;
+constexpr double ShareOfPoint = 0.2;
+constexpr double LongestJoin = 5.0;
+constexpr double LeastSpacing = 1e-150;
+
+/** 0 up to half of what is asked for, 1 from there on. */
+double Reached(double value, double asked)
+{
+  return std::max(0.0, std::min(1.0, 2.0 * value / asked - 1.0));
+}
+
+/** The vertices near the border of the surface whose neighbours are all near it. */
+IdSet ThinVertices(const Neighbors& neighbors, const IdSet& near, Index count)
+{
+  IdSet thin(count);
+  for (Index v = 0; v < count; ++v)
+  {
+    if (near.Has(v))
+    {
+      const Index* const begin = neighbors.Ids.data() + neighbors.Offsets[v];
+      const Index* const end = neighbors.Ids.data() + neighbors.Offsets[v + 1];
+      if (begin != end && std::all_of(begin, end, [&](Index w) { return near.Has(w); }))
+      {
+        thin.Add(v);
+      }
+    }
+  }
+  return thin;
+}
+
+/** Whether enough vertices of a set are connected by edges. */
+bool HasGroup(const Neighbors& neighbors, const IdSet& vertices, Index count, std::size_t enough)
+{
+  IdSet seen(count);
+  std::vector<Index> group;
+  for (Index v = 0; v < count; ++v)
+  {
+    if (!vertices.Has(v) || seen.Has(v))
+    {
+      continue;
+    }
+    group.assign(1, v);
+    seen.Add(v);
+    for (std::size_t i = 0; i < group.size(); ++i)
+    {
+      for (std::uint32_t k = neighbors.Offsets[group[i]]; k < neighbors.Offsets[group[i] + 1]; ++k)
+      {
+        const Index w = neighbors.Ids[k];
+        if (vertices.Has(w) && !seen.Has(w))
+        {
+          seen.Add(w);
+          group.push_back(w);
+          if (group.size() >= enough)
+          {
+            return true;
+          }
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/** The root of an element of a union-find. */
+Index RootOf(std::vector<Index>& parents, Index i)
+{
+  while (parents[i] != i)
+  {
+    i = parents[i] = parents[parents[i]];
+  }
+  return i;
+}
+
+/** All vertices but those of cores. */
+IdSet OutsideCores(
+  const Neighbors& neighbors, const IdSet& near, Index count, const Progress& progress)
+{
+  std::vector<Index> parents(count);
+  std::iota(parents.begin(), parents.end(), 0);
+  ForEachStretch(count, Part(progress, 0.0, 0.6), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+    {
+      for (std::uint32_t k = neighbors.Offsets[v]; !near.Has(v) && k < neighbors.Offsets[v + 1];
+           ++k)
+      {
+        const Index a = RootOf(parents, v);
+        const Index b = RootOf(parents, neighbors.Ids[k]);
+        parents[std::max(a, b)] = std::min(a, b);
+      }
+    }
+  });
+  std::vector<Index> inner(count, 0), others(count, 0);
+  ForEachStretch(count, Part(progress, 0.6, 0.8), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+    {
+      ++(near.Has(v) ? others : inner)[RootOf(parents, v)];
+    }
+  });
+  IdSet outside(count);
+  ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+    for (Index v = begin; v < end; ++v)
+    {
+      const Index root = RootOf(parents, v);
+      if (inner[root] < LeastInner || inner[root] < others[root])
+      {
+        outside.Add(v);
+      }
+    }
+  });
+  return outside;
+}
+
+/** Parts of thin vertices. Two that join become a new one. */
+class JoiningParts
+{
+public:
+  /** Adds a part of vertices that belong together from the start. @return its number */
+  Index Add(Index points, bool isAttached)
+  {
+    JoiningPart part;
+    part.Points = points;
+    part.IsAttached = isAttached;
+    return this->Add(part);
+  }
+
+  void Join(Index a, Index b, double length)
+  {
+    a = this->TopOf(a);
+    b = this->TopOf(b);
+    if (a == b)
+    {
+      return;
+    }
+    this->Grow(a, length);
+    this->Grow(b, length);
+    JoiningPart& p = this->Parts[a];
+    JoiningPart& q = this->Parts[b];
+    JoiningPart sum;
+    sum.Points = p.Points + q.Points;
+    sum.Area = p.Area + q.Area;
+    sum.Border = p.Border + q.Border;
+    sum.Surface = std::max(p.Surface, q.Surface);
+    sum.Length = length;
+    sum.IsAttached = p.IsAttached || q.IsAttached;
+    p.Parent = q.Parent = static_cast<Index>(this->Parts.size());
+    this->Tops[a] = this->Tops[b] = this->Add(sum);
+  }
+
+  /** Tells that a part touches a core. */
+  void Touch(Index part, double length)
+  {
+    const Index top = this->TopOf(part);
+    if (!this->Parts[top].IsAttached && length <= LongestJoin)
+    {
+      this->Grow(top, length);
+      this->Parts[top].Surface = 1.0;
+    }
+  }
+
+  /** Adds an open triangle. */
+  void Open(Index part, double area, double border)
+  {
+    JoiningPart& top = this->Parts[this->TopOf(part)];
+    top.Area += area;
+    top.Border += border;
+  }
+
+  /** Tells that everything up to a length has been added. */
+  void Finish(Index part, double length)
+  {
+    const Index top = this->TopOf(part);
+    this->Grow(top, length);
+    JoiningPart& grown = this->Parts[top];
+    const double asked = std::max(LeastWidth, WidthOfLength * (length - 1.0));
+    const double width = grown.Border > 0.0 ? 2.0 * grown.Area / grown.Border : 0.0;
+    const double share = grown.Area / static_cast<double>(grown.Points);
+    grown.Surface =
+      std::max(grown.Surface, std::min(Reached(width, asked), Reached(share, ShareOfPoint)));
+  }
+
+  /** The scale of each part, by number. */
+  std::vector<float> Scales(bool hasCore) const
+  {
+    const auto isTop = [](const JoiningPart& part) { return part.Parent == None; };
+    const bool hasSurface = hasCore ||
+      std::any_of(this->Parts.begin(), this->Parts.end(),
+        [&](const JoiningPart& part) { return isTop(part) && part.Surface == 1.0; });
+    std::vector<double> sums(this->Parts.size());
+    std::vector<char> isSurface(this->Parts.size());
+    for (std::size_t i = this->Parts.size(); i-- > 0;)
+    {
+      const JoiningPart& part = this->Parts[i];
+      if (isTop(part))
+      {
+        isSurface[i] = part.Surface == 1.0;
+        // What comes after the last join tells nothing about a part that is no surface.
+        sums[i] = isSurface[i] ? part.Integral : 0.0;
+        isSurface[i] |= !hasSurface;
+      }
+      else
+      {
+        isSurface[i] = isSurface[part.Parent];
+        sums[i] = part.Integral + sums[part.Parent];
+      }
+    }
+    std::vector<float> scales;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+    {
+      scales.push_back(isSurface[i] ? std::max(1.0f, static_cast<float>(sums[i])) : 1.0f);
+    }
+    return scales;
+  }
+
+private:
+  struct JoiningPart
+  {
+    Index Points = 0;
+    double Area = 0.0;     ///< of open triangles, in square units
+    double Border = 0.0;   ///< of open triangles, in units
+    double Surface = 0.0;  ///< 1 when it is one, 0 when it is not at all
+    double Integral = 0.0; ///< of 1 - Surface
+    double Length = 0.0;   ///< up to which the integral goes
+    bool IsAttached = false;
+    Index Parent = None;
+  };
+
+  Index Add(const JoiningPart& part)
+  {
+    this->Parts.push_back(part);
+    this->Tops.push_back(static_cast<Index>(this->Tops.size()));
+    return this->Tops.back();
+  }
+  Index TopOf(Index part) { return RootOf(this->Tops, part); }
+  void Grow(Index part, double length)
+  {
+    JoiningPart& grown = this->Parts[part];
+    grown.Integral += (1.0 - grown.Surface) * (length - grown.Length);
+    grown.Length = length;
+  }
+
+  std::vector<JoiningPart> Parts;
+  std::vector<Index> Tops; ///< union-find: what a part has become
+};
+
+/** The triangles with a thin corner, and what happens to them as the length grows. */
+class ThinTriangles
+{
+public:
+  ThinTriangles(const TriangleList& list, const PartialMesh& partial, const IdSet& atBorder,
+    const IdSet& thin, const double* spacings)
+    : List(list)
+    , Partial(partial)
+    , Surface(partial.Surface)
+    , AtBorder(atBorder)
+    , Thin(thin)
+    , Spacings(spacings)
+  {
+  }
+
+  /** @return one per vertex of the list */
+  std::vector<float> FindScales(bool hasCore, const Progress& progress)
+  {
+    this->MeasureTriangles(Part(progress, 0.0, 0.1));
+    this->FindGroups(Part(progress, 0.1, 0.2));
+    this->FindEvents(Part(progress, 0.2, 0.6));
+    this->FollowEvents(Part(progress, 0.6, 1.0));
+    const std::vector<float> ofParts = this->Parts.Scales(hasCore);
+    std::vector<float> scales(this->List.Points.Count, 1.0f);
+    for (Index v = 0; v < this->Surface.NumberOfPoints(); ++v)
+    {
+      if (this->IsThin(v))
+      {
+        scales[this->Surface.IdOf(v)] = ofParts[this->PartOf[v]];
+      }
+    }
+    return scales;
+  }
+
+private:
+  enum class Kind : char
+  {
+    Join,
+    Touch,
+    Open
+  };
+  struct Event
+  {
+    double Length;
+    Kind What;
+    Index Triangle;
+  };
+
+  bool IsThin(Index vertex) const { return this->Thin.Has(this->Surface.IdOf(vertex)); }
+  double SpacingOf(Index vertex) const
+  {
+    return std::max(LeastSpacing, this->Spacings[this->Surface.IdOf(vertex)]);
+  }
+  double LengthOf(Index h) const
+  {
+    return std::sqrt(SquaredLength(this->Surface.PointOf(this->Surface.Origin(h)),
+      this->Surface.PointOf(this->Surface.Destination(h))));
+  }
+  template <typename Visitor>
+  void VisitThinCorners(Index t, Visitor&& visit) const
+  {
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      if (this->IsThin(this->Surface.Origin(h)))
+      {
+        visit(this->Surface.Origin(h));
+      }
+    }
+  }
+
+  /** The unit and length of each triangle; the longest at each thin vertex. */
+  void MeasureTriangles(const Progress& progress)
+  {
+    const Index count = this->Surface.NumberOfTriangles();
+    this->Units.resize(count);
+    this->Lengths.resize(count);
+    this->LongestAt.assign(this->Surface.Points.size(), 0.0);
+    ForEachStretch(count, progress, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        double spacing = 0.0;
+        double longest = 0.0;
+        bool isInside = true;
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        {
+          spacing = std::max(spacing, this->SpacingOf(this->Surface.Origin(h)));
+          longest = std::max(longest, this->LengthOf(h));
+          isInside = isInside && this->IsThin(this->Surface.Origin(h));
+        }
+        this->Units[t] = SpacingsOfUnit * spacing;
+        this->Lengths[t] = longest / this->Units[t];
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        {
+          const Index v = this->Surface.Origin(h);
+          const bool isClosed = isInside && !this->AtBorder.Has(this->Surface.IdOf(v));
+          this->LongestAt[v] = std::max(this->LongestAt[v],
+            isClosed ? this->Lengths[t] : std::numeric_limits<double>::infinity());
+        }
+      }
+    });
+  }
+
+  /** Finds the parts that short edges join. */
+  void FindGroups(const Progress& progress)
+  {
+    const Index count = this->Surface.NumberOfPoints();
+    std::vector<Index> parents(count);
+    std::iota(parents.begin(), parents.end(), 0);
+    std::vector<char> isAttached(count, 0);
+    ForEachStretch(this->Surface.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
+      for (Index h = begin; h < end; ++h)
+      {
+        const Index a = this->Surface.Origin(h);
+        const Index b = this->Surface.Destination(h);
+        const double ofA = this->IsThin(a) ? this->SpacingOf(a) : 0.0;
+        const double ofB = this->IsThin(b) ? this->SpacingOf(b) : 0.0;
+        if (this->LengthOf(h) >= LongestShortEdge * std::max(ofA, ofB))
+        {
+          continue;
+        }
+        if (ofA > 0.0 && ofB > 0.0)
+        {
+          const Index p = RootOf(parents, a);
+          const Index q = RootOf(parents, b);
+          parents[std::max(p, q)] = std::min(p, q);
+        }
+        else
+        {
+          isAttached[ofA > 0.0 ? a : b] = 1;
+        }
+      }
+    });
+    std::vector<Index> sizes(count, 0);
+    for (Index v = 0; v < count; ++v)
+    {
+      const Index root = RootOf(parents, v);
+      sizes[root] += this->IsThin(v);
+      isAttached[root] |= isAttached[v];
+    }
+    this->PartOf.assign(count, None);
+    for (Index v = 0; v < count; ++v)
+    {
+      const Index root = RootOf(parents, v); // comes first
+      if (this->IsThin(v))
+      {
+        this->PartOf[v] =
+          root == v ? this->Parts.Add(sizes[v], isAttached[v] != 0) : this->PartOf[root];
+      }
+    }
+  }
+
+  void FindEvents(const Progress& progress)
+  {
+    ForEachStretch(
+      this->Surface.NumberOfTriangles(), Part(progress, 0.0, 0.3), [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t)
+        {
+          int thinCorners = 0;
+          Index part = None;
+          bool joins = false;
+          double open = std::numeric_limits<double>::infinity();
+          this->VisitThinCorners(t, [&](Index v) {
+            ++thinCorners;
+            joins = joins || (part != None && this->PartOf[v] != part);
+            part = this->PartOf[v];
+            open = std::min(open, this->LongestAt[v]);
+          });
+          if (joins)
+          {
+            this->Events.push_back({ this->Lengths[t], Kind::Join, t });
+          }
+          if (thinCorners < 3 && this->Lengths[t] <= LongestJoin)
+          {
+            this->Events.push_back({ this->Lengths[t], Kind::Touch, t });
+          }
+          if (open < std::numeric_limits<double>::infinity())
+          {
+            this->Events.push_back({ std::max(open, this->Lengths[t]), Kind::Open, t });
+          }
+        }
+      });
+    // Equal ones by position, as sums depend on their order.
+    const auto cornersOf = [&](Index t) {
+      std::array<Point2, 3> corners;
+      for (Index k = 0; k < 3; ++k)
+      {
+        corners[k] = this->Surface.PointOf(this->Surface.Origin(3 * t + k));
+      }
+      std::sort(corners.begin(), corners.end(), IsLower);
+      return corners;
+    };
+    const auto isBefore = [&](const Event& a, const Event& b) {
+      if (a.Length != b.Length || a.What != b.What)
+      {
+        return a.Length != b.Length ? a.Length < b.Length : a.What < b.What;
+      }
+      const std::array<Point2, 3> p = cornersOf(a.Triangle);
+      const std::array<Point2, 3> q = cornersOf(b.Triangle);
+      return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(), IsLower);
+    };
+    Sort(this->Events.begin(), this->Events.end(), isBefore, Part(progress, 0.3, 1.0));
+  }
+
+  void FollowEvents(const Progress& progress)
+  {
+    std::vector<char> isOpen(this->Lengths.size(), 0);
+    std::size_t done = 0;
+    for (auto first = this->Events.begin(); first != this->Events.end();)
+    {
+      auto event = first;
+      for (; event != this->Events.end() && event->Length == first->Length; ++event)
+      {
+        ReportStep(progress, done++, this->Events.size());
+        this->Follow(*event, isOpen);
+      }
+      for (; first != event; ++first)
+      {
+        if (first->What == Kind::Open)
+        {
+          this->Parts.Finish(this->PartAt(first->Triangle), first->Length);
+        }
+      }
+    }
+  }
+
+  /** The part of a thin corner. */
+  Index PartAt(Index t) const
+  {
+    Index part = None;
+    this->VisitThinCorners(t, [&](Index v) { part = this->PartOf[v]; });
+    return part;
+  }
+
+  void Follow(const Event& event, std::vector<char>& isOpen)
+  {
+    const Index t = event.Triangle;
+    const Index part = this->PartAt(t);
+    if (event.What == Kind::Join)
+    {
+      this->VisitThinCorners(
+        t, [&](Index v) { this->Parts.Join(part, this->PartOf[v], event.Length); });
+    }
+    else if (event.What == Kind::Touch)
+    {
+      this->Parts.Touch(part, event.Length);
+    }
+    else
+    {
+      isOpen[t] = 1;
+      double border = 0.0;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        const Index twin = this->Surface.Twin(h);
+        const bool isInside =
+          !this->Surface.IsBorder(h) && twin != h && isOpen[Mesh::Triangle(twin)];
+        border += isInside ? -this->LengthOf(twin) / this->Units[Mesh::Triangle(twin)]
+                           : this->LengthOf(h) / this->Units[t];
+      }
+      this->Parts.Open(
+        part, this->List.ShareOfSquare(this->Partial.Triangles[t], this->Units[t]), border);
+    }
+  }
+
+  const TriangleList& List;
+  const PartialMesh& Partial;
+  const Mesh& Surface;
+  const IdSet& AtBorder;
+  const IdSet& Thin;
+  const double* const Spacings;
+  std::vector<double> Units;
+  std::vector<double> Lengths;   ///< in units
+  std::vector<double> LongestAt; ///< one per vertex; infinite unless all around it is thin
+  std::vector<Index> PartOf;     ///< one per thin vertex
+  std::vector<Event> Events;
+  JoiningParts Parts;
+};
+
+} // namespace
+
+std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors& neighbors,
+  const IdSet& atBorder, const IdSet& near, int threads, const Progress& progress, double* spacings)
+{
+  const TriangleList& list = measured.List;
+  const Index count = list.Points.Count;
+  if (!HasGroup(neighbors, ThinVertices(neighbors, near, count), count, LeastThinGroup))
+  {
+    return {};
+  }
+  const IdSet thin = OutsideCores(neighbors, near, count, Part(progress, 0.0, 0.1));
+  std::vector<Index> triangles = TrianglesAt(list, thin, Part(progress, 0.1, 0.15));
+  if (triangles.empty())
+  {
+    return {};
+  }
+  FindSpacings(list, neighbors, CornersOf(list, triangles, Part(progress, 0.15, 0.2)), threads,
+    Part(progress, 0.2, 0.4), spacings);
+  const PartialMesh partial(
+    list, measured.Border, atBorder, std::move(triangles), Part(progress, 0.4, 0.6));
+  return ThinTriangles(list, partial, atBorder, thin, spacings)
+    .FindScales(thin.Count() < count, Part(progress, 0.6, 1.0));
+}
+
+} // namespace elevation
