@@ -29,7 +29,9 @@ struct Measurer
   {
     Index Number = None;
     EdgesAtVertex Edges;
+    Index Padding[2] = { None, None }; ///< so that no vertex spans two cache lines
   };
+  static_assert(sizeof(Vertex) == 64, "the size of a cache line");
 
   static constexpr Index AtOnce = 1024; ///< numbers reserved for a visitor at a time
   const Vertex* Vertices; ///< of the list

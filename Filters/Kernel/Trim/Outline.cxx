@@ -116,8 +116,24 @@ void CloseSmallOpenings(
   });
 }
 
+/** The longest edge of a triangle; of equal ones the first. */
+Index LongestEdge(const Mesh& mesh, Index t)
+{
+  Index longest = 3 * t;
+  double squared = 0.0;
+  for (Index h = 3 * t; h < 3 * t + 3; ++h)
+  {
+    const double length =
+      SquaredLength(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)));
+    longest = length > squared ? h : longest;
+    squared = std::max(squared, length);
+  }
+  return longest;
+}
+
 /**
- * Drops slivers from the border inwards, as long as there are any.
+ * Drops slivers from the border inwards, as long as there are any. Those that lean with their
+ * longest edge on surface come back.
  * @param[in] isSliver  isSliver(h): whether the triangle of h is very flat over that edge
  */
 template <typename IsSliver>
@@ -125,6 +141,7 @@ void DropSlivers(
   const Mesh& mesh, IsSliver&& isSliver, std::vector<char>& keep, const Progress& progress)
 {
   std::vector<Index> dropped;
+  std::size_t next = 0; // of the dropped ones, whose neighbours are looked at
   const auto look = [&](Index t) {
     for (Index h = 3 * t; h < 3 * t + 3 && keep[t] == Surface; ++h)
     {
@@ -139,11 +156,9 @@ void DropSlivers(
     for (Index t = begin; t < end; ++t)
     {
       look(t);
-      while (!dropped.empty())
+      for (; next < dropped.size(); ++next)
       {
-        const Index last = dropped.back();
-        dropped.pop_back();
-        for (Index h = 3 * last; h < 3 * last + 3; ++h)
+        for (Index h = 3 * dropped[next]; h < 3 * dropped[next] + 3; ++h)
         {
           if (!mesh.IsBorder(h))
           {
@@ -153,6 +168,20 @@ void DropSlivers(
       }
     }
   });
+  // The last ones dropped lie furthest inwards.
+  for (bool isDone = false; !isDone;)
+  {
+    isDone = true;
+    for (auto t = dropped.rbegin(); t != dropped.rend(); ++t)
+    {
+      const Index h = LongestEdge(mesh, *t);
+      if (keep[*t] == Outside && !mesh.IsBorder(h) && keep[Mesh::Triangle(mesh.Twin(h))] == Surface)
+      {
+        keep[*t] = Surface;
+        isDone = false;
+      }
+    }
+  }
 }
 
 /**

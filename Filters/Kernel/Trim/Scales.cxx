@@ -19,8 +19,10 @@ namespace
 // The constants of the rule (Scales.h), found by trials: survey lines 2 to 200 times as far apart as
 // their points, even and uneven, with and without cross lines, jittered by up to half a spacing;
 // tracks that cross at random; roads of 3 to 15 rows of points; swaths beside and across lines.
-constexpr std::size_t LeastThinGroup = 10;
-constexpr Index LeastInner = 20;
+constexpr Index ManyLonely = 50;
+constexpr std::size_t LonelyGroup = 30;
+constexpr Index LeastInner = 50;
+constexpr Index InnerPerOther = 2;
 constexpr double LongestShortEdge = 6.0; // spacings
 constexpr double SpacingsOfUnit = 2.0;
 constexpr double LeastWidth = 1.2;
@@ -36,9 +38,9 @@ double Reached(double value, double asked)
 }
 
 /** The vertices near the border of the surface whose neighbours are all near it. */
-IdSet ThinVertices(const Neighbors& neighbors, const IdSet& near, Index count)
+IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count)
 {
-  IdSet thin(count);
+  IdSet lonely(count);
   for (Index v = 0; v < count; ++v)
   {
     if (near.Has(v))
@@ -47,11 +49,11 @@ IdSet ThinVertices(const Neighbors& neighbors, const IdSet& near, Index count)
       const Index* const end = neighbors.Ids.data() + neighbors.Offsets[v + 1];
       if (begin != end && std::all_of(begin, end, [&](Index w) { return near.Has(w); }))
       {
-        thin.Add(v);
+        lonely.Add(v);
       }
     }
   }
-  return thin;
+  return lonely;
 }
 
 /** Whether enough vertices of a set are connected by edges. */
@@ -127,7 +129,7 @@ IdSet OutsideCores(
     for (Index v = begin; v < end; ++v)
     {
       const Index root = RootOf(parents, v);
-      if (inner[root] < LeastInner || inner[root] < others[root])
+      if (inner[root] < LeastInner || inner[root] / InnerPerOther < others[root])
       {
         outside.Add(v);
       }
@@ -180,6 +182,7 @@ public:
     {
       this->Grow(top, length);
       this->Parts[top].Surface = 1.0;
+      this->Parts[top].Best = this->Parts[top].Integral;
     }
   }
 
@@ -200,8 +203,12 @@ public:
     const double asked = std::max(LeastWidth, WidthOfLength * (length - 1.0));
     const double width = grown.Border > 0.0 ? 2.0 * grown.Area / grown.Border : 0.0;
     const double share = grown.Area / static_cast<double>(grown.Points);
-    grown.Surface =
-      std::max(grown.Surface, std::min(Reached(width, asked), Reached(share, ShareOfPoint)));
+    const double surface = std::min(Reached(width, asked), Reached(share, ShareOfPoint));
+    if (surface > grown.Surface)
+    {
+      grown.Surface = surface;
+      grown.Best = grown.Integral;
+    }
   }
 
   /** The scale of each part, by number. */
@@ -212,27 +219,18 @@ public:
       std::any_of(this->Parts.begin(), this->Parts.end(),
         [&](const JoiningPart& part) { return isTop(part) && part.Surface == 1.0; });
     std::vector<double> sums(this->Parts.size());
-    std::vector<char> isSurface(this->Parts.size());
+    std::vector<double> surface(this->Parts.size());
     for (std::size_t i = this->Parts.size(); i-- > 0;)
     {
       const JoiningPart& part = this->Parts[i];
-      if (isTop(part))
-      {
-        isSurface[i] = part.Surface == 1.0;
-        // What comes after the last join tells nothing about a part that is no surface.
-        sums[i] = isSurface[i] ? part.Integral : 0.0;
-        isSurface[i] |= !hasSurface;
-      }
-      else
-      {
-        isSurface[i] = isSurface[part.Parent];
-        sums[i] = part.Integral + sums[part.Parent];
-      }
+      // Of a part that is no surface, only what comes before its last join.
+      surface[i] = !isTop(part) ? surface[part.Parent] : hasSurface ? part.Surface : 1.0;
+      sums[i] = !isTop(part) ? part.Integral + sums[part.Parent] : hasSurface ? part.Best : 0.0;
     }
     std::vector<float> scales;
     for (std::size_t i = 0; i < sums.size(); ++i)
     {
-      scales.push_back(isSurface[i] ? std::max(1.0f, static_cast<float>(sums[i])) : 1.0f);
+      scales.push_back(std::max(1.0f, static_cast<float>(surface[i] * sums[i])));
     }
     return scales;
   }
@@ -245,6 +243,7 @@ private:
     double Border = 0.0;   ///< of open triangles, in units
     double Surface = 0.0;  ///< 1 when it is one, 0 when it is not at all
     double Integral = 0.0; ///< of 1 - Surface
+    double Best = 0.0;     ///< the integral when Surface grew last
     double Length = 0.0;   ///< up to which the integral goes
     bool IsAttached = false;
     Index Parent = None;
@@ -552,7 +551,8 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
 {
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
-  if (!HasGroup(neighbors, ThinVertices(neighbors, near, count), count, LeastThinGroup))
+  const IdSet lonely = LonelyVertices(neighbors, near, count);
+  if (lonely.Count() <= count / ManyLonely && !HasGroup(neighbors, lonely, count, LonelyGroup))
   {
     return {};
   }

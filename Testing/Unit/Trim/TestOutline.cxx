@@ -75,6 +75,8 @@ struct RuleByTheLetter
   Index NumberOfDoubtful = 0; ///< by short edges
   Index NumberOfOthers = 0;   ///< of these, those that no small group has
   Index NumberOfSlivers = 0;
+  Index NumberOfSliversBack = 0;
+  Index NumberInBays = 0;
 
   RuleByTheLetter(const Mesh& mesh, double tolerance)
     : Tolerance(tolerance)
@@ -117,9 +119,7 @@ struct RuleByTheLetter
     }
     if (tolerance == 0.0)
     {
-      std::vector<double> sorted = ratios;
-      std::sort(sorted.begin(), sorted.end());
-      this->Tolerance = 2.25 * sorted[sorted.size() / 2];
+      this->Tolerance = 4.5;
     }
     for (Index t = 0; t < count; ++t)
     {
@@ -202,7 +202,27 @@ struct RuleByTheLetter
         }
       }
     }
-    // Openings, by edges.
+    for (bool isDone = false; !isDone;)
+    {
+      isDone = true;
+      for (Index t = 0; t < count; ++t)
+      {
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        {
+          const bool isLongest =
+            std::sqrt(this->Squared(mesh.Origin(h), mesh.Destination(h))) == this->Longest(t);
+          if (isSliver[t] && isLongest && !mesh.IsBorder(h) &&
+            this->Keep[Mesh::Triangle(mesh.Twin(h))])
+          {
+            this->Keep[t] = 1;
+            isSliver[t] = 0;
+            ++this->NumberOfSliversBack;
+            isDone = false;
+          }
+        }
+      }
+    }
+    // Bays and lakes, by edges.
     const auto shareAnEdge = [&](Index s, Index t) {
       for (Index h = 3 * s; h < 3 * s + 3; ++h)
       {
@@ -215,6 +235,41 @@ struct RuleByTheLetter
     };
     const auto share = shareNorm(sixth, 1.0);
     const auto shareOfOthers = [&](Index t) { return isSliver[t] ? 0.0 : share(t); };
+    for (Index t = 0; t < count; ++t)
+    {
+      double largest = 0.0;
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        largest = std::max(largest, sixth[mesh.Origin(h)]);
+      }
+      const bool isInBay = this->Longest(t) <= 2.2 * this->Tolerance * largest;
+      this->Keep[t] = !this->Keep[t] && !isSliver[t] && isInBay ? 2 : this->Keep[t];
+    }
+    std::vector<Index> closed;
+    for (const std::vector<Index>& bay : this->Groups(shareAnEdge, 2))
+    {
+      double sum = 0.0, open = 0.0;
+      for (const Index t : bay)
+      {
+        sum += share(t);
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        {
+          const char beside = mesh.IsBorder(h) ? char(0) : this->Keep[Mesh::Triangle(mesh.Twin(h))];
+          const double length = std::sqrt(this->Squared(mesh.Origin(h), mesh.Destination(h)));
+          open += beside == 2 ? 0.0 : beside == 1 ? -length : length;
+        }
+      }
+      if (sum < 1.0 && open <= 0.0)
+      {
+        closed.insert(closed.end(), bay.begin(), bay.end());
+      }
+    }
+    this->NumberInBays += static_cast<Index>(closed.size());
+    std::replace(this->Keep.begin(), this->Keep.end(), char(2), char(0));
+    for (const Index t : closed)
+    {
+      this->Keep[t] = 1;
+    }
     this->CloseGroups(shareAnEdge, shareOfOthers, [&](Index t) {
       return mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
     });
@@ -335,7 +390,8 @@ TEST(ExtractBoundary, TakesTheToleranceOfALargeLatticeFromASample)
 TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
 {
   Random random(17);
-  Index numberOfDoubtful = 0, numberOfOthers = 0, numberOfOutward = 0, numberOfSlivers = 0;
+  Index numberOfDoubtful = 0, numberOfOthers = 0, numberOfOutward = 0, numberOfSlivers = 0,
+        numberOfSliversBack = 0, numberInBays = 0;
   for (int round = 0; round < 4; ++round)
   {
     // Few enough that all triangles tell the typical one; dense on one side.
@@ -355,6 +411,8 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
       numberOfDoubtful += rule.NumberOfDoubtful;
       numberOfOthers += rule.NumberOfOthers;
       numberOfSlivers += rule.NumberOfSlivers;
+      numberOfSliversBack += rule.NumberOfSliversBack;
+      numberInBays += rule.NumberInBays;
       numberOfOutward += static_cast<Index>(std::count(rule.Keep.begin(), rule.Keep.end(), 0));
       ExtractOptions options;
       options.GapTolerance = tolerance;
@@ -368,6 +426,8 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
   EXPECT_GT(numberOfOthers, numberOfOutward + 100);
   EXPECT_GT(numberOfOutward, 100);
   EXPECT_GT(numberOfSlivers, 20);
+  EXPECT_GT(numberOfSliversBack, 5);
+  EXPECT_GT(numberInBays, 100);
 }
 
 TEST(ExtractBoundary, IsTheSameForAnyNumberOfThreads)
