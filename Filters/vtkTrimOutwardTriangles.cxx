@@ -224,6 +224,11 @@ int vtkTrimOutwardTriangles::RequestData(
     const elevation::Progress progress = elevation::ProgressOf(this);
     Report(progress, 0.0);
     elevation::CheckArrays(input);
+    if (!(this->GapTolerance >= 0.0))
+    {
+      throw elevation::Error("GapTolerance is " + std::to_string(this->GapTolerance) +
+        ". It must be a number of spacings above 0, or 0 to choose it from the data.");
+    }
     if (given)
     {
       elevation::CheckArrays(given, "The boundary's");
@@ -243,13 +248,13 @@ int vtkTrimOutwardTriangles::RequestData(
     options.NumberOfThreads = this->NumberOfThreads;
     options.Monitor = trimming;
     Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
-    const bool hasBoundary = trimmed.Boundary.Count() > 0;
-    if (!hasBoundary)
+    if (triangles.View.Count == 0)
     {
-      vtkWarningMacro(<< (triangles.View.Count == 0
-                          ? "The input has no triangles, so there is nothing to trim."
-                          : "No triangle is surface: all have an edge longer than "
-                            "GapTolerance spacings. Raise GapTolerance."));
+      vtkWarningMacro("The input has no triangles, so there is nothing to trim.");
+    }
+    if (!trimmed.Loss.empty())
+    {
+      vtkWarningMacro(<< trimmed.Loss);
     }
 
     PassSides(input, triangles, trimmed, this->NumberOfThreads, Part(progress, 0.8, 0.96),
@@ -257,7 +262,7 @@ int vtkTrimOutwardTriangles::RequestData(
     vtkPolyData* boundary = vtkPolyData::GetData(outputVector, 2);
     boundary->GetPointData()->CopyAllOn();
     elevation::PassRings(
-      trimmed.Boundary, given && hasBoundary ? given : input, Part(progress, 0.96, 1.0), boundary);
+      trimmed.Boundary, given && triangles.View.Count > 0 ? given : input, Part(progress, 0.96, 1.0), boundary);
     AddCounts(trimmed, outputVector);
     Report(progress, 1.0);
     // Set last, as an abort or an error leaves no counts.

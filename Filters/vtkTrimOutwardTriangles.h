@@ -41,15 +41,21 @@
  *   gap, where points are on one side only, one step of a square lattice, or the mean spacing
  *   of random points. The spacing of a triangle is the median of those of its three points, but
  *   at most twice the least.
+ * - Where points lie much denser along lines than across, as on survey lines and tracks, the
+ *   spacing is multiplied by the scale at which they form a surface: about a third of how many times
+ *   as far apart the lines are as their points. Lines up to hundreds of spacings apart, jittered,
+ *   uneven, interrupted or crossed, are a surface; roads and swaths with three rows of points or
+ *   more stay themselves, also beside such lines. A single line beside a surface is left out.
  * - Only doubtful triangles are measured in this way: those whose longest edge is more than about
  *   half of GapTolerance times the mean of the four shortest edges at their points, and which lie
  *   together where there could be room for a lake, or at the border.
  * - Slivers, triangles at the border whose height is less than a tenth of the mean of the four
  *   shortest edges at their points, are not surface, nor are further ones behind them (unless the
- *   whole surface is so thin). A wavering line of points that leads away from the others makes
- *   them.
+ *   whole surface is so thin, or their longest edge leans on surface). A wavering line of points
+ *   that leads away from the others makes them.
  * - An opening is a lake only if its area exceeds that of a square with a side of GapTolerance
- *   spacings. A smaller one is surface.
+ *   spacings. A smaller one is surface. So is a bay as small, whose edges are at most 1.6 times
+ *   as long as those of other triangles may be: the outline does not follow each point inwards.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
  * - The input should be a Delaunay triangulation. Its holes stay open and are part of the boundary.
  *
@@ -75,6 +81,9 @@
  * Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
  * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance
  * (vtkDoubleArray, one value).
+ *
+ * When an extracted boundary leaves out more than 5 % of the points or half of the area, a warning
+ * tells how much, and which GapTolerance would keep it. One that leaves out every point is an error.
  *
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
@@ -150,12 +159,11 @@ public:
   ///@{
   /**
    * For the extracted boundary: how many spacings wide an empty stretch may be and still be
-   * surface. 0 (default): 2.25 times the median of the triangles' longest edges, in spacings (of a
-   * sample, where there are many), which is 4.5 on a square lattice and about 4.6 on random points;
-   * see GetEffectiveGapTolerance. Negative values are taken as 0. Not used when a boundary is
-   * given.
+   * surface. 0 (default): 4.5, times the scale of points that lie much denser along lines than
+   * across; see GetEffectiveGapTolerance. Negative values and NaN are an error. Not used when a
+   * boundary is given.
    */
-  vtkSetClampMacro(GapTolerance, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(GapTolerance, double);
   vtkGetMacro(GapTolerance, double);
   ///@}
 
@@ -182,7 +190,10 @@ public:
   vtkGetMacro(NumberOfThreads, int);
   ///@}
 
-  /** After Update(): the GapTolerance that was used, in spacings; 0 when a boundary was given. */
+  /**
+   * After Update(): the GapTolerance that was used, in spacings; 0 when a boundary was given. One
+   * that was chosen from the data is that at the median point: 4.5, or more for lines of points.
+   */
   vtkGetMacro(EffectiveGapTolerance, double);
 
   /** After Update(): the number of triangles in output 1. */

@@ -97,8 +97,6 @@ class TestTrimOutwardTriangles(unittest.TestCase):
 
     def test_values_are_clamped(self):
         trim = vtkTrimOutwardTriangles()
-        trim.SetGapTolerance(-1.0)
-        self.assertEqual(trim.GetGapTolerance(), 0.0)
         trim.SetOutwardTest(9)
         self.assertEqual(trim.GetOutwardTest(), vtkTrimOutwardTriangles.INWARD_NORMAL)
         self.assertEqual(trim.GetOutwardTestAsString(), "InwardNormal")

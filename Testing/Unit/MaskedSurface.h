@@ -47,6 +47,15 @@ inline bool Archipelago(double x, double y)
     (distance(0.5, 0.2) < 0.08 && distance(0.5, 0.2) > 0.04);
 }
 
+/** A round island with bays, a round lake and a long one. */
+inline bool Island(double x, double y)
+{
+  const double angle = std::atan2(y - 0.5, x - 0.5);
+  return std::hypot(x - 0.5, y - 0.5) <
+    0.38 + 0.05 * std::sin(3 * angle) + 0.02 * std::sin(7 * angle + 1) &&
+    std::hypot(x - 0.4, y - 0.55) > 0.12 && std::hypot((x - 0.65) / 1.6, y - 0.4) > 0.05;
+}
+
 /** How the unit square lies in the plane of the cloud. */
 struct Placing
 {

@@ -32,9 +32,16 @@ struct ExtractOptions
 struct ExtractedBoundary
 {
   Rings Vertices; ///< mesh vertices; counter-clockwise around surface, clockwise around a lake
-  double GapTolerance = 0.0;       ///< as used
+  /** As used; if chosen from the data, at the median vertex. */
+  double GapTolerance = 0.0;
   std::vector<char> IsSurface;     ///< one flag per triangle: whether the rings enclose it
   Index NumberOfPointsLeftOut = 0; ///< corners of triangles, but of no surface triangle
+  double PointsLeftOut = 0.0;      ///< the same as a part of all corners
+  double AreaLeftOut = 0.0;        ///< as a part of the mesh's
+  /** If much is left out: a GapTolerance that keeps all points and half of the area. */
+  double KeepingTolerance = 0.0;
+  /** Probably more than the user meant. */
+  bool LeavesOutMuch() const { return this->PointsLeftOut > 0.05 || this->AreaLeftOut > 0.5; }
 };
 
 /** ExtractBoundary() for measured triangles, at least one. */
@@ -50,10 +57,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     lattice and 0.98 of the mean spacing of random points; away from gaps 0.7 of that. The
  *     spacing of a triangle is the median of its corners', but at most twice the least.
  *   - A triangle is surface if its longest edge is at most GapTolerance times its spacing.
- *     GapTolerance 0 means 2.25 times this ratio of the median triangle: 4.5 on a square lattice,
- *     about 4.6 for random points, more where points lie dense along lines. In a large mesh, the
- *     median is taken of the triangles at one or two thousand vertices, which a hash of their
- *     positions chooses; none with more than 64 neighbours.
+ *   - GapTolerance 0 means 4.5, times the scale (Scales.h) of vertices that lie much denser along
+ *     lines than across: the spacing of a triangle is then at least that of each corner times its
+ *     scale, times the scale less 1 if that is below 1.
  *   - A cheaper test decides most triangles. The short spacing at a vertex is the mean length of
  *     its four shortest edges (in float; of all if fewer), but at most twice that of the second. A
  *     triangle is also surface if its longest edge is at most 0.52 GapTolerance times its short
@@ -63,17 +69,21 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *   - A triangle at the border of the surface is a sliver, and not surface, if its height over the
  *     edge there is less than a tenth of its short spacing. So is the next one that comes to the
  *     border, if two of its corners were at the border from the start, or are corners of flat
- *     triangles with a corner there. Slivers do not count in the size of an opening. So a line of
- *     points that leads away from the others is left out, even if it wavers (unless no triangle
- *     would be left).
+ *     triangles with a corner there. Slivers that lean with their longest edge on surface stay.
+ *     Slivers do not count in the size of an opening. So a line of points that leads away from the
+ *     others is left out, even if it wavers (unless no triangle would be left).
  *   - An opening between surface triangles is a lake only if it is larger than a square with a side
  *     of GapTolerance spacings; a smaller one is closed.
+ *   - Bays: slivers, and triangles that are not surface, with edges of at most 1.6 GapTolerance times
+ *     the largest spacing of a corner (times its scale); not in lakes of less than four such squares.
+ *     What is connected of them is surface if it is smaller than that square and has surface along
+ *     at least half of its border. So the outline does not follow each point inwards.
  *   - A piece with 6 vertices or fewer, too few for spacings of their own, is not surface, unless
  *     all pieces are as small.
  * The result does not depend on the order of points or triangles. Rings are simple, start at their
  * lowest vertex, and are sorted by it.
- * Cost: linear, plus a sort of the rings. About 20 neighbours are looked at for a small part of the
- * vertices; for all of them if GapTolerance is small.
+ * Cost: linear, plus a sort of the rings, plus that of Scales.h. About 20 neighbours are looked at for
+ * a small part of the vertices; for all of them if GapTolerance is small.
  * @return no ring if no triangle is surface
  * @throws Aborted, std::bad_alloc
  */

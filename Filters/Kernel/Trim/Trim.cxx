@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iomanip>
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -156,6 +158,32 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   }
 }
 
+/** What an extracted boundary leaves out. @param[in] all  if it leaves out all */
+std::string LossOf(const ExtractedBoundary& found, bool all)
+{
+  std::ostringstream text;
+  text << std::setprecision(3) << std::fixed;
+  const auto percent = [&](double part) { text << std::setprecision(1) << 100.0 * part << " %"; };
+  if (all)
+  {
+    text << "The extracted boundary leaves out every point";
+  }
+  else
+  {
+    text << "The extracted boundary leaves out " << found.NumberOfPointsLeftOut << " points (";
+    percent(found.PointsLeftOut);
+    text << ") and ";
+    percent(found.AreaLeftOut);
+    text << " of the area";
+  }
+  text << std::defaultfloat << std::setprecision(4) << ": at a gap tolerance of "
+       << found.GapTolerance << " spacings, they are not surface. A GapTolerance of "
+       << found.KeepingTolerance
+       << (found.PointsLeftOut > 0.0 ? " would keep all points" : " would keep half of it")
+       << ". Or give the boundary.";
+  return text.str();
+}
+
 /** Trims along the extracted outline. */
 void TrimExtracted(const TriangleList& list, const TrimOptions& options, const Progress& progress,
   Changes& changes, Trimmed& result)
@@ -182,12 +210,17 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   result.Boundary = std::move(found.Vertices);
   result.GapTolerance = found.GapTolerance;
   result.NumberOfPointsLeftOut = found.NumberOfPointsLeftOut;
+  if (result.Boundary.Count() == 0)
+  {
+    throw Error(LossOf(found, true));
+  }
+  result.Loss = isExact && found.LeavesOutMuch() ? LossOf(found, false) : std::string();
   std::vector<char> isOutward = std::move(found.IsSurface);
   for (char& flag : isOutward)
   {
     flag = !flag;
   }
-  if (!isExact && result.Boundary.Count() > 0)
+  if (!isExact)
   {
     OutwardTriangles outward =
       FindOutward(mesh, result.Boundary, options.RecoverBoundary, Part(progress, 0.9, 0.95));

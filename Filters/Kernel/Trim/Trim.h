@@ -26,6 +26,7 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "Rings.h"
 
+#include <string>
 #include <vector>
 
 namespace elevation
@@ -71,6 +72,8 @@ struct Trimmed
   Index NumberOfOutwardTriangles = 0;
   Index NumberOfRecoveredEdges = 0; ///< edges of the boundary that were missing
   Index NumberOfPointsLeftOut = 0;  ///< as in ExtractedBoundary; 0 with InwardNormal
+  /** Of an extracted boundary that leaves out much: what, and what would keep it; else empty. */
+  std::string Loss;
 };
 
 /**

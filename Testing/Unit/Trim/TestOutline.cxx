@@ -159,11 +159,12 @@ struct RuleByTheLetter
       this->NumberOfOthers += !this->Keep[t];
       this->Keep[t] = this->Keep[t] || ratios[t] <= this->Tolerance;
     }
+    const std::vector<char> before = this->Keep;
     // Slivers with two corners at the border, until there are none.
     std::vector<char> isSliver(count, 0), atEdge = atBorder;
     for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
     {
-      atEdge[mesh.Origin(h)] |= !this->Keep[Mesh::Triangle(h)];
+      atEdge[mesh.Origin(h)] |= !before[Mesh::Triangle(h)];
     }
     const auto isSliverOver = [&](Index t, double length) {
       const double height = std::fabs(testing_surfaces::TwiceArea(mesh, t)) / length;
@@ -222,7 +223,7 @@ struct RuleByTheLetter
         }
       }
     }
-    // Bays and lakes, by edges.
+    // Lakes and bays, by edges.
     const auto shareAnEdge = [&](Index s, Index t) {
       for (Index h = 3 * s; h < 3 * s + 3; ++h)
       {
@@ -234,7 +235,7 @@ struct RuleByTheLetter
       return false;
     };
     const auto share = shareNorm(sixth, 1.0);
-    const auto shareOfOthers = [&](Index t) { return isSliver[t] ? 0.0 : share(t); };
+    std::vector<char> isInBay(count);
     for (Index t = 0; t < count; ++t)
     {
       double largest = 0.0;
@@ -242,8 +243,26 @@ struct RuleByTheLetter
       {
         largest = std::max(largest, sixth[mesh.Origin(h)]);
       }
-      const bool isInBay = this->Longest(t) <= 2.2 * this->Tolerance * largest;
-      this->Keep[t] = !this->Keep[t] && !isSliver[t] && isInBay ? 2 : this->Keep[t];
+      isInBay[t] = isSliver[t] || this->Longest(t) <= 1.6 * this->Tolerance * largest;
+    }
+    for (const std::vector<Index>& lake : this->Groups(shareAnEdge, 0))
+    {
+      double sum = 0.0;
+      for (const Index t : lake)
+      {
+        const bool isAtBorder =
+          mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
+        sum += isAtBorder ? 4.0 : before[t] ? 0.0 : share(t);
+      }
+      for (const Index t : lake)
+      {
+        this->Keep[t] = sum < 1.0;
+        isInBay[t] = isInBay[t] && sum >= 4.0;
+      }
+    }
+    for (Index t = 0; t < count; ++t)
+    {
+      this->Keep[t] = !this->Keep[t] && isInBay[t] ? 2 : this->Keep[t];
     }
     std::vector<Index> closed;
     for (const std::vector<Index>& bay : this->Groups(shareAnEdge, 2))
@@ -251,7 +270,7 @@ struct RuleByTheLetter
       double sum = 0.0, open = 0.0;
       for (const Index t : bay)
       {
-        sum += share(t);
+        sum += before[t] ? 0.0 : share(t);
         for (Index h = 3 * t; h < 3 * t + 3; ++h)
         {
           const char beside = mesh.IsBorder(h) ? char(0) : this->Keep[Mesh::Triangle(mesh.Twin(h))];
@@ -270,9 +289,6 @@ struct RuleByTheLetter
     {
       this->Keep[t] = 1;
     }
-    this->CloseGroups(shareAnEdge, shareOfOthers, [&](Index t) {
-      return mesh.IsBorder(3 * t) || mesh.IsBorder(3 * t + 1) || mesh.IsBorder(3 * t + 2);
-    });
     // Small pieces.
     for (const std::vector<Index>& piece : this->Groups(shareAnEdge, 1))
     {
@@ -426,7 +442,7 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
   EXPECT_GT(numberOfOthers, numberOfOutward + 100);
   EXPECT_GT(numberOfOutward, 100);
   EXPECT_GT(numberOfSlivers, 20);
-  EXPECT_GT(numberOfSliversBack, 5);
+  EXPECT_GT(numberOfSliversBack, 2);
   EXPECT_GT(numberInBays, 100);
 }
 
@@ -580,10 +596,8 @@ std::vector<Point2> Scattered(
 }
 } // namespace
 
-// With default properties, at most a quarter of the ring of one spacing, whatever the seed: of
-// seeds 1 to 20 the largest errors were 0.21 for lattices thinned to a tenth (0.16 whole), 0.25 for
-// random points, evenly dense and graded, 0.11 for scan lines, 0.23 and 0.25 for surveys thinned
-// and graded; 0.18 to 0.20 on average.
+// With default properties, at most a quarter of the ring of one spacing, whatever the seed, where
+// channels are hardly wider than the tolerance.
 TEST(ExtractBoundary, FollowsMaskedLatticesWholeAndThinned)
 {
   for (const Mask& mask : { Mask(Coast), Mask(Archipelago) })
@@ -622,6 +636,45 @@ TEST(ExtractBoundary, FollowsMaskedPointsWhoseSpacingGrowsTenfold)
         }
       }
     }
+  }
+}
+
+TEST(ExtractBoundary, IsNearTheTrueOutlineOnEvenlyAndGraduallyDenseClouds)
+{
+  // A tenth of the ring on both sides is a fifth of the length of the outline times the spacing.
+  // Means of 20 seeds: 0.09 whole, 0.10 thinned, 0.10 random, 0.12 graded.
+  for (int seed = 1; seed <= 20; ++seed)
+  {
+    Random random(seed);
+    const int size = 180 + 7 * seed;
+    const Placing placing{ [size](double x, double y) { return Point2{ size * x, size * y }; },
+      Placing().AreaOf };
+    const std::vector<Point2> whole = MaskedLattice(
+      size + 1, size + 1, [size](double x, double y) { return Island(x / size, y / size); });
+    const double ofWhole = ErrorOfExtraction(whole, Island, Even(1.0 / size), placing);
+    std::vector<Point2> thinned;
+    const int fine = 500;
+    const Placing finely{ [](double x, double y) { return Point2{ 500 * x, 500 * y }; },
+      Placing().AreaOf };
+    for (const Point2& p : MaskedLattice(
+           fine + 1, fine + 1, [](double x, double y) { return Island(x / 500, y / 500); }))
+    {
+      if (random.Below(10) == 0)
+      {
+        thinned.push_back(p);
+      }
+    }
+    const double ofThinned =
+      ErrorOfExtraction(thinned, Island, Even(std::sqrt(10.0) / fine), finely);
+    const int count = 30000;
+    const double ofRandom =
+      ErrorOfExtraction(Scattered(random, count, Island), Island, Even(1.0 / std::sqrt(count)));
+    const double ofGraded = ErrorOfExtraction(Scattered(random, count, Island, TenfoldGrading()),
+      Island, Even(1.0 / std::sqrt(count)), TenfoldGrading());
+    EXPECT_LE(ofWhole, 0.13) << seed;
+    EXPECT_LE(ofThinned, 0.13) << seed;
+    EXPECT_LE(ofRandom, 0.13) << seed;
+    EXPECT_LE(ofGraded, 0.15) << seed;
   }
 }
 

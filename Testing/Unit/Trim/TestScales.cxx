@@ -474,3 +474,36 @@ TEST(Scales, OfMaskedLinesFollowTheMask)
     EXPECT_EQ(boundary.NumberOfPointsLeftOut, 0) << seed;
   }
 }
+
+TEST(Scales, OfWhatIsLeftOutTellTheToleranceThatKeepsIt)
+{
+  for (int seed = 1; seed <= Seeds; ++seed)
+  {
+    // A block beside lines, each alone.
+    Random random(seed);
+    Points points = Block(20.0, 20.0);
+    for (int line = 0; line < 3; ++line)
+    {
+      for (int i = 0; i < 50; ++i)
+      {
+        points.push_back({ 60.0 + 60.0 * line + 0.1 * random.Unit(), static_cast<double>(i) });
+      }
+    }
+    const Mesh mesh = Delaunay(points);
+    ExtractOptions options;
+    const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
+    ASSERT_TRUE(boundary.LeavesOutMuch()) << seed;
+    EXPECT_GT(boundary.PointsLeftOut, 0.05) << seed;
+    EXPECT_GT(boundary.AreaLeftOut, 0.5) << seed;
+    EXPECT_NEAR(boundary.PointsLeftOut,
+      boundary.NumberOfPointsLeftOut / static_cast<double>(points.size()), 1e-12)
+      << seed;
+    options.GapTolerance = boundary.KeepingTolerance;
+    const ExtractedBoundary wider = ExtractBoundary(mesh, options);
+    EXPECT_FALSE(wider.LeavesOutMuch()) << seed;
+    EXPECT_LE(wider.NumberOfPointsLeftOut, 2) << seed;
+    // And not just by being huge.
+    options.GapTolerance = 0.5 * boundary.KeepingTolerance;
+    EXPECT_TRUE(ExtractBoundary(mesh, options).LeavesOutMuch()) << seed;
+  }
+}
