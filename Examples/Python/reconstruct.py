@@ -182,6 +182,7 @@ def make_parser():
     add("--exaggeration", type=number_at_least_zero, default=0.0)
     add("--colours", choices=COLOURS)
     add("--report")
+    add("--strict", action="store_true")
     add("--quiet", action="store_true")
     return parser
 
@@ -307,6 +308,8 @@ class Run:
             if name == "triangulate" and "constraints" in messages.errors[0]:
                 culprit = self.options.breaklines
             raise Failure(f"{culprit or self.options.file}: {text}: {messages.errors[0]}")
+        if messages.warnings and self.options.strict:
+            raise Failure(f"{self.options.file}: {text}: {messages.warnings[0]}")
         for warning in messages.warnings:
             # A filter may tell of several holes in one message.
             for sentence in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n"):

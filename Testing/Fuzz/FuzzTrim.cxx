@@ -426,6 +426,21 @@ void RequireOutline(const Surface& surface, const ExtractOptions& options)
   once.GapTolerance = options.GapTolerance;
   once.NumberOfThreads = options.NumberOfThreads;
   std::vector<double> xyz;
+  if (rings.Count() == 0)
+  {
+    Require(std::count(extracted.IsSurface.begin(), extracted.IsSurface.end(), char(1)) == 0,
+      "without an outline nothing is surface");
+    try
+    {
+      const Trimmed refused = Trim(ListOf(surface, xyz), nullptr, once);
+      Require(refused.Kept.Corners.empty() && mesh.NumberOfTriangles() == 0,
+        "an outline without points is refused");
+    }
+    catch (const Error&)
+    {
+    }
+    return;
+  }
   const Trimmed found = Trim(ListOf(surface, xyz), nullptr, once);
   Require(found.Boundary.Vertices == rings.Vertices && found.Boundary.Offsets == rings.Offsets &&
       found.NumberOfPointsLeftOut == extracted.NumberOfPointsLeftOut &&
@@ -434,12 +449,6 @@ void RequireOutline(const Surface& surface, const ExtractOptions& options)
       std::all_of(found.Outward.Parents.begin(), found.Outward.Parents.end(),
         [&](Index t) { return extracted.IsSurface[t] == 0; }),
     "a sweep finds the same outline");
-  if (rings.Count() == 0)
-  {
-    Require(std::count(extracted.IsSurface.begin(), extracted.IsSurface.end(), char(1)) == 0,
-      "without an outline nothing is surface");
-    return;
-  }
   for (Index ring = 0; ring < rings.Count(); ++ring)
   {
     std::vector<Index> vertices(rings.Begin(ring), rings.End(ring));

@@ -5,6 +5,7 @@
 import json
 import math
 import os
+import re
 import random
 import shutil
 import signal
@@ -134,6 +135,21 @@ class Report(Program):
         done = self.call(name, "--search-strategy", "guess")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--search-strategy takes one of voxel-traversal, compactness", done.stderr)
+
+    def test_what_the_boundary_leaves_out_is_told_and_strictly_an_error(self):
+        lone = [(SIZE + 60.0 + 60.0 * line, float(i), 0.0) for line in range(2) for i in range(40)]
+        name = self.file("lone.xyz", text_of(SHEET + lone))
+        report = self.report(name, "--no-fill")
+        self.assertEqual(report["trim"]["points_left_out"], len(lone))
+        told = [note for note in report["notes"] if "leaves out" in note]
+        self.assertEqual(len(told), 1, report["notes"])
+        self.assertIn(f"leaves out {len(lone)} points", told[0])
+        wanted = re.search(r"A GapTolerance of ([0-9.]+) would keep all points", told[0]).group(1)
+        done = self.call(name, "--no-fill", "--strict")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("leaves out", done.stderr)
+        report = self.report(name, "--no-fill", "--strict", "--gap-tolerance", wanted)
+        self.assertLess(report["trim"]["points_left_out"], 4)
 
     def test_a_hole_is_filled_and_listed(self):
         name = self.file("holed.xyz", text_of(HOLED))

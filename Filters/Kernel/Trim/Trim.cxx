@@ -162,22 +162,24 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
 std::string LossOf(const ExtractedBoundary& found, bool all)
 {
   std::ostringstream text;
-  text << std::setprecision(3) << std::fixed;
-  const auto percent = [&](double part) { text << std::setprecision(1) << 100.0 * part << " %"; };
+  const auto percent = [&](double part) {
+    text << std::fixed << std::setprecision(1) << 100.0 * part << " %";
+  };
   if (all)
   {
     text << "The extracted boundary leaves out every point";
   }
   else
   {
-    text << "The extracted boundary leaves out " << found.NumberOfPointsLeftOut << " points (";
+    text << "The extracted boundary leaves out " << found.NumberOfPointsLeftOut
+         << (found.NumberOfPointsLeftOut == 1 ? " point (" : " points (");
     percent(found.PointsLeftOut);
     text << ") and ";
     percent(found.AreaLeftOut);
     text << " of the area";
   }
   text << std::defaultfloat << std::setprecision(4) << ": at a gap tolerance of "
-       << found.GapTolerance << " spacings, they are not surface. A GapTolerance of "
+       << found.GapTolerance << " spacings, there is no surface. A GapTolerance of "
        << found.KeepingTolerance
        << (found.PointsLeftOut > 0.0 ? " would keep all points" : " would keep half of it")
        << ". Or give the boundary.";

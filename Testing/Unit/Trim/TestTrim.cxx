@@ -254,7 +254,7 @@ Rings ExpectSameOutline(const Surface& surface, double tolerance)
   {
     TrimOptions options;
     options.GapTolerance = tolerance;
-    EXPECT_HAS(MessageFrom([&] { Trim(surface.List(), nullptr, options); }),
+    EXPECT_HAS(testing_errors::MessageFrom([&] { Trim(surface.List(), nullptr, options); }),
       "leaves out every point: at a gap tolerance of");
     return Rings();
   }
