@@ -365,21 +365,16 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
   return result;
 }
 
-/** The corners that no triangle of the surface has. */
-IdSet CornersLeftOut(
-  const TriangleList& list, const std::vector<char>& keep, const Progress& progress)
+/** The corners of outward triangles that no triangle of the surface has. */
+IdSet CornersLeftOut(const TriangleList& list, const std::vector<Index>& outward,
+  const std::vector<char>& keep, const Progress& progress)
 {
   IdSet leftOut(list.Points.Count);
-  ForEachStretch(list.Count, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
-    for (Index t = begin; t < end; ++t)
-    {
-      if (!keep[t])
-      {
-        leftOut.AddAll(list.CornersOf(t));
-      }
-    }
-  });
-  ForEachStretch(list.Count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
+  for (const Index t : outward)
+  {
+    leftOut.AddAll(list.CornersOf(t));
+  }
+  ForEachStretch(list.Count, progress, [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       if (leftOut.HasAny(list.CornersOf(t)) && keep[t])
@@ -588,15 +583,15 @@ public:
     this->SortBorder(Part(progress, 0.0, 0.02));
     const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.25));
     this->Spacings.Resize(list.Points.Count);
-    this->KeepCertainTriangles(Part(progress, 0.25, 0.45));
-    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.45, 0.55));
+    this->KeepCertainTriangles(Part(progress, 0.25, 0.5));
+    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.5, 0.62));
     if (this->IsAutomatic)
     {
       this->Scales = FindScales(this->Measured, neighbors, this->AtBorder, this->CornersNear(doubtful),
-        this->Threads, Part(progress, 0.55, 0.65), this->Spacings.data());
+        this->Threads, Part(progress, 0.62, 0.68), this->Spacings.data());
       this->Result.GapTolerance *= this->TypicalScale();
     }
-    this->FindSpacingsOf(doubtful, neighbors, Part(progress, 0.65, 0.74));
+    this->FindSpacingsOf(doubtful, neighbors, Part(progress, 0.68, 0.74));
     this->Decide(doubtful, Part(progress, 0.74, 0.75));
     TraceSurface(
       this->Measured, this->AtBorder, [&](Index t) { return this->ToleranceOf(t); },
@@ -749,20 +744,16 @@ private:
   void MeasureLoss(const Neighbors& neighbors, const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
-    const IdSet leftOut = CornersLeftOut(list, this->Result.IsSurface, Part(progress, 0.0, 0.5));
-    this->Result.NumberOfPointsLeftOut = leftOut.Count();
+    const std::vector<char>& keep = this->Result.IsSurface;
     std::vector<Index> outward;
     double area = 0.0;
-    ForEachStretch(list.Count, Part(progress, 0.5, 0.6), [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
-      {
-        if (!this->Result.IsSurface[t])
-        {
-          outward.push_back(t);
-          area += list.ShareOfSquare(t, 1.0);
-        }
-      }
-    });
+    for (auto t = keep.begin(); (t = std::find(t, keep.end(), char(Outside))) != keep.end(); ++t)
+    {
+      outward.push_back(static_cast<Index>(t - keep.begin()));
+      area += list.ShareOfSquare(outward.back(), 1.0);
+    }
+    const IdSet leftOut = CornersLeftOut(list, outward, keep, Part(progress, 0.0, 0.6));
+    this->Result.NumberOfPointsLeftOut = leftOut.Count();
     const double all = AreaOf(list, this->Measured.Border);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
     const double points = static_cast<double>(std::count_if(this->Measured.Degrees.begin(),
