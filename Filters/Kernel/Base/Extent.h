@@ -24,6 +24,10 @@ struct Box
 
   double Width() const { return this->High.X - this->Low.X; }
   double Height() const { return this->High.Y - this->Low.Y; }
+  Point2 Center() const
+  {
+    return { this->Low.X + 0.5 * this->Width(), this->Low.Y + 0.5 * this->Height() };
+  }
   /** Whether a point is inside or on the boundary; without branches. */
   bool Contains(const Point2& p) const
   {

@@ -144,16 +144,9 @@ Heights::Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh&
     this->Method = Interpolation::NeighborMean;
     return;
   }
-  Point2 low = patch.At(0);
-  Point2 high = low;
-  for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
-  {
-    const Point2 p = patch.At(v);
-    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-  }
-  this->Center = { low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
-  this->Scale = 2.0 / std::max(high.X - low.X, high.Y - low.Y);
+  const Box box = patch.BoxOfBoundary();
+  this->Center = box.Center();
+  this->Scale = 2.0 / std::max(box.Width(), box.Height());
   if (wanted != Interpolation::Membrane)
   {
     this->CollectRing(*stars);

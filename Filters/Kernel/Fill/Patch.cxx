@@ -244,15 +244,7 @@ void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
 /** Places rows of points; one point is at the centre of the hole's bounding box. */
 void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
-  Point2 low = patch.At(0);
-  Point2 high = low;
-  for (Index v = 1; v < patch.NumberOfBoundaryVertices(); ++v)
-  {
-    const Point2 p = patch.At(v);
-    low = { std::min(low.X, p.X), std::min(low.Y, p.Y) };
-    high = { std::max(high.X, p.X), std::max(high.Y, p.Y) };
-  }
-  const Point2 center{ low.X + 0.5 * (high.X - low.X), low.Y + 0.5 * (high.Y - low.Y) };
+  const Point2 center = patch.BoxOfBoundary().Center();
   std::vector<Point2> boundary(patch.NumberOfBoundaryVertices());
   for (Index v = 0; v < patch.NumberOfBoundaryVertices(); ++v)
   {

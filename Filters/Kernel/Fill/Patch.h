@@ -147,6 +147,15 @@ struct PatchMesh
   {
     return { this->Points[3 * std::size_t(vertex)], this->Points[3 * std::size_t(vertex) + 1] };
   }
+  Box BoxOfBoundary() const
+  {
+    Box box;
+    for (Index v = 0; v < this->NumberOfBoundaryVertices(); ++v)
+    {
+      box.Add(this->At(v));
+    }
+    return box;
+  }
 };
 
 /** A hole that is being filled. */

@@ -206,7 +206,6 @@ inline bool IsCounterClockwise(Point2 a, Point2 b, Point2 c)
 /**
  * The sweep. A visitor has
  *   - Vertex: a SweptVertex, with what the visitor adds;
- *   - Start(Vertex&): called once for each vertex, with its Place set;
  *   - Begin(p, a): begins a fan of consecutive triangles around p, with a the second corner;
  *   - Visit(t, p, a, b): called for each triangle of the fan.
  * Each range has a copy of the visitor.
@@ -248,7 +247,7 @@ public:
         OpenEdges<Vertex>(this->Vertices, 1024 + static_cast<std::size_t>(this->List.Count) / 64),
         visitor, IdSet(number > 1 ? this->List.Points.Count : 0), {} });
     }
-    if (!this->Read(visitor, Part(progress, 0.0, 0.1)))
+    if (!this->Read(Part(progress, 0.0, 0.1)))
     {
       return false;
     }
@@ -341,7 +340,7 @@ private:
   static constexpr Index AtOnce = 1 << 14;        ///< triangles
 
   /** Initialises the vertices. @return whether all elevations are finite */
-  bool Read(const Visitor& visitor, const Progress& progress)
+  bool Read(const Progress& progress)
   {
     std::atomic<bool> areFinite{ true };
     const auto read = [&](const auto* coordinates) {
@@ -353,7 +352,6 @@ private:
           {
             Vertex* vertex = new (this->Vertices + v) Vertex;
             vertex->Place = { static_cast<double>(p[0]), static_cast<double>(p[1]) };
-            visitor.Start(*vertex);
             sum += 0.0 * static_cast<double>(p[2]);
           }
           if (!(sum == 0.0))

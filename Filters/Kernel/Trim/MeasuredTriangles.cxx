@@ -44,8 +44,6 @@ struct Measurer
   double Largest = 0.0;           ///< absolute value of a coordinate
   double ToLast = 0.0;            ///< squared length of the edge from the first corner to the last
 
-  void Start(Vertex&) const {}
-
   Index NumberOf(Vertex& vertex)
   {
     if (vertex.Number == None)

@@ -223,8 +223,6 @@ struct Classifier
     return std::max(std::fabs(q.X - p.X), std::fabs(q.Y - p.Y));
   }
 
-  void Start(Vertex&) const {}
-
   void Begin(const Vertex& p, const Vertex& a)
   {
     this->Around = this->Raster.KindAround(p.Place);

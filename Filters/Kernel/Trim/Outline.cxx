@@ -34,8 +34,6 @@ constexpr double SmallGroup = 0.7;
 // A line of points wavers by up to a tenth of a spacing; the narrow triangles between scan lines
 // eight times denser along than across are seven times as high.
 constexpr double LeastHeight = 0.1;
-// A lower bound, so that no spacing is 0 and squares stay in the range of double.
-constexpr double LeastSpacing = 1e-150;
 
 /** The parts of triangles with equal values of flagOf(t), connected by edges. */
 template <typename FlagOf>

@@ -29,7 +29,6 @@ constexpr double LeastWidth = 1.2;
 constexpr double WidthOfLength = 2.5;
 constexpr double ShareOfPoint = 0.2;
 constexpr double LongestJoin = 5.0;
-constexpr double LeastSpacing = 1e-150;
 
 /** 0 up to half of what is asked for, 1 from there on. */
 double Reached(double value, double asked)

@@ -24,6 +24,8 @@ namespace elevation
 
 constexpr int NeighborOfSpacing = 6;
 constexpr double SpacingPerNeighborDistance = 0.5;
+/** A lower bound, so that no spacing is 0 and squares stay in the range of double. */
+constexpr double LeastSpacing = 1e-150;
 /** A vertex with more neighbours is not expanded. */
 constexpr std::size_t NeighborsOfHub = 64;
 

@@ -596,7 +596,6 @@ int DealOutStars(Surface& surface)
 struct Nobody
 {
   using Vertex = SweptVertex;
-  void Start(Vertex&) const {}
   void Begin(const Vertex&, const Vertex&) {}
   void Visit(Index, const Vertex&, const Vertex&, const Vertex&) {}
 };
