@@ -155,9 +155,15 @@ if (ES_WRAP_PYTHON)
     INSTALL_HEADERS     OFF
     BUILD_STATIC        OFF)
   set(es_python_package "${es_python_destination}/vtkelevationsurface")
-  configure_file("${CMAKE_CURRENT_LIST_DIR}/__init__.py.in"
+  configure_file("${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py.in"
     "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" @ONLY)
-  install(FILES "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py"
+  file(GLOB es_python_files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}/Python"
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.py" "${CMAKE_CURRENT_SOURCE_DIR}/Python/help.txt")
+  foreach (file IN LISTS es_python_files)
+    configure_file("Python/${file}" "${CMAKE_BINARY_DIR}/${es_python_package}/${file}" COPYONLY)
+  endforeach ()
+  list(TRANSFORM es_python_files PREPEND "${CMAKE_BINARY_DIR}/${es_python_package}/")
+  install(FILES "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" ${es_python_files}
     DESTINATION "${es_python_package}")
 endif ()
 

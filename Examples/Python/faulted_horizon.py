@@ -15,9 +15,8 @@ Needs the module on PYTHONPATH, and a display or Xvfb for the picture.
 import os
 import sys
 
-import example_picture
-import surface_picture
 from vtkelevationsurface import vtkGridDelaunay2D
+from vtkelevationsurface.picture import save, screen_for
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -140,14 +139,14 @@ def main(picture, surface=None):
         f"{constrained.GetNumberOfConstraintCrossings()} crossings"
     )
 
-    with example_picture.screen_for(picture):
+    with screen_for(picture):
         window = vtkRenderWindow()
         window.SetOffScreenRendering(1)
         window.SetMultiSamples(8)
         window.SetSize(1600, 1200)
         panel(window, "points alone", 0.502, 1.0, plain.GetOutput(), faults)
         panel(window, "with the fault's lines", 0.0, 0.498, constrained.GetOutput(), faults)
-        surface_picture.save(window, picture)
+        save(window, picture)
     if surface:
         writer = vtkXMLPolyDataWriter()
         writer.SetInputData(constrained.GetOutput())

@@ -11,7 +11,7 @@ from_above.py voids CLOUD PICTURE.png [options]     the surface before and after
   --window X0,X1,Y0,Y1      draw this part alone; default: all
   --title TEXT              default: the file's name
 
-CLOUD is any file that reconstruct.py reads, or .f64: little-endian doubles x, y, z of one point after
+CLOUD is any file that reconstruct reads, or .f64: little-endian doubles x, y, z of one point after
 another. Land is shaded as if lit from the north-west; what has no surface is white.
 Needs the module on PYTHONPATH, and a display or Xvfb.
 """
@@ -20,14 +20,14 @@ import os
 import sys
 
 import numpy
-from example_picture import screen_for
-import surface_files
-import surface_picture as look
 from vtkelevationsurface import (
+    picture as look,
+    read,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
     vtkTrimOutwardTriangles,
 )
+from vtkelevationsurface.reconstruction import as_cloud
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderWindow
@@ -38,14 +38,6 @@ METHODS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-spline"
 DEFAULTS = {"--maximum-edge-length": "0", "--interpolation": "adaptive", "--window": "", "--title": ""}
 LEFT_OUT = (0.90, 0.10, 0.05)
 RIM = (0.72, 0.07, 0.30)
-
-
-def read(path):
-    """The points of a file as vtkPointSet."""
-    if path.lower().endswith(".f64"):
-        surface_files.check_readable(path)
-        return surface_files.make_points(numpy.fromfile(path, "<f8").reshape(-1, 3))
-    return surface_files.read_points(path).points
 
 
 class Chain:
@@ -231,9 +223,13 @@ def voids(chain, path, title):
 def main(what, cloud, path, *options):
     values = dict(DEFAULTS, **dict(zip(options[0::2], options[1::2])))
     region = values["--window"] and [float(x) for x in values["--window"].split(",")]
-    chain = Chain(read(cloud), float(values["--maximum-edge-length"]), values["--interpolation"], region)
+    if cloud.lower().endswith(".f64"):
+        points = as_cloud(numpy.fromfile(cloud, "<f8").reshape(-1, 3)).points
+    else:
+        points = read(cloud).points
+    chain = Chain(points, float(values["--maximum-edge-length"]), values["--interpolation"], region)
     draw_it = outline if what == "outline" else voids
-    with screen_for(path):
+    with look.screen_for(path):
         draw_it(chain, path, values["--title"] or os.path.basename(cloud))
 
 

@@ -91,7 +91,7 @@ def main(picture=None):
     print(f"{trim.GetNumberOfInsertedPoints()} points inserted along the boundary")
 
     if picture:
-        from example_picture import draw
+        from vtkelevationsurface.picture import draw
 
         draw(trim.GetOutput(), picture, "A lake with an island",
              "trimmed along a lease and two shores that were drawn on a map", view=(205.0, 55.0))

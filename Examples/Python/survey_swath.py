@@ -55,7 +55,7 @@ def main(picture=None):
           f"{trim.GetEffectiveGapTolerance():.1f} spacings")
 
     if picture:
-        from example_picture import draw
+        from vtkelevationsurface.picture import draw
 
         draw(trim.GetOutput(), picture, "A survey swath",
              "outlined from the soundings alone", view=(180.0, 90.0))

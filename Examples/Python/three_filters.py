@@ -5,8 +5,8 @@
 
 three_filters.py POINTS.vtp SURFACE.vtp [LONGEST_EDGE]
 
-Gaps in the data wider than LONGEST_EDGE become holes, and are filled. reconstruct.py does the same
-with more formats, options, a report and a picture.
+Gaps in the data wider than LONGEST_EDGE become holes, and are filled. vtkelevationsurface.reconstruct()
+does the same with more formats, options, a report and a picture.
 """
 
 import sys

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Examples/Python/reconstruct.py as its users run it: files in, files and a report out."""
+"""The program as its users run it: files in, files and a report out."""
 
 import json
 import math
@@ -17,11 +17,12 @@ import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.normpath(os.path.join(HERE, os.pardir, os.pardir))
-PROGRAM = os.path.join(ROOT, "Examples", "Python", "reconstruct.py")
+PROGRAM = ("-m", "vtkelevationsurface")
 DATA = os.path.join(ROOT, "Data")
-sys.path.insert(0, os.path.dirname(PROGRAM))
+EXAMPLES = os.path.join(ROOT, "Examples", "Python")
 
-import surface_files as files
+from vtkelevationsurface import vtk_files, writing
+from vtkelevationsurface.clouds import make_points
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 SIZE = 12
@@ -54,7 +55,7 @@ class Program(unittest.TestCase):
 
     def call(self, *arguments, **options):
         return subprocess.run(
-            [sys.executable, PROGRAM, *arguments],
+            [sys.executable, *PROGRAM, *arguments],
             cwd=self.folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -237,8 +238,8 @@ class Report(Program):
         rows = [(4000000.0 + x, 5000000.0 + y, z) for x, y, z in HOLED]
         name = self.file("far.xyz", text_of(rows))
         self.assert_refused(
-            "--spacing: 1e-09 is less than x and y of far.xyz can tell apart, which are in steps of "
-            "9.31e-10",
+            "far.xyz: --spacing: 1e-09 is less than x and y of the points can tell apart, which are in "
+            "steps of 9.31e-10",
             name, "--spacing", "1e-9", code=2,
         )
         self.report(name, "--spacing", "2")
@@ -295,7 +296,7 @@ class Report(Program):
         ):
             with self.subTest(policy=policy):
                 self.report(name, "--duplicates", policy, "-o", "s.vtp", "--no-fill")
-                surface = files.run_vtk_reader(self.path("s.vtp"))
+                surface = vtk_files.run_vtk_reader(self.path("s.vtp"))
                 used = {
                     surface.GetPoint(surface.GetCell(c).GetPointId(i))
                     for c in range(surface.GetNumberOfCells())
@@ -303,32 +304,32 @@ class Report(Program):
                 }
                 self.assertEqual([p[2] for p in used if p[:2] == (3.0, 3.0)], [z])
 
-    def test_breaklines_become_edges_and_are_told(self):
+    def test_faults_become_edges_and_are_told(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         lines = self.file("faults.txt", "x y z\n2 2.5 9\n8 2.5 9\n\n4.5 1 7\n4.5 6 7\n")
-        report = self.report(name, "--breaklines", lines, "--no-trim", "--no-fill", "-o", "s.vtp")
+        report = self.report(name, "--faults", lines, "--no-trim", "--no-fill", "-o", "s.vtp")
         self.assertEqual(
-            report["breaklines"], {"file": lines, "added_points": 5, "crossings": 1}
+            report["faults"], {"file": lines, "added_points": 5, "crossings": 1}
         )
         self.assertIsNone(report["lattice"])
-        surface = files.run_vtk_reader(self.path("s.vtp"))
+        surface = vtk_files.run_vtk_reader(self.path("s.vtp"))
         self.assertEqual(surface.GetNumberOfPoints(), len(SHEET) + 5)
         self.assertEqual(surface.GetPoint(surface.GetNumberOfPoints() - 1), (4.5, 2.5, 9.0))
         self.assertIn("5 points added, 1 crossing", self.output)
 
-    def test_breaklines_that_cannot_be_used_are_named(self):
+    def test_faults_that_cannot_be_used_are_named(self):
         name = self.file("sheet.xyz", text_of(SHEET))
-        self.assert_refused("no.vtp: no such file", name, "--breaklines", "no.vtp")
+        self.assert_refused("no.vtp: no such file", name, "--faults", "no.vtp")
         bad = self.file("bad.txt", "1 1 0\n2 inf 0\n")
-        self.assert_refused("bad.txt, line 2: a breakline", name, "--breaklines", bad)
+        self.assert_refused("bad.txt, line 2: a point of a fault", name, "--faults", bad)
         from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-        data = files.make_points([(2, 2, 0), (8, 2, float("nan"))])
+        data = make_points([(2, 2, 0), (8, 2, float("nan"))])
         lines = vtkCellArray()
         lines.InsertNextCell(2, [0, 1])
         data.SetLines(lines)
-        files.write_surface(data, self.path("nan.vtp"), ".vtp")
-        self.assert_refused(["nan.vtp: ", "Point 1"], name, "--breaklines", "nan.vtp")
+        writing.write_surface(data, self.path("nan.vtp"))
+        self.assert_refused(["nan.vtp: ", "Point 1"], name, "--faults", "nan.vtp")
 
     def test_a_boundary_file_cuts_the_surface(self):
         name = self.file("sheet.xyz", text_of(SHEET))
@@ -368,11 +369,11 @@ class Report(Program):
         from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
         import numpy
 
-        data = files.make_points(HOLED)
+        data = make_points(HOLED)
         array = numpy_to_vtk(numpy.arange(float(len(HOLED))), deep=True)
         array.SetName("Amplitude")
         data.GetPointData().AddArray(array)
-        files.write_surface(data, self.path("holed.vtp"), ".vtp")
+        writing.write_surface(data, self.path("holed.vtp"))
         common = (
             "holed.vtp",
             "-o",
@@ -385,7 +386,7 @@ class Report(Program):
         for option, known in ((), True), (("--no-interpolate-point-data",), False):
             with self.subTest(option=option):
                 self.report(*common, *option)
-                surface = files.run_vtk_reader(self.path("s.vtp"))
+                surface = vtk_files.run_vtk_reader(self.path("s.vtp"))
                 values = vtk_to_numpy(surface.GetPointData().GetArray("Amplitude"))
                 self.assertEqual(values[: len(HOLED)].tolist(), list(range(len(HOLED))))
                 self.assertGreater(len(values), len(HOLED))
@@ -411,11 +412,11 @@ class Results(Program):
 
     def test_every_format_holds_the_same_triangles(self):
         name = self.file("sheet.xyz", text_of(SHEET))
-        for suffix in files.WRITE_SUFFIXES:
+        for suffix in writing.WRITE_SUFFIXES:
             with self.subTest(suffix=suffix):
                 done = self.call(name, "--no-picture", "-o", "s" + suffix)
                 self.assertEqual(done.returncode, 0, done.stderr)
-                surface = files.run_vtk_reader(self.path("s" + suffix))
+                surface = vtk_files.run_vtk_reader(self.path("s" + suffix))
                 self.assertEqual(surface.GetNumberOfPolys(), 2 * (SIZE - 1) ** 2)
                 self.assertEqual(surface.GetBounds()[:4], (0.0, SIZE - 1.0, 0.0, SIZE - 1.0))
 
@@ -432,7 +433,7 @@ class Results(Program):
             self.skipTest("there are no pseudo-terminals here")
         master, terminal = pty.openpty()
         with subprocess.Popen(
-            [sys.executable, PROGRAM, name, "--no-picture"],
+            [sys.executable, *PROGRAM, name, "--no-picture"],
             cwd=self.folder,
             stdout=subprocess.DEVNULL,
             stderr=terminal,
@@ -456,21 +457,21 @@ class Results(Program):
         self.assertIn("survey_surface.vtp", done.stdout)
 
     def test_help_names_every_option(self):
-        import reconstruct
+        from vtkelevationsurface import command
 
         shown = self.call("--help").stdout
-        for action in reconstruct.make_parser()._actions:
+        for action in command.make_parser()._actions:
             for option in action.option_strings:
                 self.assertIn(f"  {option}", shown.replace(", -", "  -"))
                 if action.nargs is None:
-                    self.assertIn(option, [*reconstruct.TAKES, "-o"])
+                    self.assertIn(option, [*command.TAKES, "-o"])
 
     def test_a_reader_that_goes_away_is_no_error(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         reading, writing = os.pipe()
         os.close(reading)
         done = subprocess.run(
-            [sys.executable, PROGRAM, name, "--no-picture"],
+            [sys.executable, *PROGRAM, name, "--no-picture"],
             cwd=self.folder,
             stdout=writing,
             stderr=subprocess.PIPE,
@@ -521,7 +522,7 @@ class Script(Program):
 class ShortExample(Program):
     def test_it_makes_the_same_surface_as_the_program(self):
         data = os.path.join(DATA, "b9_ground.vtp")
-        script = os.path.join(os.path.dirname(PROGRAM), "three_filters.py")
+        script = os.path.join(EXAMPLES, "three_filters.py")
         done = subprocess.run(
             [sys.executable, script, data, "short.vtp", "2"],
             cwd=self.folder,
@@ -532,13 +533,13 @@ class ShortExample(Program):
         )
         self.assertIn("holes filled", done.stdout)
         report = self.report(data, "--maximum-edge-length", "2")
-        surface = files.run_vtk_reader(self.path("short.vtp"))
+        surface = vtk_files.run_vtk_reader(self.path("short.vtp"))
         self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
 
 
 class Examples(Program):
     def lines_of(self, name, *arguments):
-        script = os.path.join(os.path.dirname(PROGRAM), name)
+        script = os.path.join(EXAMPLES, name)
         done = subprocess.run(
             [sys.executable, script, *arguments],
             cwd=self.folder,
@@ -553,7 +554,7 @@ class Examples(Program):
         lines = self.lines_of("faulted_horizon.py", "fault.png", "fault.vtp")
         self.assertEqual(lines, ["290 points added, 0 crossings"])
         self.assertGreater(os.path.getsize(self.path("fault.png")), 100000)
-        surface = files.run_vtk_reader(self.path("fault.vtp"))
+        surface = vtk_files.run_vtk_reader(self.path("fault.vtp"))
         self.assertGreater(surface.GetNumberOfPolys(), 4000)
 
     def test_the_lake_is_cut_along_lines_that_are_no_points(self):
@@ -572,7 +573,7 @@ class Examples(Program):
         lines = self.lines_of("from_above.py", "outline", buildings, "outline.png")
         self.assertRegex(lines[0], r"^\d+ rings? at a gap tolerance of \d\.\d spacings, \d+ points outside$")
         self.assertGreater(os.path.getsize(self.path("outline.png")), 100000)
-        surface = files.run_vtk_reader(buildings)
+        surface = vtk_files.run_vtk_reader(buildings)
         vtk_to_numpy(surface.GetPoints().GetData()).astype("<f8").tofile(self.path("plain.f64"))
         for cloud in (buildings, "plain.f64"):
             lines = self.lines_of(
@@ -688,7 +689,7 @@ class VirtualDisplay(Program):
         rows = "".join(f"{i % 300} {i // 300} {i % 7}\n" for i in range(90000))
         name = self.file("sheet.xyz", rows)
         return subprocess.Popen(
-            [sys.executable, PROGRAM, name, "--picture"],
+            [sys.executable, *PROGRAM, name, "--picture"],
             cwd=self.folder,
             env=environment,
             stdout=subprocess.DEVNULL,
@@ -777,11 +778,11 @@ class BadInput(Program):
         self.assert_refused(["open.txt: ", "not closed"], name, "--boundary", ring)
         from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-        data = files.make_points([(2, 2, 0), (8, 2, 0), (8, 8, 0), (2, 8, 0)])
+        data = make_points([(2, 2, 0), (8, 2, 0), (8, 8, 0), (2, 8, 0)])
         lines = vtkCellArray()
         lines.InsertNextCell(4, [0, 1, 2, 3])
         data.SetLines(lines)
-        files.write_surface(data, self.path("open.vtp"), ".vtp")
+        writing.write_surface(data, self.path("open.vtp"))
         self.assert_refused("open.vtp", name, "--boundary", "open.vtp")
         self.assert_refused("no.vtp: no such file", name, "--boundary", "no.vtp")
 
@@ -811,7 +812,7 @@ class BadInput(Program):
             resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 
         name = self.file("sheet.xyz", text_of(SHEET))
-        for suffix in files.WRITE_SUFFIXES:
+        for suffix in writing.WRITE_SUFFIXES:
             with self.subTest(suffix=suffix):
                 self.assert_refused("s" + suffix, name, "-o", "s" + suffix, preexec_fn=limit)
 

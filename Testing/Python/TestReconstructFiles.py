@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The readers and writers of Examples/Python/surface_files.py, without the filters."""
+"""Reading and writing, without the filters."""
 
 import math
 import os
@@ -10,11 +10,10 @@ import tempfile
 import unittest
 from unittest import mock
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(HERE, os.pardir, os.pardir, "Examples", "Python"))
-
 import numpy
-import surface_files as files
+from vtkelevationsurface import paths, rasters, reading, vtk_files, writing
+from vtkelevationsurface.clouds import make_points
+from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkUnstructuredGrid
@@ -44,14 +43,14 @@ class InFolder(unittest.TestCase):
         return path
 
     def read(self, content, name="a.txt", **options):
-        return files.read_points(self.file(name, content), **options)
+        return reading.read(self.file(name, content), **options)
 
     def assert_rows(self, cloud, rows):
         numpy.testing.assert_array_equal(coordinates(cloud), numpy.array(rows, dtype="f8"))
 
     def assert_refused(self, words, content, name="a.txt", **options):
         """The error is one line that begins with the file's name and holds the words."""
-        with self.assertRaises(files.FileError) as caught:
+        with self.assertRaises(FileError) as caught:
             self.read(content, name, **options)
         text = str(caught.exception)
         self.assertTrue(text.startswith(self.path(name)), text)
@@ -170,12 +169,12 @@ class Text(InFolder):
 class Paths(InFolder):
     def test_what_cannot_be_opened_is_named(self):
         for name, words in (("no.csv", "no such file"), ("", "is a folder")):
-            with self.assertRaises(files.FileError) as caught:
-                files.read_points(self.path(name))
+            with self.assertRaises(FileError) as caught:
+                reading.read(self.path(name))
             self.assertIn(words, str(caught.exception))
         os.mkdir(self.path("folder.csv"))
-        with self.assertRaisesRegex(files.FileError, "is a folder, not a file"):
-            files.read_points(self.path("folder.csv"))
+        with self.assertRaisesRegex(FileError, "is a folder, not a file"):
+            reading.read(self.path("folder.csv"))
 
     @unittest.skipIf(
         not hasattr(os, "getuid") or os.getuid() == 0, "everything is readable to root"
@@ -183,8 +182,8 @@ class Paths(InFolder):
     def test_a_file_without_permission_is_named(self):
         path = self.file("secret.csv", "1 2 3\n")
         os.chmod(path, 0)
-        with self.assertRaisesRegex(files.FileError, "cannot be read: Permission denied"):
-            files.read_points(path)
+        with self.assertRaisesRegex(FileError, "cannot be read: Permission denied"):
+            reading.read(path)
 
     def test_an_unknown_suffix_is_refused_with_those_that_are_known(self):
         self.assert_refused([".las cannot be read", ".vtp", ".csv"], "1 2 3\n", "a.las")
@@ -204,10 +203,10 @@ class VtkFormats(InFolder):
         from vtkmodules.vtkIOPLY import vtkPLYWriter
         from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
-        data = files.make_points(ROWS)
+        data = make_points(ROWS)
         grid = vtkUnstructuredGrid()
         grid.SetPoints(data.GetPoints())
-        mesh = files.make_points(ROWS)
+        mesh = make_points(ROWS)
         cells = vtkCellArray()
         cells.InsertNextCell(3, [0, 1, 2])
         mesh.SetPolys(cells)
@@ -219,7 +218,7 @@ class VtkFormats(InFolder):
             (vtkOBJWriter(), mesh, "a.obj"),
         ):
             with self.subTest(name=name):
-                cloud = files.read_points(self.write(writer, source, name))
+                cloud = reading.read(self.write(writer, source, name))
                 self.assert_rows(cloud, ROWS)
                 cells_ignored = any("not the file's cells" in note for note in cloud.notes)
                 self.assertEqual(cells_ignored, source is mesh)
@@ -227,12 +226,12 @@ class VtkFormats(InFolder):
     def test_no_data_leaves_points_out_and_keeps_the_arrays_of_the_others(self):
         from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-        data = files.make_points(ROWS)
+        data = make_points(ROWS)
         array = numpy_to_vtk(numpy.array([10.0, 20.0, 30.0]), deep=True)
         array.SetName("Amplitude")
         data.GetPointData().AddArray(array)
         path = self.write(vtkXMLPolyDataWriter(), data, "a.vtp")
-        cloud = files.read_points(path, no_data=6.0)
+        cloud = reading.read(path, no_data=6.0)
         self.assert_rows(cloud, [ROWS[0], ROWS[2]])
         kept = vtk_to_numpy(cloud.points.GetPointData().GetArray("Amplitude"))
         self.assertEqual(kept.tolist(), [10.0, 30.0])
@@ -248,7 +247,7 @@ class VtkFormats(InFolder):
         values = numpy_to_vtk(numpy.array([1.0, 2.0, math.nan, 4.0, 5.0, 6.0]), deep=True)
         values.SetName("Depth")
         image.GetPointData().SetScalars(values)
-        cloud = files.read_points(self.write(vtkXMLImageDataWriter(), image, "a.vti"))
+        cloud = reading.read(self.write(vtkXMLImageDataWriter(), image, "a.vti"))
         self.assert_rows(
             cloud, [(100, 200, 1), (110, 200, 2), (100, 205, 4), (110, 205, 5), (120, 205, 6)]
         )
@@ -262,7 +261,7 @@ class VtkFormats(InFolder):
 
     def mesh(self):
         """A strip of triangles with odd coordinates, so that a text file has long numbers."""
-        data = files.make_points([(i / 3.0, i % 2, i / 7.0) for i in range(12)])
+        data = make_points([(i / 3.0, i % 2, i / 7.0) for i in range(12)])
         cells = vtkCellArray()
         for i in range(10):
             cells.InsertNextCell(3, [i, i + 1, i + 2])
@@ -307,14 +306,14 @@ class VtkFormats(InFolder):
         # compared, but there is a note.
         for what, suffix, content in self.whole_files():
             path = self.file("cut." + suffix, content)
-            expected = coordinates(files.read_points(path)).ravel()[:-1].tolist()
+            expected = coordinates(reading.read(path)).ravel()[:-1].tolist()
             refused = 0
             for size in range(1, len(content), 7):
                 with self.subTest(what=what, size=size):
                     path = self.file("cut." + suffix, content[:size])
                     try:
-                        cloud = files.read_points(path)
-                    except files.FileError:
+                        cloud = reading.read(path)
+                    except FileError:
                         refused += 1
                         continue
                     self.assertEqual(coordinates(cloud).ravel()[:-1].tolist(), expected)
@@ -342,7 +341,7 @@ class VtkFormats(InFolder):
         for name, count in (("X", 3), ("Y", 2), ("Z", 1)):
             along = numpy_to_vtk(numpy.arange(float(count)), deep=True)
             getattr(rectilinear, f"Set{name}Coordinates")(along)
-        structured.SetPoints(files.make_points(places).GetPoints())
+        structured.SetPoints(make_points(places).GetPoints())
         for writer, grid, suffix in (
             (vtkXMLImageDataWriter(), image, ".vti"),
             (vtkXMLRectilinearGridWriter(), rectilinear, ".vtr"),
@@ -386,7 +385,7 @@ class VtkFormats(InFolder):
                     with self.subTest(what=what, new=new):
                         self.assert_refused("", content.replace(old, new), "lie." + suffix)
 
-        files.write_surface(files.make_points(ROWS), self.path("a.vtp"), ".vtp")
+        writing.write_surface(make_points(ROWS), self.path("a.vtp"))
         with open(self.path("a.vtp"), encoding="ascii") as stream:
             text = stream.read()
         self.assertIn('NumberOfPoints="3"', text)
@@ -417,8 +416,8 @@ class VtkFormats(InFolder):
         text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
         text += "0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 77\n"
         self.assert_refused("a cell has the corner 77, but there are 3 points", text, "a.vtk")
-        with self.assertRaisesRegex(files.FileError, "corner 77"):
-            files.read_boundary(self.path("a.vtk"))
+        with self.assertRaisesRegex(FileError, "corner 77"):
+            reading.read_boundary(self.path("a.vtk"))
         self.assert_refused(
             "a cell has the corner -1, but there are 3 points", text.replace("77", "-1"), "b.vtk"
         )
@@ -427,8 +426,8 @@ class VtkFormats(InFolder):
         from vtkmodules.vtkIOPLY import vtkPLYWriter
 
         rows = [(612014.5 + i % 10, 6073983.5 + i // 10, 0.0) for i in range(100)]
-        path = self.write(vtkPLYWriter(), files.make_points(rows), "a.ply")
-        self.assertTrue(any("single precision" in note for note in files.read_points(path).notes))
+        path = self.write(vtkPLYWriter(), make_points(rows), "a.ply")
+        self.assertTrue(any("single precision" in note for note in reading.read(path).notes))
 
 
 def write_tiff(path, z, tags, bits=32):
@@ -481,7 +480,7 @@ class Tiff(InFolder):
         return self.path("a.tif")
 
     def test_pixels_become_points_at_their_centres_without_those_of_no_data(self):
-        cloud = files.read_points(self.tiff({**self.PLACE, **self.NO_DATA}))
+        cloud = reading.read(self.tiff({**self.PLACE, **self.NO_DATA}))
         self.assert_rows(
             cloud,
             [
@@ -497,17 +496,17 @@ class Tiff(InFolder):
 
     def test_pixels_that_are_points_are_not_moved_by_half_a_step(self):
         keys = {34735: ("H", (1, 1, 0, 1, 1025, 0, 1, 2))}
-        cloud = files.read_points(self.tiff({**self.PLACE, **keys}))
+        cloud = reading.read(self.tiff({**self.PLACE, **keys}))
         self.assertEqual(coordinates(cloud)[0].tolist(), [500000.0, 5000000.0, 1.0])
 
     def test_a_rotated_raster_is_placed_by_its_matrix(self):
         matrix = (0.0, 2.0, 0, 100.0, 3.0, 0.0, 0, 200.0, 0, 0, 0, 0, 0, 0, 0, 1)
-        cloud = files.read_points(self.tiff({34264: ("d", matrix)}))
+        cloud = reading.read(self.tiff({34264: ("d", matrix)}))
         self.assertEqual(coordinates(cloud)[0].tolist(), [101.0, 201.5, 1.0])
         self.assertEqual(coordinates(cloud)[1].tolist(), [101.0, 204.5, 2.0])
 
     def test_without_georeferencing_columns_and_rows_are_used_and_that_is_said(self):
-        cloud = files.read_points(self.tiff({}))
+        cloud = reading.read(self.tiff({}))
         self.assertEqual(coordinates(cloud)[0].tolist(), [0.0, 1.0, 1.0])
         self.assertEqual(cloud.points.GetNumberOfPoints(), 6)
         self.assertTrue(any("no georeferencing" in note for note in cloud.notes))
@@ -515,13 +514,13 @@ class Tiff(InFolder):
 
     def test_a_world_file_beside_it_is_used(self):
         self.file("a.tfw", "30\n0\n0\n-20\n500015\n4999990\n")
-        cloud = files.read_points(self.tiff({}))
+        cloud = reading.read(self.tiff({}))
         self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
 
     def test_a_no_data_value_can_be_given_beside_that_of_the_file(self):
-        cloud = files.read_points(self.tiff(self.NO_DATA), no_data=5.0)
+        cloud = reading.read(self.tiff(self.NO_DATA), no_data=5.0)
         self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [1, 2, 4, 6])
-        cloud = files.read_points(self.tiff({}), no_data=5.0)
+        cloud = reading.read(self.tiff({}), no_data=5.0)
         self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [-9999, 1, 2, 4, 6])
 
     def test_a_no_data_value_is_found_among_pixels_of_single_precision(self):
@@ -531,7 +530,7 @@ class Tiff(InFolder):
         for tags, no_data in (({42113: ("s", b"-9999.9\0")}, None), ({}, -9999.9)):
             with self.subTest(no_data=no_data):
                 write_tiff(self.path("b.tif"), rows, tags)
-                cloud = files.read_points(self.path("b.tif"), no_data=no_data)
+                cloud = reading.read(self.path("b.tif"), no_data=no_data)
                 self.assertEqual(coordinates(cloud)[:, 2].tolist(), [1, 2, 3])
                 self.assertEqual(cloud.left_out, {"pixels without data": 1})
 
@@ -543,13 +542,13 @@ class Tiff(InFolder):
         ):
             path = self.tiff({**self.PLACE, **tags}, bits=bits)
             with self.subTest(words), mock.patch.dict(sys.modules, {"osgeo": None}):
-                with self.assertRaisesRegex(files.FileError, words + ".*install python3-gdal"):
-                    files.read_points(path)
+                with self.assertRaisesRegex(FileError, words + ".*install python3-gdal"):
+                    reading.read(path)
         try:
             import osgeo  # noqa: F401
         except ImportError:
             self.skipTest("python3-gdal is not installed")
-        cloud = files.read_points(path)
+        cloud = reading.read(path)
         self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
 
     def test_what_is_no_tiff_is_refused(self):
@@ -580,7 +579,7 @@ def write_dem(path, profiles, dx=30.0, dy=30.0, dz=1.0, datum=0.0):
 class Dem(InFolder):
     def test_every_profile_begins_at_its_own_place(self):
         write_dem(self.path("a.dem"), [(1000, 500, [7, 8]), (1030, 470, [5, 6, 9])])
-        cloud = files.read_points(self.path("a.dem"))
+        cloud = reading.read(self.path("a.dem"))
         self.assert_rows(
             cloud, [(1000, 500, 7), (1000, 530, 8), (1030, 470, 5), (1030, 500, 6), (1030, 530, 9)]
         )
@@ -588,16 +587,16 @@ class Dem(InFolder):
 
     def test_voids_are_left_out_and_counted_even_where_numbers_touch(self):
         write_dem(self.path("a.dem"), [(0, 0, [12, -32767, -32767, 40])])
-        cloud = files.read_points(self.path("a.dem"))
+        cloud = reading.read(self.path("a.dem"))
         self.assert_rows(cloud, [(0, 0, 12), (0, 90, 40)])
         self.assertEqual(cloud.left_out, {"pixels without data": 2})
 
     def test_elevations_are_steps_above_the_datum_of_their_profile(self):
         write_dem(self.path("a.dem"), [(0, 0, [12, -32767, 20])], dz=0.25, datum=100.0)
-        cloud = files.read_points(self.path("a.dem"))
+        cloud = reading.read(self.path("a.dem"))
         self.assert_rows(cloud, [(0, 0, 103), (0, 60, 105)])
         # What a user calls no data is an elevation.
-        cloud = files.read_points(self.path("a.dem"), no_data=105.0)
+        cloud = reading.read(self.path("a.dem"), no_data=105.0)
         self.assert_rows(cloud, [(0, 0, 103)])
 
     def test_a_damaged_file_names_the_profile(self):
@@ -611,7 +610,7 @@ class Dem(InFolder):
 
 class Breaklines(InFolder):
     def test_text_lines_stay_open_and_apart(self):
-        data = files.read_breaklines(self.file("b.txt", "0 0 1\n10 0 2\n\n2 2 3\n4 2 4\n4 4 5\n"))
+        data = reading.read_faults(self.file("b.txt", "0 0 1\n10 0 2\n\n2 2 3\n4 2 4\n4 4 5\n"))
         self.assertEqual(data.GetNumberOfLines(), 2)
         self.assertEqual(data.GetNumberOfPoints(), 5)
         line = data.GetCell(1).GetPointIds()
@@ -619,18 +618,18 @@ class Breaklines(InFolder):
         self.assertEqual(data.GetPoint(4), (4.0, 4.0, 5.0))
 
     def test_what_holds_no_lines_is_refused(self):
-        files.write_surface(files.make_points(ROWS), self.path("b.vtp"), ".vtp")
-        with self.assertRaisesRegex(files.FileError, "no line and no polygon that could be a break"):
-            files.read_breaklines(self.path("b.vtp"))
-        with self.assertRaisesRegex(files.FileError, "line 2: a breakline point is not finite"):
-            files.read_breaklines(self.file("b.txt", "0 0 1\n1 nan 0\n"))
+        writing.write_surface(make_points(ROWS), self.path("b.vtp"))
+        with self.assertRaisesRegex(FileError, "no line and no polygon that could be a fault"):
+            reading.read_faults(self.path("b.vtp"))
+        with self.assertRaisesRegex(FileError, "line 2: a point of a fault is not finite"):
+            reading.read_faults(self.file("b.txt", "0 0 1\n1 nan 0\n"))
 
 
 class Boundary(InFolder):
     RING = "0 0\n10 0\n10 10\n0 10\n0 0\n"
 
     def test_closed_text_rings_become_closed_lines(self):
-        data = files.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n2 2\n"))
+        data = reading.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n2 2\n"))
         self.assertEqual(data.GetNumberOfLines(), 2)
         self.assertEqual(data.GetNumberOfPoints(), 7)
         line = data.GetCell(1).GetPointIds()
@@ -638,19 +637,19 @@ class Boundary(InFolder):
 
     def test_an_open_ring_names_its_lines(self):
         with self.assertRaisesRegex(
-            files.FileError, "b.txt: .* from line 1 to line 4 is not closed"
+            FileError, "b.txt: .* from line 1 to line 4 is not closed"
         ):
-            files.read_boundary(self.file("b.txt", "0 0\n10 0\n10 10\n0 10\n"))
+            reading.read_boundary(self.file("b.txt", "0 0\n10 0\n10 10\n0 10\n"))
 
     def test_a_boundary_point_that_is_not_finite_names_its_line(self):
-        with self.assertRaisesRegex(files.FileError, "line 2: a boundary point is not finite"):
-            files.read_boundary(self.file("b.txt", "0 0\nnan 0\n10 10\n0 0\n"))
+        with self.assertRaisesRegex(FileError, "line 2: a boundary point is not finite"):
+            reading.read_boundary(self.file("b.txt", "0 0\nnan 0\n10 10\n0 0\n"))
 
     def test_a_file_without_lines_is_refused(self):
-        data = files.make_points(ROWS)
-        files.write_surface(data, self.path("b.vtp"), ".vtp")
-        with self.assertRaisesRegex(files.FileError, "no line and no polygon"):
-            files.read_boundary(self.path("b.vtp"))
+        data = make_points(ROWS)
+        writing.write_surface(data, self.path("b.vtp"))
+        with self.assertRaisesRegex(FileError, "no line and no polygon"):
+            reading.read_boundary(self.path("b.vtp"))
 
 
 class Writing(InFolder):
@@ -661,23 +660,23 @@ class Writing(InFolder):
     ]
 
     def triangle(self):
-        data = files.make_points(self.MAP)
+        data = make_points(self.MAP)
         cells = vtkCellArray()
         cells.InsertNextCell(3, [0, 1, 2])
         data.SetPolys(cells)
         return data
 
     def test_map_coordinates_keep_their_shape_in_every_format(self):
-        for suffix in files.WRITE_SUFFIXES:
+        for suffix in writing.WRITE_SUFFIXES:
             with self.subTest(suffix=suffix):
                 path = self.path("s" + suffix)
-                notes = files.write_surface(self.triangle(), path, suffix)
+                notes = writing.write_surface(self.triangle(), path)
                 if suffix == ".ply":
                     self.assertIn("x,y are written less 612014 6073983", notes[0])
                     expected = numpy.array(self.MAP) - (612014, 6073983, 0)
-                    numpy.testing.assert_array_equal(coordinates(files.read_points(path)), expected)
+                    numpy.testing.assert_array_equal(coordinates(reading.read(path)), expected)
                 elif suffix == ".vtp":
-                    self.assert_rows(files.read_points(path), self.MAP)
+                    self.assert_rows(reading.read(path), self.MAP)
                 else:
                     # Their readers are single precision; the files hold all digits.
                     with open(path, encoding="ascii") as stream:
@@ -686,22 +685,22 @@ class Writing(InFolder):
                     self.assertIn("6073984.625", text)
 
     def test_a_folder_that_is_not_there_is_refused_before_any_work(self):
-        with self.assertRaisesRegex(files.FileError, "there is no folder"):
-            files.check_writable(self.path("no/s.vtp"))
-        with self.assertRaisesRegex(files.FileError, "is a folder"):
-            files.check_writable(self.folder)
+        with self.assertRaisesRegex(FileError, "there is no folder"):
+            paths.check_writable(self.path("no/s.vtp"))
+        with self.assertRaisesRegex(FileError, "is a folder"):
+            paths.check_writable(self.folder)
 
 
 class VtkMessages(unittest.TestCase):
     def test_the_words_are_kept_and_the_rest_is_not(self):
         text = "ERROR: In ./IO/f.cxx, line 12\nvtkThing (0x1f08): It broke\nat line 3\n\n"
-        self.assertEqual(files.plain_message(text), "It broke at line 3")
+        self.assertEqual(plain_message(text), "It broke at line 3")
 
     def test_reports_are_collected_and_the_window_is_given_back(self):
         from vtkmodules.vtkCommonCore import vtkOutputWindow
 
         before = vtkOutputWindow.GetInstance().GetDisplayMode()
-        with files.Messages() as messages:
+        with Messages() as messages:
             vtkOutputWindow.GetInstance().DisplayErrorText("vtkThing (0x1): wrong")
             vtkOutputWindow.GetInstance().DisplayWarningText("vtkThing (0x1): odd")
         self.assertEqual((messages.errors, messages.warnings), (["wrong"], ["odd"]))

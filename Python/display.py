@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A display for drawing where there is no screen: Xvfb, for as long as this program runs."""
 
+import contextlib
 import ctypes
 import os
 import select
@@ -85,9 +86,22 @@ class VirtualDisplay:
                 self.server.kill()
                 self.server.wait()
             self.server = None
+            # Nothing answers there any more.
+            os.environ.pop("DISPLAY", None)
+            os.environ.pop("XAUTHORITY", None)
         if self.folder is not None:
             shutil.rmtree(self.folder, ignore_errors=True)
             self.folder = None
+
+
+@contextlib.contextmanager
+def screen():
+    """A screen to draw on, while the context lasts; gives None, or why there is none."""
+    display = VirtualDisplay()
+    try:
+        yield None if os.environ.get("DISPLAY") else display.open()
+    finally:
+        display.close()
 
 
 def write_key(path):

@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws an elevation surface as a block diagram for reconstruct.py.
+"""Draws an elevation surface as a block diagram.
 
 Parallel projection, so that one scale bar holds everywhere. The light comes from the upper left,
 as on maps, or relief would be seen inside out. Coordinates are shifted to the surface's middle
 before rendering: graphics cards work with 24 bits, which is too few for map coordinates.
 """
 
+import contextlib
 import ctypes
 import math
 import os
@@ -38,6 +39,9 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
+from .display import screen
+from .messages import PictureError
+
 # Both maps rise evenly in lightness, so that they keep their order in grey and for colour-blind
 # eyes. Colours are mixed in CIE Lab between the stops.
 LAND = ("#1f4e5f", "#2f7a72", "#6fa06a", "#c3b56b", "#e6cf9c", "#faf3e3")
@@ -53,6 +57,16 @@ VTK_FONT_FILE = 4  # as in vtkTextProperty.h; not wrapped
 WIDTH = 1800
 TOP, BOTTOM, LEFT, RIGHT = 150, 120, 70, 230
 NICE = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+
+
+@contextlib.contextmanager
+def screen_for(path):
+    """A screen to draw a picture on, while the context lasts. Raises PictureError."""
+    with screen() as reason:
+        reason = reason or why_no_picture()
+        if reason:
+            raise PictureError(path, reason + "; Utilities/reconstruct sets everything up")
+        yield
 
 
 def why_no_picture():
@@ -383,19 +397,26 @@ def round_text(value):
     return text.rstrip("0").rstrip(".")
 
 
-def draw(
-    surface, path, title, subtitle, holes=None, view=None, exaggeration=None, show_errors=False
-):
-    """Renders the surface into a PNG file.
+def draw(surface, path, title, subtitle, holes=None, **options):
+    """Renders the surface into a PNG file; starts a virtual display where there is no screen.
 
     surface   vtkPolyData with triangles; with a cell array HoleId, patches are outlined
     holes     None, or the second output of vtkFillElevationHoles
     view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
     exaggeration  None, or the factor for z
     show_errors   colours tell FilledError, a point array of vtkFillElevationHoles, not elevation
-    Returns {"bearing", "height", "exaggeration"} as used. Takes about a second for 300,000
+    Returns {"bearing", "height", "exaggeration"} as used. Raises PictureError. Takes about a second for 300,000
     triangles where a software renderer draws.
     """
+    with screen_for(path):
+        reason = why_not_drawn(surface)
+        if reason:
+            raise PictureError(path, reason)
+        return render(surface, path, title, subtitle, holes, **options)
+
+
+def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, show_errors=False):
+    """draw() on a screen that is there."""
     real = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
     used = numpy.unique(corners)

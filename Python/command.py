@@ -1,0 +1,409 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line: python3 -m vtkelevationsurface FILE, which Utilities/reconstruct runs."""
+
+import argparse
+import json
+import math
+import os
+import re
+import signal
+import sys
+import time
+
+import numpy
+
+from . import reading, writing
+from .messages import ElevationSurfaceError, FileError, PictureError
+from .paths import check_suffix, check_writable
+from .reconstruction import PROPERTIES, check_spacing, did_you_mean, run_chain
+from .report import picture_subtitle, print_report
+
+HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "help.txt")
+
+
+class Failure(ElevationSurfaceError):
+    """Something the user must know in one line; nothing is written."""
+
+
+class WrongOption(Failure):
+    """A Failure of the command line: the exit code is 2."""
+
+
+COLOURS = ("elevation", "error")
+
+
+def elevation_factor(text):
+    return PROPERTIES["gap_tolerance"].convert(text)
+
+
+def three_columns(text):
+    names = [name.strip() for name in text.split(",")]
+    if len(names) != 3 or not all(names):
+        raise ValueError
+    return names
+
+
+def view_angles(text):
+    if text == "top":
+        return (180.0, 90.0)
+    bearing, height = (float(word) for word in text.split(","))
+    if not 0 < height <= 90 or not math.isfinite(bearing):
+        raise ValueError
+    return (bearing % 360.0, height)
+
+
+# What each option with a value takes, for errors. help.txt explains all options.
+TAKES = {
+    "--columns": "three columns by name or number from 1, as x,y,z or 1,2,3",
+    "--no-data": "an elevation",
+    "--faults": "a file",
+    "--boundary": "a file",
+    "--output": "a file",
+    "--picture": "a file, or nothing",
+    "--view": "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35",
+    "--exaggeration": PROPERTIES["gap_tolerance"].takes,
+    "--colours": "one of " + ", ".join(COLOURS),
+    "--report": "a file",
+}
+
+
+def option_of(name):
+    """maximum_edge_length -> --maximum-edge-length"""
+    return "--" + name.replace("_", "-")
+
+
+def is_switch(name):
+    """Whether a property is on or off: --no-NAME turns it off."""
+    return PROPERTIES[name].takes == "True or False"
+
+
+TAKES["--breaklines"] = TAKES["--faults"]
+TAKES.update({option_of(name): PROPERTIES[name].takes for name in PROPERTIES if not is_switch(name)})
+
+
+class Parser(argparse.ArgumentParser):
+    """Errors are one line that names the option and what it takes."""
+
+    def error(self, message):
+        found = re.match(r"argument ([^:]+): (.*)", message)
+        if found:
+            option = found.group(1).split("/")[-1]
+            given = re.search(r"(?:value|choice): ('.*?')(?: \(choose.*)?$", found.group(2))
+            message = f"{option}: {found.group(2)}"
+            if option in TAKES:
+                given = f", not {given.group(1)}" if given else ""
+                message = f"{option} takes {TAKES[option]}{given}"
+        elif "required: FILE" in message:
+            message = "no file is given"
+        elif message.startswith("unrecognized arguments: "):
+            words = message.split(": ", 1)[1]
+            message = f"unknown option or a second file: {words}"
+        self.exit(2, f"reconstruct: error: {message}; see --help\n")
+
+
+class ShowHelp(argparse.Action):
+    def __call__(self, parser, *_):
+        with open(HELP, encoding="utf-8") as stream:
+            sys.stdout.write(stream.read())
+        parser.exit()
+
+
+def make_parser():
+    parser = Parser(prog="reconstruct", allow_abbrev=False, add_help=False)
+    add = parser.add_argument
+    add("-h", "--help", action=ShowHelp, nargs=0)
+    add("file", metavar="FILE")
+    add("--columns", type=three_columns)
+    add("--no-data", type=float)
+    add("--faults", "--breaklines", dest="faults")
+    add("--boundary")
+    for name, one in PROPERTIES.items():
+        if is_switch(name):
+            add("--no-" + name.replace("_", "-"), dest=name, action="store_false", default=None)
+        else:
+            add(option_of(name), type=one.convert)
+    add("--no-trim", dest="trim", action="store_false")
+    add("--no-fill", dest="fill", action="store_false")
+    add("-o", "--output")
+    add("--picture", nargs="?", const="")
+    add("--no-picture", action="store_true")
+    add("--view", type=view_angles)
+    add("--exaggeration", type=elevation_factor, default=0.0)
+    add("--colours", choices=COLOURS)
+    add("--report")
+    add("--strict", action="store_true")
+    add("--quiet", action="store_true")
+    return parser
+
+
+def parse_arguments(arguments):
+    parser = make_parser()
+    options = parser.parse_args(arguments)
+    options.given = {
+        name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
+    }
+    of_trim, of_fill = (
+        [name for name in options.given if PROPERTIES[name].step == step] for step in ("trim", "fill")
+    )
+    if not options.trim and (options.boundary or of_trim):
+        parser.error("--no-trim leaves nothing for the trimming options to do")
+    if not options.fill and of_fill:
+        parser.error("--no-fill leaves nothing for the filling options to do")
+    if not options.fill and options.colours == "error":
+        parser.error("--no-fill leaves no errors to draw: --colours error is for filled holes")
+    if options.no_picture and (
+        options.picture is not None or options.view or options.exaggeration or options.colours
+    ):
+        parser.error("--no-picture leaves nothing for the picture options to do")
+    stem = os.path.splitext(os.path.basename(options.file))[0]
+    if options.output is None:
+        options.output = f"{stem}_surface.vtp"
+    options.picture_wanted = options.picture is not None
+    if options.no_picture:
+        options.picture = None
+    elif not options.picture:
+        options.picture = os.path.splitext(options.output)[0] + ".png"
+    return options
+
+
+class Progress:
+    """One line on a terminal that fills from left to right; silent anywhere else."""
+
+    def __init__(self, on):
+        self.on = on
+        self.shown = None
+
+    def __call__(self, text, fraction):
+        state = (text, int(100 * fraction))
+        if self.on and state != self.shown:
+            self.shown = state
+            bar = "#" * int(30 * fraction)
+            sys.stderr.write(f"\r{text:<16}[{bar:<30}] {state[1]:3d} %")
+            sys.stderr.flush()
+
+    def clear(self):
+        if self.on and self.shown:
+            sys.stderr.write("\r" + " " * 60 + "\r")
+            sys.stderr.flush()
+            self.shown = None
+
+
+class Results:
+    """Files that appear together at the end, or not at all.
+
+    Each is written beside its final place and renamed when all are whole.
+    """
+
+    def __init__(self):
+        self.pending = []
+
+    def add(self, path, write):
+        folder, name = os.path.split(path)
+        stem, suffix = os.path.splitext(name)
+        partial = os.path.join(folder, f".{stem}.{os.getpid()}.partial{suffix}")
+        self.pending.append((partial, path))
+        try:
+            return write(partial)
+        except PictureError:
+            self.pending.pop()
+            raise
+        except (OSError, FileError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            reason = reason.replace(partial, path)
+            raise Failure(f"{path}: cannot be written: {reason}") from None
+
+    def publish(self):
+        for partial, path in self.pending:
+            try:
+                os.replace(partial, path)
+            except OSError as error:
+                raise Failure(f"{path}: cannot be written: {error.strerror}") from None
+        self.pending = []
+
+    def discard(self):
+        for partial, _ in self.pending:
+            try:
+                os.remove(partial)
+            except OSError:
+                pass
+        self.pending = []
+
+
+def write_report(path, report):
+    with open(path, "w", encoding="utf-8") as stream:
+        json.dump(report, stream, indent=1)
+        stream.write("\n")
+
+
+def check_options(options):
+    """Refuses what could not be read or written, before any work is done."""
+    try:
+        check_suffix(options.output, writing.WRITE_SUFFIXES, "written")
+        if options.picture is not None:
+            check_suffix(options.picture, (".png",), "written as a picture")
+        if options.columns:
+            reading.check_columns_wanted(options.file)
+    except FileError as error:
+        raise WrongOption(str(error)) from None
+    wanted = [p for p in (options.output, options.picture, options.report) if p]
+    inputs = [p for p in (options.file, options.faults, options.boundary) if p]
+    for i, path in enumerate(wanted):
+        check_writable(path)
+        for other in inputs + wanted[:i]:
+            if os.path.abspath(path) == os.path.abspath(other):
+                raise WrongOption(f"{path}: would overwrite {other}")
+
+
+class Run:
+    """One reconstruction of the command line, with its progress and its times."""
+
+    def __init__(self, options, results):
+        self.options = options
+        self.results = results
+        self.progress = Progress(sys.stderr.isatty() and not options.quiet)
+        self.times = {}
+
+    def timed(self, name, text, work):
+        self.progress(text, 0.0)
+        began = time.perf_counter()
+        result = work()
+        self.times[name] = time.perf_counter() - began
+        return result
+
+    def read(self):
+        options = self.options
+        cloud = self.timed(
+            "read",
+            "reading",
+            lambda: reading.read(
+                options.file, columns=options.columns, no_data=options.no_data
+            ),
+        )
+        try:
+            check_spacing(cloud.points, options.given.get("spacing", 0.0))
+        except ValueError as error:
+            raise WrongOption(f"{options.file}: --{error}") from None
+        faults = reading.read_faults(options.faults) if options.faults else None
+        boundary = reading.read_boundary(options.boundary) if options.boundary else None
+        return cloud, boundary, faults
+
+    def reconstruct(self, cloud, boundary, faults):
+        options = self.options
+        try:
+            result = run_chain(
+                cloud,
+                boundary,
+                faults,
+                options.given,
+                trim=options.trim,
+                fill=options.fill,
+                progress=self.progress,
+                strict=options.strict,
+            )
+        except ElevationSurfaceError as error:
+            path = {"boundary": options.boundary, "faults": options.faults}.get(error.about)
+            words = str(error)
+            for name in PROPERTIES:
+                words = words.replace(name, option_of(name))
+            raise Failure(f"{path or options.file}: {words}") from None
+        result.boundary_name, result.faults_name = options.boundary, options.faults
+        self.times.update(result.times)
+        result.times = self.times
+        return result
+
+    def draw(self, result):
+        from . import picture
+
+        options = self.options
+        result.report["picture"] = self.timed(
+            "draw",
+            "drawing",
+            lambda: self.results.add(
+                options.picture,
+                lambda path: picture.draw(
+                    result.surface,
+                    path,
+                    os.path.basename(options.file),
+                    picture_subtitle(result),
+                    result.holes,
+                    view=options.view,
+                    exaggeration=options.exaggeration,
+                    show_errors=options.colours == "error",
+                ),
+            ),
+        )
+
+    def __call__(self):
+        """Everything between the options and the report, which it returns."""
+        options = self.options
+        if options.picture_wanted:
+            # Before any work is done.
+            from .picture import screen_for
+
+            with screen_for(options.picture):
+                pass
+        result = self.reconstruct(*self.read())
+        self.progress("measuring", 0.0)
+        report = {"file": options.file, **result.report}
+        result.report = report
+        report["notes"] += self.timed(
+            "write",
+            "writing",
+            lambda: self.results.add(
+                options.output, lambda path: writing.write_surface(result.surface, path)
+            ),
+        )
+        written = [options.output]
+        if options.picture is not None:
+            try:
+                self.draw(result)
+                written.append(options.picture)
+            except PictureError as error:
+                if options.picture_wanted:
+                    raise
+                report["notes"].append(f"no picture: {error.reason}")
+        report["times"] = self.times
+        report["written"] = written + ([options.report] if options.report else [])
+        if options.report:
+            self.results.add(options.report, lambda path: write_report(path, report))
+        self.results.publish()
+        return report
+
+
+def main(arguments=None):
+    options = parse_arguments(arguments)
+    name = "reconstruct"
+    # Numbers near the end of their range make infinities; what these mean is told where it matters.
+    numpy.seterr(all="ignore")
+    for number in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, number):
+            signal.signal(getattr(signal, number), signal.default_int_handler)
+    results = Results()
+    run = Run(options, results)
+    try:
+        check_options(options)
+        report = run()
+        run.progress.clear()
+        if not options.quiet:
+            print_report(report)
+        sys.stdout.flush()
+        return 0
+    except ElevationSurfaceError as error:
+        run.progress.clear()
+        print(f"{name}: error: {error}", file=sys.stderr)
+        return 2 if isinstance(error, WrongOption) else 1
+    except MemoryError:
+        run.progress.clear()
+        print(f"{name}: error: {options.file}: there is not enough memory", file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        # Nobody reads the report any more. What was asked for is done; Python must not try again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        run.progress.clear()
+        print(f"{name}: stopped; nothing is written", file=sys.stderr)
+        return 130
+    finally:
+        results.discard()

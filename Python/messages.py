@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Errors of the package, and what VTK reports, as plain words."""
+
+import re
+
+from vtkmodules.vtkCommonCore import VTK_STRING, vtkLogger, vtkOutputWindow
+
+
+class ElevationSurfaceError(RuntimeError):
+    """Why there is no surface, in one line.
+
+    about tells what it is about: "points", "boundary" or "faults".
+    """
+
+    def __init__(self, message, about="points"):
+        super().__init__(message)
+        self.about = about
+
+
+class ElevationSurfaceWarning(UserWarning):
+    """A surface that may not be what was meant, in one line."""
+
+
+class FileError(ElevationSurfaceError):
+    """A file that cannot be used. The text is one line and begins with the file's name."""
+
+
+class PictureError(ElevationSurfaceError):
+    """Why a picture cannot be drawn."""
+
+    def __init__(self, path, reason):
+        super().__init__(f"{path}: cannot be drawn: {reason}")
+        self.reason = reason
+
+
+class Messages:
+    """Collects what VTK reports instead of letting it print.
+
+    Use as a context manager. `errors` and `warnings` are lists of plain lines, without the
+    source file, the object's address and the follow-up complaints of VTK's executives.
+    """
+
+    def __init__(self):
+        self.errors = []
+        self.warnings = []
+
+    def __enter__(self):
+        window = vtkOutputWindow.GetInstance()
+        self._mode = window.GetDisplayMode()
+        self._verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+        window.SetDisplayModeToNever()
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+
+        def note(_caller, event, text):
+            self.take(event, text)
+
+        note.CallDataType = VTK_STRING
+        self._tags = [window.AddObserver(event, note) for event in ("ErrorEvent", "WarningEvent")]
+        return self
+
+    def __exit__(self, *_):
+        window = vtkOutputWindow.GetInstance()
+        for tag in self._tags:
+            window.RemoveObserver(tag)
+        window.SetDisplayMode(self._mode)
+        vtkLogger.SetStderrVerbosity(self._verbosity)
+
+    def take(self, event, text):
+        line = plain_message(text)
+        if not line or "returned failure for request" in line:
+            return
+        lines = self.errors if event == "ErrorEvent" else self.warnings
+        if line not in lines:
+            lines.append(line)
+
+
+def plain_message(text):
+    """The words of a VTK message: "ERROR: In f.cxx, line 3\\nvtkX (0x1): words" -> "words"."""
+    found = re.search(r"\(0x[0-9a-fA-F]+\):\s*(.*)", text or "", re.DOTALL)
+    words = found.group(1) if found else (text or "")
+    return " ".join(words.split())

@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which files can be read and written, told before any work is done."""
+
+import os
+
+from .messages import FileError
+
+
+def suffix_of(path):
+    return os.path.splitext(path)[1].lower()
+
+
+def check_readable(path):
+    """Refuses what cannot be opened, before any reader sees it."""
+    if not os.path.exists(path):
+        raise FileError(f"{path}: no such file")
+    if os.path.isdir(path):
+        raise FileError(f"{path}: is a folder, not a file")
+    if not os.path.isfile(path):
+        raise FileError(f"{path}: is not a file")
+    try:
+        with open(path, "rb") as stream:
+            first = stream.read(1)
+    except OSError as error:
+        raise FileError(f"{path}: cannot be read: {error.strerror}") from None
+    if not first:
+        raise FileError(f"{path}: is empty")
+
+
+def check_suffix(path, suffixes, verb):
+    if suffix_of(path) not in suffixes:
+        ending = suffix_of(path) or "no suffix"
+        raise FileError(f"{path}: {ending} cannot be {verb}; use one of {' '.join(suffixes)}")
+
+
+def check_writable(path):
+    """Refuses early what could not be written at the end."""
+    folder = os.path.dirname(os.path.abspath(path))
+    if os.path.isdir(path):
+        raise FileError(f"{path}: is a folder, so it cannot be written as a file")
+    if not os.path.isdir(folder):
+        raise FileError(f"{path}: cannot be written: there is no folder {folder}")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise FileError(f"{path}: cannot be written: no permission in folder {folder}")
