@@ -103,13 +103,14 @@ void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
 }
 
 /** The triangles of the input that no patch replaces, in order. */
-std::vector<Index> ListKept(const Mesh& mesh, const Holes& holes, const FillResult& patches)
+std::vector<Index> ListKept(const Mesh& mesh, const FillResult& patches)
 {
+  const std::vector<Index>& regionOf = patches.Found.RegionOf;
   std::vector<Index> kept;
   kept.reserve(mesh.NumberOfTriangles());
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const Index region = holes.RegionOf.empty() ? elevation::None : holes.RegionOf[t];
+    const Index region = regionOf.empty() ? elevation::None : regionOf[t];
     if (region == elevation::None || patches.Reports[region].Status != FillStatus::Replaced)
     {
       kept.push_back(t);
@@ -151,8 +152,8 @@ void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& k
 }
 
 /** Output 0. */
-void MakeSurface(vtkPolyData* input, const Mesh& mesh, const Holes& holes,
-  const FillResult& patches, bool interpolate, const Progress& progress, vtkPolyData* output)
+void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches,
+  bool interpolate, const Progress& progress, vtkPolyData* output)
 {
   Report(progress, 0.0);
   PassPoints(input, patches, interpolate, Part(progress, 0.0, 0.6), output);
@@ -174,7 +175,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const Holes& holes,
   output->GetPointData()->AddArray(errors);
 
   Report(progress, 0.6);
-  const std::vector<Index> kept = ListKept(mesh, holes, patches);
+  const std::vector<Index> kept = ListKept(mesh, patches);
   PassCells(input, mesh, kept, patches, Part(progress, 0.6, 0.9), output);
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
@@ -195,14 +196,14 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const Holes& holes,
 }
 
 /** Output 1: rims with points of their own, and the report as cell data. */
-void MakeReport(vtkPolyData* input, const Holes& holes, const FillResult& patches,
-  const Progress& progress, vtkPolyData* output)
+void MakeReport(
+  vtkPolyData* input, const FillResult& patches, const Progress& progress, vtkPolyData* output)
 {
   const auto add = [&](const char* name, auto* array, auto&& valueOf) {
     array->SetName(name);
-    for (Index hole = 0; hole < holes.Count(); ++hole)
+    for (const HoleReport& report : patches.Reports)
     {
-      array->InsertNextValue(valueOf(patches.Reports[hole]));
+      array->InsertNextValue(valueOf(report));
     }
     output->GetCellData()->AddArray(array);
   };
@@ -220,6 +221,7 @@ void MakeReport(vtkPolyData* input, const Holes& holes, const FillResult& patche
   add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(),
     [](const HoleReport& report) { return static_cast<unsigned char>(report.Method); });
 
+  const Holes& holes = patches.Found;
   elevation::Rings rims;
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
@@ -235,8 +237,9 @@ void MakeReport(vtkPolyData* input, const Holes& holes, const FillResult& patche
 }
 
 /** A warning about holes that failed, and about contacts; empty if there are none. */
-std::string Complaint(const Mesh& mesh, const Holes& holes, const FillResult& patches)
+std::string Complaint(const Mesh& mesh, const FillResult& patches)
 {
+  const Holes& holes = patches.Found;
   if (mesh.NumberOfTriangles() == 0)
   {
     return "The input has no triangles, so there is nothing to fill.";
@@ -328,11 +331,11 @@ int vtkFillElevationHoles::RequestData(
     Mesh mesh;
     elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1));
     mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
-    Holes holes = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
+    Holes found = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
     Mesh opened;
     const bool isOpened = this->MaximumEdgeLength > 0.0 &&
       elevation::OpenLongTriangles(
-        mesh, this->MaximumEdgeLength, holes, opened, Part(progress, 0.3, 0.35));
+        mesh, this->MaximumEdgeLength, found, opened, Part(progress, 0.3, 0.35));
 
     FillOptions options = OptionsOf(this);
     if (this->InterpolatePointData)
@@ -342,28 +345,29 @@ int vtkFillElevationHoles::RequestData(
     options.SinglePrecision = HasFloatPoints(input);
     options.Monitor = Part(progress, 0.35, 0.8);
     const FillResult patches =
-      elevation::FillHoles(isOpened ? opened : mesh, points.View, holes, options);
+      elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
 
     MakeSurface(
-      input, mesh, holes, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);
-    MakeReport(input, holes, patches, Part(progress, 0.95, 1.0), report);
+      input, mesh, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);
+    MakeReport(input, patches, Part(progress, 0.95, 1.0), report);
+    const vtkIdType holes = patches.Found.Count();
     const vtkIdType filled = std::count_if(patches.Reports.begin(), patches.Reports.end(),
       [](const HoleReport& hole) {
         return hole.Status == FillStatus::Filled || hole.Status == FillStatus::Replaced;
       });
     for (vtkPolyData* output : { surface, report })
     {
-      elevation::AddCount(output->GetFieldData(), "NumberOfHoles", holes.Count());
+      elevation::AddCount(output->GetFieldData(), "NumberOfHoles", holes);
       elevation::AddCount(output->GetFieldData(), "NumberOfFilledHoles", filled);
     }
-    const std::string complaint = Complaint(mesh, holes, patches);
+    const std::string complaint = Complaint(mesh, patches);
     if (!complaint.empty())
     {
       vtkWarningMacro(<< complaint);
     }
     Report(progress, 1.0);
     // Set last, as an abort or an error leaves no counts.
-    this->NumberOfHoles = holes.Count();
+    this->NumberOfHoles = holes;
     this->NumberOfFilledHoles = filled;
   });
 }

@@ -191,6 +191,9 @@ public:
    *   input, however far apart lines are.
    * - MaximumHoleSize, MaximumHoleEdges and MaximumNumberOfInsertedPoints apply as to holes. A
    *   region that is not filled keeps its triangles.
+   * - A region that has no room for a new point, as slivers along the outer border, is no hole: it
+   *   keeps its triangles, and is not listed or counted. (Limits are checked first, so a region beyond them
+   *   is listed anyway.)
    *
    * Cost: one more pass over the triangles.
    */

@@ -184,6 +184,73 @@ void CheckLimits()
   Check(fill->GetNumberOfHoles() == 2 && fill->GetNumberOfFilledHoles() >= 1, "all is one region");
 }
 
+vtkIdType CountIn(vtkDataObject* data, const char* name)
+{
+  auto* const count = vtkIdTypeArray::SafeDownCast(data->GetFieldData()->GetArray(name));
+  return count ? count->GetValue(0) : -1;
+}
+
+/** A flat triangle beside the sheet, the first of all, has no room for a point. */
+void CheckWithoutRoom()
+{
+  const auto input = MakeInput();
+  const vtkIdType first = input->GetNumberOfPoints();
+  for (const double x : { 0.0, 4.0, 2.0 })
+  {
+    input->GetPoints()->InsertNextPoint(x, x == 2.0 ? -4.8 : -5.0, 7.0);
+  }
+  const vtkIdType corners[3] = { first, first + 1, first + 2 };
+  vtkNew<vtkCellArray> flat;
+  flat->InsertNextCell(3, corners);
+  vtkNew<vtkCellArray> polygons;
+  polygons->DeepCopy(flat);
+  polygons->Append(input->GetPolys());
+  input->SetPolys(polygons);
+  vtkIntArray::SafeDownCast(input->GetCellData()->GetScalars())->InsertNextValue(-5);
+  vtkIdTypeArray::SafeDownCast(input->GetCellData()->GetGlobalIds())->InsertNextValue(-5);
+
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputData(input);
+  fill->SetMaximumEdgeLength(2.0);
+  fill->Update();
+  Check(fill->GetNumberOfHoles() == 2 && fill->GetNumberOfFilledHoles() == 2 &&
+      CountIn(fill->GetOutput(), "NumberOfHoles") == 2 &&
+      CountIn(fill->GetOutput(1), "NumberOfHoles") == 2 &&
+      CountIn(fill->GetOutput(1), "NumberOfFilledHoles") == 2,
+    "a region without room is not counted");
+  vtkCellData* const report = fill->GetOutput(1)->GetCellData();
+  auto* const status = vtkUnsignedCharArray::SafeDownCast(report->GetArray("Status"));
+  Check(fill->GetOutput(1)->GetNumberOfLines() == 2 && status->GetNumberOfTuples() == 2 &&
+      status->GetValue(0) == vtkFillElevationHoles::FILLED &&
+      status->GetValue(1) == vtkFillElevationHoles::REPLACED &&
+      report->GetArray("NumberOfInsertedPoints")->GetComponent(1, 0) > 20,
+    "nor listed: the other region follows the holes");
+  vtkNew<vtkIdList> ids;
+  fill->GetOutput()->GetPolys()->GetCellAtId(0, ids);
+  auto* const holeId = fill->GetOutput()->GetCellData()->GetArray("HoleId");
+  Check(ids->GetId(0) == first && ids->GetId(2) == first + 2 && holeId->GetComponent(1, 0) == -1,
+    "it keeps its triangle");
+  double range[2];
+  holeId->GetRange(range);
+  Check(range[0] == -1.0 && range[1] == 1.0, "ids of holes are those of the report");
+  Check(NumberOfFindings(fill->GetOutput(), RulesOfSurface()) == 0, "the surface is whole");
+
+  // Alone, it leaves everything as it is.
+  input->SetPolys(flat);
+  input->GetCellData()->GetScalars()->SetNumberOfTuples(2);
+  input->GetCellData()->GetGlobalIds()->SetNumberOfTuples(2);
+  input->Modified();
+  fill->Update();
+  Check(fill->GetNumberOfHoles() == 0 && fill->GetNumberOfFilledHoles() == 0 &&
+      CountIn(fill->GetOutput(1), "NumberOfHoles") == 0 &&
+      fill->GetOutput(1)->GetNumberOfCells() == 0,
+    "there is no hole");
+  Check(fill->GetOutput()->GetNumberOfPolys() == 1 &&
+      fill->GetOutput()->GetNumberOfPoints() == input->GetNumberOfPoints() &&
+      fill->GetOutput()->GetCellData()->GetGlobalIds() != nullptr,
+    "all cells stay, with their ids");
+}
+
 void CheckErrors()
 {
   vtkNew<vtkFillElevationHoles> fill;
@@ -208,6 +275,7 @@ int TestFillElevationHolesRegions(int, char*[])
 {
   CheckReplaced();
   CheckLimits();
+  CheckWithoutRoom();
   CheckErrors();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -31,7 +31,7 @@ struct Outcome
 {
   Mesh Surface;
   std::vector<double> Coordinates;
-  Holes Found;
+  Holes Found; ///< without regions that have no room
   Mesh Rest; ///< the surface without long triangles
   FillResult Patches;
 
@@ -102,7 +102,8 @@ inline Outcome Fill(
   {
     run.Rest = run.Surface;
   }
-  run.Patches = FillHoles(run.Rest, run.Points(), run.Found, options);
+  run.Patches = FillHoles(run.Rest, run.Points(), std::move(run.Found), options);
+  run.Found = run.Patches.Found;
   return run;
 }
 
@@ -147,6 +148,7 @@ inline void ExpectPatchesFit(const Outcome& run, double relativeAreaError = 0.0)
       run.Patches.PointOffsets[hole + 1] - run.Patches.PointOffsets[hole]);
     twiceHoles += 2.0 * report.Area;
     EXPECT_EQ(report.Status == FillStatus::Replaced, run.Found.IsRegion(hole));
+    EXPECT_TRUE(report.NumberOfInsertedPoints > 0 || !run.Found.IsRegion(hole));
     if (run.Found.IsRegion(hole))
     {
       twiceReplaced += 2.0 * report.Area;

@@ -207,14 +207,15 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
 class HoleFilling
 {
 public:
-  HoleFilling(const Mesh& mesh, const PointView& points, const Holes& holes,
-    const FillOptions& options)
+  HoleFilling(
+    const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options)
     : Surface(mesh)
     , Points(points)
-    , Given(holes)
+    , Given(std::move(holes))
     , Options(options)
     , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
-    , Plans(holes.Count())
+    , Plans(Given.Count())
+    , HasRoom(Given.Count(), 1)
   {
   }
 
@@ -242,6 +243,7 @@ public:
       this->FillBatch(begin, end, ofBatch);
       begin = end;
     }
+    this->KeepThoseWithRoom();
     Report(monitor, 1.0);
     return std::move(this->Result);
   }
@@ -404,6 +406,10 @@ private:
     for (Index hole = begin; hole < end; ++hole)
     {
       HoleReport& report = this->Result.Reports[hole];
+      if (!this->HasRoom[hole])
+      {
+        continue;
+      }
       if (report.Status == FillStatus::Filled)
       {
         Append(filled[hole - begin], this->Surface.NumberOfPoints(), this->Result);
@@ -425,6 +431,11 @@ private:
       filled.Triangles = CollectBoundary(this->Surface, this->Given, hole);
       Patch& patch = filled.Triangles;
       MakePatch(this->Plans[hole], Part(progress, 0.0, 0.4), patch);
+      if (this->Given.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
+      {
+        this->HasRoom[hole] = 0;
+        return;
+      }
       FindNeighbors(patch, Part(progress, 0.4, 0.45));
       FindNearest(patch, Part(progress, 0.45, 0.5));
       Elevate(this->Surface, this->Stars.get(), this->Points, this->Options,
@@ -436,23 +447,44 @@ private:
     }
   }
 
+  /** Of the holes given and their reports. The result has nothing else of regions without room. */
+  void KeepThoseWithRoom()
+  {
+    std::vector<HoleReport>& reports = this->Result.Reports;
+    std::size_t count = 0;
+    for (std::size_t hole = 0; hole < reports.size(); ++hole)
+    {
+      if (this->HasRoom[hole])
+      {
+        std::swap(reports[count++], reports[hole]);
+      }
+    }
+    if (count < reports.size())
+    {
+      reports.resize(count);
+      KeepRegions(this->HasRoom, this->Given);
+    }
+    this->Result.Found = std::move(this->Given);
+  }
+
   const Mesh& Surface;
   const PointView& Points;
-  const Holes& Given;
+  Holes Given;
   const FillOptions& Options;
   const int Threads;
   double Least = 0.0; ///< the fixed work for a patch
   double AllWork = 0.0;
   std::vector<PatchPlan> Plans;
+  std::vector<char> HasRoom; ///< one a hole: 0 for regions whose patch would have no new point
   std::unique_ptr<VertexStars> Stars;
   FillResult Result;
 };
 } // namespace
 
 FillResult FillHoles(
-  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options)
+  const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options)
 {
-  return HoleFilling(mesh, points, holes, options).Run();
+  return HoleFilling(mesh, points, std::move(holes), options).Run();
 }
 
 } // namespace elevation

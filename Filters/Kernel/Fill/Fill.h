@@ -11,7 +11,8 @@
  *   3. Find elevations, and other attributes in the same way (Heights.h).
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
  * filled, the caller keeps them. They are no evidence: elevations are found from the other ones,
- * and the points inside the region.
+ * and the points inside the region. A region whose patch would have no new point has no room: it
+ * stays as it is and is no hole.
  *
  * Guarantees: a patch is constrained Delaunay, lies inside its hole and covers it exactly; its
  * boundary edges are those of the hole, none is split. The rest of the surface stays as it is.
@@ -92,6 +93,7 @@ struct HoleReport
  */
 struct FillResult
 {
+  Holes Found; ///< the given ones, without regions that have no room; one report each
   std::vector<double> Points;   ///< x, y, z
   std::vector<Index> Triangles; ///< three point ids per triangle, counter-clockwise
   /** The new points of hole i are PointOffsets[i] to PointOffsets[i+1] - 1; likewise triangles. */
@@ -113,11 +115,11 @@ struct FillResult
  * @param[in] mesh    the surface, as given to FindHoles(); with regions, as OpenLongTriangles()
  *                    returns it
  * @param[in] points  the same points with their elevations
- * @param[in] holes   from FindHoles(), OpenLongTriangles()
+ * @param[in] holes   from FindHoles(), OpenLongTriangles(); FillResult::Found replaces them
  * @throws Aborted, std::bad_alloc: which holes fail does not depend on the free memory
  */
 FillResult FillHoles(
-  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options);
+  const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options);
 
 } // namespace elevation
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace elevation
 {
@@ -256,6 +257,46 @@ bool OpenLongTriangles(
   KeepTriangles(finder.Others(), rest);
   Report(progress, 1.0);
   return true;
+}
+
+namespace
+{
+/** Of groups, entries offsets[i] to offsets[i+1] - 1 of some values each, keeps those flagged. */
+void KeepGroups(const std::vector<char>& keep, std::ptrdiff_t valuesPerEntry,
+  std::vector<Index>& offsets, std::vector<Index>& values)
+{
+  std::vector<Index> keptOffsets{ 0 };
+  std::vector<Index> kept;
+  for (std::size_t i = 0; i < keep.size(); ++i)
+  {
+    if (keep[i])
+    {
+      kept.insert(kept.end(), values.begin() + valuesPerEntry * offsets[i],
+        values.begin() + valuesPerEntry * offsets[i + 1]);
+      keptOffsets.push_back(keptOffsets.back() + offsets[i + 1] - offsets[i]);
+    }
+  }
+  offsets = std::move(keptOffsets);
+  values = std::move(kept);
+}
+} // namespace
+
+void KeepRegions(const std::vector<char>& keep, Holes& holes)
+{
+  std::vector<Index> numbers;
+  Index count = 0;
+  for (const char isKept : keep)
+  {
+    numbers.push_back(isKept ? count++ : None);
+  }
+  for (Index& region : holes.RegionOf)
+  {
+    region = region == None ? None : numbers[region];
+  }
+  const std::ptrdiff_t first = holes.Count() - holes.NumberOfRegions();
+  KeepGroups({ keep.begin() + first, keep.end() }, 2, holes.InnerOffsets, holes.InnerEnds);
+  KeepGroups(keep, 1, holes.Offsets, holes.Loops);
+  holes.Touched.resize(count); // those of regions are 0
 }
 
 } // namespace elevation

@@ -45,6 +45,13 @@ namespace elevation
 bool OpenLongTriangles(const Mesh& mesh, double longest, Holes& holes, Mesh& rest,
   const Progress& progress = Progress());
 
+/**
+ * Takes regions back: they are holes no more, and none of their triangles is in a region. The numbers
+ * of later regions become lower; Walks stay. Linear.
+ * @param keep  one flag a hole; 0 only for regions
+ */
+void KeepRegions(const std::vector<char>& keep, Holes& holes);
+
 } // namespace elevation
 
 #endif
