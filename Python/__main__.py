@@ -4,6 +4,13 @@
 
 import sys
 
-from .command import main
+from .supervisor import supervised
 
-sys.exit(main())
+
+def program():
+    from .command import main
+
+    return main()
+
+
+sys.exit(supervised(program))

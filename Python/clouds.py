@@ -8,6 +8,7 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 
 class Cloud:
@@ -59,3 +60,49 @@ def some_points(data, keep):
     result.GetPointData().CopyAllocate(data.GetPointData(), len(keep))
     result.GetPointData().CopyData(data.GetPointData(), ids, new_ids)
     return result
+
+
+def merged(names, clouds):
+    """The points of several clouds as one Cloud. Point arrays that not all of them have are left out.
+
+    Lines of text files are told only where there is one file.
+    """
+    if len(clouds) == 1:
+        return clouds[0]
+    append = vtkAppendPolyData()
+    for cloud in clouds:
+        data = make_points(vtk_to_numpy(cloud.points.GetPoints().GetData()))
+        data.GetPointData().ShallowCopy(cloud.points.GetPointData())
+        append.AddInputData(data)
+    append.SetOutputPointsPrecision(append.DOUBLE_PRECISION)
+    append.Update()
+    result = Cloud(append.GetOutput())
+    systems = {cloud.crs for cloud in clouds if cloud.crs}
+    result.crs = systems.pop() if len(systems) == 1 else None
+    if systems:
+        result.notes.append("the files have different coordinate reference systems; see --crs")
+    kept = result.points.GetPointData().GetNumberOfArrays()
+    if any(cloud.points.GetPointData().GetNumberOfArrays() > kept for cloud in clouds):
+        result.notes.append("point arrays that not all files have are left out")
+    for name, cloud in zip(names, clouds):
+        count = cloud.points.GetNumberOfPoints()
+        result.notes.append(f"{name}: {count:,} points")
+        result.notes += [f"{name}: {note}" for note in cloud.notes]
+        for reason, number in cloud.left_out.items():
+            result.left_out[reason] = result.left_out.get(reason, 0) + number
+    return result
+
+
+def antimeridian_note(points):
+    """A line for the user when longitudes lie on both sides of 180 degrees, else None."""
+    xyz = vtk_to_numpy(points.GetPoints().GetData())
+    x, y = (axis[numpy.isfinite(axis)] for axis in (xyz[:, 0], xyz[:, 1]))
+    if not len(x) or not len(y) or numpy.abs(x).max() > 180 or numpy.abs(y).max() > 90:
+        return None
+    west, east = x[x < 0], x[x >= 0]
+    if not len(west) or not len(east) or east.min() - west.max() < 180:
+        return None
+    return (
+        "x looks like degrees on both sides of the antimeridian, so the surface runs around the "
+        "earth: add 360 to negative longitudes"
+    )

@@ -3,21 +3,23 @@
 """The command line: python3 -m vtkelevationsurface FILE, which Utilities/reconstruct runs."""
 
 import argparse
+import copy
 import json
 import math
 import os
 import re
-import signal
 import sys
 import time
 
 import numpy
 
 from . import reading, writing
+from .clouds import antimeridian_note, merged
 from .messages import ElevationSurfaceError, FileError, PictureError
 from .paths import check_suffix, check_writable
 from .reconstruction import PROPERTIES, check_spacing, did_you_mean, run_chain
 from .report import picture_subtitle, print_report
+from .supervisor import note_partial_file
 
 HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "help.txt")
 
@@ -64,7 +66,7 @@ TAKES = {
     "--view": "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35",
     "--exaggeration": PROPERTIES["gap_tolerance"].takes,
     "--colours": "one of " + ", ".join(COLOURS),
-    "--report": "a file",
+    "--report": "a file, or nothing",
 }
 
 
@@ -98,7 +100,8 @@ class Parser(argparse.ArgumentParser):
             message = "no file is given"
         elif message.startswith("unrecognized arguments: "):
             words = message.split(": ", 1)[1]
-            message = f"unknown option or a second file: {words}"
+            known = list(self._option_string_actions)
+            message = f"unknown option {words}{did_you_mean(words.split('=')[0].split()[0], known)}"
         self.exit(2, f"reconstruct: error: {message}; see --help\n")
 
 
@@ -109,11 +112,20 @@ class ShowHelp(argparse.Action):
         parser.exit()
 
 
+def version():
+    from . import __version__
+    from vtkmodules.vtkCommonCore import vtkVersion
+
+    return f"reconstruct {__version__} (VTK {vtkVersion.GetVTKVersion()})"
+
+
 def make_parser():
     parser = Parser(prog="reconstruct", allow_abbrev=False, add_help=False)
     add = parser.add_argument
     add("-h", "--help", action=ShowHelp, nargs=0)
-    add("file", metavar="FILE")
+    add("--version", action="version", version=version())
+    add("files", metavar="FILE", nargs="+")
+    add("--each", action="store_true")
     add("--columns", type=three_columns)
     add("--no-data", type=float)
     add("--faults", "--breaklines", dest="faults")
@@ -131,7 +143,7 @@ def make_parser():
     add("--view", type=view_angles)
     add("--exaggeration", type=elevation_factor, default=0.0)
     add("--colours", choices=COLOURS)
-    add("--report")
+    add("--report", nargs="?", const="")
     add("--strict", action="store_true")
     add("--quiet", action="store_true")
     return parser
@@ -156,14 +168,28 @@ def parse_arguments(arguments):
         options.picture is not None or options.view or options.exaggeration or options.colours
     ):
         parser.error("--no-picture leaves nothing for the picture options to do")
-    stem = os.path.splitext(os.path.basename(options.file))[0]
+    if options.each and (options.output or options.picture or options.report):
+        parser.error("--each names the results of each file itself: leave out the names of results")
+    return options
+
+
+def options_of(options, files):
+    """The options of one run, with the names of all results, for files that are merged."""
+    options = copy.copy(options)
+    options.files = files
+    options.file = " + ".join(files)
+    name = os.path.basename(files[0])
+    name = "points" if name == "-" else name[:-3] if name.lower().endswith(".gz") else name
     if options.output is None:
-        options.output = f"{stem}_surface.vtp"
+        options.output = os.path.splitext(name)[0] + "_surface.vtp"
+    stem = os.path.splitext(options.output)[0]
     options.picture_wanted = options.picture is not None
     if options.no_picture:
         options.picture = None
     elif not options.picture:
-        options.picture = os.path.splitext(options.output)[0] + ".png"
+        options.picture = stem + ".png"
+    if options.report == "":
+        options.report = stem + ".json"
     return options
 
 
@@ -203,6 +229,7 @@ class Results:
         stem, suffix = os.path.splitext(name)
         partial = os.path.join(folder, f".{stem}.{os.getpid()}.partial{suffix}")
         self.pending.append((partial, path))
+        note_partial_file(partial)
         try:
             return write(partial)
         except PictureError:
@@ -243,11 +270,12 @@ def check_options(options):
         if options.picture is not None:
             check_suffix(options.picture, (".png",), "written as a picture")
         if options.columns:
-            reading.check_columns_wanted(options.file)
+            for path in options.files:
+                reading.check_columns_wanted(path)
     except FileError as error:
         raise WrongOption(str(error)) from None
     wanted = [p for p in (options.output, options.picture, options.report) if p]
-    inputs = [p for p in (options.file, options.faults, options.boundary) if p]
+    inputs = [p for p in (*options.files, options.faults, options.boundary) if p]
     for i, path in enumerate(wanted):
         check_writable(path)
         for other in inputs + wanted[:i]:
@@ -276,10 +304,14 @@ class Run:
         cloud = self.timed(
             "read",
             "reading",
-            lambda: reading.read(
-                options.file, columns=options.columns, no_data=options.no_data
-            ),
+            lambda: merged(options.files, [
+                reading.read(path, columns=options.columns, no_data=options.no_data)
+                for path in options.files
+            ]),
         )
+        note = antimeridian_note(cloud.points)
+        if note:
+            cloud.notes.append(note)
         try:
             check_spacing(cloud.points, options.given.get("spacing", 0.0))
         except ValueError as error:
@@ -371,14 +403,8 @@ class Run:
         return report
 
 
-def main(arguments=None):
-    options = parse_arguments(arguments)
-    name = "reconstruct"
-    # Numbers near the end of their range make infinities; what these mean is told where it matters.
-    numpy.seterr(all="ignore")
-    for number in ("SIGTERM", "SIGHUP"):
-        if hasattr(signal, number):
-            signal.signal(getattr(signal, number), signal.default_int_handler)
+def run_one(options):
+    """The exit code of one run. Says why, where it fails."""
     results = Results()
     run = Run(options, results)
     try:
@@ -390,20 +416,25 @@ def main(arguments=None):
         sys.stdout.flush()
         return 0
     except ElevationSurfaceError as error:
-        run.progress.clear()
-        print(f"{name}: error: {error}", file=sys.stderr)
-        return 2 if isinstance(error, WrongOption) else 1
+        reason, code = str(error), 2 if isinstance(error, WrongOption) else 1
     except MemoryError:
-        run.progress.clear()
-        print(f"{name}: error: {options.file}: there is not enough memory", file=sys.stderr)
-        return 1
+        reason, code = f"{options.file}: there is not enough memory", 1
+    finally:
+        results.discard()
+    run.progress.clear()
+    print(f"reconstruct: error: {reason}", file=sys.stderr)
+    return code
+
+
+def main(arguments=None):
+    """The exit code: 0, 1 where a file or its points cannot be used, 2 for a wrong option."""
+    options = parse_arguments(arguments)
+    # Numbers near the end of their range make infinities; what these mean is told where it matters.
+    numpy.seterr(all="ignore")
+    together = [[path] for path in options.files] if options.each else [options.files]
+    try:
+        return max(run_one(options_of(options, files)) for files in together)
     except BrokenPipeError:
         # Nobody reads the report any more. What was asked for is done; Python must not try again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except KeyboardInterrupt:
-        run.progress.clear()
-        print(f"{name}: stopped; nothing is written", file=sys.stderr)
-        return 130
-    finally:
-        results.discard()

@@ -13,8 +13,9 @@ import subprocess
 import sys
 import tempfile
 
+from .supervisor import STOPPING, end_with_parent
+
 WAIT = 30.0  # seconds; a busy machine may take long
-STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP) if os.name == "posix" else ()
 
 
 class VirtualDisplay:
@@ -50,6 +51,11 @@ class VirtualDisplay:
         reading, writing = os.pipe()
         # A signal that stops this program waits until the server is known, so that it can be ended.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)
+
+        def prepare():
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            end_with_parent()
+
         try:
             # A session of its own: Ctrl-C on the terminal is for this program to handle.
             self.server = subprocess.Popen(
@@ -59,7 +65,7 @@ class VirtualDisplay:
                 ],
                 pass_fds=(writing,),
                 start_new_session=True,
-                preexec_fn=lambda: signal.pthread_sigmask(signal.SIG_SETMASK, mask),
+                preexec_fn=prepare,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,

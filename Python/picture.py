@@ -59,6 +59,18 @@ TOP, BOTTOM, LEFT, RIGHT = 150, 120, 70, 230
 NICE = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 
 
+OPEN_WINDOWS = []
+
+
+def open_window():
+    """A window that the end of screen_for() closes."""
+    window = vtkRenderWindow()
+    OPEN_WINDOWS.append(window)
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(8)
+    return window
+
+
 @contextlib.contextmanager
 def screen_for(path):
     """A screen to draw a picture on, while the context lasts. Raises PictureError."""
@@ -66,7 +78,12 @@ def screen_for(path):
         reason = reason or why_no_picture()
         if reason:
             raise PictureError(path, reason + "; Utilities/reconstruct sets everything up")
-        yield
+        try:
+            yield
+        finally:
+            # Before the screen goes: a window without one ends the program.
+            while OPEN_WINDOWS:
+                OPEN_WINDOWS.pop().Finalize()
 
 
 def why_no_picture():
@@ -512,7 +529,7 @@ def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, 
 
 
 def save(window, path):
-    """Renders a window into a PNG file, and closes it."""
+    """Renders a window into a PNG file."""
     window.Render()
     grab = vtkWindowToImageFilter()
     grab.SetInput(window)
@@ -524,7 +541,6 @@ def save(window, path):
     writer.WriteToMemoryOn()
     writer.SetInputData(grab.GetOutput())
     writer.Write()
-    window.Finalize()
     with open(path, "wb") as stream:
         stream.write(vtk_to_numpy(writer.GetResult()).tobytes())
 
@@ -553,9 +569,7 @@ def place_camera(renderer, points, floor, bearing, height):
     camera.SetPosition(*(focal + 4.0 * max(span) * eye))
     camera.SetViewUp(*up)
     camera.SetParallelScale(0.5 * tall * pixel)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
+    window = open_window()
     window.SetSize(WIDTH, tall)
     window.AddRenderer(renderer)
     renderer.ResetCameraClippingRange()

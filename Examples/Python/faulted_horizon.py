@@ -16,7 +16,7 @@ import os
 import sys
 
 from vtkelevationsurface import vtkGridDelaunay2D
-from vtkelevationsurface.picture import save, screen_for
+from vtkelevationsurface.picture import open_window, save, screen_for
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
@@ -28,7 +28,6 @@ from vtkmodules.vtkRenderingCore import (
     vtkActor,
     vtkPolyDataMapper,
     vtkRenderer,
-    vtkRenderWindow,
     vtkTextActor,
 )
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  text
@@ -140,9 +139,7 @@ def main(picture, surface=None):
     )
 
     with screen_for(picture):
-        window = vtkRenderWindow()
-        window.SetOffScreenRendering(1)
-        window.SetMultiSamples(8)
+        window = open_window()
         window.SetSize(1600, 1200)
         panel(window, "points alone", 0.502, 1.0, plain.GetOutput(), faults)
         panel(window, "with the fault's lines", 0.0, 0.498, constrained.GetOutput(), faults)

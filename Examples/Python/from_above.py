@@ -30,7 +30,7 @@ from vtkelevationsurface import (
 from vtkelevationsurface.reconstruction import as_cloud
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderWindow
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
 
 HEAD, FOOT, EDGE, GAP = 76, 70, 24, 24
 MOST_WIDTH, MOST_HEIGHT = 1560, 1040
@@ -156,9 +156,7 @@ def draw(path, chain, title, panels, legend):
     room = (MOST_WIDTH - 2 * EDGE - (count - 1) * GAP) / count
     pixels = min(room / chain.size[0], MOST_HEIGHT / chain.size[1])
     wide, tall = (int(numpy.ceil(pixels * s)) for s in chain.size)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
+    window = look.open_window()
     width = max(2 * EDGE + count * wide + (count - 1) * GAP, 900)
     height = tall + HEAD + FOOT
     window.SetSize(width, height)

@@ -830,7 +830,6 @@ class BadInput(Program):
             ("as x,y,z or 1,2,3, not 'x,y'", (name, "--columns", "x,y")),
             ("--view takes top, or", (name, "--view", "up")),
             ("--view takes top, or", (name, "--view", "10,0")),
-            ("a second file: other.xyz", (name, "other.xyz")),
             ("unknown option", (name, "--fast")),
             ("--no-trim leaves nothing", (name, "--no-trim", "--boundary", name)),
             ("--open-edge-length takes a number of 0 or", (name, "--open-edge-length", "nan")),

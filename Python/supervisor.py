@@ -1,0 +1,133 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the program in a process of its own, so that it can be stopped, and can crash, cleanly.
+
+Libraries in C++ do not hear of Ctrl-C until they are done. So the program works in a child. The
+parent waits for it, asks it to stop, ends it if it does not, and removes what it has left behind:
+unfinished results and the folder of its temporary files. Nothing here is imported that takes time.
+"""
+
+import ctypes
+import os
+import shutil
+import signal
+import sys
+import tempfile
+import time
+
+PATIENCE = 0.5  # seconds from the request to stop to the end by force
+STOPPING = [
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
+STOPPED = "reconstruct: stopped; nothing is written"
+PARTIAL_FILES = "partial-files"
+PR_SET_PDEATHSIG = 1  # <sys/prctl.h>
+
+
+def end_with_parent():
+    """Asks Linux to end this process when its parent does."""
+    if sys.platform.startswith("linux"):
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGTERM))
+
+
+def note_partial_file(path):
+    """Tells the parent of a file that is not finished, for it to remove if this process cannot."""
+    folder = os.environ.get("ELEVATION_SURFACE_RUN")
+    if folder:
+        with open(os.path.join(folder, PARTIAL_FILES), "a", encoding="utf-8") as stream:
+            stream.write(os.path.abspath(path) + "\0")
+
+
+def remove_leftovers(folder):
+    try:
+        with open(os.path.join(folder, PARTIAL_FILES), encoding="utf-8") as stream:
+            for path in stream.read().split("\0"):
+                if os.path.isfile(path):
+                    os.remove(path)
+    except OSError:
+        pass
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def supervised(work):
+    """Calls work() in a child process. Returns the exit code: work's, 130 if stopped, 1 after a
+    crash."""
+    if not hasattr(os, "fork"):
+        try:
+            return work()
+        except KeyboardInterrupt:
+            print(STOPPED, file=sys.stderr)
+            return 130
+    stops = []
+    for number in STOPPING:
+        signal.signal(number, lambda *_: stops.append(True))
+    folder = tempfile.mkdtemp(prefix="reconstruct-")
+    child = os.fork()
+    if child == 0:
+        be_child(work, folder)
+    status = wait_for(child, stops)
+    remove_leftovers(folder)
+    code = os.WEXITSTATUS(status) if os.WIFEXITED(status) else None
+    if code == 0 or code in (1, 2) and not stops:
+        return code
+    if sys.stderr.isatty():
+        sys.stderr.write("\r" + " " * 60 + "\r")
+    if stops:
+        print(STOPPED, file=sys.stderr)
+        return 130
+    if os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGKILL:
+        reason = "was ended by the system, most likely for want of memory"
+    elif os.WIFSIGNALED(status):
+        reason = f"crashed in a library ({signal.Signals(os.WTERMSIG(status)).name})"
+    else:
+        reason = f"ended with code {code}"
+    print(f"reconstruct: error: the run {reason}; nothing is written", file=sys.stderr)
+    return 1
+
+
+def be_child(work, folder):
+    """Does not return. Ctrl-C is for the parent, who then sends SIGTERM."""
+    code = 1
+
+    def stop(*_):
+        # Whatever comes of being interrupted somewhere, nobody needs to hear of it.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+        raise KeyboardInterrupt
+
+    try:
+        for number in STOPPING:
+            signal.signal(number, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, stop)
+        end_with_parent()
+        os.environ["ELEVATION_SURFACE_RUN"] = folder
+        tempfile.tempdir = folder
+        code = work()
+    except KeyboardInterrupt:
+        code = 130
+    except SystemExit as end:
+        code = end.code if isinstance(end.code, int) else int(end.code is not None)
+    except BaseException:  # pylint: disable=broad-except
+        sys.excepthook(*sys.exc_info())
+    finally:
+        # Libraries are not wound up: a window whose display has gone would complain.
+        try:
+            sys.stdout.flush()
+            sys.stderr.flush()
+        finally:
+            os._exit(code or 0)
+
+
+def wait_for(child, stops):
+    """The child's status. A child that does not stop when asked is ended by force."""
+    asked = None
+    while True:
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            return status
+        if stops and asked is None:
+            asked = time.monotonic()
+            os.kill(child, signal.SIGTERM)
+        elif asked is not None and time.monotonic() - asked > PATIENCE:
+            os.kill(child, signal.SIGKILL)
+            return os.waitpid(child, 0)[1]
+        time.sleep(0.01)

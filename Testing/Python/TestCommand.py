@@ -1,0 +1,227 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the program behaves: options, several files, interrupts, crashes."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy
+
+from vtkelevationsurface import clouds, supervisor
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+PROGRAM = (sys.executable, "-m", "vtkelevationsurface")
+
+
+def sheet(size, x=0.0):
+    """size x size points of a plane, one apart."""
+    rows = [(x + i, j, 0.5 * i - 0.25 * j) for j in range(size) for i in range(size)]
+    return "".join(f"{a:g} {b:g} {c:g}\n" for a, b, c in rows)
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def file(self, name, text):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as stream:
+            stream.write(text)
+        return name
+
+    def call(self, *arguments, **options):
+        return subprocess.run(
+            [*PROGRAM, *arguments], cwd=self.folder, text=True, capture_output=True, timeout=300,
+            check=False, **options,
+        )
+
+    def json(self, name):
+        with open(os.path.join(self.folder, name), encoding="utf-8") as stream:
+            return json.load(stream)
+
+
+class Options(InFolder):
+    def test_the_version_is_told(self):
+        done = self.call("--version")
+        self.assertEqual(done.returncode, 0)
+        self.assertRegex(done.stdout, r"^reconstruct \d+\.\d+\.\d+ \(VTK 9")
+
+    def test_a_misspelt_option_is_told_with_the_right_one(self):
+        for wrong, right in (
+            ("--maximum-edg-length", "--maximum-edge-length"),
+            ("--breakline", "--breaklines"),
+            ("--pictures=a.png", "--picture"),
+            ("--zebra", None),
+        ):
+            with self.subTest(option=wrong):
+                done = self.call("a.xyz", wrong)
+                self.assertEqual(done.returncode, 2)
+                self.assertEqual(len(done.stderr.splitlines()), 1)
+                self.assertIn(f"unknown option {wrong}", done.stderr)
+                if right:
+                    self.assertIn(f"did you mean {right}?", done.stderr)
+                else:
+                    self.assertNotIn("did you mean", done.stderr)
+
+    def test_what_follows_two_dashes_is_a_file(self):
+        self.file("-a.xyz", sheet(4))
+        self.assertEqual(self.call("--no-picture", "--", "-a.xyz").returncode, 0)
+        self.assertTrue(os.path.exists(os.path.join(self.folder, "-a_surface.vtp")))
+
+    def test_longitudes_around_the_antimeridian_get_a_hint(self):
+        rows = "".join(
+            f"{x if x <= 180 else x - 360:g} {y:g} {x + y:g}\n"
+            for x in range(170, 191) for y in range(-30, -20)
+        )
+        self.file("fiji.xyz", rows)
+        self.assertIn("add 360 to negative", self.call("fiji.xyz", "--no-picture").stdout)
+        self.file("greenwich.xyz", rows.replace("-1", "1"))
+        self.assertNotIn("add 360", self.call("greenwich.xyz", "--no-picture").stdout)
+
+
+class SeveralFiles(InFolder):
+    def test_points_are_merged(self):
+        self.file("a.xyz", sheet(5))
+        self.file("b.xyz", sheet(5, 5.0))
+        done = self.call("a.xyz", "b.xyz", "--no-picture", "--report")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        report = self.json("a_surface.json")
+        self.assertEqual((report["file"], report["points"]), ("a.xyz + b.xyz", 50))
+        self.assertEqual(report["triangles"]["filled"], 2 * 9 * 4)
+        self.assertIn("b.xyz: 25 points", report["notes"])
+
+    def test_each_has_a_surface_and_one_that_fails_does_not_stop_the_others(self):
+        self.file("a.xyz", sheet(5))
+        self.file("b.xyz", "1 2 3\n")
+        self.file("c.xyz", sheet(4))
+        done = self.call("a.xyz", "b.xyz", "c.xyz", "--each", "--no-picture")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("b.xyz: no surface", done.stderr)
+        made = sorted(n for n in os.listdir(self.folder) if n.endswith(".vtp"))
+        self.assertEqual(made, ["a_surface.vtp", "c_surface.vtp"])
+        done = self.call("a.xyz", "c.xyz", "--each", "-o", "s.vtp")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--each names the results", done.stderr)
+
+    def test_arrays_that_all_files_have_are_kept(self):
+        parts = []
+        for names in (("a", "b"), ("b", "c")):
+            data = clouds.make_points(numpy.eye(3))
+            for name in names:
+                array = numpy_to_vtk(numpy.arange(3.0), deep=True)
+                array.SetName(name)
+                data.GetPointData().AddArray(array)
+            parts.append(clouds.Cloud(data, left_out={"pixels": 1}))
+        one = clouds.merged(["x", "y"], parts)
+        self.assertEqual(one.points.GetNumberOfPoints(), 6)
+        self.assertEqual(one.points.GetPointData().GetNumberOfArrays(), 1)
+        array = one.points.GetPointData().GetArray("b")
+        self.assertEqual(vtk_to_numpy(array).tolist(), [0, 1, 2, 0, 1, 2])
+        self.assertEqual(one.left_out, {"pixels": 2})
+        self.assertIn("point arrays that not all files have are left out", one.notes)
+
+
+class Interrupts(InFolder):
+    # A stopped program ends at once; the limit is for busy machines only.
+    LIMIT = 20.0
+
+    def start(self, *arguments):
+        return subprocess.Popen(
+            [*PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": self.temporary},
+        )
+
+    def setUp(self):
+        super().setUp()
+        self.temporary = os.path.join(self.folder, "temporary")
+        os.mkdir(self.temporary)
+        random_numbers = numpy.random.RandomState(5)
+        xyz = random_numbers.rand(60000, 3) * (1000.0, 1000.0, 1.0)
+        numpy.savetxt(os.path.join(self.folder, "a.xyz"), xyz, "%.3f")
+
+    def test_at_any_time_it_ends_cleanly(self):
+        before = sorted(os.listdir(self.folder))
+        began = time.monotonic()
+        self.assertEqual(self.call("a.xyz", "-o", "first.ply").returncode, 0)
+        whole = time.monotonic() - began
+        for name in ("first.ply", "first.png"):
+            os.remove(os.path.join(self.folder, name))
+        moments = random.Random(7)
+        stopped = 0
+        for run in range(25):
+            number = moments.choice((signal.SIGINT, signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
+            moment = moments.uniform(0.15, 1.0) * whole
+            with self.subTest(run=run, signal=number, moment=moment):
+                program = self.start("a.xyz", "-o", "a.ply")
+                time.sleep(moment)
+                program.send_signal(number)
+                asked = time.monotonic()
+                _, errors = program.communicate(timeout=300)
+                self.assertLess(time.monotonic() - asked, self.LIMIT)
+                self.assertEqual(os.listdir(self.temporary), [])
+                if program.returncode == 0:
+                    os.remove(os.path.join(self.folder, "a.ply"))
+                    os.remove(os.path.join(self.folder, "a.png"))
+                else:
+                    stopped += 1
+                    self.assertEqual(program.returncode, 130)
+                    self.assertEqual(errors, "reconstruct: stopped; nothing is written\n")
+                self.assertEqual(sorted(os.listdir(self.folder)), before)
+        self.assertGreater(stopped, 10)
+
+
+class Supervised(InFolder):
+    """What happens in the child is told by the parent."""
+
+    def supervise(self, body):
+        script = f"import os, signal, sys, time\nfrom vtkelevationsurface import supervisor\n{body}\n"
+        script += "sys.exit(supervisor.supervised(work))\n"
+        return subprocess.run(
+            [sys.executable, "-c", script], cwd=self.folder, text=True, capture_output=True,
+            timeout=60, check=False,
+        )
+
+    def test_codes_are_handed_on(self):
+        for code in (0, 1, 2):
+            self.assertEqual(self.supervise(f"def work(): return {code}").returncode, code)
+        self.assertEqual(self.supervise("def work(): sys.exit(2)").returncode, 2)
+
+    def test_a_crash_and_an_end_by_the_system_are_errors_that_leave_nothing(self):
+        body = (
+            "def work():\n"
+            "    supervisor.note_partial_file('.half')\n"
+            "    open('.half', 'w').close()\n"
+            "    os.kill(os.getpid(), signal.{})\n"
+        )
+        for name, words in (("SIGSEGV", "crashed in a library (SIGSEGV)"), ("SIGKILL", "memory")):
+            with self.subTest(signal=name):
+                done = self.supervise(body.format(name))
+                self.assertEqual(done.returncode, 1)
+                self.assertTrue(done.stderr.startswith("reconstruct: error: the run "), done.stderr)
+                self.assertIn(words, done.stderr)
+                self.assertEqual(len(done.stderr.splitlines()), 1)
+                self.assertEqual(os.listdir(self.folder), [])
+
+    def test_a_child_that_does_not_listen_is_ended(self):
+        body = (
+            "def work():\n"
+            "    signal.signal(signal.SIGTERM, signal.SIG_IGN)\n"
+            "    os.kill(os.getppid(), signal.SIGINT)\n"
+            "    time.sleep(50)\n"
+        )
+        began = time.monotonic()
+        done = self.supervise(body)
+        self.assertEqual((done.returncode, done.stderr), (130, supervisor.STOPPED + "\n"))
+        self.assertLess(time.monotonic() - began, 40)
+
+
+if __name__ == "__main__":
+    unittest.main()

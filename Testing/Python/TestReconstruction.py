@@ -1,0 +1,218 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""reconstruct() as scripts call it: arrays and VTK data in, a Reconstruction out."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+import warnings
+
+import numpy
+
+import vtkelevationsurface
+from vtkelevationsurface import (
+    ElevationSurfaceError,
+    ElevationSurfaceWarning,
+    read,
+    reconstruct,
+)
+from vtkelevationsurface.reconstruction import PROPERTIES, as_lines
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+
+SIZE = 12
+SHEET = numpy.array([(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)], "f8")
+RING = numpy.array([(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)])
+
+
+class Input(unittest.TestCase):
+    def test_arrays_lists_and_vtk_data_give_the_same_surface(self):
+        data = vtkPolyData()
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(SHEET, deep=True))
+        data.SetPoints(points)
+        expected = reconstruct(SHEET).to_numpy()
+        for given in (SHEET.tolist(), SHEET.astype("i8") * 0 + SHEET, data):
+            for one, other in zip(reconstruct(given).to_numpy(), expected):
+                numpy.testing.assert_array_equal(one, other)
+
+    def test_point_data_come_along(self):
+        data = vtkPolyData()
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(SHEET, deep=True))
+        data.SetPoints(points)
+        array = numpy_to_vtk(SHEET[:, 2] * 2, deep=True)
+        array.SetName("Amplitude")
+        data.GetPointData().AddArray(array)
+        kept = reconstruct(data).surface.GetPointData().GetArray("Amplitude")
+        numpy.testing.assert_array_equal(vtk_to_numpy(kept), SHEET[:, 2] * 2)
+
+    def test_a_file_that_was_read_is_taken(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.xyz")
+            numpy.savetxt(path, SHEET)
+            result = reconstruct(read(path))
+        self.assertEqual(result.surface.GetNumberOfPolys(), 2 * (SIZE - 1) ** 2)
+
+    def test_what_is_no_cloud_of_points_is_refused_in_words(self):
+        for points, error, words in (
+            (SHEET[:, :2], ValueError, "rows of 3 numbers are needed; the shape is 144 x 2"),
+            (SHEET[0], ValueError, "the shape is 3"),
+            (numpy.empty((0, 3)), ValueError, "the shape is 0 x 3"),
+            ([["a", "b", "c"]], TypeError, "points: not an array of numbers"),
+            (None, ValueError, "points"),
+            ("a.xyz", TypeError, "use reconstruct(read('a.xyz'))"),
+            (vtkImageData(), TypeError, "vtkImageData has no elevations"),
+            (vtkPolyData(), ElevationSurfaceError, "there are none"),
+        ):
+            with self.subTest(points=type(points)):
+                with self.assertRaises(error) as caught:
+                    reconstruct(points)
+                self.assertIn(words, str(caught.exception))
+
+    def test_a_boundary_is_an_array_a_list_or_vtk_data(self):
+        closed = numpy.vstack((RING, RING[:1]))
+        counts = set()
+        for boundary in (RING, closed, [RING], as_lines(RING, "boundary", True)):
+            result = reconstruct(SHEET, boundary=boundary)
+            counts.add(result.surface.GetNumberOfPolys())
+            self.assertEqual(result.boundary.GetNumberOfLines(), 1)
+        self.assertEqual(len(counts), 1)
+        xy = result.to_numpy()[0][numpy.unique(result.to_numpy()[1]), :2]
+        self.assertEqual((xy.min(), xy.max()), (0.5, 9.5))
+        hole = RING * 0.2 + 4
+        result = reconstruct(SHEET, boundary=[RING, hole], fill=False)
+        self.assertEqual(result.boundary.GetNumberOfLines(), 2)
+        with self.assertRaisesRegex(ValueError, "a ring has 2 points"):
+            reconstruct(SHEET, boundary=RING[:2])
+
+    def test_faults_become_edges(self):
+        fault = numpy.array([(2.0, 2.5, 9.0), (8.0, 2.5, 9.0)])
+        result = reconstruct(SHEET, faults=fault, trim=False, fill=False)
+        self.assertEqual(result.surface.GetNumberOfPoints(), len(SHEET) + 2)
+        self.assertEqual(result.report["faults"]["added_points"], 2)
+        with self.assertRaisesRegex(TypeError, "use read_faults"):
+            reconstruct(SHEET, faults="faults.txt")
+
+
+class Properties(unittest.TestCase):
+    def test_each_reaches_its_filter(self):
+        given = {
+            "maximum_edge_length": (30.0, "delaunay", "GetMaximumEdgeLength", 30.0),
+            "duplicates": ("keep-lowest", "delaunay", "GetDuplicatePolicy", 2),
+            "lattice_mode": ("off", "delaunay", "GetLatticeMode", 1),
+            "lattice_tolerance": (0.125, "delaunay", "GetLatticeTolerance", 0.125),
+            "search_strategy": ("Compactness", "delaunay", "GetSearchStrategy", 1),
+            "outward_test": ("inward_normal", "trim", "GetOutwardTest", 1),
+            "gap_tolerance": (6, "trim", "GetGapTolerance", 6.0),
+            "recover_boundary": (False, "trim", "GetRecoverBoundary", 0),
+            "open_edge_length": (40, "fill", "GetMaximumEdgeLength", 40.0),
+            "maximum_hole_size": (5, "fill", "GetMaximumHoleSize", 5.0),
+            "maximum_hole_edges": (7, "fill", "GetMaximumHoleEdges", 7),
+            "spacing": (0.5, "fill", "GetSpacing", 0.5),
+            "interpolation": ("thin plate", "fill", "GetInterpolation", 2),
+            "interpolate_point_data": (False, "fill", "GetInterpolatePointData", 0),
+            "threads": (1, "fill", "GetNumberOfThreads", 1),
+        }
+        self.assertEqual(set(given), set(PROPERTIES))
+        for name, (value, step, getter, expected) in given.items():
+            with self.subTest(name=name):
+                result = reconstruct(SHEET, **{name: value})
+                self.assertEqual(getattr(getattr(result, step), getter)(), expected)
+
+    def test_misspelt_names_and_wrong_values_raise(self):
+        with self.assertRaisesRegex(TypeError, "maximum_edge_lenght; did you mean maximum_edge_length"):
+            reconstruct(SHEET, maximum_edge_lenght=3)
+        with self.assertRaisesRegex(TypeError, "no property zebra$"):
+            reconstruct(SHEET, zebra=3)
+        for name, value in (
+            ("gap_tolerance", -1),
+            ("gap_tolerance", float("nan")),
+            ("spacing", "wide"),
+            ("maximum_hole_edges", 1.5),
+            ("interpolation", "splines"),
+            ("recover_boundary", "no"),
+            ("lattice_tolerance", 0.3),
+            ("threads", -1),
+            ("threads", float("inf")),
+        ):
+            with self.subTest(name=name, value=value):
+                with self.assertRaisesRegex(ValueError, f"^{name} takes .*, not "):
+                    reconstruct(SHEET, **{name: value})
+        with self.assertRaisesRegex(ValueError, "spacing: 1e-10 is less than"):
+            reconstruct(SHEET + 1e6, spacing=1e-10)
+
+    def test_errors_of_filters_raise_and_warnings_warn(self):
+        with self.assertRaisesRegex(ElevationSurfaceError, "on one line"):
+            reconstruct(numpy.arange(9.0).reshape(3, 3))
+        with self.assertRaisesRegex(ElevationSurfaceError, "boundary") as caught:
+            reconstruct(SHEET, boundary=RING + 100)
+        self.assertEqual(caught.exception.about, "boundary")
+        lone = [(SIZE + 60.0 + 60.0 * line, float(i), 0.0) for line in range(2) for i in range(40)]
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            result = reconstruct(numpy.vstack((SHEET, lone)), fill=False)
+        self.assertEqual([w.category for w in told], [ElevationSurfaceWarning])
+        self.assertIn("leaves out 80 points", str(told[0].message))
+        self.assertEqual(told[0].filename, __file__)
+        self.assertEqual(len(result.notes), 1)
+
+    def test_progress_is_told_and_can_stop_the_run(self):
+        steps = []
+        reconstruct(SHEET, progress=lambda text, fraction: steps.append((text, fraction)))
+        self.assertEqual(
+            sorted({text for text, _ in steps}), ["filling holes", "triangulating", "trimming"]
+        )
+        self.assertTrue(all(0 <= fraction <= 1 for _, fraction in steps))
+
+        def stop(_text, _fraction):
+            raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt):
+            reconstruct(SHEET, progress=stop)
+
+
+class Result(unittest.TestCase):
+    def test_the_report_tells_of_every_point(self):
+        report = reconstruct(numpy.vstack((SHEET, SHEET[:2], [(1, 1, numpy.nan)]))).report
+        self.assertEqual(report["points"], len(SHEET) + 3)
+        reasons = {"same x,y as another point": 2, "not finite": 1}
+        self.assertEqual(report["unused_reasons"], reasons)
+        self.assertLess(report["distance"]["maximum"], 1e-12)
+
+    def test_steps_that_are_left_out_have_no_results(self):
+        result = reconstruct(SHEET, trim=False, fill=False)
+        self.assertIsNone(result.boundary)
+        self.assertIsNone(result.holes)
+        self.assertNotIn("trim", result.report)
+
+    def test_it_is_written_and_drawn(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a")
+            result = reconstruct(SHEET)
+            result.write(path + ".vtp")
+            result.plot(path + ".png", "A sheet")
+            with open(path + ".png", "rb") as stream:
+                self.assertEqual(stream.read(4), b"\x89PNG")
+            again = read(path + ".vtp").points
+        points, triangles = result.to_numpy()
+        numpy.testing.assert_array_equal(vtk_to_numpy(again.GetPoints().GetData()), points)
+        self.assertEqual(triangles.shape, (2 * (SIZE - 1) ** 2, 3))
+
+
+class Package(unittest.TestCase):
+    def test_names_are_there_and_others_are_told(self):
+        self.assertIn("reconstruct", dir(vtkelevationsurface))
+        with self.assertRaisesRegex(AttributeError, "no attribute 'reconstrct'"):
+            vtkelevationsurface.reconstrct  # pylint: disable=pointless-statement
+
+    def test_the_filters_need_no_numpy(self):
+        script = "import sys, vtkelevationsurface; sys.exit('numpy' in sys.modules)"
+        self.assertEqual(subprocess.run([sys.executable, "-c", script], check=False).returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
