@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
@@ -35,6 +35,8 @@ class ReadOptions:
 
     columns: object = None  # None, or three names or numbers (from 1) of the x, y and z columns
     no_data: object = None  # None, or the elevation that marks missing values
+    keep_nulls: bool = False  # usual null values are kept, though they stand apart
+    depth: bool = False  # z counts downwards; it is turned over
 
 
 def make_points(coordinates):
@@ -50,15 +52,26 @@ def make_points(coordinates):
 def some_points(data, keep):
     """The points of a data set with the given ids, with their point data, as vtkPolyData."""
     result = make_points(vtk_to_numpy(data.GetPoints().GetData())[keep])
-    ids = vtkIdList()
-    ids.SetNumberOfIds(len(keep))
-    new_ids = vtkIdList()
-    new_ids.SetNumberOfIds(len(keep))
-    for new, old in enumerate(keep.tolist()):
-        ids.SetId(new, old)
-        new_ids.SetId(new, new)
-    result.GetPointData().CopyAllocate(data.GetPointData(), len(keep))
-    result.GetPointData().CopyData(data.GetPointData(), ids, new_ids)
+    old, new = data.GetPointData(), result.GetPointData()
+    for i in range(old.GetNumberOfArrays()):
+        array = old.GetAbstractArray(i)
+        if isinstance(array, vtkDataArray) and not isinstance(array, vtkBitArray):
+            some = numpy_to_vtk(
+                numpy.ascontiguousarray(vtk_to_numpy(array)[keep]),
+                deep=True,
+                array_type=array.GetDataType(),
+            )
+        else:
+            some = array.NewInstance()
+            some.SetNumberOfComponents(array.GetNumberOfComponents())
+            some.SetNumberOfTuples(len(keep))
+            for place, point in enumerate(keep.tolist()):
+                some.SetTuple(place, point, array)
+        some.SetName(array.GetName())
+        new.AddArray(some)
+        kind = old.IsArrayAnAttribute(i)
+        if kind >= 0:
+            new.SetActiveAttribute(i, kind)
     return result
 
 
@@ -106,3 +119,22 @@ def antimeridian_note(points):
         "x looks like degrees on both sides of the antimeridian, so the surface runs around the "
         "earth: add 360 to negative longitudes"
     )
+
+
+def keep_points(cloud, keep):
+    """Leaves only the points with the given ids (a numpy array) in a Cloud."""
+    cloud.points = some_points(cloud.points, keep)
+    if cloud.lines is not None:
+        cloud.lines = numpy.asarray(cloud.lines)[keep]
+
+
+def turn_over(cloud):
+    """Turns the sign of z: depths become elevations."""
+    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData()).astype("f8")
+    coordinates[:, 2] *= -1.0
+    points = make_points(coordinates).GetPoints()
+    turned = cloud.points.NewInstance()
+    turned.ShallowCopy(cloud.points)
+    turned.SetPoints(points)
+    cloud.points = turned
+    cloud.notes.append("z is turned over, as --depth says")

@@ -4,6 +4,7 @@
 
 import argparse
 import copy
+import dataclasses
 import json
 import math
 import os
@@ -14,7 +15,7 @@ import time
 import numpy
 
 from . import reading, writing
-from .clouds import antimeridian_note, merged
+from .clouds import ReadOptions, antimeridian_note, merged
 from .messages import ElevationSurfaceError, FileError, PictureError
 from .paths import check_suffix, check_writable
 from .reconstruction import PROPERTIES, check_spacing, did_you_mean, run_chain
@@ -32,6 +33,7 @@ class WrongOption(Failure):
     """A Failure of the command line: the exit code is 2."""
 
 
+READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
 COLOURS = ("elevation", "error")
 
 
@@ -128,6 +130,8 @@ def make_parser():
     add("--each", action="store_true")
     add("--columns", type=three_columns)
     add("--no-data", type=float)
+    add("--keep-nulls", action="store_true")
+    add("--depth", action="store_true")
     add("--faults", "--breaklines", dest="faults")
     add("--boundary")
     for name, one in PROPERTIES.items():
@@ -301,13 +305,13 @@ class Run:
 
     def read(self):
         options = self.options
+        wanted = {name: value for name, value in vars(options).items() if name in READ_OPTIONS}
         cloud = self.timed(
             "read",
             "reading",
-            lambda: merged(options.files, [
-                reading.read(path, columns=options.columns, no_data=options.no_data)
-                for path in options.files
-            ]),
+            lambda: merged(
+                options.files, [reading.read(path, **wanted) for path in options.files]
+            ),
         )
         note = antimeridian_note(cloud.points)
         if note:

@@ -11,8 +11,9 @@ import os
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import ReadOptions, make_points
+from .clouds import ReadOptions, make_points, turn_over
 from .messages import FileError
+from .nulls import take_out
 from .paths import check_readable, check_suffix, suffix_of
 from .rasters import read_dem, read_tiff
 from .text import read_table, read_text
@@ -36,7 +37,15 @@ def read(path, **options):
     Returns a Cloud. Raises FileError. Takes about a second for a million rows of text, less for
     other kinds.
     """
-    path, options = os.fspath(path), ReadOptions(**options)
+    options = ReadOptions(**options)
+    cloud = take_out(read_any(os.fspath(path), options), options)
+    if options.depth:
+        turn_over(cloud)
+    return cloud
+
+
+def read_any(path, options):
+    """The Cloud of a file as its reader gives it, with its nulls."""
     if not os.path.isdir(path):
         check_suffix(path, READ_SUFFIXES, "read")
     check_readable(path)

@@ -506,7 +506,7 @@ class Tiff(InFolder):
         self.assertEqual(coordinates(cloud)[1].tolist(), [101.0, 204.5, 2.0])
 
     def test_without_georeferencing_columns_and_rows_are_used_and_that_is_said(self):
-        cloud = reading.read(self.tiff({}))
+        cloud = reading.read(self.tiff({}), keep_nulls=True)
         self.assertEqual(coordinates(cloud)[0].tolist(), [0.0, 1.0, 1.0])
         self.assertEqual(cloud.points.GetNumberOfPoints(), 6)
         self.assertTrue(any("no georeferencing" in note for note in cloud.notes))
@@ -520,7 +520,7 @@ class Tiff(InFolder):
     def test_a_no_data_value_can_be_given_beside_that_of_the_file(self):
         cloud = reading.read(self.tiff(self.NO_DATA), no_data=5.0)
         self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [1, 2, 4, 6])
-        cloud = reading.read(self.tiff({}), no_data=5.0)
+        cloud = reading.read(self.tiff({}), no_data=5.0, keep_nulls=True)
         self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [-9999, 1, 2, 4, 6])
 
     def test_a_no_data_value_is_found_among_pixels_of_single_precision(self):
