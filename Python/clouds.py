@@ -37,6 +37,8 @@ class ReadOptions:
     no_data: object = None  # None, or the elevation that marks missing values
     keep_nulls: bool = False  # usual null values are kept, though they stand apart
     depth: bool = False  # z counts downwards; it is turned over
+    band: object = None  # None, or the number from 1 of a raster's band of elevations
+    layer: object = None  # None, or the name of a layer or variable, of files that hold several
 
 
 def make_points(coordinates):

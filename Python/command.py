@@ -48,6 +48,12 @@ def three_columns(text):
     return names
 
 
+def whole_number(text):
+    if int(text) < 1:
+        raise ValueError
+    return int(text)
+
+
 def view_angles(text):
     if text == "top":
         return (180.0, 90.0)
@@ -61,6 +67,8 @@ def view_angles(text):
 TAKES = {
     "--columns": "three columns by name or number from 1, as x,y,z or 1,2,3",
     "--no-data": "an elevation",
+    "--band": "a whole number from 1",
+    "--layer": "a name",
     "--faults": "a file",
     "--boundary": "a file",
     "--output": "a file",
@@ -132,6 +140,8 @@ def make_parser():
     add("--no-data", type=float)
     add("--keep-nulls", action="store_true")
     add("--depth", action="store_true")
+    add("--band", type=whole_number)
+    add("--layer")
     add("--faults", "--breaklines", dest="faults")
     add("--boundary")
     for name, one in PROPERTIES.items():
@@ -267,15 +277,19 @@ def write_report(path, report):
         stream.write("\n")
 
 
+def read_options(options):
+    """The options that concern reading, by name."""
+    return {name: value for name, value in vars(options).items() if name in READ_OPTIONS}
+
+
 def check_options(options):
     """Refuses what could not be read or written, before any work is done."""
     try:
         check_suffix(options.output, writing.WRITE_SUFFIXES, "written")
         if options.picture is not None:
             check_suffix(options.picture, (".png",), "written as a picture")
-        if options.columns:
-            for path in options.files:
-                reading.check_columns_wanted(path)
+        for path in options.files:
+            reading.check_options(path, **read_options(options))
     except FileError as error:
         raise WrongOption(str(error)) from None
     wanted = [p for p in (options.output, options.picture, options.report) if p]
@@ -305,7 +319,7 @@ class Run:
 
     def read(self):
         options = self.options
-        wanted = {name: value for name, value in vars(options).items() if name in READ_OPTIONS}
+        wanted = read_options(options)
         cloud = self.timed(
             "read",
             "reading",

@@ -22,7 +22,7 @@ class Damage(Exception):
     """What is wrong, in words that follow the file's name."""
 
 
-def why_damaged(path):
+def why_damaged(path, kind):
     """What is wrong with the file, as words to follow its name, or None.
 
     Files of other kinds than those above are not looked at. Raises OSError.
@@ -36,7 +36,7 @@ def why_damaged(path):
         ".vti": check_xml_grid,
         ".vtr": check_xml_grid,
         ".vts": check_xml_grid,
-    }.get(os.path.splitext(path)[1].lower())
+    }.get(kind)
     if check is None:
         return None
     with open(path, "rb") as stream:

@@ -12,26 +12,31 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from .clouds import ReadOptions, make_points, turn_over
+from .formats import recognise
 from .messages import FileError
 from .nulls import take_out
-from .paths import check_readable, check_suffix, suffix_of
-from .rasters import read_dem, read_tiff
-from .text import read_table, read_text
-from .vtk_files import read_lines_with_vtk, read_with_vtk
+from .paths import check_readable
+from .text import read_table
 
-TEXT_SUFFIXES = (".csv", ".xyz", ".txt")
-RASTER_SUFFIXES = (".tif", ".tiff", ".dem", ".vti")
-VTK_SUFFIXES = (".vtp", ".vtu", ".vts", ".vtr", ".vtk", ".ply", ".stl", ".obj")
-READ_SUFFIXES = VTK_SUFFIXES + TEXT_SUFFIXES + RASTER_SUFFIXES
+# Options that mean something for some readers only.
+MEANS_SOMETHING = {"columns": ("text",), "band": ("rasters",), "layer": ("rasters", "vectors")}
 
 
-def check_columns_wanted(path):
-    if suffix_of(path) not in TEXT_SUFFIXES:
-        raise FileError(f"{path}: --columns is for text files ({' '.join(TEXT_SUFFIXES)})")
+def check_options(path, **options):
+    """Refuses an option that the kind of file has no use for."""
+    if any(options.get(name) is not None for name in MEANS_SOMETHING) and os.path.isfile(path):
+        check_use(path, recognise(path)[0], ReadOptions(**options))
+
+
+def check_use(path, kind, options):
+    for name, modules in MEANS_SOMETHING.items():
+        if getattr(options, name) is not None and kind.module not in modules:
+            fits = " and ".join({"text": "text files"}.get(module, module) for module in modules)
+            raise FileError(f"{path}: --{name} is for {fits}; this is {kind.name}")
 
 
 def read(path, **options):
-    """Reads the points of a file, whatever its kind.
+    """Reads the points of a file, whatever its kind. The kind is told by the content, not the name.
 
     options  those of ReadOptions
     Returns a Cloud. Raises FileError. Takes about a second for a million rows of text, less for
@@ -46,22 +51,21 @@ def read(path, **options):
 
 def read_any(path, options):
     """The Cloud of a file as its reader gives it, with its nulls."""
-    if not os.path.isdir(path):
-        check_suffix(path, READ_SUFFIXES, "read")
     check_readable(path)
-    suffix = suffix_of(path)
-    if options.columns:
-        check_columns_wanted(path)
-    if suffix in TEXT_SUFFIXES:
-        return read_text(path, options)
-    if suffix in (".tif", ".tiff"):
-        return read_tiff(path, options)
-    if suffix == ".dem":
-        return read_dem(path, options)
-    return read_with_vtk(path, options)
+    kind, notes = recognise(path)
+    check_use(path, kind, options)
+    cloud = kind.reader()(path, options)
+    cloud.notes[:0] = notes
+    return cloud
 
 
-LINE_SUFFIXES = (".vtp", ".vtk", ".ply", ".stl", ".obj") + TEXT_SUFFIXES
+def kind_of_lines(path, what):
+    """The Format of a file of lines. Refuses what holds none."""
+    check_readable(path)
+    kind, _ = recognise(path)
+    if not kind.lines and kind.module != "text":
+        raise FileError(f"{path}: {kind.name} cannot be read as {what}")
+    return kind
 
 
 def read_faults(path):
@@ -70,10 +74,9 @@ def read_faults(path):
     A text file holds one line after the other, x, y and z in the first columns, a blank line
     between them. Raises FileError.
     """
-    check_suffix(path, LINE_SUFFIXES, "read as faults")
-    check_readable(path)
-    if suffix_of(path) not in TEXT_SUFFIXES:
-        return read_lines_with_vtk(path, "a fault")
+    kind = kind_of_lines(path, "faults")
+    if kind.lines:
+        return kind.line_reader()(path, "a fault")
     rows, lines, starts, _ = read_table(path, needed=3)
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
     if len(bad):
@@ -93,10 +96,9 @@ def read_boundary(path):
     x and y in the first columns, a blank line between rings, and each ring's first point again
     at its end. Raises FileError, also for a text ring that is not closed.
     """
-    check_suffix(path, LINE_SUFFIXES, "read as a boundary")
-    check_readable(path)
-    if suffix_of(path) not in TEXT_SUFFIXES:
-        return read_lines_with_vtk(path, "a boundary")
+    kind = kind_of_lines(path, "a boundary")
+    if kind.lines:
+        return kind.line_reader()(path, "a boundary")
     rows, lines, starts, _ = read_table(path, needed=2)
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
     if len(bad):

@@ -3,6 +3,7 @@
 """Points, lines and polygons of files that VTK reads."""
 
 import math
+import re
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -18,6 +19,27 @@ from .clouds import Cloud, some_points
 from .messages import FileError, Messages
 from .paths import suffix_of
 from .rasters import points_of_raster
+
+def kind_of(path):
+    """The suffix that the file's content ought to have."""
+    with open(path, "rb") as stream:
+        head = stream.read(4096)
+    found = re.search(rb"<VTKFile[^>]*\btype\s*=\s*[\"'](\w+)", head)
+    if found and found.group(1) in XML_KINDS:
+        return XML_KINDS[found.group(1)]
+    if head.startswith(b"# vtk DataFile"):
+        return ".vtk"
+    return suffix_of(path)
+
+
+XML_KINDS = {
+    b"PolyData": ".vtp",
+    b"UnstructuredGrid": ".vtu",
+    b"StructuredGrid": ".vts",
+    b"RectilinearGrid": ".vtr",
+    b"ImageData": ".vti",
+}
+
 
 def vtk_reader(suffix):
     """A fresh VTK reader for the suffix. Imported late: each of these modules takes time."""
@@ -44,10 +66,10 @@ def vtk_reader(suffix):
 
 def run_vtk_reader(path):
     """The data object of a file in one of VTK's formats."""
-    reason = damage.why_damaged(path)
+    reason = damage.why_damaged(path, kind_of(path))
     if reason:
         raise FileError(f"{path}: {reason}")
-    reader = vtk_reader(suffix_of(path))
+    reader = vtk_reader(kind_of(path))
     with Messages() as messages:
         reader.SetFileName(path)
         reader.Update()
@@ -76,7 +98,7 @@ def check_point_ids(path, data):
             )
 
 
-def read_with_vtk(path, options):
+def read_points(path, options):
     no_data = options.no_data
     data = run_vtk_reader(path)
     if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
@@ -89,9 +111,9 @@ def read_with_vtk(path, options):
     vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
     if data.GetNumberOfCells() > vertices:
         cloud.notes.append("only the points are used, not the file's cells")
-    if suffix_of(path) == ".vtk" and damage.may_lack_digits(path):
+    if kind_of(path) == ".vtk" and damage.may_lack_digits(path):
         cloud.notes.append("the last line has no end, so the last number may be cut off")
-    if suffix_of(path) in (".ply", ".stl", ".obj"):
+    if kind_of(path) in (".stl", ".obj"):
         note = rounding_note(vtk_to_numpy(data.GetPoints().GetData()))
         if note:
             cloud.notes.append(note)
@@ -104,7 +126,7 @@ def read_with_vtk(path, options):
     return cloud
 
 
-def rounding_note(coordinates):
+def rounding_note(coordinates, why="VTK reads this format"):
     """A line for the user when 32-bit coordinates are coarse beside the spacing, else None."""
     xy = coordinates[:, :2]
     xy = xy[numpy.isfinite(xy).all(axis=1)]
@@ -116,7 +138,7 @@ def rounding_note(coordinates):
     if step <= 0.01 * spacing:
         return None
     return (
-        f"VTK reads this format in single precision: x and y are rounded to steps of {step:g}; "
+        f"{why} in single precision: x and y are rounded to steps of {step:g}; "
         "use .vtp or text for large map coordinates"
     )
 
@@ -144,12 +166,12 @@ def points_of_grid(path, grid, no_data):
         y = vtk_to_numpy(grid.GetYCoordinates()).astype("f8")
     z = vtk_to_numpy(scalars).reshape(rows, columns)
     x, y = numpy.meshgrid(x, y)
-    cloud = points_of_raster(path, x, y, z, [] if no_data is None else [no_data])
+    cloud = points_of_raster(path, x, y, z, no_data)
     cloud.notes.insert(0, f"elevation: point array {scalars.GetName() or '(unnamed)'}")
     return cloud
 
 
-def read_lines_with_vtk(path, singular):
+def read_lines(path, singular):
     """The vtkPolyData of a file in one of VTK's formats, which must hold lines or polygons."""
     data = run_vtk_reader(path)
     if not isinstance(data, vtkPolyData):

@@ -4,14 +4,12 @@
 
 import math
 import os
-import struct
 import sys
-import tempfile
 import unittest
-from unittest import mock
 
 import numpy
-from vtkelevationsurface import paths, rasters, reading, vtk_files, writing
+from in_folder import InFolder, coordinates
+from vtkelevationsurface import paths, reading, writing
 from vtkelevationsurface.clouds import make_points
 from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -19,44 +17,6 @@ from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkUnstructuredGrid
 
 ROWS = [(1.0, 2.0, 3.5), (4.25, 5.0, 6.0), (-7.0, 8.0, 9.0)]
-
-
-def coordinates(cloud):
-    return vtk_to_numpy(cloud.points.GetPoints().GetData())
-
-
-class InFolder(unittest.TestCase):
-    """Gives each test a folder of its own."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def file(self, name, content):
-        path = self.path(name)
-        with open(path, "wb") as stream:
-            stream.write(content if isinstance(content, bytes) else content.encode())
-        return path
-
-    def read(self, content, name="a.txt", **options):
-        return reading.read(self.file(name, content), **options)
-
-    def assert_rows(self, cloud, rows):
-        numpy.testing.assert_array_equal(coordinates(cloud), numpy.array(rows, dtype="f8"))
-
-    def assert_refused(self, words, content, name="a.txt", **options):
-        """The error is one line that begins with the file's name and holds the words."""
-        with self.assertRaises(FileError) as caught:
-            self.read(content, name, **options)
-        text = str(caught.exception)
-        self.assertTrue(text.startswith(self.path(name)), text)
-        self.assertNotIn("\n", text)
-        for word in [words] if isinstance(words, str) else words:
-            self.assertIn(word, text)
 
 
 class Text(InFolder):
@@ -184,10 +144,6 @@ class Paths(InFolder):
         os.chmod(path, 0)
         with self.assertRaisesRegex(FileError, "cannot be read: Permission denied"):
             reading.read(path)
-
-    def test_an_unknown_suffix_is_refused_with_those_that_are_known(self):
-        self.assert_refused([".las cannot be read", ".vtp", ".csv"], "1 2 3\n", "a.las")
-        self.assert_refused("no suffix cannot be read", "1 2 3\n", "a")
 
 
 class VtkFormats(InFolder):
@@ -321,7 +277,8 @@ class VtkFormats(InFolder):
                         may_lack = any("may be cut off" in note for note in cloud.notes)
                         self.assertEqual(may_lack, not content[size - 1 : size].isspace())
             with self.subTest(what=what):
-                self.assertGreater(refused, 0.9 * len(content) / 7)
+                # The points of a .ply come before its faces.
+                self.assertGreater(refused, (0.7 if suffix == "ply" else 0.9) * len(content) / 7)
 
     def test_a_grid_of_false_extents_is_refused(self):
         from vtkmodules.vtkCommonDataModel import vtkRectilinearGrid, vtkStructuredGrid
@@ -376,7 +333,6 @@ class VtkFormats(InFolder):
         for what, suffix, content in self.whole_files():
             for old, new in (
                 (b"element vertex 12", b"element vertex 999999999999"),
-                (b"element face 10", b"element face 999999999999"),
                 (b"POINTS 12 ", b"POINTS 999999999999 "),
                 (b"POINTS 12 ", b"POINTS -1 "),
                 (b"POLYGONS 1", b"POLYGONS 9999999991"),
@@ -399,19 +355,6 @@ class VtkFormats(InFolder):
                     self.assertIn(b"3.6666", content)
                     self.assert_refused("", content.replace(b"3.6666", b"spoil"), "a." + suffix)
 
-    def test_lists_of_several_lengths_in_a_binary_ply_are_followed(self):
-        rows = [(i, i * i % 7, 0.5) for i in range(9)]
-        lists = [[0, 1, 2], [1, 2, 3, 4], [2, 3, 4], [4, 5, 6, 7, 8]]
-        head = (
-            "ply\nformat binary_little_endian 1.0\ncomment made by hand\nelement vertex 9\n"
-            "property float x\nproperty float y\nproperty float z\nelement face 4\n"
-            "property list uchar int vertex_indices\nend_header\n"
-        ).encode()
-        body = b"".join(struct.pack("<3f", *row) for row in rows)
-        body += b"".join(struct.pack(f"<B{len(ids)}i", len(ids), *ids) for ids in lists)
-        self.assert_rows(self.read(head + body, "a.ply"), rows)
-        self.assert_refused("4 of face are announced", (head + body)[:-1], "b.ply")
-
     def test_cells_with_corners_that_are_not_there_are_refused(self):
         text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
         text += "0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 77\n"
@@ -422,190 +365,6 @@ class VtkFormats(InFolder):
             "a cell has the corner -1, but there are 3 points", text.replace("77", "-1"), "b.vtk"
         )
 
-    def test_coordinates_too_large_for_the_format_are_told(self):
-        from vtkmodules.vtkIOPLY import vtkPLYWriter
-
-        rows = [(612014.5 + i % 10, 6073983.5 + i // 10, 0.0) for i in range(100)]
-        path = self.write(vtkPLYWriter(), make_points(rows), "a.ply")
-        self.assertTrue(any("single precision" in note for note in reading.read(path).notes))
-
-
-def write_tiff(path, z, tags, bits=32):
-    """A little-endian TIFF with one strip of floats. tags: {tag: (type letter, values)}."""
-    rows, columns = z.shape
-    pixels = z.astype("<f4" if bits == 32 else "<f8").tobytes()
-    entries = {
-        256: ("I", (columns,)),
-        257: ("I", (rows,)),
-        258: ("H", (bits,)),
-        259: ("H", (1,)),
-        262: ("H", (1,)),
-        273: ("I", (8,)),
-        277: ("H", (1,)),
-        278: ("I", (rows,)),
-        279: ("I", (len(pixels),)),
-        339: ("H", (3,)),
-    }
-    entries.update(tags)
-    place = 8 + len(pixels)
-    extra_at = place + 2 + 12 * len(entries) + 4
-    extra, table = b"", b""
-    for tag in sorted(entries):
-        letter, values = entries[tag]
-        if letter == "s":
-            count, data = len(values), values
-        else:
-            count, data = len(values), struct.pack(f"<{len(values)}{letter}", *values)
-        if len(data) > 4:
-            field = struct.pack("<I", extra_at + len(extra))
-            extra += data + b"\0" * (len(data) % 2)
-        else:
-            field = data.ljust(4, b"\0")
-        table += struct.pack("<HHI", tag, {"s": 2, "H": 3, "I": 4, "d": 12}[letter], count) + field
-    with open(path, "wb") as stream:
-        stream.write(b"II*\0" + struct.pack("<I", place) + pixels)
-        stream.write(struct.pack("<H", len(entries)) + table + b"\0" * 4 + extra)
-
-
-class Tiff(InFolder):
-    Z = numpy.array([[1.0, 2.0, -9999.0], [4.0, 5.0, 6.0]])
-    PLACE = {
-        33550: ("d", (30.0, 20.0, 0.0)),
-        33922: ("d", (0.0, 0.0, 0.0, 500000.0, 5000000.0, 0.0)),
-    }
-    NO_DATA = {42113: ("s", b"-9999\0")}
-
-    def tiff(self, tags, **options):
-        write_tiff(self.path("a.tif"), self.Z, tags, **options)
-        return self.path("a.tif")
-
-    def test_pixels_become_points_at_their_centres_without_those_of_no_data(self):
-        cloud = reading.read(self.tiff({**self.PLACE, **self.NO_DATA}))
-        self.assert_rows(
-            cloud,
-            [
-                (500015, 4999990, 1),
-                (500045, 4999990, 2),
-                (500015, 4999970, 4),
-                (500045, 4999970, 5),
-                (500075, 4999970, 6),
-            ],
-        )
-        self.assertEqual(cloud.left_out, {"pixels without data": 1})
-        self.assertIn("no-data value -9999 from the file", cloud.notes)
-
-    def test_pixels_that_are_points_are_not_moved_by_half_a_step(self):
-        keys = {34735: ("H", (1, 1, 0, 1, 1025, 0, 1, 2))}
-        cloud = reading.read(self.tiff({**self.PLACE, **keys}))
-        self.assertEqual(coordinates(cloud)[0].tolist(), [500000.0, 5000000.0, 1.0])
-
-    def test_a_rotated_raster_is_placed_by_its_matrix(self):
-        matrix = (0.0, 2.0, 0, 100.0, 3.0, 0.0, 0, 200.0, 0, 0, 0, 0, 0, 0, 0, 1)
-        cloud = reading.read(self.tiff({34264: ("d", matrix)}))
-        self.assertEqual(coordinates(cloud)[0].tolist(), [101.0, 201.5, 1.0])
-        self.assertEqual(coordinates(cloud)[1].tolist(), [101.0, 204.5, 2.0])
-
-    def test_without_georeferencing_columns_and_rows_are_used_and_that_is_said(self):
-        cloud = reading.read(self.tiff({}), keep_nulls=True)
-        self.assertEqual(coordinates(cloud)[0].tolist(), [0.0, 1.0, 1.0])
-        self.assertEqual(cloud.points.GetNumberOfPoints(), 6)
-        self.assertTrue(any("no georeferencing" in note for note in cloud.notes))
-        self.assertTrue(any("no no-data value" in note for note in cloud.notes))
-
-    def test_a_world_file_beside_it_is_used(self):
-        self.file("a.tfw", "30\n0\n0\n-20\n500015\n4999990\n")
-        cloud = reading.read(self.tiff({}))
-        self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
-
-    def test_a_no_data_value_can_be_given_beside_that_of_the_file(self):
-        cloud = reading.read(self.tiff(self.NO_DATA), no_data=5.0)
-        self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [1, 2, 4, 6])
-        cloud = reading.read(self.tiff({}), no_data=5.0, keep_nulls=True)
-        self.assertEqual(sorted(coordinates(cloud)[:, 2].tolist()), [-9999, 1, 2, 4, 6])
-
-    def test_a_no_data_value_is_found_among_pixels_of_single_precision(self):
-        # As text it is a double, and not the float that stands in the pixels.
-        self.assertNotEqual(float(numpy.float32(-9999.9)), -9999.9)
-        rows = numpy.array([[1.0, -9999.9], [2.0, 3.0]])
-        for tags, no_data in (({42113: ("s", b"-9999.9\0")}, None), ({}, -9999.9)):
-            with self.subTest(no_data=no_data):
-                write_tiff(self.path("b.tif"), rows, tags)
-                cloud = reading.read(self.path("b.tif"), no_data=no_data)
-                self.assertEqual(coordinates(cloud)[:, 2].tolist(), [1, 2, 3])
-                self.assertEqual(cloud.left_out, {"pixels without data": 1})
-
-    def test_what_vtk_reads_wrong_goes_through_gdal_or_is_refused(self):
-        for words, tags, bits in (
-            ("has a colour table", {262: ("H", (3,))}, 32),
-            ("is tiled", {322: ("I", (16,)), 323: ("I", (16,))}, 32),
-            ("has 64 bits", {}, 64),
-        ):
-            path = self.tiff({**self.PLACE, **tags}, bits=bits)
-            with self.subTest(words), mock.patch.dict(sys.modules, {"osgeo": None}):
-                with self.assertRaisesRegex(FileError, words + ".*install python3-gdal"):
-                    reading.read(path)
-        try:
-            import osgeo  # noqa: F401
-        except ImportError:
-            self.skipTest("python3-gdal is not installed")
-        cloud = reading.read(path)
-        self.assertEqual(coordinates(cloud)[0].tolist(), [500015.0, 4999990.0, 1.0])
-
-    def test_what_is_no_tiff_is_refused(self):
-        self.assert_refused("is not a TIFF file", "plain words", "a.tif")
-        self.assert_refused("cut off", b"II*\0\xff\0\0\0", "a.tif")
-
-
-def write_dem(path, profiles, dx=30.0, dy=30.0, dz=1.0, datum=0.0):
-    """A USGS ASCII DEM. profiles: [(x, y of the first elevation, elevations)]."""
-
-    def double(value):
-        return f"{value:24.15E}".replace("E", "D")
-
-    head = "A TEST".ljust(144) + f"{1:6d}{1:6d}{1:6d}{10:6d}" + double(0.0) * 15
-    head += f"{2:6d}{2:6d}{4:6d}" + double(0.0) * 8 + double(0.0) * 2 + double(0.0) + f"{0:6d}"
-    head += "".join(f"{v:12.6E}".replace("E", "D") for v in (dx, dy, dz))
-    head += f"{1:6d}{len(profiles):6d}"
-    text = head.ljust(1024)
-    for i, (x, y, z) in enumerate(profiles, 1):
-        record = f"{1:6d}{i:6d}{len(z):6d}{1:6d}" + double(x) + double(y) + double(datum)
-        record += double(0.0) * 2
-        record += "".join(f"{v:6d}" for v in z)
-        text += record.ljust(1024)
-    with open(path, "w", encoding="ascii") as stream:
-        stream.write(text)
-
-
-class Dem(InFolder):
-    def test_every_profile_begins_at_its_own_place(self):
-        write_dem(self.path("a.dem"), [(1000, 500, [7, 8]), (1030, 470, [5, 6, 9])])
-        cloud = reading.read(self.path("a.dem"))
-        self.assert_rows(
-            cloud, [(1000, 500, 7), (1000, 530, 8), (1030, 470, 5), (1030, 500, 6), (1030, 530, 9)]
-        )
-        self.assertIn("x,y in metres, elevation in metres, as in the file", cloud.notes)
-
-    def test_voids_are_left_out_and_counted_even_where_numbers_touch(self):
-        write_dem(self.path("a.dem"), [(0, 0, [12, -32767, -32767, 40])])
-        cloud = reading.read(self.path("a.dem"))
-        self.assert_rows(cloud, [(0, 0, 12), (0, 90, 40)])
-        self.assertEqual(cloud.left_out, {"pixels without data": 2})
-
-    def test_elevations_are_steps_above_the_datum_of_their_profile(self):
-        write_dem(self.path("a.dem"), [(0, 0, [12, -32767, 20])], dz=0.25, datum=100.0)
-        cloud = reading.read(self.path("a.dem"))
-        self.assert_rows(cloud, [(0, 0, 103), (0, 60, 105)])
-        # What a user calls no data is an elevation.
-        cloud = reading.read(self.path("a.dem"), no_data=105.0)
-        self.assert_rows(cloud, [(0, 0, 103)])
-
-    def test_a_damaged_file_names_the_profile(self):
-        self.assert_refused("is not a USGS ASCII DEM", "no dem at all", "a.dem")
-        write_dem(self.path("b.dem"), [(0, 0, [1, 2, 3]), (30, 0, [4, 5, 6])])
-        with open(self.path("b.dem"), "rb") as stream:
-            whole = stream.read()
-        self.assert_refused("profile 2 of 2: is missing", whole[:2048], "c.dem")
-        self.assert_refused("profile 2 of 2: 1 of 3", whole[: 2048 + 150], "d.dem")
 
 
 class Breaklines(InFolder):

@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What kind of file a file is: told by its content, and where that says nothing by its name."""
+
+import dataclasses
+import importlib
+import os
+import re
+
+from .messages import FileError
+from .paths import suffix_of
+
+HEAD = 4096
+
+
+@dataclasses.dataclass(frozen=True)
+class Format:
+    """A kind of file, and the module of this package that reads it.
+
+    is_it   tells from (first bytes, path) whether a file is of this kind
+    lines   the module whose read_lines(path, singular) reads boundaries and faults, or ""
+    """
+
+    name: str
+    suffixes: str
+    is_it: object
+    module: str
+    lines: str = ""
+
+    def reader(self):
+        return self._load(self.module, "read_text" if self.module == "text" else "read_points")
+
+    def line_reader(self):
+        return self._load(self.lines, "read_lines")
+
+    def _load(self, module, function):
+        found = getattr(importlib.import_module("." + module, __package__), function)
+
+        def read(path, *arguments):
+            try:
+                return found(path, *arguments)
+            except ImportError as error:
+                needed = "python3-gdal" if "osgeo" in str(error) else error.name
+                raise FileError(f"{path}: {self.name}; install {needed} to read it") from None
+
+        return read
+
+
+def begins(pattern):
+    """A test whether a file begins with the pattern."""
+    compiled = re.compile(pattern, re.DOTALL)
+    return lambda head, path: compiled.match(head) is not None
+
+
+def is_stl(head, path):
+    if re.match(rb"\s*solid\b.*?\bfacet\s+normal\b", head, re.DOTALL | re.IGNORECASE):
+        return True
+    facets = int.from_bytes(head[80:84], "little")
+    return facets > 0 and os.path.getsize(path) == 84 + 50 * facets
+
+
+def numbers_of(line):
+    """How many words of a line of bytes are numbers."""
+    found = 0
+    for word in re.split(rb"[\s,;]+", line.strip()):
+        try:
+            float(word)
+            found += 1
+        except ValueError:
+            pass
+    return found
+
+
+def lines_of(head):
+    """The first lines of a text that are neither blank nor comments; the last may be cut."""
+    lines = [line for line in re.split(rb"[\r\n]+", head) if line.strip()]
+    return [line for line in lines if not line.lstrip().startswith((b"#", b"%", b"//", b"!", b"*"))]
+
+
+def is_text(head):
+    return head[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" not in head
+
+
+def is_table(head, path):
+    """Text whose very first line of data holds numbers. Told apart early, since it is so usual."""
+    lines = lines_of(head)
+    return is_text(head) and bool(lines) and numbers_of(lines[0]) > 1 and len(lines[0]) < 1000
+
+
+def is_numbers(head, path):
+    """Text with numbers in it."""
+    return is_text(head) and any(numbers_of(line) > 1 for line in lines_of(head))
+
+
+def is_of_gdal(what):
+    def is_it(_head, path):
+        try:
+            from .gdal_common import kind_of
+
+            return kind_of(path, what) is not None
+        except ImportError:
+            return False
+
+    return is_it
+
+
+TEXT = ".csv .xyz .txt .dat .asc .pts .tsv"
+XML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<VTKFile\b"
+OBJ = rb"(\s*(#|mtllib |o |g |s |usemtl )[^\n]*\n)*\s*v\s+[-+.\d]"
+
+# In the order of asking.
+FORMATS = (
+    Format("VTK's XML", ".vtp .vtu .vts .vtr .vti", begins(XML), "vtk_files", "vtk_files"),
+    Format("VTK's legacy format", ".vtk", begins(rb"# vtk DataFile"), "vtk_files", "vtk_files"),
+    Format("a PLY file", ".ply", begins(rb"ply\s"), "ply", "vtk_files"),
+    Format("an STL file", ".stl", is_stl, "vtk_files", "vtk_files"),
+    Format("an OBJ file", ".obj", begins(OBJ), "vtk_files", "vtk_files"),
+    Format("a text table", TEXT, is_table, "text"),
+    Format(
+        "a raster",
+        ".tif .tiff .dem .asc .grd .nc .vrt .img .hgt .flt .bil .dat .zmap",
+        is_of_gdal("raster"),
+        "rasters",
+    ),
+    Format("a text table", TEXT, is_numbers, "text"),
+)
+
+
+def recognise(path):
+    """(Format, notes) of a file. Raises FileError for what is of no known kind."""
+    with open(path, "rb") as stream:
+        head = stream.read(HEAD)
+    suffix = suffix_of(path)
+    named = [kind for kind in FORMATS if suffix in kind.suffixes.split()]
+    for kind in FORMATS:
+        if kind.is_it(head, path):
+            if named and kind.name not in [other.name for other in named]:
+                return kind, [f"by its content this is {kind.name}, not {named[0].name}"]
+            return kind, []
+    if named:
+        return named[0], []
+    ending = suffix or "a file without suffix"
+    raise FileError(f"{path}: {ending} that holds none of what can be read: {all_suffixes()}")
+
+
+def all_suffixes():
+    """What can be read, as one line."""
+    names = dict.fromkeys(suffix for kind in FORMATS for suffix in kind.suffixes.split())
+    return " ".join(names)

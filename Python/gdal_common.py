@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What reading rasters and reading vectors by GDAL have in common."""
+
+import functools
+import re
+
+from .messages import FileError
+
+# Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
+NOT_ASKED = {"XYZ", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
+NOT_ASKED |= {"DAAS", "STACTA", "STACIT", "PostGISRaster", "PDF", "Rasterlite", "KMLSUPEROVERLAY"}
+# Those that are asked for points and lines.
+VECTORS = (
+    "GPKG,ESRI Shapefile,GeoJSON,GeoJSONSeq,ESRIJSON,TopoJSON,DXF,CAD,DGN,GML,LIBKML,KML,GPX,"
+    "FlatGeobuf,MapInfo File,OGR_GMT,OpenFileGDB,SQLite,S57,OGR_VRT,AVCE00,JML"
+).split(",")
+# Names that a variable, layer or attribute of elevations has where there are several.
+ELEVATION = re.compile(
+    r"z|elev|height|altitude|topo|bathy|depth|dem$|dtm$|band_?1$|twt|h[oö]he|hauteur", re.IGNORECASE
+)
+
+
+def one_line(error):
+    return " ".join(str(error).split())
+
+
+def gdal_module():
+    """GDAL, set to raise RuntimeError. Imported late: it takes a tenth of a second."""
+    from osgeo import gdal
+
+    gdal.UseExceptions()
+    return gdal
+
+
+class quiet:
+    """A context in which GDAL prints nothing. Gives the list of its warnings."""
+
+    def __enter__(self):
+        gdal = gdal_module()
+        warnings = []
+
+        def note(kind, _number, message):
+            if kind == gdal.CE_Warning:
+                warnings.append(one_line(message))
+
+        gdal.PushErrorHandler(note)
+        return warnings
+
+    def __exit__(self, *_):
+        gdal_module().PopErrorHandler()
+
+
+@functools.lru_cache(maxsize=None)
+def drivers(what):
+    """Short names of the drivers that are asked for a "raster" or for "vectors"."""
+    gdal = gdal_module()
+    known = [gdal.GetDriver(i) for i in range(gdal.GetDriverCount())]
+    if what == "vectors":
+        return [driver.ShortName for driver in known if driver.ShortName in VECTORS]
+    return [
+        driver.ShortName
+        for driver in known
+        if driver.GetMetadataItem("DCAP_RASTER") and driver.ShortName not in NOT_ASKED
+    ]
+
+
+def kind_of(path, what):
+    """The short name of the driver that knows the file's content, or None."""
+    gdal = gdal_module()
+    flags = gdal.OF_RASTER if what == "raster" else gdal.OF_VECTOR
+    with quiet():
+        driver = gdal.IdentifyDriverEx(path, flags, drivers(what))
+    return driver.ShortName if driver else None
+
+
+def choose_layer(path, wanted, names, what):
+    """The wanted one of the names, the only one, or the only one that means elevations."""
+    if wanted:
+        if wanted not in names:
+            raise FileError(f"{path}: has no layer {wanted}; {what}: {', '.join(names)}")
+        return wanted
+    if len(names) > 1:
+        named = [name for name in names if ELEVATION.match(name)]
+        names = named if len(named) == 1 else names
+    if len(names) != 1:
+        found = f"{what} {', '.join(names[:20])}: choose one by --layer" if names else f"no {what}"
+        raise FileError(f"{path}: holds {found}")
+    return names[0]

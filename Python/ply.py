@@ -1,0 +1,183 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Vertices of PLY files, in the precision that the file has. vtkPLYReader rounds them to floats."""
+
+import dataclasses
+import itertools
+import os
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
+
+from .clouds import Cloud, make_points
+from .messages import FileError
+from .vtk_files import rounding_note
+
+TYPES = {
+    name: code
+    for code, names in {
+        "i1": "char int8",
+        "u1": "uchar uint8",
+        "i2": "short int16",
+        "u2": "ushort uint16",
+        "i4": "int int32",
+        "u4": "uint uint32",
+        "f4": "float float32",
+        "f8": "double float64",
+    }.items()
+    for name in names.split()
+}
+FORMATS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+COLOURS = ("red", "green", "blue")
+
+
+@dataclasses.dataclass
+class Element:
+    """One "element" of a header; properties: [(name, type, None or a list's type of count)]."""
+
+    name: str
+    count: int
+    properties: list
+
+    def has_list(self):
+        return any(count for _, _, count in self.properties)
+
+    def row_type(self, order):
+        return numpy.dtype([(name, order + kind) for name, kind, _ in self.properties])
+
+    def least_size(self):
+        """Bytes of a row whose lists are empty."""
+        return sum(int((count or kind)[1]) for _, kind, count in self.properties)
+
+
+def read_header(path, stream):
+    """(byte order or "" for text, elements, lines of the header)."""
+    order, elements = None, []
+    for number in itertools.count(1):
+        line = stream.readline(4096)
+        words = line.decode("latin-1").split()
+        try:
+            if not line.endswith(b"\n"):
+                raise FileError(f"{path}: is cut off: its header has no end")
+            if words[:1] == ["end_header"]:
+                break
+            if words and words[0] == "format":
+                order = FORMATS[words[1]]
+            elif words and words[0] == "element":
+                elements.append(Element(words[1], int(words[2]), []))
+            elif words and words[0] == "property":
+                is_list = words[1] == "list"
+                count = TYPES[words[2]] if is_list else None
+                kind = TYPES[words[3 if is_list else 1]]
+                elements[-1].properties.append((words[4 if is_list else 2], kind, count))
+            elif words and words[0] not in ("ply", "comment", "obj_info"):
+                raise KeyError
+        except (KeyError, IndexError, ValueError):
+            shown = line.decode("latin-1").strip()[:40]
+            raise FileError(f"{path}, line {number}: '{shown}' means nothing in PLY") from None
+    if order is None:
+        raise FileError(f"{path}: its header names no format")
+    return order, elements, number
+
+
+def read_points(path, options):
+    """The vertices, wherever they stand in the file; their other numbers become point arrays."""
+    with open(path, "rb") as stream:
+        order, elements, number = read_header(path, stream)
+        names = [element.name for element in elements]
+        vertex = elements[names.index("vertex")] if "vertex" in names else None
+        if vertex is None or not {"x", "y", "z"} <= {name for name, _, _ in vertex.properties}:
+            raise FileError(f"{path}: holds no vertices with x, y and z")
+        if len(vertex.properties) > len({name for name, _, _ in vertex.properties}):
+            raise FileError(f"{path}: its vertices have a property twice")
+        if vertex.count < 1 or vertex.has_list():
+            why = "lists among its vertices, which are not read" if vertex.count else "no points"
+            raise FileError(f"{path}: holds {why}")
+        before, after = elements[: names.index("vertex")], elements[names.index("vertex") + 1 :]
+        read = read_binary if order else read_text
+        rows, notes = read(path, stream, order or number, vertex, before, after)
+    coordinates = numpy.column_stack([rows[axis].astype("f8") for axis in "xyz"])
+    cloud = Cloud(make_points(coordinates), notes)
+    add_arrays(cloud.points.GetPointData(), rows)
+    if any(element.count for element in elements if element.name != "vertex"):
+        cloud.notes.append("only the points are used, not the file's cells")
+    if rows["x"].dtype == "f4":
+        note = rounding_note(coordinates, "the file is")
+        cloud.notes += [note] if note else []
+    return cloud
+
+
+def add_arrays(point_data, rows):
+    """Colours as one array RGB, every other number that is no coordinate by its name."""
+    names = [name for name in rows.dtype.names if name not in ("x", "y", "z")]
+    arrays = {}
+    if set(COLOURS) <= set(names) and all(rows[name].dtype == numpy.uint8 for name in COLOURS):
+        arrays["RGB"] = numpy.column_stack([rows[name] for name in COLOURS])
+        names = [name for name in names if name not in COLOURS]
+    arrays.update((name, rows[name]) for name in names)
+    for name, values in arrays.items():
+        native = values.astype(values.dtype.newbyteorder("="))
+        array = numpy_to_vtk(numpy.ascontiguousarray(native), deep=True)
+        array.SetName(name)
+        point_data.AddArray(array)
+
+
+def read_text(path, stream, number, vertex, before, after):
+    skip = sum(element.count for element in before)
+    number += sum(1 for _ in itertools.islice(stream, skip))
+    seen, last = itertools.count(number + 1), b"\n"
+
+    def lines():
+        nonlocal number, last
+        for number, last in zip(seen, stream):
+            yield last
+
+    try:
+        # Its own max_rows would be allocated before anything is read.
+        rows = itertools.islice(lines(), vertex.count)
+        rows = numpy.loadtxt(rows, vertex.row_type(""), comments=None, ndmin=1)
+    except (ValueError, OverflowError) as error:
+        words = str(error).split(" at row")[0]
+        raise FileError(f"{path}, line {number}: is no vertex: {words}") from None
+    check_count(path, len(rows), vertex)
+    notes = []
+    if not last.endswith(b"\n"):
+        notes.append("the last line has no end, so the last number may be cut off")
+    if sum(1 for line in stream if line.strip()) < sum(element.count for element in after):
+        notes.append("the file is cut off behind its vertices")
+    return rows, notes
+
+
+def check_count(path, found, vertex):
+    if found < vertex.count:
+        raise FileError(
+            f"{path}: is cut off: {vertex.count:,} vertices are announced, {found:,} found"
+        )
+
+
+def read_binary(path, stream, order, vertex, before, after):
+    size = os.fstat(stream.fileno()).st_size
+    for element in before:
+        step_over(path, stream, order, element, size)
+    kind = vertex.row_type(order)
+    check_count(path, max(size - stream.tell(), 0) // kind.itemsize, vertex)
+    rows = numpy.fromfile(stream, kind, vertex.count)
+    rest = sum(element.count * element.least_size() for element in after)
+    return rows, ["the file is cut off behind its vertices"] * (size - stream.tell() < rest)
+
+
+def step_over(path, stream, order, element, size):
+    """Moves the stream behind an element, whose lists tell their lengths row by row."""
+    if not element.has_list():
+        stream.seek(element.count * element.least_size(), os.SEEK_CUR)
+        return
+    for _ in range(element.count):
+        for _, kind, count in element.properties:
+            number = 1
+            if count:
+                number = int.from_bytes(
+                    stream.read(int(count[1])), "little" if order == "<" else "big"
+                )
+            stream.seek(number * int(kind[1]), os.SEEK_CUR)
+        if stream.tell() > size:
+            raise FileError(f"{path}: is cut off within its {element.name}")
