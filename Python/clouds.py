@@ -7,7 +7,7 @@ import dataclasses
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 
@@ -49,6 +49,16 @@ def make_points(coordinates):
     data = vtkPolyData()
     data.SetPoints(points)
     return data
+
+
+def cells_of(rows):
+    """An (n, k) index array -> vtkCellArray."""
+    kind = "i4" if rows.size < 2**31 and rows.max(initial=0) < 2**31 else "i8"
+    offsets = numpy.arange(0, rows.size + 1, rows.shape[1], dtype=kind)
+    rows = numpy.ascontiguousarray(rows, dtype=kind).ravel()
+    cells = vtkCellArray()
+    cells.SetData(*(numpy_to_vtk(ids, deep=True) for ids in (offsets, rows)))
+    return cells
 
 
 def some_points(data, keep):

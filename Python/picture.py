@@ -18,9 +18,9 @@ import sys
 import numpy
 import vtkmodules.vtkRenderingFreeType  # noqa: F401  (text)
 import vtkmodules.vtkRenderingOpenGL2  # noqa: F401  (the window)
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
@@ -39,8 +39,10 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
+from .clouds import cells_of
 from .display import screen
 from .messages import PictureError
+from .screen_mesh import Cells, corner_flags, screen_mesh
 
 # Both maps rise evenly in lightness, so that they keep their order in grey and for colour-blind
 # eyes. Colours are mixed in CIE Lab between the stops.
@@ -56,6 +58,9 @@ WALL = (0.66, 0.63, 0.59)
 VTK_FONT_FILE = 4  # as in vtkTextProperty.h; not wrapped
 WIDTH = 1800
 TOP, BOTTOM, LEFT, RIGHT = 150, 120, 70, 230
+MOST_TRIANGLES = 500_000  # of more, no more are drawn than the picture can show
+PIXELS_OF_CELL = 2.0
+MOST_SAMPLES = 1_000_000
 NICE = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 
 
@@ -108,12 +113,19 @@ def why_no_picture():
 def why_not_drawn(surface):
     """Why this surface cannot be drawn, or None."""
     points = vtk_to_numpy(surface.GetPoints().GetData())
-    points = points[numpy.unique(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()))]
-    if numpy.abs(points).max() > 1e30:
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    used = corner_flags(corners, len(points))
+    low, high = numpy.array([(column.min(), column.max()) for column in columns(points, used)]).T
+    if max(abs(low).max(), abs(high).max()) > 1e30:
         return "coordinates beyond 1e30 are too large for it"
-    if min(numpy.ptp(points[:, :2], axis=0)) < 1e-30:
+    if min(high[:2] - low[:2]) < 1e-30:
         return "the surface is smaller than 1e-30, too small for it"
     return None
+
+
+def columns(points, used):
+    """x, y and z of the used points, one after another."""
+    return (points[used, i].astype("f8") for i in range(3))
 
 
 def nice_number(value, steps=NICE):
@@ -128,7 +140,7 @@ def choose_exaggeration(points, triangles):
 
     Less where the surface is rough: all but the steepest tenth of it stays below about 45 degrees.
     """
-    used = points[numpy.unique(triangles)]
+    used = points[corner_flags(triangles, len(points))]
     low, high = numpy.percentile(used[:, 2], (1, 99))
     extent = numpy.ptp(used[:, :2], axis=0)
     size = max(math.sqrt(extent[0] * extent[1]), 0.4 * float(extent.max()))
@@ -229,33 +241,10 @@ def line_cells(data):
     return [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
 
 
-def cells_of(rows):
-    """An (n, k) index array -> vtkCellArray."""
-    rows = numpy.ascontiguousarray(rows, dtype="i8")
-    cells = vtkCellArray()
-    offsets = numpy.arange(0, rows.size + 1, rows.shape[1], dtype="i8")
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(offsets, deep=True),
-        numpy_to_vtkIdTypeArray(rows.ravel(), deep=True),
-    )
-    return cells
-
-
 def segments(paths):
     """Paths as index arrays -> (n, 2) index pairs."""
     pairs = [numpy.column_stack((p[:-1], p[1:])) for p in paths if len(p) > 1]
     return numpy.concatenate(pairs) if pairs else numpy.empty((0, 2), dtype="i8")
-
-
-def outline(triangles):
-    """The edges that belong to one of the triangles only, as (n, 2) index pairs."""
-    edges = numpy.concatenate([triangles[:, (0, 1)], triangles[:, (1, 2)], triangles[:, (2, 0)]])
-    edges = numpy.sort(edges, axis=1).astype("i8")
-    # One number for each edge: sorting numbers is many times faster than sorting pairs.
-    size = int(edges.max()) + 1
-    keys, counts = numpy.unique(edges[:, 0] * size + edges[:, 1], return_counts=True)
-    keys = keys[counts == 1]
-    return numpy.column_stack((keys // size, keys % size))
 
 
 class Frame:
@@ -434,29 +423,35 @@ def draw(surface, path, title, subtitle, holes=None, **options):
 
 def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, show_errors=False):
     """draw() on a screen that is there."""
-    real = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
-    used = numpy.unique(corners)
-    xy, z = real[used, :2], real[used, 2]
+    real = vtk_to_numpy(surface.GetPoints().GetData())
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    used = corner_flags(triangles, len(real))
+    x, y, z = columns(real, used)
     low, high, is_cut = common_range(z)
-    middle = 0.5 * (xy.min(axis=0) + xy.max(axis=0))
+    middle = 0.5 * numpy.array((x.min() + x.max(), y.min() + y.max()))
+    few = slice(None, None, 1 + len(x) // MOST_SAMPLES)
+    xy = numpy.column_stack((x[few], y[few]))
+    del x, y, z
     across, stretch = choose_stretch(xy)
     bearing, height = view or (choose_bearing(xy - middle), 42.0)
     margin = 0.3 * (high - low) if is_cut else 0.0
     cut = (low - margin, high + margin) if is_cut else (-numpy.inf, numpy.inf)
     frame = Frame(middle, low, 1.0, cut, across, stretch)
-    exaggeration = exaggeration or choose_exaggeration(frame(real), corners.reshape(-1, 3))
+    patches = surface.GetCellData().GetArray("HoleId")
+    cells = None
+    if len(triangles) > MOST_TRIANGLES:
+        cells = Cells(real, frame.widen, used, (WIDTH - LEFT - RIGHT) / PIXELS_OF_CELL)
+    mesh = screen_mesh(triangles, None if patches is None else vtk_to_numpy(patches) >= 0, cells)
+    real = real[mesh.ids].astype("f8")
+    exaggeration = exaggeration or choose_exaggeration(frame(real), mesh.triangles)
     frame.scale[2] = exaggeration
-    points = frame(numpy.nan_to_num(real, nan=0.0, posinf=0.0, neginf=0.0))
-    unused = numpy.ones(len(points), dtype=bool)
-    unused[used] = False
-    points[unused] = points[used[0]]
+    points = frame(real)
 
     renderer = vtkRenderer()
     renderer.SetBackground(1.0, 1.0, 1.0)
     colours = colour_map(low, high)
 
-    data = poly_data(points, polys=surface.GetPolys())
+    data = poly_data(points, polys=cells_of(mesh.triangles))
     normals = vtkPolyDataNormals()
     normals.SetInputData(data)
     normals.SplittingOff()
@@ -465,7 +460,7 @@ def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, 
     shaded = normals.GetOutput()
     shown = real[:, 2]
     if show_errors:
-        shown = vtk_to_numpy(surface.GetPointData().GetArray("FilledError"))
+        shown = vtk_to_numpy(surface.GetPointData().GetArray("FilledError"))[mesh.ids]
         colours = error_colours(shown)
     scalars = numpy_to_vtk(numpy.ascontiguousarray(shown), deep=True)
     scalars.SetName("Shown")
@@ -483,19 +478,15 @@ def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, 
     vtkMapper.SetResolveCoincidentTopologyToPolygonOffset()
 
     # The block: walls under every rim. Rims of holes that stay open get walls too, as pits.
-    extent = numpy.ptp(points[used, :2], axis=0)
+    extent = numpy.ptp(points[:, :2], axis=0)
     floor = -0.05 * math.sqrt(max(float(numpy.prod(extent)), 1e-300)) - margin * exaggeration
-    rim = outline(corners.reshape(-1, 3))
     if height < 89.0:
-        renderer.AddActor(walls_actor(points, rim, floor))
-    renderer.AddActor(lines_actor(points, rim, INK, 2.5))
+        renderer.AddActor(walls_actor(points, mesh.rim, floor))
+    renderer.AddActor(lines_actor(points, mesh.rim, INK, 2.5))
     legend = [("boundary", INK)]
-    patches = surface.GetCellData().GetArray("HoleId")
-    if patches is not None:
-        filled = corners.reshape(-1, 3)[vtk_to_numpy(patches) >= 0]
-        if len(filled):
-            renderer.AddActor(lines_actor(points, outline(filled), FILLED, 2.0, 1))
-            legend.append(("filled hole", FILLED))
+    if len(mesh.patches):
+        renderer.AddActor(lines_actor(points, mesh.patches, FILLED, 2.0, 1))
+        legend.append(("filled hole", FILLED))
     if holes is not None and holes.GetNumberOfLines():
         # 0: filled; 4: triangles that bridged it were replaced
         status = vtk_to_numpy(holes.GetCellData().GetArray("Status"))
@@ -505,7 +496,7 @@ def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, 
             renderer.AddActor(lines_actor(frame.of(holes), pairs, OPEN, 3.5, 2))
             legend.append(("hole left open", OPEN))
 
-    window = place_camera(renderer, points[used], floor, bearing, height)
+    window = place_camera(renderer, points, floor, bearing, height)
     scale = renderer.GetActiveCamera().GetParallelScale()
     width, tall = window.GetSize()
     add_lights(renderer, bearing)

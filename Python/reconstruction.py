@@ -223,6 +223,7 @@ class Reconstruction:
         self.times = {}
         self.notes = []
         self.delaunay = self.trim = self.fill = None
+        self.progress = None  # what run_chain() was given
         self.boundary_name = None  # where a given boundary is from
         self.faults_name = None
         self.why_opened = None
@@ -248,6 +249,11 @@ class Reconstruction:
         from .report import make_report
 
         return make_report(self)
+
+    def measuring(self, fraction):
+        """Progress of the report."""
+        if self.progress:
+            self.progress("measuring", fraction)
 
     def to_numpy(self):
         """(points, triangles): (n, 3) float64, and (m, 3) integers that number the points."""
@@ -326,6 +332,7 @@ def run_chain(
 ):
     """reconstruct() on what has been checked: a Cloud, vtkPolyData or None, and checked()."""
     result = Reconstruction(cloud)
+    result.progress = progress
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
     run = _Step(result, progress, strict)
@@ -415,6 +422,7 @@ SPACINGS_ALONG = 2.0
 LEAST_RATIO_OF_LINES = 3.0
 # A full grid has triangles of half a cell; a thinned one, whose nodes are not missing, larger ones.
 MOST_CELLS_OF_FULL_GRID = 0.75
+MOST_SAMPLES = 1_000_000  # triangles: of more, every k-th stands for k
 
 
 def lattice_of(fields):
@@ -440,8 +448,9 @@ def length_to_open(surface, has_boundary):
     if has_boundary or len(triangles) == 0:
         # The edges of a boundary may be long where nothing is missing.
         return 0.0, None
-    xy = vtk_to_numpy(surface.GetPoints().GetData())[:, :2].astype("f8")
-    a, b, c = (xy[triangles[:, i]] for i in range(3))
+    triangles = triangles[:: 1 + len(triangles) // MOST_SAMPLES]
+    xy = vtk_to_numpy(surface.GetPoints().GetData())[:, :2]
+    a, b, c = (xy[triangles[:, i]].astype("f8") for i in range(3))
     area = 0.5 * numpy.abs(
         (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     )

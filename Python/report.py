@@ -3,21 +3,24 @@
 """What became of every point and hole, and how far the points lie from the surface: for people and
 as a dictionary."""
 
-import math
 import time
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDoubleArray
-from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
-from .clouds import make_points
+from .distance import distance_to
 from .reconstruction import INTERPOLATIONS, LATTICE_MODES, lattice_of
+from .screen_mesh import corner_flags
 
-REASONS = {1: "same x,y as another point", 2: "not finite"}
-LONELY = "in no triangle below the edge limit"
 OUTSIDE = "outside the boundary"
+# Why a point is not used, by number: the first two are those of vtkGridDelaunay2D.
+REASONS = {
+    1: "same x,y as another point",
+    2: "not finite",
+    3: "in no triangle below the edge limit",
+    4: OUTSIDE,
+}
+MOST_LISTED = 25_000  # unused points for each reason
 FOUND = "found from the points"
 STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced"}
 
@@ -27,40 +30,19 @@ def make_report(result):
     cloud, delaunay, trim, fill = result.cloud, result.delaunay, result.trim, result.fill
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
     fields = delaunay.GetOutput().GetFieldData()
-    ids = vtk_to_numpy(fields.GetArray("UnusedPointIds"))
-    reasons = [REASONS[int(r)] for r in vtk_to_numpy(fields.GetArray("UnusedPointReasons"))]
     surface = result.surface
-
-    def in_triangles(mesh):
-        found = numpy.zeros(mesh.GetNumberOfPoints(), dtype=bool)
-        found[vtk_to_numpy(mesh.GetPolys().GetConnectivityArray())] = True
-        return found[: len(coordinates)]
-
-    lonely = ~in_triangles(delaunay.GetOutput())
-    lonely[ids] = False
-    outside = ~in_triangles(surface) & ~lonely
-    outside[ids] = False
-    unused = list(zip(ids.tolist(), reasons))
-    unused += [(i, LONELY) for i in numpy.flatnonzero(lonely).tolist()]
-    unused += [(i, OUTSIDE) for i in numpy.flatnonzero(outside).tolist()]
-    unused.sort()
-    listed = []
-    for point, why in unused:
-        entry = {"point": point, "reason": why}
-        if cloud.lines is not None:
-            entry["line"] = int(cloud.lines[point])
-        listed.append(entry)
-    counts = {}
-    for _, why in unused:
-        counts[why] = counts.get(why, 0) + 1
+    reasons = reasons_unused(len(coordinates), delaunay.GetOutput(), surface)
+    counts, listed = list_unused(reasons, cloud.lines)
+    unused = sum(counts.values())
 
     report = {
         "notes": cloud.notes + result.notes,
         "left_out": cloud.left_out,
         "points": len(coordinates),
-        "points_unused": len(unused),
+        "points_unused": unused,
         "unused_reasons": counts,
         "unused": listed,
+        "unused_listed": len(listed),
         "lattice": lattice_of(fields),
         "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
         "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
@@ -119,11 +101,42 @@ def make_report(result):
     # All points that the user wants in the surface, used or not.
     measured = numpy.isfinite(coordinates).all(axis=1)
     if result.boundary_name:
-        measured &= ~outside
+        measured &= reasons != 4
     began = time.perf_counter()
-    report["distance"] = distance_to(surface, coordinates, measured)
+    report["distance"] = distance_to(surface, coordinates, measured, result.measuring)
     result.times["measure"] = time.perf_counter() - began
     return report
+
+
+def reasons_unused(count, delaunay, surface):
+    """(count,) numbers of REASONS, or 0, for the points of the cloud."""
+    def in_triangles(mesh):
+        corners = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray())
+        return corner_flags(corners, mesh.GetNumberOfPoints())[:count]
+
+    reasons = numpy.zeros(count, dtype="u1")
+    reasons[~in_triangles(surface)] = 4
+    reasons[~in_triangles(delaunay)] = 3
+    fields = delaunay.GetFieldData()
+    ids = vtk_to_numpy(fields.GetArray("UnusedPointIds"))
+    reasons[ids] = vtk_to_numpy(fields.GetArray("UnusedPointReasons"))
+    return reasons
+
+
+def list_unused(reasons, lines):
+    """({reason: count}, the first MOST_LISTED unused points for each reason as dictionaries)."""
+    counts, some = {}, []
+    for number, words in REASONS.items():
+        ids = numpy.flatnonzero(reasons == number)
+        if len(ids):
+            counts[words] = len(ids)
+            some.append(ids[:MOST_LISTED])
+    listed = []
+    for point in numpy.sort(numpy.concatenate(some)).tolist() if some else []:
+        listed.append({"point": point, "reason": REASONS[int(reasons[point])]})
+        if lines is not None:
+            listed[-1]["line"] = int(lines[point])
+    return counts, listed
 
 
 def hole_sizes(lines):
@@ -137,51 +150,6 @@ def hole_sizes(lines):
     low = numpy.minimum.reduceat(xy, starts, axis=0)
     high = numpy.maximum.reduceat(xy, starts, axis=0)
     return numpy.hypot(*(high - low).T).tolist()
-
-
-def distance_to(surface, coordinates, chosen):
-    """Distance of input points from a surface: max, mean and root mean square, as Metro tells them.
-
-    coordinates  (n, 3), the input points; those that are points of the surface come first there too
-    chosen       (n,) of bool: which of them are measured
-
-    A point that is a corner of a triangle, with all three coordinates the same, has distance 0. For
-    all others vtkImplicitPolyDataDistance finds the closest place of the surface, in one call; that
-    takes some 10 to 40 microseconds a point.
-    """
-    corners = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
-    is_corner = numpy.zeros(len(corners), dtype=bool)
-    is_corner[vtk_to_numpy(surface.GetPolys().GetConnectivityArray())] = True
-    here = is_corner[: len(coordinates)]
-    here &= (corners[: len(coordinates)] == coordinates).all(axis=1)
-    away = coordinates[chosen & ~here]
-    distance = numpy.zeros(len(away))
-    unit = 1.0
-    if len(away):
-        # Only what the search needs, near the origin, where doubles are finest.
-        middle = 0.5 * corners[is_corner].min(axis=0) + 0.5 * corners[is_corner].max(axis=0)
-        size = max(float(numpy.abs(corners[is_corner]).max()), float(numpy.abs(away).max()))
-        if size > 1e100:
-            # Squares would be infinite.
-            unit = 2.0 ** math.floor(math.log2(size))
-            corners, away, middle = corners / unit, away / unit, middle / unit
-        corners = numpy.where(is_corner[:, None], corners - middle, 0.0)
-        bare = vtkPolyData()
-        bare.SetPoints(make_points(corners).GetPoints())
-        bare.SetPolys(surface.GetPolys())
-        search = vtkImplicitPolyDataDistance()
-        search.SetInput(bare)
-        result = vtkDoubleArray()
-        search.EvaluateFunction(make_points(away - middle).GetPoints().GetData(), result)
-        distance = numpy.abs(vtk_to_numpy(result))
-    count = int(numpy.count_nonzero(chosen))
-    return {
-        "points": count,
-        "points_not_corners": len(away),
-        "maximum": unit * float(distance.max(initial=0.0)),
-        "mean": unit * float(distance.sum() / count),
-        "rms": unit * float(math.sqrt((distance**2).sum() / count)),
-    }
 
 
 def counted(count, singular, plural=None):
@@ -282,6 +250,14 @@ def print_report(report):
         f"of {counted(d['points'], 'point')}{beyond} from the surface: max {d['maximum']:.3g}, "
         f"mean {d['mean']:.3g}, RMS {d['rms']:.3g}",
     )
+    if d["measured"] < d["points_not_corners"]:
+        line(
+            "",
+            f"from a sample: every corner, and {d['measured']:,} of the "
+            f"{d['points_not_corners']:,} other points",
+        )
+    if report["unused_listed"] < report["points_unused"]:
+        line("", f"--report lists the first {MOST_LISTED:,} unused points for each reason")
     line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in report["times"].items()))
     for path in report["written"]:
         line("written", path)

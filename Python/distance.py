@@ -1,0 +1,118 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How far points lie from a surface."""
+
+import math
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDoubleArray
+from vtkmodules.vtkCommonDataModel import vtkStaticPointLocator
+from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
+
+from .clouds import cells_of, make_points
+from .screen_mesh import corner_flags, slices
+
+MOST_MEASURED = 1_000_000
+AT_ONCE = 20_000  # points between two reports of progress
+FEW = 0.01  # so many points for each triangle: then only triangles near them are searched
+BINS = 1024  # side by side, where triangles near points are looked for
+
+
+def distance_to(surface, coordinates, chosen, progress=None):
+    """Distance of input points from a surface: max, mean and root mean square, as Metro tells them.
+
+    coordinates  (n, 3), the input points; those that are points of the surface come first there too
+    chosen       (n,) of bool: which of them are measured
+    progress     None, or a function that is called with the fraction done
+
+    A point that is a corner of a triangle, with all three coordinates the same, has distance 0. For
+    all others vtkImplicitPolyDataDistance finds the closest place of the surface; that takes some 10
+    to 40 microseconds a point. Of more than MOST_MEASURED others, every k-th is measured and stands
+    for k; "measured" tells how many were.
+    """
+    corners = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8", copy=False)
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    is_corner = corner_flags(triangles, len(corners))
+    away = chosen.copy()
+    first, flags = corners[: len(coordinates)], is_corner[: len(coordinates)]
+    for rows in slices(len(coordinates)):
+        away[rows] &= ~(flags[rows] & (first[rows] == coordinates[rows]).all(axis=1))
+    away = numpy.flatnonzero(away)
+    others = len(away)
+    away = coordinates[away[:: max(1, -(-others // MOST_MEASURED))]].astype("f8")
+    distance = distances(corners, is_corner, triangles, away, progress) if others else away[:, 0]
+    count = int(numpy.count_nonzero(chosen))
+    share = others / max(len(away), 1) / count
+    return {
+        "points": count,
+        "points_not_corners": others,
+        "measured": len(away),
+        "maximum": float(distance.max(initial=0.0)),
+        "mean": float(distance.sum() * share),
+        "rms": float(math.sqrt((distance**2).sum() * share)),
+    }
+
+
+def distances(corners, is_corner, triangles, away, progress=None):
+    """(n,) distances of the points `away` from triangles."""
+    low = numpy.array([corners[is_corner, i].min() for i in range(3)])
+    high = numpy.array([corners[is_corner, i].max() for i in range(3)])
+    # Near the origin, where doubles are finest; beyond 1e100 squares would be infinite.
+    middle = 0.5 * low + 0.5 * high
+    size = max(float(abs(low).max()), float(abs(high).max()), float(abs(away).max()))
+    unit = 2.0 ** math.floor(math.log2(size)) if size > 1e100 else 1.0
+    if unit == 1.0 and len(away) < FEW * len(triangles):
+        triangles = triangles[near(corners, is_corner, triangles, away)]
+        is_corner = corner_flags(triangles, len(corners))
+    ids = numpy.flatnonzero(is_corner)
+    places = numpy.zeros(len(corners), dtype="i8")
+    places[ids] = numpy.arange(len(ids))
+    bare = make_points(corners[ids] / unit - middle / unit)
+    bare.SetPolys(cells_of(places[triangles]))
+    search = vtkImplicitPolyDataDistance()
+    search.SetInput(bare)
+    away = away / unit - middle / unit
+    result = numpy.empty(len(away))
+    for i in range(0, len(away), AT_ONCE):
+        if progress:
+            progress(i / len(away))
+        values = vtkDoubleArray()
+        some = make_points(away[i : i + AT_ONCE])
+        search.EvaluateFunction(some.GetPoints().GetData(), values)
+        result[i : i + AT_ONCE] = vtk_to_numpy(values)
+    return unit * numpy.abs(result)
+
+
+def near(corners, is_corner, triangles, away):
+    """(m,) of bool: the triangles among which each point has its closest one, and some more.
+
+    No triangle is closer to a point than its closest corner, but those whose box in x,y meets the
+    square around the point that has that distance.
+    """
+    ids = numpy.flatnonzero(is_corner)
+    locator = vtkStaticPointLocator()
+    points = make_points(corners[ids])
+    locator.SetDataSet(points)
+    closest = [locator.FindClosestPoint(point) for point in away.tolist()]
+    reach = 1.000001 * numpy.linalg.norm(corners[ids[closest]] - away, axis=1)[:, None]
+    low = corners[ids, :2].min(axis=0)
+    step = (corners[ids, :2].max(axis=0) - low) / BINS
+
+    def bins(xy):
+        return numpy.clip((xy - low) / step, 0, BINS - 1).astype("i8").T
+
+    # How many squares lie over each bin, and then over all bins before it: sums of differences.
+    over = numpy.zeros((BINS + 1, BINS + 1), dtype="i8")
+    (x0, y0), (x1, y1) = bins(away[:, :2] - reach), bins(away[:, :2] + reach) + 1
+    for x, y, sign in ((x0, y0, 1), (x1, y1, 1), (x0, y1, -1), (x1, y0, -1)):
+        numpy.add.at(over, (x, y), sign)
+    over = (over.cumsum(axis=0).cumsum(axis=1) > 0).astype("i8")
+    before = numpy.zeros((BINS + 2, BINS + 2), dtype="i8")
+    before[1:, 1:] = over.cumsum(axis=0).cumsum(axis=1)
+    result = numpy.empty(len(triangles), dtype=bool)
+    for rows in slices(len(triangles)):
+        xy = corners[triangles[rows], :2]
+        (x0, y0), (x1, y1) = bins(xy.min(axis=1)), bins(xy.max(axis=1)) + 1
+        result[rows] = before[x1, y1] - before[x0, y1] - before[x1, y0] + before[x0, y0] > 0
+    return result
