@@ -16,9 +16,9 @@ import numpy
 
 from . import reading, writing
 from .clouds import ReadOptions, antimeridian_note, merged
-from .messages import ElevationSurfaceError, FileError, PictureError
+from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
 from .paths import check_suffix, check_writable
-from .reconstruction import PROPERTIES, check_spacing, did_you_mean, run_chain
+from .reconstruction import PROPERTIES, check_spacing, run_chain
 from .report import picture_subtitle, print_report
 from .supervisor import note_partial_file
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Errors of the package, and what VTK reports, as plain words."""
 
+import difflib
 import re
 
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkLogger, vtkOutputWindow
@@ -32,6 +33,13 @@ class PictureError(ElevationSurfaceError):
     def __init__(self, path, reason):
         super().__init__(f"{path}: cannot be drawn: {reason}")
         self.reason = reason
+
+
+def did_you_mean(word, words):
+    """"; did you mean x?" for the word of a list that is most like the given one, or ""."""
+    plain = {known.lstrip("-"): known for known in words}
+    near = difflib.get_close_matches(word.lstrip("-"), plain, 1, 0.6)
+    return f"; did you mean {plain[near[0]]}?" if near else ""
 
 
 class Messages:

@@ -7,13 +7,14 @@ the user.
 """
 
 import os
+from typing import Any, Union
 
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import ReadOptions, make_points, turn_over
+from .clouds import Cloud, ReadOptions, make_points, turn_over
 from .formats import recognise
-from .messages import FileError
+from .messages import FileError, did_you_mean
 from .nulls import take_out
 from .paths import check_readable
 from .text import read_table
@@ -35,13 +36,17 @@ def check_use(path, kind, options):
             raise FileError(f"{path}: --{name} is for {fits}; this is {kind.name}")
 
 
-def read(path, **options):
+def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     """Reads the points of a file, whatever its kind. The kind is told by the content, not the name.
 
-    options  those of ReadOptions
+    options  those of ReadOptions; a misspelt one is a TypeError
     Returns a Cloud. Raises FileError. Takes about a second for a million rows of text, less for
     other kinds.
     """
+    for name in options:
+        if name not in ReadOptions.__dataclass_fields__:
+            known = did_you_mean(name, ReadOptions.__dataclass_fields__)
+            raise TypeError(f"read() has no option {name}{known}")
     options = ReadOptions(**options)
     cloud = take_out(read_any(os.fspath(path), options), options)
     if options.depth:

@@ -2,21 +2,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Points in, surface out: the chain of the three filters as one function."""
 
+from __future__ import annotations
+
 import dataclasses
-import difflib
 import functools
 import math
 import os
 import re
 import time
 import warnings
+from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPointSet, vtkPolyData
 
 from .clouds import Cloud, make_points
-from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Messages
+from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Messages, did_you_mean
 from .vtkElevationSurface import (
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
@@ -112,14 +114,7 @@ PROPERTIES = {
 }
 
 
-def did_you_mean(word, words):
-    """"; did you mean x?" for the word of a list that is most like the given one, or ""."""
-    plain = {known.lstrip("-"): known for known in words}
-    near = difflib.get_close_matches(word.lstrip("-"), plain, 1, 0.6)
-    return f"; did you mean {plain[near[0]]}?" if near else ""
-
-
-def checked(properties):
+def checked(properties: dict[str, Any]) -> dict[str, Any]:
     """{name: value as the filters take it}. Raises TypeError and ValueError with one clear line."""
     result = {}
     for name, value in properties.items():
@@ -139,7 +134,7 @@ def checked(properties):
 # ---- input ------------------------------------------------------------------------------------
 
 
-def as_cloud(points):
+def as_cloud(points: Points) -> Cloud:
     """Points of any accepted kind as a Cloud."""
     if isinstance(points, Cloud):
         return points
@@ -167,7 +162,7 @@ def array_of(values, what, widths):
     return array
 
 
-def as_lines(lines, what, are_rings):
+def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
     """vtkPolyData with lines or polygons, from such data, an array, or a list of arrays.
 
     An array holds the points of one line in order, (n, 3); of a ring also (n, 2), closed or not.
@@ -229,19 +224,19 @@ class Reconstruction:
         self.why_opened = None
 
     @property
-    def surface(self):
+    def surface(self) -> vtkPolyData:
         return (self.fill or self.trim or self.delaunay).GetOutput()
 
     @property
-    def boundary(self):
+    def boundary(self) -> Optional[vtkPolyData]:
         return self.trim.GetOutput(2) if self.trim else None
 
     @property
-    def holes(self):
+    def holes(self) -> Optional[vtkPolyData]:
         return self.fill.GetOutput(1) if self.fill else None
 
     @functools.cached_property
-    def report(self):
+    def report(self) -> dict:
         """All that reconstruct tells of a run, as a dictionary of numbers and words.
 
         Made when first asked for: measuring the distance of the points takes time.
@@ -255,19 +250,21 @@ class Reconstruction:
         if self.progress:
             self.progress("measuring", fraction)
 
-    def to_numpy(self):
+    def to_numpy(self) -> tuple[numpy.ndarray, numpy.ndarray]:
         """(points, triangles): (n, 3) float64, and (m, 3) integers that number the points."""
         points = vtk_to_numpy(self.surface.GetPoints().GetData()).astype("f8")
         ids = vtk_to_numpy(self.surface.GetPolys().GetConnectivityArray())
         return points, ids.reshape(-1, 3).copy()
 
-    def write(self, path):
+    def write(self, path: Union[str, os.PathLike]) -> list[str]:
         """Writes the surface in the format of the suffix. Returns notes, one line each."""
         from .writing import write_surface
 
         return write_surface(self.surface, os.fspath(path))
 
-    def plot(self, path, title="", **options):
+    def plot(
+        self, path: Union[str, os.PathLike], title: str = "", **options: Any
+    ) -> dict[str, float]:
         """Draws the surface into a PNG file; options are those of picture.draw().
 
         Needs no screen where Xvfb is installed. Raises ElevationSurfaceError where nothing can be
@@ -375,9 +372,20 @@ def run_chain(
     return result
 
 
+Points = Union[Cloud, vtkPointSet, numpy.ndarray, Sequence]
+Lines = Union[vtkPolyData, numpy.ndarray, Sequence, None]
+
+
 def reconstruct(
-    points, *, boundary=None, faults=None, trim=True, fill=True, progress=None, **properties
-):
+    points: Points,
+    *,
+    boundary: Lines = None,
+    faults: Lines = None,
+    trim: bool = True,
+    fill: bool = True,
+    progress: Optional[Callable[[str, float], None]] = None,
+    **properties: Any,
+) -> Reconstruction:
     """Reconstructs an elevation surface z = f(x, y) from points.
 
     points    (n, 3) array of x, y, z; a vtkPointSet or PyVista mesh, whose points and point data are

@@ -222,8 +222,8 @@ def print_report(report):
             f"{holes['found']:,} found, {holes['filled']:,} filled with "
             f"{counted(holes['inserted_points'], 'point')}",
         )
-        if holes["open_edge_length"]:
-            count = holes["by_status"].get("replaced", 0)
+        count = holes["by_status"].get("replaced", 0)
+        if count:
             line("", f"{count:,} of them were bridged by triangles")
             line(
                 "",

@@ -145,6 +145,9 @@ class Properties(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "spacing: 1e-10 is less than"):
             reconstruct(SHEET + 1e6, spacing=1e-10)
 
+        with self.assertRaisesRegex(TypeError, "no option colums; did you mean columns"):
+            read("a.xyz", colums=(1, 2, 3))
+
     def test_errors_of_filters_raise_and_warnings_warn(self):
         with self.assertRaisesRegex(ElevationSurfaceError, "on one line"):
             reconstruct(numpy.arange(9.0).reshape(3, 3))
