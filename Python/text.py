@@ -1,31 +1,38 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of numbers in text files: separator, header, comments and columns are found out here, so
-that an error can name the line."""
+"""Tables of numbers in text files: separator, header, comments and columns are found out here.
 
-import array
+A file is read in blocks of whole lines. numpy parses a block at once, exactly, some two million
+lines a second. What numpy does not take is parsed line by line, so that an error can name the line.
+"""
+
+import collections
+import contextlib
 import csv
+import io
 import math
+import os
 import re
+import zlib
 
 import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
 
 from .clouds import Cloud, make_points
+from .columns import choose_columns, known_names
 from .messages import FileError
 
-COMMENT_MARKS = ("#", "%", "//", "!", "*")
+COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
 MISSING = {"", "na", "n/a", "null", "none", "nodata", "-"}
-NAMES = {
-    "x": {"x", "easting", "east", "e", "lon", "long", "longitude", "xcoord", "utmx", "xutm", "px"},
-    "y": {"y", "northing", "north", "n", "lat", "latitude", "ycoord", "utmy", "yutm", "py"},
-    "z": {"z", "elevation", "elev", "height", "altitude", "alt", "depth", "twt", "h", "pz"},
+BLOCK = 32 << 20  # bytes
+CHUNK = 1000  # lines that are tried at once where a block is not all numbers
+SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
+NO_TABLES = {
+    "ncols": "an ESRI ASCII grid",
+    "dsaa": "a Surfer grid",
+    "fsasci": "a CPS-3 grid",
+    "gocad": "a GOCAD file",
 }
-
-
-def plain_name(name):
-    """Column names are compared without case, units in brackets and signs: "X (m)" -> "x"."""
-    name = re.sub(r"[(\[{].*", "", name.lower())
-    return re.sub(r"[^a-z0-9]", "", name)
 
 
 class Layout:
@@ -42,18 +49,24 @@ class Layout:
         return text + ", decimal comma" if self.decimal_comma else text
 
     def words(self, line):
+        if '"' in line:
+            if self.separator is None:
+                found = re.findall(r'"([^"]*)"|(\S+)', line)
+                return [quoted or plain for quoted, plain in found]
+            return [word.strip() for word in next(csv.reader([line], delimiter=self.separator))]
         if self.separator is None:
             return line.split()
-        if '"' in line:
-            return [word.strip() for word in next(csv.reader([line], delimiter=self.separator))]
         return [word.strip() for word in line.split(self.separator)]
 
     def number(self, word):
         """The word's value; NaN where a value is missing; None for text."""
-        try:
-            return float(word.replace(",", ".") if self.decimal_comma else word)
-        except ValueError:
-            return math.nan if word.lower() in MISSING else None
+        plain = word.replace(",", ".") if self.decimal_comma else word
+        if "_" not in plain:
+            with contextlib.suppress(ValueError):
+                return float(plain)
+            with contextlib.suppress(ValueError):  # Fortran's 1.5D+03
+                return float(re.sub(r"^([-+.\d]+)[dD]([-+]?\d+)$", r"\1e\2", plain))
+        return math.nan if word.lower() in MISSING else None
 
     def numbers(self, line):
         """How many words of the line are written as numbers."""
@@ -73,35 +86,78 @@ LAYOUTS = (
 )
 
 
-def read_lines(path):
-    """The lines of a text file; UTF-8, UTF-16 with its mark, or Latin-1."""
-    with open(path, "rb") as stream:
-        data = stream.read()
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        text = data.decode("utf-16", "replace")
-    elif b"\0" in data[:4096]:
-        raise FileError(f"{path}: is not a text file")
-    else:
-        try:
-            text = data.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            text = data.decode("latin-1")
-    return text.splitlines()
+# ---- blocks -----------------------------------------------------------------------------------
+
+
+def blocks(path, stream, progress=None):
+    """Yields whole lines of a binary stream as bytes, some 32 MB at once.
+
+    UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away.
+    """
+    size = os.fstat(stream.fileno()).st_size if progress and hasattr(stream, "fileno") else 0
+    rest, done = b"", 0
+    try:
+        data = stream.read(BLOCK)
+        if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+            text = (data + stream.read()).decode("utf-16", "replace")
+            stream, size = io.BytesIO(text.encode()), 0
+            data = stream.read(BLOCK)
+        elif b"\0" in data[:4096]:
+            raise FileError(f"{path}: is not a text file")
+        if data.startswith(b"\xef\xbb\xbf"):
+            data = data[3:]
+        while data:
+            done += len(data)
+            data = rest + data
+            cut = 1 + max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1))
+            data, rest = data[:cut], data[cut:]
+            if data:
+                yield data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+            if size:
+                progress(min(done / size, 1.0))
+            data = stream.read(BLOCK)
+    except (OSError, EOFError, zlib.error) as error:
+        raise FileError(f"{path}: cannot be read: {error}") from None
+    if rest:
+        yield rest.replace(b"\r", b"\n")
+
+
+def lines_of(block):
+    """The lines of a block, each byte a character."""
+    lines = block.decode("latin-1").split("\n")
+    if not lines[-1]:
+        lines.pop()
+    return lines
+
+
+def decoded(line):
+    """A line of lines_of() with the characters that were meant: UTF-8 or Latin-1."""
+    try:
+        return line.encode("latin-1").decode("utf-8")
+    except UnicodeError:
+        return line
 
 
 def is_comment(line):
     return line.lstrip().startswith(COMMENT_MARKS)
 
 
+# ---- what kind of table -----------------------------------------------------------------------
+
+
 def find_layout(path, lines, needed):
     """The layout under which most of the first lines hold the needed number of numbers."""
     sample = [line for line in lines if line.strip() and not is_comment(line)][:400]
-    best, best_score, most = None, 0, 0
+    if sample:
+        what = NO_TABLES.get(re.split(r"[\s,;]", sample[0].strip().lower())[0])
+        if what:
+            raise FileError(f"{path}: is {what}, not a table of points")
+    best, best_score, most = None, (0, 0), 0
     for layout in LAYOUTS:
         counts = [layout.numbers(line) for line in sample]
-        score = sum(1 for count in counts if count >= needed)
+        score = (sum(1 for count in counts if count >= needed), sum(counts))
         most = max(most, max(counts, default=0))
-        if score > best_score:
+        if score[0] and score > best_score:
             best, best_score = layout, score
     if best:
         return best
@@ -115,124 +171,92 @@ def find_layout(path, lines, needed):
     )
 
 
-def find_columns(path, columns, header, width, needed):
-    """Indices of the x, y, z columns, and a note when they were guessed."""
-    axes = "xyz"[:needed]
-    names = [plain_name(word) for word in header] if header else []
-    if columns:
-        indices = []
-        for axis, column in zip(axes, columns):
-            if re.fullmatch(r"\d+", column):
-                index = int(column) - 1
-                if not 0 <= index < width:
-                    raise FileError(
-                        f"{path}: there is no column {column} for {axis}; lines have {width}"
-                    )
-            elif column in (header or []):
-                index = header.index(column)
-            elif plain_name(column) in names:
-                index = names.index(plain_name(column))
-            else:
-                known = ", ".join(header) if header else "none: the file has no header line"
-                raise FileError(f"{path}: there is no column named {column}; names: {known}")
-            indices.append(index)
-        return indices, None
-    found = []
-    for axis in axes:
-        matches = [i for i, name in enumerate(names) if name in NAMES[axis]]
-        found.append(matches[0] if matches else None)
-    if None not in found:
-        if found == list(range(width)):
-            return found, None
-        text = ", ".join(f"{axis} = {header[i]}" for axis, i in zip(axes, found))
-        return found, f"columns by their names: {text}"
-    if width > needed:
-        note = f"the first {needed} of {width} columns are taken as {', '.join(axes)}"
-        return list(range(needed)), note + " (see --columns)"
-    return list(range(needed)), None
+class Table:
+    """What the first block tells of a table.
 
-
-def read_table(path, columns=None, needed=3):
-    """Rows of numbers of a text file.
-
-    Returns (rows, line numbers, blank-line starts, notes): rows is an array of n * needed doubles,
-    a start is the index of a row that follows a blank line.
+    layout, width    how lines become words, and how many a line has
+    names            of the columns, or None
+    indices          of the columns that are x, y and z
+    extras           {index: name} of the other columns of numbers
+    first            index of the first line of data
+    notes            for the user
     """
-    lines = read_lines(path)
-    layout = find_layout(path, lines, needed)
-    preamble, comments, indices, names = [], [], None, None
-    values, numbers, starts = array.array("d"), array.array("l"), []
-    notes, after_blank, width = [], False, 0
-    skipped = 0
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            after_blank = True
-            continue
-        if is_comment(line):
-            skipped += 1
-            if indices is None:
-                comments.append(layout.words(line.lstrip().lstrip("#%/!* ")))
-            continue
-        if indices is not None and '"' not in line:
-            words = line.split(layout.separator)
-        else:
-            words = layout.words(line)
-        if indices is None:
-            if layout.numbers(line) < needed:
-                preamble.append((number, words))
+
+    def __init__(self, path, lines, columns, needed):
+        self.path, self.needed = path, needed
+        self.layout = find_layout(path, lines[:5000], needed)
+        self.first, self.names = 0, None
+        head, comments, preamble = [], 0, []
+        for number, line in enumerate(lines, 1):
+            if not line.strip():
                 continue
-            width = len(words)
-            headers = [w for _, w in preamble] + comments
-            names = next((w for w in reversed(headers) if len(w) == width), None)
-            if names is None and layout.separator is None:
+            if is_comment(line):
+                head.append(decoded(line).strip().lstrip("#%/!*> "))
+                comments += 1
+            elif self.layout.numbers(line) >= needed:
+                self.first = number - 1
+                break
+            else:
+                head.append(decoded(line).strip())
+                preamble.append((number, self.layout.words(line)))
+        data = [line for line in lines[self.first : self.first + SAMPLE] if is_data(line)]
+        consecutive = len(data)
+        rest = lines[self.first + SAMPLE :]
+        data += [line for line in rest[:: max(1, len(rest) // SAMPLE)] if is_data(line)]
+        rows = [self.layout.words(line) for line in data]
+        widths = collections.Counter(len(row) for row in rows)
+        self.width = max(len(rows[0]), widths.most_common(1)[0][0])
+        self.names = find_names(self.layout, head, self.width)
+        chosen = choose_columns(
+            path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed
+        )
+        self.indices, self.extras = chosen.indices, chosen.extras
+        check_preamble(path, self.layout, preamble, self.indices, self.width)
+        seen = [f"separated by {self.layout}"]
+        for count, what in ((len(preamble), "header"), (comments, "comment")):
+            if count:
+                seen.append(f"{count} {what} line{'s' * (count > 1)}")
+        self.comments = comments
+        self.seen, self.notes = seen, chosen.notes
+
+
+def is_data(line):
+    return bool(line.strip()) and not is_comment(line)
+
+
+def find_names(layout, head, width):
+    """The names of the columns from the lines before the data, or None.
+
+    They stand in one line, with the separator of the data or another; or a line each, numbered as
+    "3: X", or between BEGIN HEADER and END HEADER.
+    """
+    candidates = []
+    upper = [line.upper() for line in head]
+    if "BEGIN HEADER" in upper and "END HEADER" in upper:
+        part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
+        candidates.append([name.split(",")[-1] for name in part])
+    numbered = [re.match(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", h, re.I) for h in head]
+    found = {int(match.group(1)): match.group(2).strip('" ') for match in numbered if match}
+    if set(found) >= set(range(1, width + 1)):
+        candidates.append([found[i] for i in range(1, width + 1)])
+    for line in reversed(head):
+        for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:
+            words = [word.strip("\"' ") for word in other.words(line)]
+            candidates.append(words)
+            if other.separator is None:
                 # "x (m)  y (m)": blanks within names; good enough when single letters are left
-                for words_of_line in reversed(headers):
-                    short = [w for w in words_of_line if plain_name(w)]
-                    if len(short) == width:
-                        names = short
-                        break
-            indices, note = find_columns(path, columns, names, width, needed)
-            if note:
-                notes.append(note)
-            check_preamble(path, layout, preamble, indices, width)
-        try:
-            row = [float(words[i]) for i in indices]
-        except (ValueError, IndexError):
-            row = careful_row(f"{path}, line {number}", layout, words, indices)
-        if after_blank or not numbers:
-            starts.append(len(numbers))
-            after_blank = False
-        values.extend(row)
-        numbers.append(number)
-    heads = len(preamble)
-    seen = [f"separated by {layout}"]
-    if heads:
-        seen.append(f"{heads} header line{'s' * (heads > 1)}")
-    if skipped:
-        seen.append(f"{skipped} comment line{'s' * (skipped > 1)}")
-    notes.insert(0, "text: " + ", ".join(seen))
-    rows = numpy.frombuffer(values, dtype="f8").reshape(-1, needed)
-    return rows, numbers, starts, notes
+                candidates.append([w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)])
+            if len(words) == width - 1 and known_names(words):
+                candidates.append([""] + words)  # as R writes it: row names have no name
+            if len(words) == width + 1 and not words[-1]:
+                candidates.append(words[:-1])
+    candidates = [names for names in candidates if len(names) == width and any(names)]
+    candidates = [names for names in candidates if not all(is_number(name) for name in names)]
+    return max(candidates, key=known_names, default=None)
 
 
-def careful_row(where, layout, words, indices):
-    """A row that is not plain numbers: decimal commas, missing values, or an error."""
-    row = []
-    for axis, index in zip("xyz", indices):
-        if index >= len(words):
-            raise FileError(
-                f"{where}: {len(words)} column{'s' * (len(words) != 1)} found, "
-                f"but {axis} is column {index + 1}"
-            )
-        word = words[index].strip()
-        value = layout.number(word)
-        if value is None:
-            raise FileError(
-                f"{where}: '{word[:40]}' in column {index + 1} ({axis}) is not a number; "
-                "--columns chooses other columns"
-            )
-        row.append(value)
-    return row
+def is_number(word):
+    return Layout(None).number(word) is not None
 
 
 def check_preamble(path, layout, preamble, indices, width):
@@ -257,16 +281,212 @@ def check_preamble(path, layout, preamble, indices, width):
             )
 
 
-def read_text(path, options):
-    rows, lines, _, notes = read_table(path, options.columns)
-    cloud = Cloud(None, notes, lines=lines)
+# ---- rows -------------------------------------------------------------------------------------
+
+
+class Parser:
+    """Turns blocks of lines into rows of numbers: those of the axes first, then the extras."""
+
+    def __init__(self, table):
+        self.table = table
+        self.used = list(table.indices) + list(table.extras)
+        self.parts, self.numbers, self.starts = [], [], []
+        self.count = self.line = self.comments = 0
+        self.after_blank = True
+        self.ragged = None  # the first line with more words than others
+        self.no_numbers = collections.Counter()  # words in extras that are no numbers
+
+    def add(self, block, lines, skip):
+        """Takes the lines of a block, but for the first so many, which are no data."""
+        block_text = block.decode("latin-1") if self.table.layout.decimal_comma else None
+        plain = not skip and not any(mark.encode() in block for mark in COMMENT_MARKS + ('"',))
+        if block_text is not None and plain:
+            lines = block_text.replace(",", ".").split("\n")[: len(lines)]
+        rows = self.load(lines) if plain else None
+        if rows is not None and len(rows) == len(lines):
+            self.keep(rows, numpy.arange(self.line + 1, self.line + 1 + len(lines)))
+            if self.after_blank:
+                self.starts.append(self.count - len(rows))
+                self.after_blank = False
+        else:
+            self.add_carefully(lines, skip, plain)
+        self.check_widths(block, lines, skip)
+        self.line += len(lines)
+
+    def keep(self, rows, numbers):
+        self.parts.append(rows)
+        self.numbers.append(numbers)
+        self.count += len(rows)
+
+    def load(self, lines):
+        """numpy's rows of some lines, or None where a word is no number."""
+        try:
+            return numpy.loadtxt(
+                lines,
+                delimiter=self.table.layout.separator,
+                usecols=self.used,
+                comments=None,
+                ndmin=2,
+            )
+        except ValueError:
+            return None
+
+    def add_carefully(self, lines, skip, plain):
+        """Lines among which are comments, blank lines, missing values, quotes or errors."""
+        kept = []
+        for i, line in enumerate(lines):
+            if i < skip or not line.strip():
+                self.after_blank |= i >= skip or not self.count
+            elif is_comment(line):
+                self.comments += 1
+                self.after_blank |= line.lstrip().startswith(">")
+            else:
+                if self.after_blank:
+                    self.starts.append(self.count + len(kept))
+                    self.after_blank = False
+                kept.append(i)
+        for start in range(0, len(kept), CHUNK):
+            some = kept[start : start + CHUNK]
+            chosen = [lines[i] for i in some]
+            rows = None
+            if plain or not any('"' in line for line in chosen):
+                if self.table.layout.decimal_comma:
+                    chosen = [line.replace(",", ".") for line in chosen]
+                rows = self.load(chosen)
+            if rows is None:
+                rows = numpy.array([self.careful_row(lines[i], i) for i in some])
+            self.keep(rows, self.line + 1 + numpy.array(some))
+
+    def careful_row(self, line, i):
+        """A row that is not plain numbers: missing values, words in other columns, or an error."""
+        table = self.table
+        words, row = table.layout.words(line), []
+        where = f"{table.path}, line {self.line + 1 + i}"
+        for axis, index in zip("xyz", table.indices):
+            if index >= len(words):
+                raise FileError(
+                    f"{where}: {len(words)} column{'s' * (len(words) != 1)} found, "
+                    f"but {axis} is column {index + 1}"
+                )
+            value = table.layout.number(words[index])
+            if value is None:
+                raise FileError(
+                    f"{where}: '{decoded(words[index])[:40]}' in column {index + 1} ({axis}) is "
+                    "not a number; --columns chooses other columns"
+                )
+            row.append(value)
+        for index in table.extras:
+            value = table.layout.number(words[index]) if index < len(words) else math.nan
+            if value is None:
+                self.no_numbers[index] += 1
+            row.append(math.nan if value is None else value)
+        return row
+
+    def check_widths(self, block, lines, skip):
+        """Remembers the first line that has more words than the others."""
+        table = self.table
+        if self.ragged or not self.parts:
+            return
+        if table.layout.separator:
+            separators = block.count(table.layout.separator.encode())
+            if separators == (table.width - 1) * len(lines):
+                return
+        else:
+            blank = numpy.frombuffer(block, dtype="u1") <= 32
+            words = numpy.count_nonzero(blank[1:] > blank[:-1]) + int(not blank[-1])
+            if words == table.width * len(lines):
+                return
+        for i in range(skip, len(lines)):
+            if is_data(lines[i]) and len(table.layout.words(lines[i])) > table.width:
+                self.ragged = self.line + 1 + i, len(table.layout.words(lines[i]))
+                return
+
+    def finish(self):
+        """(rows, line numbers, starts, notes)"""
+        table = self.table
+        notes, comments = table.notes, self.comments + table.comments
+        seen = [words for words in table.seen if "comment" not in words]
+        if comments:
+            seen.append(f"{comments} comment line{'s' * (comments > 1)}")
+        notes.insert(0, "text: " + ", ".join(seen))
+        if self.ragged:
+            notes.append(
+                f"line {self.ragged[0]:,} has {self.ragged[1]} columns where others have "
+                f"{table.width}: they are counted from the left"
+            )
+        for index, count in self.no_numbers.items():
+            notes.append(f"column {table.extras[index]}: {count:,} words are no numbers")
+        rows = self.parts[0] if len(self.parts) == 1 else numpy.concatenate(self.parts)
+        self.parts = []
+        return rows, numpy.concatenate(self.numbers), self.starts, notes
+
+
+def parse(path, columns, needed, stream=None, progress=None):
+    """(table, rows, line numbers, starts, notes) of a text file or binary stream."""
+    with contextlib.ExitStack() as stack:
+        if stream is None:
+            stream = stack.enter_context(open(path, "rb"))
+        parser = None
+        for block in blocks(path, stream, progress):
+            lines = lines_of(block)
+            skip = 0
+            if parser is None:
+                table = Table(path, lines, columns, needed)
+                parser, skip = Parser(table), table.first
+            parser.add(block, lines, skip)
+    if parser is None:
+        raise FileError(f"{path}: is empty")
+    return (parser.table, *parser.finish())
+
+
+def read_table(path, columns=None, needed=3, stream=None):
+    """Rows of numbers of a text file.
+
+    Returns (rows, line numbers, starts, notes): rows is an array of n * needed doubles, a start is
+    the index of a row that follows a blank line.
+    """
+    _, rows, numbers, starts, notes = parse(path, columns, needed, stream)
+    return rows[:, :needed].copy(), numbers, starts, notes
+
+
+def read_text(path, options, stream=None, progress=None):
+    """The points of a text file; numbers in other columns become point arrays.
+
+    stream    None, or what is read in place of the file: a binary stream
+    progress  None, or a function that is called with the fraction done
+    Returns a Cloud. Ten million lines of x, y and z take some six seconds and below 1 GB.
+    """
+    table, rows, numbers, _, notes = parse(path, options.columns, 3, stream, progress)
+    cloud = Cloud(None, notes, lines=numbers)
     if options.no_data is not None:
         keep = rows[:, 2] != options.no_data
         if not keep.all():
             cloud.left_out["rows without data"] = int(len(keep) - numpy.count_nonzero(keep))
-            cloud.lines = array.array("l", numpy.asarray(lines)[keep].tolist())
-            rows = rows[keep]
+            cloud.lines, rows = numbers[keep], rows[keep]
         if not len(rows):
             raise FileError(f"{path}: all rows are without data")
-    cloud.points = make_points(rows)
+    cloud.points = make_points(rows[:, :3])
+    add_arrays(cloud.points.GetPointData(), table.extras, rows[:, 3:])
     return cloud
+
+
+def add_arrays(data, extras, values):
+    """Adds columns as point arrays. Red, green and blue become one array RGB of bytes."""
+    names = list(extras.values())
+    colours = [names.index(name) for name in ("red", "green", "blue") if name in names]
+    arrays = []
+    if len(colours) == 3:
+        rgb = values[:, colours]
+        if ((rgb >= 0) & (rgb <= 255) & (rgb == numpy.floor(rgb))).all():
+            arrays.append(("RGB", rgb.astype("u1")))
+            names = [None if i in colours else name for i, name in enumerate(names)]
+    for i, name in enumerate(names):
+        if name:
+            column = numpy.ascontiguousarray(values[:, i])
+            if (numpy.abs(column) < 2**31).all() and (column == numpy.floor(column)).all():
+                column = column.astype("i4")
+            arrays.append((name, column))
+    for name, column in arrays:
+        array = numpy_to_vtk(column, deep=True)
+        array.SetName(name)
+        data.AddArray(array)

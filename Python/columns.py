@@ -1,0 +1,610 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which columns of a table are x, y and z: by their names, else by their values.
+
+A choice that is not sure becomes a note that tells why; of two that are about as likely, an error
+shows both.
+"""
+
+import dataclasses
+import math
+import re
+import unicodedata
+
+import numpy
+
+from .messages import FileError
+
+
+def _words(text):
+    return frozenset(text.split())
+
+
+# Names of English, German, French, Spanish, Portuguese, Norwegian, Italian, Dutch and Polish, as
+# plain() writes them: (axis, rank, direction, names). A lower rank is the better name.
+AXES = (
+    ("x", 0, "", _words("x")),
+    ("y", 0, "", _words("y")),
+    ("z", 0, "", _words("z")),
+    ("x", 1, "", _words(
+        "easting eastings east rechtswert rechts rw ostwert ost oest este leste est abscisse abscissa "
+        "abscisa absis oost oosting ostkoordinate wschod wschodnia"
+    )),
+    ("y", 1, "", _words(
+        "northing northings north hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
+        "ordinate noord noording nordkoordinate polnoc polnocna"
+    )),
+    ("z", 1, "", _words(
+        "elevation elevations elev elevacion elevacao elevazione height heights hgt ht hoehe hohe "
+        "gelaendehoehe gelandehohe altitude alt altitud altura altezza cota cote quota kote hoyde "
+        "hoeyde hoogte wysokosc rzedna topography level niveau"
+    )),
+    ("x", 2, "", _words("e")),
+    ("y", 2, "", _words("n")),
+    ("z", 2, "", _words("h")),
+    ("z", 2, "depth", _words(
+        "depth depths tiefe profondeur prof profundidad profundidade profondita dybde diepte "
+        "glebokosc tvd tvdss sounding soundings sonde bathymetry bathymetrie tvdm"
+    )),
+    ("z", 2, "time", _words("twt owt twtt laufzeit")),
+    ("x", 3, "", _words(
+        "lon long longitude lng laenge lange laengengrad langengrad longitud lengdegrad lengde "
+        "lengtegraad longitudine dlugosc"
+    )),
+    ("y", 3, "", _words(
+        "lat latitude breite breitengrad latitud breddegrad bredde breedtegraad latitudine szerokosc"
+    )),
+    ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
+)
+# Words that may stand beside the name of an axis.
+BESIDE = _words(
+    "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat coordinaat "
+    "coordenada coordenadas coordonnee coordonnees coordinata coordinate wspolrzedna wsp point pt "
+    "p map world gps wgs etrs epsg local grid proj projected geo m ft feet meter meters metre metres "
+    "us deg degree degrees degr dd decimal ms s km mm cm cdp bin center centre centroid mid midpoint "
+    "source receiver shot sp ellipsoid ellipsoidal ell ellip ellipsoidische ortho orthometric "
+    "orthometrique msl above sea surface top base gk rd lambert ngf nap nhn nn dhhn ground terrain "
+    "water bed value val pos position posisjon wgs84 total station survey surveyed zone geografica "
+    "geograficzna geographique geographische decimale z in du de la le den der gridded"
+)
+# What a column with such a name is, when it is no coordinate. A name that holds one of the words of
+# "measure" is no coordinate whatever else it holds.
+ROLES = (
+    ("an id", _words(
+        "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr punktnummer "
+        "ptnr punto ponto punti punt puntnr puntnummer pnr pno name matricule station index row pid "
+        "ptid ident uid gid serial nome nombre nom nazwa numer naam pointid pointnumber pointno "
+        "pointname p idx"
+    )),
+    ("a line, trace or place in a grid", _words(
+        "line inline il iline xline crossline xl trace tr cdp cmp sp shotpoint shot bin ffid linje "
+        "linie linea ligne linha profil profile track col column swath lijn traza spur traco"
+    )),
+    ("a date or a time", _words(
+        "date datum fecha data dato hour gpstime timestamp utc epoch datetime second seconds tow "
+        "utctime heure hora uhrzeit"
+    )),
+    ("a colour", _words("red green blue r g b rot gruen grun blau rouge vert bleu alpha rgb")),
+    ("a code", _words(
+        "code kod kode codigo codice class classification klasse classe return returns user flag "
+        "description desc remark comment bemerkung beschreibung descripcion descricao opis bemerking"
+    )),
+    ("a measure", _words(
+        "intensity amplitude quality std stddev sigma sd rms error err uncertainty accuracy precision "
+        "velocity speed heading pitch roll nx ny nz normal confidence hdop pdop vdop tide draft angle "
+        "slope aspect undulation geoid dev deviation residual delta dx dy dz thickness offset snr "
+        "weight fold scan beam ping mean stdev count density tpu tvu thu fom"
+    )),
+)
+COLOURS = {
+    "red": _words("red r rot rouge"),
+    "green": _words("green g gruen grun vert"),
+    "blue": _words("blue b blau bleu"),
+}
+LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ß": "ss", "ł": "l", "đ": "d", "Ø": "O", "Ł": "L"})
+
+
+def plain(text):
+    """Without accents, apart at capitals and signs: "Höhe_NN (m)" -> ["hohe", "nn", "m"]."""
+    text = unicodedata.normalize("NFKD", text.translate(LETTERS))
+    text = "".join(letter for letter in text if not unicodedata.combining(letter))
+    text = re.sub(r"([a-z])([A-Z])", r"\1 \2", text)
+    text = re.sub(r"\b(utm|coord|p|pos)?([xyz])(utm|coord|pos)?\b", r"\1 \2 \3", text.lower())
+    return [word for word in re.split(r"[^a-z]+", text) if word]
+
+
+def in_brackets(name):
+    """("X (Nord)") -> ("X ", " Nord")."""
+    return re.sub(r"[(\[{<].*", "", name), " ".join(re.findall(r"[(\[{<]([^)\]}>]*)", name))
+
+
+@dataclasses.dataclass(frozen=True)
+class Meaning:
+    """What a name tells: an axis with rank and direction, or the role of something else."""
+
+    axis: str = ""
+    rank: int = 0
+    direction: str = ""
+    role: str = ""
+    beside: tuple = ()  # the words beside the name of the axis
+
+
+def meaning(name):
+    """The Meaning of a column's name; empty where it is not known."""
+    outside, inside = in_brackets(name)
+    words = plain(outside) or plain(inside)
+    joined = "".join(words)
+    for role, names in ROLES:
+        if joined in names or role == "a measure" and any(word in names for word in words):
+            return Meaning(role=role)
+    extra = [w for w in plain(inside) if any(w in names and r == 1 for _, r, _, names in AXES)]
+    axis = _axis_of(words, joined, extra)
+    if axis:
+        return axis
+    for role, names in ROLES:
+        if words and any(word in names for word in words) and not any(len(w) == 1 for w in words):
+            return Meaning(role=role)
+    return Meaning()
+
+
+def _axis_of(words, joined, extra):
+    whole = [(a, r, d) for a, r, d, names in AXES if joined in names]
+    found = whole or [(a, r, d) for a, r, d, names in AXES for w in words if w in names]
+    found += [(a, r, d) for a, r, d, names in AXES for w in extra if w in names]
+    if not found:
+        return None
+    if len({axis for axis, _, _ in found}) > 1:
+        # "X (Nord)": the word tells more than the letter.
+        found = [(a, r, d) for a, r, d in found if r == 1 and a != "z"]
+        if len({axis for axis, _, _ in found}) != 1:
+            return None
+    axis, rank, direction = min(found)
+    direction = max(d for _, _, d in found)
+    known = frozenset().union(*(names for _, _, _, names in AXES))
+    beside = tuple(w for w in words if w not in known) if not whole else ()
+    strange = [word for word in beside if word not in BESIDE]
+    if strange:
+        if max(len(word) for word in words if word in known) < 2 or rank == 4:
+            return None  # a single letter among words that tell something else
+        rank += 5
+    return Meaning(axis, rank, direction, "", tuple(sorted(beside)))
+
+
+def known_names(names):
+    """How many of some names mean something, those of axes most."""
+    found = [meaning(name) for name in names]
+    return sum(3 if m.axis and m.rank < 5 else 1 for m in found if m.axis or m.role)
+
+
+@dataclasses.dataclass
+class Choice:
+    """indices of x, y and z; extras {index: name} of the other columns of numbers; notes."""
+
+    indices: list
+    extras: dict
+    notes: list
+
+
+def choose_columns(path, rows, consecutive, number, names, width, columns, needed):
+    """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
+
+    rows         some rows as words; the first so many (consecutive) follow each other in the file
+    number       makes a number of a word: NaN where it is missing, None for text
+    names, width  of the columns; names may be None
+    columns      None, or what the user said: names or numbers
+    needed       3 or 2
+    """
+    search = Search(path, rows, consecutive, number, names, width, needed)
+    if columns:
+        search.as_said(columns)
+    elif not search.by_names():
+        search.by_values()
+    search.look_at_values()
+    return Choice(search.indices, search.extras(), search.notes)
+
+
+class Search:
+    """The state of choose_columns()."""
+
+    def __init__(self, path, rows, consecutive, number, names, width, needed):
+        self.path, self.names, self.width, self.needed = path, names, width, needed
+        self.axes = "xyz"[:needed]
+        self.row = rows[0]
+        table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
+        text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
+        self.values = numpy.array(
+            [[math.nan if value is None else value for value in row] for row in table], dtype="f8"
+        )
+        self.consecutive = consecutive
+        self.share_of_text = text.mean(axis=0)
+        self.decimals = [
+            max(len(re.sub(r"^[^.,]*[.,]?|[eEdD].*$", "", row[i])) if i < len(row) else 0
+                for row in rows[:500])
+            for i in range(width)
+        ]
+        self.meanings = [meaning(name) for name in names] if names else [Meaning()] * width
+        letters = {"".join(plain(name)) for name in names or []}
+        if not {"r", "g", "b"} <= letters:  # single letters are colours only together
+            lone = [i for i, name in enumerate(names or []) if "".join(plain(name)) in "rgb"]
+            self.meanings = [Meaning() if i in lone else m for i, m in enumerate(self.meanings)]
+        self.indices, self.notes = None, []
+
+    # -- what the user said
+
+    def as_said(self, columns):
+        plain_names = ["".join(plain(in_brackets(name)[0])) for name in self.names or []]
+        self.indices = []
+        for axis, column in zip(self.axes, columns):
+            if re.fullmatch(r"\d+", column):
+                index = int(column) - 1
+                if not 0 <= index < self.width:
+                    raise FileError(
+                        f"{self.path}: there is no column {column} for {axis}; "
+                        f"lines have {self.width}"
+                    )
+            elif column in (self.names or []):
+                index = self.names.index(column)
+            elif "".join(plain(column)) in plain_names:
+                index = plain_names.index("".join(plain(column)))
+            else:
+                known = ", ".join(self.names or []) or "none: the file has no header line"
+                raise FileError(f"{self.path}: there is no column named {column}; names: {known}")
+            self.indices.append(index)
+
+    # -- names
+
+    def by_names(self):
+        """Whether names tell the columns; sets the indices then."""
+        chosen = {axis: self.best_named(axis) for axis in self.axes}
+        if not any(chosen.values()):
+            return False
+        self.pair_up(chosen)
+        for axis, columns in chosen.items():
+            if len(columns) > 1:
+                self.refuse_two(
+                    [[c if a == axis else chosen[a][0] for a in self.axes] for c in columns[:2]]
+                    if all(chosen.values()) else None,
+                    f"{self.listed(columns)} may all be {axis}",
+                )
+        missing = [axis for axis in self.axes if not chosen[axis]]
+        taken = [columns[0] for columns in chosen.values() if columns]
+        if missing:
+            self.fill_in(chosen, missing, taken)
+        self.indices = [chosen[axis][0] for axis in self.axes]
+        if self.indices != list(range(self.width)):
+            text = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
+            self.notes.append(f"columns by their names: {text}")
+        self.look_at_names()
+        return True
+
+    def best_named(self, axis):
+        """The columns whose names are the best for an axis; those of numbers before others."""
+        found = [i for i, m in enumerate(self.meanings) if m.axis == axis]
+        found = [i for i in found if self.share_of_text[i] < 0.5] or found
+        best = min((self.meanings[i].rank for i in found), default=0)
+        return [i for i in found if self.meanings[i].rank == best]
+
+    def pair_up(self, chosen):
+        """Of several x and y, those are left whose names have the same words beside."""
+        x, y = chosen["x"], chosen["y"]
+        if len(x) > 1 or len(y) > 1:
+            pairs = [
+                (i, j) for i in x for j in y
+                if self.meanings[i].beside == self.meanings[j].beside
+                and abs(self.meanings[i].rank - self.meanings[j].rank) < 2
+            ]
+            if len(pairs) == 1:
+                chosen["x"], chosen["y"] = [pairs[0][0]], [pairs[0][1]]
+            elif len(pairs) > 1:
+                z = (chosen.get("z") or [None])[:1]
+                self.refuse_two(
+                    [[*pair, *z][: self.needed] for pair in pairs[:2]] if None not in z else None,
+                    f"{self.listed([i for pair in pairs for i in pair])} may all be x and y",
+                )
+
+    def fill_in(self, chosen, missing, taken):
+        """Finds the columns of axes that have no name of their own among the others."""
+        free = [
+            i for i in range(self.width)
+            if i not in taken and self.share_of_text[i] < 0.5 and not self.meanings[i].axis
+        ]
+        others = [i for i in free if not self.meanings[i].role]
+        others = others if len(others) <= len(missing) else self.without_attributes(others, missing)
+        if not others:
+            others = [i for i in free if self.meanings[i].role in ("a measure", "a code")]
+        if len(others) == len(missing) == 1:
+            chosen[missing[0]] = others
+            return
+        known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in chosen.items() if c)
+        lacks = " and ".join(missing)
+        could = f"it may be {self.listed(others)}" if others else "no other column can be it"
+        raise FileError(
+            f"{self.path}: the names tell {known}, but not {lacks}; {could}: "
+            "--columns X,Y,Z names or numbers them"
+        )
+
+    def look_at_names(self):
+        z = self.meanings[self.indices[-1]]
+        x, y = self.indices[:2]
+        if self.needed == 3:
+            others = [
+                i for i, m in enumerate(self.meanings)
+                if m.axis == "z" and m.rank < 4 and i not in self.indices
+            ]
+            if others and z.axis:
+                self.notes.append(
+                    f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too "
+                    "(see --columns)"
+                )
+            values = self.values[:, self.indices[2]]
+            if z.direction and numpy.nanmedian(values) > 0:
+                what = "depths" if z.direction == "depth" else "times"
+                self.notes.append(
+                    f"z are {what} by their name and positive, so the surface is upside down; "
+                    "--depth turns it over"
+                )
+        if y < x and self.meanings[x].rank == self.meanings[y].rank == 0:
+            self.notes.append(
+                "Y stands before X, as where X is north; x and y are taken as named "
+                f"(--columns {self.numbered([y, x] + self.indices[2:])} swaps them)"
+            )
+
+    # -- values
+
+    def by_values(self):
+        """Sets the indices from the values of the columns."""
+        if self.width == self.needed:
+            self.indices = list(range(self.width))
+            return
+        numbers = [i for i in range(self.width) if self.share_of_text[i] < 0.5]
+        known = {i for i in numbers if self.meanings[i].role or self.meanings[i].axis}
+        usable = [i for i in numbers if i not in known]
+        if len(usable) < self.needed:
+            usable = numbers
+        if len(usable) < self.needed:
+            raise FileError(
+                f"{self.path}: {self.needed} columns of numbers are needed, "
+                f"and there {'is' if len(usable) == 1 else 'are'} {len(usable)}"
+            )
+        if self.needed == 2 and len(usable) <= 3:
+            self.indices = usable[: self.needed]
+            return
+        left, reasons = self.without_others(usable)
+        chosen = self.most_like_points(left, reasons)
+        if reasons and len(left) == 3 and self.needed == 3:
+            chosen = self.east_and_north(chosen, reasons)
+        self.indices = chosen
+        why = [
+            f"column {self.called(i)} is {reason}"
+            for i, reason in sorted(reasons.items()) if i < max(chosen)
+        ]
+        taken = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, chosen))
+        if chosen == list(range(self.needed)):
+            self.notes.append(
+                f"the first {self.needed} of {self.width} columns are taken as "
+                f"{', '.join(self.axes)} (see --columns)"
+            )
+        else:
+            why = "; ".join(why) + "; " if why else ""
+            self.notes.append(f"columns by their values: {why}{taken} (see --columns)")
+
+    def without_attributes(self, columns, missing):
+        """Those of some columns that are not something else by their values."""
+        found = self.without_others(columns, len(missing))[0]
+        return found if len(found) >= len(missing) else columns
+
+    def without_others(self, columns, needed=None):
+        """(columns that may be coordinates, {column: what it is else}), by the values."""
+        needed = needed or self.needed
+        left, reasons = list(columns), {}
+
+        def take(found, reason):
+            for i in found:
+                if i in left and len(left) > needed:
+                    left.remove(i)
+                    reasons[i] = reason
+
+        for i in columns:
+            if self.is_id(i):
+                take([i], "an id: it counts up by one")
+                break
+        for start in range(len(columns) - 2):
+            three = columns[start : start + 3]
+            if start >= needed and self.is_unit_vector(three):
+                take(three, "part of a direction of length 1")
+            elif start >= needed and all(self.is_byte(i) for i in three):
+                take(three, "part of a colour")
+        for i in reversed(columns):
+            values = self.finite(i)
+            if i in left and len(values) and values.min() == values.max():
+                take([i], "the same in all rows")
+        for pair in self.places_in_grid(left):
+            take(pair, "a line, trace or place in a grid: others follow from it")
+        for i in reversed(columns):
+            if self.is_class(i):
+                take([i], "a class: few whole numbers")
+        return left, reasons
+
+    def finite(self, i):
+        values = self.values[:, i]
+        return values[numpy.isfinite(values)]
+
+    def is_whole(self, i):
+        values = self.finite(i)
+        return self.decimals[i] == 0 and len(values) > 0 and (values == numpy.rint(values)).all()
+
+    def is_byte(self, i):
+        values = self.finite(i)
+        return self.is_whole(i) and values.min() >= 0 and values.max() <= 255
+
+    def is_id(self, i):
+        """Whole numbers that count up by one, here and there with a gap, and never go back."""
+        values = self.values[:, i]
+        if len(values) < 3 or not numpy.isfinite(values).all() or not self.is_whole(i):
+            return False
+        steps = numpy.diff(values)
+        near = steps[: max(self.consecutive - 1, 1)]
+        return bool((steps > 0).all() and (near == 1).mean() > 0.6)
+
+    def is_class(self, i):
+        values = self.finite(i)
+        if not self.is_byte(i) or len(values) < 20:
+            return False
+        return len(numpy.unique(values)) <= min(32, len(values) // 10) and values.max() <= 64
+
+    def is_unit_vector(self, three):
+        length = (self.values[:, three] ** 2).sum(axis=1)
+        return all(self.decimals[i] for i in three) and bool((abs(length - 1) < 0.02).all())
+
+    def places_in_grid(self, columns):
+        """Pairs of whole numbers from which two other columns follow, as line and trace do."""
+        whole = [i for i in columns if self.is_whole(i) and numpy.ptp(self.finite(i)) > 0]
+        for a, i in enumerate(whole):
+            for j in whole[a + 1 :]:
+                rest = [k for k in columns if k not in (i, j)]
+                for first, second in zip(rest, rest[1:]):
+                    pair = [first, second]
+                    if self.follow_from([i, j], pair) and self.size(pair) > self.size([i, j]):
+                        return [[i, j]]
+        return []
+
+    def size(self, columns):
+        return float(numpy.prod([numpy.ptp(self.finite(i)) for i in columns]))
+
+    def follow_from(self, given, wanted):
+        """Whether columns are a turned and stretched copy of others, to a hundredth."""
+        rows = self.values[numpy.isfinite(self.values[:, given + wanted]).all(axis=1)]
+        if len(rows) < 6:
+            return False
+        base = rows[:, given] - rows[:, given].mean(axis=0)
+        goal = rows[:, wanted] - rows[:, wanted].mean(axis=0)
+        factors, _, rank, _ = numpy.linalg.lstsq(base, goal, rcond=1e-9)
+        spread = goal.std(axis=0)
+        rest = (goal - base @ factors).std(axis=0)
+        turned = abs(numpy.linalg.det(factors)) > 1e-6 * (numpy.abs(factors) ** 2).sum()
+        return bool(rank == 2 and turned and (spread > 0).all() and (rest < 0.01 * spread).all())
+
+    def most_like_points(self, columns, reasons):
+        """Of three columns in a row, the first that look like x, y and z."""
+        count = self.needed
+        groups = [columns[k : k + count] for k in range(len(columns) - count + 1)]
+        marks = [self.likeness(group) for group in groups]
+        best = marks.index(max(marks))
+        if best and marks[best] - marks[0] < 2:
+            if marks[best] - marks[0] == 1 and marks[0] < 3:
+                self.refuse_two([groups[0], groups[best]])
+            best = 0
+        for i in columns[: columns.index(groups[best][0])]:
+            reasons[i] = "not like a coordinate beside the next"
+        return groups[best]
+
+    def likeness(self, group):
+        """How much columns look like x, y and z: 0 to 4 marks."""
+        x, y = group[:2]
+        spans = [float(numpy.ptp(self.finite(i))) if len(self.finite(i)) else 0.0 for i in group]
+        alike = abs(self.decimals[x] - self.decimals[y]) <= 1
+        alike &= (self.decimals[x] == 0) == (self.decimals[y] == 0)
+        marks = 2 * alike
+        marks += 0 < max(spans[:2]) <= 30 * min(spans[:2])
+        if len(group) == 3:
+            marks += spans[2] <= max(spans[:2])
+        return marks
+
+    def east_and_north(self, chosen, reasons):
+        """x and y of points with numbers: surveyors write the northing first.
+
+        Metres of UTM tell which it is. Otherwise a code behind z speaks for point, northing, easting,
+        elevation, code, and x,y,z as they stand is as likely.
+        """
+        if not any(reason.startswith("an id") for reason in reasons.values()):
+            return chosen
+        first, second, z = chosen
+        swapped = [second, first, z]
+        if self.is_utm(second, first):
+            self.notes.append(
+                f"column {self.called(first)} is taken as northing and {self.called(second)} as "
+                "easting, by their sizes"
+            )
+            return swapped
+        coded = any(self.share_of_text[i] > 0.5 for i in range(max(chosen) + 1, self.width))
+        if coded and not self.is_utm(first, second):
+            self.refuse_two([swapped, chosen])
+        return chosen
+
+    def is_utm(self, x, y):
+        """Whether columns are easting and northing of UTM by their sizes, in metres."""
+        x, y = self.finite(x), self.finite(y)
+        if not len(x) or not len(y):
+            return False
+        return bool(160e3 < x.min() and x.max() < 840e3 and 1.1e6 < y.min() and y.max() < 10e6)
+
+    # -- what the values tell of the choice
+
+    def look_at_values(self):
+        x, y = self.indices[:2]
+        xs, ys = self.finite(x), self.finite(y)
+        if not len(xs) or not len(ys):
+            return
+        by_name = 3 in (self.meanings[x].rank, self.meanings[y].rank)
+        degrees = abs(xs).max() <= 360 and abs(ys).max() <= 90
+        if self.needed == 3 and degrees:
+            z = self.finite(self.indices[2])
+            wide = max(numpy.ptp(xs), numpy.ptp(ys))
+            fine = min(self.decimals[x], self.decimals[y]) >= 4
+            if by_name or fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
+                self.notes.append(
+                    "x,y look like degrees: project them first to give triangles their true shape"
+                )
+        if self.is_utm(y, x) and not self.notes_swap():
+            self.notes.append(
+                "x is as large as a northing and y as an easting of UTM; if so, "
+                f"--columns {self.numbered([y, x] + self.indices[2:])} gives the map its true side"
+            )
+
+    def notes_swap(self):
+        return any("northing" in note for note in self.notes)
+
+    # -- words
+
+    def called(self, i):
+        name = self.names[i] if self.names else ""
+        return f"{i + 1} ({name})" if name else str(i + 1)
+
+    def listed(self, columns):
+        words = [self.called(i) for i in columns[:6]]
+        return "columns " + " and ".join(words) if len(words) > 1 else f"column {words[0]}"
+
+    @staticmethod
+    def numbered(columns):
+        return ",".join(str(i + 1) for i in columns)
+
+    def refuse_two(self, readings, why="the columns can be read in two ways"):
+        """Raises the error that shows two readings and the options that decide."""
+        if not readings:
+            raise FileError(f"{self.path}: {why}; --columns X,Y,Z names or numbers them")
+        words = [
+            f"--columns {self.numbered(r)} (first row: "
+            f"{', '.join(f'{a} = {self.row[i]}' for a, i in zip(self.axes, r) if i < len(self.row))})"
+            for r in readings
+        ]
+        raise FileError(f"{self.path}: {why}; choose {' or '.join(words)}")
+
+    # -- the other columns
+
+    def extras(self):
+        """{index: name} of the columns of numbers that are no coordinates."""
+        result, text = {}, []
+        for i in range(self.width):
+            if i in self.indices or self.needed == 2:
+                continue
+            name = (self.names[i].strip() if self.names else "") or f"column {i + 1}"
+            if not len(self.finite(i)) or self.share_of_text[i] > 0:
+                text.append(name)
+                continue
+            for colour, words in COLOURS.items():
+                if "".join(plain(name)) in words:
+                    name = colour if colour not in result.values() else name
+            result[i] = name if name not in result.values() else f"{name} (column {i + 1})"
+        if text:
+            self.notes.append(f"columns without numbers are left out: {', '.join(text)}")
+        return result

@@ -1,0 +1,377 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which columns of a text table are x, y and z, in the exports that people have."""
+
+import io
+import math
+import os
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy
+from vtkelevationsurface.clouds import ReadOptions
+from vtkelevationsurface.messages import FileError
+from vtkelevationsurface.text import BLOCK, read_table, read_text
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+COUNT = 60
+GENERATOR = numpy.random.default_rng(7)
+X = GENERATOR.uniform(452000, 453500, COUNT).round(2)
+Y = GENERATOR.uniform(5411000, 5412200, COUNT).round(2)
+NEAR_X, NEAR_Y = (X - 450000).round(2), (Y - 5410000).round(2)
+Z = (230 + 15 * numpy.sin(X / 200) + 9 * numpy.cos(Y / 150)).round(3)
+LON, LAT = (7.5 + X / 3e7).round(7), (48.8 + Y / 9e8).round(7)
+INLINE, TRACE = numpy.divmod(numpy.arange(COUNT), 12)
+# What a column holds, by a short name.
+KINDS = {
+    "x": X, "y": Y, "z": Z, "lon": LON, "lat": LAT, "nx": NEAR_X, "ny": NEAR_Y,
+    "depth": Z, "down": -Z, "time": (1800 + Z).round(2),
+    "gx": (500000 + 25.0 * INLINE - 3.5 * TRACE).round(2),
+    "gy": (6100000 + 3.5 * INLINE + 25.0 * TRACE).round(2),
+    "il": 2100 + INLINE, "xl": 830 + 2 * TRACE, "line": 7 + INLINE, "trace": 1 + TRACE,
+    "id": 1 + numpy.arange(COUNT), "code": ["GRD", "TREE", "EDGE"] * (COUNT // 3),
+    "class": GENERATOR.choice([2, 5, 6], COUNT), "amp": GENERATOR.normal(0, 900, COUNT).round(1),
+    "r": GENERATOR.integers(0, 256, COUNT), "g": GENERATOR.integers(0, 256, COUNT),
+    "b": GENERATOR.integers(0, 256, COUNT), "int": GENERATOR.integers(0, 2000, COUNT),
+    "gps": (301245.5 + numpy.cumsum(GENERATOR.uniform(0, 1, COUNT))).round(6),
+    "date": ["2021-03-04"] * COUNT, "sd": GENERATOR.uniform(0, 0.02, COUNT).round(4),
+}
+AS_X, AS_Y, AS_Z = ("x", "lon", "nx", "gx"), ("y", "lat", "ny", "gy"), ("z", "depth", "down", "time")
+
+
+def columns_of(kinds):
+    """"id x y z" -> [COUNT rows of words], (COUNT, 3) of the coordinates."""
+    kinds = kinds.split()
+    # numpy's floats print the shortest text that gives the same value.
+    rows = [[str(KINDS[kind][i]) for kind in kinds] for i in range(COUNT)]
+    axes = [next(kind for kind in axis if kind in kinds) for axis in (AS_X, AS_Y, AS_Z)]
+    return rows, numpy.column_stack([KINDS[kind] for kind in axes]).astype("f8")
+
+
+# Program, head of the file, separator, what the columns hold, words of the notes.
+EXPORTS = (
+    ("Petrel, points with attributes",
+     "# Petrel Points with attributes\n# Unit in X and Y direction: m\nVERSION 1\nBEGIN HEADER\nX\nY\n"
+     "Z\nFLOAT,Amplitude\nEND HEADER\n", " ", "x y down amp", ""),
+    ("Petrel, lines", "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z meters\n"
+     "# Field: 4 column\n# Field: 5 row\n# End:\n", " ", "gx gy down xl il", "x = 1 (x)"),
+    ("OpendTect, one line", '#"Inline"\t"Crossline"\t"X"\t"Y"\t"Z (ms)"\n', "\t",
+     "il xl gx gy time", "z = 5"),
+    ("OpendTect, many lines",
+     "# 1: Inline\n# 2: Crossline\n# 3: X\n# 4: Y\n# 5: Z(ms)\n# - - - - - -\n", "\t",
+     "il xl gx gy time", "z = 5"),
+    ("Kingdom", "Line Trace X Y Time\n", " ", "line trace x y time", "upside down"),
+    ("Kingdom, 3D", "Inline,Xline,X Coord,Y Coord,TWT (ms)\n", ",", "il xl gx gy time", "times"),
+    ("GeoFrame", "! CDP_X CDP_Y SHOTPOINT LINE TWT\n", " ", "x y trace line time", "TWT"),
+    ("DecisionSpace", "X_UTM,Y_UTM,Z_TWT,Amplitude\n", ",", "x y time amp", "z = 3 (Z_TWT)"),
+    ("well tops", "Well;Surface;X [m];Y [m];TVDSS [m]\n", ";", "code code x y down", "z = 5"),
+    ("total station, Leica", "Point Id,Easting,Northing,Ortho. Height,Code\n", ",",
+     "id x y z code", "x = 2 (Easting)"),
+    ("total station, Trimble", "Point,Northing,Easting,Elevation,Code\n", ",", "id y x z code",
+     "y = 2 (Northing)"),
+    ("Topcon", "Name\tN\tE\tH\tCode\n", "\t", "id y x z code", "x = 3 (E)"),
+    ("Carlson", "P,N,E,Z,D\n", ",", "id y x z code", "z = 4"),
+    ("GNSS, degrees", "Name,Latitude,Longitude,Ellipsoidal height\n", ",", "id lat lon z",
+     "look like degrees"),
+    ("GNSS, with time", "date,gps_time,lat,lon,alt,hdop\n", ",", "date gps lat lon z sd", "alt"),
+    ("German", "Punktnr;Rechtswert;Hochwert;Hoehe\n", ";", "id x y z", "Rechtswert"),
+    ("German, new names", "PunktNr;Ostwert [m];Nordwert [m];Höhe über NHN [m];Bemerkung\n", ";",
+     "id x y z code", "Ostwert"),
+    ("German, degrees", "Nr;Breite;Länge;Tiefe\n", ";", "id lat lon depth", "depths"),
+    ("German, Gauss-Krueger", "Pkt Y X H\n", " ", "id y x z", "Y stands before X"),
+    ("French", "id;abscisse;ordonnee;altitude\n", ";", "id x y z", "abscisse"),
+    ("French, accents", "Matricule;Coordonnée X;Coordonnée Y;Altitude NGF\n", ";", "id x y z", "NGF"),
+    ("French, soundings", "Latitude;Longitude;Profondeur (m)\n", ";", "lat lon depth", "depths"),
+    ("Spanish", "Punto,Este,Norte,Cota\n", ",", "id x y z", "Este"),
+    ("Spanish, accents", "Nombre;Norte;Este;Elevación;Descripción\n", ";", "id y x z code", "Norte"),
+    ("Portuguese", "Ponto;Leste;Norte;Cota\n", ";", "id x y z", "Leste"),
+    ("Portuguese, accents", "Nº;Coordenada E;Coordenada N;Elevação;Código\n", ";", "id x y z code",
+     "Coordenada"),
+    ("Norwegian", "Punkt;Nord;Øst;Høyde\n", ";", "id y x z", "Nord"),
+    ("Norwegian, without letters", "Punktnummer Oest Nord Hoeyde Kode\n", " ", "id x y z code", "Oest"),
+    ("Norwegian, axes", "Nr;X (Nord);Y (Øst);Z\n", ";", "id y x z", "x = 3"),
+    ("Norwegian, soundings", "Dato;Breddegrad;Lengdegrad;Dybde\n", ";", "date lat lon depth", "Dybde"),
+    ("Italian", "Punto;Est;Nord;Quota\n", ";", "id x y z", "Quota"),
+    ("Italian, soundings", "Latitudine;Longitudine;Profondità\n", ";", "lat lon depth", "depths"),
+    ("Dutch", "Puntnummer;X-coördinaat;Y-coördinaat;Hoogte (m NAP)\n", ";", "id x y z", "Hoogte"),
+    ("Dutch, soundings", "Noord;Oost;Diepte\n", ";", "y x depth", "Diepte"),
+    ("Polish", "Numer;Współrzędna X;Współrzędna Y;Wysokość\n", ";", "id x y z", "Wysoko"),
+    ("Polish, degrees", "Nazwa;Szerokość geograficzna;Długość geograficzna;Głębokość\n", ";",
+     "id lat lon depth", "depths"),
+    ("CloudCompare", "//X Y Z R G B Scalar_field\n", " ", "x y z r g b amp", "z = 3"),
+    ("CloudCompare, with a count", f"{COUNT}\n", " ", "x y z r g b", "first 3 of 6"),
+    ("Leica .pts", f"{COUNT}\n", " ", "x y z int r g b", "first 3 of 7"),
+    ("LAStools", "X,Y,Z,intensity,return_number,classification,gps_time\n", ",",
+     "x y z int class class gps", "z = 3"),
+    ("PDAL", '"X","Y","Z","Intensity","Red","Green","Blue"\n', ",", "x y z int r g b", "z = 3"),
+    ("QGIS", "fid,X,Y,ELEV_M,layer\n", ",", "id x y z code", "ELEV_M"),
+    ("ArcGIS", "OBJECTID,POINT_X,POINT_Y,POINT_Z\n", ",", "id x y z", "POINT_X"),
+    ("ArcGIS, with degrees", "OID,Lat,Lon,UTM_E,UTM_N,Elevation_ft\n", ",", "id lat lon x y z",
+     "UTM_E"),
+    ("R", '"x" "y" "z"\n', " ", "id x y z", "x = 2"),
+    ("pandas", ",easting,northing,height\n", ",", "id x y z", "easting"),
+    ("Qimera", "Easting (m) Northing (m) Depth (m) StdDev\n", " ", "x y depth sd", "depths"),
+    ("Hypack", "X,Y,Raw Depth,Corrected depth,Date\n", ",", "", "may all be z"),
+    ("GMT", "# lon lat z\n> segment\n", "\t", "lon lat z", "degrees"),
+)
+# The same without any names.
+BARE = (
+    ("x y z", " ", "x y z", ""),
+    ("id x y z", " ", "id x y z", "column 1 is an id"),
+    ("id x y z, local", ",", "id nx ny z", "column 1 is an id"),
+    ("P,N,E,Z,code of UTM", ",", "id y x z code", "column 2 is taken as northing"),
+    ("P,E,N,Z,code of UTM", ",", "id x y z code", "x = 2, y = 3, z = 4"),
+    ("inline crossline x y z", " ", "il xl gx gy time", "line, trace or place in a grid"),
+    ("line trace x y time", " ", "line trace x y time", "x = 3, y = 4, z = 5"),
+    ("x y z inline crossline", " ", "gx gy time il xl", "first 3 of 5"),
+    ("x y z class", " ", "x y z class", "first 3 of 4"),
+    ("class x y z", " ", "class x y z", "column 1 is a class"),
+    ("x y z intensity", " ", "x y z int", "first 3 of 4"),
+    ("x y z r g b", " ", "x y z r g b", "first 3 of 6"),
+    ("time x y z", " ", "gps x y z", "x = 2, y = 3, z = 4"),
+    ("x y z amplitude", " ", "x y z amp", "first 3 of 4"),
+    ("code x y z", ",", "code x y z", "x = 2"),
+    ("lon lat z id", ",", "lon lat z id", "look like degrees"),
+)
+
+
+class Tables(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def file(self, content, name="a.txt"):
+        path = os.path.join(self.folder, name)
+        with open(path, "wb") as stream:
+            stream.write(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def read(self, content, **options):
+        return read_text(self.file(content), ReadOptions(**options))
+
+    def refusal(self, content, **options):
+        with self.assertRaises(FileError) as caught:
+            self.read(content, **options)
+        self.assertNotIn("\n", str(caught.exception))
+        return str(caught.exception)
+
+    def assert_coordinates(self, cloud, expected):
+        numpy.testing.assert_array_equal(
+            vtk_to_numpy(cloud.points.GetPoints().GetData()), numpy.asarray(expected, dtype="f8")
+        )
+
+
+class Exports(Tables):
+    def check(self, what, head, separator, kinds, words):
+        if not kinds:
+            text = head + "".join("1,2,3,4,5\n4,5,7,8,9\n8,8,8,8,8\n")
+            self.assertIn(words, self.refusal(text))
+            return
+        rows, expected = columns_of(kinds)
+        if what == "R":
+            rows = [[f'"{row[0]}"', *row[1:]] for row in rows]
+        text = head + "".join(separator.join(row) + "\n" for row in rows)
+        encodings = ["utf-8"] + ["latin-1"] * all(ord(letter) < 256 for letter in text)
+        for encoding in encodings:
+            cloud = self.read(text.encode(encoding))
+            self.assert_coordinates(cloud, expected)
+            self.assertIn(words, " | ".join(cloud.notes))
+        if separator == ";":
+            cloud = self.read(head + text[len(head):].replace(".", ","))
+            self.assert_coordinates(cloud, expected)
+
+    def test_real_exports_of_nine_languages_are_read_as_they_are_meant(self):
+        for what, *case in EXPORTS:
+            with self.subTest(what):
+                self.check(what, *case)
+
+    def test_columns_without_names_are_told_by_their_values(self):
+        for what, *case in BARE:
+            with self.subTest(what):
+                self.check(what, "", *case)
+
+    def test_names_that_tell_nothing_leave_it_to_the_values(self):
+        for what, separator, kinds, words in BARE[1:4]:
+            with self.subTest(what):
+                width = len(kinds.split())
+                head = separator.join(f"f{i}" for i in "abcdefg"[:width]) + "\n"
+                self.check(what, head, separator, kinds, words.split(" is ")[0])
+
+    def test_every_kind_is_found_without_a_header_in_few_rows(self):
+        text = "1,5000.25,7000.5,12.1\n2,5003.75,7001.25,12.4\n3,5001.5,7004.75,12.9\n"
+        self.assert_coordinates(
+            self.read(text),
+            [(5000.25, 7000.5, 12.1), (5003.75, 7001.25, 12.4), (5001.5, 7004.75, 12.9)],
+        )
+
+
+class Doubts(Tables):
+    def test_two_readings_are_shown_with_the_options_that_decide(self):
+        rows, _ = columns_of("id nx ny z code")
+        text = "".join(",".join(row) + "\n" for row in rows)
+        error = self.refusal(text)
+        for words in ("two ways", "--columns 3,2,4", "--columns 2,3,4", f"x = {NEAR_Y[0]}"):
+            self.assertIn(words, error)
+        expected = numpy.column_stack((NEAR_Y, NEAR_X, Z))
+        self.assert_coordinates(self.read(text, columns=["3", "2", "4"]), expected)
+
+    def test_several_columns_of_one_name_are_refused_with_both(self):
+        rows = "\n1 2 3 4 5\n3 4 5 6 7\n5 5 5 5 9\n"
+        for head, words in (
+            ("X Y Z_depth Z_time Q", "columns 3 (Z_depth) and 4 (Z_time) may all be z"),
+            ("X_utm Y_utm X_local Y_local Z", "--columns 1,2,5 (first row: x = 1, y = 2, z = 5) or "
+             "--columns 3,4,5"),
+            ("X Y Depth TWT Q", "may all be z"),
+            ("Easting Easting Northing Z Q", "may all be x"),
+        ):
+            with self.subTest(head):
+                self.assertIn(words, self.refusal(head + rows))
+
+    def test_names_of_some_axes_leave_one_free_column_or_are_refused(self):
+        rows, expected = columns_of("id x y z")
+        text = "".join(",".join(row) + "\n" for row in rows)
+        cloud = self.read("id,X,Y,Top Chalk\n" + text)
+        self.assert_coordinates(cloud, expected)
+        self.assertIn("z = 4 (Top Chalk)", cloud.notes[1])
+        error = self.refusal("Hochwert,foo,bar,Hoehe\n" + text)
+        self.assertIn("the names tell y = 1 (Hochwert), z = 4 (Hoehe), but not x", error)
+        self.assertIn("it may be columns 2 (foo) and 3 (bar)", error)
+        rows, _ = columns_of("x y amp z")
+        text = "".join(",".join(row) + "\n" for row in rows)
+        self.assertIn("but not z", self.refusal("X,Y,top,base\n" + text))
+
+    def test_the_better_name_is_taken_and_the_other_told(self):
+        rows, _ = columns_of("x y z amp")
+        text = "X,Y,Elevation,Depth\n" + "".join(",".join(row) + "\n" for row in rows)
+        cloud = self.read(text)
+        self.assert_coordinates(cloud, numpy.column_stack((X, Y, Z)))
+        self.assertTrue(any("column 4 (Depth) could be too" in note for note in cloud.notes))
+
+    def test_northing_before_easting_without_a_header_is_told(self):
+        rows, _ = columns_of("y x z")
+        text = "".join(" ".join(row) + "\n" for row in rows)
+        cloud = self.read(text)
+        self.assert_coordinates(cloud, numpy.column_stack((Y, X, Z)))
+        self.assertIn("--columns 2,1,3", cloud.notes[-1])
+
+    def test_grids_of_other_formats_are_no_tables(self):
+        for head, words in (
+            ("ncols 4\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n", "ESRI"),
+            ("NCOLS 4\nNROWS 2\n", "an ESRI ASCII grid"),
+            ("DSAA\n4 2\n0 3\n0 1\n1 8\n", "a Surfer grid"),
+        ):
+            with self.subTest(head):
+                self.assertIn(words, self.refusal(head + "1 2 3 4\n5 6 7 8\n"))
+
+
+class OtherColumns(Tables):
+    def arrays(self, cloud):
+        data = cloud.points.GetPointData()
+        return {
+            data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+            for i in range(data.GetNumberOfArrays())
+        }
+
+    def test_other_columns_of_numbers_become_point_arrays(self):
+        rows, _ = columns_of("id x y z amp class code")
+        text = "Nr,X,Y,Z,Amplitude,Class,What\n" + "".join(",".join(row) + "\n" for row in rows)
+        cloud = self.read(text)
+        arrays = self.arrays(cloud)
+        self.assertEqual(list(arrays), ["Nr", "Amplitude", "Class"])
+        self.assertEqual(arrays["Nr"].dtype.kind, "i")
+        self.assertEqual(arrays["Class"].tolist(), KINDS["class"].tolist())
+        self.assertEqual(arrays["Amplitude"].tolist(), KINDS["amp"].tolist())
+        self.assertEqual(arrays["Amplitude"].dtype, numpy.dtype("f8"))
+        self.assertIn("left out: What", " ".join(cloud.notes))
+        rows, _ = columns_of("x y z int")
+        cloud = self.read("".join(" ".join(row) + "\n" for row in rows))
+        self.assertEqual(self.arrays(cloud)["column 4"].tolist(), KINDS["int"].tolist())
+
+    def test_colours_become_one_array_of_bytes(self):
+        rows, _ = columns_of("x y z r g b")
+        for head in ("//X Y Z R G B\n", "x y z red green blue\n", "X Y Z Rot Grün Blau\n"):
+            with self.subTest(head):
+                arrays = self.arrays(self.read(head + "".join(" ".join(r) + "\n" for r in rows)))
+                self.assertEqual(list(arrays), ["RGB"])
+                self.assertEqual(arrays["RGB"].dtype, numpy.dtype("u1"))
+                expected = numpy.column_stack((KINDS["r"], KINDS["g"], KINDS["b"]))
+                self.assertEqual(arrays["RGB"].tolist(), expected.tolist())
+
+    def test_missing_values_and_late_words_are_told_and_not_a_number(self):
+        text = "x,y,z,q\n" + "".join(f"{i},{i * i % 7},1.5,{i}.5\n" for i in range(20000))
+        text += "1,2,3,\n4,5,6,odd\n"
+        cloud = self.read(text)
+        values = self.arrays(cloud)["q"]
+        self.assertTrue(math.isnan(values[-1]) and math.isnan(values[-2]))
+        self.assertEqual(values[7], 7.5)
+        self.assertIn("column q: 1 words are no numbers", cloud.notes)
+
+    def test_rows_without_data_take_their_values_along(self):
+        cloud = self.read("x y z q\n1 2 3 10\n4 5 -9 20\n6 7 9 30\n", no_data=-9.0)
+        self.assertEqual(self.arrays(cloud)["q"].tolist(), [10, 30])
+        self.assertEqual(list(cloud.lines), [2, 4])
+
+
+class Parsing(Tables):
+    def test_numbers_are_equal_to_the_last_bit(self):
+        generator = numpy.random.default_rng(5)
+        values = generator.uniform(-1, 1, (4000, 3)) * 10.0 ** generator.integers(-8, 8, (4000, 3))
+        for text in (
+            "".join(f"{a!r} {b!r} {c!r}\n" for a, b, c in values.tolist()),
+            "".join(f"{a!r};{b!r};{c!r}\r\n" for a, b, c in values.tolist()).replace(".", ","),
+            "x,y,z\n\n" + "".join(f"{a!r}, {b!r}, {c!r}\n" for a, b, c in values.tolist()),
+            "".join(f'{a!r},"{b!r}",{c!r}\n' for a, b, c in values.tolist()),
+            "".join(f"{a!r}\t{b!r}\t{c!r}\r" for a, b, c in values.tolist()),
+        ):
+            self.assert_coordinates(self.read(text), values)
+
+    def test_fortran_exponents_are_read_and_underscores_are_not(self):
+        self.assert_coordinates(self.read("1.5D+02 2d0 3\n4 5 6\n"), [(150, 2, 3), (4, 5, 6)])
+        self.assertIn("'1_0' in column 2", self.refusal("1 2 3\n4 1_0 6\n"))
+
+    def test_blocks_are_joined_and_lines_counted_through_them(self):
+        line = b"500000.25 4000000.5 1.125\n"
+        count = BLOCK // len(line) + 2000
+        text = line * (count - 1000) + b"# a comment\n\n" + line * 999 + b"1 2 3"
+        cloud = self.read(text)
+        self.assertEqual(cloud.points.GetNumberOfPoints(), count)
+        self.assertEqual(cloud.points.GetPoint(count - 1), (1.0, 2.0, 3.0))
+        self.assertEqual(cloud.lines[count - 1], count + 2)
+        self.assertEqual(cloud.lines[count - 1001], count - 1000)
+        self.assertIn("1 comment line", cloud.notes[0])
+        bad = line * (count - 1000) + b"1 two 3\n"
+        self.assertIn(f"line {count - 999}: 'two' in column 2 (y)", self.refusal(bad))
+
+    def test_a_stream_is_read_in_place_of_the_file(self):
+        cloud = read_text("-", ReadOptions(), stream=io.BytesIO(b"1 2 3\n4 5 7\n"))
+        self.assert_coordinates(cloud, [(1, 2, 3), (4, 5, 7)])
+
+    def test_progress_is_told(self):
+        seen = []
+        path = self.file("1 2 3\n4 5 6\n")
+        read_text(path, ReadOptions(), progress=seen.append)
+        self.assertEqual(seen, [1.0])
+
+    def test_lines_with_more_words_are_told(self):
+        cloud = self.read("1 2 3\n4 5 6\n7 8 9 10\n5 5 5\n")
+        self.assertIn("line 3 has 4 columns where others have 3", " ".join(cloud.notes))
+
+    def test_blank_lines_and_marks_part_lines(self):
+        rows, lines, starts, _ = read_table(
+            self.file("> a\n0 0 1\n1 0 1\n\n# c\n2 2 1\n> b\n3 3 1\n4 4 1\n"))
+        self.assertEqual((len(rows), list(starts)), (5, [0, 2, 3]))
+        self.assertEqual(list(lines), [2, 3, 6, 8, 9])
+
+    def test_half_a_million_lines_take_a_second_or_so(self):
+        text = b"500000.25 4000000.5 1.125\n" * 500000
+        path = self.file(text)
+        began = time.perf_counter()
+        read_text(path, ReadOptions())
+        self.assertLess(time.perf_counter() - began, 3.0)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
