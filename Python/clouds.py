@@ -39,6 +39,7 @@ class ReadOptions:
     depth: bool = False  # z counts downwards; it is turned over
     band: object = None  # None, or the number from 1 of a raster's band of elevations
     layer: object = None  # None, or the name of a layer or variable, of files that hold several
+    classes: object = None  # None, or the numbers of the classes of a LAS file to read
 
 
 def make_points(coordinates):
@@ -59,6 +60,13 @@ def cells_of(rows):
     cells = vtkCellArray()
     cells.SetData(*(numpy_to_vtk(ids, deep=True) for ids in (offsets, rows)))
     return cells
+
+
+def add_array(points, name, values):
+    """Adds numbers, one or some for each point, as point array."""
+    array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
+    array.SetName(name)
+    points.GetPointData().AddArray(array)
 
 
 def some_points(data, keep):

@@ -54,6 +54,13 @@ def whole_number(text):
     return int(text)
 
 
+def class_numbers(text):
+    numbers = [int(word) for word in text.split(",")]
+    if not all(0 <= number <= 255 for number in numbers):
+        raise ValueError
+    return numbers
+
+
 def view_angles(text):
     if text == "top":
         return (180.0, 90.0)
@@ -69,6 +76,7 @@ TAKES = {
     "--no-data": "an elevation",
     "--band": "a whole number from 1",
     "--layer": "a name",
+    "--classes": "numbers from 0 to 255, as 2,8",
     "--faults": "a file",
     "--boundary": "a file",
     "--output": "a file",
@@ -142,6 +150,7 @@ def make_parser():
     add("--depth", action="store_true")
     add("--band", type=whole_number)
     add("--layer")
+    add("--classes", type=class_numbers)
     add("--faults", "--breaklines", dest="faults")
     add("--boundary")
     for name, one in PROPERTIES.items():

@@ -113,6 +113,7 @@ FORMATS = (
     Format("VTK's XML", ".vtp .vtu .vts .vtr .vti", begins(XML), "vtk_files", "vtk_files"),
     Format("VTK's legacy format", ".vtk", begins(rb"# vtk DataFile"), "vtk_files", "vtk_files"),
     Format("a PLY file", ".ply", begins(rb"ply\s"), "ply", "vtk_files"),
+    Format("a LAS file", ".las .laz", begins(rb"LASF"), "las"),
     Format("an STL file", ".stl", is_stl, "vtk_files", "vtk_files"),
     Format("an OBJ file", ".obj", begins(OBJ), "vtk_files", "vtk_files"),
     Format("a text table", TEXT, is_table, "text"),

@@ -7,9 +7,8 @@ import itertools
 import os
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
 
-from .clouds import Cloud, make_points
+from .clouds import Cloud, add_array, make_points
 from .messages import FileError
 from .vtk_files import rounding_note
 
@@ -98,7 +97,7 @@ def read_points(path, options):
         rows, notes = read(path, stream, order or number, vertex, before, after)
     coordinates = numpy.column_stack([rows[axis].astype("f8") for axis in "xyz"])
     cloud = Cloud(make_points(coordinates), notes)
-    add_arrays(cloud.points.GetPointData(), rows)
+    add_arrays(cloud.points, rows)
     if any(element.count for element in elements if element.name != "vertex"):
         cloud.notes.append("only the points are used, not the file's cells")
     if rows["x"].dtype == "f4":
@@ -107,7 +106,7 @@ def read_points(path, options):
     return cloud
 
 
-def add_arrays(point_data, rows):
+def add_arrays(points, rows):
     """Colours as one array RGB, every other number that is no coordinate by its name."""
     names = [name for name in rows.dtype.names if name not in ("x", "y", "z")]
     arrays = {}
@@ -116,10 +115,7 @@ def add_arrays(point_data, rows):
         names = [name for name in names if name not in COLOURS]
     arrays.update((name, rows[name]) for name in names)
     for name, values in arrays.items():
-        native = values.astype(values.dtype.newbyteorder("="))
-        array = numpy_to_vtk(numpy.ascontiguousarray(native), deep=True)
-        array.SetName(name)
-        point_data.AddArray(array)
+        add_array(points, name, values.astype(values.dtype.newbyteorder("=")))
 
 
 def read_text(path, stream, number, vertex, before, after):

@@ -201,11 +201,9 @@ def blocks(path, band, no_data):
         yield first, z, valid
 
 
-def points_of_raster(path, x, y, z, no_data):
+def points_of_raster(path, x, y, z):
     """Three (rows, columns) arrays -> Cloud of the nodes that hold an elevation."""
     valid = numpy.isfinite(z)
-    if no_data is not None:
-        valid &= z != no_data
     count = int(numpy.count_nonzero(valid))
     if count == 0:
         raise FileError(f"{path}: all {valid.size:,} pixels are without data")

@@ -10,9 +10,10 @@ import os
 from typing import Any, Union
 
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import Cloud, ReadOptions, make_points, turn_over
+from .clouds import Cloud, ReadOptions, keep_points, make_points, turn_over
 from .formats import recognise
 from .messages import FileError, did_you_mean
 from .nulls import take_out
@@ -20,7 +21,13 @@ from .paths import check_readable
 from .text import read_table
 
 # Options that mean something for some readers only.
-MEANS_SOMETHING = {"columns": ("text",), "band": ("rasters",), "layer": ("rasters", "vectors")}
+MEANS_SOMETHING = {
+    "columns": ("text",),
+    "band": ("rasters",),
+    "layer": ("rasters", "vectors"),
+    "classes": ("las",),
+}
+NAMES = {"text": "text files", "vectors": "vector files", "las": "LAS files"}
 
 
 def check_options(path, **options):
@@ -32,7 +39,7 @@ def check_options(path, **options):
 def check_use(path, kind, options):
     for name, modules in MEANS_SOMETHING.items():
         if getattr(options, name) is not None and kind.module not in modules:
-            fits = " and ".join({"text": "text files"}.get(module, module) for module in modules)
+            fits = " and ".join(NAMES.get(module, module) for module in modules)
             raise FileError(f"{path}: --{name} is for {fits}; this is {kind.name}")
 
 
@@ -60,8 +67,20 @@ def read_any(path, options):
     kind, notes = recognise(path)
     check_use(path, kind, options)
     cloud = kind.reader()(path, options)
+    if options.no_data is not None and kind.module not in ("text", "rasters"):
+        leave_out(path, cloud, options.no_data)
     cloud.notes[:0] = notes
     return cloud
+
+
+def leave_out(path, cloud, no_data):
+    """Takes the points of this elevation out of a cloud."""
+    keep = vtk_to_numpy(cloud.points.GetPoints().GetData())[:, 2] != no_data
+    if not keep.any():
+        raise FileError(f"{path}: all points have the elevation that marks missing data")
+    if not keep.all():
+        cloud.left_out["no data"] = int(len(keep) - numpy.count_nonzero(keep))
+        keep_points(cloud, numpy.flatnonzero(keep))
 
 
 def kind_of_lines(path, what):

@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from . import damage
-from .clouds import Cloud, some_points
+from .clouds import Cloud
 from .messages import FileError, Messages
 from .paths import suffix_of
 from .rasters import points_of_raster
@@ -99,10 +99,9 @@ def check_point_ids(path, data):
 
 
 def read_points(path, options):
-    no_data = options.no_data
     data = run_vtk_reader(path)
     if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
-        return points_of_grid(path, data, no_data)
+        return points_of_grid(path, data)
     if not isinstance(data, vtkPointSet):
         raise FileError(f"{path}: holds a {data.GetClassName()}, which has no points")
     if data.GetNumberOfPoints() == 0:
@@ -117,12 +116,6 @@ def read_points(path, options):
         note = rounding_note(vtk_to_numpy(data.GetPoints().GetData()))
         if note:
             cloud.notes.append(note)
-    if no_data is not None:
-        z = vtk_to_numpy(data.GetPoints().GetData())[:, 2]
-        keep = numpy.flatnonzero(z != no_data)
-        if len(keep) < len(z):
-            cloud.left_out["no data"] = len(z) - len(keep)
-            cloud.points = some_points(data, keep)
     return cloud
 
 
@@ -143,7 +136,7 @@ def rounding_note(coordinates, why="VTK reads this format"):
     )
 
 
-def points_of_grid(path, grid, no_data):
+def points_of_grid(path, grid):
     """A flat grid with one elevation for each node -> its nodes as points."""
     scalars = grid.GetPointData().GetScalars()
     if scalars is None:
@@ -166,7 +159,7 @@ def points_of_grid(path, grid, no_data):
         y = vtk_to_numpy(grid.GetYCoordinates()).astype("f8")
     z = vtk_to_numpy(scalars).reshape(rows, columns)
     x, y = numpy.meshgrid(x, y)
-    cloud = points_of_raster(path, x, y, z, no_data)
+    cloud = points_of_raster(path, x, y, z)
     cloud.notes.insert(0, f"elevation: point array {scalars.GetName() or '(unnamed)'}")
     return cloud
 

@@ -1,0 +1,201 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Points of LAS files 1.0 to 1.4 (ASPRS), and of LAZ files where laspy can decode them."""
+
+import os
+import struct
+
+import numpy
+
+from .clouds import Cloud, add_array, make_points
+from .messages import FileError
+
+# Bytes of a record, GPS time and colours in it, by point format.
+SIZES = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)
+TIMES = {1: 20, 3: 20, 4: 20, 5: 20, 6: 22, 7: 22, 8: 22, 9: 22, 10: 22}
+COLOURS = {2: 20, 3: 28, 5: 28, 7: 30, 8: 30, 10: 30}
+CLASSES = {
+    0: "never classified", 1: "unclassified", 2: "ground", 3: "low vegetation",
+    4: "medium vegetation", 5: "high vegetation", 6: "building", 7: "noise", 8: "key points",
+    9: "water", 10: "rail", 11: "road", 12: "overlap", 17: "bridge", 18: "high noise",
+}  # fmt: skip
+AT_ONCE = 1 << 20
+
+
+class Header:
+    """What the header and the records behind it tell. Raises FileError."""
+
+    def __init__(self, path):
+        self.path = path
+        self.size = os.path.getsize(path)
+        with open(path, "rb") as stream:
+            head = stream.read(375)
+            if head[:4] != b"LASF" or len(head) < 227:
+                raise FileError(f"{path}: is cut off within its header, or no LAS file")
+            self.version = head[24:26]
+            size, self.start, records, kind, self.length = struct.unpack_from("<HIIBH", head, 94)
+            self.count = struct.unpack_from("<I", head, 107)[0]
+            self.scale = numpy.array(struct.unpack_from("<3d", head, 131))
+            self.offset = numpy.array(struct.unpack_from("<3d", head, 155))
+            extended = (0, 0)
+            if self.version >= b"\1\4" and size >= 375 and len(head) == 375:
+                extended = struct.unpack_from("<QI", head, 235)
+                self.count = struct.unpack_from("<Q", head, 247)[0] or self.count
+            self.is_packed = bool(kind & 0xC0)
+            self.kind = kind & 0x3F
+            self.check()
+            self.crs = crs_of(stream, size, records, *extended)
+
+    def check(self):
+        name = f"{self.path}: LAS {self.version[0]}.{self.version[1]}"
+        if self.kind >= len(SIZES):
+            raise FileError(f"{name} with point format {self.kind}; 0 to 10 are known")
+        if self.length < SIZES[self.kind]:
+            raise FileError(
+                f"{name}: is damaged: {self.length} bytes for a point of format {self.kind}, "
+                f"which needs {SIZES[self.kind]}"
+            )
+        if not (numpy.isfinite(self.scale).all() and self.scale.all()):
+            raise FileError(f"{name}: is damaged: its scale is {self.scale.tolist()}")
+        found = max(self.size - self.start, 0) // self.length
+        if self.count == 0:
+            raise FileError(f"{name}: holds no points")
+        if not self.is_packed and found < self.count:
+            raise FileError(
+                f"{name}: is cut off: {self.count:,} points are announced, {found:,} are there"
+            )
+
+    def record(self):
+        """The fields of a point that are read, as numpy type."""
+        is_new = self.kind >= 6
+        fields = {"XYZ": ("(3,)<i4", 0), "Intensity": ("<u2", 12), "returns": ("u1", 14)}
+        fields["flags"] = ("u1", 15)
+        fields["Classification"] = ("u1", 16 if is_new else 15)
+        if self.kind in TIMES:
+            fields["GpsTime"] = ("<f8", TIMES[self.kind])
+        if self.kind in COLOURS:
+            fields["RGB"] = ("(3,)<u2", COLOURS[self.kind])
+        formats, offsets = zip(*fields.values())
+        return numpy.dtype(
+            {
+                "names": list(fields),
+                "formats": formats,
+                "offsets": offsets,
+                "itemsize": self.length,
+            }
+        )
+
+
+def crs_of(stream, start, count, extended_start, extended_count):
+    """The reference system of the variable length records as WKT or EPSG code, or None."""
+    wkt = code = None
+    extended = (extended_start, extended_count, "<2x16sHQ32x")
+    for at, number, head in ((start, count, "<2x16sHH32x"), extended):
+        for _ in range(min(number, 1000)):
+            stream.seek(at)
+            record = stream.read(struct.calcsize(head))
+            if len(record) < struct.calcsize(head):
+                break
+            user, key, length = struct.unpack(head, record)
+            at += len(record) + length
+            if not user.startswith(b"LASF_Projection"):
+                continue
+            content = stream.read(min(length, 1 << 20))
+            if key == 2112:
+                wkt = content.split(b"\0")[0].decode("utf-8", "replace").strip() or wkt
+            elif key == 34735:
+                keys = numpy.frombuffer(content[: len(content) // 8 * 8], "<u2").reshape(-1, 4)
+                found = {int(row[0]): int(row[3]) for row in keys[1:] if row[1] == 0}
+                code = found.get(3072) or found.get(2048)
+    return wkt or (f"EPSG:{code}" if code and code != 32767 else None)
+
+
+def records(path, header):
+    """Yields the points as arrays of header.record(), about a million at a time."""
+    kind = header.record()
+    if not header.is_packed:
+        rows = numpy.memmap(path, kind, "r", header.start, (header.count,))
+        for first in range(0, header.count, AT_ONCE):
+            yield rows[first : first + AT_ONCE]
+        return
+    try:
+        import laspy
+    except ImportError:
+        raise FileError(
+            f"{path}: is compressed (LAZ): install the Python packages laspy and lazrs to read it, "
+            "or unpack it to .las"
+        ) from None
+    try:
+        with laspy.open(path) as reader:
+            for chunk in reader.chunk_iterator(AT_ONCE):
+                yield numpy.frombuffer(chunk.array.tobytes(), kind)
+    except Exception as error:  # laspy and its decoders have errors of many kinds
+        raise FileError(f"{path}: laspy cannot read it: {' '.join(str(error).split())}") from None
+
+
+def read_points(path, options):
+    """All points that are not withheld, or those of the classes that options name.
+
+    Intensity, Classification, ReturnNumber, GpsTime and RGB become point arrays where they are not
+    0 everywhere. Takes 24 bytes a point, and those of its arrays.
+    """
+    header = Header(path)
+    names = header.record().names
+    count, total = 0, 0
+    points = numpy.empty((header.count, 3))
+    arrays = {
+        "Intensity": numpy.empty(header.count, "u2"),
+        "Classification": numpy.empty(header.count, "u1"),
+        "ReturnNumber": numpy.empty(header.count, "u1"),
+    }
+    if "GpsTime" in names:
+        arrays["GpsTime"] = numpy.empty(header.count)
+    if "RGB" in names:
+        arrays["RGB"] = numpy.empty((header.count, 3), "u2")
+    withheld, of_class = 0, numpy.zeros(256, "i8")
+    for rows in records(path, header):
+        classes, gone = rows["Classification"], rows["flags"] & 4 > 0
+        if header.kind < 6:
+            classes, gone = classes & 31, classes & 128 > 0
+        keep = ~gone
+        withheld += int(numpy.count_nonzero(gone))
+        of_class += numpy.bincount(classes[keep], minlength=256)
+        if options.classes:
+            keep &= numpy.isin(classes, options.classes)
+        rows = rows[keep]
+        here = slice(count, count + len(rows))
+        points[here] = rows["XYZ"] * header.scale + header.offset
+        arrays["ReturnNumber"][here] = rows["returns"] & (15 if header.kind >= 6 else 7)
+        arrays["Classification"][here] = classes[keep]
+        for name in ("Intensity", "GpsTime", "RGB"):
+            if name in arrays:
+                arrays[name][here] = rows[name]
+        count, total = here.stop, total + len(keep)
+    if total < header.count:
+        raise FileError(
+            f"{path}: is cut off: {header.count:,} points are announced, {total:,} are there"
+        )
+    shown = ", ".join(
+        f"{number} {CLASSES.get(number, '')}".strip() + f": {of_class[number]:,}"
+        for number in numpy.flatnonzero(of_class)
+    )
+    if count == 0:
+        wanted = ", ".join(map(str, options.classes or ()))
+        raise FileError(f"{path}: holds no point of class {wanted}; classes: {shown or 'none'}")
+    cloud = Cloud(make_points(points[:count]), crs=header.crs)
+    cloud.notes.append(
+        f"LAS {header.version[0]}.{header.version[1]}, point format {header.kind}; classes {shown}"
+        + ("" if options.classes else " (see --classes)" * (numpy.count_nonzero(of_class) > 1))
+    )
+    if withheld:
+        cloud.left_out["points marked as withheld"] = withheld
+    if header.count - withheld > count:
+        cloud.left_out["points of other classes"] = header.count - withheld - count
+    for name, values in arrays.items():
+        values = values[:count]
+        if name == "RGB":
+            # Colours of 16 bits, or as many programs write them, of 8.
+            values = (values >> (8 if values.max() > 255 else 0)).astype("u1")
+        if values.any():
+            add_array(cloud.points, name, values)
+    return cloud
