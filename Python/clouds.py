@@ -62,6 +62,21 @@ def cells_of(rows):
     return cells
 
 
+def make_lines(parts):
+    """(n, 3) arrays of the points of lines in order -> vtkPolyData. Closed ones share their ends."""
+    cells, total, coordinates = vtkCellArray(), 0, []
+    for points in parts:
+        ids = list(range(total, total + len(points)))
+        if len(points) > 3 and numpy.array_equal(points[0], points[-1]):
+            points, ids = points[:-1], ids[:-1] + [total]
+        cells.InsertNextCell(len(ids), ids)
+        coordinates.append(points)
+        total += len(points)
+    data = make_points(numpy.concatenate(coordinates))
+    data.SetLines(cells)
+    return data
+
+
 def add_array(points, name, values):
     """Adds numbers, one or some for each point, as point array."""
     array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)

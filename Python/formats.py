@@ -82,14 +82,21 @@ def is_text(head):
 
 
 def is_table(head, path):
-    """Text whose very first line of data holds numbers. Told apart early, since it is so usual."""
+    """Text whose very first line of data is numbers. Told apart early, since it is so usual."""
     lines = lines_of(head)
-    return is_text(head) and bool(lines) and numbers_of(lines[0]) > 1 and len(lines[0]) < 1000
+    if not is_text(head) or not lines or len(lines[0]) > 1000:
+        return False
+    return numbers_of(lines[0]) >= max(2, len(lines[0].split()) / 2)
 
 
 def is_numbers(head, path):
     """Text with numbers in it."""
     return is_text(head) and any(numbers_of(line) > 1 for line in lines_of(head))
+
+
+def is_table_with_geometry(head, path):
+    """A table of text with a header line, and well-known text of geometries below it."""
+    return GEOMETRY.match(head) is not None
 
 
 def is_of_gdal(what):
@@ -108,6 +115,10 @@ TEXT = ".csv .xyz .txt .dat .asc .pts .tsv"
 XML = rb"(\xef\xbb\xbf)?\s*(<\?xml.*?\?>\s*)?(<!--.*?-->\s*)*<VTKFile\b"
 OBJ = rb"(\s*(#|mtllib |o |g |s |usemtl )[^\n]*\n)*\s*v\s+[-+.\d]"
 
+GEOMETRY = re.compile(
+    rb"[^\n]*\n[^\n]*\b(MULTI)?(POINT|LINESTRING|POLYGON)\s*Z?M?\s*\(", re.IGNORECASE
+)
+
 # In the order of asking.
 FORMATS = (
     Format("VTK's XML", ".vtp .vtu .vts .vtr .vti", begins(XML), "vtk_files", "vtk_files"),
@@ -116,7 +127,16 @@ FORMATS = (
     Format("a LAS file", ".las .laz", begins(rb"LASF"), "las"),
     Format("an STL file", ".stl", is_stl, "vtk_files", "vtk_files"),
     Format("an OBJ file", ".obj", begins(OBJ), "vtk_files", "vtk_files"),
+    Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
+    Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),
     Format("a text table", TEXT, is_table, "text"),
+    Format(
+        "a vector file",
+        ".gpkg .shp .geojson .json .dxf .gml .kml .kmz .fgb .gpx .tab .mif .dgn .dwg",
+        is_of_gdal("vectors"),
+        "vectors",
+        "vectors",
+    ),
     Format(
         "a raster",
         ".tif .tiff .dem .asc .grd .nc .vrt .img .hgt .flt .bil .dat .zmap",

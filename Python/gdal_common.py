@@ -3,8 +3,8 @@
 """What reading rasters and reading vectors by GDAL have in common."""
 
 import functools
-import re
 
+from .columns import meaning
 from .messages import FileError
 
 # Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
@@ -15,10 +15,6 @@ VECTORS = (
     "GPKG,ESRI Shapefile,GeoJSON,GeoJSONSeq,ESRIJSON,TopoJSON,DXF,CAD,DGN,GML,LIBKML,KML,GPX,"
     "FlatGeobuf,MapInfo File,OGR_GMT,OpenFileGDB,SQLite,S57,OGR_VRT,AVCE00,JML"
 ).split(",")
-# Names that a variable, layer or attribute of elevations has where there are several.
-ELEVATION = re.compile(
-    r"z|elev|height|altitude|topo|bathy|depth|dem$|dtm$|band_?1$|twt|h[oö]he|hauteur", re.IGNORECASE
-)
 
 
 def one_line(error):
@@ -71,7 +67,16 @@ def kind_of(path, what):
     flags = gdal.OF_RASTER if what == "raster" else gdal.OF_VECTOR
     with quiet():
         driver = gdal.IdentifyDriverEx(path, flags, drivers(what))
-    return driver.ShortName if driver else None
+        kind = driver.ShortName if driver else None
+        if what == "vectors" and kind in ("GPKG", "SQLite"):
+            # These hold rasters too.
+            try:
+                layers = gdal.OpenEx(path, flags).GetLayerCount()
+                rasters = gdal.IdentifyDriverEx(path, gdal.OF_RASTER, ["GPKG"])
+                kind = kind if layers or not rasters else None
+            except RuntimeError:
+                pass
+    return kind
 
 
 def choose_layer(path, wanted, names, what):
@@ -81,7 +86,7 @@ def choose_layer(path, wanted, names, what):
             raise FileError(f"{path}: has no layer {wanted}; {what}: {', '.join(names)}")
         return wanted
     if len(names) > 1:
-        named = [name for name in names if ELEVATION.match(name)]
+        named = [name for name in names if meaning(name).axis == "z"]
         names = named if len(named) == 1 else names
     if len(names) != 1:
         found = f"{what} {', '.join(names[:20])}: choose one by --layer" if names else f"no {what}"

@@ -22,7 +22,7 @@ from .text import read_table
 
 # Options that mean something for some readers only.
 MEANS_SOMETHING = {
-    "columns": ("text",),
+    "columns": ("text", "vectors"),
     "band": ("rasters",),
     "layer": ("rasters", "vectors"),
     "classes": ("las",),

@@ -371,7 +371,7 @@ class Damage(InFolder):
         for words, options in (
             ("there is no band 2; it has 1", {"band": 2}),
             ("has no layers", {"layer": "z"}),
-            ("--columns is for text files; this is a raster", {"columns": ["1", "2", "3"]}),
+            ("--columns is for text files and vector files; this is a raster", {"columns": ["1", "2", "3"]}),
         ):
             with self.subTest(words=words):
                 with self.assertRaisesRegex(reading.FileError, words):

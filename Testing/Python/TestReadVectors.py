@@ -1,0 +1,288 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Points, lines and polygons of vector files, made by OGR and by hand."""
+
+import math
+import sys
+import unittest
+
+import numpy
+from in_folder import InFolder, coordinates
+from osgeo import gdal, ogr, osr
+from vtkelevationsurface import reading
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+gdal.UseExceptions()
+ogr.UseExceptions()
+osr.UseExceptions()
+MAP = [
+    (612014.6747884353, 6073983.681666553, 633.5012316703796),
+    (612015.125, 6073984.987654321, -1.0 / 3.0),
+    (612016.5, 6073985.000000001, 9999.125),
+]
+FIELDS = {"name": ["a", "b", "c"], "number": [7, 8, None], "weight": [0.5, None, -1.0 / 3.0]}
+RING = "(0 0 1, 10 0 2, 10 10 3, 0 10 4, 0 0 1)"
+HOLE = "(2 2 5, 4 2 6, 4 4 7, 2 2 5)"
+
+
+def wkt_of(rows, flat=False):
+    if flat:
+        return [f"POINT ({x!r} {y!r})" for x, y, _ in rows]
+    return [f"POINT Z ({x!r} {y!r} {z!r})" for x, y, z in rows]
+
+
+def vector(path, driver, geometries, fields=None, layer="points", epsg=25832, options=()):
+    """Writes geometries (well-known text or None) with attributes; adds a layer to a file there is."""
+    reference = osr.SpatialReference()
+    reference.ImportFromEPSG(epsg)
+    reference.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    if isinstance(path, str):
+        path = ogr.GetDriverByName(driver).CreateDataSource(path)
+    types = {ogr.CreateGeometryFromWkt(text).GetGeometryType() for text in geometries if text}
+    kind = types.pop() if len(types) == 1 else ogr.wkbUnknown
+    made = path.CreateLayer(layer, reference, kind, list(options))
+    kinds = {str: ogr.OFTString, int: ogr.OFTInteger, float: ogr.OFTReal}
+    for name, values in (fields or {}).items():
+        made.CreateField(ogr.FieldDefn(name, kinds[type(values[0])]))
+    for i, text in enumerate(geometries):
+        feature = ogr.Feature(made.GetLayerDefn())
+        for name, values in (fields or {}).items():
+            if values[i] is not None:
+                feature.SetField(name, values[i])
+        if text:
+            feature.SetGeometry(ogr.CreateGeometryFromWkt(text))
+        made.CreateFeature(feature)
+    return path
+
+
+class Vectors(InFolder):
+    def make(self, name, driver, geometries, *arguments, **more):
+        vector(self.path(name), driver, geometries, *arguments, **more)
+        return self.path(name)
+
+    def gpkg(self, geometries, fields=None, **more):
+        return self.make("a.gpkg", "GPKG", geometries, fields, **more)
+
+    def array(self, cloud, name):
+        return vtk_to_numpy(cloud.points.GetPointData().GetArray(name)).tolist()
+
+
+class Points(Vectors):
+    def test_every_format_keeps_coordinates_attributes_and_reference_system(self):
+        for name, driver, options, digits, has_fields, has_crs in (
+            ("a.gpkg", "GPKG", (), None, True, True),
+            ("a.shp", "ESRI Shapefile", ("SHPT=POINTZ",), None, True, True),
+            ("a.fgb", "FlatGeobuf", ("SPATIAL_INDEX=NO",), None, True, True),
+            ("a.geojson", "GeoJSON", ("COORDINATE_PRECISION=15",), 1e-14, True, True),
+            ("a.csv", "CSV", ("GEOMETRY=AS_WKT",), 1e-14, True, False),
+            ("a.gml", "GML", (), 1e-8, True, True),
+            ("a.gmt", "OGR_GMT", (), 1e-6, False, True),
+            ("a.dxf", "DXF", (), 1e-9, False, False),
+            ("a.sqlite", "SQLite", (), None, True, True),
+            ("a.jml", "JML", (), 1e-14, True, True),
+        ):
+            fields = dict(FIELDS) if has_fields else None
+            with self.subTest(driver=driver):
+                path = self.make(name, driver, wkt_of(MAP), fields, options=options)
+                cloud = reading.read(path, layer="points" if driver == "SQLite" else None)
+                if digits is None:
+                    self.assert_rows(cloud, MAP)
+                else:
+                    numpy.testing.assert_allclose(coordinates(cloud), MAP, rtol=digits)
+                if has_fields:
+                    weights = self.array(cloud, "weight")
+                    numpy.testing.assert_allclose(weights, [0.5, math.nan, -1.0 / 3.0], rtol=1e-14)
+                    self.assertEqual(self.array(cloud, "number")[:2], [7, 8])
+                if has_crs:
+                    self.assertIn("UTM zone 32N", cloud.crs)
+
+    def test_all_digits_of_text_survive(self):
+        points = ",".join(
+            '{"type": "Feature", "properties": {"w": 0.1}, "geometry": '
+            '{"type": "Point", "coordinates": [%r, %r, %r]}}' % row
+            for row in MAP
+        )
+        content = '{"type": "FeatureCollection", "features": [' + points + "]}"
+        self.assert_rows(self.read(content, "a.geojson"), MAP)
+        content = "id;geometry\n" + "".join(f"1;{text}\n" for text in wkt_of(MAP))
+        self.assert_rows(self.read(content, "a.csv"), MAP)
+
+    def test_degrees_of_kml_and_gpx_are_told(self):
+        degrees = [(7.5, 50.25, 100.5), (7.75, 50.5, 200.25), (8.0, 50.0, 300.0)]
+        self.make("a.kml", "KML", wkt_of(degrees), epsg=4326)
+        points = "".join(
+            f'<wpt lat="{y}" lon="{x}"><ele>{z}</ele></wpt>' for x, y, z in degrees
+        )
+        gpx = '<gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1">' + points + "</gpx>"
+        self.file("a.gpx", gpx)
+        for name in ("a.kml", "a.gpx"):
+            with self.subTest(name=name):
+                cloud = reading.read(self.path(name))
+                self.assert_rows(cloud, degrees)
+                self.assertTrue(any("x,y are angles" in note for note in cloud.notes))
+
+    def test_z_comes_from_an_attribute_where_the_points_are_flat(self):
+        heights = [row[2] for row in MAP]
+        for name, flat in (("HOEHE", True), ("z", True), ("elevation_m", True), ("Cota", True),
+                           ("z", False)):
+            with self.subTest(name=name, flat=flat):
+                rows = [(x, y, 0.0) for x, y, _ in MAP]
+                cloud = reading.read(
+                    self.gpkg(wkt_of(rows, flat), {"code": [1, 2, 3], name: heights})
+                )
+                self.assert_rows(cloud, MAP)
+                self.assertIn(f"z from attribute {name}", cloud.notes)
+
+    def test_z_of_the_points_is_taken_before_that_of_an_attribute(self):
+        cloud = reading.read(self.gpkg(wkt_of(MAP), {"elevation": [1.0, 2.0, 3.0]}))
+        self.assert_rows(cloud, MAP)
+        self.assertIn("z from the geometry, not from elevation", cloud.notes)
+
+    def test_single_flat_points_among_others_take_the_attribute(self):
+        points = wkt_of(MAP[:2]) + wkt_of(MAP[2:], True)
+        cloud = reading.read(self.gpkg(points, {"elevation": [1.0, 2.0, 3.0]}))
+        self.assertEqual(coordinates(cloud)[:, 2].tolist(), [MAP[0][2], MAP[1][2], 3.0])
+        self.assertIn("z from attribute elevation, where the geometry has none", cloud.notes)
+
+    def test_the_attribute_of_z_can_be_named(self):
+        path = self.gpkg(wkt_of(MAP, True), {"v": [1.5, 2.5, 3.5], "name": ["a", "b", "c"]})
+        cloud = reading.read(path, columns=["x", "y", "v"])
+        self.assertEqual(coordinates(cloud)[:, 2].tolist(), [1.5, 2.5, 3.5])
+        for words, columns in (
+            ("no attribute is named as an elevation.*attributes: v, name", None),
+            ("has no attribute q; attributes: v, name", ["x", "y", "q"]),
+            ("'a' in attribute name is not a number", ["x", "y", "name"]),
+        ):
+            with self.assertRaisesRegex(reading.FileError, words):
+                reading.read(path, columns=columns)
+
+    def test_two_attributes_that_could_be_z_are_asked(self):
+        path = self.gpkg(wkt_of(MAP, True), {"height": [1.0, 2.0, 3.0], "elevation": [1.0, 2.0, 3.0]})
+        with self.assertRaisesRegex(reading.FileError, "attributes height, elevation could be"):
+            reading.read(path)
+
+    def test_depth_by_name_is_told(self):
+        cloud = reading.read(self.gpkg(wkt_of(MAP, True), {"depth": [1.0, 2.0, 3.0]}))
+        self.assertTrue(any("--depth turns it over" in note for note in cloud.notes))
+
+    def test_vertices_of_lines_and_polygons_are_points(self):
+        path = self.gpkg(
+            ["LINESTRING Z (0 0 1, 5 0 2, 5 5 3)", f"POLYGON Z ({RING}, {HOLE})",
+             "MULTIPOINT Z ((7 7 7), (8 8 8))", None],
+            {"code": [4, 5, 6, 7]},
+        )
+        cloud = reading.read(path)
+        rows = [(0, 0, 1), (5, 0, 2), (5, 5, 3), (0, 0, 1), (10, 0, 2), (10, 10, 3), (0, 10, 4)]
+        rows += [(2, 2, 5), (4, 2, 6), (4, 4, 7), (7, 7, 7), (8, 8, 8)]
+        self.assert_rows(cloud, rows)
+        self.assertEqual(self.array(cloud, "code"), [4] * 3 + [5] * 7 + [6] * 2)
+        self.assertIn("the vertices of lines and polygons are taken as points", cloud.notes)
+        self.assertEqual(cloud.left_out, {"features without geometry": 1})
+
+    def test_contours_take_their_elevation_from_an_attribute(self):
+        lines = ["LINESTRING (0 0, 5 0)", "LINESTRING (0 5, 5 5, 9 5)"]
+        cloud = reading.read(self.gpkg(lines, {"ELEV": [100.0, 110.0]}))
+        self.assertEqual(coordinates(cloud)[:, 2].tolist(), [100, 100, 110, 110, 110])
+
+    def test_layers_are_chosen(self):
+        data = vector(self.path("a.gpkg"), "GPKG", wkt_of(MAP), layer="first")
+        vector(data, "GPKG", wkt_of(MAP[:1]), layer="second")
+        vector(data, "GPKG", [], layer="empty")
+        data = None
+        path = self.path("a.gpkg")
+        with self.assertRaisesRegex(reading.FileError, "layers with geometry first, second: choose"):
+            reading.read(path)
+        self.assert_rows(reading.read(path, layer="second"), MAP[:1])
+        with self.assertRaisesRegex(reading.FileError, "no layer third; layers with geometry: first"):
+            reading.read(path, layer="third")
+        with self.assertRaisesRegex(reading.FileError, "layer empty holds no geometry"):
+            reading.read(path, layer="empty")
+
+    def test_layers_of_a_drawing_are_chosen_and_its_texts_left_out(self):
+        entities = "".join(
+            f"0\nPOINT\n8\n{layer}\n10\n{x}\n20\n{y}\n30\n{z}\n"
+            for layer, x, y, z in (("SPOT", 1.5, 2.5, 3.5), ("SPOT", 2.5, 2.5, 4.5), ("OLD", 9, 9, 1))
+        )
+        entities += "0\nTEXT\n8\nSPOT\n10\n7.0\n20\n7.0\n30\n0.0\n40\n1.0\n1\n12.3\n"
+        content = "0\nSECTION\n2\nENTITIES\n" + entities + "0\nENDSEC\n0\nEOF\n"
+        cloud = self.read(content, "a.dxf")
+        self.assert_rows(cloud, [(1.5, 2.5, 3.5), (2.5, 2.5, 4.5), (9, 9, 1)])
+        self.assertEqual(cloud.left_out, {"texts": 1})
+        self.assert_rows(self.read(content, "a.dxf", layer="OLD"), [(9, 9, 1)])
+        self.assert_refused("no layer NEW; layers: OLD, SPOT", content, "a.dxf", layer="NEW")
+
+    def test_content_is_known_whatever_the_name(self):
+        self.make("b.gpkg", "GPKG", wkt_of(MAP))
+        with open(self.path("b.gpkg"), "rb") as stream:
+            cloud = self.read(stream.read(), "b.tif")
+        self.assert_rows(cloud, MAP)
+        self.assertIn("by its content this is a vector file, not a raster", cloud.notes)
+
+    def test_damaged_files_are_refused_in_one_line(self):
+        contents = {}
+        for name, driver in (("a.gpkg", "GPKG"), ("a.fgb", "FlatGeobuf"), ("a.geojson", "GeoJSON"),
+                             ("a.shp", "ESRI Shapefile"), ("a.gml", "GML")):
+            with open(self.make(name, driver, wkt_of(MAP * 50)), "rb") as stream:
+                contents[name] = stream.read()
+        for name, content in contents.items():
+            for share in (0.02, 0.3, 0.6, 0.95):
+                with self.subTest(name=name, share=share):
+                    self.assert_refused("", content[: int(share * len(content))], "cut-" + name)
+        for words, name, content in (
+            ("", "a.geojson", '{"type": "FeatureCollection", "features": "none"}'),
+            ("holds no layers with geometry", "b.geojson", '{"type": "FeatureCollection", "features": []}'),
+            ("", "a.gpkg", b"SQLite format 3\0" + bytes(200)),
+            ("", "a.dxf", "0\nSECTION\n2\nENTITIES\n0\nPOINT\n10\nx\n"),
+            ("", "a.shp", b"\0\0\x27\x0a" + bytes(96)),
+            ("", "a.csv", "WKT,name\nPOINT Z (a b c),x\nPOINT Z (d e f),y\n"),
+        ):
+            with self.subTest(name=name, words=words):
+                self.assert_refused(words, content, name)
+
+
+class Lines(Vectors):
+    def cells(self, data):
+        return [
+            [data.GetPoint(data.GetCell(i).GetPointId(j)) for j in range(data.GetCell(i).GetNumberOfPoints())]
+            for i in range(data.GetNumberOfCells())
+        ]
+
+    def test_a_boundary_is_read_with_its_holes(self):
+        for name, driver in (("a.gpkg", "GPKG"), ("a.shp", "ESRI Shapefile"), ("a.geojson", "GeoJSON"),
+                             ("a.csv", "CSV")):
+            with self.subTest(driver=driver):
+                options = ("GEOMETRY=AS_WKT",) if driver == "CSV" else ()
+                path = self.make(name, driver, [f"POLYGON Z ({RING}, {HOLE})"], {"id": [1]}, options=options)
+                data = reading.read_boundary(path)
+                self.assertEqual(data.GetNumberOfLines(), 2)
+                self.assertEqual(data.GetNumberOfPoints(), 7)
+                for ring, count in zip(self.cells(data), (5, 4)):
+                    self.assertEqual(len(ring), count)
+                    self.assertEqual(ring[0], ring[-1])
+
+    def test_a_flat_boundary_and_closed_lines_are_enough(self):
+        path = self.gpkg(["POLYGON ((0 0, 9 0, 9 9, 0 0))", "LINESTRING (1 1, 2 1, 2 2, 1 1)"])
+        data = reading.read_boundary(path)
+        self.assertEqual(data.GetNumberOfLines(), 2)
+        self.assertEqual(data.GetNumberOfPoints(), 6)
+
+    def test_an_open_line_is_no_boundary(self):
+        with self.assertRaisesRegex(reading.FileError, "holds a line that is not closed"):
+            reading.read_boundary(self.gpkg(["LINESTRING (1 1, 2 1, 2 2)"]))
+
+    def test_faults_keep_their_elevations(self):
+        path = self.gpkg(["LINESTRING Z (0 0 1, 5 0 2)", "MULTILINESTRING Z ((1 1 3, 2 2 4), (5 5 5, 6 6 6))"])
+        lines = self.cells(reading.read_faults(path))
+        self.assertEqual(lines, [[(0, 0, 1), (5, 0, 2)], [(1, 1, 3), (2, 2, 4)], [(5, 5, 5), (6, 6, 6)]])
+        path = self.gpkg(["LINESTRING (0 0, 5 0)"], {"elevation": [7.5]}, layer="b")
+        self.assertEqual(self.cells(reading.read_faults(path)), [[(0, 0, 7.5), (5, 0, 7.5)]])
+
+    def test_what_holds_no_lines_or_no_z_is_refused(self):
+        with self.assertRaisesRegex(reading.FileError, "no line and no polygon that could be a fault"):
+            reading.read_faults(self.gpkg(wkt_of(MAP)))
+        with self.assertRaisesRegex(reading.FileError, "its lines have no z"):
+            reading.read_faults(self.make("b.gpkg", "GPKG", ["LINESTRING (0 0, 5 0)"]))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
