@@ -28,9 +28,9 @@ class ScreenMesh:
     patches: numpy.ndarray
 
 
-def slices(count):
-    """Slices that cover count rows, AT_ONCE rows each."""
-    return [slice(i, i + AT_ONCE) for i in range(0, count, AT_ONCE)]
+def slices(count, at_once=AT_ONCE):
+    """Slices that cover count rows."""
+    return [slice(i, min(i + at_once, count)) for i in range(0, count, at_once)]
 
 
 def corner_flags(triangles, count):

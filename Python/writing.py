@@ -4,98 +4,102 @@
 
 import os
 
-import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from .clouds import make_points
+from .mesh_formats import write_glb, write_ply, write_ts
 from .messages import FileError, Messages
 from .paths import suffix_of
 from .vtk_files import rounding_note
+from .xml_writer import write_vtp, write_vtu
 
-WRITE_SUFFIXES = (".vtp", ".ply", ".stl", ".obj")
+
+def write_surface(data, path, crs=None, progress=None):
+    """Writes triangles in the format of the suffix. Returns notes for the user.
+
+    data      vtkPolyData with triangles
+    crs       the coordinate reference system as WKT or AUTHORITY:CODE; written where the format has a
+              place for it
+    progress  None, or a function that is called with the fraction done
+    Raises OSError, and FileError where VTK gives the reason.
+    """
+    return FORMATS[suffix_of(path)](data, path, crs, progress or (lambda fraction: None))
 
 
-def write_surface(data, path):
-    """Writes vtkPolyData in the format of the suffix. Returns notes for the user."""
-    from vtkmodules.vtkIOGeometry import vtkOBJWriter, vtkSTLWriter
-    from vtkmodules.vtkIOPLY import vtkPLYWriter
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+def in_vtk_xml(write):
+    def run(data, path, crs, progress):
+        if crs:
+            told = vtkStringArray()
+            told.SetName("CRS")
+            told.InsertNextValue(crs)
+            plain, data = data, vtkPolyData()
+            data.ShallowCopy(plain)
+            data.GetFieldData().AddArray(told)
+        write(data, path, progress)
+        return []
 
-    suffix = suffix_of(path)
-    notes = []
-    coordinates = vtk_to_numpy(data.GetPoints().GetData())
-    coarse = rounding_note(coordinates) is not None
-    if suffix == ".vtp":
-        writer = vtkXMLPolyDataWriter()
-        # Not appended: ParaView 5.11 cannot read appended data with a newer libexpat. In memory first:
-        # the writer crashes on a full disk.
-        writer.SetDataModeToBinary()
-        writer.WriteToOutputStringOn()
-    elif suffix == ".ply":
-        writer = vtkPLYWriter()
-        if coarse:
-            # The format's usual floats have 24 bits. A whole-number shift keeps the shape.
-            origin = numpy.floor(numpy.nanmin(coordinates, axis=0))
-            origin[2] = 0.0
-            shifted = vtkPolyData()
-            shifted.ShallowCopy(data)
-            points = make_points(coordinates - origin).GetPoints()
-            shifted.SetPoints(points)
-            data = shifted
-            text = f"{origin[0]:.0f} {origin[1]:.0f}"
-            writer.AddComment(f"add to x y: {text}")
-            notes.append(
-                f".ply holds single precision: x,y are written less {text}, see its header"
-            )
-    elif suffix == ".stl":
-        writer = vtkSTLWriter()
-        # ASCII keeps every digit; binary STL has 24 bits.
-        if coarse:
-            writer.SetFileTypeToASCII()
-            notes.append(".stl is written as text to keep large coordinates exact")
-        else:
-            writer.SetFileTypeToBinary()
-    else:
-        writer = vtkOBJWriter()
+    return run
+
+
+def write_obj(data, path, _crs, progress):
+    """OBJ by VTK, which writes all digits."""
+    from vtkmodules.vtkIOGeometry import vtkOBJWriter
+
+    bare = vtkPolyData()
+    bare.SetPoints(data.GetPoints())
+    bare.SetPolys(data.GetPolys())
+    run_writer(vtkOBJWriter(), bare, path, progress)
+    last = vtk_to_numpy(data.GetPolys().GetConnectivityArray())[-3:] + 1
+    check_end(path, "f " + " ".join(str(i) for i in last))
+    return []
+
+
+def write_stl(data, path, _crs, progress):
+    """STL by VTK; as text, which holds every digit, where the 24 bits of binary STL are too few."""
+    from vtkmodules.vtkIOGeometry import vtkSTLWriter
+
+    coarse = rounding_note(vtk_to_numpy(data.GetPoints().GetData()))
+    writer = vtkSTLWriter()
+    (writer.SetFileTypeToASCII if coarse else writer.SetFileTypeToBinary)()
+    run_writer(writer, data, path, progress)
+    if not coarse:
+        if os.path.getsize(path) != 84 + 50 * data.GetNumberOfPolys():
+            raise_cut_off()
+        return []
+    check_end(path, "endsolid")
+    return [".stl is written as text to keep large coordinates exact"]
+
+
+def run_writer(writer, data, path, progress):
+    writer.AddObserver("ProgressEvent", lambda caller, _: progress(caller.GetProgress()))
     with Messages() as messages:
         writer.SetFileName(path)
         writer.SetInputData(data)
         done = writer.Write()
-    if suffix == ".vtp" and done and not messages.errors:
-        with open(path, "w", encoding="ascii", newline="") as stream:
-            stream.write(writer.GetOutputString())
     if messages.errors or not done:
         raise FileError(messages.errors[0] if messages.errors else "VTK's writer gave no reason")
-    if not is_whole(path, suffix, data):
-        raise FileError("the file is cut off; is the disk full?")
-    return notes
 
 
-def is_whole(path, suffix, data):
-    """Whether all of the surface is in the file. VTK's writers do not notice a full disk."""
-    try:
-        size = os.path.getsize(path)
-        with open(path, "rb") as stream:
-            if suffix == ".obj":
-                lines = stream.read().split(b"\n")
-                kinds = [line[:2] for line in lines]
-                return (
-                    lines[-1] == b""
-                    and kinds.count(b"v ") == data.GetNumberOfPoints()
-                    and kinds.count(b"f ") == data.GetNumberOfPolys()
-                )
-            head = stream.read(2000)
-            stream.seek(max(0, size - 100))
-            tail = stream.read().rstrip()
-    except OSError:
-        return False
-    if suffix == ".vtp":
-        return tail.endswith(b"</VTKFile>")
-    if suffix == ".ply":
-        start = head.find(b"end_header\n")
-        body = 12 * data.GetNumberOfPoints() + 13 * data.GetNumberOfPolys()
-        return start > 0 and size == start + len(b"end_header\n") + body
-    if head.startswith(b"solid") and tail.endswith(b"endsolid"):
-        return True
-    return size == 84 + 50 * data.GetNumberOfPolys()
+def check_end(path, words):
+    """Whether all of a text is in the file. VTK's writers do not notice a full disk."""
+    with open(path, "rb") as stream:
+        stream.seek(max(0, os.path.getsize(path) - 100))
+        if not stream.read().rstrip(b"\r\n").decode("latin-1").endswith(words):
+            raise_cut_off()
+
+
+def raise_cut_off():
+    raise FileError("the file is cut off; is the disk full?")
+
+
+FORMATS = {
+    ".vtp": in_vtk_xml(write_vtp),
+    ".vtu": in_vtk_xml(write_vtu),
+    ".ply": write_ply,
+    ".stl": write_stl,
+    ".obj": write_obj,
+    ".glb": write_glb,
+    ".ts": write_ts,
+}
+WRITE_SUFFIXES = tuple(FORMATS)
