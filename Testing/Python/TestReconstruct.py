@@ -412,12 +412,12 @@ class Results(Program):
 
     def test_every_format_holds_the_same_triangles(self):
         name = self.file("sheet.xyz", text_of(SHEET))
-        for suffix in writing.WRITE_SUFFIXES:
+        for suffix in (".vtp", ".vtu", ".ply", ".stl", ".obj"):
             with self.subTest(suffix=suffix):
                 done = self.call(name, "--no-picture", "-o", "s" + suffix)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 surface = vtk_files.run_vtk_reader(self.path("s" + suffix))
-                self.assertEqual(surface.GetNumberOfPolys(), 2 * (SIZE - 1) ** 2)
+                self.assertEqual(surface.GetNumberOfCells(), 2 * (SIZE - 1) ** 2)
                 self.assertEqual(surface.GetBounds()[:4], (0.0, SIZE - 1.0, 0.0, SIZE - 1.0))
 
     def test_quiet_prints_nothing(self):
