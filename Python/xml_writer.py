@@ -35,17 +35,17 @@ compressor="vtkZLibDataCompressor">
 
 
 def write_vtp(data, path, progress=None):
-    """Writes the polygons of vtkPolyData with all arrays. Raises OSError."""
-    cells = data.GetPolys()
+    """Writes the lines and polygons of vtkPolyData with all arrays. Raises OSError."""
     with Writer(path, data, progress) as write:
         write(HEAD.format(kind="PolyData"))
         write.fields(data)
         write(
-            f'<Piece NumberOfPoints="{data.GetNumberOfPoints()}" NumberOfVerts="0" NumberOfLines="0" '
-            f'NumberOfStrips="0" NumberOfPolys="{data.GetNumberOfPolys()}">\n'
+            f'<Piece NumberOfPoints="{data.GetNumberOfPoints()}" NumberOfVerts="0" NumberOfStrips="0" '
+            f'NumberOfLines="{data.GetNumberOfLines()}" NumberOfPolys="{data.GetNumberOfPolys()}">\n'
         )
         write.points_and_arrays(data)
-        write.group("Polys", cell_arrays(cells))
+        write.group("Lines", cell_arrays(data.GetLines()))
+        write.group("Polys", cell_arrays(data.GetPolys()))
         write("</Piece>\n</PolyData>\n</VTKFile>\n")
 
 
