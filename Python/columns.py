@@ -9,171 +9,11 @@ shows both.
 import dataclasses
 import math
 import re
-import unicodedata
 
 import numpy
 
+from .column_names import COLOURS, Meaning, in_brackets, meaning, plain
 from .messages import FileError
-
-
-def _words(text):
-    return frozenset(text.split())
-
-
-# Names of English, German, French, Spanish, Portuguese, Norwegian, Italian, Dutch and Polish, as
-# plain() writes them: (axis, rank, direction, names). A lower rank is the better name.
-AXES = (
-    ("x", 0, "", _words("x")),
-    ("y", 0, "", _words("y")),
-    ("z", 0, "", _words("z")),
-    ("x", 1, "", _words(
-        "easting eastings east rechtswert rechts rw ostwert ost oest este leste est abscisse abscissa "
-        "abscisa absis oost oosting ostkoordinate wschod wschodnia"
-    )),
-    ("y", 1, "", _words(
-        "northing northings north hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
-        "ordinate noord noording nordkoordinate polnoc polnocna"
-    )),
-    ("z", 1, "", _words(
-        "elevation elevations elev elevacion elevacao elevazione height heights hgt ht hoehe hohe "
-        "gelaendehoehe gelandehohe altitude alt altitud altura altezza cota cote quota kote hoyde "
-        "hoeyde hoogte wysokosc rzedna topography level niveau"
-    )),
-    ("x", 2, "", _words("e")),
-    ("y", 2, "", _words("n")),
-    ("z", 2, "", _words("h")),
-    ("z", 2, "depth", _words(
-        "depth depths tiefe profondeur prof profundidad profundidade profondita dybde diepte "
-        "glebokosc tvd tvdss sounding soundings sonde bathymetry bathymetrie tvdm"
-    )),
-    ("z", 2, "time", _words("twt owt twtt laufzeit")),
-    ("x", 3, "", _words(
-        "lon long longitude lng laenge lange laengengrad langengrad longitud lengdegrad lengde "
-        "lengtegraad longitudine dlugosc"
-    )),
-    ("y", 3, "", _words(
-        "lat latitude breite breitengrad latitud breddegrad bredde breedtegraad latitudine szerokosc"
-    )),
-    ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
-)
-# Words that may stand beside the name of an axis.
-BESIDE = _words(
-    "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat coordinaat "
-    "coordenada coordenadas coordonnee coordonnees coordinata coordinate wspolrzedna wsp point pt "
-    "p map world gps wgs etrs epsg local grid proj projected geo m ft feet meter meters metre metres "
-    "us deg degree degrees degr dd decimal ms s km mm cm cdp bin center centre centroid mid midpoint "
-    "source receiver shot sp ellipsoid ellipsoidal ell ellip ellipsoidische ortho orthometric "
-    "orthometrique msl above sea surface top base gk rd lambert ngf nap nhn nn dhhn ground terrain "
-    "water bed value val pos position posisjon wgs84 total station survey surveyed zone geografica "
-    "geograficzna geographique geographische decimale z in du de la le den der gridded"
-)
-# What a column with such a name is, when it is no coordinate. A name that holds one of the words of
-# "measure" is no coordinate whatever else it holds.
-ROLES = (
-    ("an id", _words(
-        "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr punktnummer "
-        "ptnr punto ponto punti punt puntnr puntnummer pnr pno name matricule station index row pid "
-        "ptid ident uid gid serial nome nombre nom nazwa numer naam pointid pointnumber pointno "
-        "pointname p idx"
-    )),
-    ("a line, trace or place in a grid", _words(
-        "line inline il iline xline crossline xl trace tr cdp cmp sp shotpoint shot bin ffid linje "
-        "linie linea ligne linha profil profile track col column swath lijn traza spur traco"
-    )),
-    ("a date or a time", _words(
-        "date datum fecha data dato hour gpstime timestamp utc epoch datetime second seconds tow "
-        "utctime heure hora uhrzeit"
-    )),
-    ("a colour", _words("red green blue r g b rot gruen grun blau rouge vert bleu alpha rgb")),
-    ("a code", _words(
-        "code kod kode codigo codice class classification klasse classe return returns user flag "
-        "description desc remark comment bemerkung beschreibung descripcion descricao opis bemerking"
-    )),
-    ("a measure", _words(
-        "intensity amplitude quality std stddev sigma sd rms error err uncertainty accuracy precision "
-        "velocity speed heading pitch roll nx ny nz normal confidence hdop pdop vdop tide draft angle "
-        "slope aspect undulation geoid dev deviation residual delta dx dy dz thickness offset snr "
-        "weight fold scan beam ping mean stdev count density tpu tvu thu fom"
-    )),
-)
-COLOURS = {
-    "red": _words("red r rot rouge"),
-    "green": _words("green g gruen grun vert"),
-    "blue": _words("blue b blau bleu"),
-}
-LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ß": "ss", "ł": "l", "đ": "d", "Ø": "O", "Ł": "L"})
-
-
-def plain(text):
-    """Without accents, apart at capitals and signs: "Höhe_NN (m)" -> ["hohe", "nn", "m"]."""
-    text = unicodedata.normalize("NFKD", text.translate(LETTERS))
-    text = "".join(letter for letter in text if not unicodedata.combining(letter))
-    text = re.sub(r"([a-z])([A-Z])", r"\1 \2", text)
-    text = re.sub(r"\b(utm|coord|p|pos)?([xyz])(utm|coord|pos)?\b", r"\1 \2 \3", text.lower())
-    return [word for word in re.split(r"[^a-z]+", text) if word]
-
-
-def in_brackets(name):
-    """("X (Nord)") -> ("X ", " Nord")."""
-    return re.sub(r"[(\[{<].*", "", name), " ".join(re.findall(r"[(\[{<]([^)\]}>]*)", name))
-
-
-@dataclasses.dataclass(frozen=True)
-class Meaning:
-    """What a name tells: an axis with rank and direction, or the role of something else."""
-
-    axis: str = ""
-    rank: int = 0
-    direction: str = ""
-    role: str = ""
-    beside: tuple = ()  # the words beside the name of the axis
-
-
-def meaning(name):
-    """The Meaning of a column's name; empty where it is not known."""
-    outside, inside = in_brackets(name)
-    words = plain(outside) or plain(inside)
-    joined = "".join(words)
-    for role, names in ROLES:
-        if joined in names or role == "a measure" and any(word in names for word in words):
-            return Meaning(role=role)
-    extra = [w for w in plain(inside) if any(w in names and r == 1 for _, r, _, names in AXES)]
-    axis = _axis_of(words, joined, extra)
-    if axis:
-        return axis
-    for role, names in ROLES:
-        if words and any(word in names for word in words) and not any(len(w) == 1 for w in words):
-            return Meaning(role=role)
-    return Meaning()
-
-
-def _axis_of(words, joined, extra):
-    whole = [(a, r, d) for a, r, d, names in AXES if joined in names]
-    found = whole or [(a, r, d) for a, r, d, names in AXES for w in words if w in names]
-    found += [(a, r, d) for a, r, d, names in AXES for w in extra if w in names]
-    if not found:
-        return None
-    if len({axis for axis, _, _ in found}) > 1:
-        # "X (Nord)": the word tells more than the letter.
-        found = [(a, r, d) for a, r, d in found if r == 1 and a != "z"]
-        if len({axis for axis, _, _ in found}) != 1:
-            return None
-    axis, rank, direction = min(found)
-    direction = max(d for _, _, d in found)
-    known = frozenset().union(*(names for _, _, _, names in AXES))
-    beside = tuple(w for w in words if w not in known) if not whole else ()
-    strange = [word for word in beside if word not in BESIDE]
-    if strange:
-        if max(len(word) for word in words if word in known) < 2 or rank == 4:
-            return None  # a single letter among words that tell something else
-        rank += 5
-    return Meaning(axis, rank, direction, "", tuple(sorted(beside)))
-
-
-def known_names(names):
-    """How many of some names mean something, those of axes most."""
-    found = [meaning(name) for name in names]
-    return sum(3 if m.axis and m.rank < 5 else 1 for m in found if m.axis or m.role)
 
 
 @dataclasses.dataclass
@@ -309,7 +149,6 @@ class Search:
             if i not in taken and self.share_of_text[i] < 0.5 and not self.meanings[i].axis
         ]
         others = [i for i in free if not self.meanings[i].role]
-        others = others if len(others) <= len(missing) else self.without_attributes(others, missing)
         if not others:
             others = [i for i in free if self.meanings[i].role in ("a measure", "a code")]
         if len(others) == len(missing) == 1:
@@ -317,7 +156,7 @@ class Search:
             return
         known = ", ".join(f"{a} = {self.called(c[0])}" for a, c in chosen.items() if c)
         lacks = " and ".join(missing)
-        could = f"it may be {self.listed(others)}" if others else "no other column can be it"
+        could = f"it may be {self.listed(others or free)}" if free else "no column is left for it"
         raise FileError(
             f"{self.path}: the names tell {known}, but not {lacks}; {could}: "
             "--columns X,Y,Z names or numbers them"
@@ -343,7 +182,7 @@ class Search:
                     f"z are {what} by their name and positive, so the surface is upside down; "
                     "--depth turns it over"
                 )
-        if y < x and self.meanings[x].rank == self.meanings[y].rank == 0:
+        if self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
                 "Y stands before X, as where X is north; x and y are taken as named "
                 f"(--columns {self.numbered([y, x] + self.indices[2:])} swaps them)"
@@ -356,7 +195,9 @@ class Search:
         if self.width == self.needed:
             self.indices = list(range(self.width))
             return
-        numbers = [i for i in range(self.width) if self.share_of_text[i] < 0.5]
+        numbers = [
+            i for i in range(self.width) if self.share_of_text[i] < 0.5 and len(self.finite(i))
+        ]
         known = {i for i in numbers if self.meanings[i].role or self.meanings[i].axis}
         usable = [i for i in numbers if i not in known]
         if len(usable) < self.needed:
@@ -371,7 +212,7 @@ class Search:
             return
         left, reasons = self.without_others(usable)
         chosen = self.most_like_points(left, reasons)
-        if reasons and len(left) == 3 and self.needed == 3:
+        if self.needed == 3:
             chosen = self.east_and_north(chosen, reasons)
         self.indices = chosen
         why = [
@@ -388,41 +229,27 @@ class Search:
             why = "; ".join(why) + "; " if why else ""
             self.notes.append(f"columns by their values: {why}{taken} (see --columns)")
 
-    def without_attributes(self, columns, missing):
-        """Those of some columns that are not something else by their values."""
-        found = self.without_others(columns, len(missing))[0]
-        return found if len(found) >= len(missing) else columns
-
-    def without_others(self, columns, needed=None):
+    def without_others(self, columns):
         """(columns that may be coordinates, {column: what it is else}), by the values."""
-        needed = needed or self.needed
         left, reasons = list(columns), {}
 
-        def take(found, reason):
-            for i in found:
-                if i in left and len(left) > needed:
-                    left.remove(i)
-                    reasons[i] = reason
+        def take(i, reason):
+            left.remove(i)
+            reasons[i] = reason
 
-        for i in columns:
-            if self.is_id(i):
-                take([i], "an id: it counts up by one")
+        while len(left) > self.needed:
+            first, second = left[:2]
+            if self.is_id(first):
+                take(first, "an id: it counts up by one")
+            elif numpy.ptp(self.finite(first)) == 0:
+                take(first, "the same in all rows")
+            elif self.is_class(first, second):
+                take(first, "a class or line: few whole numbers")
+            else:
                 break
-        for start in range(len(columns) - 2):
-            three = columns[start : start + 3]
-            if start >= needed and self.is_unit_vector(three):
-                take(three, "part of a direction of length 1")
-            elif start >= needed and all(self.is_byte(i) for i in three):
-                take(three, "part of a colour")
-        for i in reversed(columns):
-            values = self.finite(i)
-            if i in left and len(values) and values.min() == values.max():
-                take([i], "the same in all rows")
-        for pair in self.places_in_grid(left):
-            take(pair, "a line, trace or place in a grid: others follow from it")
-        for i in reversed(columns):
-            if self.is_class(i):
-                take([i], "a class: few whole numbers")
+        if self.needed == 3 and len(left) >= 5:
+            for i in self.place_in_grid(left):
+                take(i, "a line, trace or place in a grid: others follow from it")
         return left, reasons
 
     def finite(self, i):
@@ -433,10 +260,6 @@ class Search:
         values = self.finite(i)
         return self.decimals[i] == 0 and len(values) > 0 and (values == numpy.rint(values)).all()
 
-    def is_byte(self, i):
-        values = self.finite(i)
-        return self.is_whole(i) and values.min() >= 0 and values.max() <= 255
-
     def is_id(self, i):
         """Whole numbers that count up by one, here and there with a gap, and never go back."""
         values = self.values[:, i]
@@ -446,26 +269,27 @@ class Search:
         near = steps[: max(self.consecutive - 1, 1)]
         return bool((steps > 0).all() and (near == 1).mean() > 0.6)
 
-    def is_class(self, i):
+    def is_class(self, i, beside):
+        """A few small whole numbers beside a column of quite other ones."""
         values = self.finite(i)
-        if not self.is_byte(i) or len(values) < 20:
+        if len(values) < 20 or not self.is_whole(i) or values.min() < 0 or values.max() > 255:
             return False
-        return len(numpy.unique(values)) <= min(32, len(values) // 10) and values.max() <= 64
+        few = len(numpy.unique(values)) <= min(32, len(values) // 10)
+        other = numpy.ptp(self.finite(beside)) > 30 * numpy.ptp(values)
+        return few and (other or not self.is_whole(beside))
 
-    def is_unit_vector(self, three):
-        length = (self.values[:, three] ** 2).sum(axis=1)
-        return all(self.decimals[i] for i in three) and bool((abs(length - 1) < 0.02).all())
-
-    def places_in_grid(self, columns):
-        """Pairs of whole numbers from which two other columns follow, as line and trace do."""
-        whole = [i for i in columns if self.is_whole(i) and numpy.ptp(self.finite(i)) > 0]
-        for a, i in enumerate(whole):
-            for j in whole[a + 1 :]:
-                rest = [k for k in columns if k not in (i, j)]
-                for first, second in zip(rest, rest[1:]):
-                    pair = [first, second]
-                    if self.follow_from([i, j], pair) and self.size(pair) > self.size([i, j]):
-                        return [[i, j]]
+    def place_in_grid(self, columns):
+        """The two columns of whole numbers from which two others follow, as line and trace do."""
+        for i, j in zip(columns, columns[1:]):
+            if not all(self.is_whole(k) and numpy.ptp(self.finite(k)) > 0 for k in (i, j)):
+                continue
+            rest = [k for k in columns if k not in (i, j)]
+            for pair in zip(rest, rest[1:]):
+                larger = self.size(pair) > self.size([i, j])
+                others = [k for k in rest if k > pair[1]][:1]
+                if larger and others and self.follow_from([i, j], list(pair)):
+                    if not self.follow_from([i, j], [pair[0], *others]):  # as in a plane
+                        return [i, j]
         return []
 
     def size(self, columns):
@@ -485,21 +309,37 @@ class Search:
         return bool(rank == 2 and turned and (spread > 0).all() and (rest < 0.01 * spread).all())
 
     def most_like_points(self, columns, reasons):
-        """Of three columns in a row, the first that look like x, y and z."""
+        """Of three columns in a row, the first that look like x, y and z.
+
+        The first three stay where they are about as good. What always rises before them may be a
+        time, or the x of sorted points: then both readings are shown.
+        """
         count = self.needed
         groups = [columns[k : k + count] for k in range(len(columns) - count + 1)]
         marks = [self.likeness(group) for group in groups]
-        best = marks.index(max(marks))
-        if best and marks[best] - marks[0] < 2:
-            if marks[best] - marks[0] == 1 and marks[0] < 3:
+        later = max(marks[1:], default=0)
+        best = marks.index(later, 1) if later > marks[0] else 0
+        doubtful = best and (marks[0] < 4 or self.is_line(*columns[:2]))
+        if later == 5 and self.always_rises(columns[0]):
+            best, doubtful = marks.index(later, 1), True
+        if best and later < marks[0] + 2:
+            if doubtful:
                 self.refuse_two([groups[0], groups[best]])
             best = 0
         for i in columns[: columns.index(groups[best][0])]:
-            reasons[i] = "not like a coordinate beside the next"
+            values = self.finite(i)
+            each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
+            reasons[i] = (
+                "an id: whole numbers, each once" if each else "not like a coordinate of the next"
+            )
         return groups[best]
 
+    def always_rises(self, i):
+        values = self.finite(i)
+        return len(values) > 9 and bool((numpy.diff(values) > 0).all())
+
     def likeness(self, group):
-        """How much columns look like x, y and z: 0 to 4 marks."""
+        """How much columns look like x, y and z: 0 to 5 marks."""
         x, y = group[:2]
         spans = [float(numpy.ptp(self.finite(i))) if len(self.finite(i)) else 0.0 for i in group]
         alike = abs(self.decimals[x] - self.decimals[y]) <= 1
@@ -507,16 +347,28 @@ class Search:
         marks = 2 * alike
         marks += 0 < max(spans[:2]) <= 30 * min(spans[:2])
         if len(group) == 3:
-            marks += spans[2] <= max(spans[:2])
+            marks += 2 * (spans[2] <= 10 * max(spans[:2]))
+        marks -= self.is_line(x, y)
         return marks
+
+    def is_line(self, i, beside):
+        """The same whole number along runs of rows, through which others go in no even steps."""
+        values = self.values[: self.consecutive, [i, beside]]
+        steps = numpy.diff(values, axis=0)
+        within = steps[steps[:, 0] == 0, 1]
+        if not self.is_whole(i) or not 0.7 * len(steps) < len(within) < len(steps):
+            return False
+        even = abs(within - numpy.median(within)) <= 0.01 * abs(numpy.median(within))
+        return bool(even.mean() < 0.5)
 
     def east_and_north(self, chosen, reasons):
         """x and y of points with numbers: surveyors write the northing first.
 
-        Metres of UTM tell which it is. Otherwise a code behind z speaks for point, northing, easting,
-        elevation, code, and x,y,z as they stand is as likely.
+        Metres of UTM tell which it is. Otherwise a code behind z speaks for point, northing,
+        easting, elevation, code, and x,y,z as they stand is as likely.
         """
-        if not any(reason.startswith("an id") for reason in reasons.values()):
+        named = [i for i in range(min(chosen)) if self.share_of_text[i] > 0.5]
+        if not named and not any(reason.startswith("an id") for reason in reasons.values()):
             return chosen
         first, second, z = chosen
         swapped = [second, first, z]
@@ -554,6 +406,7 @@ class Search:
             if by_name or fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
                 self.notes.append(
                     "x,y look like degrees: project them first to give triangles their true shape"
+                    + ("" if by_name else "; x is longitude, if it is not: --columns swaps them")
                 )
         if self.is_utm(y, x) and not self.notes_swap():
             self.notes.append(
@@ -584,7 +437,8 @@ class Search:
             raise FileError(f"{self.path}: {why}; --columns X,Y,Z names or numbers them")
         words = [
             f"--columns {self.numbered(r)} (first row: "
-            f"{', '.join(f'{a} = {self.row[i]}' for a, i in zip(self.axes, r) if i < len(self.row))})"
+            + ", ".join(f"{a} = {self.row[i]}" for a, i in zip(self.axes, r) if i < len(self.row))
+            + ")"
             for r in readings
         ]
         raise FileError(f"{self.path}: {why}; choose {' or '.join(words)}")

@@ -19,20 +19,32 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk
 
 from .clouds import Cloud, make_points
-from .columns import choose_columns, known_names
+from .column_names import known_names
+from .columns import choose_columns
 from .messages import FileError
 
 COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
-MISSING = {"", "na", "n/a", "null", "none", "nodata", "-"}
+MISSING = set(
+    "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
+) | {""}
 BLOCK = 32 << 20  # bytes
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
-NO_TABLES = {
-    "ncols": "an ESRI ASCII grid",
-    "dsaa": "a Surfer grid",
-    "fsasci": "a CPS-3 grid",
-    "gocad": "a GOCAD file",
-}
+# How files begin that are no tables, and what they are.
+NO_TABLES = (
+    (r"ncols\b", "an ESRI ASCII grid"),
+    (r"dsaa\b", "a Surfer grid"),
+    (r"fsasci\b", "a CPS-3 grid"),
+    (r"gocad\b", "a GOCAD file"),
+    (r"\*?11\d{4}[+-]", "a Leica GSI file"),
+    (r"<[?!a-z]", "XML or HTML"),
+    (r"[{\[]\s*[\"{\[]", "JSON"),
+)
+# What keeps words from being numbers, and what it is.
+NO_NUMBERS = (
+    (r"\d[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d", "marks between thousands"),
+    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
+)
 
 
 class Layout:
@@ -148,9 +160,9 @@ def is_comment(line):
 def find_layout(path, lines, needed):
     """The layout under which most of the first lines hold the needed number of numbers."""
     sample = [line for line in lines if line.strip() and not is_comment(line)][:400]
-    if sample:
-        what = NO_TABLES.get(re.split(r"[\s,;]", sample[0].strip().lower())[0])
-        if what:
+    first = next((line.strip().lower() for line in lines if line.strip()), "")
+    for pattern, what in NO_TABLES:
+        if re.match(pattern, first):
             raise FileError(f"{path}: is {what}, not a table of points")
     best, best_score, most = None, (0, 0), 0
     for layout in LAYOUTS:
@@ -163,6 +175,9 @@ def find_layout(path, lines, needed):
         return best
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
+    for pattern, what in NO_NUMBERS:
+        if any(re.search(pattern, decoded(line)) for line in sample):
+            raise FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
     if most == 0:
         raise FileError(f"{path}: holds text, but no numbers")
     raise FileError(
@@ -174,7 +189,8 @@ def find_layout(path, lines, needed):
 class Table:
     """What the first block tells of a table.
 
-    layout, width    how lines become words, and how many a line has
+    layout, words    how lines become words, and how many a line has
+    width            how many of these are columns: a separator may stand behind the last
     names            of the columns, or None
     indices          of the columns that are x, y and z
     extras           {index: name} of the other columns of numbers
@@ -205,13 +221,21 @@ class Table:
         data += [line for line in rest[:: max(1, len(rest) // SAMPLE)] if is_data(line)]
         rows = [self.layout.words(line) for line in data]
         widths = collections.Counter(len(row) for row in rows)
-        self.width = max(len(rows[0]), widths.most_common(1)[0][0])
-        self.names = find_names(self.layout, head, self.width)
+        self.words = self.width = max(len(rows[0]), widths.most_common(1)[0][0])
+        # Where lines end with a separator, nothing stands behind it.
+        ends = self.width > needed and not any("".join(row[self.width - 1 :]) for row in rows)
+        self.names = find_names(self.layout, head, self.width, not ends)
+        if ends and not (self.names and self.names[-1]):
+            self.width -= 1
+            self.names = find_names(self.layout, head, self.width)
         chosen = choose_columns(
             path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed
         )
         self.indices, self.extras = chosen.indices, chosen.extras
-        check_preamble(path, self.layout, preamble, self.indices, self.width)
+        begins = first_of_data(path, self.layout, preamble, self.indices, self.width)
+        if begins:
+            preamble = [line for line in preamble if line[0] < begins]
+            self.first = begins - 1
         seen = [f"separated by {self.layout}"]
         for count, what in ((len(preamble), "header"), (comments, "comment")):
             if count:
@@ -224,8 +248,11 @@ def is_data(line):
     return bool(line.strip()) and not is_comment(line)
 
 
-def find_names(layout, head, width):
+def find_names(layout, head, width, one_may_lack=True):
     """The names of the columns from the lines before the data, or None.
+
+    head          the lines before the data, without the marks of comments
+    one_may_lack  whether the first column may have none
 
     They stand in one line, with the separator of the data or another; or a line each, numbered as
     "3: X", or between BEGIN HEADER and END HEADER.
@@ -235,8 +262,9 @@ def find_names(layout, head, width):
     if "BEGIN HEADER" in upper and "END HEADER" in upper:
         part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
         candidates.append([name.split(",")[-1] for name in part])
-    numbered = [re.match(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", h, re.I) for h in head]
-    found = {int(match.group(1)): match.group(2).strip('" ') for match in numbered if match}
+    numbered = re.compile(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", re.I)
+    matches = [match for match in map(numbered.match, head) if match]
+    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
     if set(found) >= set(range(1, width + 1)):
         candidates.append([found[i] for i in range(1, width + 1)])
     for line in reversed(head):
@@ -246,7 +274,7 @@ def find_names(layout, head, width):
             if other.separator is None:
                 # "x (m)  y (m)": blanks within names; good enough when single letters are left
                 candidates.append([w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)])
-            if len(words) == width - 1 and known_names(words):
+            if one_may_lack and len(words) == width - 1 and known_names(words):
                 candidates.append([""] + words)  # as R writes it: row names have no name
             if len(words) == width + 1 and not words[-1]:
                 candidates.append(words[:-1])
@@ -259,16 +287,20 @@ def is_number(word):
     return Layout(None).number(word) is not None
 
 
-def check_preamble(path, layout, preamble, indices, width):
-    """A line before the data that looks like data but for one word is an error, not a header."""
+def first_of_data(path, layout, preamble, indices, width):
+    """The number of the first line of what looked like a header but is data, as it lacks a value.
+
+    None where there is none. A line that looks like data but for one word is an error, no header.
+    """
     for number, words in preamble:
         values = [layout.number(word) for word in words]
-        if len(words) >= 2 and len(words) < width and None not in values:
+        no_words = re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words)) is not None
+        if 2 <= len(words) < width and (None not in values or no_words):
             raise FileError(
                 f"{path}, line {number}: {len(words)} columns found where other lines have {width} "
                 "(mark it with # if it is no row of data)"
             )
-        if len(words) != width:
+        if len(words) < width:
             continue
         values = [values[i] for i in indices]
         good = sum(v is not None and not math.isnan(v) for v in values)
@@ -279,6 +311,9 @@ def check_preamble(path, layout, preamble, indices, width):
                 f"{path}, line {number}: '{words[column][:40]}' in column {column + 1} "
                 f"({'xyz'[axis]}) is not a number; --columns chooses other columns"
             )
+        if None not in values and good:
+            return number
+    return None
 
 
 # ---- rows -------------------------------------------------------------------------------------
@@ -298,18 +333,15 @@ class Parser:
 
     def add(self, block, lines, skip):
         """Takes the lines of a block, but for the first so many, which are no data."""
-        block_text = block.decode("latin-1") if self.table.layout.decimal_comma else None
-        plain = not skip and not any(mark.encode() in block for mark in COMMENT_MARKS + ('"',))
-        if block_text is not None and plain:
-            lines = block_text.replace(",", ".").split("\n")[: len(lines)]
-        rows = self.load(lines) if plain else None
+        plain = not skip and not any(mark.encode() in block for mark in COMMENT_MARKS)
+        rows = self.load(lines, b'"' in block) if plain else None
         if rows is not None and len(rows) == len(lines):
             self.keep(rows, numpy.arange(self.line + 1, self.line + 1 + len(lines)))
             if self.after_blank:
                 self.starts.append(self.count - len(rows))
                 self.after_blank = False
         else:
-            self.add_carefully(lines, skip, plain)
+            self.add_carefully(lines, skip, b'"' in block)
         self.check_widths(block, lines, skip)
         self.line += len(lines)
 
@@ -318,8 +350,12 @@ class Parser:
         self.numbers.append(numbers)
         self.count += len(rows)
 
-    def load(self, lines):
+    def load(self, lines, quoted):
         """numpy's rows of some lines, or None where a word is no number."""
+        if self.table.layout.decimal_comma:
+            if quoted:
+                return None
+            lines = [line.replace(",", ".") for line in lines]
         try:
             return numpy.loadtxt(
                 lines,
@@ -327,11 +363,12 @@ class Parser:
                 usecols=self.used,
                 comments=None,
                 ndmin=2,
+                **({"quotechar": '"'} if quoted else {}),
             )
         except ValueError:
             return None
 
-    def add_carefully(self, lines, skip, plain):
+    def add_carefully(self, lines, skip, quoted):
         """Lines among which are comments, blank lines, missing values, quotes or errors."""
         kept = []
         for i, line in enumerate(lines):
@@ -347,15 +384,20 @@ class Parser:
                 kept.append(i)
         for start in range(0, len(kept), CHUNK):
             some = kept[start : start + CHUNK]
-            chosen = [lines[i] for i in some]
-            rows = None
-            if plain or not any('"' in line for line in chosen):
-                if self.table.layout.decimal_comma:
-                    chosen = [line.replace(",", ".") for line in chosen]
-                rows = self.load(chosen)
-            if rows is None:
-                rows = numpy.array([self.careful_row(lines[i], i) for i in some])
+            rows = self.load([lines[i] for i in some], quoted)
+            if rows is None or len(rows) < len(some):
+                rows = numpy.array([self.row(lines[i], i) for i in some])
             self.keep(rows, self.line + 1 + numpy.array(some))
+
+    def row(self, line, i):
+        """The numbers of a line, its place in the block being i."""
+        try:
+            if not ('"' in line or "_" in line):
+                words = line.split(self.table.layout.separator)
+                return [float(words[k]) for k in self.used]
+        except (ValueError, IndexError):
+            pass
+        return self.careful_row(line, i)
 
     def careful_row(self, line, i):
         """A row that is not plain numbers: missing values, words in other columns, or an error."""
@@ -389,15 +431,15 @@ class Parser:
             return
         if table.layout.separator:
             separators = block.count(table.layout.separator.encode())
-            if separators == (table.width - 1) * len(lines):
+            if separators == (table.words - 1) * len(lines):
                 return
         else:
             blank = numpy.frombuffer(block, dtype="u1") <= 32
             words = numpy.count_nonzero(blank[1:] > blank[:-1]) + int(not blank[-1])
-            if words == table.width * len(lines):
+            if words == table.words * len(lines):
                 return
         for i in range(skip, len(lines)):
-            if is_data(lines[i]) and len(table.layout.words(lines[i])) > table.width:
+            if is_data(lines[i]) and len(table.layout.words(lines[i])) > table.words:
                 self.ragged = self.line + 1 + i, len(table.layout.words(lines[i]))
                 return
 
@@ -412,7 +454,7 @@ class Parser:
         if self.ragged:
             notes.append(
                 f"line {self.ragged[0]:,} has {self.ragged[1]} columns where others have "
-                f"{table.width}: they are counted from the left"
+                f"{table.words}: they are counted from the left"
             )
         for index, count in self.no_numbers.items():
             notes.append(f"column {table.extras[index]}: {count:,} words are no numbers")

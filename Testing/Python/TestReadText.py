@@ -38,7 +38,8 @@ KINDS = {
     "gps": (301245.5 + numpy.cumsum(GENERATOR.uniform(0, 1, COUNT))).round(6),
     "date": ["2021-03-04"] * COUNT, "sd": GENERATOR.uniform(0, 0.02, COUNT).round(4),
 }
-AS_X, AS_Y, AS_Z = ("x", "lon", "nx", "gx"), ("y", "lat", "ny", "gy"), ("z", "depth", "down", "time")
+AS_X, AS_Y = ("x", "lon", "nx", "gx"), ("y", "lat", "ny", "gy")
+AS_Z = ("z", "depth", "down", "time")
 
 
 def columns_of(kinds):
@@ -53,8 +54,8 @@ def columns_of(kinds):
 # Program, head of the file, separator, what the columns hold, words of the notes.
 EXPORTS = (
     ("Petrel, points with attributes",
-     "# Petrel Points with attributes\n# Unit in X and Y direction: m\nVERSION 1\nBEGIN HEADER\nX\nY\n"
-     "Z\nFLOAT,Amplitude\nEND HEADER\n", " ", "x y down amp", ""),
+     "# Petrel Points with attributes\n# Unit in X and Y direction: m\nVERSION 1\nBEGIN HEADER\nX\n"
+     "Y\nZ\nFLOAT,Amplitude\nEND HEADER\n", " ", "x y down amp", ""),
     ("Petrel, lines", "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z meters\n"
      "# Field: 4 column\n# Field: 5 row\n# End:\n", " ", "gx gy down xl il", "x = 1 (x)"),
     ("OpendTect, one line", '#"Inline"\t"Crossline"\t"X"\t"Y"\t"Z (ms)"\n', "\t",
@@ -82,17 +83,21 @@ EXPORTS = (
     ("German, degrees", "Nr;Breite;Länge;Tiefe\n", ";", "id lat lon depth", "depths"),
     ("German, Gauss-Krueger", "Pkt Y X H\n", " ", "id y x z", "Y stands before X"),
     ("French", "id;abscisse;ordonnee;altitude\n", ";", "id x y z", "abscisse"),
-    ("French, accents", "Matricule;Coordonnée X;Coordonnée Y;Altitude NGF\n", ";", "id x y z", "NGF"),
+    ("French, accents", "Matricule;Coordonnée X;Coordonnée Y;Altitude NGF\n", ";", "id x y z",
+     "NGF"),
     ("French, soundings", "Latitude;Longitude;Profondeur (m)\n", ";", "lat lon depth", "depths"),
     ("Spanish", "Punto,Este,Norte,Cota\n", ",", "id x y z", "Este"),
-    ("Spanish, accents", "Nombre;Norte;Este;Elevación;Descripción\n", ";", "id y x z code", "Norte"),
+    ("Spanish, accents", "Nombre;Norte;Este;Elevación;Descripción\n", ";", "id y x z code",
+     "Norte"),
     ("Portuguese", "Ponto;Leste;Norte;Cota\n", ";", "id x y z", "Leste"),
     ("Portuguese, accents", "Nº;Coordenada E;Coordenada N;Elevação;Código\n", ";", "id x y z code",
      "Coordenada"),
     ("Norwegian", "Punkt;Nord;Øst;Høyde\n", ";", "id y x z", "Nord"),
-    ("Norwegian, without letters", "Punktnummer Oest Nord Hoeyde Kode\n", " ", "id x y z code", "Oest"),
+    ("Norwegian, without letters", "Punktnummer Oest Nord Hoeyde Kode\n", " ", "id x y z code",
+     "Oest"),
     ("Norwegian, axes", "Nr;X (Nord);Y (Øst);Z\n", ";", "id y x z", "x = 3"),
-    ("Norwegian, soundings", "Dato;Breddegrad;Lengdegrad;Dybde\n", ";", "date lat lon depth", "Dybde"),
+    ("Norwegian, soundings", "Dato;Breddegrad;Lengdegrad;Dybde\n", ";", "date lat lon depth",
+     "Dybde"),
     ("Italian", "Punto;Est;Nord;Quota\n", ";", "id x y z", "Quota"),
     ("Italian, soundings", "Latitudine;Longitudine;Profondità\n", ";", "lat lon depth", "depths"),
     ("Dutch", "Puntnummer;X-coördinaat;Y-coördinaat;Hoogte (m NAP)\n", ";", "id x y z", "Hoogte"),
@@ -208,7 +213,43 @@ class Exports(Tables):
         )
 
 
+# Headerless rows that must keep their first three columns: (what, a row's numbers).
+NODES = [(x, y) for x in range(12) for y in range(12)]
+FIRST_THREE = (
+    ("a small grid of whole numbers", [(x, y, x + y, x * y % 7) for x, y in NODES]),
+    ("a grid row by row", [(y, x, x + y / 3, 1.75 * x + y) for x, y in NODES]),
+    ("a grid of map coordinates", [(500000 + 25 * x, 4000000 + 25 * y, x * y % 5, x * 1.5)
+                                   for x, y in NODES]),
+    ("a flat surface", [(500.5 + 25 * x, 400.5 + 25 * y, 0, x * 1.5 + y * y) for x, y in NODES]),
+    ("planes", [(x, y, x + y, 2 * x - y, 1.75 * x + y) for x, y in NODES]),
+    ("a grid column by column", [(100 + 10 * x, 12 * y, x * y % 7, x / 7 + y) for x, y in NODES]),
+    ("normals", [(x * 1.25, y * 1.25, x % 5 / 8, 0.0, 0.6, 0.8) for x, y in NODES]),
+)
+
+
 class Doubts(Tables):
+    def test_attributes_behind_x_y_z_do_not_move_them(self):
+        for what, rows in FIRST_THREE:
+            with self.subTest(what):
+                cloud = self.read("".join(" ".join(map(str, row)) + "\n" for row in rows))
+                self.assert_coordinates(cloud, [row[:3] for row in rows])
+                self.assertIn(f"the first 3 of {len(rows[0])} columns", cloud.notes[1])
+
+    def test_what_rises_before_x_y_z_may_be_a_time_or_the_x_of_sorted_points(self):
+        rows, _ = columns_of("x y z")
+        for step in (0.25, 20.25):
+            text = "".join(f"{5000 + step * i:.2f} {' '.join(row)}\n" for i, row in enumerate(rows))
+            self.assertIn("or --columns 2,3,4", self.refusal(text))
+
+    def test_point_names_and_a_code_leave_the_order_open(self):
+        generator = numpy.random.default_rng(2)
+        for names in ([f"P{i}" for i in range(40)], generator.permutation(40).tolist()):
+            rows = [
+                f"{name},{5000 + a:.3f},{3000 + b:.3f},{a / 50:.3f},T\n"
+                for name, (a, b) in zip(names, generator.uniform(0, 90, (40, 2)))
+            ]
+            self.assertIn("--columns 3,2,4", self.refusal("".join(rows)))
+
     def test_two_readings_are_shown_with_the_options_that_decide(self):
         rows, _ = columns_of("id nx ny z code")
         text = "".join(",".join(row) + "\n" for row in rows)
@@ -256,6 +297,33 @@ class Doubts(Tables):
         cloud = self.read(text)
         self.assert_coordinates(cloud, numpy.column_stack((Y, X, Z)))
         self.assertIn("--columns 2,1,3", cloud.notes[-1])
+
+    def test_names_on_both_sides_of_the_first_data_lose_no_row(self):
+        cloud = self.read("x,y,z\n1,2,NULL\n4,5,7\n1,3,#N/A\n")
+        self.assertEqual(list(cloud.lines), [2, 3, 4])
+        self.assertIn("1 header line", cloud.notes[0])
+        error = self.refusal("500000.25 4000000.25-9999.00\n500001.25 4000000.25 12.00\n")
+        self.assertIn("line 1: 2 columns found where other lines have 3", error)
+
+    def test_comments_do_not_hide_the_names_and_separators_may_end_lines(self):
+        self.assert_coordinates(self.read("# z y x\n# made by hand\n1 2 3\n4 5 7\n"),
+                                [(3, 2, 1), (7, 5, 4)])
+        for head in ("", "z,x,y,\n", "z,x,y\n"):
+            cloud = self.read(head + "1,2,3,\n4,5,7,\n")
+            self.assertEqual(cloud.points.GetPoint(0), (2, 3, 1) if head else (1, 2, 3))
+            self.assertEqual(len(cloud.notes), 1 + bool(head))
+
+    def test_what_is_no_plain_number_is_told(self):
+        for text, words in (
+            ("X;Y;Z\n612.014,67;6.073.983,68;633,5\n", "marks between thousands"),
+            ('"612,014.67","6,073,983.68","633.5"\n', "marks between thousands"),
+            ("48\u00b012'30\" 7\u00b030'10\" 230\n", "degrees, minutes and seconds"),
+            ("*110001+0000000000000001 81..10+0000000000123456\n", "a Leica GSI file"),
+            ("<html>1 2 3\n", "HTML"),
+            ("Inline,Crossline,Z\n1,2,3\n2,2,5\n2,5,9\n", "columns 1 (Inline) and 2 (Crossline)"),
+        ):
+            with self.subTest(words):
+                self.assertIn(words, self.refusal(text))
 
     def test_grids_of_other_formats_are_no_tables(self):
         for head, words in (

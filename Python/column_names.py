@@ -1,0 +1,182 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the name of a column means: an axis, or something else, in nine languages."""
+
+import dataclasses
+import re
+import unicodedata
+
+
+def _words(text):
+    return frozenset(text.split())
+
+
+# Names of English, German, French, Spanish, Portuguese, Norwegian, Italian, Dutch and Polish, as
+# plain() writes them: (axis, rank, direction, names). A lower rank is the better name.
+AXES = (
+    ("x", 0, "", _words("x")),
+    ("y", 0, "", _words("y")),
+    ("z", 0, "", _words("z")),
+    ("x", 1, "", _words(
+        "easting eastings east rechtswert rechts rw ostwert ost oest este leste est abscisse "
+        "abscissa abscisa absis oost oosting ostkoordinate wschod wschodnia ostkoordinat "
+        "oestkoordinat ostverdi eastcoordinate coordeste oosten rechtsw"
+    )),
+    ("y", 1, "", _words(
+        "northing northings north hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
+        "ordinate noord noording nordkoordinate polnoc polnocna nordkoordinat nordverdi noorden "
+        "hochw"
+    )),
+    ("z", 1, "", _words(
+        "elevation elevations elev elevacion elevacao elevazione height heights hgt ht hoehe hohe "
+        "gelaendehoehe gelandehohe altitude alt altitud altura altezza cota cote quota kote hoyde "
+        "hoeyde hoogte wysokosc rzedna topography level niveau rl orthoheight ellipheight "
+        "gelaende gelande terrenghoyde terrenghoeyde moh maaiveld maaiveldhoogte bodemhoogte "
+        "hoogteligging wys rzednaterenu pnm quotaslm altimetria altimetrie topo grundhoehe "
+        "bodenhoehe bodenhohe gok gokhoehe"
+    )),
+    ("x", 2, "", _words("e")),
+    ("y", 2, "", _words("n")),
+    ("z", 2, "", _words("h")),
+    ("z", 2, "depth", _words(
+        "depth depths tiefe profondeur prof profundidad profundidade profondita dybde diepte "
+        "glebokosc tvd tvdss sounding soundings sonde bathymetry bathymetrie tvdm wassertiefe "
+        "meerestiefe wasserstiefe bunndybde havdybde vanndybde waterdiepte bodemdiepte profund "
+        "waterdepth seabeddepth"
+    )),
+    ("z", 2, "time", _words("twt owt twtt laufzeit")),
+    ("x", 3, "", _words(
+        "lon long longitude lng laenge lange laengengrad langengrad longitud lengdegrad lengde "
+        "lengtegraad longitudine dlugosc lonx longitudeddeg laengde"
+    )),
+    ("y", 3, "", _words(
+        "lat latitude breite breitengrad latitud breddegrad bredde breedtegraad latitudine "
+        "szerokosc laty"
+    )),
+    ("z", 4, "time", _words("time zeit temps tiempo tempo tid tijd czas")),
+)
+# Words that may stand beside the name of an axis.
+BESIDE = _words(
+    "utm coord coords coordinate coordinates koordinate koordinaten koordinat koordinaat "
+    "coordinaat coordenada coordenadas coordonnee coordonnees coordinata wspolrzedna wsp point pt "
+    "p map world gps wgs etrs epsg local grid proj projected geo m ft feet meter meters metre "
+    "metres us deg degree degrees degr dd decimal ms s km mm cm cdp bin center centre centroid "
+    "mid midpoint source receiver shot sp ellipsoid ellipsoidal ell ellip ellipsoidische ortho "
+    "orthometric orthometrique msl above sea surface top base gk rd lambert ngf nap nhn nn dhhn "
+    "ground terrain water bed value val pos position posisjon wgs84 total station survey surveyed "
+    "zone geografica geograficzna geographique geographische decimale z in du de la le den der "
+    "gridded slm snm nmm gnss rtk true average mbsl amsl asl navd ngvd odn lv rt sirgas ed "
+    "psad magna irenet osgb bng cs crs srs"
+)
+# What a column with such a name is, when it is no coordinate. A name that holds one of the words of
+# "measure" is no coordinate whatever else it holds.
+ROLES = (
+    ("an id", _words(
+        "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr "
+        "punktnummer ptnr punto ponto punti punt puntnr puntnummer pnr pno name matricule station "
+        "index row pid ptid ident uid gid serial nome nombre nom nazwa numer naam pointid "
+        "pointnumber pointno pointname p idx"
+    )),
+    ("a line, trace or place in a grid", _words(
+        "line inline il iline xline crossline xl trace tr cdp cmp sp shotpoint shot bin ffid "
+        "linje linie linea ligne linha profil profile track col column swath lijn traza spur "
+        "traco"
+    )),
+    ("a date or a time", _words(
+        "date datum fecha data dato hour gpstime timestamp utc epoch datetime second seconds tow "
+        "utctime heure hora uhrzeit"
+    )),
+    ("a colour", _words("red green blue r g b rot gruen grun blau rouge vert bleu alpha rgb")),
+    ("a code", _words(
+        "code kod kode codigo codice class classification klasse classe return returns user flag "
+        "description desc remark comment bemerkung beschreibung descripcion descricao opis "
+        "bemerking"
+    )),
+    ("a measure", _words(
+        "intensity amplitude quality std stddev sigma sd rms error err uncertainty accuracy "
+        "precision velocity speed heading pitch roll nx ny nz normal confidence hdop pdop vdop "
+        "tide draft angle slope aspect undulation geoid dev deviation residual delta dx dy dz "
+        "thickness offset snr weight fold scan beam ping mean stdev count density tpu tvu thu fom"
+    )),
+)
+COLOURS = {
+    "red": _words("red r rot rouge"),
+    "green": _words("green g gruen grun vert"),
+    "blue": _words("blue b blau bleu"),
+}
+LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ß": "ss", "ł": "l", "Ø": "O", "Ł": "L"})
+
+
+def plain(text):
+    """Without accents, apart at capitals and signs: "Höhe_NN (m)" -> ["hohe", "nn", "m"]."""
+    text = unicodedata.normalize("NFKD", text.translate(LETTERS))
+    text = "".join(letter for letter in text if not unicodedata.combining(letter))
+    text = re.sub(r"([a-z])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", text)
+    text = re.sub(r"\b(utm|coord|p|pos)?([xyz])(utm|coord|pos)?\b", r"\1 \2 \3", text.lower())
+    return [word for word in re.split(r"[^a-z]+", text) if word]
+
+
+def in_brackets(name):
+    """("X (Nord)") -> ("X ", " Nord")."""
+    return re.sub(r"[(\[{<].*", "", name), " ".join(re.findall(r"[(\[{<]([^)\]}>]*)", name))
+
+
+@dataclasses.dataclass(frozen=True)
+class Meaning:
+    """What a name tells: an axis with rank and direction, or the role of something else."""
+
+    axis: str = ""
+    rank: int = 0
+    direction: str = ""
+    role: str = ""
+    beside: tuple = ()  # the words beside the name of the axis
+
+
+def meaning(name):
+    """The Meaning of a column's name; empty where it is not known."""
+    outside, inside = in_brackets(name)
+    words = plain(outside) or plain(inside)
+    joined = "".join(words)
+    for role, names in ROLES:
+        if joined in names or role == "a measure" and any(word in names for word in words):
+            return Meaning(role=role)
+    extra = [w for w in plain(inside) if any(w in names and r == 1 for _, r, _, names in AXES)]
+    axis = _axis_of(words, joined, extra)
+    if axis:
+        return axis
+    for role, names in ROLES:
+        if words and any(word in names for word in words) and not any(len(w) == 1 for w in words):
+            return Meaning(role=role)
+    return Meaning()
+
+
+def _axis_of(words, joined, extra):
+    whole = [(a, r, d) for a, r, d, names in AXES if joined in names]
+    found = [(a, r, d, w) for a, r, d, names in AXES for w in words if w in names]
+    if any(len(w) > 1 for _, _, _, w in found):
+        found = [one for one in found if one[3] not in "enh"]  # "Longitude_E"
+    found = whole or [one[:3] for one in found]
+    found += [(a, r, d) for a, r, d, names in AXES for w in extra if w in names]
+    if not found:
+        return None
+    if len({axis for axis, _, _ in found}) > 1:
+        # "X (Nord)": the word tells more than the letter.
+        found = [(a, r, d) for a, r, d in found if r == 1 and a != "z"]
+        if len({axis for axis, _, _ in found}) != 1:
+            return None
+    axis, rank, direction = min(found)
+    direction = max(d for _, _, d in found)
+    known = frozenset().union(*(names for _, _, _, names in AXES))
+    beside = tuple(w for w in words if w not in known) if not whole else ()
+    strange = [word for word in beside if word not in BESIDE]
+    if strange:
+        if max(len(word) for word in words if word in known) < 2 or rank == 4:
+            return None  # a single letter among words that tell something else
+        rank += 5
+    return Meaning(axis, rank, direction, "", tuple(sorted(beside)))
+
+
+def known_names(names):
+    """How many of some names mean something, those of axes most."""
+    found = [meaning(name) for name in names]
+    return sum(3 if m.axis and m.rank < 5 else 1 for m in found if m.axis or m.role)
