@@ -23,9 +23,10 @@ class Choice:
     indices: list
     extras: dict
     notes: list
+    downwards: object = None  # the note for a z that counts downwards by its name and values
 
 
-def choose_columns(path, rows, consecutive, number, names, width, columns, needed):
+def choose_columns(path, rows, consecutive, number, names, width, columns, needed, advice):
     """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
 
     rows         some rows as words; the first so many (consecutive) follow each other in the file
@@ -33,22 +34,23 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     names, width  of the columns; names may be None
     columns      None, or what the user said: names or numbers
     needed       3 or 2
+    advice       what a user can do where no choice is sure, where that is not --columns
     """
-    search = Search(path, rows, consecutive, number, names, width, needed)
+    search = Search(path, rows, consecutive, number, names, width, needed, advice)
     if columns:
         search.as_said(columns)
     elif not search.by_names():
         search.by_values()
     search.look_at_values()
-    return Choice(search.indices, search.extras(), search.notes)
+    return Choice(search.indices, search.extras(), search.notes, search.downwards)
 
 
 class Search:
     """The state of choose_columns()."""
 
-    def __init__(self, path, rows, consecutive, number, names, width, needed):
+    def __init__(self, path, rows, consecutive, number, names, width, needed, advice):
         self.path, self.names, self.width, self.needed = path, names, width, needed
-        self.axes = "xyz"[:needed]
+        self.axes, self.advice, self.downwards = "xyz"[:needed], advice, None
         self.row = rows[0]
         table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
@@ -158,8 +160,7 @@ class Search:
         lacks = " and ".join(missing)
         could = f"it may be {self.listed(others or free)}" if free else "no column is left for it"
         raise FileError(
-            f"{self.path}: the names tell {known}, but not {lacks}; {could}: "
-            "--columns X,Y,Z names or numbers them"
+            f"{self.path}: the names tell {known}, but not {lacks}; {could}; {self.advice}"
         )
 
     def look_at_names(self):
@@ -178,7 +179,7 @@ class Search:
             values = self.values[:, self.indices[2]]
             if z.direction and numpy.nanmedian(values) > 0:
                 what = "depths" if z.direction == "depth" else "times"
-                self.notes.append(
+                self.downwards = (
                     f"z are {what} by their name and positive, so the surface is upside down; "
                     "--depth turns it over"
                 )
@@ -207,9 +208,6 @@ class Search:
                 f"{self.path}: {self.needed} columns of numbers are needed, "
                 f"and there {'is' if len(usable) == 1 else 'are'} {len(usable)}"
             )
-        if self.needed == 2 and len(usable) <= 3:
-            self.indices = usable[: self.needed]
-            return
         left, reasons = self.without_others(usable)
         chosen = self.most_like_points(left, reasons)
         if self.needed == 3:
@@ -433,14 +431,12 @@ class Search:
 
     def refuse_two(self, readings, why="the columns can be read in two ways"):
         """Raises the error that shows two readings and the options that decide."""
-        if not readings:
-            raise FileError(f"{self.path}: {why}; --columns X,Y,Z names or numbers them")
-        words = [
-            f"--columns {self.numbered(r)} (first row: "
-            + ", ".join(f"{a} = {self.row[i]}" for a, i in zip(self.axes, r) if i < len(self.row))
-            + ")"
-            for r in readings
-        ]
+        if not readings or "--columns" not in self.advice:
+            raise FileError(f"{self.path}: {why}; {self.advice}")
+        words = []
+        for reading in readings:
+            values = [f"{a} = {self.row[i]}" for a, i in zip(self.axes, reading)]
+            words.append(f"--columns {self.numbered(reading)} (first row: {', '.join(values)})")
         raise FileError(f"{self.path}: {why}; choose {' or '.join(words)}")
 
     # -- the other columns

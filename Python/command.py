@@ -329,6 +329,7 @@ class Run:
     def read(self):
         options = self.options
         wanted = read_options(options)
+        wanted["progress"] = lambda fraction: self.progress("reading", fraction)
         cloud = self.timed(
             "read",
             "reading",

@@ -37,20 +37,26 @@ NO_TABLES = (
     (r"fsasci\b", "a CPS-3 grid"),
     (r"gocad\b", "a GOCAD file"),
     (r"\*?11\d{4}[+-]", "a Leica GSI file"),
+    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan"),
     (r"<[?!a-z]", "XML or HTML"),
     (r"[{\[]\s*[\"{\[]", "JSON"),
 )
 # What keeps words from being numbers, and what it is.
+BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
 NO_NUMBERS = (
-    (r"\d[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d", "marks between thousands"),
+    (
+        r"\d[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
+        "marks between thousands",
+    ),
     (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
+    (r"\d\s?[NSEW]\b", "a letter for north, south, east or west"),
 )
 
 
 class Layout:
     """How a line of text becomes words: the separator (None: blanks) and the decimal sign."""
 
-    NAMES = {";": "semicolons", "\t": "tabs", ",": "commas", None: "blanks"}
+    NAMES = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", None: "blanks"}
 
     def __init__(self, separator, decimal_comma=False):
         self.separator = separator
@@ -91,9 +97,11 @@ LAYOUTS = (
     Layout(";"),
     Layout("\t"),
     Layout(","),
+    Layout("|"),
     Layout(None),
     Layout(";", True),
     Layout("\t", True),
+    Layout("|", True),
     Layout(None, True),
 )
 
@@ -124,30 +132,31 @@ def blocks(path, stream, progress=None):
             cut = 1 + max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1))
             data, rest = data[:cut], data[cut:]
             if data:
-                yield data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+                yield plain(data)
             if size:
                 progress(min(done / size, 1.0))
             data = stream.read(BLOCK)
     except (OSError, EOFError, zlib.error) as error:
         raise FileError(f"{path}: cannot be read: {error}") from None
     if rest:
-        yield rest.replace(b"\r", b"\n")
+        yield plain(rest)
+
+
+def plain(data):
+    """Bytes with \\n at the end of lines, and with the usual sign for minus."""
+    return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\xe2\x88\x92", b"-")
 
 
 def lines_of(block):
-    """The lines of a block, each byte a character."""
-    lines = block.decode("latin-1").split("\n")
+    """The lines of a block: UTF-8, or Latin-1 where it is not."""
+    try:
+        text = block.decode("utf-8")
+    except UnicodeDecodeError:
+        text = block.decode("latin-1")
+    lines = text.split("\n")
     if not lines[-1]:
         lines.pop()
     return lines
-
-
-def decoded(line):
-    """A line of lines_of() with the characters that were meant: UTF-8 or Latin-1."""
-    try:
-        return line.encode("latin-1").decode("utf-8")
-    except UnicodeError:
-        return line
 
 
 def is_comment(line):
@@ -160,9 +169,9 @@ def is_comment(line):
 def find_layout(path, lines, needed):
     """The layout under which most of the first lines hold the needed number of numbers."""
     sample = [line for line in lines if line.strip() and not is_comment(line)][:400]
-    first = next((line.strip().lower() for line in lines if line.strip()), "")
+    head = "\n".join([line.strip().lower() for line in lines if line.strip()][:20])
     for pattern, what in NO_TABLES:
-        if re.match(pattern, first):
+        if re.match(pattern, head):
             raise FileError(f"{path}: is {what}, not a table of points")
     best, best_score, most = None, (0, 0), 0
     for layout in LAYOUTS:
@@ -171,12 +180,12 @@ def find_layout(path, lines, needed):
         most = max(most, max(counts, default=0))
         if score[0] and score > best_score:
             best, best_score = layout, score
-    if best:
+    if best and not any(re.search(BLANK_IN_NUMBER, line) for line in sample):
         return best
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
     for pattern, what in NO_NUMBERS:
-        if any(re.search(pattern, decoded(line)) for line in sample):
+        if any(re.search(pattern, line) for line in sample):
             raise FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
     if most == 0:
         raise FileError(f"{path}: holds text, but no numbers")
@@ -195,11 +204,13 @@ class Table:
     indices          of the columns that are x, y and z
     extras           {index: name} of the other columns of numbers
     first            index of the first line of data
+    downwards        the note for a z that counts downwards by its name and values, or None
+    advice           what a user can do where columns are wrong
     notes            for the user
     """
 
-    def __init__(self, path, lines, columns, needed):
-        self.path, self.needed = path, needed
+    def __init__(self, path, lines, columns, needed, advice):
+        self.path, self.needed, self.advice = path, needed, advice
         self.layout = find_layout(path, lines[:5000], needed)
         self.first, self.names = 0, None
         head, comments, preamble = [], 0, []
@@ -207,13 +218,13 @@ class Table:
             if not line.strip():
                 continue
             if is_comment(line):
-                head.append(decoded(line).strip().lstrip("#%/!*> "))
+                head.append(line.strip().lstrip("#%/!*> "))
                 comments += 1
             elif self.layout.numbers(line) >= needed:
                 self.first = number - 1
                 break
             else:
-                head.append(decoded(line).strip())
+                head.append(line.strip())
                 preamble.append((number, self.layout.words(line)))
         data = [line for line in lines[self.first : self.first + SAMPLE] if is_data(line)]
         consecutive = len(data)
@@ -229,10 +240,11 @@ class Table:
             self.width -= 1
             self.names = find_names(self.layout, head, self.width)
         chosen = choose_columns(
-            path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed
+            path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed,
+            advice,
         )
         self.indices, self.extras = chosen.indices, chosen.extras
-        begins = first_of_data(path, self.layout, preamble, self.indices, self.width)
+        begins = first_of_data(self, preamble)
         if begins:
             preamble = [line for line in preamble if line[0] < begins]
             self.first = begins - 1
@@ -241,7 +253,7 @@ class Table:
             if count:
                 seen.append(f"{count} {what} line{'s' * (count > 1)}")
         self.comments = comments
-        self.seen, self.notes = seen, chosen.notes
+        self.seen, self.notes, self.downwards = seen, chosen.notes, chosen.downwards
 
 
 def is_data(line):
@@ -272,6 +284,7 @@ def find_names(layout, head, width, one_may_lack=True):
             words = [word.strip("\"' ") for word in other.words(line)]
             candidates.append(words)
             if other.separator is None:
+                candidates.append(re.split(r"\s{2,}|\t", line.strip()))
                 # "x (m)  y (m)": blanks within names; good enough when single letters are left
                 candidates.append([w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)])
             if one_may_lack and len(words) == width - 1 and known_names(words):
@@ -287,13 +300,14 @@ def is_number(word):
     return Layout(None).number(word) is not None
 
 
-def first_of_data(path, layout, preamble, indices, width):
+def first_of_data(table, preamble):
     """The number of the first line of what looked like a header but is data, as it lacks a value.
 
     None where there is none. A line that looks like data but for one word is an error, no header.
     """
+    path, width = table.path, table.width
     for number, words in preamble:
-        values = [layout.number(word) for word in words]
+        values = [table.layout.number(word) for word in words]
         no_words = re.fullmatch(r"[-+\d.,;\seE]+", " ".join(words)) is not None
         if 2 <= len(words) < width and (None not in values or no_words):
             raise FileError(
@@ -302,14 +316,14 @@ def first_of_data(path, layout, preamble, indices, width):
             )
         if len(words) < width:
             continue
-        values = [values[i] for i in indices]
+        values = [values[i] for i in table.indices]
         good = sum(v is not None and not math.isnan(v) for v in values)
         if None in values and good >= len(values) - 1:
             axis = values.index(None)
-            column = indices[axis]
+            column = table.indices[axis]
             raise FileError(
                 f"{path}, line {number}: '{words[column][:40]}' in column {column + 1} "
-                f"({'xyz'[axis]}) is not a number; --columns chooses other columns"
+                f"({'xyz'[axis]}) is not a number; {table.advice}"
             )
         if None not in values and good:
             return number
@@ -413,8 +427,8 @@ class Parser:
             value = table.layout.number(words[index])
             if value is None:
                 raise FileError(
-                    f"{where}: '{decoded(words[index])[:40]}' in column {index + 1} ({axis}) is "
-                    "not a number; --columns chooses other columns"
+                    f"{where}: '{words[index][:40]}' in column {index + 1} ({axis}) is "
+                    f"not a number; {table.advice}"
                 )
             row.append(value)
         for index in table.extras:
@@ -463,7 +477,7 @@ class Parser:
         return rows, numpy.concatenate(self.numbers), self.starts, notes
 
 
-def parse(path, columns, needed, stream=None, progress=None):
+def parse(path, columns, needed, advice, stream=None, progress=None):
     """(table, rows, line numbers, starts, notes) of a text file or binary stream."""
     with contextlib.ExitStack() as stack:
         if stream is None:
@@ -473,12 +487,15 @@ def parse(path, columns, needed, stream=None, progress=None):
             lines = lines_of(block)
             skip = 0
             if parser is None:
-                table = Table(path, lines, columns, needed)
+                table = Table(path, lines, columns, needed, advice)
                 parser, skip = Parser(table), table.first
             parser.add(block, lines, skip)
     if parser is None:
         raise FileError(f"{path}: is empty")
     return (parser.table, *parser.finish())
+
+
+CHOOSE = "--columns chooses other columns"
 
 
 def read_table(path, columns=None, needed=3, stream=None):
@@ -487,7 +504,8 @@ def read_table(path, columns=None, needed=3, stream=None):
     Returns (rows, line numbers, starts, notes): rows is an array of n * needed doubles, a start is
     the index of a row that follows a blank line.
     """
-    _, rows, numbers, starts, notes = parse(path, columns, needed, stream)
+    advice = f"a header line with {', '.join('xyz'[:needed])} tells the columns"
+    _, rows, numbers, starts, notes = parse(path, columns, needed, advice, stream)
     return rows[:, :needed].copy(), numbers, starts, notes
 
 
@@ -498,7 +516,11 @@ def read_text(path, options, stream=None, progress=None):
     progress  None, or a function that is called with the fraction done
     Returns a Cloud. Ten million lines of x, y and z take some six seconds and below 1 GB.
     """
-    table, rows, numbers, _, notes = parse(path, options.columns, 3, stream, progress)
+    table, rows, numbers, _, notes = parse(
+        path, options.columns, 3, CHOOSE, stream, progress or options.progress
+    )
+    if table.downwards and not options.depth:
+        notes.append(table.downwards)
     cloud = Cloud(None, notes, lines=numbers)
     if options.no_data is not None:
         keep = rows[:, 2] != options.no_data

@@ -291,6 +291,27 @@ class Doubts(Tables):
         self.assert_coordinates(cloud, numpy.column_stack((X, Y, Z)))
         self.assertTrue(any("column 4 (Depth) could be too" in note for note in cloud.notes))
 
+    def test_depths_are_told_unless_they_are_turned_over(self):
+        text = "x,y,depth\n1,2,3\n4,5,7\n"
+        self.assertIn("--depth", " ".join(self.read(text).notes))
+        self.assertNotIn("--depth", " ".join(self.read(text, depth=True).notes))
+        below = "x,y,depth\n1,2,-3\n4,5,-7\n"
+        self.assertNotIn("--depth", " ".join(self.read(below).notes))
+
+    def test_lines_and_rings_have_their_columns_found_too(self):
+        for text, needed, expected in (
+            ("1 5.5 6.5\n2 7.5 6.5\n3 8.5 9.5\n4 1.5 7.5\n", 2, (5.5, 6.5)),
+            ("5.5 6.5 9.5\n7.5 6.5 9.5\n8.5 9.5 9.5\n", 2, (5.5, 6.5)),
+            ("id,northing,easting\n1,6.5,5.5\n", 2, (5.5, 6.5)),
+            ("x,z,y\n1,3,2\n", 3, (1, 2, 3)),
+        ):
+            rows = read_table(self.file(text), needed=needed)[0]
+            self.assertEqual(tuple(rows[0]), expected)
+        with self.assertRaises(FileError) as caught:
+            read_table(self.file("X,X,Y\n1,2,3\n"), needed=2)
+        self.assertIn("a header line with x, y tells the columns", str(caught.exception))
+        self.assertNotIn("--columns", str(caught.exception))
+
     def test_northing_before_easting_without_a_header_is_told(self):
         rows, _ = columns_of("y x z")
         text = "".join(" ".join(row) + "\n" for row in rows)
@@ -320,6 +341,9 @@ class Doubts(Tables):
             ("48\u00b012'30\" 7\u00b030'10\" 230\n", "degrees, minutes and seconds"),
             ("*110001+0000000000000001 81..10+0000000000123456\n", "a Leica GSI file"),
             ("<html>1 2 3\n", "HTML"),
+            ("7.5E 48.2N 230\n", "a letter for north"),
+            ("1\u00a0000,5 2\u00a0000,5 3 4\n", "marks between thousands"),
+            ("2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n" + "1 0 0 0\n" * 4 + "1 2 3 0.5\n", "PTX"),
             ("Inline,Crossline,Z\n1,2,3\n2,2,5\n2,5,9\n", "columns 1 (Inline) and 2 (Crossline)"),
         ):
             with self.subTest(words):
@@ -400,6 +424,16 @@ class Parsing(Tables):
         self.assert_coordinates(self.read("1.5D+02 2d0 3\n4 5 6\n"), [(150, 2, 3), (4, 5, 6)])
         self.assertIn("'1_0' in column 2", self.refusal("1 2 3\n4 1_0 6\n"))
 
+    def test_odd_signs_and_separators_are_read(self):
+        for text in (
+            "1 \u22122 3.5\n4 5 6\n", "1|-2|3.5\n4|5|6\n", "1 | -2 | 3.5\n4 | 5 | 6\n",
+            "x   y coordinate   z\n1 -2 3.5\n4 5 6\n",
+        ):
+            self.assert_coordinates(self.read(text), [(1, -2, 3.5), (4, 5, 6)])
+        # Bytes of UTF-8 that are blanks in Latin-1 part no words.
+        cloud = self.read("name x y z\nvoil\u00e0x 1 -2 3.5\n\u00e0x 4 5 6\n")
+        self.assert_coordinates(cloud, [(1, -2, 3.5), (4, 5, 6)])
+
     def test_blocks_are_joined_and_lines_counted_through_them(self):
         line = b"500000.25 4000000.5 1.125\n"
         count = BLOCK // len(line) + 2000
@@ -421,7 +455,8 @@ class Parsing(Tables):
         seen = []
         path = self.file("1 2 3\n4 5 6\n")
         read_text(path, ReadOptions(), progress=seen.append)
-        self.assertEqual(seen, [1.0])
+        read_text(path, ReadOptions(progress=seen.append))
+        self.assertEqual(seen, [1.0, 1.0])
 
     def test_lines_with_more_words_are_told(self):
         cloud = self.read("1 2 3\n4 5 6\n7 8 9 10\n5 5 5\n")
