@@ -123,7 +123,7 @@ GEOMETRY = re.compile(
 FORMATS = (
     Format("VTK's XML", ".vtp .vtu .vts .vtr .vti", begins(XML), "vtk_files", "vtk_files"),
     Format("VTK's legacy format", ".vtk", begins(rb"# vtk DataFile"), "vtk_files", "vtk_files"),
-    Format("a PLY file", ".ply", begins(rb"ply\s"), "ply", "vtk_files"),
+    Format("a PLY file", ".ply", begins(rb"ply\s"), "ply", "ply"),
     Format("a LAS file", ".las .laz", begins(rb"LASF"), "las"),
     Format("an STL file", ".stl", is_stl, "vtk_files", "vtk_files"),
     Format("an OBJ file", ".obj", begins(OBJ), "vtk_files", "vtk_files"),

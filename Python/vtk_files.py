@@ -3,7 +3,9 @@
 """Points, lines and polygons of files that VTK reads."""
 
 import math
+import os
 import re
+import warnings
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -14,11 +16,11 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from . import damage
-from .clouds import Cloud
+from .clouds import Cloud, make_points
 from .messages import FileError, Messages
 from .paths import suffix_of
 from .rasters import points_of_raster
+from .vtk_checks import check, survives
 
 def kind_of(path):
     """The suffix that the file's content ought to have."""
@@ -45,8 +47,6 @@ def vtk_reader(suffix):
     """A fresh VTK reader for the suffix. Imported late: each of these modules takes time."""
     if suffix == ".vtk":
         from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader as reader
-    elif suffix == ".ply":
-        from vtkmodules.vtkIOPLY import vtkPLYReader as reader
     elif suffix == ".stl":
         from vtkmodules.vtkIOGeometry import vtkSTLReader as reader
     elif suffix == ".obj":
@@ -66,12 +66,15 @@ def vtk_reader(suffix):
 
 def run_vtk_reader(path):
     """The data object of a file in one of VTK's formats."""
-    reason = damage.why_damaged(path, kind_of(path))
-    if reason:
-        raise FileError(f"{path}: {reason}")
-    reader = vtk_reader(kind_of(path))
+    suffix = kind_of(path)
+    check(path, suffix)
+    reader = vtk_reader(suffix)
+    reader.SetFileName(path)
     with Messages() as messages:
-        reader.SetFileName(path)
+        # Those of XML notice by themselves what is wrong.
+        if not suffix.startswith(".vt") or suffix == ".vtk":
+            if not survives(reader.Update):
+                raise FileError(f"{path}: is damaged: VTK's reader crashes on it")
         reader.Update()
     # What VTK's legacy readers could not read, they leave as it was, with a warning only.
     short = [words for words in messages.warnings if words.startswith("Error reading")]
@@ -99,24 +102,75 @@ def check_point_ids(path, data):
 
 
 def read_points(path, options):
-    data = run_vtk_reader(path)
-    if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
-        return points_of_grid(path, data)
-    if not isinstance(data, vtkPointSet):
-        raise FileError(f"{path}: holds a {data.GetClassName()}, which has no points")
+    suffix = kind_of(path)
+    if suffix in VERTEX and is_text(path):
+        # VTK reads these texts in single precision, but notices where one is cut off.
+        if suffix == ".stl":
+            run_vtk_reader(path)
+        data = make_points(vertices_of_text(path, VERTEX[suffix]))
+        cloud = Cloud(data, ["only the points are used, not the file's cells"])
+    else:
+        data = run_vtk_reader(path)
+        if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
+            return points_of_grid(path, data)
+        if not isinstance(data, vtkPointSet):
+            raise FileError(f"{path}: holds a {data.GetClassName()}, which has no points")
+        cloud = Cloud(data)
+        vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
+        if data.GetNumberOfCells() > vertices:
+            cloud.notes.append("only the points are used, not the file's cells")
     if data.GetNumberOfPoints() == 0:
         raise FileError(f"{path}: holds no points")
-    cloud = Cloud(data)
-    vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
-    if data.GetNumberOfCells() > vertices:
-        cloud.notes.append("only the points are used, not the file's cells")
-    if kind_of(path) == ".vtk" and damage.may_lack_digits(path):
+    if suffix in (".vtk", ".obj") and is_text(path) and not ends_with_line(path):
         cloud.notes.append("the last line has no end, so the last number may be cut off")
-    if kind_of(path) in (".stl", ".obj"):
-        note = rounding_note(vtk_to_numpy(data.GetPoints().GetData()))
+    if suffix == ".stl" and not is_text(path):
+        note = rounding_note(vtk_to_numpy(data.GetPoints().GetData()), "the file is")
         if note:
             cloud.notes.append(note)
     return cloud
+
+
+# The word before a vertex in text.
+VERTEX = {".obj": b"v", ".stl": b"vertex"}
+
+
+def is_text(path):
+    with open(path, "rb") as stream:
+        head = stream.read(300)
+    return b"\0" not in head and b"\nBINARY" not in head.upper()
+
+
+def ends_with_line(path):
+    with open(path, "rb") as stream:
+        stream.seek(-1, os.SEEK_END)
+        return stream.read().isspace()
+
+
+def vertices_of_text(path, word, once=True):
+    """(n, 3) coordinates of lines that begin with a word, in the file's order."""
+    number = 0
+
+    def rows(stream):
+        nonlocal number
+        for number, line in enumerate(stream, 1):
+            words = line.split(None, 4) if line.lstrip()[:1].lower() == b"v" else ()
+            if words and words[0].lower() == word:
+                yield b" ".join(words[1:4])
+
+    with open(path, "rb") as stream, warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # that there is nothing
+        try:
+            found = numpy.loadtxt(rows(stream), comments=None, ndmin=2)
+            if len(found) and found.shape[1] != 3:
+                raise ValueError
+        except ValueError:
+            raise FileError(f"{path}, line {number}: is no vertex of three numbers") from None
+    if not len(found):
+        return numpy.empty((0, 3))
+    if not once:
+        return found
+    _, firsts = numpy.unique(found, axis=0, return_index=True)
+    return found[numpy.sort(firsts)]
 
 
 def rounding_note(coordinates, why="VTK reads this format"):
@@ -171,4 +225,8 @@ def read_lines(path, singular):
         raise FileError(f"{path}: holds a {data.GetClassName()}; {singular} is vtkPolyData")
     if data.GetNumberOfLines() + data.GetNumberOfPolys() == 0:
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
+    if kind_of(path) == ".obj":
+        exact = vertices_of_text(path, b"v", once=False)
+        if len(exact) == data.GetNumberOfPoints():
+            data.SetPoints(make_points(exact).GetPoints())
     return data

@@ -6,10 +6,11 @@ import math
 import os
 import sys
 import unittest
+from unittest import mock
 
 import numpy
 from in_folder import InFolder, coordinates
-from vtkelevationsurface import paths, reading, writing
+from vtkelevationsurface import paths, reading, vtk_checks, vtk_files, writing
 from vtkelevationsurface.clouds import make_points
 from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -354,6 +355,39 @@ class VtkFormats(InFolder):
                 with self.subTest(what=what):
                     self.assertIn(b"3.6666", content)
                     self.assert_refused("", content.replace(b"3.6666", b"spoil"), "a." + suffix)
+
+    def test_digits_of_obj_and_stl_text_survive(self):
+        rows = [(612014.6747884353, 6073983.681666553, 1.5), (612015.1, 6073984.2, 1e-9), (1, 2, 0.1)]
+        obj = "# by hand\no a\n" + "".join("v %r %r %r\n" % row for row in rows)
+        self.assert_rows(self.read(obj + "vn 0 0 1\nf 1//1 2//1 3//1\n", "a.obj"), rows)
+        data = reading.read_boundary(self.path("a.obj"))
+        self.assertEqual(data.GetPoint(0), rows[0])
+        facet = "facet normal 0 0 1\nouter loop\n%s\nendloop\nendfacet\n" % "\n".join(
+            "vertex %r %r %r" % row for row in rows
+        )
+        stl = "solid a\n" + 2 * facet + "endsolid a\n"
+        self.assert_rows(self.read(stl, "a.stl"), rows)
+        for words, name, content in (
+            ("line 4: is no vertex", "b.obj", obj.replace("1e-09", "")[:-20]),
+            ("line 4: is no vertex", "b.obj", obj.replace("612015.1", "spoil")),
+            ("cannot be read", "b.stl", stl.replace("612015.1", "spoil")),
+            ("cannot be read", "b.stl", stl[:-40]),
+            ("holds no points", "b.obj", "# nothing\n"),
+        ):
+            with self.subTest(words=words, name=name):
+                self.assert_refused(words, content, name)
+
+    def test_what_crashes_a_reader_is_an_error_also_in_a_program(self):
+        # Made of whole files: corners that are not there, ids that are cut off, text for counts.
+        for what, suffix, content in self.whole_files():
+            for old, new in ((b"POLYGONS 10 ", b"POLYGONS 99 "), (b"CELLS 11 ", b"CELLS 99 ")):
+                if old in content:
+                    with self.subTest(what=what):
+                        self.assert_refused("", content.replace(old, new), "lie." + suffix)
+        with mock.patch.object(vtk_checks, "check"):
+            with mock.patch.object(vtk_files, "check"):
+                content = next(c for w, s, c in self.whole_files() if w.startswith("text vtkPolyData"))
+                self.assert_refused("reader crashes on it", content[:440], "crash.vtk")
 
     def test_cells_with_corners_that_are_not_there_are_refused(self):
         text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
