@@ -18,5 +18,6 @@
 #include "Progress.h"
 #include "SnapRounding.h"
 #include "Threads.h"
+#include "UnionFind.h"
 
 #endif

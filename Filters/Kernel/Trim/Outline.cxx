@@ -425,17 +425,9 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   const std::vector<Index>& triangles, ShareOf&& shareOf, std::vector<char>& keep,
   const Progress& progress)
 {
-  // Union-find: the parent of each vertex, itself for a root.
-  Buffer<Index> joined;
-  joined.Resize(list.Points.Count);
-  std::iota(joined.begin(), joined.end(), 0);
-  const auto find = [&joined](Index v) {
-    while (joined[v] != v)
-    {
-      v = joined[v] = joined[joined[v]];
-    }
-    return v;
-  };
+  Buffer<Index> parents; // of vertices, UnionFind.h
+  parents.Resize(list.Points.Count);
+  std::iota(parents.begin(), parents.end(), 0);
   Buffer<std::int64_t> sums;
   sums.Resize(list.Points.Count);
   std::fill(sums.begin(), sums.end(), 0);
@@ -447,17 +439,17 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
       const Index* corners = list.CornersOf(triangles[i]);
       const bool isAtBorder = atBorder.HasAny(corners);
       const double share = isAtBorder ? 1.0 : shareOf(triangles[i]);
-      Index root = find(corners[0]);
+      Index root = RootOf(parents, corners[0]);
       sums[root] += ToWhole(share);
       for (int k = 0; k < 3; ++k)
       {
         list.PrefetchPoint(ahead[k]);
-        Prefetch(&joined[ahead[k]]);
+        Prefetch(&parents[ahead[k]]);
         Prefetch(&sums[ahead[k]]);
-        const Index other = find(corners[k]);
+        const Index other = RootOf(parents, corners[k]);
         if (other != root)
         {
-          joined[std::max(root, other)] = std::min(root, other);
+          parents[std::max(root, other)] = std::min(root, other);
           sums[std::min(root, other)] += sums[std::max(root, other)];
           root = std::min(root, other);
         }
@@ -469,7 +461,7 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
     for (Index i = begin; i < end; ++i)
     {
       const Index t = triangles[i];
-      keep[t] = sums[find(list.CornersOf(t)[0])] < Whole;
+      keep[t] = sums[RootOf(parents, list.CornersOf(t)[0])] < Whole;
       if (!keep[t])
       {
         others.push_back(t);

@@ -88,16 +88,6 @@ bool HasGroup(const Neighbors& neighbors, const IdSet& vertices, Index count, st
   return false;
 }
 
-/** The root of an element of a union-find. */
-Index RootOf(std::vector<Index>& parents, Index i)
-{
-  while (parents[i] != i)
-  {
-    i = parents[i] = parents[parents[i]];
-  }
-  return i;
-}
-
 /** All vertices but those of cores. */
 IdSet OutsideCores(
   const Neighbors& neighbors, const IdSet& near, Index count, const Progress& progress)
