@@ -55,6 +55,12 @@ inline bool IsLower(const Point2& p, const Point2& q)
   return (p.Y < q.Y) | ((p.Y == q.Y) & (p.X < q.X));
 }
 
+/** The square of the distance of two points. */
+inline double SquaredLength(Point2 p, Point2 q)
+{
+  return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
+}
+
 /** A hash in which all bits are well mixed, the same for 0.0 and -0.0. */
 struct HashOfPoint
 {

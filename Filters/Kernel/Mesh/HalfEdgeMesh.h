@@ -80,6 +80,10 @@ public:
   Index Twin(Index h) const { return this->Twins[h]; }
   bool IsBorder(Index h) const { return this->Twins[h] == Border; }
   const Point2& PointOf(Index vertex) const { return this->Points[vertex]; }
+  double SquaredLengthOf(Index h) const
+  {
+    return SquaredLength(this->PointOf(this->Origin(h)), this->PointOf(this->Destination(h)));
+  }
   Index IdOf(Index vertex) const
   {
     const Index known = static_cast<Index>(this->Ids.size());

@@ -82,11 +82,6 @@ struct MeasuredTriangles
   std::vector<BorderEdge> Border;
 };
 
-inline double SquaredLength(Point2 p, Point2 q)
-{
-  return (p.X - q.X) * (p.X - q.X) + (p.Y - q.Y) * (p.Y - q.Y);
-}
-
 /** Measures the triangles of a mesh (with Twins), at least one. @throws Aborted, std::bad_alloc */
 MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress = Progress());
 

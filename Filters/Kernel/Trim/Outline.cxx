@@ -122,14 +122,11 @@ void CloseSmallBays(
     PartsOfFlags(mesh, [&](Index t) { return keep[t]; }, Part(progress, 0.0, 0.5));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] == Bay; };
-  const auto lengthOf = [&](Index h) {
-    return SquaredLength(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)));
-  };
   VisitOpenings(parts, openings, isOpen, Part(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
     opening.Share += ToWhole(shareOf(t));
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
-      opening.Longest = std::max(opening.Longest, lengthOf(h));
+      opening.Longest = std::max(opening.Longest, mesh.SquaredLengthOf(h));
     }
   });
   VisitOpenings(parts, openings, isOpen, Part(progress, 0.7, 0.9), [&](Index t, Opening& opening) {
@@ -138,7 +135,7 @@ void CloseSmallBays(
       const char beside =
         mesh.IsBorder(h) ? static_cast<char>(Outside) : keep[Mesh::Triangle(mesh.Twin(h))];
       const std::int64_t length =
-        beside == Bay ? 0 : ToWhole(std::sqrt(lengthOf(h) / opening.Longest)) >> 8;
+        beside == Bay ? 0 : ToWhole(std::sqrt(mesh.SquaredLengthOf(h) / opening.Longest)) >> 8;
       opening.Open += beside == Surface ? -length : length;
     }
   });
@@ -151,13 +148,9 @@ void CloseSmallBays(
 Index LongestEdge(const Mesh& mesh, Index t)
 {
   Index longest = 3 * t;
-  double squared = 0.0;
-  for (Index h = 3 * t; h < 3 * t + 3; ++h)
+  for (const Index h : { 3 * t + 1, 3 * t + 2 })
   {
-    const double length =
-      SquaredLength(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)));
-    longest = length > squared ? h : longest;
-    squared = std::max(squared, length);
+    longest = mesh.SquaredLengthOf(h) > mesh.SquaredLengthOf(longest) ? h : longest;
   }
   return longest;
 }
@@ -525,9 +518,7 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
       const Index t = mesh.Triangles[Mesh::Triangle(h)];
       const Index* corners = list.CornersOf(t);
       return atEdge.Has(corners[0]) + atEdge.Has(corners[1]) + atEdge.Has(corners[2]) >= 2 &&
-        isSliverOver(t,
-          std::sqrt(SquaredLength(mesh.Surface.PointOf(mesh.Surface.Origin(h)),
-            mesh.Surface.PointOf(mesh.Surface.Destination(h)))));
+        isSliverOver(t, std::sqrt(mesh.Surface.SquaredLengthOf(h)));
     };
     DropSlivers(mesh.Surface, isSliver, keepHere, Part(round, 0.3, 0.4));
     if (std::find(keepHere.begin(), keepHere.end(), char(Surface)) == keepHere.end() &&

@@ -309,11 +309,7 @@ private:
   {
     return std::max(LeastSpacing, this->Spacings[this->Surface.IdOf(vertex)]);
   }
-  double LengthOf(Index h) const
-  {
-    return std::sqrt(SquaredLength(this->Surface.PointOf(this->Surface.Origin(h)),
-      this->Surface.PointOf(this->Surface.Destination(h))));
-  }
+  double LengthOf(Index h) const { return std::sqrt(this->Surface.SquaredLengthOf(h)); }
   template <typename Visitor>
   void VisitThinCorners(Index t, Visitor&& visit) const
   {
