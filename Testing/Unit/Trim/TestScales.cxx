@@ -421,7 +421,7 @@ TEST(Scales, DoNotDependOnTheOrderOfPoints)
     survey.Steps = 60;
     survey.CrossLines = 2;
     Points points = survey.Make(random);
-    // Mirrored, so that co-circular points are cut alike, whichever order they come in.
+    // Triangulations cut co-circular points by their positions, whichever order they come in.
     const auto outlineOf = [](const Points& ordered) {
       const Mesh mesh = Delaunay(ordered);
       const ExtractedBoundary boundary = ExtractBoundary(mesh, ExtractOptions());
