@@ -49,7 +49,8 @@ enum Flag : char
 {
   Outside = 0,
   Surface = 1,
-  Bay = 2 ///< surface if it belongs to a small bay
+  Bay = 2,   ///< surface if it belongs to a small bay
+  Sliver = 3 ///< while DropSlivers() runs
 };
 
 /** In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1. */
@@ -155,6 +156,30 @@ Index LongestEdge(const Mesh& mesh, Index t)
   return longest;
 }
 
+/** Makes slivers surface that lean with their longest edge on it, and those that then do. Linear. */
+void RestoreSlivers(const Mesh& mesh, const std::vector<Index>& slivers, std::vector<char>& keep,
+  const Progress& progress)
+{
+  std::vector<Index> queue = slivers;
+  for (std::size_t i = 0; i < queue.size(); ++i)
+  {
+    ReportStep(progress, i, 4 * slivers.size()); // each adds at most its three neighbours
+    const Index t = queue[i];
+    const Index h = LongestEdge(mesh, t);
+    if (keep[t] == Sliver && !mesh.IsBorder(h) && keep[Mesh::Triangle(mesh.Twin(h))] == Surface)
+    {
+      keep[t] = Surface;
+      for (Index side = 3 * t; side < 3 * t + 3; ++side)
+      {
+        if (!mesh.IsBorder(side) && keep[Mesh::Triangle(mesh.Twin(side))] == Sliver)
+        {
+          queue.push_back(Mesh::Triangle(mesh.Twin(side)));
+        }
+      }
+    }
+  }
+}
+
 /**
  * Makes slivers parts of bays, from the border inwards, as long as there are any. Those that lean
  * with their longest edge on surface come back.
@@ -171,12 +196,12 @@ void DropSlivers(
     {
       if ((mesh.IsBorder(h) || keep[Mesh::Triangle(mesh.Twin(h))] != Surface) && isSliver(h))
       {
-        keep[t] = Bay;
+        keep[t] = Sliver;
         dropped.push_back(t);
       }
     }
   };
-  ForEachStretch(mesh.NumberOfTriangles(), progress, [&](Index begin, Index end) {
+  ForEachStretch(mesh.NumberOfTriangles(), Part(progress, 0.0, 0.8), [&](Index begin, Index end) {
     for (Index t = begin; t < end; ++t)
     {
       look(t);
@@ -192,19 +217,10 @@ void DropSlivers(
       }
     }
   });
-  // The last ones dropped lie furthest inwards.
-  for (bool isDone = false; !isDone;)
+  RestoreSlivers(mesh, dropped, keep, Part(progress, 0.8, 1.0));
+  for (const Index t : dropped)
   {
-    isDone = true;
-    for (auto t = dropped.rbegin(); t != dropped.rend(); ++t)
-    {
-      const Index h = LongestEdge(mesh, *t);
-      if (keep[*t] == Bay && !mesh.IsBorder(h) && keep[Mesh::Triangle(mesh.Twin(h))] == Surface)
-      {
-        keep[*t] = Surface;
-        isDone = false;
-      }
-    }
+    keep[t] = keep[t] == Sliver ? static_cast<char>(Bay) : keep[t];
   }
 }
 

@@ -1112,6 +1112,39 @@ TEST(ExtractBoundary, TakesTimeInProportionToAHubsNeighbors)
   }
 }
 
+TEST(ExtractBoundary, TakesTimeInProportionToSliversThatLeanOnEachOther)
+{
+  // A fan of slivers over the flat arc below a triangle. All are at the border, and each leans with
+  // its longest edge on the next; the last one, on the triangle, is dropped first, or last.
+  for (const bool isLastFirst : { true, false })
+  {
+    Mesh mesh;
+    constexpr Index count = 50000;
+    const double across = static_cast<double>(count);
+    for (Index i = 0; i <= count; ++i)
+    {
+      mesh.Points.push_back({ double(i), 0.01 * (i / across) * (i / across - 1.0) });
+    }
+    mesh.Points.push_back({ 0.5 * across, across });
+    mesh.Triangles = { 0, count, count + 1 };
+    for (Index i = 1; i < count; ++i)
+    {
+      const Index k = isLastFirst ? count - i : i;
+      mesh.Triangles.insert(mesh.Triangles.end(), { 0, k, k + 1 });
+    }
+    mesh.ConnectTwins();
+    ExtractOptions options;
+    options.GapTolerance = 1e9;
+    const testing_time::Stopwatch stopwatch;
+    const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
+    EXPECT_LT(stopwatch.Seconds(), 1.0); // a square of them: 10
+    EXPECT_EQ(std::count(boundary.IsSurface.begin(), boundary.IsSurface.end(), 1), count);
+    EXPECT_EQ(boundary.NumberOfPointsLeftOut, 0);
+    ASSERT_EQ(boundary.Vertices.Count(), 1);
+    EXPECT_EQ(boundary.Vertices.Size(0), count + 2);
+  }
+}
+
 TEST(ExtractBoundary, HasSimpleRings)
 {
   // A random lattice, thin enough for pinched vertices: no ring passes a vertex twice.
