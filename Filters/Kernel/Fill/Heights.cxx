@@ -91,31 +91,24 @@ struct SlopingEdge
 /** For each point the number of points that edges up to a slope join it to, itself included. */
 std::vector<Index> SizesOfParts(Index count, const std::vector<SlopingEdge>& edges, double steepest)
 {
-  std::vector<Index> next(count);
-  std::iota(next.begin(), next.end(), Index(0));
-  const auto rootOf = [&next](Index i) {
-    while (next[i] != i)
-    {
-      i = next[i] = next[next[i]];
-    }
-    return i;
-  };
+  std::vector<Index> parents(count);
+  std::iota(parents.begin(), parents.end(), Index(0));
   for (const SlopingEdge& edge : edges)
   {
     if (edge.Slope <= steepest)
     {
-      next[rootOf(edge.Ends[0])] = rootOf(edge.Ends[1]);
+      parents[RootOf(parents, edge.Ends[0])] = RootOf(parents, edge.Ends[1]);
     }
   }
   std::vector<Index> ofRoot(count, 0);
   for (Index i = 0; i < count; ++i)
   {
-    ++ofRoot[rootOf(i)];
+    ++ofRoot[RootOf(parents, i)];
   }
   std::vector<Index> sizes(count);
   for (Index i = 0; i < count; ++i)
   {
-    sizes[i] = ofRoot[rootOf(i)];
+    sizes[i] = ofRoot[RootOf(parents, i)];
   }
   return sizes;
 }
