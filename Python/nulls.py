@@ -20,6 +20,8 @@ NULLS = (
     + (1e30, -1e30, 1e20, -1e20, 1e35, 1.70141e38, FLOAT_MAX, -FLOAT_MAX, 3.4e38, -3.4e38)
 )
 SAMPLE = 200_000
+CHUNK = 1 << 21  # points at once: arrays of a size that memory is kept for
+SUSPECTS = 1000  # no more are looked at
 NAMED = 5  # that many blunders are named
 
 
@@ -31,15 +33,16 @@ def take_out(cloud, options):
     notes. A cloud of nothing but nulls stays as it is.
     """
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
+    axes = [numpy.ascontiguousarray(coordinates[:, i], dtype="f8") for i in range(3)]
     null, counts = numpy.zeros(len(coordinates), dtype=bool), {}
     for axis, name in ((2, "z"), (0, "x"), (1, "y")):
-        values = numpy.ascontiguousarray(coordinates[:, axis], dtype="f8")
+        values = axes[axis]
         for value, found in usual_nulls(values, is_place=axis < 2):
             found &= ~null
             if found.any():
                 counts[f"null values ({name} = {value:.9g})"] = int(numpy.count_nonzero(found))
                 null |= found
-    found = zero_rows(coordinates) & ~null
+    found = zero_rows(*axes) & ~null
     if found.any():
         counts["rows 0 0 0"] = int(numpy.count_nonzero(found))
         null |= found
@@ -49,17 +52,16 @@ def take_out(cloud, options):
             cloud.notes.append(f"kept: {words}")
         else:
             keep_points(cloud, numpy.flatnonzero(~null))
+            axes = [values[~null] for values in axes]
             cloud.left_out.update(counts)
             cloud.notes.append("usual null values are left out; --keep-nulls keeps them")
     if not options.keep_nulls:
-        cloud.notes += doubts(cloud)
+        cloud.notes += doubts(*axes, cloud.lines)
     return cloud
 
 
-def doubts(cloud):
+def doubts(x, y, z, lines):
     """Notes on values that may be nulls, and on single elevations far from all around them."""
-    coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
-    x, y, z = (numpy.ascontiguousarray(coordinates[:, i], dtype="f8") for i in range(3))
     notes = []
     for value, count in repeated_extremes(z):
         notes.append(
@@ -69,15 +71,15 @@ def doubts(cloud):
         z[z == value] = numpy.nan
     single = blunders(x, y, z)
     if single:
-        where = "point" if cloud.lines is None else "line"
-        number = range(len(z)) if cloud.lines is None else cloud.lines
+        where = "point" if lines is None else "line"
+        number = range(len(z)) if lines is None else lines
         words = [
             f"{where} {number[i]} has {z[i]:.7g} where others have {low:.7g} to {high:.7g}"
             for i, low, high in single[:NAMED]
         ]
         more = ", ..." if len(single) > NAMED else ""
         notes.append(
-            f"{len(single):,} single elevation{'s are' if len(single) > 1 else ' is'} far from "
+            f"{'at least ' * (len(single) == SUSPECTS)}{len(single):,} single elevation{'s are' if len(single) > 1 else ' is'} far from "
             f"all around: {', '.join(words)}{more}"
         )
     return notes
@@ -147,18 +149,16 @@ def usual_nulls(values, is_place=False):
     ]
 
 
-def zero_rows(coordinates):
+def zero_rows(x, y, z):
     """Which rows are 0 0 0, where x,y of the others are all elsewhere."""
-    zero = coordinates[:, 0] == 0.0
-    if zero.any():
-        zero &= (coordinates[:, 1:] == 0.0).all(axis=1)
-    if not zero.any() or zero.all():
-        return numpy.zeros(len(zero), dtype=bool)
-    near = ~zero
-    for axis in (0, 1):
-        values = coordinates[:, axis]
-        near &= numpy.abs(values) < max(body(values[~zero]), 1e-300)
-    return zero if not near.any() else numpy.zeros(len(zero), dtype=bool)
+    zero = (x == 0.0) & (y == 0.0) & (z == 0.0)
+    if zero.any() and not zero.all():
+        near = ~zero
+        for values in (x, y):
+            near &= numpy.abs(values) < max(body(values[~zero]), 1e-300)
+        if near.any():
+            zero[:] = False
+    return zero
 
 
 def repeated_extremes(z):
@@ -174,83 +174,102 @@ def repeated_extremes(z):
     return result
 
 
+class Cells:
+    """A grid of some 16 points a cell over x and y. Its rim stays empty but for points far off.
+
+    columns, count  of the cells; the last one is for points that are not finite
+    """
+
+    def __init__(self, x, y):
+        step = max(1, len(x) // SAMPLE)
+        sample = numpy.column_stack((x[::step], y[::step]))
+        sample = sample[numpy.isfinite(sample).all(axis=1)]
+        low, high = numpy.percentile(sample, (0.5, 99.5), axis=0) if len(sample) else (0.0, 0.0)
+        extent = numpy.asarray(high - low)
+        self.low, self.count = low, 0
+        if len(x) < 20 or not (numpy.isfinite(extent).all() and extent.max() > 0):
+            return
+        area = max(extent[0], 1e-3 * extent[1]) * max(extent[1], 1e-3 * extent[0])
+        self.side = (area / (len(x) / 16.0)) ** 0.5
+        if self.side > 0 and numpy.isfinite(self.side):
+            self.columns, self.rows = (int(length) + 3 for length in extent / self.side)
+            self.count = self.columns * self.rows + 1
+
+    def of(self, x, y, z):
+        """The cell of each point."""
+        whole = numpy.abs(x + y + z) < 1e100
+        parts = []
+        for values, low, most in ((x, self.low[0], self.columns), (y, self.low[1], self.rows)):
+            place = numpy.where(whole, (values - low) / self.side, 0.0)
+            parts.append(numpy.clip(place + 1.0, 0.0, most - 1.0).astype("i4"))
+        return numpy.where(whole, parts[1] * numpy.int32(self.columns) + parts[0], self.count - 1)
+
+
 def blunders(x, y, z):
     """Single elevations far from everything around them: [(index, low, high)], the worst first.
 
     low and high are what the points around have. Each point is compared with the others of its
-    cell of a grid with some 16 points a cell, by their mean and deviation without it. The few
-    that differ much are compared with all points of the 3 x 3 cells around.
+    cell of a grid, by their mean and deviation without it. The few that differ much are compared
+    with all points of the 3 x 3 cells around.
     """
-    cell, columns = cells_of(x, y, z)
-    if cell is None:
+    cells = Cells(x, y)
+    if not cells.count:
         return []
-    width = body(z)
-    z = numpy.where(cell < 0, 0.0, z)
-    cell = numpy.where(cell < 0, cell.max() + 2, cell)  # those that are not finite, on their own
-    size = numpy.bincount(cell)
-    shift = z - numpy.median(z[:SAMPLE])
-    mean = numpy.bincount(cell, shift) / numpy.maximum(size, 1)
-    shift -= mean[cell]
-    variance = numpy.bincount(cell, shift * shift) / numpy.maximum(size, 1)
+    parts = [slice(start, start + CHUNK) for start in range(0, len(x), CHUNK)]
+    cell = numpy.concatenate([cells.of(x[p], y[p], z[p]) for p in parts])
+    middle = numpy.nanmedian(z[:SAMPLE])
+    sums = numpy.zeros((3, cells.count))
+    for part in parts:
+        known = cell[part] != cells.count - 1
+        height = numpy.where(known, z[part] - middle, 0.0)
+        for total, weights in zip(sums, (None, height, height * height)):
+            total += numpy.bincount(cell[part], weights, cells.count)
+    size = numpy.maximum(sums[0], 1.0)
+    mean = sums[1] / size
+    variance = numpy.maximum(sums[2] / size - mean * mean, 0.0)
     # A point that lies d from the mean of n lies d n / (n - 1) from that of the others; their
     # variance is (n variance - d d n / (n - 1)) / (n - 1). Five deviations of the others are:
     n = numpy.maximum(size, 4.0)
     limit = numpy.sqrt(25.0 * n * variance / (n * n / (n - 1) + 25.0 * n / (n - 1)))
-    limit = numpy.maximum(limit, 0.1 * width)
-    limit[size < 4] = numpy.inf
-    suspects = numpy.flatnonzero(numpy.abs(shift) > limit[cell])
+    least = 0.1 * body(z)
+    limit = numpy.maximum(limit, least)
+    limit[size < 4] = limit[-1] = numpy.inf
+    mean += middle
+    suspects = numpy.concatenate(
+        [
+            part.start + numpy.flatnonzero(abs(z[part] - mean[cell[part]]) > limit[cell[part]])
+            for part in parts
+        ]
+    )
     if not len(suspects):
         return []
-    order = numpy.argsort(-numpy.abs(shift[suspects]), kind="stable")
-    suspects = suspects[order][:200]
-    around = numpy.array([[r * columns + c for c in (-1, 0, 1)] for r in (-1, 0, 1)]).ravel()
-    wanted = numpy.zeros(cell.max() + columns + 2, dtype=bool)
-    wanted[numpy.maximum(cell[suspects][:, None] + around, 0)] = True
+    order = numpy.argsort(-abs(z[suspects] - mean[cell[suspects]]), kind="stable")
+    return compared(suspects[order][:SUSPECTS], z, cell, cells, least)
+
+
+def compared(suspects, z, cell, cells, least):
+    """Those suspects that are far from the points of the 3 x 3 cells around them.
+
+    least  a smaller distance does not count
+    Returns [(index, low, high)] as blunders().
+    """
+    around = numpy.add.outer(cells.columns * numpy.arange(-1, 2), numpy.arange(-1, 2)).ravel()
+    wanted = numpy.zeros(cells.count, dtype=bool)
+    wanted[numpy.clip(cell[suspects][:, None] + around, 0, cells.count - 1)] = True
+    wanted[-1] = False
     near = numpy.flatnonzero(wanted[cell])
     near = near[numpy.argsort(cell[near], kind="stable")]
     starts = cell[near]
     result = []
     for i in suspects.tolist():
-        ids = numpy.concatenate(
-            [
-                near[numpy.searchsorted(starts, k) : numpy.searchsorted(starts, k, "right")]
-                for k in (cell[i] + around).tolist()
-            ]
-        )
+        first = numpy.searchsorted(starts, cell[i] + around)
+        last = numpy.searchsorted(starts, cell[i] + around, "right")
+        ids = numpy.concatenate([near[a:b] for a, b in zip(first, last)])
         others = numpy.sort(z[ids[ids != i]])
-        trim = 1 + len(others) // 50
         if len(others) < 8:
             continue
+        trim = 1 + len(others) // 50
         low, high = float(others[trim]), float(others[-1 - trim])
-        gap = max(low - z[i], z[i] - high)
-        if gap > max(5.0 * (high - low), 0.1 * width):
+        if max(low - z[i], z[i] - high) > max(5.0 * (high - low), least):
             result.append((i, low, high))
     return result
-
-
-def cells_of(x, y, z):
-    """(cell of each point, cells in a row); the cell is -1 where a coordinate is not finite.
-
-    (None, 0) where there are too few points.
-    """
-    good = numpy.isfinite(x) & numpy.isfinite(y) & (numpy.abs(z) < 1e100)
-    count = int(numpy.count_nonzero(good))
-    if count < 20:
-        return None, 0
-    sample = numpy.flatnonzero(good)
-    sample = sample[:: max(1, count // SAMPLE)]
-    low = numpy.array([x[sample].min(), y[sample].min()])
-    extent = numpy.array([x[sample].max(), y[sample].max()]) - low
-    if not (numpy.isfinite(extent).all() and extent.max() > 0):
-        return None, 0
-    area = max(extent[0], 1e-3 * extent[1]) * max(extent[1], 1e-3 * extent[0])
-    side = (area / (count / 16.0)) ** 0.5
-    if not (side > 0 and numpy.isfinite(side)):
-        return None, 0
-    shape = (extent / side).astype("i8") + 3  # a rim of empty cells
-    parts = []
-    for values, start, most in ((x, low[0], shape[0]), (y, low[1], shape[1])):
-        place = numpy.where(good, (values - start) / side, 0.0)
-        parts.append(numpy.clip(place, 0, most - 3).astype("i4") + 1)
-    cell = parts[1] * shape[0] + parts[0]
-    return numpy.where(good, cell, -1), int(shape[0])

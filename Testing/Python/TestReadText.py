@@ -457,6 +457,9 @@ class Parsing(Tables):
         read_text(path, ReadOptions(), progress=seen.append)
         read_text(path, ReadOptions(progress=seen.append))
         self.assertEqual(seen, [1.0, 1.0])
+        # What is no file tells no fraction.
+        read_text(path, ReadOptions(progress=seen.append), stream=io.BytesIO(b"1 2 3\n4 5 6\n"))
+        self.assertEqual(seen, [1.0, 1.0])
 
     def test_lines_with_more_words_are_told(self):
         cloud = self.read("1 2 3\n4 5 6\n7 8 9 10\n5 5 5\n")

@@ -1,0 +1,167 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the lines of a text table become words and numbers, and which names its columns have."""
+
+import contextlib
+import csv
+import math
+import re
+
+from .column_names import known_names
+from .messages import FileError
+
+COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
+MISSING = set(
+    "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
+) | {""}
+# How files begin that are no tables, and what they are.
+NO_TABLES = (
+    (r"ncols\b", "an ESRI ASCII grid"),
+    (r"dsaa\b", "a Surfer grid"),
+    (r"fsasci\b", "a CPS-3 grid"),
+    (r"gocad\b", "a GOCAD file"),
+    (r"\*?11\d{4}[+-]", "a Leica GSI file"),
+    (r"\d+\n\d+\n(\S+ +\S+ +\S+ *\n){4}(\S+ +\S+ +\S+ +\S+ *\n){4}", "a Leica PTX scan"),
+    (r"<[?!a-z]", "XML or HTML"),
+    (r"[{\[]\s*[\"{\[]", "JSON"),
+)
+# What keeps words from being numbers, and what it is.
+BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
+NO_NUMBERS = (
+    (
+        r"\d[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
+        "marks between thousands",
+    ),
+    (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),
+    (r"\d\s?[NSEW]\b", "a letter for north, south, east or west"),
+)
+
+
+class Layout:
+    """How a line of text becomes words: the separator (None: blanks) and the decimal sign."""
+
+    NAMES = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", None: "blanks"}
+
+    def __init__(self, separator, decimal_comma=False):
+        self.separator = separator
+        self.decimal_comma = decimal_comma
+
+    def __str__(self):
+        text = self.NAMES[self.separator]
+        return text + ", decimal comma" if self.decimal_comma else text
+
+    def words(self, line):
+        if '"' in line:
+            if self.separator is None:
+                found = re.findall(r'"([^"]*)"|(\S+)', line)
+                return [quoted or plain for quoted, plain in found]
+            return [word.strip() for word in next(csv.reader([line], delimiter=self.separator))]
+        if self.separator is None:
+            return line.split()
+        return [word.strip() for word in line.split(self.separator)]
+
+    def number(self, word):
+        """The word's value; NaN where a value is missing; None for text."""
+        plain = word.replace(",", ".") if self.decimal_comma else word
+        if "_" not in plain:
+            with contextlib.suppress(ValueError):
+                return float(plain)
+            with contextlib.suppress(ValueError):  # Fortran's 1.5D+03
+                return float(re.sub(r"^([-+.\d]+)[dD]([-+]?\d+)$", r"\1e\2", plain))
+        return math.nan if word.lower() in MISSING else None
+
+    def numbers(self, line):
+        """How many words of the line are written as numbers."""
+        return sum(
+            1 for w in self.words(line) if w.lower() not in MISSING and self.number(w) is not None
+        )
+
+
+LAYOUTS = (
+    Layout(";"),
+    Layout("\t"),
+    Layout(","),
+    Layout("|"),
+    Layout(None),
+    Layout(";", True),
+    Layout("\t", True),
+    Layout("|", True),
+    Layout(None, True),
+)
+
+
+def is_comment(line):
+    return line.lstrip().startswith(COMMENT_MARKS)
+
+
+def is_data(line):
+    return bool(line.strip()) and not is_comment(line)
+
+
+def find_layout(path, lines, needed):
+    """The layout under which most of the first lines hold the needed number of numbers."""
+    sample = [line for line in lines if line.strip() and not is_comment(line)][:400]
+    head = "\n".join([line.strip().lower() for line in lines if line.strip()][:20])
+    for pattern, what in NO_TABLES:
+        if re.match(pattern, head):
+            raise FileError(f"{path}: is {what}, not a table of points")
+    best, best_score, most = None, (0, 0), 0
+    for layout in LAYOUTS:
+        counts = [layout.numbers(line) for line in sample]
+        score = (sum(1 for count in counts if count >= needed), sum(counts))
+        most = max(most, max(counts, default=0))
+        if score[0] and score > best_score:
+            best, best_score = layout, score
+    if best and not any(re.search(BLANK_IN_NUMBER, line) for line in sample):
+        return best
+    if not sample:
+        raise FileError(f"{path}: holds no data, only blank or comment lines")
+    for pattern, what in NO_NUMBERS:
+        if any(re.search(pattern, line) for line in sample):
+            raise FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
+    if most == 0:
+        raise FileError(f"{path}: holds text, but no numbers")
+    raise FileError(
+        f"{path}: no line holds {needed} numbers; the most is {most}. "
+        f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
+    )
+
+
+def find_names(layout, head, width, one_may_lack=True):
+    """The names of the columns from the lines before the data, or None.
+
+    head          the lines before the data, without the marks of comments
+    one_may_lack  whether the first column may have none
+
+    They stand in one line, with the separator of the data or another; or a line each, numbered as
+    "3: X", or between BEGIN HEADER and END HEADER.
+    """
+    candidates = []
+    upper = [line.upper() for line in head]
+    if "BEGIN HEADER" in upper and "END HEADER" in upper:
+        part = head[upper.index("BEGIN HEADER") + 1 : upper.index("END HEADER")]
+        candidates.append([name.split(",")[-1] for name in part])
+    numbered = re.compile(r"(?:field|column|col)?\W*(\d+)\s*[:=.)]?\s*(\S.*)", re.I)
+    matches = [match for match in map(numbered.match, head) if match]
+    found = {int(match.group(1)): match.group(2).strip('" ') for match in matches}
+    if set(found) >= set(range(1, width + 1)):
+        candidates.append([found[i] for i in range(1, width + 1)])
+    for line in reversed(head):
+        for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:
+            words = [word.strip("\"' ") for word in other.words(line)]
+            candidates.append(words)
+            if other.separator is None:
+                candidates.append(re.split(r"\s{2,}|\t", line.strip()))
+                # "x (m)  y (m)": blanks within names; good enough when single letters are left
+                candidates.append([w for w in words if re.sub(r"[(\[{].*|\W|_", "", w)])
+            if one_may_lack and len(words) == width - 1 and known_names(words):
+                candidates.append([""] + words)  # as R writes it: row names have no name
+            if len(words) == width + 1 and not words[-1]:
+                candidates.append(words[:-1])
+    candidates = [names for names in candidates if len(names) == width and any(names)]
+    candidates = [names for names in candidates if not all(is_number(name) for name in names)]
+    return max(candidates, key=known_names, default=None)
+
+
+def is_number(word):
+    return Layout(None).number(word) is not None
