@@ -5,7 +5,7 @@
 import functools
 
 from .columns import meaning
-from .messages import FileError
+from .messages import ElevationSurfaceError, FileError
 
 # Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
 NOT_ASKED = {"XYZ", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
@@ -23,9 +23,12 @@ def one_line(error):
 
 def gdal_module():
     """GDAL, set to raise RuntimeError. Imported late: it takes a tenth of a second."""
-    from osgeo import gdal
-
-    gdal.UseExceptions()
+    try:
+        from osgeo import gdal, ogr, osr
+    except ImportError:
+        raise ElevationSurfaceError("GDAL is missing: install python3-gdal") from None
+    for part in (gdal, ogr, osr):
+        part.UseExceptions()
     return gdal
 
 
@@ -92,3 +95,23 @@ def choose_layer(path, wanted, names, what):
         found = f"{what} {', '.join(names[:20])}: choose one by --layer" if names else f"no {what}"
         raise FileError(f"{path}: holds {found}")
     return names[0]
+
+
+def reference_of(crs):
+    """The spatial reference of WKT, AUTHORITY:CODE or anything that GDAL knows; None for None.
+
+    x is the first axis, whatever the authority says. Raises ValueError for what GDAL does not know.
+    """
+    if not crs:
+        return None
+    gdal_module()
+    from osgeo import osr
+
+    reference = osr.SpatialReference()
+    try:
+        with quiet():
+            reference.SetFromUserInput(crs)
+    except RuntimeError:
+        raise ValueError(f"{crs} is no coordinate reference system that GDAL knows") from None
+    reference.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    return reference

@@ -1,0 +1,160 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contour lines and outlines, as GeoPackage, GeoJSON or DXF by OGR."""
+
+import math
+import os
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkStripper
+
+from .clouds import cells_of, make_points
+from .gdal_common import gdal_module, one_line
+from .messages import ElevationSurfaceError, FileError
+from .paths import suffix_of
+from .screen_mesh import corner_flags
+
+MOST_LEVELS = 10_000
+LONGEST = 2**31 - 1  # points of a line
+# OGR's driver and the options of a layer for each suffix.
+DRIVERS = {
+    ".gpkg": ("GPKG", []),
+    ".geojson": ("GeoJSON", ["SIGNIFICANT_FIGURES=17"]),
+    ".dxf": ("DXF", []),
+}
+LINE_SUFFIXES = tuple(DRIVERS)
+
+
+def contours(surface, step, progress=None):
+    """[(points, {"elevation": level})]: contour lines at the multiples of step.
+
+    points are (n, 3); closed lines end where they begin. Raises ElevationSurfaceError where there
+    would be more than MOST_LEVELS levels, or none.
+    """
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8", copy=False)
+    used = corner_flags(corners, len(points))
+    low, high = points[used, 2].min(), points[used, 2].max()
+    first, last = math.ceil(low / step), math.floor(high / step)
+    if last < first:
+        raise ElevationSurfaceError(
+            f"no multiple of {step:g} lies between the elevations {low:g} and {high:g}: "
+            "use a smaller contour step"
+        )
+    if last - first >= MOST_LEVELS:
+        raise ElevationSurfaceError(
+            f"contours every {step:g} would be {last - first + 1:,} levels; at most {MOST_LEVELS:,} are "
+            "drawn: use a larger contour step"
+        )
+    plain = make_points(numpy.where(used[:, None], points, points[corners[0]]))
+    plain.SetPolys(surface.GetPolys())
+    plain.GetPointData().SetScalars(numpy_to_vtk(vtk_to_numpy(plain.GetPoints().GetData())[:, 2], True))
+    cut = vtkContourFilter()
+    cut.SetInputData(plain)
+    cut.SetOutputPointsPrecision(1)  # doubles
+    cut.ComputeNormalsOff()
+    cut.SetNumberOfContours(last - first + 1)
+    for i in range(first, last + 1):
+        cut.SetValue(i - first, i * step)
+    join = vtkStripper()
+    join.SetInputConnection(cut.GetOutputPort())
+    join.SetMaximumLength(LONGEST)
+    if progress:
+        cut.AddObserver("ProgressEvent", lambda caller, _: progress(0.8 * caller.GetProgress()))
+    join.Update()
+    result = join.GetOutput()
+    if not result.GetNumberOfLines():
+        return []
+    xyz = vtk_to_numpy(result.GetPoints().GetData())
+    lines = []
+    for ids in index_arrays(result.GetLines()):
+        line = xyz[ids]
+        level = step * round(line[0, 2] / step)
+        line[:, 2] = level
+        lines.append((line, {"elevation": level}))
+    return lines
+
+
+def index_arrays(cells):
+    """The ids of each of the cells."""
+    ids = vtk_to_numpy(cells.GetConnectivityArray())
+    return numpy.split(ids, vtk_to_numpy(cells.GetOffsetsArray())[1:-1])
+
+
+def outlines(result):
+    """[(points, attributes)]: the boundary and the holes of a Reconstruction, as closed lines.
+
+    kind is "boundary" or "hole"; holes have what the report tells of them.
+    """
+    lines = []
+    if result.boundary is not None and result.boundary.GetNumberOfLines():
+        xyz = vtk_to_numpy(result.boundary.GetPoints().GetData())
+        lines += [(xyz[ids], {"kind": "boundary"}) for ids in index_arrays(result.boundary.GetLines())]
+    if result.holes is not None and result.holes.GetNumberOfLines():
+        xyz = vtk_to_numpy(result.holes.GetPoints().GetData())
+        told = result.report["holes"]["list"]
+        for ids, hole in zip(index_arrays(result.holes.GetLines()), told):
+            plain = {name: value for name, value in hole.items() if name not in ("box", "centre")}
+            lines.append((xyz[ids], {"kind": "hole", **plain}))
+    return lines
+
+
+def write_lines(lines, path, layer, crs=None, progress=None):
+    """Writes lines of contours() or outlines(). Returns notes. Raises FileError.
+
+    layer  the layer's name
+    crs    a spatial reference of GDAL, or None
+    DXF has no attributes: z tells the elevation there, and the layer the kind.
+    """
+    gdal = gdal_module()
+    from osgeo import ogr
+
+    driver, options = DRIVERS[suffix_of(path)]
+    kinds = {}
+    for _, values in lines:
+        for name, value in values.items():
+            if value is not None:
+                kinds[name] = max(kinds.get(name, 0), (int, float, str).index(type(value)))
+    types = (ogr.OFTInteger64, ogr.OFTReal, ogr.OFTString)
+    try:
+        if os.path.exists(path):
+            os.remove(path)
+        data = gdal.GetDriverByName(driver).Create(path, 0, 0, 0, gdal.GDT_Unknown)
+        table = data.CreateLayer(layer, crs, ogr.wkbLineString25D, options)
+        if driver != "DXF":
+            for name, kind in kinds.items():
+                table.CreateField(ogr.FieldDefn(name, types[kind]))
+        if data.TestCapability(ogr.ODsCTransactions):
+            data.StartTransaction()
+        for i, (points, values) in enumerate(lines):
+            feature = ogr.Feature(table.GetLayerDefn())
+            if driver == "DXF":
+                feature.SetField("Layer", values.get("kind", layer))
+            else:
+                for name, value in values.items():
+                    if value is not None:
+                        feature.SetField(name, value)
+            feature.SetGeometry(ogr.CreateGeometryFromWkb(line_wkb(points)))
+            table.CreateFeature(feature)
+            if progress and i % 1000 == 0:
+                progress(i / len(lines))
+        if data.TestCapability(ogr.ODsCTransactions):
+            data.CommitTransaction()
+        data.FlushCache()
+        feature = table = data = None
+    except RuntimeError as error:
+        raise FileError(one_line(error)) from None
+    if driver == "GeoJSON" and not (crs is not None and crs.IsGeographic()):
+        return [
+            ".geojson holds x and y as they are; programs that follow RFC 7946 take them for longitude "
+            "and latitude: .gpkg is safer"
+        ]
+    return []
+
+
+def line_wkb(points):
+    """(n, 3) -> a LineString Z as well-known binary."""
+    head = numpy.array([1], "u1").tobytes() + numpy.array([1002, len(points)], "<u4").tobytes()
+    return head + numpy.ascontiguousarray(points, "<f8").tobytes()
