@@ -14,9 +14,12 @@ import time
 
 import numpy
 
-from . import reading, writing
+from . import reading
 from .clouds import ReadOptions, antimeridian_note, merged
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
+from .grids import write_prj
+from .gdal_common import name_of, reference_of
+from .outputs import OUTPUTS, beside, check_gdal, default_name, write_output
 from .paths import check_suffix, check_writable
 from .reconstruction import PROPERTIES, check_spacing, run_chain
 from .report import picture_subtitle, print_report
@@ -61,6 +64,13 @@ def class_numbers(text):
     return numbers
 
 
+def length_above_zero(text):
+    length = float(text)
+    if not 0.0 < length < math.inf:
+        raise ValueError
+    return length
+
+
 def view_angles(text):
     if text == "top":
         return (180.0, 90.0)
@@ -79,7 +89,13 @@ TAKES = {
     "--classes": "numbers from 0 to 255, as 2,8",
     "--faults": "a file",
     "--boundary": "a file",
+    "--crs": "a coordinate reference system, as EPSG:25832",
     "--output": "a file",
+    "--grid": "a number above 0",
+    "--grid-output": "a file",
+    "--contours": "a number above 0",
+    "--contours-output": "a file",
+    "--outlines": "a file, or nothing",
     "--picture": "a file, or nothing",
     "--view": "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35",
     "--exaggeration": PROPERTIES["gap_tolerance"].takes,
@@ -160,7 +176,12 @@ def make_parser():
             add(option_of(name), type=one.convert)
     add("--no-trim", dest="trim", action="store_false")
     add("--no-fill", dest="fill", action="store_false")
+    add("--crs")
     add("-o", "--output")
+    for one in ("grid", "contours"):
+        add(f"--{one}", type=length_above_zero)
+        add(f"--{one}-output")
+    add("--outlines", nargs="?", const="")
     add("--picture", nargs="?", const="")
     add("--no-picture", action="store_true")
     add("--view", type=view_angles)
@@ -175,6 +196,7 @@ def make_parser():
 def parse_arguments(arguments):
     parser = make_parser()
     options = parser.parse_args(arguments)
+    options.command = ["reconstruct", *(sys.argv[1:] if arguments is None else arguments)]
     options.given = {
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
@@ -191,7 +213,13 @@ def parse_arguments(arguments):
         options.picture is not None or options.view or options.exaggeration or options.colours
     ):
         parser.error("--no-picture leaves nothing for the picture options to do")
-    if options.each and (options.output or options.picture or options.report):
+    for one in OUTPUTS:
+        if one.step and getattr(options, one.name) and not getattr(options, one.step):
+            parser.error(f"{option_of(one.name)} is for the result of --{one.step}, which is missing")
+    if options.outlines is not None and not (options.trim or options.fill):
+        parser.error("--no-trim and --no-fill leave no outlines")
+    names = [getattr(options, one.name) for one in OUTPUTS]
+    if options.each and (any(names) or options.picture or options.report):
         parser.error("--each names the results of each file itself: leave out the names of results")
     return options
 
@@ -205,6 +233,10 @@ def options_of(options, files):
     name = "points" if name == "-" else name[:-3] if name.lower().endswith(".gz") else name
     if options.output is None:
         options.output = os.path.splitext(name)[0] + "_surface.vtp"
+    for one in OUTPUTS:
+        wanted = getattr(options, one.step) if one.step else getattr(options, one.name) is not None
+        if wanted and not getattr(options, one.name):
+            setattr(options, one.name, default_name(one, options.output))
     stem = os.path.splitext(options.output)[0]
     options.picture_wanted = options.picture is not None
     if options.no_picture:
@@ -286,22 +318,53 @@ def write_report(path, report):
         stream.write("\n")
 
 
+def about(options):
+    """The run, for the report: the version, the command, and the options that are not the default."""
+    from . import __version__
+
+    plain = make_parser().parse_args(options.files)
+    return {
+        "version": __version__,
+        "command": options.command,
+        "options": {
+            name: value
+            for name, value in vars(options).items()
+            if hasattr(plain, name) and value != getattr(plain, name)
+        },
+    }
+
+
 def read_options(options):
     """The options that concern reading, by name."""
     return {name: value for name, value in vars(options).items() if name in READ_OPTIONS}
 
 
+def files_of(options):
+    """[(path, Output)] of what is asked for, but picture and report."""
+    return [(getattr(options, one.name), one) for one in OUTPUTS if getattr(options, one.name)]
+
+
 def check_options(options):
     """Refuses what could not be read or written, before any work is done."""
     try:
-        check_suffix(options.output, writing.WRITE_SUFFIXES, "written")
+        for path, one in files_of(options):
+            check_suffix(path, one.suffixes, "written")
+            if one.name != "output":
+                check_gdal(path)
+        if options.crs:
+            check_gdal("--crs")
+            reference_of(options.crs)
         if options.picture is not None:
             check_suffix(options.picture, (".png",), "written as a picture")
         for path in options.files:
             reading.check_options(path, **read_options(options))
     except FileError as error:
         raise WrongOption(str(error)) from None
-    wanted = [p for p in (options.output, options.picture, options.report) if p]
+    except ValueError as error:
+        raise WrongOption(f"--crs: {error}") from None
+    wanted = [p for p in (options.picture, options.report) if p]
+    for path, _ in files_of(options):
+        wanted += [path, *beside(path)]
     inputs = [p for p in (*options.files, options.faults, options.boundary) if p]
     for i, path in enumerate(wanted):
         check_writable(path)
@@ -344,9 +407,33 @@ class Run:
             check_spacing(cloud.points, options.given.get("spacing", 0.0))
         except ValueError as error:
             raise WrongOption(f"{options.file}: --{error}") from None
+        self.set_crs(cloud)
         faults = reading.read_faults(options.faults) if options.faults else None
         boundary = reading.read_boundary(options.boundary) if options.boundary else None
         return cloud, boundary, faults
+
+    def set_crs(self, cloud):
+        """What --crs says counts, and is told where the file says something else."""
+        crs = self.options.crs
+        if crs and cloud.crs and not reference_of(crs).IsSame(reference_of(cloud.crs)):
+            cloud.notes.append(f"--crs {crs} is taken, not {name_of(cloud.crs)} of the file")
+        cloud.crs = crs or cloud.crs
+
+    def write(self, result, path, output):
+        """Writes one result. Returns notes."""
+        words = "writing" if output.name == "output" else f"writing {output.step or output.name}"
+        step = getattr(self.options, output.step) if output.step else None
+
+        def write(partial):
+            return write_output(
+                output, result, partial, step, lambda fraction: self.progress(words, fraction)
+            )
+
+        done = "write" if output.name == "output" else output.step or output.name
+        notes = self.timed(done, words, lambda: self.results.add(path, write))
+        for other in beside(path) if result.crs else []:
+            self.results.add(other, lambda partial: write_prj(partial, result.crs))
+        return notes
 
     def reconstruct(self, cloud, boundary, faults):
         options = self.options
@@ -405,27 +492,21 @@ class Run:
                 pass
         result = self.reconstruct(*self.read())
         self.progress("measuring", 0.0)
-        report = {"file": options.file, **result.report}
+        report = {"file": options.file, **about(options), **result.report}
         result.report = report
-        report["notes"] += self.timed(
-            "write",
-            "writing",
-            lambda: self.results.add(
-                options.output, lambda path: writing.write_surface(result.surface, path)
-            ),
-        )
-        written = [options.output]
+        for path, output in files_of(options):
+            report["notes"] += self.write(result, path, output)
         if options.picture is not None:
             try:
                 self.draw(result)
-                written.append(options.picture)
             except PictureError as error:
                 if options.picture_wanted:
                     raise
                 report["notes"].append(f"no picture: {error.reason}")
         report["times"] = self.times
-        report["written"] = written + ([options.report] if options.report else [])
+        report["written"] = [path for _, path in self.results.pending]
         if options.report:
+            report["written"].append(options.report)
             self.results.add(options.report, lambda path: write_report(path, report))
         self.results.publish()
         return report

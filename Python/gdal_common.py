@@ -5,7 +5,7 @@
 import functools
 
 from .columns import meaning
-from .messages import ElevationSurfaceError, FileError
+from .messages import FileError
 
 # Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
 NOT_ASKED = {"XYZ", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
@@ -23,10 +23,8 @@ def one_line(error):
 
 def gdal_module():
     """GDAL, set to raise RuntimeError. Imported late: it takes a tenth of a second."""
-    try:
-        from osgeo import gdal, ogr, osr
-    except ImportError:
-        raise ElevationSurfaceError("GDAL is missing: install python3-gdal") from None
+    from osgeo import gdal, ogr, osr
+
     for part in (gdal, ogr, osr):
         part.UseExceptions()
     return gdal
@@ -115,3 +113,10 @@ def reference_of(crs):
         raise ValueError(f"{crs} is no coordinate reference system that GDAL knows") from None
     reference.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
     return reference
+
+
+def name_of(crs):
+    """"ETRS89 / UTM zone 32N (EPSG:25832)" of what reference_of() takes."""
+    reference = reference_of(crs)
+    name, code = reference.GetName() or "unnamed", reference.GetAuthorityCode(None)
+    return f"{name} ({reference.GetAuthorityName(None)}:{code})" if code else name

@@ -9,7 +9,7 @@ import os
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .gdal_common import gdal_module, one_line
+from .gdal_common import gdal_module, one_line, reference_of
 from .messages import ElevationSurfaceError, FileError
 from .paths import suffix_of
 from .screen_mesh import corner_flags, slices
@@ -138,8 +138,8 @@ def no_data_value(z):
 def write_grid(grid, path, crs=None, progress=None):
     """Writes a Grid as GeoTIFF, .asc or ZMAP+, told by the suffix. Returns notes for the user.
 
-    GeoTIFF holds errors as a second band, and crs, a spatial reference of GDAL or None. Raises
-    OSError and FileError.
+    GeoTIFF holds errors as a second band, and crs: WKT, AUTHORITY:CODE or None. Raises OSError and
+    FileError.
     """
     suffix = suffix_of(path)
     progress = progress or (lambda fraction: None)
@@ -179,8 +179,8 @@ def write_tif(grid, path, crs, progress):
     options = ["COMPRESS=DEFLATE", "PREDICTOR=3", "TILED=YES", "BIGTIFF=IF_SAFER"]
     try:
         data = raster("GTiff", path, grid, layers, options, progress)
-        if crs is not None:
-            data.SetSpatialRef(crs)
+        if crs:
+            data.SetSpatialRef(reference_of(crs))
         data.FlushCache()
     except RuntimeError as error:
         raise FileError(one_line(error)) from None
@@ -221,5 +221,10 @@ def write_zmap(grid, path, _crs, progress):
             progress(i / columns)
 
 
+def write_prj(path, crs):
+    """The file beside an .asc that tells its coordinate reference system."""
+    with open(path, "w", encoding="utf-8") as stream:
+        stream.write(reference_of(crs).ExportToWkt(["FORMAT=WKT1_ESRI"]) + "\n")
+
+
 FORMATS = {".tif": write_tif, ".asc": write_asc, ".dat": write_zmap, ".zmap": write_zmap}
-GRID_SUFFIXES = tuple(FORMATS)

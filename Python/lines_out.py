@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkStripper
 
 from .clouds import cells_of, make_points
-from .gdal_common import gdal_module, one_line
+from .gdal_common import gdal_module, one_line, reference_of
 from .messages import ElevationSurfaceError, FileError
 from .paths import suffix_of
 from .screen_mesh import corner_flags
@@ -24,7 +24,6 @@ DRIVERS = {
     ".geojson": ("GeoJSON", ["SIGNIFICANT_FIGURES=17"]),
     ".dxf": ("DXF", []),
 }
-LINE_SUFFIXES = tuple(DRIVERS)
 
 
 def contours(surface, step, progress=None):
@@ -105,13 +104,14 @@ def write_lines(lines, path, layer, crs=None, progress=None):
     """Writes lines of contours() or outlines(). Returns notes. Raises FileError.
 
     layer  the layer's name
-    crs    a spatial reference of GDAL, or None
+    crs    WKT or AUTHORITY:CODE, or None
     DXF has no attributes: z tells the elevation there, and the layer the kind.
     """
     gdal = gdal_module()
     from osgeo import ogr
 
     driver, options = DRIVERS[suffix_of(path)]
+    crs = reference_of(crs)
     kinds = {}
     for _, values in lines:
         for name, value in values.items():

@@ -228,6 +228,11 @@ class Reconstruction:
         return (self.fill or self.trim or self.delaunay).GetOutput()
 
     @property
+    def crs(self) -> Optional[str]:
+        """The coordinate reference system as WKT or AUTHORITY:CODE; None where it is not known."""
+        return self.cloud.crs
+
+    @property
     def boundary(self) -> Optional[vtkPolyData]:
         return self.trim.GetOutput(2) if self.trim else None
 
@@ -260,7 +265,21 @@ class Reconstruction:
         """Writes the surface in the format of the suffix. Returns notes, one line each."""
         from .writing import write_surface
 
-        return write_surface(self.surface, os.fspath(path))
+        return write_surface(self.surface, os.fspath(path), self.crs)
+
+    def to_grid(self, step: float) -> Any:
+        """The surface at the centres of square pixels, interpolated in its triangles.
+
+        Returns a Grid with z, (rows, columns) and NaN outside; x, (columns,); y, (rows,), falling;
+        and error, (rows, columns) or None. The edges of pixels are multiples of step. Raises
+        ElevationSurfaceError for a step that is too small or too large.
+        """
+        from .grids import grid_of
+
+        step = float(step)
+        if not 0.0 < step < math.inf:
+            raise ValueError(f"step takes a number above 0, not {step:g}")
+        return grid_of(self.surface, step)
 
     def plot(
         self, path: Union[str, os.PathLike], title: str = "", **options: Any

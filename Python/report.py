@@ -38,6 +38,8 @@ def make_report(result):
     report = {
         "notes": cloud.notes + result.notes,
         "left_out": cloud.left_out,
+        "bounds": bounds_of(surface),
+        "crs": result.crs,
         "points": len(coordinates),
         "points_unused": unused,
         "unused_reasons": counts,
@@ -70,7 +72,7 @@ def make_report(result):
         names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
                  "Interpolation")
         columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
-        columns.append(hole_sizes(fill.GetOutput(1)))
+        columns += hole_places(fill.GetOutput(1))
         holes = [
             {
                 "hole": hole,
@@ -79,10 +81,12 @@ def make_report(result):
                 "perimeter": perimeter,
                 "area": area,
                 "size": size,
+                "centre": centre,
+                "box": box,
                 "inserted_points": inserted,
                 "interpolation": INTERPOLATIONS[method] if inserted else None,
             }
-            for hole, status, edges, perimeter, area, inserted, method, size in zip(*columns)
+            for hole, status, edges, perimeter, area, inserted, method, size, centre, box in zip(*columns)
         ]
         by_status = {}
         for hole in holes:
@@ -139,22 +143,43 @@ def list_unused(reasons, lines):
     return counts, listed
 
 
-def hole_sizes(lines):
-    """The diagonal of each line's box in x,y: what --maximum-hole-size is compared with."""
+def hole_places(lines):
+    """Of each line's box in x,y: [its diagonals, which --maximum-hole-size is compared with; its
+    centres (x, y); its corners ((x, y) lowest, (x, y) highest)]."""
     if lines.GetNumberOfLines() == 0:
-        return []
+        return [[], [], []]
     cells = lines.GetLines()
     xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
     xy = xy[vtk_to_numpy(cells.GetConnectivityArray())]
     starts = vtk_to_numpy(cells.GetOffsetsArray())[:-1]
     low = numpy.minimum.reduceat(xy, starts, axis=0)
     high = numpy.maximum.reduceat(xy, starts, axis=0)
-    return numpy.hypot(*(high - low).T).tolist()
+    boxes = numpy.stack((low, high), axis=1)
+    return [numpy.hypot(*(high - low).T).tolist(), boxes.mean(axis=1).tolist(), boxes.tolist()]
+
+
+def bounds_of(surface):
+    """{"x": [lowest, highest], ...} of the points in triangles."""
+    points = vtk_to_numpy(surface.GetPoints().GetData())
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray())
+    used = corner_flags(corners, len(points))
+    columns = {axis: points[used, i] for i, axis in enumerate("xyz")}
+    return {axis: [float(c.min()), float(c.max())] for axis, c in columns.items()}
 
 
 def counted(count, singular, plural=None):
     """1 hole, 2 holes"""
     return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
+
+
+def crs_name(crs):
+    """A short name of a coordinate reference system."""
+    try:
+        from .gdal_common import name_of
+
+        return name_of(crs)
+    except (ImportError, ValueError):
+        return crs[:60]
 
 
 def print_report(report):
@@ -166,6 +191,8 @@ def print_report(report):
     print(report["file"])
     for note in report["notes"]:
         line("note", note)
+    if report["crs"]:
+        line("crs", crs_name(report["crs"]))
     text = f"{report['points']:,} read"
     for name, count in report["left_out"].items():
         text += f"; {count:,} {name} left out"

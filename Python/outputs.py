@@ -1,0 +1,93 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a Reconstruction is written as: one line of a table for each kind of file."""
+
+import dataclasses
+import os
+import re
+
+from .messages import ElevationSurfaceError, FileError
+from .paths import suffix_of
+from .writing import WRITE_SUFFIXES, write_surface
+
+GRID_SUFFIXES = (".tif", ".asc", ".dat", ".zmap")
+LINE_SUFFIXES = (".gpkg", ".geojson", ".dxf")
+
+
+def surface(result, path, _step, progress):
+    return write_surface(result.surface, path, result.crs, progress)
+
+
+def grid(result, path, step, progress):
+    from .grids import grid_of, write_grid
+
+    made = grid_of(result.surface, step, lambda fraction: progress(0.7 * fraction))
+    return write_grid(made, path, result.crs, lambda fraction: progress(0.7 + 0.3 * fraction))
+
+
+def contours(result, path, step, progress):
+    from .lines_out import contours as made, write_lines
+
+    return write_lines(made(result.surface, step, progress), path, "contours", result.crs, progress)
+
+
+def outlines(result, path, _step, progress):
+    from .lines_out import outlines as made, write_lines
+
+    return write_lines(made(result), path, "outlines", result.crs, progress)
+
+
+@dataclasses.dataclass(frozen=True)
+class Output:
+    """A kind of result.
+
+    name      the command line's name of its file, with underscores
+    step      the option that asks for it and is a length; "" where there is none
+    ending    of the default name; "" where there is none but the option's
+    suffixes  what the file's name may end with
+    write     function of a Reconstruction, a path, the length and progress; returns notes
+    """
+
+    name: str
+    step: str
+    ending: str
+    suffixes: tuple
+    write: object
+
+
+OUTPUTS = (
+    Output("output", "", "_surface.vtp", WRITE_SUFFIXES, surface),
+    Output("grid_output", "grid", "_grid.tif", GRID_SUFFIXES, grid),
+    Output("contours_output", "contours", "_contours.gpkg", LINE_SUFFIXES, contours),
+    Output("outlines", "", "_outlines.gpkg", LINE_SUFFIXES, outlines),
+)
+
+
+def default_name(output, surface_path):
+    """survey_surface.vtp -> survey_grid.tif, beside it"""
+    return re.sub("_surface$", "", os.path.splitext(surface_path)[0]) + output.ending
+
+
+def beside(path):
+    """Other files that belong to the file of a result: an .asc has its .prj."""
+    return [os.path.splitext(path)[0] + ".prj"] if suffix_of(path) == ".asc" else []
+
+
+def check_gdal(what):
+    """Refuses what cannot be written without GDAL, before any work is done."""
+    from .gdal_common import gdal_module
+
+    try:
+        gdal_module()
+    except ImportError:
+        raise FileError(f"{what}: GDAL is missing; install python3-gdal") from None
+
+
+def write_output(output, result, path, step, progress):
+    """Writes one result. Returns notes. Raises OSError, FileError and ElevationSurfaceError."""
+    try:
+        return output.write(result, path, step, progress)
+    except FileError:
+        raise
+    except ElevationSurfaceError as error:
+        raise ElevationSurfaceError(f"--{output.step}: {error}") from None
