@@ -3,6 +3,7 @@
 """What reading rasters and reading vectors by GDAL have in common."""
 
 import functools
+import os
 
 from .columns import meaning
 from .messages import FileError
@@ -93,6 +94,30 @@ def choose_layer(path, wanted, names, what):
         found = f"{what} {', '.join(names[:20])}: choose one by --layer" if names else f"no {what}"
         raise FileError(f"{path}: holds {found}")
     return names[0]
+
+
+def write_through_memory(path, make):
+    """Calls make(name) to write a file in memory, and copies it to path.
+
+    GDAL overlooks a full disk with some formats, and prints about it with others. Raises OSError, and
+    FileError with GDAL's reason.
+    """
+    gdal = gdal_module()
+    name = f"/vsimem/{os.getpid()}/{os.path.basename(path)}"
+    try:
+        with quiet():
+            make(name)
+        source = gdal.VSIFOpenL(name, "rb")
+        try:
+            with open(path, "wb") as stream:
+                while block := gdal.VSIFReadL(1, 1 << 24, source):
+                    stream.write(block)
+        finally:
+            gdal.VSIFCloseL(source)
+    except RuntimeError as error:
+        raise FileError(one_line(error)) from None
+    finally:
+        gdal.Unlink(name)
 
 
 def reference_of(crs):

@@ -9,8 +9,8 @@ import os
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .gdal_common import gdal_module, one_line, reference_of
-from .messages import ElevationSurfaceError, FileError
+from .gdal_common import gdal_module, reference_of, write_through_memory
+from .messages import ElevationSurfaceError
 from .paths import suffix_of
 from .screen_mesh import corner_flags, slices
 
@@ -177,24 +177,25 @@ def write_tif(grid, path, crs, progress):
     if grid.error is not None:
         layers.append(("FilledError", grid.error))
     options = ["COMPRESS=DEFLATE", "PREDICTOR=3", "TILED=YES", "BIGTIFF=IF_SAFER"]
-    try:
-        data = raster("GTiff", path, grid, layers, options, progress)
+
+    def make(name):
+        data = raster("GTiff", name, grid, layers, options, progress)
         if crs:
             data.SetSpatialRef(reference_of(crs))
         data.FlushCache()
-    except RuntimeError as error:
-        raise FileError(one_line(error)) from None
+
+    write_through_memory(path, make)
 
 
 def write_asc(grid, path, _crs, progress):
     """ESRI's grid; 17 digits bring doubles back to the last bit."""
-    gdal = gdal_module()
-    try:
+
+    def make(name):
         data = raster("MEM", "", grid, [("", grid.z)], [], progress)
         options = ["SIGNIFICANT_DIGITS=17", "FORCE_CELLSIZE=TRUE"]
-        gdal.GetDriverByName("AAIGrid").CreateCopy(path, data, False, options).FlushCache()
-    except RuntimeError as error:
-        raise FileError(one_line(error)) from None
+        gdal_module().GetDriverByName("AAIGrid").CreateCopy(name, data, False, options)
+
+    write_through_memory(path, make)
 
 
 def write_zmap(grid, path, _crs, progress):

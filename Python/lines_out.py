@@ -3,7 +3,6 @@
 """Contour lines and outlines, as GeoPackage, GeoJSON or DXF by OGR."""
 
 import math
-import os
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -11,8 +10,8 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkStripper
 
 from .clouds import cells_of, make_points
-from .gdal_common import gdal_module, one_line, reference_of
-from .messages import ElevationSurfaceError, FileError
+from .gdal_common import reference_of, write_through_memory
+from .messages import ElevationSurfaceError
 from .paths import suffix_of
 from .screen_mesh import corner_flags
 
@@ -101,13 +100,12 @@ def outlines(result):
 
 
 def write_lines(lines, path, layer, crs=None, progress=None):
-    """Writes lines of contours() or outlines(). Returns notes. Raises FileError.
+    """Writes lines of contours() or outlines(). Returns notes. Raises OSError and FileError.
 
     layer  the layer's name
     crs    WKT or AUTHORITY:CODE, or None
     DXF has no attributes: z tells the elevation there, and the layer the kind.
     """
-    gdal = gdal_module()
     from osgeo import ogr
 
     driver, options = DRIVERS[suffix_of(path)]
@@ -118,34 +116,28 @@ def write_lines(lines, path, layer, crs=None, progress=None):
             if value is not None:
                 kinds[name] = max(kinds.get(name, 0), (int, float, str).index(type(value)))
     types = (ogr.OFTInteger64, ogr.OFTReal, ogr.OFTString)
-    try:
-        if os.path.exists(path):
-            os.remove(path)
-        data = gdal.GetDriverByName(driver).Create(path, 0, 0, 0, gdal.GDT_Unknown)
+
+    def make(target):
+        data = ogr.GetDriverByName(driver).CreateDataSource(target)
         table = data.CreateLayer(layer, crs, ogr.wkbLineString25D, options)
         if driver != "DXF":
             for name, kind in kinds.items():
                 table.CreateField(ogr.FieldDefn(name, types[kind]))
-        if data.TestCapability(ogr.ODsCTransactions):
-            data.StartTransaction()
+        table.StartTransaction()
         for i, (points, values) in enumerate(lines):
             feature = ogr.Feature(table.GetLayerDefn())
             if driver == "DXF":
-                feature.SetField("Layer", values.get("kind", layer))
-            else:
-                for name, value in values.items():
-                    if value is not None:
-                        feature.SetField(name, value)
+                values = {"Layer": values.get("kind", layer)}
+            for name, value in values.items():
+                if value is not None:
+                    feature.SetField(name, value)
             feature.SetGeometry(ogr.CreateGeometryFromWkb(line_wkb(points)))
             table.CreateFeature(feature)
             if progress and i % 1000 == 0:
                 progress(i / len(lines))
-        if data.TestCapability(ogr.ODsCTransactions):
-            data.CommitTransaction()
-        data.FlushCache()
-        feature = table = data = None
-    except RuntimeError as error:
-        raise FileError(one_line(error)) from None
+        table.CommitTransaction()
+
+    write_through_memory(path, make)
     if driver == "GeoJSON" and not (crs is not None and crs.IsGeographic()):
         return [
             ".geojson holds x and y as they are; programs that follow RFC 7946 take them for longitude "

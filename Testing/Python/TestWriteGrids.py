@@ -1,0 +1,299 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Grids, contour lines and outlines, read back by GDAL and OGR."""
+
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+import numpy
+from in_folder import InFolder
+from vtkelevationsurface import ElevationSurfaceError, grids, lines_out, reconstruct
+from vtkelevationsurface.clouds import Cloud, make_points
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+try:
+    from osgeo import gdal, ogr
+
+    gdal.UseExceptions()
+except ImportError:
+    gdal = None
+
+WEST, SOUTH = 500000.0, 5900000.0
+
+
+def wavy(count=4000, seed=1, size=100.0, hole=12.0):
+    """Points of a wavy surface on a map, with a hole."""
+    random = numpy.random.default_rng(seed)
+    x, y = random.uniform(0, size, (2, count))
+    keep = numpy.hypot(x - 0.5 * size, y - 0.5 * size) > hole
+    x, y = x[keep], y[keep]
+    z = 5 * numpy.sin(x / 9) * numpy.cos(y / 7) + random.normal(0, 0.05, len(x))
+    return numpy.column_stack((x + WEST, y + SOUTH, z))
+
+
+def interpolated(surface, x, y):
+    """z at (x, y) as VTK finds it on a vertical line; NaN outside."""
+    flat = make_points(vtk_to_numpy(surface.GetPoints().GetData()) * (1, 1, 0))
+    flat.SetPolys(surface.GetPolys())
+    z = vtk_to_numpy(surface.GetPoints().GetData())[:, 2]
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(flat)
+    locator.BuildLocator()
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    result = numpy.full(len(x), numpy.nan)
+    for i, place in enumerate(zip(x, y)):
+        cell = locator.FindCell((*place, 0.0))
+        if cell >= 0:
+            ids = corners[cell]
+            a, b, c = vtk_to_numpy(flat.GetPoints().GetData())[ids, :2] - place
+            areas = numpy.array([numpy.cross(b, c), numpy.cross(c, a), numpy.cross(a, b)])
+            result[i] = areas @ z[ids] / areas.sum()
+    return result
+
+
+class Interpolation(unittest.TestCase):
+    def test_a_plane_is_exact(self):
+        xyz = wavy()
+        xyz[:, 2] = 0.25 * (xyz[:, 0] - WEST) - 0.5 * (xyz[:, 1] - SOUTH) + 3
+        grid = reconstruct(xyz, maximum_edge_length=10).to_grid(0.5)
+        plane = 0.25 * (grid.x - WEST) - 0.5 * (grid.y[:, None] - SOUTH) + 3
+        inside = numpy.isfinite(grid.z)
+        self.assertGreater(inside.mean(), 0.9)
+        self.assertLess(abs(grid.z - plane)[inside].max(), 1e-10)
+
+    def test_elevations_are_those_of_the_triangles(self):
+        for count, step, steps in ((60, 0.7, 143), (4000, 1.3, 78), (4000, 17.0, 7)):
+            with self.subTest(count=count, step=step):
+                result = reconstruct(wavy(count), maximum_edge_length=30, fill=False)
+                grid = result.to_grid(step)
+                self.assertLessEqual(max(grid.z.shape), steps)
+                x, y = (a.ravel() for a in numpy.meshgrid(grid.x, grid.y))
+                expected = interpolated(result.surface, x, y)
+                numpy.testing.assert_allclose(grid.z.ravel(), expected, rtol=0, atol=1e-9)
+
+    def test_points_at_centres_keep_their_elevation_and_no_pixel_is_missed(self):
+        random = numpy.random.default_rng(4)
+        z = random.uniform(size=(40, 50))
+        y, x = numpy.mgrid[0:40, 0:50]
+        xyz = numpy.column_stack((x.ravel() * 4 + 2 + WEST, y.ravel() * 4 + 2 + SOUTH, z.ravel()))
+        grid = reconstruct(xyz).to_grid(4)
+        numpy.testing.assert_array_equal(grid.z[::-1], z)
+        # Centres on the edges of triangles and at crossings of the lattice's lines.
+        self.assertTrue(numpy.isfinite(reconstruct(xyz).to_grid(1).z[2:-2, 2:-2]).all())
+
+    def test_edges_of_pixels_are_multiples_of_the_step(self):
+        grid = reconstruct(wavy()).to_grid(7)
+        numpy.testing.assert_array_equal(grid.x / 7 - 0.5, numpy.round(grid.x / 7 - 0.5))
+        self.assertTrue((numpy.diff(grid.y) == -7).all())
+
+    def test_errors_are_told_where_holes_were_filled(self):
+        grid = reconstruct(wavy(), maximum_edge_length=10, interpolation="thin-plate").to_grid(1)
+        middle = numpy.hypot(grid.x - WEST - 50, grid.y[:, None] - SOUTH - 50)
+        self.assertTrue((grid.error[middle < 8] > 0).all())
+        self.assertEqual(numpy.nanmax(grid.error[(middle > 20) & (middle < 40)]), 0.0)
+
+    def test_steps_that_make_no_grid_are_refused(self):
+        result = reconstruct(wavy())
+        for step, words in ((1e-4, "use a larger step"), (1e4, "use a smaller step")):
+            with self.assertRaisesRegex(ElevationSurfaceError, words):
+                result.to_grid(step)
+        for step in (0, -1, float("nan"), float("inf")):
+            with self.assertRaisesRegex(ValueError, "above 0"):
+                result.to_grid(step)
+
+
+@unittest.skipUnless(gdal, "GDAL's Python module is missing")
+class Files(InFolder):
+    @classmethod
+    def setUpClass(cls):
+        points = Cloud(make_points(wavy()), crs="EPSG:25832")
+        cls.result = reconstruct(points, maximum_edge_length=10)
+        cls.grid = cls.result.to_grid(2.5)
+
+    def test_every_grid_comes_back(self):
+        gdal.SetConfigOption("ZMAP_PIXEL_IS_POINT", "YES")
+        for suffix, bands, digits in ((".tif", 2, 0), (".asc", 1, 0), (".dat", 1, 1e-11)):
+            with self.subTest(suffix=suffix):
+                path = self.path("g" + suffix)
+                notes = grids.write_grid(self.grid, path, "EPSG:25832")
+                self.assertEqual(len(notes), 0 if bands == 2 else 1)
+                self.assertEqual(os.listdir(self.folder), ["g" + suffix])
+                options = ["DATATYPE=Float64"] if suffix == ".asc" else []
+                data = gdal.OpenEx(path, gdal.OF_RASTER, open_options=options)
+                self.assertEqual(data.RasterCount, bands)
+                x0, dx, _, y0, _, dy = data.GetGeoTransform()
+                self.assertEqual((dx, dy), (2.5, -2.5))
+                self.assertEqual((x0 + 1.25, y0 - 1.25), (self.grid.x[0], self.grid.y[0]))
+                for number, expected in enumerate((self.grid.z, self.grid.error)[:bands], 1):
+                    band = data.GetRasterBand(number)
+                    values = band.ReadAsArray()
+                    values[values == band.GetNoDataValue()] = numpy.nan
+                    numpy.testing.assert_allclose(values, expected, rtol=digits, atol=digits)
+                if bands == 2:
+                    code = data.GetSpatialRef().GetAuthorityCode(None)
+                    self.assertEqual((code, band.GetDescription()), ("25832", "FilledError"))
+                data = band = None
+                os.remove(path)
+
+    def test_contours_lie_on_the_surface_at_their_elevation(self):
+        lines = lines_out.contours(self.result.surface, 2.0)
+        self.assertEqual({v["elevation"] for _, v in lines}, {-4.0, -2.0, 0.0, 2.0, 4.0})
+        for points, values in lines:
+            self.assertTrue((points[:, 2] == values["elevation"]).all())
+        every = numpy.concatenate([points for points, _ in lines])[::7]
+        z = interpolated(self.result.surface, every[:, 0], every[:, 1])
+        inside = numpy.isfinite(z)
+        self.assertGreater(inside.mean(), 0.98)
+        numpy.testing.assert_allclose(z[inside], every[inside, 2], rtol=0, atol=1e-6)
+
+    def test_steps_that_make_no_contours_are_refused(self):
+        for step, words in ((1e-6, "use a larger"), (1e4, "no multiple|0 lies")):
+            if step > 1:
+                surface = reconstruct(wavy() + (0, 0, 50)).surface
+            else:
+                surface = self.result.surface
+            with self.assertRaisesRegex(ElevationSurfaceError, words):
+                lines_out.contours(surface, step)
+
+    def test_lines_come_back_from_every_format(self):
+        lines = lines_out.contours(self.result.surface, 2.0)
+        for suffix in (".gpkg", ".geojson", ".dxf"):
+            with self.subTest(suffix=suffix):
+                path = self.path("c" + suffix)
+                lines_out.write_lines(lines, path, "contours", "EPSG:25832")
+                data = ogr.Open(path)
+                layer = data.GetLayer(0)
+                self.assertEqual(layer.GetFeatureCount(), len(lines))
+                for feature, (points, values) in zip(layer, lines):
+                    found = numpy.array(feature.GetGeometryRef().GetPoints())
+                    if found.shape[1] == 2:  # DXF tells the elevation of a flat line once
+                        found = numpy.column_stack((found, points[:, 2]))
+                    digits = 1e-8 if suffix == ".dxf" else 0
+                    numpy.testing.assert_allclose(found, points, rtol=0, atol=digits)
+                    if suffix != ".dxf":
+                        self.assertEqual(feature.GetField("elevation"), values["elevation"])
+                if suffix != ".dxf":
+                    code = layer.GetSpatialRef().GetAuthorityCode(None)
+                    self.assertEqual(code, "25832")
+                layer = data = None
+        self.assertEqual(sorted(os.listdir(self.folder)), ["c.dxf", "c.geojson", "c.gpkg"])
+
+    def test_outlines_tell_what_became_of_holes(self):
+        lines = lines_out.outlines(self.result)
+        path = self.path("o.gpkg")
+        lines_out.write_lines(lines, path, "outlines", None)
+        layer = (data := ogr.Open(path)).GetLayer(0)
+        rows = [(f.GetField("kind"), f.GetField("status"), f.GetField("area")) for f in layer]
+        kinds = [row[0] for row in rows]
+        self.assertEqual(kinds.count("hole"), self.result.fill.GetNumberOfHoles())
+        self.assertEqual(kinds.count("boundary"), self.result.boundary.GetNumberOfLines())
+        largest = max(row for row in rows if row[0] == "hole" and row[2])
+        self.assertEqual(largest[1], "filled")
+        for points, _ in lines:
+            self.assertTrue((points[0] == points[-1]).all())
+        layer = data = None
+
+
+@unittest.skipUnless(gdal, "GDAL's Python module is missing")
+class CommandLine(InFolder):
+    def call(self, *arguments, **options):
+        return subprocess.run(
+            [sys.executable, "-m", "vtkelevationsurface", *arguments, "--no-picture"],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+            **options,
+        )
+
+    def setUp(self):
+        super().setUp()
+        rows = "".join("%r %r %r\n" % tuple(row) for row in wavy(500).tolist())
+        self.name = os.path.basename(self.file("a.xyz", rows))
+
+    def test_all_results_appear_and_know_where_they_lie(self):
+        done = self.call(
+            *(self.name, "--grid", "5", "--grid-output", "a.asc", "--contours", "2", "--outlines"),
+            *("--crs", "EPSG:25832", "--report"),
+        )
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        made = "a.asc a.prj a_contours.gpkg a_outlines.gpkg a_surface.json a_surface.vtp".split()
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted([*made, self.name]))
+        self.assertIn("ETRS89 / UTM zone 32N (EPSG:25832)", done.stdout)
+        data = gdal.Open(self.path("a.asc"))
+        self.assertTrue(data.GetSpatialRef().IsProjected())
+        with open(self.path("a.prj"), encoding="utf-8") as stream:
+            self.assertIn('PROJCS["ETRS_1989_UTM_Zone_32N"', stream.read())
+        with open(self.path("a_surface.json"), encoding="utf-8") as stream:
+            report = json.load(stream)
+        self.assertEqual(report["crs"], "EPSG:25832")
+        self.assertEqual(report["options"]["grid"], 5.0)
+        self.assertEqual(report["command"][:3], ["reconstruct", "a.xyz", "--grid"])
+        self.assertEqual(sorted(report["written"]), made)
+        self.assertTrue(report["version"])
+        low, high = report["bounds"]["x"]
+        self.assertTrue(WEST <= low < high <= WEST + 100)
+        for hole in report["holes"]["list"]:
+            (x0, y0), (x1, y1) = hole["box"]
+            self.assertEqual(hole["centre"], [0.5 * (x0 + x1), 0.5 * (y0 + y1)])
+            self.assertAlmostEqual(hole["size"], ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5)
+
+    def test_what_could_not_be_written_is_refused_at_once(self):
+        for words, arguments in (
+            ("--grid takes a number above 0, not '0'", ("--grid", "0")),
+            ("--contours takes a number above 0", ("--contours", "-1")),
+            ("--grid-output is for the result of --grid", ("--grid-output", "g.tif")),
+            ("g.png: .png cannot be written; use one of .tif", ("--grid", "5", "--grid-output", "g.png")),
+            ("c.shp: .shp cannot be", ("--contours", "5", "--contours-output", "c.shp")),
+            ("--crs: EPSG:1 is no coordinate reference system", ("--crs", "EPSG:1")),
+            ("would overwrite", ("--contours", "5", "--contours-output", "o.dxf", "--outlines", "o.dxf")),
+            ("leave no outlines", ("--no-trim", "--no-fill", "--outlines")),
+        ):
+            with self.subTest(arguments=arguments):
+                done = self.call(self.name, *arguments)
+                self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+                self.assertIn(words, done.stderr)
+                self.assertEqual(os.listdir(self.folder), [self.name])
+
+    def test_a_result_that_fails_leaves_none_of_the_others(self):
+        for words, arguments in (
+            ("--grid: a grid with a step of 1e-05", ("--grid", "1e-5")),
+            ("--grid: no pixel", ("--grid", "1e5", "--contours", "2")),
+        ):
+            done = self.call(self.name, *arguments)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(os.listdir(self.folder), [self.name])
+
+    def test_a_full_disk_leaves_nothing_behind(self):
+        try:
+            import resource
+        except ImportError:
+            self.skipTest("there are no resource limits here")
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+        for arguments in (
+            ("--grid", "0.1"),
+            ("--grid", "0.5", "--grid-output", "g.asc"),
+            ("--grid", "0.5", "--grid-output", "g.zmap"),
+            ("--contours", "0.01"),
+            ("--contours", "0.01", "--contours-output", "c.geojson"),
+            ("--contours", "0.01", "--contours-output", "c.dxf"),
+        ):
+            with self.subTest(arguments=arguments):
+                done = self.call(self.name, *arguments, preexec_fn=limit)
+                self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+                self.assertIn("cannot be written", done.stderr)
+                self.assertEqual(os.listdir(self.folder), [self.name])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
