@@ -322,14 +322,14 @@ def about(options):
     """The run, for the report: the version, the command, and the options that are not the default."""
     from . import __version__
 
-    plain = make_parser().parse_args(options.files)
+    plain = vars(make_parser().parse_args(["FILE"]))
     return {
         "version": __version__,
         "command": options.command,
         "options": {
             name: value
             for name, value in vars(options).items()
-            if hasattr(plain, name) and value != getattr(plain, name)
+            if name in plain and name != "files" and value != plain[name]
         },
     }
 
