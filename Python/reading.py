@@ -11,14 +11,13 @@ from typing import Any, Union
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import Cloud, ReadOptions, keep_points, make_points, turn_over
+from .clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
 from .formats import recognise
 from .messages import FileError, did_you_mean
 from .nulls import take_out
-from .paths import check_readable
 from .text import read_table
+from .unpacking import is_plain, unpacked
 
 # Options that mean something for some readers only.
 MEANS_SOMETHING = {
@@ -32,7 +31,7 @@ NAMES = {"text": "text files", "vectors": "vector files", "las": "LAS files"}
 
 def check_options(path, **options):
     """Refuses an option that the kind of file has no use for."""
-    if any(options.get(name) is not None for name in MEANS_SOMETHING) and os.path.isfile(path):
+    if any(options.get(name) is not None for name in MEANS_SOMETHING) and is_plain(path):
         check_use(path, recognise(path)[0], ReadOptions(**options))
 
 
@@ -46,6 +45,7 @@ def check_use(path, kind, options):
 def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     """Reads the points of a file, whatever its kind. The kind is told by the content, not the name.
 
+    path     "-" is standard input; a file packed by gzip, bzip2 or xz is unpacked
     options  those of ReadOptions; a misspelt one is a TypeError
     Returns a Cloud. Raises FileError. Takes about a second for a million rows of text, less for
     other kinds.
@@ -55,7 +55,8 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
             known = did_you_mean(name, ReadOptions.__dataclass_fields__)
             raise TypeError(f"read() has no option {name}{known}")
     options = ReadOptions(**options)
-    cloud = take_out(read_any(os.fspath(path), options), options)
+    with unpacked(os.fspath(path)) as local:
+        cloud = take_out(read_any(local, options), options)
     if options.depth:
         turn_over(cloud)
     return cloud
@@ -63,7 +64,6 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
 
 def read_any(path, options):
     """The Cloud of a file as its reader gives it, with its nulls."""
-    check_readable(path)
     kind, notes = recognise(path)
     check_use(path, kind, options)
     cloud = kind.reader()(path, options)
@@ -83,65 +83,56 @@ def leave_out(path, cloud, no_data):
         keep_points(cloud, numpy.flatnonzero(keep))
 
 
-def kind_of_lines(path, what):
-    """The Format of a file of lines. Refuses what holds none."""
-    check_readable(path)
-    kind, _ = recognise(path)
-    if not kind.lines and kind.module != "text":
-        raise FileError(f"{path}: {kind.name} cannot be read as {what}")
-    return kind
-
-
 def read_faults(path):
     """The faults or breaklines of a file as vtkPolyData with lines or polygons.
 
     A text file holds one line after the other, x, y and z in the first columns, a blank line
     between them. Raises FileError.
     """
-    kind = kind_of_lines(path, "faults")
-    if kind.lines:
-        return kind.line_reader()(path, "a fault")
-    rows, lines, starts, _ = read_table(path, needed=3)
-    bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
-    if len(bad):
-        raise FileError(f"{path}, line {lines[bad[0]]}: a point of a fault is not finite")
-    cells = vtkCellArray()
-    for start, end in zip(starts, starts[1:] + [len(rows)]):
-        cells.InsertNextCell(end - start, list(range(start, end)))
-    data = make_points(rows)
-    data.SetLines(cells)
-    return data
+    return read_lines(os.fspath(path), "a fault", "faults", text_faults)
 
 
 def read_boundary(path):
-    """The boundary rings of a file as vtkPolyData.
+    """The boundary rings of a file as vtkPolyData with lines or polygons.
 
-    VTK's formats hold them as lines or polygons. A text file holds one ring after the other,
-    x and y in the first columns, a blank line between rings, and each ring's first point again
-    at its end. Raises FileError, also for a text ring that is not closed.
+    A text file holds one ring after the other, x and y in the first columns, a blank line between
+    rings, and each ring's first point again at its end. Raises FileError, also for a ring that is
+    not closed.
     """
-    kind = kind_of_lines(path, "a boundary")
-    if kind.lines:
-        return kind.line_reader()(path, "a boundary")
-    rows, lines, starts, _ = read_table(path, needed=2)
+    return read_lines(os.fspath(path), "a boundary", "a boundary", text_boundary)
+
+
+def read_lines(path, singular, what, read_text_lines):
+    with unpacked(path) as local:
+        kind, _ = recognise(local)
+        if kind.module == "text":
+            return read_text_lines(local)
+        if not kind.lines:
+            raise FileError(f"{local}: {kind.name} cannot be read as {what}")
+        return kind.line_reader()(local, singular)
+
+
+def text_parts(path, needed, what):
+    """The lines of a text file as arrays, and the first and last line number of each."""
+    rows, lines, starts, _ = read_table(path, needed=needed)
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
     if len(bad):
-        raise FileError(f"{path}, line {lines[bad[0]]}: a boundary point is not finite")
-    ends = starts[1:] + [len(rows)]
-    coordinates, cells = [], vtkCellArray()
-    total = 0
-    for start, end in zip(starts, ends):
-        ring = rows[start:end]
+        raise FileError(f"{path}, line {lines[bad[0]]}: {what} is not finite")
+    ends = [*starts[1:], len(rows)]
+    return [(rows[a:b], lines[a], lines[b - 1]) for a, b in zip(starts, ends)]
+
+
+def text_faults(path):
+    return make_lines([part for part, _, _ in text_parts(path, 3, "a point of a fault")])
+
+
+def text_boundary(path):
+    rings = []
+    for ring, first, last in text_parts(path, 2, "a boundary point"):
         if len(ring) < 4 or not numpy.array_equal(ring[0], ring[-1]):
             raise FileError(
-                f"{path}: the boundary from line {lines[start]} to line {lines[end - 1]} is not "
-                "closed; its last point must repeat its first, after three or more others"
+                f"{path}: the boundary from line {first} to line {last} is not closed; its last "
+                "point must repeat its first, after three or more others"
             )
-        count = len(ring) - 1
-        ids = list(range(total, total + count)) + [total]
-        cells.InsertNextCell(len(ids), ids)
-        coordinates.append(numpy.column_stack((ring[:-1], numpy.zeros(count))))
-        total += count
-    data = make_points(numpy.concatenate(coordinates))
-    data.SetLines(cells)
-    return data
+        rings.append(numpy.column_stack((ring, numpy.zeros(len(ring)))))
+    return make_lines(rings)

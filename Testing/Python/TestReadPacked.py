@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Packed files and standard input, and what files are by their content."""
+
+import bz2
+import gzip
+import io
+import lzma
+import os
+import sys
+import tempfile
+import types
+import unittest
+from unittest import mock
+
+from in_folder import InFolder
+from vtkelevationsurface import reading, writing
+from vtkelevationsurface.clouds import make_points
+
+ROWS = [(1.0, 2.0, 3.5), (4.25, 5.0, 6.0), (-7.0, 8.0, 9.0)]
+TEXT = "".join(f"{x} {y} {z}\n" for x, y, z in ROWS).encode()
+GRID = b"ncols 2\nnrows 1\nxllcorner 9\nyllcorner 27.5\ncellsize 2\n5 6\n"
+GRID_ROWS = [(10, 28.5, 5), (12, 28.5, 6)]
+
+
+class Packed(InFolder):
+    def contents(self):
+        """(name, content, rows) of some formats."""
+        writing.write_surface(make_points(ROWS), self.path("w.vtp"))
+        with open(self.path("w.vtp"), "rb") as stream:
+            vtp = stream.read()
+        return [("a.xyz", TEXT, ROWS), ("a.asc", GRID, GRID_ROWS), ("a.vtp", vtp, ROWS)]
+
+    def test_packed_files_of_every_format_are_unpacked(self):
+        for suffix, pack in ((".gz", gzip.compress), (".bz2", bz2.compress), (".xz", lzma.compress)):
+            for name, content, rows in self.contents():
+                with self.subTest(name=name + suffix):
+                    cloud = self.read(pack(content), name + suffix)
+                    self.assert_rows(cloud, rows)
+                    self.assertFalse(any("by its content" in note for note in cloud.notes))
+
+    def test_nothing_is_left_behind(self):
+        folder = self.path("temporary")
+        os.mkdir(folder)
+        with mock.patch.object(tempfile, "tempdir", folder):
+            self.read(gzip.compress(TEXT), "a.xyz.gz")
+            self.assert_refused("", gzip.compress(b"words\n"), "a.xyz.gz")
+        self.assertEqual(os.listdir(folder), [])
+
+    def test_errors_name_the_packed_file(self):
+        packed = gzip.compress(TEXT * 1000)
+        for words, content in (
+            ("a.xyz.gz: is cut off or damaged", packed[:-20]),
+            ("a.xyz.gz: is cut off or damaged", packed[:20]),
+            ("a.xyz.gz: is cut off or damaged", packed[:60] + b"\0" * 40 + packed[100:]),
+            ("a.xyz.gz: is empty", gzip.compress(b"")),
+            ("a.xyz.gz, line 2: 'q'", gzip.compress(TEXT.replace(b"5.0", b"q"))),
+            ("a.xyz.gz: no line holds 3 numbers", gzip.compress(b"1 2\n3 4\n")),
+        ):
+            with self.subTest(words=words):
+                self.assert_refused(words, content, "a.xyz.gz")
+
+    def test_standard_input_is_read_whatever_it_holds(self):
+        for name, content, rows in self.contents():
+            for packed in (content, gzip.compress(content)):
+                with self.subTest(name=name):
+                    stdin = types.SimpleNamespace(buffer=io.BytesIO(packed))
+                    with mock.patch.object(sys, "stdin", stdin):
+                        self.assert_rows(reading.read("-"), rows)
+        for words, content in (("is empty", b""), ("holds none of what", b"words\n")):
+            stdin = types.SimpleNamespace(buffer=io.BytesIO(content))
+            with mock.patch.object(sys, "stdin", stdin):
+                with self.assertRaisesRegex(reading.FileError, "^standard input: .*" + words):
+                    reading.read("-")
+
+    def test_boundaries_and_faults_are_unpacked_too(self):
+        ring = self.file("b.txt.gz", gzip.compress(b"0 0\n9 0\n9 9\n0 0\n"))
+        self.assertEqual(reading.read_boundary(ring).GetNumberOfLines(), 1)
+        line = self.file("f.txt.gz", gzip.compress(b"0 0 1\n9 0 1\n"))
+        self.assertEqual(reading.read_faults(line).GetNumberOfPoints(), 2)
+        with self.assertRaisesRegex(reading.FileError, "o.txt.gz: .*not closed"):
+            reading.read_boundary(self.file("o.txt.gz", gzip.compress(b"0 0\n9 0\n9 9\n1 1\n")))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
