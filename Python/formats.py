@@ -18,6 +18,7 @@ class Format:
     """A kind of file, and the module of this package that reads it.
 
     is_it   tells from (first bytes, path) whether a file is of this kind
+    module  the module that reads points, by read_points() if no other function is named
     lines   the module whose read_lines(path, singular) reads boundaries and faults, or ""
     """
 
@@ -28,7 +29,8 @@ class Format:
     lines: str = ""
 
     def reader(self):
-        return self._load(self.module, "read_text" if self.module == "text" else "read_points")
+        module, _, function = self.module.partition(".")
+        return self._load(module, function or "read_points")
 
     def line_reader(self):
         return self._load(self.lines, "read_lines")
@@ -119,6 +121,11 @@ GEOMETRY = re.compile(
     rb"[^\n]*\n[^\n]*\b(MULTI)?(POINT|LINESTRING|POLYGON)\s*Z?M?\s*\(", re.IGNORECASE
 )
 
+EARTHVISION = rb"(#[^\n]*\n)*#\s*(Type:\s*scattered data|Field:\s*\d)"
+PETREL = rb"(#[^\n]*\n)*\s*VERSION \d+\s+BEGIN HEADER\s"
+# Lines begin with > or ->, or end with 999 999 999.
+SEGMENTS = rb"(#(?! ?@VGMT)[^\n]*\n)*(-?>|FFASCI|([^\n]*\n)*?\s*999(\.0*)?(\s+999(\.0*)?){2}\s*\n)"
+
 # In the order of asking.
 FORMATS = (
     Format("VTK's XML", ".vtp .vtu .vts .vtr .vti", begins(XML), "vtk_files", "vtk_files"),
@@ -127,9 +134,16 @@ FORMATS = (
     Format("a LAS file", ".las .laz", begins(rb"LASF"), "las"),
     Format("an STL file", ".stl", is_stl, "vtk_files", "vtk_files"),
     Format("an OBJ file", ".obj", begins(OBJ), "vtk_files", "vtk_files"),
+    Format("a GOCAD file", ".ts .vs .pl", begins(rb"GOCAD\s"), "gocad", "gocad"),
+    Format("a numpy array", ".npy", begins(rb"\x93NUMPY"), "horizons.read_array"),
+    Format("an IRAP grid", ".irap .gri", begins(rb"\s*-996\s"), "horizons.read_irap_grid"),
+    Format("a CPS-3 grid", ".cps .cps3", begins(rb"\s*FSASCI\b"), "horizons.read_cps3_grid"),
+    Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
+    Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
+    Format("lines in segments", ".gmt", begins(SEGMENTS), "horizons.read_segments", "horizons"),
     Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
     Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),
-    Format("a text table", TEXT, is_table, "text"),
+    Format("a text table", TEXT, is_table, "text.read_text"),
     Format(
         "a vector file",
         ".gpkg .shp .geojson .json .dxf .gml .kml .kmz .fgb .gpx .tab .mif .dgn .dwg",
@@ -143,7 +157,7 @@ FORMATS = (
         is_of_gdal("raster"),
         "rasters",
     ),
-    Format("a text table", TEXT, is_numbers, "text"),
+    Format("a text table", TEXT, is_numbers, "text.read_text"),
 )
 
 

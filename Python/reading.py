@@ -37,7 +37,7 @@ def check_options(path, **options):
 
 def check_use(path, kind, options):
     for name, modules in MEANS_SOMETHING.items():
-        if getattr(options, name) is not None and kind.module not in modules:
+        if getattr(options, name) is not None and kind.module.split(".")[0] not in modules:
             fits = " and ".join(NAMES.get(module, module) for module in modules)
             raise FileError(f"{path}: --{name} is for {fits}; this is {kind.name}")
 
@@ -67,7 +67,7 @@ def read_any(path, options):
     kind, notes = recognise(path)
     check_use(path, kind, options)
     cloud = kind.reader()(path, options)
-    if options.no_data is not None and kind.module not in ("text", "rasters"):
+    if options.no_data is not None and kind.module not in ("text.read_text", "rasters"):
         leave_out(path, cloud, options.no_data)
     cloud.notes[:0] = notes
     return cloud
@@ -105,7 +105,7 @@ def read_boundary(path):
 def read_lines(path, singular, what, read_text_lines):
     with unpacked(path) as local:
         kind, _ = recognise(local)
-        if kind.module == "text":
+        if kind.module == "text.read_text":
             return read_text_lines(local)
         if not kind.lines:
             raise FileError(f"{local}: {kind.name} cannot be read as {what}")

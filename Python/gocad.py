@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Vertices, lines and triangles of GOCAD files: TSurf, VSet and PLine."""
+
+import numpy
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+from .clouds import Cloud, add_array, make_points
+from .messages import FileError
+
+KINDS = ("TSurf", "VSet", "PLine")
+
+
+class Gocad:
+    """All objects of a file.
+
+    points      [(x, y, z)]
+    properties  {name: [value of each point]}, NaN where there is none
+    segments    [(from, to)], triangles [(a, b, c)]: places in points
+    zpositive   what the objects say of z: a set of Elevation, Depth
+    """
+
+    def __init__(self, path):
+        self.path = path
+        self.points, self.properties, self.segments, self.triangles = [], {}, [], []
+        self.zpositive, self.ids, self.names, self.sizes, self.missing = set(), {}, [], [], []
+        key = ""
+        with open(path, encoding="latin-1") as stream:
+            for number, line in enumerate(stream, 1):
+                words = line.split()
+                if not words or words[0].startswith("#"):
+                    continue
+                key = words[0]
+                try:
+                    self.take(key, words)
+                except (KeyError, ValueError, IndexError):
+                    shown = line.strip()[:40]
+                    raise FileError(f"{path}, line {number}: '{shown}' is damaged") from None
+        if key != "END":
+            raise FileError(f"{path}: is cut off: its last line, END, is missing")
+        if not self.points:
+            raise FileError(f"{path}: holds no points")
+
+    def take(self, key, words):
+        if key == "GOCAD":
+            if words[1] not in KINDS:
+                raise FileError(f"{self.path}: holds a {words[1]}; {', '.join(KINDS)} are read")
+            self.ids, self.names, self.sizes, self.missing = {}, [], [], []
+        elif key == "ZPOSITIVE":
+            self.zpositive.add(words[1].capitalize())
+        elif key == "PROPERTIES":
+            self.names = [word.strip('"') for word in words[1:]]
+        elif key == "ESIZES":
+            self.sizes = [int(word) for word in words[1:]]
+        elif key == "NO_DATA_VALUES":
+            self.missing = [float(word) for word in words[1:]]
+        elif key in ("VRTX", "PVRTX"):
+            self.add(words[1], tuple(float(word) for word in words[2:5]), words[5:])
+        elif key in ("ATOM", "PATOM"):
+            self.add(words[1], self.points[self.ids[words[2]]], words[3:])
+        elif key == "SEG":
+            self.segments.append((self.ids[words[1]], self.ids[words[2]]))
+        elif key == "TRGL":
+            self.triangles.append(tuple(self.ids[word] for word in words[1:4]))
+
+    def add(self, name, point, values):
+        _, _, _ = point
+        self.ids[name] = len(self.points)
+        at = 0
+        for i, (title, size) in enumerate(zip(self.names, self.sizes or [1] * len(self.names))):
+            if size == 1 and at < len(values) and values[at] != "CNXYZ":
+                value = float(values[at])
+                if i < len(self.missing) and value == self.missing[i]:
+                    value = numpy.nan
+                column = self.properties.setdefault(title, [])
+                column += [numpy.nan] * (len(self.points) - len(column)) + [value]
+            at += size
+        self.points.append(point)
+
+
+def read_points(path, options):
+    """The vertices; properties become point arrays."""
+    gocad = Gocad(path)
+    cloud = Cloud(make_points(numpy.array(gocad.points)))
+    for name, values in gocad.properties.items():
+        values = values + [numpy.nan] * (len(gocad.points) - len(values))
+        add_array(cloud.points, name, numpy.array(values))
+    if gocad.segments or gocad.triangles:
+        cloud.notes.append("only the points are used, not the file's cells")
+    if "Depth" in gocad.zpositive:
+        cloud.notes.append("z counts downwards (ZPOSITIVE Depth); --depth turns it over")
+    return cloud
+
+
+def read_lines(path, singular):
+    """The lines, or triangles where there are none, as vtkPolyData."""
+    gocad = Gocad(path)
+    chains = []
+    for start, end in gocad.segments:
+        if chains and chains[-1][-1] == start:
+            chains[-1].append(end)
+        else:
+            chains.append([start, end])
+    cells = vtkCellArray()
+    for ids in chains or gocad.triangles:
+        cells.InsertNextCell(len(ids), ids)
+    if not cells.GetNumberOfCells():
+        raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
+    data = make_points(numpy.array(gocad.points))
+    (data.SetLines if chains else data.SetPolys)(cells)
+    return data

@@ -1,0 +1,238 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Formats of horizons that neither GDAL nor VTK reads: IRAP classic, CPS-3, EarthVision, Petrel's
+points with attributes, lines in segments as GMT has them, and arrays of numpy."""
+
+import re
+import warnings
+
+import numpy
+
+from .clouds import Cloud, add_array, make_lines, make_points
+from .columns import meaning
+from .messages import FileError
+from .rasters import points_of_raster
+
+SEPARATORS = (b">", b"->")
+END_OF_LINE = re.compile(rb"\s*999(\.0*)?(\s+999(\.0*)?){2}\s*")
+
+
+def read_bytes(path):
+    with open(path, "rb") as stream:
+        return stream.read()
+
+
+def numbers(text):
+    """The numbers that a text of bytes begins with."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return numpy.fromstring(text, sep=" ") if text.strip() else numpy.empty(0)
+
+
+def check_count(path, found, count):
+    if found != count:
+        raise FileError(f"{path}: {count:,} values are announced, {found:,} found")
+
+
+def grid_cloud(path, x, y, z, null, note):
+    """Nodes of a grid as points. x, y, z: arrays of one shape; null and above is no data."""
+    z = numpy.where(z >= null, numpy.nan, z)
+    cloud = points_of_raster(path, x, y, z)
+    cloud.notes.append(f"{note}, {z.shape[1]} x {z.shape[0]} nodes")
+    return cloud
+
+
+def read_irap_grid(path, options):
+    """IRAP (RMS) classic grid: rows from south to north, which may be turned about a point."""
+    values = numbers(read_bytes(path))
+    if len(values) < 19:
+        raise FileError(f"{path}: is cut off within the header of an IRAP classic grid")
+    rows, dx, dy, x_min, x_max, y_min, _, columns, turned, x0, y0 = values[1:12]
+    if not (rows >= 1 and columns >= 1 and dx > 0 and dy > 0 and rows * columns < 1e12):
+        raise FileError(f"{path}: is no IRAP classic grid: {columns:g} x {rows:g} nodes")
+    check_count(path, len(values) - 19, int(rows) * int(columns))
+    x, y = numpy.meshgrid(x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows))
+    note = "IRAP classic grid"
+    if turned:
+        angle = numpy.radians(turned)
+        c, s, x, y = numpy.cos(angle), numpy.sin(angle), x - x0, y - y0
+        x, y = x0 + c * x - s * y, y0 + s * x + c * y
+        note += f", turned by {turned:g} degrees"
+    cloud = grid_cloud(path, x, y, values[19:].reshape(x.shape), 9999900.0, note)
+    if not turned and abs(x[0, -1] - x_max) > 0.01 * dx:
+        cloud.notes.append(f"its last x is {x[0, -1]:.9g} by its steps, {x_max:.9g} by its header")
+    return cloud
+
+
+def read_cps3_grid(path, options):
+    """CPS-3 grid: columns from west to east, each from north to south."""
+    head, _, body = read_bytes(path).partition(b"->")
+    words = {}
+    for line in head.splitlines():
+        key, *values = line.split() or [b""]
+        words[key] = [float(v) for v in values if re.fullmatch(rb"[-+]?[\d.]+([eE][-+]?\d+)?", v)]
+    try:
+        x_min, x_max, y_min, y_max = words[b"FSLIMI"][:4]
+        rows, columns = map(int, words[b"FSNROW"][:2])
+        dx = (x_max - x_min) / max(columns - 1, 1)
+        dy = (y_max - y_min) / max(rows - 1, 1)
+        dx, dy = words.get(b"FSXINC", (dx, dy))[:2]
+    except (KeyError, ValueError):
+        raise FileError(f"{path}: is damaged: its FSLIMI, FSNROW or FSXINC is missing") from None
+    values = numbers(body.partition(b"\n")[2])
+    check_count(path, len(values), rows * columns)
+    null = min((value for value in words[b"FSASCI"] if value >= 1e20), default=1e30)
+    x, y = numpy.meshgrid(x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows))
+    z = values.reshape(columns, rows).T[::-1]
+    return grid_cloud(path, x, y, z, 0.999 * null, "CPS-3 grid, columns from north to south")
+
+
+def read_table(path, names, first, null=None):
+    """Rows of numbers below line number `first`, in columns of these names, as a Cloud."""
+    axes = {}
+    for i, name in enumerate(names):
+        axes.setdefault(name.lower() if name.lower() in "xyz" else meaning(name).axis, i)
+    if not {"x", "y", "z"} <= set(axes):
+        raise FileError(f"{path}: its header does not name x, y and z, but {', '.join(names)}")
+    number = 0
+
+    def lines(stream):
+        nonlocal number
+        for number, line in enumerate(stream, 1):
+            if number > first and line.strip() and not line.startswith((b"#", b"!")):
+                yield line
+
+    def load(columns):
+        with open(path, "rb") as stream:
+            return numpy.loadtxt(lines(stream), comments=None, ndmin=2, usecols=columns)
+
+    places = [axes[axis] for axis in "xyz"]
+    others = [i for i in range(len(names)) if i not in places]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # that there is nothing
+        try:
+            rows = load(places + others)
+        except (ValueError, IndexError):
+            others = []
+            try:
+                rows = load(places)
+            except (ValueError, IndexError):
+                raise FileError(f"{path}, line {number}: is no row of {', '.join(names)}") from None
+    if not rows.size:
+        raise FileError(f"{path}: holds no points")
+    keep = numpy.isfinite(rows[:, 2]) & (rows[:, 2] != null if null is not None else True)
+    cloud = Cloud(make_points(rows[keep, :3]), [f"columns by the header: {', '.join(names)}"])
+    if not keep.all():
+        cloud.left_out["rows without data"] = int(numpy.count_nonzero(~keep))
+    for i, place in enumerate(others, 3):
+        add_array(cloud.points, names[place], rows[keep, i])
+    return cloud
+
+
+def read_earthvision(path, options):
+    """EarthVision grid or scattered data: each row has its own x and y."""
+    names, null, first = [], 1e20, 0
+    with open(path, encoding="latin-1") as stream:
+        for number, line in enumerate(stream, 1):
+            if not line.startswith("#"):
+                break
+            first = number
+            key, _, value = line[1:].partition(":")
+            words = value.split()
+            if key.strip() == "Field" and len(words) > 1:
+                names.append(words[1])
+            elif key.strip() == "Null_value" and words:
+                null = float(words[0])
+    return read_table(path, names or ["x", "y", "z"], first, null)
+
+
+def read_petrel_points(path, options):
+    """Petrel's points with attributes: names of columns in a header, then rows."""
+    names, inside = [], False
+    with open(path, encoding="latin-1") as stream:
+        for number, line in enumerate(stream, 1):
+            word = line.strip()
+            if word == "END HEADER":
+                return read_table(path, names, number)
+            if inside and word:
+                names.append(word.split(",")[-1])
+            inside = inside or word == "BEGIN HEADER"
+    raise FileError(f"{path}: is cut off: its END HEADER is missing")
+
+
+def segments(path):
+    """Arrays of (n, 3) points, one for each line of a file of lines; z NaN where there is none."""
+    parts, rows, z = [], [], numpy.nan
+
+    def close():
+        if rows:
+            parts.append(numpy.array(rows, dtype="f8"))
+            rows.clear()
+
+    with open(path, "rb") as stream:
+        for number, line in enumerate(stream, 1):
+            if line.startswith(SEPARATORS) or END_OF_LINE.fullmatch(line):
+                close()
+                found = re.search(rb"-Z\s*([-+.\deE]+)", line)
+                z = float(found.group(1)) if found else numpy.nan
+            elif line.strip() and not line.startswith((b"#", b"FF")):
+                try:
+                    words = [float(word) for word in line.replace(b",", b" ").split()[:3]]
+                    rows.append(words if len(words) == 3 else [words[0], words[1], z])
+                except (ValueError, IndexError):
+                    raise FileError(f"{path}, line {number}: is no point of a line") from None
+    close()
+    if not parts:
+        raise FileError(f"{path}: holds no points")
+    return parts
+
+
+def read_segments(path, options):
+    """The points of lines in segments."""
+    parts = segments(path)
+    points = numpy.concatenate(parts)
+    if numpy.isnan(points[:, 2]).all():
+        raise FileError(f"{path}: its lines have no z")
+    return Cloud(make_points(points), [f"the points of {len(parts):,} lines"])
+
+
+def read_lines(path, singular):
+    """Lines in segments as vtkPolyData. Those of a boundary are closed, as GMT closes polygons."""
+    parts = segments(path)
+    if singular == "a boundary":
+        parts = [numpy.column_stack((part[:, :2], numpy.zeros(len(part)))) for part in parts]
+        parts = [
+            part if (part[0] == part[-1]).all() else numpy.concatenate((part, part[:1]))
+            for part in parts
+        ]
+        if any(len(part) < 4 for part in parts):
+            raise FileError(f"{path}: holds a ring of fewer than three points")
+    elif any(numpy.isnan(part[:, 2]).any() for part in parts):
+        raise FileError(f"{path}: its lines have no z")
+    return make_lines(parts)
+
+
+def read_array(path, options):
+    """An array of numpy: rows of x, y, z and more, or fields of these names."""
+    try:
+        rows = numpy.load(path, mmap_mode="r", allow_pickle=False)
+    except (ValueError, OSError, EOFError, SyntaxError) as error:
+        raise FileError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
+    if rows.dtype.names:
+        names = [name for name in rows.dtype.names if rows.dtype[name].kind in "fiu"]
+        columns = {name: rows[name].ravel() for name in names}
+    elif rows.ndim == 2 and 3 <= rows.shape[1] <= 100 and rows.dtype.kind in "fiu":
+        names = ["x", "y", "z"] + [f"column {i}" for i in range(4, rows.shape[1] + 1)]
+        columns = {name: rows[:, i] for i, name in enumerate(names)}
+    else:
+        shape = " x ".join(map(str, rows.shape)) or "one"
+        raise FileError(f"{path}: holds {shape} of {rows.dtype}; rows of x, y and z are needed")
+    if not {"x", "y", "z"} <= set(columns):
+        raise FileError(f"{path}: has no fields x, y and z, but {', '.join(rows.dtype.names)}")
+    if not len(columns["x"]):
+        raise FileError(f"{path}: holds no points")
+    xyz = numpy.column_stack([columns.pop(axis).astype("f8") for axis in "xyz"])
+    cloud = Cloud(make_points(xyz))
+    for name, values in columns.items():
+        add_array(cloud.points, name, values.astype(values.dtype.newbyteorder("=")))
+    return cloud
