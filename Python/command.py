@@ -477,6 +477,7 @@ class Run:
                     view=options.view,
                     exaggeration=options.exaggeration,
                     show_errors=options.colours == "error",
+                    progress=lambda fraction: self.progress("drawing", fraction),
                 ),
             ),
         )

@@ -63,7 +63,7 @@ def distances(corners, is_corner, triangles, away, progress=None):
     size = max(float(abs(low).max()), float(abs(high).max()), float(abs(away).max()))
     unit = 2.0 ** math.floor(math.log2(size)) if size > 1e100 else 1.0
     if unit == 1.0 and len(away) < FEW * len(triangles):
-        triangles = triangles[near(corners, is_corner, triangles, away)]
+        triangles = triangles[near(corners, is_corner, triangles, away, progress)]
         is_corner = corner_flags(triangles, len(corners))
     ids = numpy.flatnonzero(is_corner)
     places = numpy.zeros(len(corners), dtype="i8")
@@ -76,7 +76,7 @@ def distances(corners, is_corner, triangles, away, progress=None):
     result = numpy.empty(len(away))
     for i in range(0, len(away), AT_ONCE):
         if progress:
-            progress(i / len(away))
+            progress(0.5 + 0.5 * i / len(away))
         values = vtkDoubleArray()
         some = make_points(away[i : i + AT_ONCE])
         search.EvaluateFunction(some.GetPoints().GetData(), values)
@@ -84,7 +84,7 @@ def distances(corners, is_corner, triangles, away, progress=None):
     return unit * numpy.abs(result)
 
 
-def near(corners, is_corner, triangles, away):
+def near(corners, is_corner, triangles, away, progress=None):
     """(m,) of bool: the triangles among which each point has its closest one, and some more.
 
     No triangle is closer to a point than its closest corner, but those whose box in x,y meets the
@@ -96,23 +96,32 @@ def near(corners, is_corner, triangles, away):
     locator.SetDataSet(points)
     closest = [locator.FindClosestPoint(point) for point in away.tolist()]
     reach = 1.000001 * numpy.linalg.norm(corners[ids[closest]] - away, axis=1)[:, None]
-    low = corners[ids, :2].min(axis=0)
-    step = (corners[ids, :2].max(axis=0) - low) / BINS
+    low, high = (numpy.array([end(corners[ids, i]) for i in (0, 1)]) for end in (numpy.min, numpy.max))
 
     def bins(xy):
-        return numpy.clip((xy - low) / step, 0, BINS - 1).astype("i8").T
+        return numpy.clip((xy - low) / (high - low) * BINS, 0, BINS - 1).astype("i2").T
 
     # How many squares lie over each bin, and then over all bins before it: sums of differences.
-    over = numpy.zeros((BINS + 1, BINS + 1), dtype="i8")
+    over = numpy.zeros((BINS + 1, BINS + 1), dtype="i4")
     (x0, y0), (x1, y1) = bins(away[:, :2] - reach), bins(away[:, :2] + reach) + 1
     for x, y, sign in ((x0, y0, 1), (x1, y1, 1), (x0, y1, -1), (x1, y0, -1)):
         numpy.add.at(over, (x, y), sign)
-    over = (over.cumsum(axis=0).cumsum(axis=1) > 0).astype("i8")
-    before = numpy.zeros((BINS + 2, BINS + 2), dtype="i8")
-    before[1:, 1:] = over.cumsum(axis=0).cumsum(axis=1)
+    before = numpy.zeros((BINS + 2, BINS + 2), dtype="i4")
+    before[1:, 1:] = (over.cumsum(axis=0).cumsum(axis=1) > 0).cumsum(axis=0).cumsum(axis=1)
+    places = numpy.empty((2, len(corners)), dtype="i2")
+    for rows in slices(len(corners)):
+        places[:, rows] = bins(corners[rows, :2])
     result = numpy.empty(len(triangles), dtype=bool)
     for rows in slices(len(triangles)):
-        xy = corners[triangles[rows], :2]
-        (x0, y0), (x1, y1) = bins(xy.min(axis=1)), bins(xy.max(axis=1)) + 1
+        if progress:
+            progress(0.5 * rows.start / len(triangles))
+        a, b, c = triangles[rows].T
+        (x0, x1), (y0, y1) = (
+            (
+                numpy.minimum(numpy.minimum(at[a], at[b]), at[c]),
+                numpy.maximum(numpy.maximum(at[a], at[b]), at[c]) + 1,
+            )
+            for at in places
+        )
         result[rows] = before[x1, y1] - before[x0, y1] - before[x1, y0] + before[x0, y0] > 0
     return result

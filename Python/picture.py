@@ -410,9 +410,11 @@ def draw(surface, path, title, subtitle, holes=None, **options):
     holes     None, or the second output of vtkFillElevationHoles
     view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
     exaggeration  None, or the factor for z
+    progress      None, or a function that is called with the fraction done
     show_errors   colours tell FilledError, a point array of vtkFillElevationHoles, not elevation
-    Returns {"bearing", "height", "exaggeration"} as used. Raises PictureError. Takes about a second for 300,000
-    triangles where a software renderer draws.
+    Returns {"bearing", "height", "exaggeration"} as used. Raises PictureError. Takes about a second for
+    100,000 triangles where a software renderer draws; of more than 500,000, only as many are drawn as
+    the picture can show.
     """
     with screen_for(path):
         reason = why_not_drawn(surface)
@@ -421,8 +423,20 @@ def draw(surface, path, title, subtitle, holes=None, **options):
         return render(surface, path, title, subtitle, holes, **options)
 
 
-def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, show_errors=False):
+def render(
+    surface,
+    path,
+    title,
+    subtitle,
+    holes,
+    *,
+    view=None,
+    exaggeration=None,
+    show_errors=False,
+    progress=None,
+):
     """draw() on a screen that is there."""
+    progress = progress or (lambda fraction: None)
     real = vtk_to_numpy(surface.GetPoints().GetData())
     triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     used = corner_flags(triangles, len(real))
@@ -439,9 +453,11 @@ def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, 
     frame = Frame(middle, low, 1.0, cut, across, stretch)
     patches = surface.GetCellData().GetArray("HoleId")
     cells = None
+    progress(0.1)
     if len(triangles) > MOST_TRIANGLES:
         cells = Cells(real, frame.widen, used, (WIDTH - LEFT - RIGHT) / PIXELS_OF_CELL)
     mesh = screen_mesh(triangles, None if patches is None else vtk_to_numpy(patches) >= 0, cells)
+    progress(0.5)
     real = real[mesh.ids].astype("f8")
     exaggeration = exaggeration or choose_exaggeration(frame(real), mesh.triangles)
     frame.scale[2] = exaggeration
@@ -496,6 +512,7 @@ def render(surface, path, title, subtitle, holes, view=None, exaggeration=None, 
             renderer.AddActor(lines_actor(frame.of(holes), pairs, OPEN, 3.5, 2))
             legend.append(("hole left open", OPEN))
 
+    progress(0.7)
     window = place_camera(renderer, points, floor, bearing, height)
     scale = renderer.GetActiveCamera().GetParallelScale()
     width, tall = window.GetSize()

@@ -54,16 +54,14 @@ def outline(triangles):
     numbers = numpy.random.default_rng(0).integers(0, 2**40, count).astype("f8")
     sums = numpy.zeros(count)
     for rows in slices(len(triangles)):
-        corners = triangles[rows]
-        values = numbers[corners]
-        for i in range(3):
-            turn = values[:, (i + 1) % 3] - values[:, (i + 2) % 3]
-            sums += numpy.bincount(corners[:, i], turn, count)
+        values = numbers[triangles[rows]]
+        turns = values[:, (1, 2, 0)] - values[:, (2, 0, 1)]
+        sums += numpy.bincount(triangles[rows].ravel(), turns.ravel(), count)
     outer = sums != 0.0
-    near = [
-        triangles[rows][numpy.count_nonzero(outer[triangles[rows]], axis=1) >= 2]
-        for rows in slices(len(triangles))
-    ]
+    near = []
+    for rows in slices(len(triangles)):
+        a, b, c = outer[triangles[rows].T]
+        near.append(triangles[rows][a & b | b & c | c & a])
     near = numpy.concatenate(near)
     edges = numpy.concatenate([near[:, (0, 1)], near[:, (1, 2)], near[:, (2, 0)]])
     edges = numpy.sort(edges[outer[edges].all(axis=1)], axis=1).astype("i8")
