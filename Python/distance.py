@@ -96,7 +96,8 @@ def near(corners, is_corner, triangles, away, progress=None):
     locator.SetDataSet(points)
     closest = [locator.FindClosestPoint(point) for point in away.tolist()]
     reach = 1.000001 * numpy.linalg.norm(corners[ids[closest]] - away, axis=1)[:, None]
-    low, high = (numpy.array([end(corners[ids, i]) for i in (0, 1)]) for end in (numpy.min, numpy.max))
+    low = numpy.array([corners[ids, i].min() for i in (0, 1)])
+    high = numpy.array([corners[ids, i].max() for i in (0, 1)])
 
     def bins(xy):
         return numpy.clip((xy - low) / (high - low) * BINS, 0, BINS - 1).astype("i2").T

@@ -6,10 +6,9 @@ import math
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkStripper
 
-from .clouds import cells_of, make_points
+from .clouds import make_points
 from .gdal_common import reference_of, write_through_memory
 from .messages import ElevationSurfaceError
 from .paths import suffix_of
@@ -43,12 +42,13 @@ def contours(surface, step, progress=None):
         )
     if last - first >= MOST_LEVELS:
         raise ElevationSurfaceError(
-            f"contours every {step:g} would be {last - first + 1:,} levels; at most {MOST_LEVELS:,} are "
-            "drawn: use a larger contour step"
+            f"contours every {step:g} would be {last - first + 1:,} levels; "
+            f"at most {MOST_LEVELS:,} are drawn: use a larger contour step"
         )
     plain = make_points(numpy.where(used[:, None], points, points[corners[0]]))
     plain.SetPolys(surface.GetPolys())
-    plain.GetPointData().SetScalars(numpy_to_vtk(vtk_to_numpy(plain.GetPoints().GetData())[:, 2], True))
+    z = vtk_to_numpy(plain.GetPoints().GetData())[:, 2]
+    plain.GetPointData().SetScalars(numpy_to_vtk(z, deep=True))
     cut = vtkContourFilter()
     cut.SetInputData(plain)
     cut.SetOutputPointsPrecision(1)  # doubles
@@ -89,7 +89,8 @@ def outlines(result):
     lines = []
     if result.boundary is not None and result.boundary.GetNumberOfLines():
         xyz = vtk_to_numpy(result.boundary.GetPoints().GetData())
-        lines += [(xyz[ids], {"kind": "boundary"}) for ids in index_arrays(result.boundary.GetLines())]
+        rings = index_arrays(result.boundary.GetLines())
+        lines += [(xyz[ids], {"kind": "boundary"}) for ids in rings]
     if result.holes is not None and result.holes.GetNumberOfLines():
         xyz = vtk_to_numpy(result.holes.GetPoints().GetData())
         told = result.report["holes"]["list"]
@@ -140,8 +141,8 @@ def write_lines(lines, path, layer, crs=None, progress=None):
     write_through_memory(path, make)
     if driver == "GeoJSON" and not (crs is not None and crs.IsGeographic()):
         return [
-            ".geojson holds x and y as they are; programs that follow RFC 7946 take them for longitude "
-            "and latitude: .gpkg is safer"
+            ".geojson holds x and y as they are; programs that follow RFC 7946 take them for "
+            "longitude and latitude: .gpkg is safer"
         ]
     return []
 

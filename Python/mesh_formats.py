@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes triangles as PLY, GLB and GOCAD surface, which VTK writes in single precision or not at all."""
+"""Writes triangles as PLY, GLB and GOCAD surface: VTK has singles there, or no writer."""
 
 import json
 import os
@@ -141,7 +141,7 @@ def write_ts(data, path, crs, progress):
 
 def without_nan(column):
     """GOCAD's value for what is not known, in place of NaN."""
-    return numpy.where(numpy.isfinite(column), column, -99999.0) if column.dtype.kind == "f" else column
+    return numpy.where(numpy.isnan(column), -99999.0, column) if column.dtype.kind == "f" else column
 
 
 def write_glb(data, path, crs, progress):
@@ -228,4 +228,4 @@ def write_glb(data, path, crs, progress):
         for _, array, _, _ in parts:
             stream.write(numpy.ascontiguousarray(array))
     x, y, z = (f"{value:.0f}" for value in offset)
-    return [f".glb holds single precision: coordinates are written less {x} {y} {z}, its node's offset"]
+    return [f".glb holds single precision: coordinates are written less {x} {y} {z}, its offset"]

@@ -86,7 +86,9 @@ def make_report(result):
                 "inserted_points": inserted,
                 "interpolation": INTERPOLATIONS[method] if inserted else None,
             }
-            for hole, status, edges, perimeter, area, inserted, method, size, centre, box in zip(*columns)
+            for hole, status, edges, perimeter, area, inserted, method, size, centre, box in zip(
+                *columns
+            )
         ]
         by_status = {}
         for hole in holes:

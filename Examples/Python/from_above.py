@@ -22,6 +22,7 @@ import sys
 import numpy
 from vtkelevationsurface import (
     picture as look,
+    picture_signs as signs,
     read,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
@@ -82,7 +83,7 @@ class Chain:
 def surface_actor(chain, surface):
     points = vtk_to_numpy(surface.GetPoints().GetData()).astype("f8")
     normals = vtkPolyDataNormals()
-    normals.SetInputData(look.poly_data(chain.frame(points), polys=surface.GetPolys()))
+    normals.SetInputData(signs.poly_data(chain.frame(points), polys=surface.GetPolys()))
     normals.SplittingOff()
     normals.ConsistencyOff()
     normals.Update()
@@ -163,27 +164,27 @@ def draw(path, chain, title, panels, legend):
     frame = vtkRenderer()
     frame.SetBackground(1.0, 1.0, 1.0)
     window.AddRenderer(frame)
-    look.add_text(frame, title, EDGE, height - 40, 26, bold=True)
+    signs.add_text(frame, title, EDGE, height - 40, 26, bold=True)
     for i, (words, actors) in enumerate(panels):
         left = EDGE + i * (wide + GAP)
         panel(window, (left / width, FOOT / height, (left + wide) / width, (FOOT + tall) / height),
               chain, actors)
-        look.add_text(frame, words, left, height - 68, 20, rgb=(0.35, 0.37, 0.40))
-        look.add_strokes(frame, [[
+        signs.add_text(frame, words, left, height - 68, 20, rgb=(0.35, 0.37, 0.40))
+        signs.add_strokes(frame, [[
             (left - 1, FOOT - 1), (left + wide, FOOT - 1), (left + wide, FOOT + tall),
             (left - 1, FOOT + tall), (left - 1, FOOT - 1)]], (0.7, 0.7, 0.7), 1.0)
     x = EDGE
     for name, rgb in legend:
-        look.add_strokes(frame, [[(x, 34), (x + 36, 34)]], rgb, 4.0)
-        label = look.add_text(frame, name, x + 46, 27, 19)
+        signs.add_strokes(frame, [[(x, 34), (x + 36, 34)]], rgb, 4.0)
+        label = signs.add_text(frame, name, x + 46, 27, 19)
         box = [0.0] * 4
         label.GetBoundingBox(frame, box)
         x += 46 + box[1] - box[0] + 36
-    length = look.nice_number(0.14 * width / pixels, (1.0, 2.0, 5.0))
+    length = signs.nice_number(0.14 * width / pixels, (1.0, 2.0, 5.0))
     right = EDGE + count * wide + (count - 1) * GAP
     bar = [(right - length * pixels, 42), (right - length * pixels, 30), (right, 30), (right, 42)]
-    look.add_strokes(frame, [bar])
-    look.add_text(frame, look.round_text(length), right - 0.5 * length * pixels, 40, 19, "centre")
+    signs.add_strokes(frame, [bar])
+    signs.add_text(frame, signs.round_text(length), right - 0.5 * length * pixels, 40, 19, "centre")
 
     look.save(window, path)
 
@@ -199,8 +200,8 @@ def outline(chain, path, title):
     words = (f"{rings} ring{'s' if rings != 1 else ''} at a gap tolerance of "
              f"{chain.trim.GetEffectiveGapTolerance():.1f} spacings, {len(lone)} points outside")
     print(words)
-    actors = [surface_actor(chain, trimmed), rims_actor(chain, boundary, look.INK, 2.0)]
-    legend = [("boundary", look.INK)]
+    actors = [surface_actor(chain, trimmed), rims_actor(chain, boundary, signs.INK, 2.0)]
+    legend = [("boundary", signs.INK)]
     if len(lone):
         actors.append(dots_actor(chain, lone))
         legend.append(("points outside", LEFT_OUT))
