@@ -324,6 +324,11 @@ class Search:
             if doubtful:
                 self.refuse_two([groups[0], groups[best]])
             best = 0
+        if best == 0 and len(groups) > 2 and marks[2] == 5 and self.may_count(columns):
+            self.refuse_two([groups[0], groups[2]])
+        if best == 0 and marks[1:2] == [5] and not self.is_grid(*columns[:2]):
+            if self.is_grid(*groups[1][:2]):
+                self.refuse_two(groups[:2])
         for i in columns[: columns.index(groups[best][0])]:
             values = self.finite(i)
             each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
@@ -332,12 +337,28 @@ class Search:
             )
         return groups[best]
 
+    def is_grid(self, x, y):
+        """Whether each value of x stands once with each of y, here and there with a gap."""
+        rows = self.values[: self.consecutive, [x, y]]
+        sizes = [len(numpy.unique(column)) for column in rows.T]
+        if min(sizes) < 2 or sizes[0] * sizes[1] > 1.5 * len(rows):
+            return False
+        return len(numpy.unique(rows, axis=0)) == len(rows)
+
+    def may_count(self, columns):
+        """Whether two columns may be line and trace before x and y: small, whole, in steps of one."""
+        if not all(self.is_whole(i) and abs(self.finite(i)).max() < 1e5 for i in columns[:2]):
+            return False
+        steps = abs(numpy.diff(self.values[: self.consecutive, columns[:2]], axis=0))
+        usual = [numpy.median(s[s > 0]) if (s > 0).any() else 0.0 for s in steps.T]
+        return usual == [1.0, 1.0] and all(self.decimals[i] for i in columns[2:4])
+
     def always_rises(self, i):
         values = self.finite(i)
         return len(values) > 9 and bool((numpy.diff(values) > 0).all())
 
     def likeness(self, group):
-        """How much columns look like x, y and z: 0 to 5 marks."""
+        """How much columns look like x, y and z: at most 5 marks."""
         x, y = group[:2]
         spans = [float(numpy.ptp(self.finite(i))) if len(self.finite(i)) else 0.0 for i in group]
         alike = abs(self.decimals[x] - self.decimals[y]) <= 1
@@ -346,6 +367,8 @@ class Search:
         marks += 0 < max(spans[:2]) <= 30 * min(spans[:2])
         if len(group) == 3:
             marks += 2 * (spans[2] <= 10 * max(spans[:2]))
+            z = self.finite(group[2])
+            marks -= 2 * (len(z) > 0 and abs(z).min() > 1e5)  # as high as no elevation
         marks -= self.is_line(x, y)
         return marks
 

@@ -236,10 +236,38 @@ class Doubts(Tables):
                 self.assertIn(f"the first 3 of {len(rows[0])} columns", cloud.notes[1])
 
     def test_what_rises_before_x_y_z_may_be_a_time_or_the_x_of_sorted_points(self):
-        rows, _ = columns_of("x y z")
-        for step in (0.25, 20.25):
+        for kinds, step in (("x y z", 0.25), ("nx ny z", 0.25), ("nx ny z", 20.25)):
+            rows, expected = columns_of(kinds)
             text = "".join(f"{5000 + step * i:.2f} {' '.join(row)}\n" for i, row in enumerate(rows))
-            self.assertIn("or --columns 2,3,4", self.refusal(text))
+            with self.subTest(kinds=kinds, step=step):
+                if kinds == "x y z":  # no elevation is as high as its y
+                    self.assert_coordinates(self.read(text), expected)
+                else:
+                    self.assertIn("or --columns 2,3,4", self.refusal(text))
+
+    def test_line_and_trace_before_near_coordinates_may_be_a_grid(self):
+        rows, _ = columns_of("line trace nx ny z")
+        text = "".join(" ".join(row) + "\n" for row in rows)
+        try:
+            expected = numpy.column_stack((NEAR_X, NEAR_Y, Z))
+            self.assert_coordinates(self.read(text), expected)
+        except FileError as error:
+            self.assertIn("--columns 3,4,5", str(error))
+
+    def test_random_tables_without_names_are_read_right_or_asked_about(self):
+        generator = numpy.random.default_rng(11)
+        asked = 0
+        for trial in range(150):
+            columns, first = random_table(generator)
+            text = "".join(" ".join(row) + "\n" for row in zip(*columns))
+            expected = numpy.array(columns[first : first + 3], dtype="f8").T
+            with self.subTest(trial=trial, head=text[:80]):
+                try:
+                    self.assert_coordinates(self.read(text), expected)
+                except FileError as error:
+                    self.assertIn("two ways", str(error))
+                    asked += 1
+        self.assertLess(asked, 15)
 
     def test_point_names_and_a_code_leave_the_order_open(self):
         generator = numpy.random.default_rng(2)
@@ -357,6 +385,38 @@ class Doubts(Tables):
         ):
             with self.subTest(head):
                 self.assertIn(words, self.refusal(head + "1 2 3 4\n5 6 7 8\n"))
+
+
+def random_table(generator):
+    """(columns as words, index of x): a table without names of points on a grid or scattered."""
+    count, side = int(generator.choice([30, 200])), 10 ** generator.uniform(1.5, 4)
+    step = numpy.divmod(numpy.arange(count), 10)
+    kind = generator.choice(["grid", "turned grid", "scattered"])
+    if kind == "scattered":
+        x, y = generator.uniform(0, side, (2, count))
+    else:
+        angle = 0.3 * (kind == "turned grid")
+        x = side * (step[0] * math.cos(angle) - step[1] * math.sin(angle)) / 10
+        y = side * (step[0] * math.sin(angle) + step[1] * math.cos(angle)) / 10
+    place = [(0, 0), (500000, 5400000), (3400000, 5500000), (1000, 5000)][generator.integers(4)]
+    decimals = int(generator.choice([0, 1, 3])) if kind == "grid" else 2
+    z = 80 + side / 30 * (numpy.sin(x / side * 5) + numpy.cos(y / side * 4))
+    others = {
+        "id": [1 + numpy.arange(count)],
+        "class": [generator.choice([1, 2, 5, 6], count)],
+        "line trace": [1000 + step[0], 2000 + 2 * step[1]] if kind == "turned grid" else [],
+        "time": [(3e5 + numpy.cumsum(generator.uniform(0, 0.01, count))).round(6)],
+        "intensity": [generator.integers(0, 4000, count)],
+        "colour": list(generator.integers(0, 256, (3, count))),
+        "amplitude": [generator.normal(0, 1000, count).round(2)],
+        "": [],
+    }
+    before = others[str(generator.choice(["", "", "id", "class", "time", "line trace"]))]
+    after = others[str(generator.choice(["", "intensity", "colour", "amplitude", "class"]))]
+    points = [[f"{v:.{decimals}f}" for v in values] for values in (x + place[0], y + place[1])]
+    points.append([f"{v:.2f}" for v in z])
+    words = [[str(v) for v in column] for column in before + points + after]
+    return words, len(before)
 
 
 class OtherColumns(Tables):
