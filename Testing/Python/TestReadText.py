@@ -245,14 +245,29 @@ class Doubts(Tables):
                 else:
                     self.assertIn("or --columns 2,3,4", self.refusal(text))
 
-    def test_line_and_trace_before_near_coordinates_may_be_a_grid(self):
-        rows, _ = columns_of("line trace nx ny z")
-        text = "".join(" ".join(row) + "\n" for row in rows)
-        try:
-            expected = numpy.column_stack((NEAR_X, NEAR_Y, Z))
-            self.assert_coordinates(self.read(text), expected)
-        except FileError as error:
-            self.assertIn("--columns 3,4,5", str(error))
+    def test_what_may_be_a_line_or_a_coordinate_is_asked_about(self):
+        generator = numpy.random.default_rng(3)
+        near = [(i, k, f"{40 + k * math.cos(i):.2f}", f"{90 + k * math.sin(i):.2f}", 16.5 + k % 3)
+                for i in range(100, 109) for k in range(20)]
+        tracks = [(100 + 10 * i, 12 * k + int(generator.integers(8)), i * k % 17, k % 5)
+                  for i in range(12) for k in range(30)]
+        for what, rows, words in (
+            ("line and trace, or nodes", near, "--columns 1,2,3"),
+            ("line and trace, or nodes", near, "or --columns 3,4,5"),
+            ("tracks to the north, or a line", tracks, "or --columns 2,3,4"),
+        ):
+            with self.subTest(what):
+                text = "".join(" ".join(map(str, row)) + "\n" for row in rows)
+                self.assertIn(words, self.refusal(text))
+
+    def test_what_stands_before_whole_coordinates_is_told(self):
+        generator = numpy.random.default_rng(3)
+        points = generator.integers(0, 90, (50, 3)).tolist()
+        for what, first in (("an id", range(50)), ("the same in all rows", [0.5] * 50)):
+            rows = [[value, *point] for value, point in zip(first, points)]
+            cloud = self.read("".join(" ".join(map(str, row)) + "\n" for row in rows))
+            self.assert_coordinates(cloud, points)
+            self.assertIn(f"column 1 is {what}", cloud.notes[1])
 
     def test_random_tables_without_names_are_read_right_or_asked_about(self):
         generator = numpy.random.default_rng(11)
@@ -490,6 +505,10 @@ class Parsing(Tables):
             "x   y coordinate   z\n1 -2 3.5\n4 5 6\n",
         ):
             self.assert_coordinates(self.read(text), [(1, -2, 3.5), (4, 5, 6)])
+        self.assert_coordinates(self.read("1;2;3,5\n4;5;6,5\n"), [(1, 2, 3.5), (4, 5, 6.5)])
+        cloud = self.read("Nr;X;Y;Z\n1;2;3;4,5\n2;4;5;6,5\n")
+        self.assert_coordinates(cloud, [(2, 3, 4.5), (4, 5, 6.5)])
+        self.assertEqual(list(self.read("1 2 3\n\n4 5 6\n").lines), [1, 3])
         # Bytes of UTF-8 that are blanks in Latin-1 part no words.
         cloud = self.read("name x y z\nvoil\u00e0x 1 -2 3.5\n\u00e0x 4 5 6\n")
         self.assert_coordinates(cloud, [(1, -2, 3.5), (4, 5, 6)])
