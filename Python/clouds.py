@@ -43,11 +43,11 @@ class ReadOptions:
     classes: object = None  # None, or the numbers of the classes of a LAS file to read
 
 
-def make_points(coordinates):
-    """(n, 3) float64 coordinates -> vtkPolyData with points only."""
+def make_points(coordinates, copy=True):
+    """(n, 3) float64 coordinates -> vtkPolyData with points only. Without copy it uses the array."""
     points = vtkPoints()
     points.SetDataTypeToDouble()
-    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=True))
+    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates, dtype="f8"), deep=copy))
     data = vtkPolyData()
     data.SetPoints(points)
     return data

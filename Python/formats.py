@@ -84,10 +84,12 @@ def is_text(head):
 
 
 def is_table(head, path):
-    """Text whose very first line of data is numbers. Told apart early, since it is so usual."""
+    """Text that begins with numbers, or names of columns and numbers. Asked early: so usual."""
     lines = lines_of(head)
     if not is_text(head) or not lines or len(lines[0]) > 1000:
         return False
+    if len(lines) > 1 and len(re.split(rb"[,;\t]", lines[0])) > 2 and not numbers_of(lines[0]):
+        del lines[0]  # names of columns
     return numbers_of(lines[0]) >= max(2, len(lines[0].split()) / 2)
 
 

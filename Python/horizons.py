@@ -232,7 +232,7 @@ def read_array(path, options):
     if not len(columns["x"]):
         raise FileError(f"{path}: holds no points")
     xyz = numpy.column_stack([columns.pop(axis).astype("f8") for axis in "xyz"])
-    cloud = Cloud(make_points(xyz))
+    cloud = Cloud(make_points(xyz, copy=False))
     for name, values in columns.items():
         add_array(cloud.points, name, values.astype(values.dtype.newbyteorder("=")))
     return cloud

@@ -182,7 +182,7 @@ def read_points(path, options):
     if count == 0:
         wanted = ", ".join(map(str, options.classes or ()))
         raise FileError(f"{path}: holds no point of class {wanted}; classes: {shown or 'none'}")
-    cloud = Cloud(make_points(points[:count]), crs=header.crs)
+    cloud = Cloud(make_points(points[:count], copy=False), crs=header.crs)
     cloud.notes.append(
         f"LAS {header.version[0]}.{header.version[1]}, point format {header.kind}; classes {shown}"
         + ("" if options.classes else " (see --classes)" * (numpy.count_nonzero(of_class) > 1))

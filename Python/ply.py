@@ -130,7 +130,7 @@ def read_points(path, options):
         read = read_binary if order else read_text
         rows, notes = read(path, stream, order or number, vertex, before, after)
     coordinates = coordinates_of(rows)
-    cloud = Cloud(make_points(coordinates), notes)
+    cloud = Cloud(make_points(coordinates, copy=False), notes)
     add_arrays(cloud.points, rows)
     if any(element.count for element in elements if element.name != "vertex"):
         cloud.notes.append("only the points are used, not the file's cells")

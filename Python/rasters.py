@@ -164,7 +164,7 @@ def read_points(path, options):
         reference = data.GetSpatialRef()
     if count == 0:
         raise FileError(f"{path}: all {rows * columns:,} pixels are without data")
-    cloud = Cloud(make_points(points[:count]), notes)
+    cloud = Cloud(make_points(points[:count], copy=False), notes)
     if count < len(points):
         cloud.left_out["pixels without data"] = len(points) - count
     cloud.crs = reference.ExportToWkt() if reference else None

@@ -10,7 +10,10 @@ from .formats import HEAD, is_table_with_geometry
 from .gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from .messages import FileError
 
-OPEN_OPTIONS = {"CSV": ["AUTODETECT_TYPE=YES", "GEOM_POSSIBLE_NAMES=WKT,*wkt*,*geom*,shape"]}
+OPEN_OPTIONS = {
+    "CSV": ["AUTODETECT_TYPE=YES", "GEOM_POSSIBLE_NAMES=WKT,*wkt*,*geom*,shape"],
+    "GML": ["WRITE_GFS=NO"],  # nothing beside the user's file
+}
 
 
 def open_file(path):

@@ -3,6 +3,7 @@
 """Points, lines and polygons of vector files, made by OGR and by hand."""
 
 import math
+import os
 import sys
 import unittest
 
@@ -217,6 +218,13 @@ class Points(Vectors):
             cloud = self.read(stream.read(), "b.tif")
         self.assert_rows(cloud, MAP)
         self.assertIn("by its content this is a vector file, not a raster", cloud.notes)
+
+    def test_nothing_is_written_beside_a_file(self):
+        for name, driver in (("a.gml", "GML"), ("a.shp", "ESRI Shapefile"), ("a.gpkg", "GPKG")):
+            path = self.make(name, driver, wkt_of(MAP))
+            before = sorted(os.listdir(self.folder))
+            reading.read(path)
+            self.assertEqual(sorted(os.listdir(self.folder)), before)
 
     def test_damaged_files_are_refused_in_one_line(self):
         contents = {}
