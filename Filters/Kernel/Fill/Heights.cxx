@@ -38,6 +38,7 @@ constexpr double LeastDistance = 0.02;
 constexpr int NumberOfPlaces = 32;
 constexpr int NumberOfPlacesOfLargeHoles = 4;
 constexpr int EnoughPlaces = 4;
+constexpr double ReducedSizes[] = { 0.7, 0.5, 0.25 };
 
 /** Smaller shares, relative to the largest, are not worth computing. */
 constexpr double LeastShare = 0.03;
@@ -364,26 +365,48 @@ void Heights::MakeCandidates(
   this->IsCandidate[0] = this->IsByTrials || !this->HasSpline();
 }
 
-/** Tries the candidates beside the hole, and finds their shares and their errors. */
-void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
+/** Tries the candidates beside the hole: at its size and, where it does not fit, at smaller ones. */
+void Heights::TryBeside(Trials& trials, const Progress& progress) const
 {
-  Trials trials(*this, stars, values);
   const bool isLarge = this->Harmonic && this->Harmonic->IsLarge();
   const int number = isLarge ? NumberOfPlacesOfLargeHoles : NumberOfPlaces;
-  int places = 0;
   double begun = 0.0;
-  for (const double size : { 1.0, 0.5, 0.25 })
-  {
-    const int enough = size == 1.0 ? number : std::min(number, EnoughPlaces);
-    for (int k = 0; k < number && places < enough; ++k)
+  const auto tryAt = [&](double size, int wanted, bool isCounted) {
+    int found = 0;
+    for (int k = 0; k < number && found < wanted; ++k)
     {
       const double done = begun + (1.0 - begun) * 0.8 * k / number;
       Report(progress, done);
       const double angle = 2.0 * 3.14159265358979323846 * Spread(k, number) / number;
-      places += trials.At(angle, size, Part(progress, done, done)) ? 1 : 0;
+      found += trials.At(angle, size, isCounted, Part(progress, done, done)) ? 1 : 0;
     }
     begun += (1.0 - begun) * 0.8;
+    return found;
+  };
+  int places = tryAt(1.0, number, true);
+  double sizeForGrowth = 0.0;
+  int placesForGrowth = 0;
+  for (const double size : ReducedSizes)
+  {
+    const int found = tryAt(size, std::min(number, EnoughPlaces) - places, true);
+    if (placesForGrowth < LeastPlacesForGrowth)
+    {
+      sizeForGrowth = 0.5 * size;
+      placesForGrowth = found;
+    }
+    places += found;
   }
+  if (placesForGrowth >= LeastPlacesForGrowth)
+  {
+    tryAt(sizeForGrowth, LeastPlacesForGrowth, false);
+  }
+}
+
+/** Finds the candidates' shares, and their errors. */
+void Heights::Choose(const VertexStars& stars, const Values& values, const Progress& progress)
+{
+  Trials trials(*this, stars, values);
+  this->TryBeside(trials, progress);
   int best = -1;
   for (int i = 0; i < 3; ++i)
   {

@@ -32,7 +32,7 @@
  * predicts the surface at the moved new points from that at the others. Splines and membrane depend
  * only on relative positions, so the hole's factorizations serve at all places. A place counts if
  * every moved point hits the surface; with fewer than four such places, others are added with the
- * points scaled to half their size, then to a quarter, until there are four.
+ * points scaled to 0.7 times their size, then to half and to a quarter, until there are four.
  * Each place counts as two observations of a normal error, as neighbouring places overlap: the
  * share of a method in the result is its prior share (thin plate 0.58, the others 0.21), divided,
  * for each place, by the mean square of its errors there. Of these squares 0.8 times the least one
@@ -55,7 +55,9 @@
  * chosen by trials. The errors of what is used, of a mixture those of the mixture, are sorted into
  * four classes by the distance of the moved points from the moved boundary. The standard error of a
  * class is what 68 % of its errors do not exceed, or half of what 95 % do not if that is more;
- * between the classes it is interpolated by distance. Errors at half the size count 1.5 times.
+ * between the classes it is interpolated by distance. Errors at reduced size are enlarged: by as
+ * much for each halving as they grow at the places, from half of the largest reduced size that has
+ * two places or more to that size; at least by 1.2, at most by 8. Without such places by 1.5.
  *
  * Fallbacks, told by Used(): splines become the membrane if their points are nearly in a line;
  * values that are not finite at the boundary or the ring are left to NeighborMean, which skips NaN.
@@ -145,6 +147,7 @@ private:
   class Trials;
   void MakeCandidates(Interpolation wanted, const VertexStars& stars, const Values& values,
     const Progress& progress);
+  void TryBeside(Trials& trials, const Progress& progress) const;
   void Choose(const VertexStars& stars, const Values& values, const Progress& progress);
   std::vector<double> SumOfSplines(
     const std::vector<double>& known, const Progress& progress) const;

@@ -56,13 +56,21 @@ constexpr double RoughAccuracy = 1e-2;
 /**
  * The standard error at a distance from the boundary: that of the probes in one of at most four
  * classes of distance, of at least four probes each. It is as large as 68 %, and half as large as
- * 95 % of the errors are at most. Errors at half the size count by this factor more.
+ * 95 % of the errors are at most.
  */
 constexpr std::size_t MostClasses = 4;
 constexpr std::size_t ProbesPerClass = 4;
 constexpr double FirstQuantile = 0.683;
 constexpr double SecondQuantile = 0.95;
-constexpr double GrowthOfErrors = 1.5;
+
+/**
+ * By which factor errors grow where the size doubles: where too few places tell it, and the bounds
+ * of what they are believed. Noise grows by 1, the smoothest methods' errors by 8.
+ */
+constexpr double UsualGrowth = 1.5;
+constexpr double LeastGrowth = 1.2;
+constexpr double MostGrowth = 8.0;
+constexpr int LeastPlacesForGrowth = 2;
 
 inline bool AllFinite(const std::vector<double>& values)
 {
@@ -86,8 +94,11 @@ public:
     this->CollectPoints();
   }
 
-  /** @return false if a moved point misses the surface */
-  bool At(double angle, double size, const Progress& progress)
+  /**
+   * @param isCounted  else the place only tells how errors grow, from here to twice the size
+   * @return false if a moved point misses the surface
+   */
+  bool At(double angle, double size, bool isCounted, const Progress& progress)
   {
     double smoothing = 0.0;
     if (!this->Move({ std::cos(angle), std::sin(angle) }, size, smoothing) ||
@@ -113,7 +124,8 @@ public:
       value /= unit;
     }
     // The smoothing is one half on average for points anywhere in triangles.
-    const double halvings = std::max(smoothing, -std::log(size) / std::log(2.0));
+    this->Places.push_back({ -std::log2(size), unit, isCounted });
+    const double halvings = std::max(smoothing, this->Places.back().Halvings);
     double squares[3] = { 0.0, 0.0, 0.0 };
     double least = std::numeric_limits<double>::infinity();
     for (int method = 0; method < 3; ++method)
@@ -131,9 +143,8 @@ public:
       }
       least = std::min(least, squares[method]);
     }
-    this->Growths.push_back(std::pow(GrowthOfErrors, -std::log(size) / std::log(2.0)));
     const double noise = ShareOfNoise * least;
-    for (int method = 0; method < 3; ++method)
+    for (int method = 0; method < 3 && isCounted; ++method)
     {
       // A prediction that is exact up to rounding must not outweigh all other places.
       const double square = squares[method] - noise + LeastError * LeastError;
@@ -165,7 +176,14 @@ public:
     const std::size_t classes =
       std::max<std::size_t>(1, std::min(MostClasses, probes / ProbesPerClass));
     std::vector<std::pair<double, double>> result;
-    for (std::size_t c = 0; c < classes && !this->Growths.empty(); ++c)
+    const std::vector<double> misses = this->MissesOf(shares);
+    const double growth = this->GrowthOf(misses);
+    std::vector<double> factors;
+    for (const Place& place : this->Places)
+    {
+      factors.push_back(std::pow(growth, place.Halvings));
+    }
+    for (std::size_t c = 0; c < classes && !this->Places.empty(); ++c)
     {
       const std::size_t end = (c + 1) * probes / classes;
       double distance = 0.0;
@@ -173,16 +191,12 @@ public:
       for (std::size_t i = c * probes / classes; i < end; ++i)
       {
         distance += order[i].first / static_cast<double>(end - c * probes / classes);
-        for (std::size_t place = 0; place < this->Growths.size(); ++place)
+        for (std::size_t k = 0; k < this->Places.size(); ++k)
         {
-          double error = 0.0;
-          for (int method = 0; method < 3; ++method)
+          if (this->Places[k].IsCounted)
           {
-            error += shares[method] > 0.0
-              ? shares[method] * this->Misses[method][place * probes + order[i].second]
-              : 0.0;
+            errors.push_back(factors[k] * std::fabs(misses[k * probes + order[i].second]));
           }
-          errors.push_back(std::fabs(error) * this->Growths[place]);
         }
       }
       result.emplace_back(distance,
@@ -192,6 +206,57 @@ public:
   }
 
 private:
+  struct Place
+  {
+    double Halvings; ///< of the size
+    double Unit;     ///< range of the values there
+    bool IsCounted;
+  };
+
+  /** The errors of a mixture of the methods at all probes, place by place. */
+  std::vector<double> MissesOf(const double* shares) const
+  {
+    std::vector<double> result(this->Places.size() * this->Probes.size(), 0.0);
+    for (int method = 0; method < 3; ++method)
+    {
+      for (std::size_t i = 0; i < result.size() && shares[method] > 0.0; ++i)
+      {
+        result[i] += shares[method] * this->Misses[method][i];
+      }
+    }
+    return result;
+  }
+
+  /** By which factor errors grow where the size doubles, on the geometric mean of places. */
+  double GrowthOf(const std::vector<double>& misses) const
+  {
+    const std::size_t probes = this->Probes.size();
+    // Places come last that only tell this.
+    const double halvings =
+      this->Places.empty() || this->Places.back().IsCounted ? 0.0 : this->Places.back().Halvings;
+    double sums[2] = { 0.0, 0.0 };
+    int counts[2] = { 0, 0 };
+    for (std::size_t k = 0; k < this->Places.size(); ++k)
+    {
+      const Place& place = this->Places[k];
+      const int which = place.IsCounted ? 1 : 0;
+      if (std::fabs(place.Halvings + which - halvings) < 0.01)
+      {
+        double squares = LeastError * LeastError;
+        for (std::size_t i = k * probes; i < (k + 1) * probes; ++i)
+        {
+          squares += (misses[i] / place.Unit) * (misses[i] / place.Unit);
+        }
+        sums[which] += 0.5 * std::log(squares) + std::log(place.Unit);
+        ++counts[which];
+      }
+    }
+    return std::min(counts[0], counts[1]) < LeastPlacesForGrowth
+      ? UsualGrowth
+      : std::min(MostGrowth,
+          std::max(LeastGrowth, std::exp(sums[1] / counts[1] - sums[0] / counts[0])));
+  }
+
   /** The value that a share of all values does not exceed. */
   static double Quantile(std::vector<double>& values, double share)
   {
@@ -231,6 +296,25 @@ private:
       this->Normalized.push_back(this->Of.Normalized(p));
     }
     this->Moved.resize(this->Points.size());
+    this->OrderPoints();
+  }
+
+  /** Around the hole, so that walks from point to point are short; then the probes. */
+  void OrderPoints()
+  {
+    std::vector<std::pair<double, std::size_t>> byAngle;
+    for (std::size_t i = 0; i < this->FirstProbe; ++i)
+    {
+      // Grows with the angle from -2 to 2.
+      const Point2& p = this->Normalized[i];
+      const double sum = std::fabs(p.X) + std::fabs(p.Y);
+      byAngle.emplace_back(std::copysign(sum > 0.0 ? 1.0 - p.X / sum : 0.0, p.Y), i);
+    }
+    std::sort(byAngle.begin(), byAngle.end());
+    for (const std::pair<double, std::size_t>& entry : byAngle)
+    {
+      this->Order.push_back(entry.second);
+    }
   }
 
   /** Where a walk begins; independent of the order of points. */
@@ -278,8 +362,7 @@ private:
       return false;
     }
     const Point2 target = this->Of.Surface.PointOf(walk.Corner());
-    for (std::size_t i = 0; i < this->Points.size(); ++i)
-    {
+    const auto visit = [&](std::size_t i) {
       if (!walk.To({ target.X + size * (this->Points[i].X - origin.X),
             target.Y + size * (this->Points[i].Y - origin.Y) }))
       {
@@ -287,6 +370,16 @@ private:
       }
       this->Moved[i] = walk.ValueOf(this->ValueOf);
       smoothing += walk.Smoothing() / static_cast<double>(this->Points.size());
+      return true;
+    };
+    const std::size_t first = static_cast<std::size_t>(
+      std::find(this->Order.begin(), this->Order.end(), end) - this->Order.begin());
+    for (std::size_t k = 0; k < this->Points.size(); ++k)
+    {
+      if (!visit(k < this->FirstProbe ? this->Order[(first + k) % this->FirstProbe] : k))
+      {
+        return false;
+      }
     }
     return true;
   }
@@ -341,11 +434,12 @@ private:
   std::size_t FirstProbe = 0; ///< probes come last
   std::vector<Point2> Points;
   std::vector<Point2> Normalized;
+  std::vector<std::size_t> Order;   ///< around the hole, of those that are no probes
   std::vector<Index> PlaceOfCenter; ///< index in Points of each centre
   std::vector<Index> Probes;        ///< numbers of new vertices
   std::vector<double> Moved;        ///< values where the points are moved to
   std::vector<double> Misses[3];    ///< errors of each method at all probes, place by place
-  std::vector<double> Growths;      ///< of errors at each place, to full size
+  std::vector<Place> Places;
 };
 
 } // namespace elevation

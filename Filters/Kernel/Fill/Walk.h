@@ -32,6 +32,7 @@ public:
   Walk(const Mesh& mesh, Index start)
     : Surface(mesh)
     , Triangle(start)
+    , First(this->Lowest(start))
   {
   }
 
@@ -67,6 +68,7 @@ public:
           this->Shares[k] = sum > 0.0 ? std::max(0.0, w[(k + 1) % 3] / sum) : 1.0 / 3.0;
         }
         this->Triangle = t;
+        this->First = first;
         return true;
       }
       const Index twin = this->Surface.Twin(HalfEdge(first, across));
@@ -125,13 +127,11 @@ private:
     return lowest;
   }
 
-  Index CornerOf(int k) const
-  {
-    return this->Surface.Origin(HalfEdge(this->Lowest(this->Triangle), k));
-  }
+  Index CornerOf(int k) const { return this->Surface.Origin(HalfEdge(this->First, k)); }
 
   const Mesh& Surface;
   Index Triangle;
+  Index First; ///< the half-edge of the triangle that leaves its lowest corner
   double Shares[3] = { 1.0, 0.0, 0.0 };
 };
 
