@@ -333,7 +333,7 @@ class Search:
             values = self.finite(i)
             each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
             reasons[i] = (
-                "an id: whole numbers, each once" if each else "not like a coordinate of the next"
+                "an id: whole numbers, each once" if each else "no coordinate beside the next"
             )
         return groups[best]
 

@@ -7,12 +7,10 @@ lines a second. What numpy does not take is parsed line by line, so that an erro
 """
 
 import collections
-import contextlib
 import io
 import math
 import os
 import re
-import zlib
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -35,7 +33,7 @@ def blocks(path, stream, progress=None):
 
     UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away.
     """
-    size = size_of(stream) if progress else 0
+    size = os.fstat(stream.fileno()).st_size if progress else 0
     rest, done = b"", 0
     try:
         data = stream.read(BLOCK)
@@ -57,18 +55,10 @@ def blocks(path, stream, progress=None):
             if size:
                 progress(min(done / size, 1.0))
             data = stream.read(BLOCK)
-    except (OSError, EOFError, zlib.error) as error:
-        raise FileError(f"{path}: cannot be read: {error}") from None
+    except OSError as error:
+        raise FileError(f"{path}: cannot be read: {error.strerror}") from None
     if rest:
         yield plain(rest)
-
-
-def size_of(stream):
-    """The bytes of a stream's file, or 0 where it has none."""
-    try:
-        return os.fstat(stream.fileno()).st_size
-    except (OSError, AttributeError):
-        return 0
 
 
 def plain(data):
@@ -102,54 +92,62 @@ class Table:
     first            index of the first line of data
     downwards        the note for a z that counts downwards by its name and values, or None
     advice           what a user can do where columns are wrong
+    headers, comments  how many lines before the data are such
     notes            for the user
     """
 
     def __init__(self, path, lines, columns, needed, advice):
         self.path, self.needed, self.advice = path, needed, advice
         self.layout = find_layout(path, lines[:5000], needed)
-        self.first, self.names = 0, None
-        head, comments, preamble = [], 0, []
-        for number, line in enumerate(lines, 1):
-            if not line.strip():
-                continue
-            if is_comment(line):
-                head.append(line.strip().lstrip("#%/!*> "))
-                comments += 1
-            elif self.layout.numbers(line) >= needed:
-                self.first = number - 1
-                break
-            else:
-                head.append(line.strip())
-                preamble.append((number, self.layout.words(line)))
-        data = [line for line in lines[self.first : self.first + SAMPLE] if is_data(line)]
-        consecutive = len(data)
-        rest = lines[self.first + SAMPLE :]
-        data += [line for line in rest[:: max(1, len(rest) // SAMPLE)] if is_data(line)]
-        rows = [self.layout.words(line) for line in data]
-        widths = collections.Counter(len(row) for row in rows)
-        self.words = self.width = max(len(rows[0]), widths.most_common(1)[0][0])
-        # Where lines end with a separator, nothing stands behind it.
-        ends = self.width > needed and not any("".join(row[self.width - 1 :]) for row in rows)
-        self.names = find_names(self.layout, head, self.width, not ends)
-        if ends and not (self.names and self.names[-1]):
-            self.width -= 1
-            self.names = find_names(self.layout, head, self.width)
+        head, preamble, self.comments = self.read_head(lines)
+        rows, consecutive = self.sample(lines)
+        self.name_columns(head, rows)
         chosen = choose_columns(
             path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed,
             advice,
         )
         self.indices, self.extras = chosen.indices, chosen.extras
+        self.notes, self.downwards = chosen.notes, chosen.downwards
         begins = first_of_data(self, preamble)
         if begins:
-            preamble = [line for line in preamble if line[0] < begins]
             self.first = begins - 1
-        seen = [f"separated by {self.layout}"]
-        for count, what in ((len(preamble), "header"), (comments, "comment")):
-            if count:
-                seen.append(f"{count} {what} line{'s' * (count > 1)}")
-        self.comments = comments
-        self.seen, self.notes, self.downwards = seen, chosen.notes, chosen.downwards
+        self.headers = sum(number <= self.first for number, _ in preamble)
+
+    def read_head(self, lines):
+        """(lines before the data, those of them that are no comments, number of comments).
+
+        The second as (number, words). Sets first.
+        """
+        head, preamble, comments = [], [], 0
+        for self.first, line in enumerate(lines):
+            if is_comment(line):
+                head.append(line.strip().lstrip("#%/!*> "))
+                comments += 1
+            elif self.layout.numbers(line) >= self.needed:
+                break
+            elif line.strip():
+                head.append(line.strip())
+                preamble.append((self.first + 1, self.layout.words(line)))
+        return head, preamble, comments
+
+    def sample(self, lines):
+        """(rows as words, how many of them follow each other)."""
+        start = self.first + SAMPLE
+        data = [line for line in lines[self.first : start] if is_data(line)]
+        step = max(1, (len(lines) - start) // SAMPLE)
+        later = [line for line in lines[start::step] if is_data(line)]
+        return [self.layout.words(line) for line in data + later], len(data)
+
+    def name_columns(self, head, rows):
+        """Sets words, width and names."""
+        widths = collections.Counter(len(row) for row in rows)
+        self.words = self.width = max(len(rows[0]), widths.most_common(1)[0][0])
+        # Where lines end with a separator, nothing stands behind it.
+        ends = self.width > self.needed and not any("".join(row[self.width - 1 :]) for row in rows)
+        self.names = find_names(self.layout, head, self.width, not ends)
+        if ends and not (self.names and self.names[-1]):
+            self.width -= 1
+            self.names = find_names(self.layout, head, self.width)
 
 
 def first_of_data(table, preamble):
@@ -293,7 +291,7 @@ class Parser:
     def check_widths(self, block, lines, skip):
         """Remembers the first line that has more words than the others."""
         table = self.table
-        if self.ragged or not self.parts:
+        if self.ragged or not self.parts or b'"' in block and self.line:
             return
         if table.layout.separator:
             separators = block.count(table.layout.separator.encode())
@@ -313,9 +311,10 @@ class Parser:
         """(rows, line numbers, starts, notes)"""
         table = self.table
         notes, comments = table.notes, self.comments + table.comments
-        seen = [words for words in table.seen if "comment" not in words]
-        if comments:
-            seen.append(f"{comments} comment line{'s' * (comments > 1)}")
+        seen = [f"separated by {table.layout}"]
+        for count, what in ((table.headers, "header"), (comments, "comment")):
+            if count:
+                seen.append(f"{count} {what} line{'s' * (count > 1)}")
         notes.insert(0, "text: " + ", ".join(seen))
         if self.ragged:
             notes.append(
@@ -323,21 +322,19 @@ class Parser:
                 f"{table.words}: they are counted from the left"
             )
         for index, count in self.no_numbers.items():
-            notes.append(f"column {table.extras[index]}: {count:,} words are no numbers")
+            words = "word is no number" if count == 1 else "words are no numbers"
+            notes.append(f"column {table.extras[index]}: {count:,} {words}")
         rows = self.parts[0] if len(self.parts) == 1 else numpy.concatenate(self.parts)
         self.parts = []
         return rows, numpy.concatenate(self.numbers), self.starts, notes
 
 
-def parse(path, columns, needed, advice, stream=None, progress=None):
-    """(table, rows, line numbers, starts, notes) of a text file or binary stream."""
-    with contextlib.ExitStack() as stack:
-        if stream is None:
-            stream = stack.enter_context(open(path, "rb"))
-        parser = None
+def parse(path, columns, needed, advice, progress=None):
+    """(table, rows, line numbers, starts, notes) of a text file."""
+    parser = None
+    with open(path, "rb") as stream:
         for block in blocks(path, stream, progress):
-            lines = lines_of(block)
-            skip = 0
+            lines, skip = lines_of(block), 0
             if parser is None:
                 table = Table(path, lines, columns, needed, advice)
                 parser, skip = Parser(table), table.first
@@ -347,30 +344,24 @@ def parse(path, columns, needed, advice, stream=None, progress=None):
     return (parser.table, *parser.finish())
 
 
-CHOOSE = "--columns chooses other columns"
-
-
-def read_table(path, columns=None, needed=3, stream=None):
+def read_table(path, columns=None, needed=3):
     """Rows of numbers of a text file.
 
     Returns (rows, line numbers, starts, notes): rows is an array of n * needed doubles, a start is
-    the index of a row that follows a blank line.
+    the index of a row that follows a blank line or one that begins with ">".
     """
     advice = f"a header line with {', '.join('xyz'[:needed])} tells the columns"
-    _, rows, numbers, starts, notes = parse(path, columns, needed, advice, stream)
+    _, rows, numbers, starts, notes = parse(path, columns, needed, advice)
     return rows[:, :needed].copy(), numbers, starts, notes
 
 
-def read_text(path, options, stream=None, progress=None):
+def read_text(path, options):
     """The points of a text file; numbers in other columns become point arrays.
 
-    stream    None, or what is read in place of the file: a binary stream
-    progress  None, or a function that is called with the fraction done
     Returns a Cloud. Ten million lines of x, y and z take some five seconds of one core and 0.8 GB.
     """
-    table, rows, numbers, _, notes = parse(
-        path, options.columns, 3, CHOOSE, stream, progress or options.progress
-    )
+    advice = "--columns chooses other columns"
+    table, rows, numbers, _, notes = parse(path, options.columns, 3, advice, options.progress)
     if table.downwards and not options.depth:
         notes.append(table.downwards)
     cloud = Cloud(None, notes, lines=numbers)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which columns of a text table are x, y and z, in the exports that people have."""
 
-import io
 import math
 import os
 import sys
@@ -474,7 +473,7 @@ class OtherColumns(Tables):
         values = self.arrays(cloud)["q"]
         self.assertTrue(math.isnan(values[-1]) and math.isnan(values[-2]))
         self.assertEqual(values[7], 7.5)
-        self.assertIn("column q: 1 words are no numbers", cloud.notes)
+        self.assertIn("column q: 1 word is no number", cloud.notes)
 
     def test_rows_without_data_take_their_values_along(self):
         cloud = self.read("x y z q\n1 2 3 10\n4 5 -9 20\n6 7 9 30\n", no_data=-9.0)
@@ -526,19 +525,11 @@ class Parsing(Tables):
         bad = line * (count - 1000) + b"1 two 3\n"
         self.assertIn(f"line {count - 999}: 'two' in column 2 (y)", self.refusal(bad))
 
-    def test_a_stream_is_read_in_place_of_the_file(self):
-        cloud = read_text("-", ReadOptions(), stream=io.BytesIO(b"1 2 3\n4 5 7\n"))
-        self.assert_coordinates(cloud, [(1, 2, 3), (4, 5, 7)])
-
     def test_progress_is_told(self):
         seen = []
         path = self.file("1 2 3\n4 5 6\n")
-        read_text(path, ReadOptions(), progress=seen.append)
         read_text(path, ReadOptions(progress=seen.append))
-        self.assertEqual(seen, [1.0, 1.0])
-        # What is no file tells no fraction.
-        read_text(path, ReadOptions(progress=seen.append), stream=io.BytesIO(b"1 2 3\n4 5 6\n"))
-        self.assertEqual(seen, [1.0, 1.0])
+        self.assertEqual(seen, [1.0])
 
     def test_lines_with_more_words_are_told(self):
         cloud = self.read("1 2 3\n4 5 6\n7 8 9 10\n5 5 5\n")
