@@ -20,7 +20,7 @@ from .messages import ElevationSurfaceError, FileError, PictureError, did_you_me
 from .grids import write_prj
 from .gdal_common import name_of, reference_of
 from .outputs import OUTPUTS, beside, check_gdal, default_name, write_output
-from .paths import check_suffix, check_writable
+from .paths import check_suffix, check_writable, partial_path
 from .reconstruction import PROPERTIES, check_spacing, run_chain
 from .report import picture_subtitle, print_report
 from .supervisor import note_partial_file
@@ -280,9 +280,7 @@ class Results:
         self.pending = []
 
     def add(self, path, write):
-        folder, name = os.path.split(path)
-        stem, suffix = os.path.splitext(name)
-        partial = os.path.join(folder, f".{stem}.{os.getpid()}.partial{suffix}")
+        partial = partial_path(path)
         self.pending.append((partial, path))
         note_partial_file(partial)
         try:
@@ -415,7 +413,14 @@ class Run:
     def set_crs(self, cloud):
         """What --crs says counts, and is told where the file says something else."""
         crs = self.options.crs
-        if crs and cloud.crs and not reference_of(crs).IsSame(reference_of(cloud.crs)):
+        try:
+            found = reference_of(cloud.crs)
+        except ImportError:
+            found = None  # nothing that needs GDAL is asked for
+        except ValueError as error:
+            cloud.notes.append(f"the file's {error}; see --crs")
+            cloud.crs = found = None
+        if crs and found and not reference_of(crs).IsSame(found):
             cloud.notes.append(f"--crs {crs} is taken, not {name_of(cloud.crs)} of the file")
         cloud.crs = crs or cloud.crs
 

@@ -4,14 +4,13 @@
 
 import dataclasses
 import math
-import os
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .gdal_common import gdal_module, reference_of, write_through_memory
 from .messages import ElevationSurfaceError
-from .paths import suffix_of
+from .paths import plain_stem, suffix_of
 from .screen_mesh import corner_flags, slices
 
 MOST_PIXELS = 250_000_000
@@ -79,8 +78,16 @@ def covered(points, triangles, x, y, step):
 
     corners  (n, 3) points; pixels (n,) places in the grid; weights three (n,) of the corners
     """
-    corner_y = points[triangles, 1]
-    low, high = corner_y.min(axis=1), corner_y.max(axis=1)
+
+    def box(axis):
+        a, b, c = (points[triangles[:, i], axis] for i in range(3))
+        return (end(end(a, b), c) for end in (numpy.minimum, numpy.maximum))
+
+    # Only triangles whose box has the centre of a pixel.
+    low, high = box(0)
+    reach = numpy.ceil((low - x[0]) / step - NEAR) <= numpy.floor((high - x[0]) / step + NEAR)
+    triangles = triangles[reach]
+    low, high = box(1)
     start = numpy.ceil((y[0] - high) / step - NEAR).astype("i8")
     stop = numpy.floor((y[0] - low) / step + NEAR).astype("i8") + 1
     start, stop = numpy.maximum(start, 0), numpy.minimum(stop, len(y))
@@ -202,10 +209,9 @@ def write_zmap(grid, path, _crs, progress):
     """ZMAP+ with nodes at the centres of pixels. GDAL's writer rounds the places of nodes."""
     rows, columns = grid.z.shape
     outside = no_data_value(grid.z)
-    name = os.path.splitext(os.path.basename(path))[0].lstrip(".").split(".")[0]
     head = [
         "! elevations of a surface, columns from west to east, each from north to south",
-        f"@{name}, GRID, 5",
+        f"@{plain_stem(path)}, GRID, 5",
         f"20, {outside}, , 7, 1",
         f"{rows}, {columns}, "
         + ", ".join(repr(float(v)) for v in (grid.x[0], grid.x[-1], grid.y[-1], grid.y[0])),

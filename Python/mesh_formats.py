@@ -3,7 +3,6 @@
 """Writes triangles as PLY, GLB and GOCAD surface: VTK has singles there, or no writer."""
 
 import json
-import os
 import struct
 
 import numpy
@@ -11,6 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 
 from .clouds import cells_of, make_points
+from .paths import plain_stem
 from .screen_mesh import corner_flags, slices
 from .xml_writer import named_arrays
 
@@ -110,8 +110,7 @@ def write_ts(data, path, crs, progress):
     for name, column in mesh.columns().items():
         names.append(name)
         columns.append(column)
-    stem = os.path.splitext(os.path.basename(path))[0]
-    head = ["GOCAD TSurf 1", "HEADER {", f"name:{stem}", "}"]
+    head = ["GOCAD TSurf 1", "HEADER {", f"name:{plain_stem(path)}", "}"]
     head += ["GOCAD_ORIGINAL_COORDINATE_SYSTEM", "NAME Default"]
     head += ['AXIS_NAME "X" "Y" "Z"', "ZPOSITIVE Elevation", "END_ORIGINAL_COORDINATE_SYSTEM"]
     if crs:

@@ -3,12 +3,26 @@
 """Which files can be read and written, told before any work is done."""
 
 import os
+import re
 
 from .messages import FileError
 
 
 def suffix_of(path):
     return os.path.splitext(path)[1].lower()
+
+
+def partial_path(path):
+    """Where a result is written until it is whole."""
+    folder, name = os.path.split(path)
+    stem, suffix = os.path.splitext(name)
+    return os.path.join(folder, f".{stem}.{os.getpid()}.partial{suffix}")
+
+
+def plain_stem(path):
+    """a.b of x/a.b.xyz, and of its partial_path()."""
+    stem = os.path.splitext(os.path.basename(path))[0]
+    return re.sub(r"^\.(.*)\.\d+\.partial$", r"\1", stem)
 
 
 def check_readable(path):

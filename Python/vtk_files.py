@@ -9,6 +9,7 @@ import warnings
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkImageData,
     vtkPointSet,
@@ -115,7 +116,7 @@ def read_points(path, options):
             return points_of_grid(path, data)
         if not isinstance(data, vtkPointSet):
             raise FileError(f"{path}: holds a {data.GetClassName()}, which has no points")
-        cloud = Cloud(data)
+        cloud = Cloud(data, crs=crs_of(data))
         vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
         if data.GetNumberOfCells() > vertices:
             cloud.notes.append("only the points are used, not the file's cells")
@@ -128,6 +129,13 @@ def read_points(path, options):
         if note:
             cloud.notes.append(note)
     return cloud
+
+
+def crs_of(data):
+    """The words of the field array CRS, where this package writes them; or None."""
+    words = data.GetFieldData().GetAbstractArray("CRS")
+    has_words = isinstance(words, vtkStringArray) and words.GetNumberOfValues() == 1
+    return words.GetValue(0) if has_words else None
 
 
 # The word before a vertex in text.

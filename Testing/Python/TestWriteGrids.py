@@ -244,6 +244,17 @@ class CommandLine(InFolder):
             self.assertEqual(hole["centre"], [0.5 * (x0 + x1), 0.5 * (y0 + y1)])
             self.assertAlmostEqual(hole["size"], ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5)
 
+    def test_a_coordinate_reference_system_is_kept_from_file_to_file(self):
+        self.assertEqual(self.call(self.name, "--crs", "EPSG:25832").returncode, 0)
+        done = self.call("a_surface.vtp", "--grid", "5", "-o", "b.ts")
+        self.assertIn("ETRS89 / UTM zone 32N (EPSG:25832)", done.stdout)
+        with open(self.path("b.ts"), encoding="utf-8") as stream:
+            self.assertIn("\nname:b\n", stream.read())
+        done = self.call("b_grid.tif", "--crs", "EPSG:25833", "--grid", "5", "--grid-output", "c.tif")
+        self.assertIn("--crs EPSG:25833 is taken, not ETRS89 / UTM zone 32N", done.stdout)
+        data = gdal.Open(self.path("c.tif"))
+        self.assertEqual(data.GetSpatialRef().GetAuthorityCode(None), "25833")
+
     def test_what_could_not_be_written_is_refused_at_once(self):
         for words, arguments in (
             ("--grid takes a number above 0, not '0'", ("--grid", "0")),
