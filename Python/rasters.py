@@ -86,17 +86,38 @@ def choose_band(path, data, options, notes):
     return data.GetRasterBand(number)
 
 
-def placement(data, notes):
-    """(x0, dx/dcolumn, dx/drow, y0, dy/dcolumn, dy/drow) of pixel centres."""
+def axes_of(path, band):
+    """x of the columns and y of the rows of a netCDF variable whose steps differ, else None.
+
+    GDAL takes the last row first where it finds no steps.
+    """
+    gdal = gdal_module()
+    try:
+        group = gdal.OpenEx(path, gdal.OF_MULTIDIM_RASTER).GetRootGroup()
+        dimensions = group.OpenMDArray(band.GetMetadataItem("NETCDF_VARNAME")).GetDimensions()
+        y, x = (d.GetIndexingVariable().ReadAsArray().astype("f8") for d in dimensions[-2:])
+    except (AttributeError, TypeError, ValueError, RuntimeError):
+        return None
+    return x, y[::-1]
+
+
+def placement(path, data, band, notes):
+    """A function that gives x and y of the pixel centres in a row."""
     found = data.GetGeoTransform(can_return_null=True)
+    column = numpy.arange(data.RasterXSize, dtype="f8")
     if found:
         x, a, b, y, d, e = found
-        return x + 0.5 * (a + b), a, b, y + 0.5 * (d + e), d, e
+        x, y = x + 0.5 * (a + b), y + 0.5 * (d + e)
+        return lambda row: (x + a * column + b * row, y + d * column + e * row)
+    axes = axes_of(path, band)
+    if axes:
+        notes.append("the steps of x and y differ")
+        return lambda row: (axes[0], numpy.full(len(column), axes[1][row]))
     why = "no georeferencing in the file"
     if data.GetGCPCount():
         why = "placed by ground control points only, which are not applied (see gdalwarp)"
     notes.append(f"{why}: x and y are column and row, from bottom left")
-    return 0.0, 1.0, 0.0, data.RasterYSize - 1.0, 0.0, -1.0
+    return lambda row: (column, numpy.full(len(column), data.RasterYSize - 1.0 - row))
 
 
 def note_of_dem(path):
@@ -150,20 +171,18 @@ def read_points(path, options):
         data, notes = open_raster(path, options)
         band = choose_band(path, data, options, notes)
         notes += notes_of_raster(path, data, band, options)
-        x0, a, b, y0, d, e = placement(data, notes)
-        columns, rows = data.RasterXSize, data.RasterYSize
-        column = numpy.arange(columns, dtype="f8")
-        points, count = numpy.empty((rows * columns, 3)), 0
+        place = placement(path, data, band, notes)
+        points, count = numpy.empty((data.RasterYSize * data.RasterXSize, 3)), 0
         for first, z, valid in blocks(path, band, options.no_data):
             for row, (values, keep) in enumerate(zip(z, valid), first):
                 here = points[count : count + int(numpy.count_nonzero(keep))]
-                here[:, 0] = (x0 + a * column + b * row)[keep]
-                here[:, 1] = (y0 + d * column + e * row)[keep]
+                x, y = place(row)
+                here[:, 0], here[:, 1] = x[keep], y[keep]
                 here[:, 2] = values[keep]
                 count += len(here)
         reference = data.GetSpatialRef()
     if count == 0:
-        raise FileError(f"{path}: all {rows * columns:,} pixels are without data")
+        raise FileError(f"{path}: all {len(points):,} pixels are without data")
     cloud = Cloud(make_points(points[:count], copy=False), notes)
     if count < len(points):
         cloud.left_out["pixels without data"] = len(points) - count

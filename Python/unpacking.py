@@ -43,7 +43,7 @@ def copy(source, target, shown):
 
 @contextlib.contextmanager
 def unpacked(path):
-    """Gives the path of a plain file: of "-" what standard input holds, of a packed one what it holds.
+    """Gives the path of a plain file with what standard input ("-") or a packed file holds.
 
     Such a file lies in a folder that goes away. Errors name the file that the user named.
     """
@@ -59,7 +59,8 @@ def unpacked(path):
         opener = os.path.getsize(local) and opener_of(local)
         if opener:
             folder = stack.enter_context(tempfile.TemporaryDirectory())
-            packed, local = local, os.path.join(folder, os.path.basename(os.path.splitext(local)[0]))
+            packed, name = local, os.path.basename(os.path.splitext(local)[0])
+            local = os.path.join(folder, name)
             with opener(packed) as source:
                 copy(source, local, shown)
         try:

@@ -20,7 +20,8 @@ def open_file(path):
     """The dataset of a file, open for reading."""
     gdal = gdal_module()
     with open(path, "rb") as stream:
-        kind = "CSV" if is_table_with_geometry(stream.read(HEAD), path) else kind_of(path, "vectors")
+        is_table = is_table_with_geometry(stream.read(HEAD), path)
+    kind = "CSV" if is_table else kind_of(path, "vectors")
     if kind is None:
         raise FileError(f"{path}: GDAL knows no vector format that this could be")
     settings = OPEN_OPTIONS.get(kind, [])
@@ -194,8 +195,8 @@ def read_points(path, options):
     if numpy.isnan(coordinates[:, 2]).all():
         names = ", ".join(layer.fields) or "none"
         raise FileError(
-            f"{path}: the points are flat, and no attribute is named as an elevation; choose one by "
-            f"--columns x,y,NAME; attributes: {names}"
+            f"{path}: the points are flat, and no attribute is named as an elevation; choose "
+            f"one by --columns x,y,NAME; attributes: {names}"
         )
     kinds = {kind for kind, _ in layer.parts} - {"point"}
     if kinds:

@@ -19,13 +19,13 @@ IRAP = "-996 2 10.0 5.0\n1000.5 1020.5 200.25 205.25\n3 0.0 1000.5 200.25\n0 0 0
 IRAP += "0 1 2 100\n9999900.0000 102\n"
 CPS3 = 'FSASCI 0 1 "Computed" 0 0.1E+31 0\nFSATTR 0 0\nFSLIMI 1000.5 1020.5 200.25 205.25 0 102\n'
 CPS3 += "FSNROW 2 3\nFSXINC 10.0 5.0\n->Depth map\n100 0\n0.1E+31 1 102\n2\n"
-EARTHVISION = "# Type: scattered data\n# Version: 6\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z meters\n"
+EARTHVISION = "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z meters\n# a\n"
 EARTHVISION += "# Field: 4 column integer\n# Field: 5 row integer\n# Null_value: 0.1e31\n# End:\n"
 EARTHVISION += "".join(
     f"{x} {y} {z if z != 101.0 else '0.1e31'} {i % 3 + 1} {i // 3 + 1}\n"
     for i, (x, y, z) in enumerate(NODES)
 )
-PETREL = "# Petrel Points with attributes\n# Unit in X and Y direction: m\nVERSION 1\nBEGIN HEADER\n"
+PETREL = "# Petrel Points with attributes\n# Unit in X and Y: m\nVERSION 1\nBEGIN HEADER\n"
 PETREL += "X\nY\nZ\nFLOAT,Amplitude\nEND HEADER\n"
 PETREL += "".join(f"{x} {y} {z} {2 * z}\n" for x, y, z in KNOWN)
 SURFACE = """GOCAD TSurf 1
@@ -76,7 +76,8 @@ SEG 1 2
 END
 """
 GMT = "# made by hand\n> first -Z12.5\n0 0\n5 0\n5 5\n> second\n8 8 4\n9 9 5\n9 8 6\n"
-IRAP_LINES = "0 0 1\n5 0 2\n5 5 3\n999.000000 999.000000 999.000000\n8 8 4\n9 9 5\n9 8 6\n999.0 999.0 999.0\n"
+IRAP_LINES = "0 0 1\n5 0 2\n5 5 3\n999.000000 999.000000 999.000000\n"
+IRAP_LINES += "8 8 4\n9 9 5\n9 8 6\n999.0 999.0 999.0\n"
 CPS3_LINES = "FFASCI 0 0 COMPUTED\nFFATTR 0 1\n->1\n0 0 1\n5 0 2\n5 5 3\n->2\n8 8 4\n9 9 5\n9 8 6\n"
 
 
@@ -97,9 +98,8 @@ def lines_of(data):
 class Horizons(InFolder):
     def test_formats_of_horizons_are_known_by_content_and_exact(self):
         record = numpy.array(KNOWN)
-        named = numpy.array(
-            [(z, x, y, 7) for x, y, z in KNOWN], [("z", "f8"), ("x", "f8"), ("y", ">f8"), ("q", "i4")]
-        )
+        fields = [("z", "f8"), ("x", "f8"), ("y", ">f8"), ("q", "i4")]
+        named = numpy.array([(z, x, y, 7) for x, y, z in KNOWN], fields)
         for name, content, rows, left_out in (
             ("irap grid", IRAP, KNOWN, 1),
             ("cps-3 grid", CPS3, KNOWN, 1),
@@ -128,10 +128,8 @@ class Horizons(InFolder):
         text = IRAP.replace("3 0.0 1000.5 200.25", "3 30.0 1000.5 200.25")
         points = coordinates(self.read(text, "a.irap", keep_nulls=True))
         c, s = math.cos(math.radians(30)), math.sin(math.radians(30))
-        expected = [
-            (1000.5 + c * (x - 1000.5) - s * (y - 200.25), 200.25 + s * (x - 1000.5) + c * (y - 200.25), z)
-            for x, y, z in KNOWN
-        ]
+        away = [(x - 1000.5, y - 200.25, z) for x, y, z in KNOWN]
+        expected = [(1000.5 + c * x - s * y, 200.25 + s * x + c * y, z) for x, y, z in away]
         numpy.testing.assert_allclose(points, expected, rtol=1e-14)
 
     def test_columns_beside_coordinates_become_point_arrays(self):

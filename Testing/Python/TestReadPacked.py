@@ -32,7 +32,8 @@ class Packed(InFolder):
         return [("a.xyz", TEXT, ROWS), ("a.asc", GRID, GRID_ROWS), ("a.vtp", vtp, ROWS)]
 
     def test_packed_files_of_every_format_are_unpacked(self):
-        for suffix, pack in ((".gz", gzip.compress), (".bz2", bz2.compress), (".xz", lzma.compress)):
+        packers = ((".gz", gzip.compress), (".bz2", bz2.compress), (".xz", lzma.compress))
+        for suffix, pack in packers:
             for name, content, rows in self.contents():
                 with self.subTest(name=name + suffix):
                     cloud = self.read(pack(content), name + suffix)

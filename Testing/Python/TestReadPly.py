@@ -127,7 +127,7 @@ class Ply(InFolder):
         for words, content in (
             ("its header has no end", text[:60]),
             ("its header has no end", text.split("end_header")[0]),
-            ("line 4: 'element vertex four' means nothing", text.replace("vertex 4", "vertex four")),
+            ("line 4: 'element vertex q' means nothing", text.replace("vertex 4", "vertex q")),
             ("line 5: 'property real x' means nothing", text.replace("double x", "real x")),
             ("names no format", text.replace("format ascii 1.0", "comment")),
             ("line 2: 'format utf8 1.0' means", text.replace("format ascii", "format utf8")),

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Rasters of every kind: nodes where the files say, no-data, scale, bands, damage."""
 
+import os
 import struct
 import sys
 import unittest
@@ -56,7 +57,7 @@ def raster(path, z=Z, place=PLACE, no_data=-9999.0, driver="GTiff", kind=None, *
 
 
 def surfer7(columns, rows, values):
-    """A Surfer 7 grid with its nodes at x = 10, 12, ... and y = 30, 35, ..., from south to north."""
+    """A Surfer 7 grid with its nodes at x = 10, 12, ... and y = 30, 35, ..., the south first."""
     head = struct.pack("<4sii", b"DSRB", 4, 2) + struct.pack("<4si", b"GRID", 72)
     head += struct.pack("<ii8d", rows, columns, 10.0, 30.0, 2.0, 5.0, 0.0, 21.0, 0.0, 1.70141e38)
     data = numpy.array(values, "<f8").tobytes()
@@ -263,19 +264,20 @@ class Pixels(InFolder):
 
 
 class Variables(InFolder):
-    def netcdf(self, *names):
-        """One netCDF file of several variables of 2 x 2 nodes."""
+    def netcdf(self, *names, x=(1.0, 3.0), y=(10.0, 20.0)):
+        """One netCDF file of several variables on the same nodes."""
         folder = self.path("several.nc")
         data = gdal.GetDriverByName("netCDF").CreateMultiDimensional(folder)
         group = data.GetRootGroup()
         kind = gdal.ExtendedDataType.Create(gdal.GDT_Float64)
-        axes = [group.CreateDimension(name, "", "", 2) for name in ("y", "x")]
-        for dimension, values in zip(axes, ((10.0, 20.0), (1.0, 3.0))):
+        axes = [group.CreateDimension(n, "", "", len(v)) for n, v in (("y", y), ("x", x))]
+        for dimension, values in zip(axes, (y, x)):
             array = group.CreateMDArray(dimension.GetName(), [dimension], kind)
             array.Write(numpy.array(values))
         for i, name in enumerate(names):
             array = group.CreateMDArray(name, axes, kind)
-            array.Write(100.0 * i + numpy.array([[1.0, 2.0], [3.0, 4.0]]))
+            values = 100.0 * i + 1.0 + numpy.arange(float(len(x) * len(y)))
+            array.Write(values.reshape(len(y), len(x)))
         array = group = data = axes = None
         return folder
 
@@ -287,6 +289,17 @@ class Variables(InFolder):
         self.assertTrue(any("variable elevation (of quality" in note for note in cloud.notes))
         cloud = reading.read(path, layer="quality")
         self.assertEqual(coordinates(cloud)[0].tolist(), [1, 20, 3])
+
+    def test_steps_of_x_and_y_may_differ(self):
+        x = (1.0, 3.0, 4.0)
+        for y in ((10.0, 20.0, 40.0), (40.0, 20.0, 10.0)):
+            with self.subTest(y=y):
+                cloud = reading.read(self.netcdf("z", x=x, y=y))
+                rows = sorted(tuple(row) for row in coordinates(cloud).tolist())
+                nodes = [(x[i], y[j], 1.0 + 3 * j + i) for j in range(3) for i in range(3)]
+                self.assertEqual(rows, sorted(nodes))
+                self.assertIn("the steps of x and y differ", cloud.notes)
+                os.remove(self.path("several.nc"))
 
     def test_what_cannot_be_decided_is_asked(self):
         path = self.netcdf("a", "b")
@@ -371,7 +384,7 @@ class Damage(InFolder):
         for words, options in (
             ("there is no band 2; it has 1", {"band": 2}),
             ("has no layers", {"layer": "z"}),
-            ("--columns is for text files and vector files; this is a raster", {"columns": ["1", "2", "3"]}),
+            ("--columns is for text files and vector files; this", {"columns": ["1", "2", "3"]}),
         ):
             with self.subTest(words=words):
                 with self.assertRaisesRegex(reading.FileError, words):
