@@ -5,7 +5,6 @@
 import argparse
 import copy
 import dataclasses
-import json
 import math
 import os
 import re
@@ -16,28 +15,18 @@ import numpy
 
 from . import reading
 from .clouds import ReadOptions, antimeridian_note, merged
-from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
-from .grids import write_prj
 from .gdal_common import name_of, reference_of
+from .grids import write_prj
+from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
 from .outputs import OUTPUTS, beside, check_gdal, default_name, write_output
-from .paths import check_suffix, check_writable, partial_path
+from .paths import check_suffix, check_writable
 from .reconstruction import PROPERTIES, check_spacing, run_chain
 from .report import picture_subtitle, print_report
-from .supervisor import note_partial_file
+from .results import Failure, Progress, Results, WrongOption, write_report
 
 HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "help.txt")
-
-
-class Failure(ElevationSurfaceError):
-    """Something the user must know in one line; nothing is written."""
-
-
-class WrongOption(Failure):
-    """A Failure of the command line: the exit code is 2."""
-
-
-READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
 COLOURS = ("elevation", "error")
+READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
 
 
 def elevation_factor(text):
@@ -246,74 +235,6 @@ def options_of(options, files):
     if options.report == "":
         options.report = stem + ".json"
     return options
-
-
-class Progress:
-    """One line on a terminal that fills from left to right; silent anywhere else."""
-
-    def __init__(self, on):
-        self.on = on
-        self.shown = None
-
-    def __call__(self, text, fraction):
-        state = (text, int(100 * fraction))
-        if self.on and state != self.shown:
-            self.shown = state
-            bar = "#" * int(30 * fraction)
-            sys.stderr.write(f"\r{text:<16}[{bar:<30}] {state[1]:3d} %")
-            sys.stderr.flush()
-
-    def clear(self):
-        if self.on and self.shown:
-            sys.stderr.write("\r" + " " * 60 + "\r")
-            sys.stderr.flush()
-            self.shown = None
-
-
-class Results:
-    """Files that appear together at the end, or not at all.
-
-    Each is written beside its final place and renamed when all are whole.
-    """
-
-    def __init__(self):
-        self.pending = []
-
-    def add(self, path, write):
-        partial = partial_path(path)
-        self.pending.append((partial, path))
-        note_partial_file(partial)
-        try:
-            return write(partial)
-        except PictureError:
-            self.pending.pop()
-            raise
-        except (OSError, FileError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            reason = reason.replace(partial, path)
-            raise Failure(f"{path}: cannot be written: {reason}") from None
-
-    def publish(self):
-        for partial, path in self.pending:
-            try:
-                os.replace(partial, path)
-            except OSError as error:
-                raise Failure(f"{path}: cannot be written: {error.strerror}") from None
-        self.pending = []
-
-    def discard(self):
-        for partial, _ in self.pending:
-            try:
-                os.remove(partial)
-            except OSError:
-                pass
-        self.pending = []
-
-
-def write_report(path, report):
-    with open(path, "w", encoding="utf-8") as stream:
-        json.dump(report, stream, indent=1)
-        stream.write("\n")
 
 
 def about(options):

@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a run shows and leaves: progress, files that appear together, errors."""
+
+import json
+import os
+import sys
+
+from .messages import ElevationSurfaceError, FileError, PictureError
+from .paths import partial_path
+from .supervisor import note_partial_file
+
+
+class Failure(ElevationSurfaceError):
+    """Something the user must know in one line; nothing is written."""
+
+
+class WrongOption(Failure):
+    """A Failure of the command line: the exit code is 2."""
+
+
+class Progress:
+    """One line on a terminal that fills from left to right; silent anywhere else."""
+
+    def __init__(self, on):
+        self.on = on
+        self.shown = None
+
+    def __call__(self, text, fraction):
+        state = (text, int(100 * fraction))
+        if self.on and state != self.shown:
+            self.shown = state
+            bar = "#" * int(30 * fraction)
+            sys.stderr.write(f"\r{text:<16}[{bar:<30}] {state[1]:3d} %")
+            sys.stderr.flush()
+
+    def clear(self):
+        if self.on and self.shown:
+            sys.stderr.write("\r" + " " * 60 + "\r")
+            sys.stderr.flush()
+            self.shown = None
+
+
+class Results:
+    """Files that appear together at the end, or not at all.
+
+    Each is written beside its final place and renamed when all are whole.
+    """
+
+    def __init__(self):
+        self.pending = []
+
+    def add(self, path, write):
+        partial = partial_path(path)
+        self.pending.append((partial, path))
+        note_partial_file(partial)
+        try:
+            return write(partial)
+        except PictureError:
+            self.pending.pop()
+            raise
+        except (OSError, FileError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            reason = reason.replace(partial, path)
+            raise Failure(f"{path}: cannot be written: {reason}") from None
+
+    def publish(self):
+        for partial, path in self.pending:
+            try:
+                os.replace(partial, path)
+            except OSError as error:
+                raise Failure(f"{path}: cannot be written: {error.strerror}") from None
+        self.pending = []
+
+    def discard(self):
+        for partial, _ in self.pending:
+            try:
+                os.remove(partial)
+            except OSError:
+                pass
+        self.pending = []
+
+
+def write_report(path, report):
+    with open(path, "w", encoding="utf-8") as stream:
+        json.dump(report, stream, indent=1)
+        stream.write("\n")
