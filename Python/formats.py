@@ -163,21 +163,40 @@ FORMATS = (
 )
 
 
+ARCHIVE = rb"PK\x03\x04(?!(?s:.{26}[^\0]{0,99}\.kml))"  # one that is no .kmz
+# What people try that holds no points, or none that are read: (what it begins with, what to do).
+FOREIGN = tuple(
+    (re.compile(pattern, re.IGNORECASE), words)
+    for pattern, words in (
+        (ARCHIVE, "is an archive: unpack it, or save a table as .csv"),
+        (rb"%PDF", "is a PDF document"),
+        (rb"\s*<(!doctype )?html", "is a web page"),
+        (rb"ASTM-E57", "is an E57 file, which is not read: convert it to .las or .ply"),
+        (rb"# \.PCD|(#[^\n]*\n)*VERSION [.\d]+\s*\nFIELDS", "is a PCD file: convert it to .ply"),
+        (rb"\s*~V", "is a well log, not a LAS file of points"),
+        (rb"C?OFF\s", "is an OFF file, which is not read: convert it to .ply"),
+        (rb"glTF", "is a glTF file, which is not read: convert it to .ply or .obj"),
+    )
+)
+
+
 def recognise(path):
     """(Format, notes) of a file. Raises FileError for what is of no known kind."""
     with open(path, "rb") as stream:
         head = stream.read(HEAD)
+    for pattern, words in FOREIGN:
+        if pattern.match(head):
+            raise FileError(f"{path}: {words}")
     suffix = suffix_of(path)
     named = [kind for kind in FORMATS if suffix in kind.suffixes.split()]
     for kind in FORMATS:
         if kind.is_it(head, path):
             if named and kind.name not in [other.name for other in named]:
-                return kind, [f"by its content this is {kind.name}, not {named[0].name}"]
+                return kind, [f"by its content this is {kind.name}, not {named[-1].name}"]
             return kind, []
     if named:
         return named[0], []
-    ending = suffix or "a file without suffix"
-    raise FileError(f"{path}: {ending} that holds none of what can be read: {all_suffixes()}")
+    raise FileError(f"{path}: is of no kind that can be read: {all_suffixes()}")
 
 
 def all_suffixes():

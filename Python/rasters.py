@@ -8,6 +8,7 @@ from .clouds import Cloud, make_points
 from .formats import numbers_of
 from .gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from .messages import FileError
+from .paths import suffix_of
 
 # Text of decimals would else become single precision, plain axes x and y be overlooked.
 OPEN_OPTIONS = {
@@ -18,6 +19,11 @@ OPEN_OPTIONS = {
 # GDAL takes words for 0 in these, and does not count their numbers.
 TEXT_KINDS = ("AAIGrid", "GRASSASCIIGrid", "GSAG", "ZMap")
 IN_NUMBERS = b" \t\r\n+-.,*0123456789eEdDnNaAiIfF#"
+HINTS = {
+    ".flt": "; is its .hdr beside it?",
+    ".bil": "; is its .hdr beside it?",
+    ".hgt": "; its name must tell its place, as N45E006.hgt, and its size be whole",
+}
 # Pixels that are read at once.
 AT_ONCE = 1 << 22
 
@@ -27,7 +33,8 @@ def open_raster(path, options):
     gdal = gdal_module()
     kind = kind_of(path, "raster")
     if kind is None:
-        raise FileError(f"{path}: GDAL knows no raster format that this could be")
+        hint = HINTS.get(suffix_of(path), "")
+        raise FileError(f"{path}: GDAL knows no raster format that this could be{hint}")
     # What a ZMAP+ file tells are the places of its nodes.
     gdal.SetConfigOption("ZMAP_PIXEL_IS_POINT", "YES")
     try:

@@ -18,20 +18,26 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from .clouds import Cloud, make_points
+from .formats import FORMATS, HEAD
 from .messages import FileError, Messages
 from .paths import suffix_of
 from .rasters import points_of_raster
 from .vtk_checks import check, survives
 
+
 def kind_of(path):
     """The suffix that the file's content ought to have."""
     with open(path, "rb") as stream:
-        head = stream.read(4096)
+        head = stream.read(HEAD)
     found = re.search(rb"<VTKFile[^>]*\btype\s*=\s*[\"'](\w+)", head)
-    if found and found.group(1) in XML_KINDS:
+    if found and found.group(1) not in XML_KINDS:
+        kind = found.group(1).decode()
+        raise FileError(f"{path}: holds a {kind}, which is not read; save its parts")
+    if found:
         return XML_KINDS[found.group(1)]
-    if head.startswith(b"# vtk DataFile"):
-        return ".vtk"
+    for kind in FORMATS:
+        if kind.module == "vtk_files" and kind.is_it(head, path):
+            return kind.suffixes.split()[0]
     return suffix_of(path)
 
 
@@ -61,7 +67,7 @@ def vtk_reader(suffix):
             ".vts": vtkIOXML.vtkXMLStructuredGridReader,
             ".vtr": vtkIOXML.vtkXMLRectilinearGridReader,
             ".vti": vtkIOXML.vtkXMLImageDataReader,
-        }[suffix]
+        }.get(suffix, vtkIOXML.vtkXMLPolyDataReader)
     return reader()
 
 

@@ -68,7 +68,7 @@ class Packed(InFolder):
                     stdin = types.SimpleNamespace(buffer=io.BytesIO(packed))
                     with mock.patch.object(sys, "stdin", stdin):
                         self.assert_rows(reading.read("-"), rows)
-        for words, content in (("is empty", b""), ("holds none of what", b"words\n")):
+        for words, content in (("is empty", b""), ("is of no kind that", b"words\n")):
             stdin = types.SimpleNamespace(buffer=io.BytesIO(content))
             with mock.patch.object(sys, "stdin", stdin):
                 with self.assertRaisesRegex(reading.FileError, "^standard input: .*" + words):
@@ -81,6 +81,45 @@ class Packed(InFolder):
         self.assertEqual(reading.read_faults(line).GetNumberOfPoints(), 2)
         with self.assertRaisesRegex(reading.FileError, "o.txt.gz: .*not closed"):
             reading.read_boundary(self.file("o.txt.gz", gzip.compress(b"0 0\n9 0\n9 9\n1 1\n")))
+
+
+class Foreign(InFolder):
+    def test_what_holds_no_points_is_named(self):
+        for words, name, content in (
+            ("is of no kind that can be read: .vtp", "a.abc", "words\n"),
+            ("is of no kind that can be read: .vtp", "none", bytes(range(256)) * 20),
+            ("is a web page", "a.xyz", "<!DOCTYPE html><html>404 1 2 3</html>"),
+            ("is a PDF document", "a.csv", b"%PDF-1.4\n1 0 obj\n<< /Length 44 100 200 >>\n"),
+            ("is an archive: unpack it", "a.xlsx", b"PK\3\4" + bytes(200)),
+            ("is a well log", "a.las", "~Version\nVERS. 2.0:\n~A\n100 45 3\n101 46 4\n102 47 5\n"),
+            ("is an OFF file", "a.off", "OFF\n3 1 0\n0 0 1\n1 0 1\n0 1 1\n3 0 1 2\n"),
+            ("is a PCD file", "a.pcd", "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\n1 2 3\n4 5 6\n"),
+            ("is an E57 file", "a.e57", b"ASTM-E57" + bytes(100)),
+            ("is a glTF file", "a.glb", b"glTF" + bytes(100)),
+            ("holds a Collection", "a.pvd", '<VTKFile type="Collection"><Collection/></VTKFile>'),
+            ("is not a text file", "a.xyz", bytes(1000)),
+            ("GDAL knows no vector format", "a.json", '{"a": [1, 2, 3]}'),
+            ("is its .hdr beside it?", "a.flt", bytes(range(64))),
+            ("its name must tell its place", "a.hgt", b"\1\0" * 1201),
+            ("cannot be read", "a.png", b"\x89PNG\r\n\x1a\n" + bytes(30)),
+        ):
+            with self.subTest(name=name, words=words):
+                self.assert_refused(words, content, name)
+
+    def test_a_mislabelled_file_is_read_as_what_it_is_with_a_note(self):
+        for name, content, note in (
+            ("a.tif", TEXT, "this is a text table, not a raster"),
+            ("a.las", TEXT, "this is a text table, not a LAS file"),
+            ("a.vtp", GRID, "this is a raster, not VTK's XML"),
+            ("a.csv", GRID, "this is a raster, not a text table"),
+            ("a.ply", b"GOCAD VSet 1\nVRTX 1 1 2 3\nEND\n", "this is a GOCAD file, not a PLY file"),
+            ("a.obj", b"v 1 2 3\nv 4 5 6\n", None),
+            ("a.txt", b"v 1 2 3\nv 4 5 6\n", "this is an OBJ file, not a text table"),
+            ("a.abc", TEXT, None),
+        ):
+            with self.subTest(name=name):
+                notes = [n for n in self.read(content, name).notes if "by its content" in n]
+                self.assertEqual(notes, [f"by its content {note}"] if note else [])
 
 
 if __name__ == "__main__":

@@ -747,7 +747,7 @@ class BadInput(Program):
         self.assert_refused("no.csv: no such file", "no.csv")
         os.mkdir(self.path("folder.csv"))
         self.assert_refused("folder.csv: is a folder", "folder.csv")
-        self.assert_refused("a.doc: .doc that holds none of", self.file("a.doc", "words\n"))
+        self.assert_refused("a.doc: is of no kind that can be read", self.file("a.doc", "words\n"))
         self.assert_refused("empty.xyz: is empty", self.file("empty.xyz", ""))
         self.assert_refused("words.txt: holds text, but no numbers", self.file("words.txt", "no\n"))
         self.assert_refused("two.txt: no line holds 3 numbers", self.file("two.txt", "1 2\n3 4\n"))
