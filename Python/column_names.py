@@ -20,7 +20,7 @@ AXES = (
     ("x", 1, "", _words(
         "easting eastings east rechtswert rechts rw ostwert ost oest este leste est abscisse "
         "abscissa abscisa absis oost oosting ostkoordinate wschod wschodnia ostkoordinat "
-        "oestkoordinat ostverdi eastcoordinate coordeste oosten rechtsw"
+        "oestkoordinat ostverdi eastcoordinate coordeste oosten rechtsw oestverdi"
     )),
     ("y", 1, "", _words(
         "northing northings north hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
@@ -33,9 +33,10 @@ AXES = (
         "hoeyde hoogte wysokosc rzedna topography level niveau rl orthoheight ellipheight "
         "gelaende gelande terrenghoyde terrenghoeyde moh maaiveld maaiveldhoogte bodemhoogte "
         "hoogteligging wys rzednaterenu pnm quotaslm altimetria altimetrie topo grundhoehe "
-        "bodenhoehe bodenhohe gok gokhoehe"
+        "bodenhoehe bodenhohe gok gokhoehe meereshohe meereshoehe hojde hoejde hoeydekote hae msl "
+        "nap nhn amsl"
     )),
-    ("x", 2, "", _words("e")),
+    ("x", 2, "", _words("e oe")),
     ("y", 2, "", _words("n")),
     ("z", 2, "", _words("h")),
     ("z", 2, "depth", _words(
@@ -65,8 +66,9 @@ BESIDE = _words(
     "orthometric orthometrique msl above sea surface top base gk rd lambert ngf nap nhn nn dhhn "
     "ground terrain water bed value val pos position posisjon wgs84 total station survey surveyed "
     "zone geografica geograficzna geographique geographische decimale z in du de la le den der "
-    "gridded slm snm nmm gnss rtk true average mbsl amsl asl navd ngvd odn lv rt sirgas ed "
-    "psad magna irenet osgb bng cs crs srs"
+    "gridded slm snm nmm gnss rtk true average mbsl amsl asl navd ngvd odn lv rt sirgas ed psad "
+    "magna irenet osgb bng cs crs srs seabed seafloor bottom dtm dem dgm dsm mdt bunn fond fondo "
+    "bodem grund uber ueber sobre sur over reduced boven l ii iii iv sjobunn"
 )
 # What a column with such a name is, when it is no coordinate. A name that holds one of the words of
 # "measure" is no coordinate whatever else it holds.
@@ -96,7 +98,8 @@ ROLES = (
         "intensity amplitude quality std stddev sigma sd rms error err uncertainty accuracy "
         "precision velocity speed heading pitch roll nx ny nz normal confidence hdop pdop vdop "
         "tide draft angle slope aspect undulation geoid dev deviation residual delta dx dy dz "
-        "thickness offset snr weight fold scan beam ping mean stdev count density tpu tvu thu fom"
+        "thickness offset snr weight fold scan beam ping mean stdev count density tpu tvu thu fom "
+        "antenna ant target instrument prism rod pole vel vx vy vz"
     )),
 )
 COLOURS = {
@@ -104,15 +107,18 @@ COLOURS = {
     "green": _words("green g gruen grun vert"),
     "blue": _words("blue b blau bleu"),
 }
-LETTERS = str.maketrans({"ø": "o", "æ": "ae", "ß": "ss", "ł": "l", "Ø": "O", "Ł": "L"})
+LETTERS_OF_AXES = _words("e oe n h")
+LETTERS = str.maketrans({"ø": "oe", "æ": "ae", "ß": "ss", "ł": "l", "Ø": "Oe", "Ł": "L"})
 
 
 def plain(text):
     """Without accents, apart at capitals and signs: "Höhe_NN (m)" -> ["hohe", "nn", "m"]."""
+    text = re.sub("Ø(?=[A-Z])", "OE", text)
     text = unicodedata.normalize("NFKD", text.translate(LETTERS))
     text = "".join(letter for letter in text if not unicodedata.combining(letter))
     text = re.sub(r"([a-z])([A-Z])|([A-Z])([A-Z][a-z])", r"\1\3 \2\4", text)
-    text = re.sub(r"\b(utm|coord|p|pos)?([xyz])(utm|coord|pos)?\b", r"\1 \2 \3", text.lower())
+    beside = r"(utm|p|pos|coord\w*|koord\w*)?"
+    text = re.sub(rf"\b{beside}([xyz]){beside}\b", r"\1 \2 \3", text.lower())
     return [word for word in re.split(r"[^a-z]+", text) if word]
 
 
@@ -138,7 +144,8 @@ def meaning(name):
     words = plain(outside) or plain(inside)
     joined = "".join(words)
     for role, names in ROLES:
-        if joined in names or role == "a measure" and any(word in names for word in words):
+        whole = joined in names and (len(words) == 1 or len(joined) > 3)  # "X L" is no "xl"
+        if whole or role == "a measure" and any(word in names for word in words):
             return Meaning(role=role)
     extra = [w for w in plain(inside) if any(w in names and r == 1 for _, r, _, names in AXES)]
     axis = _axis_of(words, joined, extra)
@@ -153,8 +160,8 @@ def meaning(name):
 def _axis_of(words, joined, extra):
     whole = [(a, r, d) for a, r, d, names in AXES if joined in names]
     found = [(a, r, d, w) for a, r, d, names in AXES for w in words if w in names]
-    if any(len(w) > 1 for _, _, _, w in found):
-        found = [one for one in found if one[3] not in "enh"]  # "Longitude_E"
+    # "Longitude_E": the word tells more than the letter.
+    found = [one for one in found if one[3] not in LETTERS_OF_AXES] or found
     found = whole or [one[:3] for one in found]
     found += [(a, r, d) for a, r, d, names in AXES for w in extra if w in names]
     if not found:

@@ -346,7 +346,7 @@ class Search:
         return len(numpy.unique(rows, axis=0)) == len(rows)
 
     def may_count(self, columns):
-        """Whether two columns may be line and trace before x and y: small, whole, in steps of one."""
+        """Whether the first two may be line and trace: small, whole, in steps of one."""
         if not all(self.is_whole(i) and abs(self.finite(i)).max() < 1e5 for i in columns[:2]):
             return False
         steps = abs(numpy.diff(self.values[: self.consecutive, columns[:2]], axis=0))

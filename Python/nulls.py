@@ -78,8 +78,10 @@ def doubts(x, y, z, lines):
             for i, low, high in single[:NAMED]
         ]
         more = ", ..." if len(single) > NAMED else ""
+        least = "at least " if len(single) == SUSPECTS else ""
+        plural = " is" if len(single) == 1 else "s are"
         notes.append(
-            f"{'at least ' * (len(single) == SUSPECTS)}{len(single):,} single elevation{'s are' if len(single) > 1 else ' is'} far from "
+            f"{least}{len(single):,} single elevation{plural} far from "
             f"all around: {', '.join(words)}{more}"
         )
     return notes

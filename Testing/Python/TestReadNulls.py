@@ -2,13 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Null values are taken out where they stand apart, doubtful ones and blunders are named."""
 
+import json
+import os
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
 import numpy
 from vtkelevationsurface.clouds import Cloud, ReadOptions, make_points, turn_over
 from vtkelevationsurface.nulls import take_out
+from vtkelevationsurface.reading import read
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 FLOAT_MAX = float(numpy.finfo("f4").max)
@@ -160,6 +165,33 @@ class Nulls(unittest.TestCase):
         cloud = Cloud(make_points(terrain(50)))
         turn_over(cloud)
         numpy.testing.assert_array_equal(coordinates(cloud), terrain(50) * (1, 1, -1))
+
+
+class Program(unittest.TestCase):
+    def report(self, folder, *options):
+        subprocess.run(
+            [sys.executable, "-m", "vtkelevationsurface", "a.csv", "--no-picture", "--report",
+             "r.json", *options],
+            cwd=folder, check=True, stdout=subprocess.DEVNULL,
+        )
+        with open(os.path.join(folder, "r.json"), encoding="utf-8") as stream:
+            return json.load(stream)
+
+    def test_the_options_reach_the_reader_and_the_report_counts(self):
+        rows = with_z(terrain(600), -9999.0, 60)
+        with tempfile.TemporaryDirectory() as folder:
+            numpy.savetxt(
+                os.path.join(folder, "a.csv"), rows, "%.2f", ",", header="X,Y,Depth", comments=""
+            )
+            report = self.report(folder)
+            self.assertEqual(report["points"], 540)
+            self.assertEqual(report["left_out"], {"null values (z = -9999)": 60})
+            self.assertTrue(any("--depth" in note for note in report["notes"]))
+            report = self.report(folder, "--keep-nulls", "--depth")
+            self.assertEqual((report["points"], report["left_out"]), (600, {}))
+            self.assertIn("z is turned over, as --depth says", report["notes"])
+            cloud = read(os.path.join(folder, "a.csv"), depth=True)
+            self.assertEqual(coordinates(cloud)[0, 2], -rows[rows[:, 2] != -9999.0][0, 2])
 
 
 class Blunders(unittest.TestCase):

@@ -4,6 +4,7 @@
 
 import math
 import os
+import re
 import sys
 import tempfile
 import time
@@ -11,6 +12,7 @@ import unittest
 
 import numpy
 from vtkelevationsurface.clouds import ReadOptions
+from vtkelevationsurface.column_names import meaning
 from vtkelevationsurface.messages import FileError
 from vtkelevationsurface.text import BLOCK, read_table, read_text
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -139,6 +141,34 @@ BARE = (
     ("code x y z", ",", "code x y z", "x = 2"),
     ("lon lat z id", ",", "lon lat z id", "look like degrees"),
 )
+
+
+# Names of columns, apart by bars, and what they mean.
+NAMES = (
+    ("x", "X|X_UTM|UTM_X|utmx|XCoord|xcoordinate|X-Koordinate|Coord.X|POINT_X|X (m)|x_m|CDP_X|"
+     "Eastings|E|E_UTM32|UTM32 E|Ostwert|RW|Est|Este|Leste|\u00d8st|Koordinat_\u00d8|Oost|Lon|LON_DD|"
+     "longitude_deg|L\u00e4nge|Lengdegrad|Lengtegraad|X (East)|Y (\u00d8st)|Y (Rechtswert)|X L93|"
+     "Coordenada Este|Grid East|Longitude_E|Wsp\u00f3\u0142rz\u0119dna X"),
+    ("y", "Y|Northing|NORTHING_FT|N|N_UTM|Hochwert|Nord|Norte|Noord|Ordonn\u00e9e|Lat|Breite|"
+     "Breddegrad|Szeroko\u015b\u0107|X (Nord)|X (Hochwert)|Latitude_N"),
+    ("z", "Z|Z_TWT|Elevation|Elev.|Elev_ft|H\u00f6he|Hoehe|H_NN2000|H\u00f8yde|Hoogte|Altitude (m)|"
+     "Altura|Cota|Cote|Quota s.l.m.|Wysoko\u015b\u0107|Rz\u0119dna|DEPTH_M|Tiefe|Dybde|TVDSS|TWT (ms)|"
+     "Ellip_Height|Ortho. Height|Reduced Level|WaterDepth|Seabed_Z|NAP|Meeresh\u00f6he"),
+    ("", "nx|NormalX|dx|StdDev_Z|sigma_h|error_z|z_error|rms_xy|Number|Zone|Layer|Note|Vx|East_Vel|"
+     "Elevation_error|GPSTime|UTC_time|Date|Temp|Amplitude|Class|Return_Number|PointSourceID|Red|"
+     "Intensity|Well|Line_Name|Trace_Number|CDP|SP|Inline|XL|Offset|Slope|PDOP|N_geoid|Rod Height|"
+     "Antenna_height|Horizon|UserData|ScanAngleRank"),
+)
+
+
+class Names(unittest.TestCase):
+    def test_names_mean_what_they_mean_in_their_language(self):
+        for axis, names in NAMES:
+            for name in names.split("|"):
+                for written in (name, name.upper(), name.lower()):
+                    if written == name or axis and not re.search("[a-z][A-Z]", name):
+                        with self.subTest(written):
+                            self.assertEqual(meaning(written).axis, axis)
 
 
 class Tables(unittest.TestCase):
