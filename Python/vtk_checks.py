@@ -77,7 +77,8 @@ def why_no_stl(path):
     with open(path, "rb") as stream:
         head = stream.read(84)
     size, facets = os.path.getsize(path), int.from_bytes(head[80:84], "little")
-    if not head.lstrip()[:5].lower() == b"solid" and size != 84 + 50 * facets:
+    is_text = head.lstrip()[:5].lower() == b"solid" and b"\0" not in head
+    if not is_text and size != 84 + 50 * facets:
         return (
             f"is cut off, or not an STL file: {facets:,} facets are announced, "
             f"which take {84 + 50 * facets:,} bytes, not {size:,}"

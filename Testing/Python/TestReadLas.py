@@ -19,7 +19,9 @@ RNG = numpy.random.default_rng(5)
 XYZ = RNG.integers(-(2**31), 2**31, (7, 3))
 CLASSES = [2, 2, 1, 5, 2, 8, 6]
 WITHHELD = [0, 1, 0, 0, 0, 0, 0]
+SYNTHETIC = [0, 0, 1, 0, 0, 1, 0]
 RETURNS = [1, 2, 1, 3, 1, 1, 2]
+FLAGS = [s | w << 2 for s, w in zip(SYNTHETIC, WITHHELD)]
 TIMES = [1.5e8 + i / 3.0 for i in range(7)]
 COLOURS = [(i * 9000, 65535 - i, 256) for i in range(7)]
 
@@ -29,9 +31,9 @@ def point(kind, i):
     x, y, z = map(int, XYZ[i])
     if kind < 6:
         record = struct.pack("<iiiHB", x, y, z, 100 + i, RETURNS[i] | 3 << 3)
-        record += struct.pack("<BbBH", CLASSES[i] | WITHHELD[i] << 7, -5, 9, 77)
+        record += struct.pack("<BbBH", CLASSES[i] | SYNTHETIC[i] << 5 | WITHHELD[i] << 7, -5, 9, 77)
     else:
-        record = struct.pack("<iiiHBB", x, y, z, 100 + i, RETURNS[i] | 3 << 4, WITHHELD[i] << 2)
+        record = struct.pack("<iiiHBB", x, y, z, 100 + i, RETURNS[i] | 3 << 4, FLAGS[i])
         record += struct.pack("<BBhHd", CLASSES[i], 9, -500, 77, TIMES[i])
     if kind in (1, 3, 4, 5):
         record += struct.pack("<d", TIMES[i])

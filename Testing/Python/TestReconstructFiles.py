@@ -377,6 +377,12 @@ class VtkFormats(InFolder):
             with self.subTest(words=words, name=name):
                 self.assert_refused(words, content, name)
 
+    def test_a_binary_stl_is_known_whatever_its_header_says(self):
+        content = next(c for what, _, c in self.whole_files() if "binary vtkSTL" in what)
+        content = b"solid made by hand".ljust(80) + content[80:]
+        self.assertEqual(self.read(content, "a.stl").points.GetNumberOfPoints(), 12)
+        self.assert_refused("10 facets are announced", content[:-50], "b.stl")
+
     def test_what_crashes_a_reader_is_an_error_also_in_a_program(self):
         # Made of whole files: corners that are not there, ids that are cut off, text for counts.
         for what, suffix, content in self.whole_files():
