@@ -88,7 +88,10 @@ def why_no_stl(path):
 
 def why_no_xml(path):
     with open(path, "rb") as stream:
-        head = stream.read(1 << 20).partition(b"<AppendedData")[0]
+        head = stream.read(1 << 16)
+        if b"WholeExtent" in head:
+            head += stream.read()  # pieces may lie anywhere
+        head = head.partition(b"<AppendedData")[0]
         size = stream.seek(0, os.SEEK_END)
         stream.seek(-min(size, 200), os.SEEK_END)
         if not stream.read().rstrip(b"\0\r\n\t ").endswith(b"</VTKFile>"):

@@ -377,6 +377,17 @@ class VtkFormats(InFolder):
             with self.subTest(words=words, name=name):
                 self.assert_refused(words, content, name)
 
+    def test_pieces_far_behind_in_a_grid_are_counted(self):
+        piece = (
+            '<Piece Extent="%d %d 0 1 0 0"><PointData Scalars="z"><DataArray type="Float64" '
+            'Name="z" format="ascii">%s</DataArray></PointData></Piece>'
+        )
+        text = '<VTKFile type="ImageData"><ImageData WholeExtent="0 2 0 1 0 0" Origin="0 0 0" '
+        text += 'Spacing="1 1 1">' + piece % (0, 1, "1 2 4 5") + "<!--" + 2**21 * " " + "-->"
+        text += piece % (1, 2, "2 3 5 6") + "</ImageData></VTKFile>"
+        points = coordinates(self.read(text, "a.vti"))
+        self.assertEqual(points[:, 2].tolist(), [1, 2, 3, 4, 5, 6])
+
     def test_a_binary_stl_is_known_whatever_its_header_says(self):
         content = next(c for what, _, c in self.whole_files() if "binary vtkSTL" in what)
         content = b"solid made by hand".ljust(80) + content[80:]
