@@ -3,13 +3,17 @@
 """Surfaces in every format, read back by other readers than those of the package."""
 
 import json
+import os
+import shutil
 import struct
 import sys
+import tempfile
 import unittest
+from unittest import mock
 
 import numpy
 from in_folder import InFolder
-from vtkelevationsurface import distance, reconstruct, screen_mesh, writing
+from vtkelevationsurface import distance, reconstruct, screen_mesh, writing, xml_writer
 from vtkelevationsurface.clouds import cells_of, make_points
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
@@ -26,7 +30,7 @@ def map_surface(count=400, seed=5):
     for name, values in (
         ("RGB", random.integers(0, 256, (count + 1, 3)).astype("u1")),
         ("Filled Error", random.uniform(size=count + 1)),
-        ("Line", numpy.arange(count + 1, dtype="i8")),
+        ("Line", numpy.arange(count + 1, dtype="i8") + 2**40),
         ("Slope", random.uniform(size=(count + 1, 2)).astype("f4")),
     ):
         array = numpy_to_vtk(values, deep=True)
@@ -90,7 +94,10 @@ class Formats(InFolder):
         from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
         random = numpy.random.default_rng(0)
-        for count in (1, 10922, 10923, 65536, 700001):
+        for name, small in (("BLOCK", 1000), ("AT_ONCE", 2)):
+            self.addCleanup(setattr, xml_writer, name, getattr(xml_writer, name))
+            setattr(xml_writer, name, small)
+        for count in (1, 42, 250, 3000, 20001):
             data = make_points(random.uniform(size=(count, 3)))
             data.SetPolys(cells_of(numpy.zeros((1, 3), dtype="i8")))
             path = self.path("many.vtp")
@@ -233,6 +240,33 @@ class LargeSurfaces(unittest.TestCase):
             self.assertEqual((told["measured"], told["maximum"]), (measured, 3.0))
             self.assertAlmostEqual(told["mean"], 1.5)
             self.assertAlmostEqual(told["rms"], 4.5**0.5)
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "Xvfb is not installed")
+    def test_the_picture_of_fewer_triangles_looks_the_same(self):
+        from vtkelevationsurface import picture
+        from vtkmodules.vtkIOImage import vtkPNGReader
+
+        random = numpy.random.default_rng(6)
+        x, y = random.uniform(0, 1000, (2, 60000))
+        keep = numpy.hypot(x - 400, y - 500) > 90
+        z = 30 * numpy.sin(x / 90) * numpy.cos(y / 120)
+        xyz = numpy.column_stack((x, y, z))[keep]
+        result = reconstruct(xyz, maximum_edge_length=30)
+        images, drawn = [], []
+        with tempfile.TemporaryDirectory() as folder:
+            for most, pixels in ((10**9, 2.0), (1000, 6.0)):
+                with mock.patch.multiple(picture, MOST_TRIANGLES=most, PIXELS_OF_CELL=pixels):
+                    path = os.path.join(folder, f"{most}.png")
+                    drawn.append(result.plot(path, "waves"))
+                    image = run(vtkPNGReader(), path).GetPointData().GetScalars()
+                    images.append(vtk_to_numpy(image).astype(int))
+        for name, value in drawn[0].items():
+            self.assertAlmostEqual(drawn[1][name], value, delta=0.01 * value)
+        self.assertEqual(images[0].shape, images[1].shape)
+        apart = abs(images[0] - images[1]).max(axis=1)
+        self.assertGreater(apart.max(), 0)
+        self.assertLess(apart.mean(), 1.5)
+        self.assertLess((apart > 60).mean(), 2e-3)
 
 
 if __name__ == "__main__":
