@@ -26,6 +26,7 @@ class Choice:
     downwards: object = None  # the note for a z that counts downwards by its name and values
 
 
+@numpy.errstate(all="ignore")
 def choose_columns(path, rows, consecutive, number, names, width, columns, needed, advice):
     """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
 
@@ -51,7 +52,7 @@ class Search:
     def __init__(self, path, rows, consecutive, number, names, width, needed, advice):
         self.path, self.names, self.width, self.needed = path, names, width, needed
         self.axes, self.advice, self.downwards = "xyz"[:needed], advice, None
-        self.row = rows[0]
+        self.row = next((row for row in rows if len(row) >= width), rows[0])
         table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
         self.values = numpy.array(
@@ -176,8 +177,8 @@ class Search:
                     f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too "
                     "(see --columns)"
                 )
-            values = self.values[:, self.indices[2]]
-            if z.direction and numpy.nanmedian(values) > 0:
+            values = self.finite(self.indices[2])
+            if z.direction and len(values) and numpy.median(values) > 0:
                 what = "depths" if z.direction == "depth" else "times"
                 self.downwards = (
                     f"z are {what} by their name and positive, so the surface is upside down; "
@@ -458,7 +459,8 @@ class Search:
             raise FileError(f"{self.path}: {why}; {self.advice}")
         words = []
         for reading in readings:
-            values = [f"{a} = {self.row[i]}" for a, i in zip(self.axes, reading)]
+            pairs = [(a, i) for a, i in zip(self.axes, reading) if i < len(self.row)]
+            values = [f"{a} = {self.row[i]}" for a, i in pairs]
             words.append(f"--columns {self.numbered(reading)} (first row: {', '.join(values)})")
         raise FileError(f"{self.path}: {why}; choose {' or '.join(words)}")
 

@@ -25,6 +25,7 @@ SUSPECTS = 1000  # no more are looked at
 NAMED = 5  # that many blunders are named
 
 
+@numpy.errstate(all="ignore")
 def take_out(cloud, options):
     """Takes usual null values out of a Cloud, and names what looks like nulls or blunders.
 
@@ -219,7 +220,8 @@ def blunders(x, y, z):
         return []
     parts = [slice(start, start + CHUNK) for start in range(0, len(x), CHUNK)]
     cell = numpy.concatenate([cells.of(x[p], y[p], z[p]) for p in parts])
-    middle = numpy.nanmedian(z[:SAMPLE])
+    middle = z[:SAMPLE][numpy.abs(z[:SAMPLE]) < 1e100]
+    middle = float(numpy.median(middle)) if len(middle) else 0.0
     sums = numpy.zeros((3, cells.count))
     for part in parts:
         known = cell[part] != cells.count - 1

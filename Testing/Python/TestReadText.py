@@ -4,16 +4,19 @@
 
 import math
 import os
+import random
 import re
 import sys
 import tempfile
 import time
 import unittest
+import warnings
 
 import numpy
 from vtkelevationsurface.clouds import ReadOptions
 from vtkelevationsurface.column_names import meaning
 from vtkelevationsurface.messages import FileError
+from vtkelevationsurface.nulls import take_out
 from vtkelevationsurface.text import BLOCK, read_table, read_text
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -541,6 +544,31 @@ class Parsing(Tables):
         # Bytes of UTF-8 that are blanks in Latin-1 part no words.
         cloud = self.read("name x y z\nvoil\u00e0x 1 -2 3.5\n\u00e0x 4 5 6\n")
         self.assert_coordinates(cloud, [(1, -2, 3.5), (4, 5, 6)])
+
+    def test_garbage_is_read_or_refused_in_one_line(self):
+        generator = random.Random(4)
+        words = (
+            "1 2 -9999 0 nan inf 1e30 3.5 1,5 x Y NULL # 1D3 1e400 - id 4000000 > // 1_0 | 1e306 "
+            '"1" "a 9999'
+        ).split(" ")
+        for trial in range(400):
+            separator = generator.choice([" ", ",", ";", "\t"])
+            rows = [
+                separator.join(
+                    generator.choice(words) if generator.random() < 0.1 * (trial % 4)
+                    else str(round(generator.uniform(-9, 9), 2))
+                    for _ in range(generator.choice([3, 4, 4, 4, 5]))
+                )
+                for _ in range(generator.randint(1, 30))
+            ]
+            if trial % 3 == 0:
+                rows.insert(0, separator.join(generator.choices("xyzXENHlr", k=4)))
+            with self.subTest(trial=trial), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                try:
+                    take_out(self.read("\n".join(rows)), ReadOptions())
+                except FileError as error:
+                    self.assertNotIn("\n", str(error))
 
     def test_blocks_are_joined_and_lines_counted_through_them(self):
         line = b"500000.25 4000000.5 1.125\n"
