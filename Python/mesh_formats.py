@@ -143,6 +143,13 @@ def without_nan(column):
     return numpy.where(numpy.isnan(column), -99999.0, column) if column.dtype.kind == "f" else column
 
 
+def linear_light():
+    """(256,) uint16: a colour of a screen (sRGB) as the share of light that glTF wants."""
+    share = numpy.arange(256) / 255.0
+    light = numpy.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return numpy.round(65535.0 * light).astype("<u2")
+
+
 def write_glb(data, path, crs, progress):
     """Binary glTF: metres with y upwards there, single precision around a whole-number offset.
 
@@ -168,10 +175,11 @@ def write_glb(data, path, crs, progress):
         ("indices", mesh.triangles.astype("<u4").reshape(-1, 1), 5125, 34963),
     ]
     if mesh.colours is not None:
-        # Rows begin at multiples of four bytes.
-        colours = numpy.full((len(points), 4), 255, dtype="u1")
-        colours[:, : mesh.colours.shape[1]] = mesh.colours
-        parts.append(("COLOR_0", colours, 5121, 34962))
+        colours = numpy.full((len(points), 4), 65535, dtype="<u2")
+        colours[:, :3] = linear_light()[mesh.colours[:, :3]]
+        if mesh.colours.shape[1] == 4:
+            colours[:, 3] = 257 * mesh.colours[:, 3].astype("u2")
+        parts.append(("COLOR_0", colours, 5123, 34962))
     views, accessors, attributes, start = [], [], {}, 0
     for i, (name, array, kind, target) in enumerate(parts):
         views.append(

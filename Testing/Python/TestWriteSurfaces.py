@@ -150,10 +150,10 @@ class Formats(InFolder):
         numpy.testing.assert_array_equal(triangles_of(back.GetPolys()), self.triangles)
         x, z, y = xyz_of(back).T  # y is up there
         numpy.testing.assert_allclose(numpy.column_stack((x, -y, z)), self.xyz, atol=0.5)
-        colours = array_of(back, "COLOR_0")
-        numpy.testing.assert_allclose(
-            colours[:, :3] * (255 if colours.max() <= 1 else 1), array_of(self.data, "RGB")[1:]
-        )
+        light = array_of(back, "COLOR_0")[:, :3].astype("f8")
+        light /= 65535 if light.max() > 1 else 1
+        seen = numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+        numpy.testing.assert_array_equal(numpy.round(255 * seen), array_of(self.data, "RGB")[1:])
 
     def test_text_formats_hold_every_digit(self):
         for suffix, point, corner, first in (
