@@ -15,9 +15,9 @@ from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPointSet, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
 
-from .clouds import Cloud, make_points
+from .clouds import Cloud, make_lines, make_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Messages, did_you_mean
 from .vtkElevationSurface import (
     vtkFillElevationHoles,
@@ -176,24 +176,17 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
         is_one = numpy.ndim(lines[0]) == 1
     except (TypeError, IndexError, KeyError, ValueError):
         raise TypeError(f"{what}: vtkPolyData, an array, or a list of arrays is needed") from None
-    cells, parts, total = vtkCellArray(), [], 0
+    parts = []
     for line in [lines] if is_one else lines:
         line = array_of(line, what, (2, 3) if are_rings else (3,))
         if line.shape[1] == 2:
             line = numpy.column_stack((line, numpy.zeros(len(line))))
-        ids = list(range(total, total + len(line)))
-        if are_rings:
-            if len(line) > 1 and (line[0] == line[-1]).all():
-                line, ids = line[:-1], ids[:-1]
-            if len(line) < 3:
-                raise ValueError(f"{what}: a ring has {len(line)} points; 3 are needed")
-            ids.append(total)
-        cells.InsertNextCell(len(ids), ids)
+        if are_rings and (line[0] != line[-1]).any():
+            line = numpy.vstack((line, line[:1]))
+        if are_rings and len(line) < 4:
+            raise ValueError(f"{what}: a ring has {len(line) - 1} points; 3 are needed")
         parts.append(line)
-        total += len(line)
-    data = make_points(numpy.concatenate(parts))
-    data.SetLines(cells)
-    return data
+    return make_lines(parts)
 
 
 # ---- the chain --------------------------------------------------------------------------------

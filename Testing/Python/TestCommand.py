@@ -8,16 +8,13 @@ import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 import numpy
-
+from in_folder import Program
 from vtkelevationsurface import clouds, supervisor
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-
-PROGRAM = (sys.executable, "-m", "vtkelevationsurface")
 
 
 def sheet(size, x=0.0):
@@ -26,25 +23,9 @@ def sheet(size, x=0.0):
     return "".join(f"{a:g} {b:g} {c:g}\n" for a, b, c in rows)
 
 
-class InFolder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def file(self, name, text):
-        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as stream:
-            stream.write(text)
-        return name
-
-    def call(self, *arguments, **options):
-        return subprocess.run(
-            [*PROGRAM, *arguments], cwd=self.folder, text=True, capture_output=True, timeout=300,
-            check=False, **options,
-        )
-
+class InFolder(Program):
     def json(self, name):
-        with open(os.path.join(self.folder, name), encoding="utf-8") as stream:
+        with open(self.path(name), encoding="utf-8") as stream:
             return json.load(stream)
 
 
@@ -135,7 +116,7 @@ class Interrupts(InFolder):
 
     def start(self, *arguments):
         return subprocess.Popen(
-            [*PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.PIPE,
+            [*self.PROGRAM, *arguments], cwd=self.folder, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": self.temporary},
         )
 

@@ -17,10 +17,10 @@ import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.normpath(os.path.join(HERE, os.pardir, os.pardir))
-PROGRAM = ("-m", "vtkelevationsurface")
 DATA = os.path.join(ROOT, "Data")
 EXAMPLES = os.path.join(ROOT, "Examples", "Python")
 
+import in_folder
 from vtkelevationsurface import reading, vtk_files, writing
 from vtkelevationsurface.clouds import make_points
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -37,34 +37,8 @@ def text_of(rows):
     return "".join(f"{x:.12g} {y:.12g} {z:.12g}\n" for x, y, z in rows)
 
 
-class Program(unittest.TestCase):
-    """Runs the program in a folder of the test's own."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def file(self, name, content):
-        with open(self.path(name), "w", encoding="utf-8") as stream:
-            stream.write(content)
-        return name
-
-    def call(self, *arguments, **options):
-        return subprocess.run(
-            [sys.executable, *PROGRAM, *arguments],
-            cwd=self.folder,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=300,
-            check=False,
-            **options,
-        )
+class Program(in_folder.Program):
+    """Runs the program, and reads its report."""
 
     def report(self, *arguments):
         """The report of a run that must succeed."""
@@ -434,7 +408,7 @@ class Results(Program):
             self.skipTest("there are no pseudo-terminals here")
         master, terminal = pty.openpty()
         with subprocess.Popen(
-            [sys.executable, *PROGRAM, name, "--no-picture"],
+            [*self.PROGRAM, name, "--no-picture"],
             cwd=self.folder,
             stdout=subprocess.DEVNULL,
             stderr=terminal,
@@ -472,7 +446,7 @@ class Results(Program):
         reading, writing = os.pipe()
         os.close(reading)
         done = subprocess.run(
-            [sys.executable, *PROGRAM, name, "--no-picture"],
+            [*self.PROGRAM, name, "--no-picture"],
             cwd=self.folder,
             stdout=writing,
             stderr=subprocess.PIPE,
@@ -690,7 +664,7 @@ class VirtualDisplay(Program):
         rows = "".join(f"{i % 300} {i // 300} {i % 7}\n" for i in range(90000))
         name = self.file("sheet.xyz", rows)
         return subprocess.Popen(
-            [sys.executable, *PROGRAM, name, "--picture"],
+            [*self.PROGRAM, name, "--picture"],
             cwd=self.folder,
             env=environment,
             stdout=subprocess.DEVNULL,

@@ -1,8 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What tests of reading share: files made in a folder that goes away, and how errors must look."""
+"""What tests share: files made in a folder that goes away, how errors must look, and runs of the
+program."""
 
 import os
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -48,3 +51,26 @@ class InFolder(unittest.TestCase):
         self.assertNotIn("\n", text)
         for word in [words] if isinstance(words, str) else words:
             self.assertIn(word, text)
+
+
+class Program(InFolder):
+    """Runs the program in the folder."""
+
+    PROGRAM = (sys.executable, "-m", "vtkelevationsurface")
+
+    def file(self, name, content):
+        super().file(name, content)
+        return name
+
+    def call(self, *arguments, **options):
+        options = {"stdin": subprocess.DEVNULL, **options}
+        return subprocess.run(
+            [*self.PROGRAM, *arguments],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=300,
+            check=False,
+            **options,
+        )
