@@ -114,9 +114,10 @@ class Search:
         if missing:
             self.fill_in(chosen, missing, taken)
         self.indices = [chosen[axis][0] for axis in self.axes]
-        if self.indices != list(range(self.width)):
+        if missing or self.indices != list(range(self.width)):
             text = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
-            self.notes.append(f"columns by their names: {text}")
+            left = f"; {missing[0]} is the only column left" if missing else ""
+            self.notes.append(f"columns by their names: {text}{left} (see --columns)")
         self.look_at_names()
         return True
 
