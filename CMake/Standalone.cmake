@@ -157,13 +157,14 @@ if (ES_WRAP_PYTHON)
   set(es_python_package "${es_python_destination}/vtkelevationsurface")
   configure_file("${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py.in"
     "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" @ONLY)
-  file(GLOB es_python_files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}/Python"
+  file(GLOB_RECURSE es_python_files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}/Python"
     "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.py" "${CMAKE_CURRENT_SOURCE_DIR}/Python/help.txt")
   foreach (file IN LISTS es_python_files)
     configure_file("Python/${file}" "${CMAKE_BINARY_DIR}/${es_python_package}/${file}" COPYONLY)
+    get_filename_component(folder "${file}" DIRECTORY)
+    install(FILES "Python/${file}" DESTINATION "${es_python_package}/${folder}")
   endforeach ()
-  list(TRANSFORM es_python_files PREPEND "${CMAKE_BINARY_DIR}/${es_python_package}/")
-  install(FILES "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" ${es_python_files}
+  install(FILES "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py"
     DESTINATION "${es_python_package}")
 endif ()
 

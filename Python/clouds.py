@@ -1,14 +1,17 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Points as they come from a reader."""
+"""Points as they come from a reader, and arrays of points and triangles."""
 
 import dataclasses
+import math
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
+
+AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
 
 
 class Cloud:
@@ -174,3 +177,32 @@ def turn_over(cloud):
     turned.SetPoints(points)
     cloud.points = turned
     cloud.notes.append("z is turned over, as --depth says")
+
+
+def slices(count, at_once=AT_ONCE):
+    """Slices that cover count rows."""
+    return [slice(i, min(i + at_once, count)) for i in range(0, count, at_once)]
+
+
+def corner_flags(triangles, count):
+    """(count,) of bool: which points are corners of triangles."""
+    flags = numpy.zeros(count, dtype=bool)
+    flags[triangles.ravel()] = True
+    return flags
+
+
+def rounding_note(coordinates, why="VTK reads this format"):
+    """A line for the user when 32-bit coordinates are coarse beside the spacing, else None."""
+    xy = coordinates[:, :2]
+    xy = xy[numpy.isfinite(xy).all(axis=1)]
+    if len(xy) < 2:
+        return None
+    step = float(numpy.spacing(numpy.float32(numpy.abs(xy).max())))
+    extent = numpy.ptp(xy.astype("f8"), axis=0)
+    spacing = math.sqrt(max(extent[0] * extent[1], 0.0) / len(xy))
+    if step <= 0.01 * spacing:
+        return None
+    return (
+        f"{why} in single precision: x and y are rounded to steps of {step:g}; "
+        "use .vtp or text for large map coordinates"
+    )

@@ -16,9 +16,9 @@ import numpy
 from . import reading
 from .clouds import ReadOptions, antimeridian_note, merged
 from .gdal_common import name_of, reference_of
-from .grids import write_prj
+from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
-from .outputs import OUTPUTS, beside, check_gdal, default_name, write_output
+from .writing.outputs import OUTPUTS, beside, check_gdal, default_name, write_output
 from .paths import check_suffix, check_writable
 from .reconstruction import PROPERTIES, check_spacing, run_chain
 from .report import picture_subtitle, print_report

@@ -10,8 +10,7 @@ from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import vtkStaticPointLocator
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
 
-from .clouds import cells_of, make_points
-from .screen_mesh import corner_flags, slices
+from .clouds import cells_of, corner_flags, make_points, slices
 
 MOST_MEASURED = 1_000_000
 AT_ONCE = 20_000  # points between two reports of progress

@@ -5,7 +5,7 @@
 import functools
 import os
 
-from .columns import meaning
+from .reading.columns import meaning
 from .messages import FileError
 
 # Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.

@@ -267,7 +267,7 @@ class Reconstruction:
         and error, (rows, columns) or None. The edges of pixels are multiples of step. Raises
         ElevationSurfaceError for a step that is too small or too large.
         """
-        from .grids import grid_of
+        from .writing.grids import grid_of
 
         step = float(step)
         if not 0.0 < step < math.inf:

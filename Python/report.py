@@ -8,9 +8,9 @@ import time
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from .clouds import corner_flags
 from .distance import distance_to
 from .reconstruction import INTERPOLATIONS, LATTICE_MODES, lattice_of
-from .screen_mesh import corner_flags
 
 OUTSIDE = "outside the boundary"
 # Why a point is not used, by number: the first two are those of vtkGridDelaunay2D.

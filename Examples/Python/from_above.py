@@ -22,12 +22,12 @@ import sys
 import numpy
 from vtkelevationsurface import (
     picture as look,
-    picture_signs as signs,
     read,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
     vtkTrimOutwardTriangles,
 )
+from vtkelevationsurface.picture import signs
 from vtkelevationsurface.reconstruction import as_cloud
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals

@@ -205,4 +205,4 @@ class Supervised(InFolder):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])

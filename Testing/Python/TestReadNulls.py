@@ -11,7 +11,7 @@ import unittest
 
 import numpy
 from vtkelevationsurface.clouds import Cloud, ReadOptions, make_points, turn_over
-from vtkelevationsurface.nulls import take_out
+from vtkelevationsurface.reading.nulls import take_out
 from vtkelevationsurface.reading import read
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 

@@ -11,7 +11,8 @@ from unittest import mock
 import numpy
 from in_folder import InFolder, coordinates
 from osgeo import gdal, osr
-from vtkelevationsurface import rasters, reading
+from vtkelevationsurface import reading
+from vtkelevationsurface.reading import rasters
 
 gdal.UseExceptions()
 Z = numpy.array([[1.0, 2.0, -9999.0], [4.0, 5.0, 6.0]])

@@ -13,10 +13,10 @@ import warnings
 
 import numpy
 from vtkelevationsurface.clouds import ReadOptions
-from vtkelevationsurface.column_names import meaning
+from vtkelevationsurface.reading.column_names import meaning
 from vtkelevationsurface.messages import FileError
-from vtkelevationsurface.nulls import take_out
-from vtkelevationsurface.text import BLOCK, read_table, read_text
+from vtkelevationsurface.reading.nulls import take_out
+from vtkelevationsurface.reading.text import BLOCK, read_table, read_text
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 COUNT = 60

@@ -21,7 +21,8 @@ DATA = os.path.join(ROOT, "Data")
 EXAMPLES = os.path.join(ROOT, "Examples", "Python")
 
 import in_folder
-from vtkelevationsurface import reading, vtk_files, writing
+from vtkelevationsurface import reading, writing
+from vtkelevationsurface.reading import vtk_files
 from vtkelevationsurface.clouds import make_points
 from vtkmodules.util.numpy_support import vtk_to_numpy
 

@@ -10,7 +10,8 @@ from unittest import mock
 
 import numpy
 from in_folder import InFolder, coordinates
-from vtkelevationsurface import paths, reading, vtk_checks, vtk_files, writing
+from vtkelevationsurface import paths, reading, writing
+from vtkelevationsurface.reading import vtk_checks, vtk_files
 from vtkelevationsurface.clouds import make_points
 from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy

@@ -10,7 +10,8 @@ import unittest
 
 import numpy
 from in_folder import InFolder
-from vtkelevationsurface import ElevationSurfaceError, grids, lines_out, reconstruct
+from vtkelevationsurface import ElevationSurfaceError, reconstruct
+from vtkelevationsurface.writing import grids, lines as line_files
 from vtkelevationsurface.clouds import Cloud, make_points
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
@@ -140,7 +141,7 @@ class Files(InFolder):
                 os.remove(path)
 
     def test_contours_lie_on_the_surface_at_their_elevation(self):
-        lines = lines_out.contours(self.result.surface, 2.0)
+        lines = line_files.contours(self.result.surface, 2.0)
         self.assertEqual({v["elevation"] for _, v in lines}, {-4.0, -2.0, 0.0, 2.0, 4.0})
         for points, values in lines:
             self.assertTrue((points[:, 2] == values["elevation"]).all())
@@ -157,14 +158,14 @@ class Files(InFolder):
             else:
                 surface = self.result.surface
             with self.assertRaisesRegex(ElevationSurfaceError, words):
-                lines_out.contours(surface, step)
+                line_files.contours(surface, step)
 
     def test_lines_come_back_from_every_format(self):
-        lines = lines_out.contours(self.result.surface, 2.0)
+        lines = line_files.contours(self.result.surface, 2.0)
         for suffix in (".gpkg", ".geojson", ".dxf"):
             with self.subTest(suffix=suffix):
                 path = self.path("c" + suffix)
-                lines_out.write_lines(lines, path, "contours", "EPSG:25832")
+                line_files.write_lines(lines, path, "contours", "EPSG:25832")
                 data = ogr.Open(path)
                 layer = data.GetLayer(0)
                 self.assertEqual(layer.GetFeatureCount(), len(lines))
@@ -183,9 +184,9 @@ class Files(InFolder):
         self.assertEqual(sorted(os.listdir(self.folder)), ["c.dxf", "c.geojson", "c.gpkg"])
 
     def test_outlines_tell_what_became_of_holes(self):
-        lines = lines_out.outlines(self.result)
+        lines = line_files.outlines(self.result)
         path = self.path("o.gpkg")
-        lines_out.write_lines(lines, path, "outlines", None)
+        line_files.write_lines(lines, path, "outlines", None)
         layer = (data := ogr.Open(path)).GetLayer(0)
         rows = [(f.GetField("kind"), f.GetField("status"), f.GetField("area")) for f in layer]
         kinds = [row[0] for row in rows]

@@ -13,7 +13,9 @@ from unittest import mock
 
 import numpy
 from in_folder import InFolder
-from vtkelevationsurface import distance, reconstruct, screen_mesh, writing, xml_writer
+from vtkelevationsurface import distance, reconstruct, writing
+from vtkelevationsurface.picture import screen_mesh
+from vtkelevationsurface.writing import xml_writer
 from vtkelevationsurface.clouds import cells_of, make_points
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkImplicitPolyDataDistance
@@ -197,7 +199,7 @@ class LargeSurfaces(unittest.TestCase):
         cells = screen_mesh.Cells(points, numpy.eye(2), used, 50)
         patches = numpy.zeros(len(triangles), dtype=bool)
         patches[points[triangles[:, 0], 0] > 0.8] = True
-        mesh = screen_mesh.screen_mesh(triangles, patches, cells)
+        mesh = screen_mesh.mesh_for_screen(triangles, patches, cells)
         self.assertLess(len(mesh.triangles), 0.5 * len(triangles))
         for pairs, expected in (
             (mesh.rim, screen_mesh.outline(triangles)),

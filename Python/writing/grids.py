@@ -8,10 +8,10 @@ import math
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .gdal_common import gdal_module, reference_of, write_through_memory
-from .messages import ElevationSurfaceError
-from .paths import plain_stem, suffix_of
-from .screen_mesh import corner_flags, slices
+from ..clouds import corner_flags, slices
+from ..gdal_common import gdal_module, reference_of, write_through_memory
+from ..messages import ElevationSurfaceError
+from ..paths import plain_stem, suffix_of
 
 MOST_PIXELS = 250_000_000
 MOST_AT_ONCE = 2_000_000  # of rows or pixels of triangles; bounds the memory taken

@@ -8,10 +8,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
+from ..clouds import rounding_note
 from .mesh_formats import write_glb, write_ply, write_ts
-from .messages import FileError, Messages
-from .paths import suffix_of
-from .vtk_files import rounding_note
+from ..messages import FileError, Messages
+from ..paths import suffix_of
 from .xml_writer import write_vtp, write_vtu
 
 

@@ -17,10 +17,10 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from .clouds import Cloud, make_points
+from ..clouds import Cloud, make_points, rounding_note
 from .formats import FORMATS, HEAD
-from .messages import FileError, Messages
-from .paths import suffix_of
+from ..messages import FileError, Messages
+from ..paths import suffix_of
 from .rasters import points_of_raster
 from .vtk_checks import check, survives
 
@@ -186,22 +186,6 @@ def vertices_of_text(path, word, once=True):
     _, firsts = numpy.unique(found, axis=0, return_index=True)
     return found[numpy.sort(firsts)]
 
-
-def rounding_note(coordinates, why="VTK reads this format"):
-    """A line for the user when 32-bit coordinates are coarse beside the spacing, else None."""
-    xy = coordinates[:, :2]
-    xy = xy[numpy.isfinite(xy).all(axis=1)]
-    if len(xy) < 2:
-        return None
-    step = float(numpy.spacing(numpy.float32(numpy.abs(xy).max())))
-    extent = numpy.ptp(xy.astype("f8"), axis=0)
-    spacing = math.sqrt(max(extent[0] * extent[1], 0.0) / len(xy))
-    if step <= 0.01 * spacing:
-        return None
-    return (
-        f"{why} in single precision: x and y are rounded to steps of {step:g}; "
-        "use .vtp or text for large map coordinates"
-    )
 
 
 def points_of_grid(path, grid):

@@ -5,8 +5,8 @@
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import Cloud, add_array, make_points
-from .messages import FileError
+from ..clouds import Cloud, add_array, make_points
+from ..messages import FileError
 
 KINDS = ("TSurf", "VSet", "PLine")
 

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D, vtkTextActor
 
-from .clouds import cells_of
+from ..clouds import cells_of
 
 INK = (0.13, 0.14, 0.16)
 VTK_FONT_FILE = 4  # as in vtkTextProperty.h; not wrapped

@@ -7,7 +7,8 @@ import dataclasses
 
 import numpy
 
-AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
+from ..clouds import AT_ONCE, corner_flags, slices
+
 MOST_OUTLINE_POINTS = 300_000
 RINGS = 6  # of a cell, around its middle
 
@@ -28,16 +29,6 @@ class ScreenMesh:
     patches: numpy.ndarray
 
 
-def slices(count, at_once=AT_ONCE):
-    """Slices that cover count rows."""
-    return [slice(i, min(i + at_once, count)) for i in range(0, count, at_once)]
-
-
-def corner_flags(triangles, count):
-    """(count,) of bool: which points are corners of triangles."""
-    flags = numpy.zeros(count, dtype=bool)
-    flags[triangles.ravel()] = True
-    return flags
 
 
 def outline(triangles):
@@ -130,7 +121,7 @@ def distinct(pairs):
     return numpy.unique(pairs, axis=0)
 
 
-def screen_mesh(triangles, patches, cells=None):
+def mesh_for_screen(triangles, patches, cells=None):
     """The ScreenMesh of triangles.
 
     triangles  (m, 3) corners, counter-clockwise

@@ -12,8 +12,8 @@ import sys
 import tempfile
 import zlib
 
-from .messages import FileError
-from .paths import check_readable
+from ..messages import FileError
+from ..paths import check_readable
 
 PACKED = ((b"\x1f\x8b", gzip.open), (b"BZh", bz2.open), (b"\xfd7zXZ\0", lzma.open))
 STANDARD_INPUT = "standard input"

@@ -4,11 +4,11 @@
 
 import numpy
 
-from .clouds import Cloud, make_points
+from ..clouds import Cloud, make_points
 from .formats import numbers_of
-from .gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
-from .messages import FileError
-from .paths import suffix_of
+from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
+from ..messages import FileError
+from ..paths import suffix_of
 
 # Text of decimals would else become single precision, plain axes x and y be overlooked.
 OPEN_OPTIONS = {

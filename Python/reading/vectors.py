@@ -4,11 +4,11 @@
 
 import numpy
 
-from .clouds import Cloud, add_array, make_lines, make_points
+from ..clouds import Cloud, add_array, make_lines, make_points
 from .columns import meaning
 from .formats import HEAD, is_table_with_geometry
-from .gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
-from .messages import FileError
+from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
+from ..messages import FileError
 
 OPEN_OPTIONS = {
     "CSV": ["AUTODETECT_TYPE=YES", "GEOM_POSSIBLE_NAMES=WKT,*wkt*,*geom*,shape"],

@@ -12,9 +12,9 @@ from typing import Any, Union
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
+from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
 from .formats import recognise
-from .messages import FileError, did_you_mean
+from ..messages import FileError, did_you_mean
 from .nulls import take_out
 from .text import read_table
 from .unpacking import is_plain, unpacked

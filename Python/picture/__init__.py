@@ -29,10 +29,10 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
-from .clouds import cells_of
+from ..clouds import cells_of, corner_flags
 from .display import screen
-from .messages import PictureError
-from .picture_signs import (
+from ..messages import PictureError
+from .signs import (
     BOTTOM,
     INK,
     LEFT,
@@ -47,7 +47,7 @@ from .picture_signs import (
     poly_data,
     round_text,
 )
-from .screen_mesh import Cells, corner_flags, screen_mesh
+from .screen_mesh import Cells, mesh_for_screen
 
 # Both maps rise evenly in lightness, so that they keep their order in grey and for colour-blind
 # eyes. Colours are mixed in CIE Lab between the stops.
@@ -344,7 +344,7 @@ def render(
     progress(0.1)
     if len(triangles) > MOST_TRIANGLES:
         cells = Cells(real, frame.widen, used, (WIDTH - LEFT - RIGHT) / PIXELS_OF_CELL)
-    mesh = screen_mesh(triangles, None if patches is None else vtk_to_numpy(patches) >= 0, cells)
+    mesh = mesh_for_screen(triangles, None if patches is None else vtk_to_numpy(patches) >= 0, cells)
     progress(0.5)
     real = real[mesh.ids].astype("f8")
     exaggeration = exaggeration or choose_exaggeration(frame(real), mesh.triangles)

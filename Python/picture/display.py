@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-from .supervisor import STOPPING, end_with_parent
+from ..supervisor import STOPPING, end_with_parent
 
 WAIT = 30.0  # seconds; a busy machine may take long
 

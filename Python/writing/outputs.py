@@ -6,9 +6,9 @@ import dataclasses
 import os
 import re
 
-from .messages import ElevationSurfaceError, FileError
-from .paths import suffix_of
-from .writing import WRITE_SUFFIXES, write_surface
+from ..messages import ElevationSurfaceError, FileError
+from ..paths import suffix_of
+from ..writing import WRITE_SUFFIXES, write_surface
 
 GRID_SUFFIXES = (".tif", ".asc", ".dat", ".zmap")
 LINE_SUFFIXES = (".gpkg", ".geojson", ".dxf")
@@ -26,13 +26,13 @@ def grid(result, path, step, progress):
 
 
 def contours(result, path, step, progress):
-    from .lines_out import contours as made, write_lines
+    from .lines import contours as made, write_lines
 
     return write_lines(made(result.surface, step, progress), path, "contours", result.crs, progress)
 
 
 def outlines(result, path, _step, progress):
-    from .lines_out import outlines as made, write_lines
+    from .lines import outlines as made, write_lines
 
     return write_lines(made(result), path, "outlines", result.crs, progress)
 
@@ -75,7 +75,7 @@ def beside(path):
 
 def check_gdal(what):
     """Refuses what cannot be written without GDAL, before any work is done."""
-    from .gdal_common import gdal_module
+    from ..gdal_common import gdal_module
 
     try:
         gdal_module()

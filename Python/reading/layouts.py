@@ -8,7 +8,7 @@ import math
 import re
 
 from .column_names import known_names
-from .messages import FileError
+from ..messages import FileError
 
 COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
 MISSING = set(

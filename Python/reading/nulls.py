@@ -10,7 +10,7 @@ ten million points take some two seconds.
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import keep_points
+from ..clouds import keep_points
 
 FLOAT_MAX = float(numpy.finfo("f4").max)
 NULLS = (

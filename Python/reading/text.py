@@ -15,10 +15,10 @@ import re
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk
 
-from .clouds import Cloud, make_points
+from ..clouds import Cloud, make_points
 from .columns import choose_columns
 from .layouts import COMMENT_MARKS, find_layout, find_names, is_comment, is_data
-from .messages import FileError
+from ..messages import FileError
 
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers

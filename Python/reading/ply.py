@@ -9,9 +9,8 @@ import os
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import Cloud, add_array, make_points
-from .messages import FileError
-from .vtk_files import rounding_note
+from ..clouds import Cloud, add_array, make_points, rounding_note
+from ..messages import FileError
 
 TYPES = {
     name: code

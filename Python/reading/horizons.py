@@ -8,9 +8,9 @@ import warnings
 
 import numpy
 
-from .clouds import Cloud, add_array, make_lines, make_points
+from ..clouds import Cloud, add_array, make_lines, make_points
 from .columns import meaning
-from .messages import FileError
+from ..messages import FileError
 from .rasters import points_of_raster
 
 SEPARATORS = (b">", b"->")

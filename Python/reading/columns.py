@@ -13,7 +13,7 @@ import re
 import numpy
 
 from .column_names import COLOURS, Meaning, in_brackets, meaning, plain
-from .messages import FileError
+from ..messages import FileError
 
 
 @dataclasses.dataclass

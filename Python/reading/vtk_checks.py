@@ -15,7 +15,7 @@ import warnings
 import numpy
 from vtkmodules.vtkCommonCore import vtkSMPTools
 
-from .messages import FileError
+from ..messages import FileError
 
 TYPES = {"char": 1, "short": 2, "int": 4, "long": 8, "float": 4, "double": 8, "vtkidtype": 4}
 TYPES.update({"vtktypeint64": 8, "vtktypeuint64": 8})

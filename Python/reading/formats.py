@@ -7,8 +7,8 @@ import importlib
 import os
 import re
 
-from .messages import FileError
-from .paths import suffix_of
+from ..messages import FileError
+from ..paths import suffix_of
 
 HEAD = 4096
 
@@ -106,7 +106,7 @@ def is_table_with_geometry(head, path):
 def is_of_gdal(what):
     def is_it(_head, path):
         try:
-            from .gdal_common import kind_of
+            from ..gdal_common import kind_of
 
             return kind_of(path, what) is not None
         except ImportError:

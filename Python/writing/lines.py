@@ -8,11 +8,10 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkStripper
 
-from .clouds import make_points
-from .gdal_common import reference_of, write_through_memory
-from .messages import ElevationSurfaceError
-from .paths import suffix_of
-from .screen_mesh import corner_flags
+from ..clouds import corner_flags, make_points
+from ..gdal_common import reference_of, write_through_memory
+from ..messages import ElevationSurfaceError
+from ..paths import suffix_of
 
 MOST_LEVELS = 10_000
 LONGEST = 2**31 - 1  # points of a line

@@ -7,8 +7,8 @@ import struct
 
 import numpy
 
-from .clouds import Cloud, add_array, make_points
-from .messages import FileError
+from ..clouds import Cloud, add_array, make_points
+from ..messages import FileError
 
 # Bytes of a record, GPS time and colours in it, by point format.
 SIZES = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)
