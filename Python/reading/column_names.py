@@ -183,6 +183,11 @@ def _axis_of(words, joined, extra):
     return Meaning(axis, rank, direction, "", tuple(sorted(beside)))
 
 
+def is_beside(name):
+    """Whether a word may stand beside the name of an axis, as "coordinate" does."""
+    return all(word in BESIDE for word in plain(name))
+
+
 def known_names(names):
     """How many of some names mean something, those of axes most."""
     found = [meaning(name) for name in names]

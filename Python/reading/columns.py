@@ -18,10 +18,16 @@ from ..messages import FileError
 
 @dataclasses.dataclass
 class Choice:
-    """indices of x, y and z; extras {index: name} of the other columns of numbers; notes."""
+    """What was found out about the columns.
+
+    indices     of x, y and z
+    extras      {index: name} of the other columns of numbers
+    of_numbers  indices of all columns that hold more numbers than text
+    """
 
     indices: list
     extras: dict
+    of_numbers: list
     notes: list
     downwards: object = None  # the note for a z that counts downwards by its name and values
 
@@ -43,7 +49,10 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     elif not search.by_names():
         search.by_values()
     search.look_at_values()
-    return Choice(search.indices, search.extras(), search.notes, search.downwards)
+    extras = search.extras()
+    shares = numpy.isfinite(search.values).mean(axis=0)
+    of_numbers = [i for i in range(width) if shares[i] > search.share_of_text[i]]
+    return Choice(search.indices, extras, of_numbers, search.notes, search.downwards)
 
 
 class Search:

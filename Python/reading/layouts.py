@@ -7,7 +7,7 @@ import csv
 import math
 import re
 
-from .column_names import known_names
+from .column_names import is_beside, known_names, meaning
 from ..messages import FileError
 
 COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
@@ -113,6 +113,7 @@ def find_layout(path, lines, needed):
         if score[0] and score > best_score:
             best, best_score = layout, score
     if best and not any(re.search(BLANK_IN_NUMBER, line) for line in sample):
+        check_thousands(path, best, sample)
         return best
     if not sample:
         raise FileError(f"{path}: holds no data, only blank or comment lines")
@@ -125,6 +126,69 @@ def find_layout(path, lines, needed):
         f"{path}: no line holds {needed} numbers; the most is {most}. "
         f"{'x, y and z' if needed == 3 else 'x and y'} are needed in columns of their own"
     )
+
+
+def check_thousands(path, layout, sample):
+    """Refuses blanks between thousands: most lines are such numbers, parted by another sign."""
+    number = r"\s*[-+]?\d{1,3}( \d{3})*([.,]\d*)?\s*"
+    line = re.compile(rf"(?=.*\d \d{{3}}){number}(?P<sign>[\t;|]){number}((?P=sign){number})*")
+    if not layout.separator and 2 * sum(bool(line.fullmatch(one)) for one in sample) > len(sample):
+        raise FileError(
+            f"{path}: numbers with {NO_NUMBERS[0][1]} cannot be read; export plain decimals"
+        )
+
+
+def check_names(path, layout, before, rows, names, width, advice):
+    """Refuses a header that tells x, y and z but has more or fewer names than there are columns.
+
+    before  the lines before the data that are no comments
+    rows    some lines of data as words
+    names   of the columns as far as they were found, or None
+    """
+    if layout.separator == "," and pairs_of_whole_numbers(rows, width):
+        raise FileError(f"{path}: commas stand for decimals and between columns; {SEMICOLONS}")
+    if not before or known_axes(names or []):
+        return
+    for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:
+        found = [word.strip("\"' ") for word in other.words(before[-1])]
+        while found and not found[-1]:
+            found.pop()
+        if known_axes(found) < set("xyz") or len(found) == width:
+            continue
+        own = other.separator and other.separator == layout.separator
+        told = [meaning(name) for name in found]
+        if own or all(m.axis or m.role or is_beside(name) for m, name in zip(told, found)):
+            degrees = any(m.rank == 3 for m in told) and width in (5, 7)
+            why = f"{DEGREES}, or " if degrees else ""
+            if layout.separator == "," and len(found) < width:
+                why = "commas within numbers part them too, else "
+            raise FileError(
+                f"{path}: the header has {len(found)} names, but lines have {width} columns; "
+                f"{why}give each column a name; {advice}"
+            )
+
+
+SEMICOLONS = "export it with semicolons between columns, or with decimal points"
+DEGREES = "export degrees as plain decimals, if minutes have columns of their own"
+
+
+def known_axes(names):
+    return {meaning(name).axis for name in names} - {""}
+
+
+def pairs_of_whole_numbers(rows, width):
+    """Whether columns 1, 3, 5 look like what stands before a decimal comma, 2, 4, 6 behind it.
+
+    These are whole, all of the same length, and one of them begins with 0, as no number does.
+    """
+    rows = [row for row in rows if len(row) == width]
+    if width % 2 or width < 4 or len(rows) < 2:
+        return False
+    if not all(re.fullmatch(r"[-+]?\d+", word) for row in rows for word in row):
+        return False
+    behind = [[row[i] for row in rows] for i in range(1, width, 2)]
+    even = all(len({len(word) for word in column}) == 1 for column in behind)
+    return even and any(len(word) > 1 and word[0] == "0" for column in behind for word in column)
 
 
 def find_names(layout, head, width, one_may_lack=True):

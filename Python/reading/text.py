@@ -17,7 +17,14 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 
 from ..clouds import Cloud, make_points
 from .columns import choose_columns
-from .layouts import COMMENT_MARKS, find_layout, find_names, is_comment, is_data
+from .layouts import (
+    COMMENT_MARKS,
+    check_names,
+    find_layout,
+    find_names,
+    is_comment,
+    is_data,
+)
 from ..messages import FileError
 
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
@@ -89,6 +96,7 @@ class Table:
     names            of the columns, or None
     indices          of the columns that are x, y and z
     extras           {index: name} of the other columns of numbers
+    of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
     downwards        the note for a z that counts downwards by its name and values, or None
     advice           what a user can do where columns are wrong
@@ -102,12 +110,16 @@ class Table:
         head, preamble, self.comments = self.read_head(lines)
         rows, consecutive = self.sample(lines)
         self.name_columns(head, rows)
+        if not columns:
+            before = [lines[number - 1] for number, _ in preamble]
+            check_names(path, self.layout, before, rows[:400], self.names, self.width, advice)
         chosen = choose_columns(
             path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed,
             advice,
         )
         self.indices, self.extras = chosen.indices, chosen.extras
         self.notes, self.downwards = chosen.notes, chosen.downwards
+        self.of_numbers = chosen.of_numbers
         begins = first_of_data(self, preamble)
         if begins:
             self.first = begins - 1
@@ -289,23 +301,55 @@ class Parser:
         return row
 
     def check_widths(self, block, lines, skip):
-        """Remembers the first line that has more words than the others."""
+        """Remembers the first line that has more words than the others.
+
+        Where blanks part the words, a line that lacks one is an error: nothing shows which.
+        """
         table = self.table
-        if self.ragged or not self.parts or b'"' in block and self.line:
+        if not self.parts or b'"' in block and self.line and table.layout.separator:
             return
+        for i in self.of_other_width(block, lines):
+            if i < skip or not is_data(lines[i]):
+                continue
+            words = table.layout.words(lines[i])
+            if len(words) > table.words:
+                self.ragged = self.ragged or (self.line + 1 + i, len(words))
+                if table.layout.separator:
+                    return
+            elif len(words) < table.words and not table.layout.separator:
+                self.refuse_short(words, i)
+
+    def of_other_width(self, block, lines):
+        """The places of lines that may have more or fewer words than the others."""
+        table, every = self.table, range(len(lines))
         if table.layout.separator:
             separators = block.count(table.layout.separator.encode())
-            if separators == (table.words - 1) * len(lines):
-                return
-        else:
-            blank = numpy.frombuffer(block, dtype="u1") <= 32
-            words = numpy.count_nonzero(blank[1:] > blank[:-1]) + int(not blank[-1])
-            if words == table.words * len(lines):
-                return
-        for i in range(skip, len(lines)):
-            if is_data(lines[i]) and len(table.layout.words(lines[i])) > table.words:
-                self.ragged = self.line + 1 + i, len(table.layout.words(lines[i]))
-                return
+            even = self.ragged or separators == (table.words - 1) * len(lines)
+            return () if even else every
+        if b'"' in block:
+            return every
+        letters = numpy.frombuffer(block, dtype="u1")
+        blank = letters <= 32
+        begins = numpy.flatnonzero(blank[:-1] > blank[1:])
+        begins = numpy.append(numpy.flatnonzero(~blank[:1]) - 1, begins)
+        ends = numpy.append(numpy.flatnonzero(letters == 10), len(letters))[: len(lines)]
+        if len(begins) == table.words * len(lines):
+            in_lines = begins.reshape(len(lines), table.words)
+            if (in_lines[:, -1] < ends).all() and (in_lines[1:, 0] >= ends[:-1]).all():
+                return ()
+        counts = numpy.diff(numpy.searchsorted(begins, ends), prepend=0)
+        return numpy.flatnonzero(counts != table.words).tolist()
+
+    def refuse_short(self, words, i):
+        """Raises the error for a line with fewer words, unless only text lacks behind numbers."""
+        number = self.table.layout.number
+        for column in self.table.of_numbers:
+            if column >= len(words) or number(words[column]) is None:
+                raise FileError(
+                    f"{self.table.path}, line {self.line + 1 + i}: {len(words)} columns found "
+                    f"where {self.table.words} are expected, and blanks do not show which one "
+                    "lacks; part the columns by commas or write nan for what is missing"
+                )
 
     def finish(self):
         """(rows, line numbers, starts, notes)"""

@@ -423,6 +423,32 @@ class Doubts(Tables):
             with self.subTest(words):
                 self.assertIn(words, self.refusal(text))
 
+    def test_more_or_fewer_names_than_columns_are_an_error(self):
+        pairs = "455017,13,5623027,04,121,40\n455047,36,5623112,03,124,61\n"
+        thousands = "454 017,13\t5 624 027,04\t121,40\n456 047,36\t5 625 112,03\t124,61\n"
+        for text, words in (
+            ("X,Y,Z\n" + pairs, "commas stand for decimals and between columns"),
+            (pairs.replace(",5", ", 5").replace(",12", ", 12"), "commas stand for decimals"),
+            ("X\tY\tZ\n" + thousands, "marks between thousands"),
+            (thousands, "marks between thousands"),
+            (thousands.replace(",", "."), "marks between thousands"),
+            ("Lat Lon Depth\n50 16.1077N 9 4.6794E 121.4\n48 46.3129N 8 38.2E 124.6\n",
+             "the header has 3 names, but lines have 5 columns; export degrees"),
+            ("Lat Lon Depth\n50 16.1 9 4.6 121\n48 46.2 8 38.2 124\n", "lines have 5 columns"),
+            ("Lat Lon Depth\n48 46 18.7 8 38 12.7 124.6\n48 46 18.8 8 38 12.9 124.7\n",
+             "lines have 7 columns"),
+            ("X,Y,Z\n1.5,2.5,3.5,4.5,5.5\n2.5,1.5,3.5,4.5,6.5\n", "the header has 3 names"),
+            ("Code,Y,X,Z\n2.5,1.5,3.5\n2.5,1.75,4.5\n", "the header has 4 names, but lines have 3"),
+        ):
+            with self.subTest(text):
+                self.assertIn(words, self.refusal(text))
+        text = "X,Y,Z\n1.5,2.5,3.5,4.5,5.5\n2.5,1.5,3.5,4.5,6.5\n"
+        cloud = self.read(text, columns=("2", "1", "3"))
+        self.assertEqual(cloud.points.GetPoint(0), (2.5, 1.5, 3.5))
+        for head, end in (("X,Y,Z,,", ",,"), ("X,Y,Z", ","), ("X,Y,Z,", "")):
+            text = f"{head}\n1,2,3{end}\n4,5,7{end}\n"
+            self.assert_coordinates(self.read(text), [(1, 2, 3), (4, 5, 7)])
+
     def test_grids_of_other_formats_are_no_tables(self):
         for head, words in (
             ("ncols 4\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n", "ESRI"),
@@ -598,6 +624,21 @@ class Parsing(Tables):
     def test_lines_with_more_words_are_told(self):
         cloud = self.read("1 2 3\n4 5 6\n7 8 9 10\n5 5 5\n")
         self.assertIn("line 3 has 4 columns where others have 3", " ".join(cloud.notes))
+
+    def test_lines_that_lack_a_word_between_blanks_are_an_error(self):
+        rows = [f"{i}.5 {i * i % 7}.25 {i}.125 120.5\n" for i in range(1, 41)]
+        for head in ("X Y Z Q\n", ""):
+            for short in ("6.5 1.25      120.5\n", "6.5 1.25 3.125\n"):
+                text = head + "".join([*rows, short, *rows, "1 2 3 4 5\n"])
+                error = self.refusal(text)
+                self.assertIn(f"line {41 + bool(head)}: 3 columns found where 4 are", error)
+        error = self.refusal("x y z q c\n1 2 3 4 a\n4 5 7 b\n8 8 8 8 c\n")
+        self.assertIn("line 3: 4 columns", error)
+        # Text behind the numbers may have fewer words; with other separators a field is empty.
+        cloud = self.read("1 2 3 a big stone\n4 5 6 tree\n7 8 8\n")
+        self.assertEqual(cloud.points.GetNumberOfPoints(), 3)
+        cloud = self.read("x,y,z,q\n1,2,3,4\n4,5,7\n5,5,7,3\n")
+        self.assertEqual(cloud.points.GetNumberOfPoints(), 3)
 
     def test_blank_lines_and_marks_part_lines(self):
         rows, lines, starts, _ = read_table(
