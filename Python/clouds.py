@@ -45,6 +45,18 @@ class ReadOptions:
     layer: object = None  # None, or the name of a layer or variable, of files that hold several
     classes: object = None  # None, or the numbers of the classes of a LAS file to read
 
+    def __post_init__(self):
+        if isinstance(self.columns, str):
+            self.columns = self.columns.split(",")
+        if self.columns is not None:
+            self.columns = [str(column).strip() for column in self.columns]
+            if len(self.columns) != 3:
+                raise ValueError("columns takes three names, or numbers from 1, of x, y and z")
+        if isinstance(self.classes, str):
+            self.classes = self.classes.split(",")
+        if self.classes is not None:
+            self.classes = [int(number) for number in self.classes]
+
 
 def make_points(coordinates, copy=True):
     """(n, 3) float64 coordinates -> vtkPolyData with points only. Without copy it uses the array."""

@@ -20,7 +20,7 @@ from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name, write_output
 from .paths import check_suffix, check_writable
-from .reconstruction import PROPERTIES, check_spacing, run_chain
+from .reconstruction import PROPERTIES, STEPS, check_spacing, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, Progress, Results, WrongOption, write_report
 
@@ -107,6 +107,16 @@ TAKES["--breaklines"] = TAKES["--faults"]
 TAKES.update({option_of(name): PROPERTIES[name].takes for name in PROPERTIES if not is_switch(name)})
 
 
+def in_options(words):
+    """A filter's message, with the names of options where it has names of properties."""
+    for name, one in PROPERTIES.items():
+        if not one.step or words.startswith(STEPS[one.step]):
+            words = re.sub(rf"\b{one.setter[3:]}\b", option_of(name), words)
+        if "_" in name:
+            words = words.replace(name, option_of(name))
+    return words
+
+
 class Parser(argparse.ArgumentParser):
     """Errors are one line that names the option and what it takes."""
 
@@ -119,8 +129,6 @@ class Parser(argparse.ArgumentParser):
             if option in TAKES:
                 given = f", not {given.group(1)}" if given else ""
                 message = f"{option} takes {TAKES[option]}{given}"
-        elif "required: FILE" in message:
-            message = "no file is given"
         elif message.startswith("unrecognized arguments: "):
             words = message.split(": ", 1)[1]
             known = list(self._option_string_actions)
@@ -147,7 +155,7 @@ def make_parser():
     add = parser.add_argument
     add("-h", "--help", action=ShowHelp, nargs=0)
     add("--version", action="version", version=version())
-    add("files", metavar="FILE", nargs="+")
+    add("files", metavar="FILE", nargs="*")
     add("--each", action="store_true")
     add("--columns", type=three_columns)
     add("--no-data", type=float)
@@ -184,8 +192,13 @@ def make_parser():
 
 def parse_arguments(arguments):
     parser = make_parser()
-    options = parser.parse_args(arguments)
-    options.command = ["reconstruct", *(sys.argv[1:] if arguments is None else arguments)]
+    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    options = parser.parse_intermixed_args(arguments[:end])
+    options.files += arguments[end + 1 :]
+    if not options.files:
+        parser.error("no file is given")
+    options.command = ["reconstruct", *arguments]
     options.given = {
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
@@ -287,7 +300,9 @@ def check_options(options):
     inputs = [p for p in (*options.files, options.faults, options.boundary) if p]
     for i, path in enumerate(wanted):
         check_writable(path)
-        for other in inputs + wanted[:i]:
+        if os.path.abspath(path) in map(os.path.abspath, wanted[:i]):
+            raise WrongOption(f"{path}: two results have this name")
+        for other in inputs:
             if os.path.abspath(path) == os.path.abspath(other):
                 raise WrongOption(f"{path}: would overwrite {other}")
 
@@ -376,10 +391,8 @@ class Run:
             )
         except ElevationSurfaceError as error:
             path = {"boundary": options.boundary, "faults": options.faults}.get(error.about)
-            words = str(error)
-            for name in PROPERTIES:
-                words = words.replace(name, option_of(name))
-            raise Failure(f"{path or options.file}: {words}") from None
+            raise Failure(f"{path or options.file}: {in_options(str(error))}") from None
+        result.notes = [in_options(note) for note in result.notes]
         result.boundary_name, result.faults_name = options.boundary, options.faults
         self.times.update(result.times)
         result.times = self.times
@@ -468,8 +481,13 @@ def main(arguments=None):
     # Numbers near the end of their range make infinities; what these mean is told where it matters.
     numpy.seterr(all="ignore")
     together = [[path] for path in options.files] if options.each else [options.files]
+    runs = [options_of(options, files) for files in together]
+    outputs = [os.path.abspath(one.output) for one in runs]
+    for one, output in zip(runs, outputs):
+        if outputs.count(output) > 1:
+            make_parser().error(f"--each would write {one.output} twice; {one.file} is one of the files")
     try:
-        return max(run_one(options_of(options, files)) for files in together)
+        return max(run_one(one) for one in runs)
     except BrokenPipeError:
         # Nobody reads the report any more. What was asked for is done; Python must not try again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -19,6 +19,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
 
 from .clouds import Cloud, make_lines, make_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Messages, did_you_mean
+from .paths import check_suffix
 from .vtkElevationSurface import (
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
@@ -152,6 +153,8 @@ def as_cloud(points: Points) -> Cloud:
 def array_of(values, what, widths):
     """(n, width) doubles. Raises TypeError or ValueError that names what it is."""
     try:
+        if isinstance(values, numpy.ma.MaskedArray):
+            values = values.astype("f8").filled(numpy.nan)
         array = numpy.asarray(values, dtype="f8")
     except (TypeError, ValueError):
         raise TypeError(f"{what}: not an array of numbers, one row for each point") from None
@@ -249,16 +252,30 @@ class Reconstruction:
             self.progress("measuring", fraction)
 
     def to_numpy(self) -> tuple[numpy.ndarray, numpy.ndarray]:
-        """(points, triangles): (n, 3) float64, and (m, 3) integers that number the points."""
+        """(points, triangles): (n, 3) float64, and (m, 3) integers that number the points.
+
+        The input's points come first, in their order, also those that no triangle uses.
+        """
         points = vtk_to_numpy(self.surface.GetPoints().GetData()).astype("f8")
         ids = vtk_to_numpy(self.surface.GetPolys().GetConnectivityArray())
         return points, ids.reshape(-1, 3).copy()
 
     def write(self, path: Union[str, os.PathLike]) -> list[str]:
-        """Writes the surface in the format of the suffix. Returns notes, one line each."""
-        from .writing import write_surface
+        """Writes the surface in the format of the suffix: .vtp .vtu .ply .stl .obj .glb .ts.
 
-        return write_surface(self.surface, os.fspath(path), self.crs)
+        Returns notes, one line each. Raises FileError for another suffix.
+        """
+        from .writing import WRITE_SUFFIXES, write_surface
+
+        path = os.fspath(path)
+        check_suffix(path, WRITE_SUFFIXES, "written")
+        return write_surface(self.surface, path, self.crs)
+
+    def __repr__(self):
+        return (
+            f"<Reconstruction: {self.cloud.points.GetNumberOfPoints():,} points, "
+            f"{self.surface.GetNumberOfPolys():,} triangles>"
+        )
 
     def to_grid(self, step: float) -> Any:
         """The surface at the centres of square pixels, interpolated in its triangles.
@@ -275,18 +292,45 @@ class Reconstruction:
         return grid_of(self.surface, step)
 
     def plot(
-        self, path: Union[str, os.PathLike], title: str = "", **options: Any
+        self,
+        path: Union[str, os.PathLike],
+        title: str = "",
+        *,
+        view: Optional[tuple[float, float]] = None,
+        exaggeration: Optional[float] = None,
+        colours: str = "elevation",
     ) -> dict[str, float]:
-        """Draws the surface into a PNG file; options are those of picture.draw().
+        """Draws the surface into a PNG file.
 
-        Needs no screen where Xvfb is installed. Raises ElevationSurfaceError where nothing can be
-        drawn.
+        view          (bearing, height) of the eye in degrees, (180, 90) from above; None: chosen
+        exaggeration  the factor for z; None: chosen
+        colours       "elevation", or "error" for the standard error of filled elevations
+
+        Returns what was chosen. Needs no screen where Xvfb is installed. Raises ElevationSurfaceError
+        where nothing can be drawn.
         """
         from .picture import draw
         from .report import picture_subtitle
 
-        subtitle = picture_subtitle(self)
-        return draw(self.surface, os.fspath(path), title, subtitle, self.holes, **options)
+        path = os.fspath(path)
+        check_suffix(path, (".png",), "written as a picture")
+        if colours not in ("elevation", "error"):
+            raise ValueError(f"colours takes elevation or error, not {colours!r}")
+        if view is not None:
+            bearing, height = (float(angle) for angle in view)
+            if not 0 < height <= 90 or not math.isfinite(bearing):
+                raise ValueError("view takes (bearing, height) with a height above 0 and at most 90")
+            view = (bearing % 360.0, height)
+        return draw(
+            self.surface,
+            path,
+            title,
+            picture_subtitle(self),
+            self.holes,
+            view=view,
+            exaggeration=exaggeration,
+            show_errors=colours == "error",
+        )
 
 
 class _Step:
@@ -400,7 +444,7 @@ def reconstruct(
 ) -> Reconstruction:
     """Reconstructs an elevation surface z = f(x, y) from points.
 
-    points    (n, 3) array of x, y, z; a vtkPointSet or PyVista mesh, whose points and point data are
+    points    (n, 3) array of x, y, z, whose values are taken as they are; a vtkPointSet or PyVista mesh, whose points and point data are
               used; or what read() returns
     boundary  closed lines that bound the surface: vtkPolyData, an (n, 2) or (n, 3) array, or a list
               of such arrays; None: found from the points

@@ -46,7 +46,12 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     """Reads the points of a file, whatever its kind. The kind is told by the content, not the name.
 
     path     "-" is standard input; a file packed by gzip, bzip2 or xz is unpacked
-    options  those of ReadOptions; a misspelt one is a TypeError
+    columns  of text: names, or numbers from 1, of x, y and z, as ("X", "Y", "Top") or (3, 4, 5)
+    no_data  the elevation that marks missing values
+    keep_nulls, depth   True as --keep-nulls and --depth of the program
+    band, layer, classes   which of a raster's bands, a file's layers, a LAS file's classes
+    A misspelt option is a TypeError.
+
     Returns a Cloud. Raises FileError. Takes about a second for a million rows of text, less for
     other kinds.
     """

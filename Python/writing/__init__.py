@@ -8,8 +8,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from ..clouds import rounding_note
-from .mesh_formats import write_glb, write_ply, write_ts
+from ..clouds import cells_of, make_points, rounding_note
+from .mesh_formats import Triangles, write_glb, write_ply, write_ts
 from ..messages import FileError, Messages
 from ..paths import suffix_of
 from .xml_writer import write_vtp, write_vtu
@@ -46,11 +46,11 @@ def write_obj(data, path, _crs, progress):
     """OBJ by VTK, which writes all digits."""
     from vtkmodules.vtkIOGeometry import vtkOBJWriter
 
-    bare = vtkPolyData()
-    bare.SetPoints(data.GetPoints())
-    bare.SetPolys(data.GetPolys())
+    surface = Triangles(data)
+    bare = make_points(surface.points)
+    bare.SetPolys(cells_of(surface.triangles))
     run_writer(vtkOBJWriter(), bare, path, progress)
-    last = vtk_to_numpy(data.GetPolys().GetConnectivityArray())[-3:] + 1
+    last = surface.triangles[-1] + 1
     check_end(path, "f " + " ".join(str(i) for i in last))
     return []
 

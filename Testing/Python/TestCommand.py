@@ -92,6 +92,19 @@ class SeveralFiles(InFolder):
         self.assertEqual(done.returncode, 2)
         self.assertIn("--each names the results", done.stderr)
 
+    def test_each_does_not_overwrite_its_own_results(self):
+        self.file("a.xyz", sheet(5))
+        self.file("a.txt", sheet(4))
+        done = self.call("a.xyz", "a.txt", "--each", "--no-picture")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--each would write a_surface.vtp twice", done.stderr)
+
+    def test_files_may_stand_between_options(self):
+        self.file("a.xyz", sheet(5))
+        self.file("b.xyz", sheet(4))
+        self.assertEqual(self.call("--no-picture", "a.xyz", "--each", "b.xyz").returncode, 0)
+        self.assertIn("b_surface.vtp", os.listdir(self.folder))
+
     def test_arrays_that_all_files_have_are_kept(self):
         parts = []
         for names in (("a", "b"), ("b", "c")):

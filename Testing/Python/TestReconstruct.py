@@ -120,7 +120,7 @@ class Report(Program):
         told = [note for note in report["notes"] if "leaves out" in note]
         self.assertEqual(len(told), 1, report["notes"])
         self.assertIn(f"leaves out {len(lone)} points", told[0])
-        wanted = re.search(r"A GapTolerance of ([0-9.]+) would keep all points", told[0]).group(1)
+        wanted = re.search(r"A --gap-tolerance of ([0-9.]+) would keep all points", told[0]).group(1)
         done = self.call(name, "--no-fill", "--strict")
         self.assertEqual(done.returncode, 1)
         self.assertIn("leaves out", done.stderr)

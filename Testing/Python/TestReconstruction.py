@@ -89,6 +89,11 @@ class Input(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "a ring has 2 points"):
             reconstruct(SHEET, boundary=RING[:2])
 
+    def test_masked_values_are_not_finite(self):
+        masked = numpy.ma.masked_array(SHEET, SHEET[:, 2:] * [1, 1, 1] == SHEET[5, 2])
+        report = reconstruct(masked).report
+        self.assertEqual(list(report["unused_reasons"]), ["not finite"])
+
     def test_faults_become_edges(self):
         fault = numpy.array([(2.0, 2.5, 9.0), (8.0, 2.5, 9.0)])
         result = reconstruct(SHEET, faults=fault, trim=False, fill=False)
@@ -147,6 +152,18 @@ class Properties(unittest.TestCase):
 
         with self.assertRaisesRegex(TypeError, "no option colums; did you mean columns"):
             read("a.xyz", colums=(1, 2, 3))
+        with self.assertRaisesRegex(ValueError, "columns takes three names"):
+            read("a.xyz", columns="X,Y")
+
+    def test_columns_are_given_as_on_the_command_line_or_as_a_list(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.txt")
+            with open(path, "w", encoding="ascii") as stream:
+                stream.write("A B C D\n" + "".join(f"9 {x:g} {y:g} {z:g}\n" for x, y, z in SHEET))
+            for columns in ("B,C,D", ("B", "C", "D"), (2, 3, 4), "2, 3, 4"):
+                points = read(path, columns=columns).points
+                xyz = vtk_to_numpy(points.GetPoints().GetData())
+                numpy.testing.assert_array_equal(xyz, SHEET)
 
     def test_errors_of_filters_raise_and_warnings_warn(self):
         with self.assertRaisesRegex(ElevationSurfaceError, "on one line"):
@@ -201,6 +218,15 @@ class Result(unittest.TestCase):
             with open(path + ".png", "rb") as stream:
                 self.assertEqual(stream.read(4), b"\x89PNG")
             again = read(path + ".vtp").points
+            with self.assertRaisesRegex(ElevationSurfaceError, "a.xyz: .xyz cannot be written"):
+                result.write(path + ".xyz")
+            with self.assertRaisesRegex(ElevationSurfaceError, "a.jpg: .jpg cannot be written as"):
+                result.plot(path + ".jpg")
+            with self.assertRaisesRegex(ValueError, "colours takes elevation or error"):
+                result.plot(path + ".png", colours="slope")
+            with self.assertRaisesRegex(ValueError, "view takes"):
+                result.plot(path + ".png", view=(10, 100))
+        self.assertEqual(repr(result), "<Reconstruction: 144 points, 242 triangles>")
         points, triangles = result.to_numpy()
         numpy.testing.assert_array_equal(vtk_to_numpy(again.GetPoints().GetData()), points)
         self.assertEqual(triangles.shape, (2 * (SIZE - 1) ** 2, 3))

@@ -264,7 +264,7 @@ class CommandLine(InFolder):
             ("g.png: .png cannot be written; use one of .tif", ("--grid", "5", "--grid-output", "g.png")),
             ("c.shp: .shp cannot be", ("--contours", "5", "--contours-output", "c.shp")),
             ("--crs: EPSG:1 is no coordinate reference system", ("--crs", "EPSG:1")),
-            ("would overwrite", ("--contours", "5", "--contours-output", "o.dxf", "--outlines", "o.dxf")),
+            ("two results", ("--contours", "5", "--contours-output", "o.dxf", "--outlines", "o.dxf")),
             ("leave no outlines", ("--no-trim", "--no-fill", "--outlines")),
         ):
             with self.subTest(arguments=arguments):
