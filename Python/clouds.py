@@ -7,7 +7,7 @@ import math
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints
+from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
@@ -93,6 +93,21 @@ def make_lines(parts):
     return data
 
 
+def crs_of(data):
+    """The words of the field array CRS, or None: the coordinate reference system."""
+    words = data.GetFieldData().GetAbstractArray("CRS")
+    has_words = isinstance(words, vtkStringArray) and words.GetNumberOfValues() == 1
+    return words.GetValue(0) if has_words else None
+
+
+def set_crs(data, crs):
+    """Writes the field array CRS that crs_of() reads."""
+    words = vtkStringArray()
+    words.SetName("CRS")
+    words.InsertNextValue(crs)
+    data.GetFieldData().AddArray(words)
+
+
 def add_array(points, name, values):
     """Adds numbers, one or some for each point, as point array."""
     array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
@@ -129,10 +144,12 @@ def some_points(data, keep):
 def merged(names, clouds):
     """The points of several clouds as one Cloud. Point arrays that not all of them have are left out.
 
-    Lines of text files are told only where there is one file.
+    Lines of text files are told only where there is one file. Raises FileError where coordinate
+    reference systems differ.
     """
     if len(clouds) == 1:
         return clouds[0]
+    crs, notes = system_of(names, clouds)
     append = vtkAppendPolyData()
     for cloud in clouds:
         data = make_points(vtk_to_numpy(cloud.points.GetPoints().GetData()))
@@ -140,11 +157,7 @@ def merged(names, clouds):
         append.AddInputData(data)
     append.SetOutputPointsPrecision(append.DOUBLE_PRECISION)
     append.Update()
-    result = Cloud(append.GetOutput())
-    systems = {cloud.crs for cloud in clouds if cloud.crs}
-    result.crs = systems.pop() if len(systems) == 1 else None
-    if systems:
-        result.notes.append("the files have different coordinate reference systems; see --crs")
+    result = Cloud(append.GetOutput(), notes, crs=crs)
     kept = result.points.GetPointData().GetNumberOfArrays()
     if any(cloud.points.GetPointData().GetNumberOfArrays() > kept for cloud in clouds):
         result.notes.append("point arrays that not all files have are left out")
@@ -155,6 +168,17 @@ def merged(names, clouds):
         for reason, number in cloud.left_out.items():
             result.left_out[reason] = result.left_out.get(reason, 0) + number
     return result
+
+
+def system_of(names, clouds):
+    """(crs, notes) of several clouds. Raises FileError where they differ."""
+    from .gdal_common import check_system  # imports this module
+
+    known = [(name, cloud.crs) for name, cloud in zip(names, clouds) if cloud.crs]
+    if not known:
+        return None, []
+    first, crs = known[0]
+    return crs, [note for name, other in known for note in check_system(name, other, first, crs)]
 
 
 def antimeridian_note(points):

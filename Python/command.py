@@ -14,8 +14,8 @@ import time
 import numpy
 
 from . import reading
-from .clouds import ReadOptions, antimeridian_note, merged
-from .gdal_common import name_of, reference_of
+from .clouds import ReadOptions, antimeridian_note, crs_of, merged
+from .gdal_common import check_system, name_of, reference_of
 from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name, write_output
@@ -344,6 +344,10 @@ class Run:
         self.set_crs(cloud)
         faults = reading.read_faults(options.faults) if options.faults else None
         boundary = reading.read_boundary(options.boundary) if options.boundary else None
+        for path, lines in ((options.boundary, boundary), (options.faults, faults)):
+            if lines is not None:
+                crs = crs_of(lines)
+                cloud.notes += check_system(path, crs, options.files[0], cloud.crs)
         return cloud, boundary, faults
 
     def set_crs(self, cloud):

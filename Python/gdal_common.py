@@ -17,6 +17,11 @@ VECTORS = (
     "FlatGeobuf,MapInfo File,OGR_GMT,SQLite,S57,OGR_VRT,AVCE00,JML"
 ).split(",")
 
+SAME_PLACES = [
+    "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
+    "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+]
+
 
 def one_line(error):
     return " ".join(str(error).split())
@@ -145,3 +150,39 @@ def name_of(crs):
     reference = reference_of(crs)
     name, code = reference.GetName() or "unnamed", reference.GetAuthorityCode(None)
     return f"{name} ({reference.GetAuthorityName(None)}:{code})" if code else name
+
+
+def same_system(one, other):
+    """Whether x and y of two systems mean the same; None where that cannot be told.
+
+    Each is what reference_of() takes. Heights and the order of axes do not count.
+    """
+    if not one or not other or one == other:
+        return True if one and other else None
+    try:
+        pair = [reference_of(crs) for crs in (one, other)]
+    except (ImportError, ValueError):
+        return None
+    if any(reference.IsLocal() for reference in pair):
+        return None
+    for reference in pair:
+        if reference.IsCompound():
+            reference.StripVertical()
+        reference.DemoteTo2D()
+    return bool(pair[0].IsSame(pair[1], SAME_PLACES))
+
+
+def check_system(path, crs, other_path, other):
+    """Refuses a file whose system is not that of another file.
+
+    Raises FileError. Returns notes.
+    """
+    same = same_system(crs, other)
+    if same is None and crs and other:
+        return [f"whether {path} has the coordinate reference system of {other_path} is not known"]
+    if same is False:
+        raise FileError(
+            f"{path}: its coordinate reference system is {name_of(crs)}, that of {other_path} is "
+            f"{name_of(other)}: reproject one of them first, by ogr2ogr, gdalwarp or QGIS"
+        )
+    return []

@@ -4,7 +4,7 @@
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_lines, make_points
+from ..clouds import Cloud, add_array, make_lines, make_points, set_crs
 from .columns import meaning
 from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
@@ -167,6 +167,11 @@ def is_number(value):
         return False
 
 
+def are_angles(layer):
+    """Whether x and y of all points can be degrees."""
+    return all((numpy.abs(points[:, :2]) <= (540.0, 90.0)).all() for _, points in layer.parts)
+
+
 def read_layer(path, wanted, columns):
     """(Layer with its elevations, notes, crs)."""
     with quiet():
@@ -177,6 +182,10 @@ def read_layer(path, wanted, columns):
         notes.insert(0, f"vectors: {data.GetDriver().LongName}")
         if not layer.parts:
             raise FileError(f"{path}: layer {found.GetName()} holds no geometry")
+        if reference and reference.IsGeographic() and not are_angles(layer):
+            # GDAL takes GeoJSON that names no system for degrees.
+            notes.append(f"x,y are no angles, so it is not in {reference.GetName()}; see --crs")
+            reference = None
         if reference and reference.IsGeographic():
             notes.append("x,y are angles: project them first to give triangles their true shape")
         crs = reference.ExportToWkt() if reference else None
@@ -216,8 +225,8 @@ def read_points(path, options):
 
 
 def read_lines(path, singular):
-    """Lines and polygons with their holes, as vtkPolyData with lines."""
-    layer, _, _ = read_layer(path, None, None)
+    """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS."""
+    layer, _, crs = read_layer(path, None, None)
     parts = [points for kind, points in layer.parts if kind != "point"]
     if not parts:
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
@@ -229,4 +238,7 @@ def read_lines(path, singular):
             points[:, 2] = numpy.nan_to_num(points[:, 2])
     elif is_flat.any():
         raise FileError(f"{path}: its lines have no z, neither themselves nor as an attribute")
-    return make_lines(parts)
+    data = make_lines(parts)
+    if crs:
+        set_crs(data, crs)
+    return data

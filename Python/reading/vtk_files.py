@@ -9,7 +9,6 @@ import warnings
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkImageData,
     vtkPointSet,
@@ -17,7 +16,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkRectilinearGrid,
 )
 
-from ..clouds import Cloud, make_points, rounding_note
+from ..clouds import Cloud, crs_of, make_points, rounding_note
 from .formats import FORMATS, HEAD
 from ..messages import FileError, Messages
 from ..paths import suffix_of
@@ -135,13 +134,6 @@ def read_points(path, options):
         if note:
             cloud.notes.append(note)
     return cloud
-
-
-def crs_of(data):
-    """The words of the field array CRS, where this package writes them; or None."""
-    words = data.GetFieldData().GetAbstractArray("CRS")
-    has_words = isinstance(words, vtkStringArray) and words.GetNumberOfValues() == 1
-    return words.GetValue(0) if has_words else None
 
 
 # The word before a vertex in text.

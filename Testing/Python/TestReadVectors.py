@@ -8,9 +8,11 @@ import sys
 import unittest
 
 import numpy
-from in_folder import InFolder, coordinates
+from in_folder import InFolder, Program, coordinates
 from osgeo import gdal, ogr, osr
 from vtkelevationsurface import reading
+from vtkelevationsurface.clouds import Cloud, crs_of, make_points, merged
+from vtkelevationsurface.gdal_common import same_system
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 gdal.UseExceptions()
@@ -107,6 +109,12 @@ class Points(Vectors):
         self.assert_rows(self.read(content, "a.geojson"), MAP)
         content = "id;geometry\n" + "".join(f"1;{text}\n" for text in wkt_of(MAP))
         self.assert_rows(self.read(content, "a.csv"), MAP)
+
+    def test_what_is_no_angle_is_in_no_system_of_angles(self):
+        points = '{"type": "MultiPoint", "coordinates": [[612000, 6073000, 1], [612001, 6073000, 2]]}'
+        cloud = self.read(points, "a.geojson")
+        self.assertIsNone(cloud.crs)
+        self.assertIn("x,y are no angles, so it is not in WGS 84; see --crs", cloud.notes)
 
     def test_degrees_of_kml_and_gpx_are_told(self):
         degrees = [(7.5, 50.25, 100.5), (7.75, 50.5, 200.25), (8.0, 50.0, 300.0)]
@@ -309,6 +317,59 @@ class Lines(Vectors):
             reading.read_faults(self.gpkg(wkt_of(MAP)))
         with self.assertRaisesRegex(reading.FileError, "its lines have no z"):
             reading.read_faults(self.make("b.gpkg", "GPKG", ["LINESTRING (0 0, 5 0)"]))
+
+
+class Systems(Vectors, Program):
+    """Coordinate reference systems of several files."""
+
+    RING = ["POLYGON ((612000 6073000, 613000 6073000, 613000 6075000, 612000 6073000))"]
+
+    def test_lines_carry_theirs(self):
+        for name, driver in (("a.gpkg", "GPKG"), ("a.shp", "ESRI Shapefile")):
+            with self.subTest(driver=driver):
+                crs = crs_of(reading.read_boundary(self.make(name, driver, self.RING)))
+                self.assertTrue(same_system(crs, "EPSG:25832"))
+
+    def test_systems_are_compared_by_their_places(self):
+        for one, other, same in (
+            ("EPSG:25832", "EPSG:25832", True),
+            ("EPSG:25832", "EPSG:25832+7837", True),
+            ("EPSG:4326", "OGC:CRS84", True),
+            ("EPSG:25832", "EPSG:25833", False),
+            ("EPSG:25832", "EPSG:4326", False),
+            ("EPSG:25832", "nonsense", None),
+            ("EPSG:25832", 'LOCAL_CS["site"]', None),
+            ("EPSG:25832", None, None),
+        ):
+            with self.subTest(one=one, other=other):
+                self.assertIs(same_system(one, other), same)
+
+    def test_a_boundary_and_faults_in_another_system_are_refused(self):
+        points = wkt_of([(612000 + x, 6073000 + y, x) for x in range(9) for y in range(9)])
+        self.make("p.gpkg", "GPKG", points)
+        lines = ["LINESTRING Z (612001 6073001 0, 612005 6073005 5)"]
+        ring = ["POLYGON ((612001 6073001, 612005 6073001, 612005 6073005, 612001 6073001))"]
+        for option, shapes in (("--boundary", ring), ("--faults", lines)):
+            for epsg, options in ((25833, ()), (25832, ("--crs", "EPSG:25833"))):
+                with self.subTest(option=option, epsg=epsg):
+                    name = f"{option[2:]}-{epsg}.gpkg"
+                    self.make(name, "GPKG", shapes, epsg=epsg)
+                    done = self.call("p.gpkg", option, name, "--no-picture", *options)
+                    self.assertEqual(done.returncode, 1, done.stderr)
+                    self.assertRegex(done.stderr, f"{name}: its coord.*zone 3[23]N.*, that of p.gp")
+                    self.assertRegex(done.stderr, "zone 3[23]N.*reproject one of them first")
+        done = self.call("p.gpkg", "--boundary", "boundary-25832.gpkg", "--no-picture")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_points_of_several_systems_are_not_merged(self):
+        crs = ("EPSG:25832", None, "EPSG:25833")
+        parts = [Cloud(make_points(MAP), crs=one) for one in crs]
+        with self.assertRaisesRegex(reading.FileError, "^c: .*33N.*, that of a is .*32N.*reproject"):
+            merged(["a", "b", "c"], parts)
+        one = merged(["a", "b"], parts[:2])
+        self.assertEqual(one.crs, "EPSG:25832")
+        parts[2].crs = "EPSG:25832+7837"
+        self.assertEqual(merged(["a", "c"], parts[::2]).crs, "EPSG:25832")
 
 
 if __name__ == "__main__":
