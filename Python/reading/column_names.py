@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the name of a column means: an axis, or something else, in nine languages."""
+"""What the name of a column means: an axis, or something else, in nine languages and some more."""
 
 import dataclasses
 import re
@@ -11,8 +11,9 @@ def _words(text):
     return frozenset(text.split())
 
 
-# Names of English, German, French, Spanish, Portuguese, Norwegian, Italian, Dutch and Polish, as
-# plain() writes them: (axis, rank, direction, names). A lower rank is the better name.
+# Names of English, German, French, Spanish, Portuguese, Norwegian, Italian, Dutch and Polish, some
+# of Finnish and Czech, as plain() writes them: (axis, rank, direction, names). A lower rank is the
+# better name.
 AXES = (
     ("x", 0, "", _words("x")),
     ("y", 0, "", _words("y")),
@@ -20,12 +21,13 @@ AXES = (
     ("x", 1, "", _words(
         "easting eastings east rechtswert rechts rw ostwert ost oest este leste est abscisse "
         "abscissa abscisa absis oost oosting ostkoordinate wschod wschodnia ostkoordinat "
-        "oestkoordinat ostverdi eastcoordinate coordeste oosten rechtsw oestverdi"
+        "oestkoordinat ostverdi eastcoordinate coordeste oosten rechtsw oestverdi "
+        "ita itakoordinaatti"
     )),
     ("y", 1, "", _words(
         "northing northings north hochwert hoch hw nordwert nord norte ordonnee ordenada ordinata "
         "ordinate noord noording nordkoordinate polnoc polnocna nordkoordinat nordverdi noorden "
-        "hochw"
+        "hochw pohjoinen pohjoiskoordinaatti"
     )),
     ("z", 1, "", _words(
         "elevation elevations elev elevacion elevacao elevazione height heights hgt ht hoehe hohe "
@@ -34,7 +36,7 @@ AXES = (
         "gelaende gelande terrenghoyde terrenghoeyde moh maaiveld maaiveldhoogte bodemhoogte "
         "hoogteligging wys rzednaterenu pnm quotaslm altimetria altimetrie topo grundhoehe "
         "bodenhoehe bodenhohe gok gokhoehe meereshohe meereshoehe hojde hoejde hoeydekote hae msl "
-        "nap nhn amsl"
+        "nap nhn amsl korkeus vyska"
     )),
     ("x", 2, "", _words("e oe")),
     ("y", 2, "", _words("n")),
@@ -77,7 +79,7 @@ ROLES = (
         "id fid oid objectid nr no num nummer number numero point pt pkt punkt punktnr "
         "punktnummer ptnr punto ponto punti punt puntnr puntnummer pnr pno name matricule station "
         "index row pid ptid ident uid gid serial nome nombre nom nazwa numer naam pointid "
-        "pointnumber pointno pointname p idx"
+        "pointnumber pointno pointname p idx piste pistenumero pistenro bod cislo cislobodu cb eb"
     )),
     ("a line, trace or place in a grid", _words(
         "line inline il iline xline crossline xl trace tr cdp cmp sp shotpoint shot bin ffid "
@@ -102,6 +104,7 @@ ROLES = (
         "antenna ant target instrument prism rod pole vel vx vy vz"
     )),
 )
+ABBREVIATED = _words("cb eb")  # "č.b.", also as read from another code page
 COLOURS = {
     "red": _words("red r rot rouge"),
     "green": _words("green g gruen grun vert"),
@@ -145,6 +148,7 @@ def meaning(name):
     joined = "".join(words)
     for role, names in ROLES:
         whole = joined in names and (len(words) == 1 or len(joined) > 3)  # "X L" is no "xl"
+        whole |= joined in names & ABBREVIATED
         if whole or role == "a measure" and any(word in names for word in words):
             return Meaning(role=role)
     extra = [w for w in plain(inside) if any(w in names and r == 1 for _, r, _, names in AXES)]

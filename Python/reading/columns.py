@@ -79,6 +79,11 @@ class Search:
         if not {"r", "g", "b"} <= letters:  # single letters are colours only together
             lone = [i for i, name in enumerate(names or []) if "".join(plain(name)) in "rgb"]
             self.meanings = [Meaning() if i in lone else m for i, m in enumerate(self.meanings)]
+        if {"p", "i"} <= letters and not letters & set("nexy"):  # Finnish: pohjoinen, itä
+            finnish = {"p": Meaning("y", 2), "i": Meaning("x", 2)}
+            self.meanings = [
+                finnish.get("".join(plain(name)), m) for name, m in zip(names, self.meanings)
+            ]
         self.indices, self.notes = None, []
 
     # -- what the user said

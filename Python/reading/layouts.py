@@ -138,6 +138,31 @@ def check_thousands(path, layout, sample):
         )
 
 
+def check_marks(path, rows, columns):
+    """Refuses marks between thousands that look like decimal signs, where the file proves it.
+
+    Another sign stands before decimals, or numbers below 1000 have no sign and all others have it
+    before three digits, with zeros at the end where these are not cut off.
+    """
+    grouped = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}")
+    plain = re.compile(r"[-+]?\d{1,3}")
+    signs, proved = {".": [], ",": []}, False
+    for i in columns:
+        words = [row[i] for row in rows if i < len(row) and is_number(row[i].replace(",", "."))]
+        for sign, found in signs.items():
+            found += [word for word in words if sign in word]
+        marked = [word for word in words if grouped.fullmatch(word)]
+        without = sum(bool(plain.fullmatch(word)) for word in words)
+        zeros = any(word[-1] == "0" for word in marked)
+        proved |= zeros and without > 0 and len(marked) + without == len(words)
+    if all(signs.values()):
+        proved |= any(all(map(grouped.fullmatch, found)) for found in signs.values())
+    if proved:
+        raise FileError(
+            f"{path}: numbers with {NO_NUMBERS[0][1]} cannot be read; export plain decimals"
+        )
+
+
 def check_names(path, layout, before, rows, names, width, advice):
     """Refuses a header that tells x, y and z but has more or fewer names than there are columns.
 

@@ -19,6 +19,7 @@ from ..clouds import Cloud, make_points
 from .columns import choose_columns
 from .layouts import (
     COMMENT_MARKS,
+    check_marks,
     check_names,
     find_layout,
     find_names,
@@ -27,6 +28,7 @@ from .layouts import (
 )
 from ..messages import FileError
 
+END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
@@ -48,7 +50,7 @@ def blocks(path, stream, progress=None):
             text = (data + stream.read()).decode("utf-16", "replace")
             stream, size = io.BytesIO(text.encode()), 0
             data = stream.read(BLOCK)
-        elif b"\0" in data[:4096]:
+        elif b"\0" in (data[:4096].rstrip(END_MARKS) or data[:4096]):
             raise FileError(f"{path}: is not a text file")
         if data.startswith(b"\xef\xbb\xbf"):
             data = data[3:]
@@ -64,12 +66,15 @@ def blocks(path, stream, progress=None):
             data = stream.read(BLOCK)
     except OSError as error:
         raise FileError(f"{path}: cannot be read: {error.strerror}") from None
-    if rest:
+    if rest.strip(END_MARKS):
         yield plain(rest)
 
 
 def plain(data):
-    """Bytes with \\n at the end of lines, and with the usual sign for minus."""
+    """Bytes with \\n at the end of lines, the usual sign for minus, and no marks of the end."""
+    end = data.rstrip(END_MARKS)
+    if b"\x1a" in data[len(end) :] or b"\0" in data[len(end) :]:
+        data = end + b"\n"
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").replace(b"\xe2\x88\x92", b"-")
 
 
@@ -100,6 +105,7 @@ class Table:
     first            index of the first line of data
     downwards        the note for a z that counts downwards by its name and values, or None
     advice           what a user can do where columns are wrong
+    head_lines       lines before the data that are no comments, without blanks around
     headers, comments  how many lines before the data are such
     notes            for the user
     """
@@ -108,6 +114,7 @@ class Table:
         self.path, self.needed, self.advice = path, needed, advice
         self.layout = find_layout(path, lines[:5000], needed)
         head, preamble, self.comments = self.read_head(lines)
+        self.head_lines = {lines[number - 1].strip() for number, _ in preamble}
         rows, consecutive = self.sample(lines)
         self.name_columns(head, rows)
         if not columns:
@@ -120,9 +127,11 @@ class Table:
         self.indices, self.extras = chosen.indices, chosen.extras
         self.notes, self.downwards = chosen.notes, chosen.downwards
         self.of_numbers = chosen.of_numbers
+        check_marks(path, rows, self.of_numbers)
         begins = first_of_data(self, preamble)
         if begins:
             self.first = begins - 1
+            self.head_lines = {lines[n - 1].strip() for n, _ in preamble if n < begins}
         self.headers = sum(number <= self.first for number, _ in preamble)
 
     def read_head(self, lines):
@@ -145,10 +154,14 @@ class Table:
     def sample(self, lines):
         """(rows as words, how many of them follow each other)."""
         start = self.first + SAMPLE
-        data = [line for line in lines[self.first : start] if is_data(line)]
+        data = [line for line in lines[self.first : start] if self.is_row(line)]
         step = max(1, (len(lines) - start) // SAMPLE)
-        later = [line for line in lines[start::step] if is_data(line)]
+        later = [line for line in lines[start::step] if self.is_row(line)]
         return [self.layout.words(line) for line in data + later], len(data)
+
+    def is_row(self, line):
+        """Whether a line behind the header is data: no comment, not blank, not the header again."""
+        return is_data(line) and line.strip() not in self.head_lines
 
     def name_columns(self, head, rows):
         """Sets words, width and names."""
@@ -202,7 +215,7 @@ class Parser:
         self.table = table
         self.used = list(table.indices) + list(table.extras)
         self.parts, self.numbers, self.starts = [], [], []
-        self.count = self.line = self.comments = 0
+        self.count = self.line = self.comments = self.repeated = 0
         self.after_blank = True
         self.ragged = None  # the first line with more words than others
         self.no_numbers = collections.Counter()  # words in extras that are no numbers
@@ -253,6 +266,8 @@ class Parser:
             elif is_comment(line):
                 self.comments += 1
                 self.after_blank |= line.lstrip().startswith(">")
+            elif line.strip() in self.table.head_lines:
+                self.repeated += 1
             else:
                 if self.after_blank:
                     self.starts.append(self.count + len(kept))
@@ -309,7 +324,7 @@ class Parser:
         if not self.parts or b'"' in block and self.line and table.layout.separator:
             return
         for i in self.of_other_width(block, lines):
-            if i < skip or not is_data(lines[i]):
+            if i < skip or not table.is_row(lines[i]):
                 continue
             words = table.layout.words(lines[i])
             if len(words) > table.words:
@@ -360,6 +375,8 @@ class Parser:
             if count:
                 seen.append(f"{count} {what} line{'s' * (count > 1)}")
         notes.insert(0, "text: " + ", ".join(seen))
+        if self.repeated:
+            notes.append(f"header lines that come again are left out: {self.repeated:,}")
         if self.ragged:
             notes.append(
                 f"line {self.ragged[0]:,} has {self.ragged[1]} columns where others have "

@@ -108,6 +108,8 @@ EXPORTS = (
     ("Polish", "Numer;Współrzędna X;Współrzędna Y;Wysokość\n", ";", "id x y z", "Wysoko"),
     ("Polish, degrees", "Nazwa;Szerokość geograficzna;Długość geograficzna;Głębokość\n", ";",
      "id lat lon depth", "depths"),
+    ("Finnish", "Piste;P;I;Korkeus\n", ";", "id y x z", "y = 2 (P)"),
+    ("Czech", "č.b.;Y;X;výška\n", ";", "id y x z", "z = 4 (výška)"),
     ("CloudCompare", "//X Y Z R G B Scalar_field\n", " ", "x y z r g b amp", "z = 3"),
     ("CloudCompare, with a count", f"{COUNT}\n", " ", "x y z r g b", "first 3 of 6"),
     ("Leica .pts", f"{COUNT}\n", " ", "x y z int r g b", "first 3 of 7"),
@@ -448,6 +450,27 @@ class Doubts(Tables):
         for head, end in (("X,Y,Z,,", ",,"), ("X,Y,Z", ","), ("X,Y,Z,", "")):
             text = f"{head}\n1,2,3{end}\n4,5,7{end}\n"
             self.assert_coordinates(self.read(text), [(1, 2, 3), (4, 5, 7)])
+
+    def test_marks_between_thousands_are_no_decimal_signs_where_the_file_proves_it(self):
+        local = [(152 + 7 * i, 900 + 31 * i, 1214 + i) for i in range(40)]
+        for separator, text in (
+            ("\t", "455017.13\t5623027.04\t1,734\n455047.36\t5623112.03\t1,780\n"),
+            (";", "455017,1;5623027,0;1.021\n455047,4;5623112,0;1.025\n"),
+            ("\t", "".join("\t".join(f"{v:,}" for v in row) + "\n" for row in local)),
+        ):
+            for head in ("", separator.join("XYZ") + "\n"):
+                self.assertIn("marks between thousands", self.refusal(head + text))
+        cloud = self.read("455017,1;5623027,0;1.25\n455047,4;5623112,0;1.5\n")
+        self.assertEqual(cloud.points.GetPoint(1), (455047.4, 5623112.0, 1.5))
+
+    def test_marks_of_the_end_and_headers_that_come_again_are_left_out(self):
+        for end in (b"\x1a", b"\n\x1a\n", b"\r\n" + bytes(300)):
+            cloud = self.read(b"x,y,z\n1,2,3\n4,5,7" + end)
+            self.assert_coordinates(cloud, [(1, 2, 3), (4, 5, 7)])
+        cloud = self.read("x y z\n1 2 3\n\x0cx y z\n4 5 7\nx y z \n8 8 9\n")
+        self.assert_coordinates(cloud, [(1, 2, 3), (4, 5, 7), (8, 8, 9)])
+        self.assertEqual(list(cloud.lines), [2, 4, 6])
+        self.assertIn("header lines that come again are left out: 2", cloud.notes)
 
     def test_grids_of_other_formats_are_no_tables(self):
         for head, words in (
