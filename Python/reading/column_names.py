@@ -180,6 +180,10 @@ def _axis_of(words, joined, extra):
     known = frozenset().union(*(names for _, _, _, names in AXES))
     beside = tuple(w for w in words if w not in known) if not whole else ()
     strange = [word for word in beside if word not in BESIDE]
+    if axis == "z" and "alt" in words and len(words) > 1 and any(
+        w != "alt" and w in names for a, _, _, names in AXES if a == "z" for w in words
+    ):
+        strange.append("alt")  # "Höhe_alt": the old one
     if strange:
         if max(len(word) for word in words if word in known) < 2 or rank == 4:
             return None  # a single letter among words that tell something else

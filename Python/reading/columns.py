@@ -185,7 +185,8 @@ class Search:
         if self.needed == 3:
             others = [
                 i for i, m in enumerate(self.meanings)
-                if m.axis == "z" and m.rank < 4 and i not in self.indices
+                if m.axis == "z" and m.rank not in (4, 9) and i not in self.indices
+                and self.share_of_text[i] < 0.5
             ]
             if others and z.axis:
                 self.notes.append(
@@ -211,6 +212,7 @@ class Search:
         """Sets the indices from the values of the columns."""
         if self.width == self.needed:
             self.indices = list(range(self.width))
+            self.look_at_order()
             return
         numbers = [
             i for i in range(self.width) if self.share_of_text[i] < 0.5 and len(self.finite(i))
@@ -427,6 +429,18 @@ class Search:
             return False
         return bool(160e3 < x.min() and x.max() < 840e3 and 1.1e6 < y.min() and y.max() < 10e6)
 
+    def look_at_order(self):
+        """Notes where three columns without names look like z, x, y."""
+        if self.needed == 2 or any(m.axis or m.role for m in self.meanings):
+            return
+        later = self.is_utm(1, 2) or self.is_utm(2, 1)
+        if later and not self.is_utm(0, 1) and not self.is_utm(1, 0):
+            order = [1, 2, 0] if self.is_utm(1, 2) else [2, 1, 0]
+            self.notes.append(
+                "the columns are taken as x, y, z in this order, but 2 and 3 are as large as "
+                f"coordinates of UTM; if 1 is z: --columns {self.numbered(order)}"
+            )
+
     # -- what the values tell of the choice
 
     def look_at_values(self):
@@ -434,6 +448,12 @@ class Search:
         xs, ys = self.finite(x), self.finite(y)
         if not len(xs) or not len(ys):
             return
+        for i, values, limit, what in ((x, xs, 360, "longitude"), (y, ys, 90, "latitude")):
+            if self.meanings[i].rank == 3 and abs(values).max() > limit:
+                self.notes.append(
+                    f"column {self.called(i)} is a {what} by its name, but holds "
+                    f"{values[abs(values).argmax()]:.9g}, which no {what} can be (see --columns)"
+                )
         by_name = 3 in (self.meanings[x].rank, self.meanings[y].rank)
         degrees = abs(xs).max() <= 360 and abs(ys).max() <= 90
         if self.needed == 3 and degrees:

@@ -472,6 +472,27 @@ class Doubts(Tables):
         self.assertEqual(list(cloud.lines), [2, 4, 6])
         self.assertIn("header lines that come again are left out: 2", cloud.notes)
 
+    def test_what_no_latitude_can_be_is_told(self):
+        cloud = self.read("Lat,Lon,Height\n110.25,9.5,121.5\n108.75,8.5,124.5\n")
+        self.assertIn("column 1 (Lat) is a latitude by its name, but holds 110.25",
+                      " ".join(cloud.notes))
+        cloud = self.read("Lat,Lon,Height\n-89.5,359.5,121.5\n88.75,8.5,124.5\n")
+        self.assertNotIn("latitude", " ".join(cloud.notes))
+
+    def test_two_columns_named_z_are_told_or_refused(self):
+        rows = "5.5;7.5;121.5;122.5\n6.5;7.75;123.5;124.5\n"
+        self.assertIn("3 (Höhe_alt) and 4 (Höhe_neu) may all be z",
+                      self.refusal("X;Y;Höhe_alt;Höhe_neu\n" + rows))
+        cloud = self.read("X;Y;Depth;Corrected depth\n" + rows)
+        self.assertIn("column 4 (Corrected depth) could be too", " ".join(cloud.notes))
+
+    def test_three_columns_without_names_that_look_like_z_x_y_are_told(self):
+        text = "124.61;455047.36;5623112.03\n130.25;455160.25;5623112.75\n"
+        cloud = self.read(text)
+        self.assertEqual(cloud.points.GetPoint(0), (124.61, 455047.36, 5623112.03))
+        self.assertIn("if 1 is z: --columns 2,3,1", " ".join(cloud.notes))
+        self.assertEqual(len(self.read("Z;X;Y\n" + text).notes), 2)
+
     def test_grids_of_other_formats_are_no_tables(self):
         for head, words in (
             ("ncols 4\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n", "ESRI"),
