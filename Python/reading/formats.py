@@ -54,6 +54,10 @@ def begins(pattern):
     return lambda head, path: compiled.match(head) is not None
 
 
+FORTRAN = re.compile(rb"([\d.])[dD]([-+]?\d)")
+CONTROL = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a\x1b"))
+
+
 def is_stl(head, path):
     if re.match(rb"\s*solid\b.*?\bfacet\s+normal\b", head, re.DOTALL | re.IGNORECASE):
         return True
@@ -62,11 +66,11 @@ def is_stl(head, path):
 
 
 def numbers_of(line):
-    """How many words of a line of bytes are numbers."""
+    """How many words of a line of bytes are numbers, in quotes or not, also 1.5D+03 of Fortran."""
     found = 0
     for word in re.split(rb"[\s,;]+", line.strip()):
         try:
-            float(word)
+            float(FORTRAN.sub(rb"\1e\2", word.strip(b"\"'")))
             found += 1
         except ValueError:
             pass
@@ -80,7 +84,13 @@ def lines_of(head):
 
 
 def is_text(head):
-    return head[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" not in head
+    return b"\0" not in head
+
+
+def is_plain_text(head):
+    """Whether these bytes can be text that somebody wrote; NUL may fill the end."""
+    head = head.rstrip(b"\0\x1a\r\n")
+    return head != b"" and len(head.translate(None, CONTROL)) == len(head)
 
 
 def is_table(head, path):
@@ -184,6 +194,8 @@ def recognise(path):
     """(Format, notes) of a file. Raises FileError for what is of no known kind."""
     with open(path, "rb") as stream:
         head = stream.read(HEAD)
+    if head[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        head = head.decode("utf-16", "ignore").encode()
     for pattern, words in FOREIGN:
         if pattern.match(head):
             raise FileError(f"{path}: {words}")
@@ -194,6 +206,10 @@ def recognise(path):
             if named and kind.name not in [other.name for other in named]:
                 return kind, [f"by its content this is {kind.name}, not {named[-1].name}"]
             return kind, []
+    # The reader of text says best what is wrong with a text.
+    is_plain = is_plain_text(head) and (not suffix or re.search(rb"\d", head))
+    if suffix in TEXT.split() or is_plain and not named:
+        return FORMATS[-1], []
     if named:
         return named[0], []
     raise FileError(f"{path}: is of no kind that can be read: {all_suffixes()}")

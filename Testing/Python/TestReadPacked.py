@@ -68,7 +68,7 @@ class Packed(InFolder):
                     stdin = types.SimpleNamespace(buffer=io.BytesIO(packed))
                     with mock.patch.object(sys, "stdin", stdin):
                         self.assert_rows(reading.read("-"), rows)
-        for words, content in (("is empty", b""), ("is of no kind that", b"words\n")):
+        for words, content in (("is empty", b""), ("no numbers", b"words\n")):
             stdin = types.SimpleNamespace(buffer=io.BytesIO(content))
             with mock.patch.object(sys, "stdin", stdin):
                 with self.assertRaisesRegex(reading.FileError, "^standard input: .*" + words):
@@ -105,6 +105,33 @@ class Foreign(InFolder):
         ):
             with self.subTest(name=name, words=words):
                 self.assert_refused(words, content, name)
+
+    def test_text_is_read_as_text_whatever_its_words_look_like(self):
+        commas = "X,Y,Z\n" + "".join(f'"{x}","{y}","{z}"\n' for x, y, z in ROWS)
+        decimal_comma = "".join(
+            f"{i};" + ";".join(f'"{v}"'.replace(".", ",") for v in row) + "\n"
+            for i, row in enumerate(ROWS, 1)
+        )
+        plain = "".join(f"{x},{y},{z}\n" for x, y, z in ROWS)
+        fortran = "".join("{:.4e} {:.4e} {:.4e}\n".format(*row) for row in ROWS).replace("e", "D")
+        for content in (commas, '"ID";"X";"Y";"Z"\n' + decimal_comma, decimal_comma, fortran,
+                        "X Y Z\n" + fortran, "x,y,z\n" + plain,
+                        "x,y,z\n" + plain + "\0\0\x1a", ("x,y,z\n" + plain).encode("utf-16")):
+            content = content if isinstance(content, bytes) else content.encode()
+            columns = ["2", "3", "4"] if content.startswith(b"1;") else None
+            for name in ("a.csv", "none"):
+                with self.subTest(content=content[:30], name=name):
+                    self.assert_rows(self.read(content, name, columns=columns), ROWS)
+
+    def test_text_that_cannot_be_read_is_refused_as_text(self):
+        degrees = "Name;Lat;Lon;H\nP1;50°12'11.7\"N;7°17'21.9\"E;121.4\n"
+        for words, content in (
+            ("holds text, but no numbers", "X,Y,Z\n"),
+            ("degrees, minutes and seconds", degrees),
+        ):
+            for name in ("a.csv", "none"):
+                with self.subTest(words=words, name=name):
+                    self.assert_refused(words, content, name)
 
     def test_a_mislabelled_file_is_read_as_what_it_is_with_a_note(self):
         for name, content, note in (
