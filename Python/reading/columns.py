@@ -508,7 +508,7 @@ class Search:
             if i in self.indices or self.needed == 2:
                 continue
             name = (self.names[i].strip() if self.names else "") or f"column {i + 1}"
-            if not len(self.finite(i)) or self.share_of_text[i] > 0:
+            if not len(self.finite(i)) or self.share_of_text[i] > 0.1:
                 text.append(name)
                 continue
             for colour, words in COLOURS.items():

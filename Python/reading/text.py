@@ -19,6 +19,7 @@ from ..clouds import Cloud, make_points
 from .columns import choose_columns
 from .layouts import (
     COMMENT_MARKS,
+    SUMMARY,
     check_marks,
     check_names,
     find_layout,
@@ -30,6 +31,7 @@ from ..messages import FileError
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
+TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 
@@ -105,6 +107,8 @@ class Table:
     first            index of the first line of data
     downwards        the note for a z that counts downwards by its name and values, or None
     advice           what a user can do where columns are wrong
+    has_summaries    whether lines that begin with "Total" or such are no data
+    sees_summaries   whether there are such at the start or at the end of the first block
     head_lines       lines before the data that are no comments, without blanks around
     headers, comments  how many lines before the data are such
     notes            for the user
@@ -115,6 +119,13 @@ class Table:
         self.layout = find_layout(path, lines[:5000], needed)
         head, preamble, self.comments = self.read_head(lines)
         self.head_lines = {lines[number - 1].strip() for number, _ in preamble}
+        near = self.first + SAMPLE
+        behind = lines[self.first : near] + lines[max(near, len(lines) - TAIL) :]
+        behind = [line for line in behind if is_data(line)]
+        summaries = sum(bool(SUMMARY.match(line)) for line in behind)
+        # Points may have such names; then they are no few.
+        self.has_summaries = summaries < len(behind) and summaries <= 5 + len(behind) // 100
+        self.sees_summaries = self.has_summaries and summaries > 0
         rows, consecutive = self.sample(lines)
         self.name_columns(head, rows)
         if not columns:
@@ -160,8 +171,13 @@ class Table:
         return [self.layout.words(line) for line in data + later], len(data)
 
     def is_row(self, line):
-        """Whether a line behind the header is data: no comment, not blank, not the header again."""
-        return is_data(line) and line.strip() not in self.head_lines
+        """Whether a line behind the header is data: not blank, no comment, header or summary."""
+        return is_data(line) and line.strip() not in self.head_lines and not self.summary(line)
+
+    def summary(self, line):
+        """The word of a line that holds the total, mean or such of others; None for data."""
+        match = SUMMARY.match(line) if self.has_summaries else None
+        return match and match.group(1)
 
     def name_columns(self, head, rows):
         """Sets words, width and names."""
@@ -218,11 +234,14 @@ class Parser:
         self.count = self.line = self.comments = self.repeated = 0
         self.after_blank = True
         self.ragged = None  # the first line with more words than others
-        self.no_numbers = collections.Counter()  # words in extras that are no numbers
+        self.no_numbers = {}  # {index of an extra: [count, first line, word] of what is no number}
+        self.summaries = []  # (line number, word)
 
     def add(self, block, lines, skip):
         """Takes the lines of a block, but for the first so many, which are no data."""
         plain = not skip and not any(mark.encode() in block for mark in COMMENT_MARKS)
+        if self.table.sees_summaries or any(map(self.table.summary, lines[-TAIL:])):
+            plain = False
         rows = self.load(lines, b'"' in block) if plain else None
         if rows is not None and len(rows) == len(lines):
             self.keep(rows, numpy.arange(self.line + 1, self.line + 1 + len(lines)))
@@ -268,6 +287,8 @@ class Parser:
                 self.after_blank |= line.lstrip().startswith(">")
             elif line.strip() in self.table.head_lines:
                 self.repeated += 1
+            elif self.table.summary(line):
+                self.summaries.append((self.line + 1 + i, self.table.summary(line)))
             else:
                 if self.after_blank:
                     self.starts.append(self.count + len(kept))
@@ -311,7 +332,8 @@ class Parser:
         for index in table.extras:
             value = table.layout.number(words[index]) if index < len(words) else math.nan
             if value is None:
-                self.no_numbers[index] += 1
+                found = self.no_numbers.setdefault(index, [0, self.line + 1 + i, words[index]])
+                found[0] += 1
             row.append(math.nan if value is None else value)
         return row
 
@@ -382,9 +404,17 @@ class Parser:
                 f"line {self.ragged[0]:,} has {self.ragged[1]} columns where others have "
                 f"{table.words}: they are counted from the left"
             )
-        for index, count in self.no_numbers.items():
+        if self.summaries:
+            words = ", ".join(f"line {line:,} ({word})" for line, word in self.summaries[:5])
+            more = f" and {len(self.summaries) - 5:,} more" if len(self.summaries) > 5 else ""
+            notes.append(f"summary lines are left out: {words}{more}")
+        for index, (count, line, word) in self.no_numbers.items():
             words = "word is no number" if count == 1 else "words are no numbers"
-            notes.append(f"column {table.extras[index]}: {count:,} {words}")
+            first = "" if count == 1 else "first in "
+            notes.append(
+                f"column {table.extras[index]}: {count:,} {words} ({first}line {line:,}: "
+                f"{word[:40]})"
+            )
         rows = self.parts[0] if len(self.parts) == 1 else numpy.concatenate(self.parts)
         self.parts = []
         return rows, numpy.concatenate(self.numbers), self.starts, notes

@@ -493,6 +493,28 @@ class Doubts(Tables):
         self.assertIn("if 1 is z: --columns 2,3,1", " ".join(cloud.notes))
         self.assertEqual(len(self.read("Z;X;Y\n" + text).notes), 2)
 
+    def test_summary_lines_are_left_out_and_told(self):
+        for names in ("{}", "P{}"):  # numbers or text in the first column
+            for end, words in (("Total;1;2;3\n", "line 42 (Total)"), ("MITTEL:;9;9;9\nMax;8;8;8\n",
+                               "line 42 (MITTEL), line 43 (Max)"), ('"Std. Dev.";1;1;1\n', "Std")):
+                rows = [f"{names.format(i)};{i}.5;{i * i % 7};{i}.25\n" for i in range(40)]
+                cloud = self.read("ID;X;Y;Z\n" + "".join(rows) + end)
+                self.assertEqual(cloud.points.GetNumberOfPoints(), 40)
+                self.assertIn("summary lines are left out: ", cloud.notes[-1 - (names != "{}")]
+                              + cloud.notes[-1])
+                self.assertIn(words, " ".join(cloud.notes))
+        cloud = self.read("ID X Y Z\n1 2 3 4\n2 5 7 8\nMean 3.5 5 6\n")
+        self.assert_coordinates(cloud, [(2, 3, 4), (5, 7, 8)])
+        # Other words among numbers are kept and told.
+        rows = [f"{i},{i}.5,{i * i % 7},{i}.25\n" for i in range(40)]
+        cloud = self.read("ID,X,Y,Z\n" + "".join(rows) + "BM7,1,2,3\n")
+        self.assertEqual(cloud.points.GetNumberOfPoints(), 41)
+        self.assertIn("column ID: 1 word is no number (line 42: BM7)", cloud.notes)
+        # Points may be named so.
+        cloud = self.read("".join(f"{'max' if i % 2 else 'min'} {i} {i * i % 7} 1\n"
+                                  for i in range(40)))
+        self.assertEqual(cloud.points.GetNumberOfPoints(), 40)
+
     def test_grids_of_other_formats_are_no_tables(self):
         for head, words in (
             ("ncols 4\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n", "ESRI"),
@@ -582,7 +604,7 @@ class OtherColumns(Tables):
         values = self.arrays(cloud)["q"]
         self.assertTrue(math.isnan(values[-1]) and math.isnan(values[-2]))
         self.assertEqual(values[7], 7.5)
-        self.assertIn("column q: 1 word is no number", cloud.notes)
+        self.assertIn("column q: 1 word is no number (line 20,003: odd)", cloud.notes)
 
     def test_rows_without_data_take_their_values_along(self):
         cloud = self.read("x y z q\n1 2 3 10\n4 5 -9 20\n6 7 9 30\n", no_data=-9.0)
