@@ -113,6 +113,10 @@ def is_table_with_geometry(head, path):
     return GEOMETRY.match(head) is not None
 
 
+def is_saga_header(head, path):
+    return re.match(rb"NAME\s*=[^\n]*\nDESCRIPTION\s*=.*\nDATAFORMAT", head, re.DOTALL) is not None
+
+
 def is_of_gdal(what):
     def is_it(_head, path):
         try:
@@ -153,6 +157,7 @@ FORMATS = (
     Format("EarthVision data", ".ev", begins(EARTHVISION), "horizons.read_earthvision"),
     Format("Petrel points", "", begins(PETREL), "horizons.read_petrel_points"),
     Format("lines in segments", ".gmt", begins(SEGMENTS), "horizons.read_segments", "horizons"),
+    Format("a raster", ".sgrd .sdat", is_saga_header, "rasters"),
     Format("a vector file", ".csv", is_table_with_geometry, "vectors", "vectors"),
     Format("a vector file", ".gmt", begins(rb"# ?@VGMT"), "vectors", "vectors"),
     Format("a text table", TEXT, is_table, "text.read_text"),

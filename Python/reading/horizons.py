@@ -13,6 +13,7 @@ from .columns import meaning
 from ..messages import FileError
 from .rasters import points_of_raster
 
+MOST_COLUMNS = 12  # of an array of numpy; one with more is a grid
 SEPARATORS = (b">", b"->")
 END_OF_LINE = re.compile(rb"\s*999(\.0*)?(\s+999(\.0*)?){2}\s*")
 
@@ -221,18 +222,24 @@ def read_array(path, options):
     if rows.dtype.names:
         names = [name for name in rows.dtype.names if rows.dtype[name].kind in "fiu"]
         columns = {name: rows[name].ravel() for name in names}
-    elif rows.ndim == 2 and 3 <= rows.shape[1] <= 100 and rows.dtype.kind in "fiu":
+    elif rows.ndim == 2 and 3 <= rows.shape[1] <= MOST_COLUMNS and rows.dtype.kind in "fiu":
         names = ["x", "y", "z"] + [f"column {i}" for i in range(4, rows.shape[1] + 1)]
         columns = {name: rows[:, i] for i, name in enumerate(names)}
     else:
         shape = " x ".join(map(str, rows.shape)) or "one"
-        raise FileError(f"{path}: holds {shape} of {rows.dtype}; rows of x, y and z are needed")
+        raise FileError(
+            f"{path}: holds {shape} of {rows.dtype}; n x 3 are needed, rows of x, y and z (at most "
+            f"{MOST_COLUMNS} columns)"
+        )
     if not {"x", "y", "z"} <= set(columns):
         raise FileError(f"{path}: has no fields x, y and z, but {', '.join(rows.dtype.names)}")
     if not len(columns["x"]):
         raise FileError(f"{path}: holds no points")
     xyz = numpy.column_stack([columns.pop(axis).astype("f8") for axis in "xyz"])
     cloud = Cloud(make_points(xyz, copy=False))
+    if columns and not rows.dtype.names:
+        shape = " x ".join(map(str, rows.shape))
+        cloud.notes.append(f"the array is {shape}: its first three columns are taken as x, y, z")
     for name, values in columns.items():
         add_array(cloud.points, name, values.astype(values.dtype.newbyteorder("=")))
     return cloud

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pixels of rasters as points. GDAL reads the files, whatever their format."""
 
+import os
+
 import numpy
 
 from ..clouds import Cloud, make_points
-from .formats import numbers_of
+from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError
 from ..paths import suffix_of
@@ -28,9 +30,21 @@ HINTS = {
 AT_ONCE = 1 << 22
 
 
+def data_of_saga(path):
+    """The .sdat beside the header of a SAGA grid; other files as they are."""
+    with open(path, "rb") as stream:
+        if not is_saga_header(stream.read(HEAD), path):
+            return path
+    data = os.path.splitext(path)[0] + ".sdat"
+    if not os.path.exists(data):
+        raise FileError(f"{path}: is the header of a SAGA grid; {data} is missing")
+    return data
+
+
 def open_raster(path, options):
     """(dataset, notes). Of several variables the one that options name, or one of elevations."""
     gdal = gdal_module()
+    path = data_of_saga(path)
     kind = kind_of(path, "raster")
     if kind is None:
         hint = HINTS.get(suffix_of(path), "")
@@ -141,6 +155,19 @@ def note_of_dem(path):
     return [f"GDAL moves y to whole steps of {step:g}, by up to {min(away, step - away):g}"]
 
 
+def alpha_of(data, band):
+    """The band of opacity beside a band of elevations, or None."""
+    bands = [data.GetRasterBand(i) for i in range(1, data.RasterCount + 1)]
+    alpha = gdal_module().GCI_AlphaBand
+    others = [other for other in bands if other.GetBand() != band.GetBand()]
+    return next((other for other in others if other.GetColorInterpretation() == alpha), None)
+
+
+def made_by_gdal(path):
+    with open(path, "rb") as stream:
+        return b"Created by GDAL" in stream.read(HEAD)
+
+
 def notes_of_raster(path, data, band, options):
     """What the user must know of how the pixels are taken."""
     gdal = gdal_module()
@@ -149,11 +176,13 @@ def notes_of_raster(path, data, band, options):
     scale, offset = band.GetScale(), band.GetOffset()
     if (scale or 1.0) != 1.0 or offset:
         notes.append(f"elevation = pixel * {scale or 1.0:g} + {offset or 0.0:g}, as the file says")
+    if alpha_of(data, band):
+        notes.append("pixels whose alpha is 0 are without data")
     if band.GetNoDataValue() is not None:
         notes.append(f"no-data value {band.GetNoDataValue():g} from the file")
     elif band.GetMaskFlags() & ~gdal.GMF_ALL_VALID:
         notes.append("pixels without data from the file's mask")
-    elif options.no_data is None:
+    elif options.no_data is None and not alpha_of(data, band):
         notes.append("no no-data value in the file: all pixels are used (see --no-data)")
     colour = band.GetColorInterpretation()
     if colour not in (gdal.GCI_Undefined, gdal.GCI_GrayIndex):
@@ -164,6 +193,11 @@ def notes_of_raster(path, data, band, options):
     reference = data.GetSpatialRef()
     if reference and reference.IsGeographic():
         notes.append("x,y are angles: project them first to give triangles their true shape")
+    if kind == "ZMap" and made_by_gdal(path):
+        notes.append(
+            "x and y of the header are taken for the outermost nodes; gdal_translate writes the "
+            "outer edges of pixels there, so the points may be half a step away"
+        )
     if kind in TEXT_KINDS:
         notes += check_words(path, kind, data.RasterXSize * data.RasterYSize)
     return notes + (note_of_dem(path) if kind == "USGSDEM" else [])
@@ -180,7 +214,7 @@ def read_points(path, options):
         notes += notes_of_raster(path, data, band, options)
         place = placement(path, data, band, notes)
         points, count = numpy.empty((data.RasterYSize * data.RasterXSize, 3)), 0
-        for first, z, valid in blocks(path, band, options.no_data):
+        for first, z, valid in blocks(path, data, band, options.no_data):
             for row, (values, keep) in enumerate(zip(z, valid), first):
                 here = points[count : count + int(numpy.count_nonzero(keep))]
                 x, y = place(row)
@@ -197,18 +231,20 @@ def read_points(path, options):
     return cloud
 
 
-def blocks(path, band, no_data):
+def blocks(path, data, band, no_data):
     """Yields (first row, elevations, where they are valid) for some rows after the other."""
     gdal = gdal_module()
     scale, offset = band.GetScale() or 1.0, band.GetOffset() or 0.0
     deep = band.GetBlockSize()[1]
     step = max(deep, AT_ONCE // band.XSize // deep * deep)
+    alpha = alpha_of(data, band)
     all_valid = band.GetMaskFlags() & gdal.GMF_ALL_VALID
     for first in range(0, band.YSize, step):
         window = (0, first, band.XSize, min(step, band.YSize - first))
         try:
             pixels = band.ReadAsArray(*window)
             mask = None if all_valid else band.GetMaskBand().ReadAsArray(*window)
+            opaque = alpha.ReadAsArray(*window) if alpha else None
         except RuntimeError as error:
             where = f"{path}, band {band.GetBand()}, rows from {first + 1}"
             raise FileError(f"{where}: cannot be read: {one_line(error)}") from None
@@ -222,6 +258,8 @@ def blocks(path, band, no_data):
         valid = numpy.isfinite(z)
         if mask is not None:
             valid &= mask != 0
+        if opaque is not None:
+            valid &= opaque != 0
         if no_data is not None:
             valid &= z != no_data
         yield first, z, valid

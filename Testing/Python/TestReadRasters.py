@@ -259,6 +259,43 @@ class Pixels(InFolder):
         self.assertEqual(coordinates(cloud)[0].tolist(), [5.125, 49.875, 1.0])
         self.assertTrue(any("x,y are angles" in note for note in cloud.notes))
 
+    def test_pixels_without_opacity_are_without_data(self):
+        data = gdal.GetDriverByName("GTiff").Create(
+            self.path("a.tif"), 3, 2, 2, gdal.GDT_Float32, ["ALPHA=YES"]
+        )
+        data.SetGeoTransform(PLACE)
+        data.GetRasterBand(1).WriteArray(Z)
+        data.GetRasterBand(2).WriteArray(numpy.where(Z == -9999.0, 0.0, 255.0))
+        data.GetRasterBand(2).SetColorInterpretation(gdal.GCI_AlphaBand)
+        data = None
+        cloud = reading.read(self.path("a.tif"))
+        self.assert_rows(cloud, CENTRES)
+        self.assertEqual(cloud.left_out, {"pixels without data": 1})
+        self.assertIn("pixels whose alpha is 0 are without data", cloud.notes)
+
+    def test_the_header_of_a_saga_grid_leads_to_its_data(self):
+        place = (500000.0, 20.0, 0.0, 5000000.0, 0.0, -20.0)
+        source = gdal.Open(raster(self.path("a.tif"), place=place))
+        gdal.GetDriverByName("SAGA").CreateCopy(self.path("s.sdat"), source)
+        source = None
+        # What GDAL would take it for with such a file beside it.
+        self.file(
+            "s.hdr", "ENVI\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\ninterleave = bsq\n"
+        )
+        rows = coordinates(reading.read(self.path("a.tif")))
+        self.assert_rows(reading.read(self.path("s.sgrd")), rows)
+        os.remove(self.path("s.sdat"))
+        with self.assertRaisesRegex(reading.FileError, "header of a SAGA grid; .*s.sdat is missing"):
+            reading.read(self.path("s.sgrd"))
+
+    def test_places_of_a_zmap_file_by_gdal_are_doubtful(self):
+        source = gdal.Open(raster(self.path("a.tif")))
+        gdal.GetDriverByName("ZMap").CreateCopy(self.path("a.dat"), source)
+        cloud = reading.read(self.path("a.dat"))
+        self.assertTrue(any("half a step away" in note for note in cloud.notes))
+        notes = self.read(BY_HAND["zmap.dat"], "b.dat").notes
+        self.assertFalse(any("half a step" in note for note in notes))
+
     def test_colours_are_told(self):
         path = self.tif(z=[Z, Z, Z], no_data=None, kind=gdal.GDT_Byte, PHOTOMETRIC="RGB")
         self.assertTrue(any("are colours (red)" in note for note in reading.read(path).notes))
