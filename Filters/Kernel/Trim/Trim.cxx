@@ -179,7 +179,7 @@ std::string LossOf(const ExtractedBoundary& found, bool all)
     text << " of the area";
   }
   text << std::defaultfloat << std::setprecision(4) << ": at a gap tolerance of "
-       << found.GapTolerance << " spacings, there is no surface. A GapTolerance of "
+       << found.GapTolerance << " spacings, that is no surface. A GapTolerance of "
        << found.KeepingTolerance
        << (found.PointsLeftOut > 0.0 ? " would keep all points" : " would keep half of it")
        << ". Or give the boundary.";
