@@ -174,6 +174,35 @@ def check_marks(path, rows, columns):
         )
 
 
+def doubtful_marks(rows, x, y, z):
+    """Notes where z alone has a sign, always before three digits: it may part thousands."""
+    rows = [row for row in rows if len(row) > max(x, y, z)]
+    if any(re.search(r"[.,]", row[x] + row[y]) for row in rows):
+        return []
+    if not all(re.fullmatch(r"[-+]?[1-9]\d{0,2}[.,]\d{3}", row[z]) for row in rows):
+        return []
+    return [
+        f"z = {rows[0][z]} is read as {rows[0][z].replace(',', '.')}, though x,y are whole numbers; "
+        "if the sign stands between thousands, export plain decimals"
+    ] if rows else []
+
+
+def degrees_in_columns(rows, width):
+    """Whether seven columns look like degrees, minutes and seconds, twice, and a value."""
+    rows = [row for row in rows if len(row) == width]
+    if width != 7 or len(rows) < 2:
+        return False
+    for i in (0, 3):
+        for row in rows:
+            if not re.fullmatch(r"[-+]?\d{1,3}", row[i]) or abs(int(row[i])) > 180:
+                return False
+            if not re.fullmatch(r"[0-5]?\d", row[i + 1]):
+                return False
+            if not re.fullmatch(r"[0-5]?\d([.,]\d*)?", row[i + 2]):
+                return False
+    return any(re.search(r"[.,]", row[2]) and re.search(r"[.,]", row[5]) for row in rows)
+
+
 def check_names(path, layout, before, rows, names, width, advice):
     """Refuses a header that tells x, y and z but has more or fewer names than there are columns.
 
@@ -183,6 +212,11 @@ def check_names(path, layout, before, rows, names, width, advice):
     """
     if layout.separator == "," and pairs_of_whole_numbers(rows, width):
         raise FileError(f"{path}: commas stand for decimals and between columns; {SEMICOLONS}")
+    if not names and degrees_in_columns(rows, width):
+        raise FileError(
+            f"{path}: the columns look like degrees, minutes and seconds; export degrees as plain "
+            f"decimals; {advice}"
+        )
     if not before or known_axes(names or []):
         return
     for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:

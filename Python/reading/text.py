@@ -22,6 +22,7 @@ from .layouts import (
     SUMMARY,
     check_marks,
     check_names,
+    doubtful_marks,
     find_layout,
     find_names,
     is_comment,
@@ -139,6 +140,8 @@ class Table:
         self.notes, self.downwards = chosen.notes, chosen.downwards
         self.of_numbers = chosen.of_numbers
         check_marks(path, rows, self.of_numbers)
+        if needed == 3:
+            self.notes += doubtful_marks(rows, *self.indices)
         begins = first_of_data(self, preamble)
         if begins:
             self.first = begins - 1

@@ -438,7 +438,7 @@ class Doubts(Tables):
              "the header has 3 names, but lines have 5 columns; export degrees"),
             ("Lat Lon Depth\n50 16.1 9 4.6 121\n48 46.2 8 38.2 124\n", "lines have 5 columns"),
             ("Lat Lon Depth\n48 46 18.7 8 38 12.7 124.6\n48 46 18.8 8 38 12.9 124.7\n",
-             "lines have 7 columns"),
+             "look like degrees, minutes and seconds"),
             ("X,Y,Z\n1.5,2.5,3.5,4.5,5.5\n2.5,1.5,3.5,4.5,6.5\n", "the header has 3 names"),
             ("Code,Y,X,Z\n2.5,1.5,3.5\n2.5,1.75,4.5\n", "the header has 4 names, but lines have 3"),
         ):
@@ -514,6 +514,15 @@ class Doubts(Tables):
         cloud = self.read("".join(f"{'max' if i % 2 else 'min'} {i} {i * i % 7} 1\n"
                                   for i in range(40)))
         self.assertEqual(cloud.points.GetNumberOfPoints(), 40)
+
+    def test_thousands_and_degrees_that_cannot_be_proved_are_told(self):
+        for mark in ",.":
+            text = f"X;Y;Z\n455017;5623027;1{mark}734\n455047;5623112;1{mark}780\n"
+            self.assertIn(f"z = 1{mark}734 is read as 1.734", " ".join(self.read(text).notes))
+        self.assertEqual(len(self.read("X;Y;Z\n455017;5623027;1.73\n5;7;1.780\n").notes), 1)
+        text = "50 16 6.464 9 04 40.767 121.4\n48 46 18.772 8 38 12.785 124.6\n"
+        self.assertIn("degrees, minutes and seconds", self.refusal(text))
+        self.assertEqual(self.read(text, columns=("1", "4", "7")).points.GetPoint(0)[2], 121.4)
 
     def test_grids_of_other_formats_are_no_tables(self):
         for head, words in (
