@@ -181,6 +181,26 @@ def system_of(names, clouds):
     return crs, [note for name, other in known for note in check_system(name, other, first, crs)]
 
 
+def faults_note(points, faults):
+    """A line for the user when z of faults is far from z of the points, else None."""
+    ranges = []
+    for data in (points, faults):
+        z = vtk_to_numpy(data.GetPoints().GetData())[:, 2].astype("f8")
+        z = z[numpy.isfinite(z)]
+        if not len(z):
+            return None
+        ranges.append((float(z.min()), float(z.max())))
+    (low, high), (first, last) = ranges
+    allowed = 0.0 if first == last == 0.0 else high - low  # lines without z have 0
+    if max(low - last, first - high) <= allowed:
+        return None
+    where = f"is {first:g}" if first == last else f"is from {first:g} to {last:g}"
+    return (
+        f"z of the faults {where}, far from z of the points, {low:g} to {high:g}: the surface goes "
+        "through faults, so they need elevations"
+    )
+
+
 def antimeridian_note(points):
     """A line for the user when longitudes lie on both sides of 180 degrees, else None."""
     xyz = vtk_to_numpy(points.GetPoints().GetData())

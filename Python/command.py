@@ -14,7 +14,7 @@ import time
 import numpy
 
 from . import reading
-from .clouds import ReadOptions, antimeridian_note, crs_of, merged
+from .clouds import ReadOptions, antimeridian_note, crs_of, faults_note, merged
 from .gdal_common import check_system, name_of, reference_of
 from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
@@ -348,6 +348,8 @@ class Run:
             if lines is not None:
                 crs = crs_of(lines)
                 cloud.notes += check_system(path, crs, options.files[0], cloud.crs)
+        note = faults_note(cloud.points, faults) if faults is not None else None
+        cloud.notes += [note] if note else []
         return cloud, boundary, faults
 
     def set_crs(self, cloud):

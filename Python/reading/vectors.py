@@ -16,6 +16,10 @@ OPEN_OPTIONS = {
 }
 
 
+# Attributes of elevations of points and contours, as ArcGIS names them.
+GIVEN_BY_TOOLS = ("grid_code", "gridcode", "rastervalu", "contour")
+
+
 def open_file(path):
     """The dataset of a file, open for reading."""
     gdal = gdal_module()
@@ -148,6 +152,8 @@ class Layer:
                 raise FileError(f"{self.path}: has no attribute {columns[2]}; attributes: {names}")
             return columns[2]
         named = [name for name in self.fields if meaning(name).axis == "z"]
+        # Those that tools give are doubtful names, so they count last.
+        named = named or [name for name in self.fields if name.lower() in GIVEN_BY_TOOLS]
         named = [name for name in named if any(v is not None for v in self.fields[name])]
         best = min((meaning(name).rank for name in named), default=0)
         named = [name for name in named if meaning(name).rank == best]

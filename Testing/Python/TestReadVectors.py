@@ -11,7 +11,7 @@ import numpy
 from in_folder import InFolder, Program, coordinates
 from osgeo import gdal, ogr, osr
 from vtkelevationsurface import reading
-from vtkelevationsurface.clouds import Cloud, crs_of, make_points, merged
+from vtkelevationsurface.clouds import Cloud, crs_of, faults_note, make_points, merged
 from vtkelevationsurface.gdal_common import same_system
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -133,6 +133,7 @@ class Points(Vectors):
     def test_z_comes_from_an_attribute_where_the_points_are_flat(self):
         heights = [row[2] for row in MAP]
         for name, flat in (("HOEHE", True), ("z", True), ("elevation_m", True), ("Cota", True),
+                           ("grid_code", True),
                            ("z", False)):
             with self.subTest(name=name, flat=flat):
                 rows = [(x, y, 0.0) for x, y, _ in MAP]
@@ -360,6 +361,20 @@ class Systems(Vectors, Program):
                     self.assertRegex(done.stderr, "zone 3[23]N.*reproject one of them first")
         done = self.call("p.gpkg", "--boundary", "boundary-25832.gpkg", "--no-picture")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_faults_far_from_the_points_are_told(self):
+        points = make_points([(0.0, 0.0, 100.0), (1.0, 0.0, 150.0), (0.0, 1.0, 400.0)])
+        for z, told in (
+            ((0, 0), True), ((-500, -400), True), ((900, 800), True),
+            ((0, 1), False), ((50, 60), False), ((500, 600), False), ((-900, 900), False),
+        ):
+            with self.subTest(z=z):
+                note = faults_note(points, make_points([(0.0, i, z[i]) for i in range(2)]))
+                self.assertEqual(note is not None, told)
+        self.make("p.gpkg", "GPKG", wkt_of([(x, y, 100 + x) for x in range(9) for y in range(9)]))
+        self.make("f.gpkg", "GPKG", ["LINESTRING Z (1.5 1 0, 5.5 5 0)"])
+        done = self.call("p.gpkg", "--faults", "f.gpkg", "--no-picture")
+        self.assertIn("z of the faults is 0, far from z of the points, 100 to 108", done.stdout)
 
     def test_points_of_several_systems_are_not_merged(self):
         crs = ("EPSG:25832", None, "EPSG:25833")
