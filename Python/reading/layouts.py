@@ -39,8 +39,8 @@ NO_NUMBERS = (
 
 # How a line begins that holds totals of the others, in the languages of the names of columns.
 SUMMARY = re.compile(
-    r"[\s;,|\"]*((?:grand\s+)?(?:total|subtotal|sum|mean|average|avg|max|min|maximum|minimum|median|"
-    r"range|rms|std|stdev|stddev|sd|mittel|mittelwert|summe|gesamt|standardabweichung|moyenne|"
+    r"[\s;,|\"]*((?:grand\s+)?(?:total|subtotal|sum|mean|average|avg|max|min|maximum|minimum|"
+    r"median|range|rms|std|stdev|stddev|sd|mittel|mittelwert|summe|gesamt|standardabweichung|moyenne|"
     r"somme|ecart[ -]type|\u00e9cart[ -]type|media|m\u00e9dia|suma|soma|somma|totale|totaal|"
     r"gemiddelde|m[ií]nimo|m[aá]ximo|minimo|massimo|srednia|\u015brednia|keskiarvo|summa)"
     r"(?:[ .]*dev\w*\.?| value)?)[\"\s:=.]*(?:[;,\t|]|\s[-+\d.])",
@@ -182,8 +182,8 @@ def doubtful_marks(rows, x, y, z):
     if not all(re.fullmatch(r"[-+]?[1-9]\d{0,2}[.,]\d{3}", row[z]) for row in rows):
         return []
     return [
-        f"z = {rows[0][z]} is read as {rows[0][z].replace(',', '.')}, though x,y are whole numbers; "
-        "if the sign stands between thousands, export plain decimals"
+        f"z = {rows[0][z]} is read as {rows[0][z].replace(',', '.')}, though x,y are whole "
+        "numbers; if the sign stands between thousands, export plain decimals"
     ] if rows else []
 
 
