@@ -17,13 +17,16 @@ class Gocad:
     points      [(x, y, z)]
     properties  {name: [value of each point]}, NaN where there is none
     segments    [(from, to)], triangles [(a, b, c)]: places in points
-    zpositive   what the objects say of z: a set of Elevation, Depth
+    turned      whether z of an object is turned over, as it says that it counts downwards
+    turn        False to leave z as it is
+    no_data     the z that marks missing data, which is left as it is, or None
     """
 
-    def __init__(self, path):
-        self.path = path
+    def __init__(self, path, turn=True, no_data=None):
+        self.path, self.turn, self.turned, self.sign = path, turn, False, 1.0
+        self.no_data = no_data
         self.points, self.properties, self.segments, self.triangles = [], {}, [], []
-        self.zpositive, self.ids, self.names, self.sizes, self.missing = set(), {}, [], [], []
+        self.ids, self.names, self.sizes, self.missing = {}, [], [], []
         key = ""
         with open(path, encoding="latin-1") as stream:
             for number, line in enumerate(stream, 1):
@@ -46,8 +49,9 @@ class Gocad:
             if words[1] not in KINDS:
                 raise FileError(f"{self.path}: holds a {words[1]}; {', '.join(KINDS)} are read")
             self.ids, self.names, self.sizes, self.missing = {}, [], [], []
+            self.sign = 1.0
         elif key == "ZPOSITIVE":
-            self.zpositive.add(words[1].capitalize())
+            self.sign = -1.0 if self.turn and words[1].lower() == "depth" else 1.0
         elif key == "PROPERTIES":
             self.names = [word.strip('"') for word in words[1:]]
         elif key == "ESIZES":
@@ -55,7 +59,10 @@ class Gocad:
         elif key == "NO_DATA_VALUES":
             self.missing = [float(word) for word in words[1:]]
         elif key in ("VRTX", "PVRTX"):
-            self.add(words[1], tuple(float(word) for word in words[2:5]), words[5:])
+            x, y, z = (float(word) for word in words[2:5])
+            self.turned |= self.sign < 0.0
+            z = z if z == self.no_data else self.sign * z
+            self.add(words[1], (x, y, z), words[5:])
         elif key in ("ATOM", "PATOM"):
             self.add(words[1], self.points[self.ids[words[2]]], words[3:])
         elif key == "SEG":
@@ -64,7 +71,6 @@ class Gocad:
             self.triangles.append(tuple(self.ids[word] for word in words[1:4]))
 
     def add(self, name, point, values):
-        _, _, _ = point
         self.ids[name] = len(self.points)
         at = 0
         for i, (title, size) in enumerate(zip(self.names, self.sizes or [1] * len(self.names))):
@@ -80,15 +86,15 @@ class Gocad:
 
 def read_points(path, options):
     """The vertices; properties become point arrays."""
-    gocad = Gocad(path)
+    gocad = Gocad(path, turn=not options.depth, no_data=options.no_data)
     cloud = Cloud(make_points(numpy.array(gocad.points)))
     for name, values in gocad.properties.items():
         values = values + [numpy.nan] * (len(gocad.points) - len(values))
         add_array(cloud.points, name, numpy.array(values))
     if gocad.segments or gocad.triangles:
         cloud.notes.append("only the points are used, not the file's cells")
-    if "Depth" in gocad.zpositive:
-        cloud.notes.append("z counts downwards (ZPOSITIVE Depth); --depth turns it over")
+    if gocad.turned:
+        cloud.notes.append("z is turned over: the file says that it is depth (ZPOSITIVE Depth)")
     return cloud
 
 

@@ -105,7 +105,7 @@ class Horizons(InFolder):
             ("cps-3 grid", CPS3, KNOWN, 1),
             ("earthvision", EARTHVISION, KNOWN, 1),
             ("petrel", PETREL, KNOWN, 0),
-            ("gocad", SURFACE, CORNERS, 0),
+            ("gocad", SURFACE.replace("Depth", "Elevation"), CORNERS, 0),
             ("gmt", GMT, None, 0),
             ("irap lines", IRAP_LINES, None, 0),
             ("cps-3 lines", CPS3_LINES, None, 0),
@@ -146,7 +146,20 @@ class Horizons(InFolder):
         numpy.testing.assert_array_equal(
             vtk_to_numpy(data.GetArray("Amplitude")), [0.5, math.nan, math.nan, math.nan]
         )
+
+    def test_depths_of_gocad_are_turned_over_once(self):
+        turned = [(x, y, -z) for x, y, z in CORNERS]
+        cloud = self.read(SURFACE, "a.ts")
+        self.assert_rows(cloud, turned)
         self.assertTrue(any("ZPOSITIVE Depth" in note for note in cloud.notes))
+        self.assert_rows(self.read(SURFACE, "a.ts", depth=True), turned)
+        self.assert_rows(self.read(SURFACE, "a.ts", no_data=634), [turned[0], *turned[2:]])
+        second = "GOCAD VSet 1\nVRTX 1 5 6 7\nEND\n"
+        self.assert_rows(self.read(SURFACE + second, "a.ts"), [*turned, (5, 6, 7)])
+        up = SURFACE.replace("Depth", "Elevation")
+        self.assert_rows(self.read(up, "a.ts"), CORNERS)
+        lines = reading.read_faults(self.file("a.ts", SURFACE))
+        self.assertEqual(lines.GetPoint(0), turned[0])
 
     def test_lines_become_boundary_and_faults(self):
         first, second = [(0, 0, 1), (5, 0, 2), (5, 5, 3)], [(8, 8, 4), (9, 9, 5), (9, 8, 6)]
