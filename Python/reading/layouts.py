@@ -41,7 +41,7 @@ NO_NUMBERS = (
 SUMMARY = re.compile(
     r"[\s;,|\"]*((?:grand\s+)?(?:total|subtotal|sum|mean|average|avg|max|min|maximum|minimum|"
     r"median|range|rms|std|stdev|stddev|sd|mittel|mittelwert|summe|gesamt|moyenne|"
-    r"somme|standardabweichung|ecart[ -]type|\u00e9cart[ -]type|media|m\u00e9dia|suma|soma|somma|totale|totaal|"
+    r"somme|standardabweichung|[eé]cart[ -]type|m[eé]dia|suma|soma|somma|totale|totaal|"
     r"gemiddelde|m[ií]nimo|m[aá]ximo|minimo|massimo|srednia|\u015brednia|keskiarvo|summa)"
     r"(?:[ .]*dev\w*\.?| value)?)[\"\s:=.]*(?:[;,\t|]|\s[-+\d.])",
     re.I,
