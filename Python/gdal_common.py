@@ -3,10 +3,11 @@
 """What reading rasters and reading vectors by GDAL have in common."""
 
 import functools
+import math
 import os
 
-from .reading.columns import meaning
 from .messages import FileError
+from .reading.columns import meaning
 
 # Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
 NOT_ASKED = {"XYZ", "DERIVED", "HTTP", "WMS", "WCS", "WMTS", "OGCAPI", "PLMOSAIC", "EEDA", "EEDAI"}
@@ -172,14 +173,46 @@ def same_system(one, other):
     return bool(pair[0].IsSame(pair[1], SAME_PLACES))
 
 
+NEAR = 5.0  # metres; between ETRS89 and WGS 84, which people mix, there is less than one
+
+
+def is_near(one, other):
+    """Whether two systems give a place the same x and y but for a few metres, as ETRS89 and WGS 84."""
+    from osgeo import osr
+
+    pair = [reference_of(crs) for crs in (one, other)]
+    area = pair[0].GetAreaOfUse()
+    if area is None or pair[0].IsGeographic() != pair[1].IsGeographic():
+        return False
+    longitude = 0.5 * (area.west_lon_degree + area.east_lon_degree)
+    latitude = 0.5 * (area.south_lat_degree + area.north_lat_degree)
+    try:
+        with quiet():
+            (x, y, _), (u, v, _) = (
+                osr.CoordinateTransformation(reference_of("EPSG:4326"), reference).TransformPoint(
+                    longitude, latitude
+                )
+                for reference in pair
+            )
+    except RuntimeError:
+        return False
+    metres = 111000.0 if pair[0].IsGeographic() else pair[0].GetLinearUnits()
+    return math.hypot(x - u, y - v) * metres < NEAR
+
+
 def check_system(path, crs, other_path, other):
-    """Refuses a file whose system is not that of another file.
+    """Refuses a file whose system is not that of another file, to a few metres.
 
     Raises FileError. Returns notes.
     """
     same = same_system(crs, other)
     if same is None and crs and other:
         return [f"whether {path} has the coordinate reference system of {other_path} is not known"]
+    if same is False and is_near(crs, other):
+        return [
+            f"{path} is in {name_of(crs)}, {other_path} in {name_of(other)}: taken as the same, "
+            f"which holds to less than {NEAR:g} m"
+        ]
     if same is False:
         raise FileError(
             f"{path}: its coordinate reference system is {name_of(crs)}, that of {other_path} is "

@@ -12,7 +12,8 @@ from in_folder import InFolder, Program, coordinates
 from osgeo import gdal, ogr, osr
 from vtkelevationsurface import reading
 from vtkelevationsurface.clouds import Cloud, crs_of, faults_note, make_points, merged
-from vtkelevationsurface.gdal_common import same_system
+from vtkelevationsurface.gdal_common import check_system, same_system
+from vtkelevationsurface.messages import FileError
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 gdal.UseExceptions()
@@ -344,6 +345,21 @@ class Systems(Vectors, Program):
         ):
             with self.subTest(one=one, other=other):
                 self.assertIs(same_system(one, other), same)
+
+    def test_systems_a_few_metres_apart_are_taken_as_one_and_that_is_told(self):
+        for one, other, near in (
+            ("EPSG:25832", "EPSG:32632", True),
+            ("EPSG:4258", "EPSG:4326", True),
+            ("EPSG:25832", "EPSG:23032", False),
+            ("EPSG:25832", "EPSG:25833", False),
+            ("EPSG:25832", "EPSG:4326", False),
+        ):
+            with self.subTest(one=one, other=other):
+                if near:
+                    self.assertIn("taken as the same", check_system("a", one, "b", other)[0])
+                else:
+                    with self.assertRaises(FileError):
+                        check_system("a", one, "b", other)
 
     def test_a_boundary_and_faults_in_another_system_are_refused(self):
         points = wkt_of([(612000 + x, 6073000 + y, x) for x in range(9) for y in range(9)])
