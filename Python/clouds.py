@@ -32,6 +32,24 @@ class Cloud:
         self.crs = crs
 
 
+def three_columns(columns):
+    """Three names or numbers from 1, of text with commas between or of a list. Raises ValueError."""
+    columns = columns.split(",") if isinstance(columns, str) else columns
+    columns = [str(column).strip() for column in columns]
+    if len(columns) != 3 or not all(columns):
+        raise ValueError("columns takes three names, or numbers from 1, of x, y and z")
+    return columns
+
+
+def class_numbers(classes):
+    """Numbers from 0 to 255, of text with commas between or of a list. Raises ValueError."""
+    classes = classes.split(",") if isinstance(classes, str) else classes
+    classes = [int(number) for number in classes]
+    if not all(0 <= number <= 255 for number in classes):
+        raise ValueError("classes takes numbers from 0 to 255")
+    return classes
+
+
 @dataclasses.dataclass
 class ReadOptions:
     """What the user said on how a file is to be read; see --help."""
@@ -46,16 +64,10 @@ class ReadOptions:
     classes: object = None  # None, or the numbers of the classes of a LAS file to read
 
     def __post_init__(self):
-        if isinstance(self.columns, str):
-            self.columns = self.columns.split(",")
         if self.columns is not None:
-            self.columns = [str(column).strip() for column in self.columns]
-            if len(self.columns) != 3:
-                raise ValueError("columns takes three names, or numbers from 1, of x, y and z")
-        if isinstance(self.classes, str):
-            self.classes = self.classes.split(",")
+            self.columns = three_columns(self.columns)
         if self.classes is not None:
-            self.classes = [int(number) for number in self.classes]
+            self.classes = class_numbers(self.classes)
 
 
 def make_points(coordinates, copy=True):

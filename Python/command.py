@@ -5,7 +5,6 @@
 import argparse
 import copy
 import dataclasses
-import math
 import os
 import re
 import sys
@@ -14,59 +13,41 @@ import time
 import numpy
 
 from . import reading
-from .clouds import ReadOptions, antimeridian_note, crs_of, faults_note, merged
+from .clouds import (
+    ReadOptions,
+    antimeridian_note,
+    class_numbers,
+    crs_of,
+    faults_note,
+    merged,
+    three_columns,
+)
 from .gdal_common import check_system, name_of, reference_of
 from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name, write_output
 from .paths import check_suffix, check_writable
-from .reconstruction import PROPERTIES, STEPS, check_spacing, run_chain
+from .reconstruction import (
+    COLOURS,
+    PROPERTIES,
+    STEPS,
+    check_spacing,
+    number_above_zero,
+    number_at_least_zero,
+    run_chain,
+    view_angles,
+)
 from .report import picture_subtitle, print_report
 from .results import Failure, Progress, Results, WrongOption, write_report
 
 HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "help.txt")
-COLOURS = ("elevation", "error")
 READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
-
-
-def elevation_factor(text):
-    return PROPERTIES["gap_tolerance"].convert(text)
-
-
-def three_columns(text):
-    names = [name.strip() for name in text.split(",")]
-    if len(names) != 3 or not all(names):
-        raise ValueError
-    return names
 
 
 def whole_number(text):
     if int(text) < 1:
         raise ValueError
     return int(text)
-
-
-def class_numbers(text):
-    numbers = [int(word) for word in text.split(",")]
-    if not all(0 <= number <= 255 for number in numbers):
-        raise ValueError
-    return numbers
-
-
-def length_above_zero(text):
-    length = float(text)
-    if not 0.0 < length < math.inf:
-        raise ValueError
-    return length
-
-
-def view_angles(text):
-    if text == "top":
-        return (180.0, 90.0)
-    bearing, height = (float(word) for word in text.split(","))
-    if not 0 < height <= 90 or not math.isfinite(bearing):
-        raise ValueError
-    return (bearing % 360.0, height)
 
 
 # What each option with a value takes, for errors. help.txt explains all options.
@@ -176,13 +157,13 @@ def make_parser():
     add("--crs")
     add("-o", "--output")
     for one in ("grid", "contours"):
-        add(f"--{one}", type=length_above_zero)
+        add(f"--{one}", type=number_above_zero)
         add(f"--{one}-output")
     add("--outlines", nargs="?", const="")
     add("--picture", nargs="?", const="")
     add("--no-picture", action="store_true")
     add("--view", type=view_angles)
-    add("--exaggeration", type=elevation_factor, default=0.0)
+    add("--exaggeration", type=number_at_least_zero, default=0.0)
     add("--colours", choices=COLOURS)
     add("--report", nargs="?", const="")
     add("--strict", action="store_true")

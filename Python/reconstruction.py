@@ -36,6 +36,23 @@ def number_at_least_zero(value):
     return value
 
 
+def number_above_zero(value):
+    value = float(value)
+    if not 0.0 < value < math.inf:
+        raise ValueError
+    return value
+
+
+def view_angles(view):
+    """(bearing, height) of "top", of "BEARING,HEIGHT", or of two numbers. Raises ValueError."""
+    if view == "top":
+        return (180.0, 90.0)
+    bearing, height = (float(a) for a in (view.split(",") if isinstance(view, str) else view))
+    if not 0 < height <= 90 or not math.isfinite(bearing):
+        raise ValueError("view takes (bearing, height) with a height above 0 and at most 90")
+    return (bearing % 360.0, height)
+
+
 def number_up_to_a_quarter(value):
     value = float(value)
     if not 0 <= value <= 0.25:
@@ -69,6 +86,7 @@ SEARCH_STRATEGIES = ("voxel-traversal", "compactness")
 INTERPOLATIONS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-spline")
 OUTWARD_TESTS = ("exact", "inward-normal")
 LATTICE_MODES = ("automatic", "off")
+COLOURS = ("elevation", "error")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
 
@@ -286,9 +304,10 @@ class Reconstruction:
         """
         from .writing.grids import grid_of
 
-        step = float(step)
-        if not 0.0 < step < math.inf:
-            raise ValueError(f"step takes a number above 0, not {step:g}")
+        try:
+            step = number_above_zero(step)
+        except ValueError:
+            raise ValueError(f"step takes a number above 0, not {step}") from None
         return grid_of(self.surface, step)
 
     def plot(
@@ -296,13 +315,13 @@ class Reconstruction:
         path: Union[str, os.PathLike],
         title: str = "",
         *,
-        view: Optional[tuple[float, float]] = None,
+        view: Union[tuple[float, float], str, None] = None,
         exaggeration: Optional[float] = None,
         colours: str = "elevation",
     ) -> dict[str, float]:
         """Draws the surface into a PNG file.
 
-        view          (bearing, height) of the eye in degrees, (180, 90) from above; None: chosen
+        view          (bearing, height) of the eye in degrees, or "top"; None: chosen
         exaggeration  the factor for z; None: chosen
         colours       "elevation", or "error" for the standard error of filled elevations
 
@@ -314,13 +333,10 @@ class Reconstruction:
 
         path = os.fspath(path)
         check_suffix(path, (".png",), "written as a picture")
-        if colours not in ("elevation", "error"):
+        if colours not in COLOURS:
             raise ValueError(f"colours takes elevation or error, not {colours!r}")
         if view is not None:
-            bearing, height = (float(angle) for angle in view)
-            if not 0 < height <= 90 or not math.isfinite(bearing):
-                raise ValueError("view takes (bearing, height) with a height above 0 and at most 90")
-            view = (bearing % 360.0, height)
+            view = view_angles(view)
         return draw(
             self.surface,
             path,

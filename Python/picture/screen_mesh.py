@@ -7,7 +7,7 @@ import dataclasses
 
 import numpy
 
-from ..clouds import AT_ONCE, corner_flags, slices
+from ..clouds import slices
 
 MOST_OUTLINE_POINTS = 300_000
 RINGS = 6  # of a cell, around its middle

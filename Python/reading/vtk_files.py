@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Points, lines and polygons of files that VTK reads."""
 
-import math
 import os
 import re
 import warnings

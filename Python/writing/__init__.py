@@ -5,10 +5,9 @@
 import os
 
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from ..clouds import cells_of, make_points, rounding_note
+from ..clouds import cells_of, make_points, rounding_note, set_crs
 from .mesh_formats import Triangles, write_glb, write_ply, write_ts
 from ..messages import FileError, Messages
 from ..paths import suffix_of
@@ -30,12 +29,9 @@ def write_surface(data, path, crs=None, progress=None):
 def in_vtk_xml(write):
     def run(data, path, crs, progress):
         if crs:
-            told = vtkStringArray()
-            told.SetName("CRS")
-            told.InsertNextValue(crs)
             plain, data = data, vtkPolyData()
             data.ShallowCopy(plain)
-            data.GetFieldData().AddArray(told)
+            set_crs(data, crs)
         write(data, path, progress)
         return []
 

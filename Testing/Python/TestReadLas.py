@@ -10,7 +10,7 @@ import unittest
 from unittest import mock
 
 import numpy
-from in_folder import InFolder, coordinates
+from in_folder import InFolder
 
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
