@@ -26,6 +26,7 @@ MEANS_SOMETHING = {
     "layer": ("rasters", "vectors"),
     "classes": ("las",),
 }
+MAY_HAVE_Y_UP = ("a PLY file", "an STL file", "an OBJ file")
 NAMES = {"text": "text files", "vectors": "vector files", "las": "LAS files"}
 
 
@@ -74,8 +75,22 @@ def read_any(path, options):
     cloud = kind.reader()(path, options)
     if options.no_data is not None and kind.module not in ("text.read_text", "rasters"):
         leave_out(path, cloud, options.no_data)
+    if kind.name in MAY_HAVE_Y_UP:
+        notes = notes + upright_note(cloud.points)
     cloud.notes[:0] = notes
     return cloud
+
+
+def upright_note(points):
+    """Notes where a mesh is flat in y, as where y is the height; in z, a surface is."""
+    low_x, high_x, low_y, high_y, low_z, high_z = points.GetBounds()
+    x, y, z = high_x - low_x, high_y - low_y, high_z - low_z
+    if 3 * y > min(x, z) or max(x, z) > 10 * min(x, z):
+        return []
+    return [
+        f"x, y and z extend over {x:.4g}, {y:.4g} and {z:.4g}: if y is the height, as in many "
+        "programs for 3D models, export the file with z upwards"
+    ]
 
 
 def leave_out(path, cloud, no_data):

@@ -110,6 +110,13 @@ COLOURS = {
     "green": _words("green g gruen grun vert"),
     "blue": _words("blue b blau bleu"),
 }
+UNITS = {
+    "metres": _words("m meter meters metre metres mtr"),
+    "feet": _words("ft feet foot usft ftus sft"),
+    "kilometres": _words("km kilometer kilometers kilometre kilometres"),
+    "centimetres": _words("cm centimeter centimeters centimetre centimetres"),
+    "millimetres": _words("mm millimeter millimeters millimetre millimetres"),
+}
 LETTERS_OF_AXES = _words("e oe n h")
 LETTERS = str.maketrans({"ø": "oe", "æ": "ae", "ß": "ss", "ł": "l", "Ø": "Oe", "Ł": "L"})
 
@@ -189,6 +196,13 @@ def _axis_of(words, joined, extra):
             return None  # a single letter among words that tell something else
         rank += 5
     return Meaning(axis, rank, direction, "", tuple(sorted(beside)))
+
+
+def unit_of(name):
+    """The unit of length that a column's name tells, as "feet" for "Z (ft)" and "elev_ft", or ""."""
+    outside, inside = in_brackets(name)
+    words = plain(inside) or plain(outside)[1:]
+    return next((unit for unit, names in UNITS.items() if words and words[-1] in names), "")
 
 
 def is_beside(name):

@@ -7,7 +7,7 @@ import csv
 import math
 import re
 
-from .column_names import is_beside, known_names, meaning
+from .column_names import is_beside, known_names, meaning, unit_of
 from ..messages import FileError
 
 COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
@@ -295,6 +295,27 @@ def find_names(layout, head, width, one_may_lack=True):
     candidates = [names for names in candidates if len(names) == width and any(names)]
     candidates = [names for names in candidates if not all(is_number(name) for name in names)]
     return max(candidates, key=known_names, default=None)
+
+
+def doubtful_units(layout, head, names, indices):
+    """Notes where the header tells one unit of length for x and y, and another for z.
+
+    The units stand in the names, as in "Z (ft)", in a line of their own, as in "m,m,ft", or where
+    Petrel writes them.
+    """
+    rows = [[unit_of(name) for name in names or []]]
+    rows += [[unit_of(f"({word.strip('()[]')})") for word in layout.words(line)] for line in head]
+    told = re.compile(r"unit in (x and y direction|depth):\s*(\w+)", re.I)
+    petrel = {where.lower(): unit_of(f"({unit})") for where, unit in told.findall("\n".join(head))}
+    named = [[row[i] if i < len(row) else "" for i in indices] for row in rows]
+    across = petrel.get("x and y direction", "")
+    for units in [*named, [across, across, petrel.get("depth", "")]]:
+        if all(units) and units[0] == units[1] != units[2]:
+            return [
+                f"x and y are in {units[0]} and z is in {units[2]}, by the header: nothing is "
+                "converted, so slopes and distances mix both"
+            ]
+    return []
 
 
 def is_number(word):

@@ -23,6 +23,7 @@ from .layouts import (
     check_marks,
     check_names,
     doubtful_marks,
+    doubtful_units,
     find_layout,
     find_names,
     is_comment,
@@ -142,6 +143,7 @@ class Table:
         check_marks(path, rows, self.of_numbers)
         if needed == 3:
             self.notes += doubtful_marks(rows, *self.indices)
+            self.notes += doubtful_units(self.layout, head, self.names, self.indices)
         begins = first_of_data(self, preamble)
         if begins:
             self.first = begins - 1

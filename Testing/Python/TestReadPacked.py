@@ -148,6 +148,16 @@ class Foreign(InFolder):
                 notes = [n for n in self.read(content, name).notes if "by its content" in n]
                 self.assertEqual(notes, [f"by its content {note}"] if note else [])
 
+    def test_a_mesh_with_its_height_in_y_is_told(self):
+        for order, told in (("xyz", False), ("xzy", True)):
+            lines = [
+                "v {} {} {}".format(*({"x": 3 * i, "y": 2 * j, "z": 0.3 * (i % 3)}[a] for a in order))
+                for i in range(8) for j in range(8)
+            ]
+            with self.subTest(order=order):
+                cloud = self.read(("\n".join(lines) + "\n").encode(), "a.obj")
+                self.assertEqual("if y is the height" in " ".join(cloud.notes), told)
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

@@ -479,6 +479,18 @@ class Doubts(Tables):
         cloud = self.read("Lat,Lon,Height\n-89.5,359.5,121.5\n88.75,8.5,124.5\n")
         self.assertNotIn("latitude", " ".join(cloud.notes))
 
+    def test_a_unit_of_z_that_is_not_that_of_x_and_y_is_told(self):
+        rows = "".join(f"{x},{y},{z}\n" for x, y, z in zip(X, Y, Z))
+        for head, told in (
+            ("X (m),Y (m),Z (ft)", True), ("x,y,z\nm,m,ft", True), ("x_m,y_m,elev_ft", True),
+            ("# Unit in X and Y direction: m\n# Unit in depth: ft", True),
+            ("X (ft),Y (ft),Z (ft)", False), ("x,y,z\n[m],[m],[m]", False),
+            ("Easting,Northing,Height (ft)", False), ("x,y,z", False),
+        ):
+            with self.subTest(head=head):
+                notes = " ".join(self.read(head + "\n" + rows).notes)
+                self.assertEqual("in metres and z is in feet" in notes, told, notes)
+
     def test_two_columns_named_z_are_told_or_refused(self):
         rows = "5.5;7.5;121.5;122.5\n6.5;7.75;123.5;124.5\n"
         self.assertIn("3 (Höhe_alt) and 4 (Höhe_neu) may all be z",
