@@ -31,6 +31,32 @@ macro (es_find_paraview)
       "${ParaView_NOT_FOUND_MESSAGE}")
   endif ()
   message(STATUS "ParaView ${ParaView_VERSION} in ${ParaView_DIR}")
+  if (NOT PARAVIEW_USE_PYTHON)
+    set(ES_WRAP_PYTHON OFF)
+  endif ()
+  es_set_plugin_folder()
+endmacro ()
+
+# The plugin's folder holds all it needs, and works wherever it is copied:
+#   ElevationSurfacePlugin.so     the plugin
+#   libvtkElevationSurface.so.*   the module's library
+#   vtkelevationsurface/          the Python package with the wrapped module
+# They find each other by run paths from where they lie, and so do those of the build.
+macro (es_set_plugin_folder)
+  set(es_library_destination "${CMAKE_INSTALL_LIBDIR}")
+  if (WIN32)
+    set(es_library_destination "${CMAKE_INSTALL_BINDIR}")
+  endif ()
+  string(APPEND es_library_destination "/${PARAVIEW_PLUGIN_SUBDIR}/ElevationSurfacePlugin")
+  set(es_python_destination "${es_library_destination}")
+  set(es_python_program "ParaView's pvpython")
+  set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)
+  if (APPLE)
+    set(CMAKE_INSTALL_RPATH "@loader_path")
+    set(CMAKE_INSTALL_NAME_DIR "@rpath")
+  elseif (UNIX)
+    set(CMAKE_INSTALL_RPATH "$ORIGIN")
+  endif ()
 endmacro ()
 
 # Builds the plugin, and the module inside it, from Plugin/paraview.plugin.
@@ -45,5 +71,6 @@ macro (es_build_plugin)
     PLUGINS_FILE_NAME    "vtkelevationsurface.xml"
     RUNTIME_DESTINATION  "${CMAKE_INSTALL_BINDIR}"
     LIBRARY_DESTINATION  "${CMAKE_INSTALL_LIBDIR}"
-    LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}")
+    LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
+    ADD_INSTALL_RPATHS   OFF)
 endmacro ()

@@ -7,7 +7,7 @@
 # ---- options -----------------------------------------------------------------------------------
 option(BUILD_SHARED_LIBS "Build a shared library" ON)
 option(ES_PARAVIEW "Build the ParaView plugin, against ParaView's VTK" OFF)
-option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface" ON)
+option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface, beside the plugin with ES_PARAVIEW" ON)
 option(ES_BENCHMARKS "Build the benchmarks; they compare with CGAL where it is found" OFF)
 option(ES_WARNINGS "Compile with -Wall -Wextra" OFF)
 option(ES_WERROR "Warnings are errors (with ES_WARNINGS)" OFF)
@@ -25,6 +25,7 @@ include(GNUInstallDirs)
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
+set(es_library_destination "${CMAKE_INSTALL_LIBDIR}")
 set(es_cmake_destination "${CMAKE_INSTALL_LIBDIR}/cmake/vtkElevationSurface")
 
 set(CMAKE_CXX_STANDARD 17)
@@ -74,7 +75,9 @@ set(es_vtk_test_components FiltersCore FiltersModeling FiltersSources IOXML Inte
 if (ES_PARAVIEW)
   include("${CMAKE_CURRENT_LIST_DIR}/ParaView.cmake")
   es_find_paraview()
-  set(ES_WRAP_PYTHON OFF) # in ParaView, Python reaches the filters through their proxies
+  if (ES_WRAP_PYTHON)
+    list(APPEND es_vtk_components Python PythonInterpreter WrappingPythonCore)
+  endif ()
 else ()
   find_package(VTK 9.1 QUIET COMPONENTS ${es_vtk_components})
   if (NOT VTK_FOUND)
@@ -111,17 +114,20 @@ vtk_module_scan(
 # vtk_module_build() adds the folder of vtk.module, which is the root, with the binary folder
 # CMAKE_BINARY_DIR, which is taken. Within this function's scope it is another one.
 function (es_build_module)
+  set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${es_library_destination}")
   set(CMAKE_BINARY_DIR "${CMAKE_BINARY_DIR}/module")
   vtk_module_build(
-    MODULES             ${es_modules}
-    PACKAGE             vtkElevationSurface
-    INSTALL_EXPORT      vtkElevationSurface
-    INSTALL_HEADERS     ON
-    HEADERS_DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/vtkElevationSurface"
-    CMAKE_DESTINATION   "${es_cmake_destination}"
-    VERSION             "${PROJECT_VERSION}"
-    SOVERSION           "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
-    TEST_DIRECTORY_NAME "NONE")
+    MODULES               ${es_modules}
+    PACKAGE               vtkElevationSurface
+    INSTALL_EXPORT        vtkElevationSurface
+    INSTALL_HEADERS       ON
+    HEADERS_DESTINATION   "${CMAKE_INSTALL_INCLUDEDIR}/vtkElevationSurface"
+    LIBRARY_DESTINATION   "${es_library_destination}"
+    HIERARCHY_DESTINATION "${CMAKE_INSTALL_LIBDIR}/vtk/hierarchy/vtkElevationSurface"
+    CMAKE_DESTINATION     "${es_cmake_destination}"
+    VERSION               "${PROJECT_VERSION}"
+    SOVERSION             "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
+    TEST_DIRECTORY_NAME   "NONE")
 endfunction ()
 es_build_module()
 
@@ -144,14 +150,17 @@ install(FILES "${CMAKE_CURRENT_SOURCE_DIR}/LICENSE"
 
 # ---- Python ------------------------------------------------------------------------------------
 if (ES_WRAP_PYTHON)
-  vtk_module_python_default_destination(es_python_destination)
+  if (NOT ES_PARAVIEW)
+    vtk_module_python_default_destination(es_python_destination)
+    set(es_python_program "${Python3_EXECUTABLE}")
+  endif ()
   vtk_module_wrap_python(
     MODULES             ${es_modules}
     TARGET              vtkElevationSurface::Python
     PYTHON_PACKAGE      "vtkelevationsurface"
     MODULE_DESTINATION  "${es_python_destination}"
     CMAKE_DESTINATION   "${es_cmake_destination}"
-    LIBRARY_DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    LIBRARY_DESTINATION "${es_library_destination}"
     INSTALL_HEADERS     OFF
     BUILD_STATIC        OFF)
   set(es_python_package "${es_python_destination}/vtkelevationsurface")

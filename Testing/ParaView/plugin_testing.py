@@ -19,9 +19,10 @@ from mesh_rules import findings, number_of_border_edges  # noqa: E402,F401
 FAILURES = []
 
 
-def start():
+def start(place=lambda plugin, folder: plugin):
     """Reads the command line and loads the plugin.
 
+    place  makes the file to load of the built plugin and the folder for what the test writes
     Returns the folder of the data and the folder for what the test writes.
     """
     parser = argparse.ArgumentParser()
@@ -30,8 +31,8 @@ def start():
     parser.add_argument("-T", dest="temporary", required=True, help="folder for what the test writes")
     options = parser.parse_args()
     simple._DisableFirstRenderCameraReset()
-    simple.LoadPlugin(options.plugin, remote=False)
     os.makedirs(options.temporary, exist_ok=True)
+    simple.LoadPlugin(place(options.plugin, options.temporary), remote=False)
     return os.path.abspath(options.data), options.temporary
 
 
