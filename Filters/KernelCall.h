@@ -9,6 +9,7 @@
 #define KernelCall_h
 
 #include "Kernel/Base/Base.h"
+#include "VTKVersions.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
@@ -43,7 +44,7 @@ inline Progress ProgressOf(vtkAlgorithm* filter)
       next = now + silence;
       filter->UpdateProgress(fraction);
     }
-    return filter->GetAbortExecute() == 0;
+    return !IsAbortRequested(filter);
   };
 }
 

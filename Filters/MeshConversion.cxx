@@ -4,6 +4,7 @@
 
 #include "Kernel/Base/Base.h"
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
@@ -157,6 +158,83 @@ vtkIdType FirstPolygon(vtkPolyData* input)
   return input->GetNumberOfVerts() + input->GetNumberOfLines();
 }
 
+namespace
+{
+/** The values of an array that keeps them in memory as they are, else nullptr. */
+template <typename Value>
+const Value* ValuesOf(vtkDataArray* array)
+{
+  auto* const plain = vtkAOSDataArrayTemplate<Value>::FastDownCast(array);
+  return plain ? plain->GetPointer(0) : nullptr;
+}
+
+/** Whether offsets are 0, 3, 6, ...: those of @a count triangles. */
+bool AreMultiplesOfThree(vtkDataArray* offsets, vtkIdType count)
+{
+  const auto areTriples = [count](const auto* begins) {
+    using Id = std::remove_cv_t<std::remove_reference_t<decltype(*begins)>>;
+    Id differing = 0; // not 0 if any offset differs
+    for (Id i = 0; i <= static_cast<Id>(count); ++i)
+    {
+      differing |= begins[i] ^ (3 * i);
+    }
+    return differing == 0;
+  };
+  if (const vtkTypeInt64* const wide = ValuesOf<vtkTypeInt64>(offsets))
+  {
+    return areTriples(wide);
+  }
+  if (const vtkTypeInt32* const narrow = ValuesOf<vtkTypeInt32>(offsets))
+  {
+    return areTriples(narrow);
+  }
+  vtkIdType i = 0;
+  while (i <= count && offsets->GetComponent(i, 0) == 3.0 * static_cast<double>(i))
+  {
+    ++i;
+  }
+  return i > count;
+}
+
+/** What a message about a corner that is no point says. */
+struct NoPoint
+{
+  vtkIdType FirstCell;
+  vtkIdType NumberOfPoints;
+
+  [[noreturn]] void Throw(std::size_t corner, vtkTypeInt64 id) const
+  {
+    throw Error(NoSuchPoint(
+      this->FirstCell + static_cast<vtkIdType>(corner / 3), id, this->NumberOfPoints));
+  }
+};
+
+/** Copies corners. @throws Error naming the first that no id of the kernel can hold */
+void ConvertIds(const vtkTypeInt64* ids, Buffer<Index>& corners, const NoPoint& toBlame)
+{
+  std::copy_n(ids, corners.size(), corners.begin());
+  const auto different = std::mismatch(corners.begin(), corners.end(), ids);
+  if (different.first != corners.end())
+  {
+    toBlame.Throw(different.first - corners.begin(), *different.second);
+  }
+}
+
+/** The same for numbers of any other type: short or unsigned ones, or such as are computed. */
+void ConvertIds(vtkDataArray* ids, Buffer<Index>& corners, const NoPoint& toBlame)
+{
+  for (std::size_t i = 0; i < corners.size(); ++i)
+  {
+    const double id = ids->GetComponent(static_cast<vtkIdType>(i), 0);
+    corners[i] = id >= 0.0 && id <= MaximumNumberOfPoints ? static_cast<Index>(id) : None;
+    if (static_cast<double>(corners[i]) != id)
+    {
+      toBlame.Throw(i, ids->GetVariantValue(static_cast<vtkIdType>(i)).ToTypeInt64());
+    }
+  }
+}
+} // namespace
+
 TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
 {
   if (input->GetNumberOfStrips() > 0)
@@ -171,22 +249,10 @@ TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
     throw Error("The input has " + std::to_string(count) + " triangles; at most " +
       std::to_string(std::numeric_limits<Index>::max() / 3) + " can be handled at once.");
   }
-  const auto visitOffsets = [polygons](auto&& visit) {
-    return polygons->IsStorage64Bit() ? visit(polygons->GetOffsetsArray64()->GetPointer(0))
-                                      : visit(polygons->GetOffsetsArray32()->GetPointer(0));
-  };
-  const auto areTriangles = [count](const auto* begins) {
-    using Id = std::remove_cv_t<std::remove_reference_t<decltype(*begins)>>;
-    Id differing = 0; // not 0 if any offset differs
-    for (Id i = 0; i <= static_cast<Id>(count); ++i)
-    {
-      differing |= begins[i] ^ (3 * i);
-    }
-    return differing == 0;
-  };
   // Cells that all have three ids are valid; this check is fast.
   if (count <= 0 || !HasSingleComponents(polygons) ||
-    polygons->GetNumberOfConnectivityIds() != 3 * count || !visitOffsets(areTriangles))
+    polygons->GetNumberOfConnectivityIds() != 3 * count ||
+    !AreMultiplesOfThree(polygons->GetOffsetsArray(), count))
   {
     CheckCells(input);
     for (vtkIdType i = 0; i < count; ++i)
@@ -205,22 +271,15 @@ TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
   triangles.View.Points = triangles.Points.View;
   triangles.View.Count = static_cast<Index>(count);
   triangles.View.FirstCell = static_cast<Index>(firstCell);
-  if (count > 0 && !polygons->IsStorage64Bit())
-  {
-    triangles.View.Corners = polygons->GetConnectivityArray32()->GetPointer(0);
-  }
-  else if (count > 0)
+  vtkDataArray* const corners = polygons->GetConnectivityArray();
+  triangles.View.Corners = count > 0 ? ValuesOf<vtkTypeInt32>(corners) : nullptr;
+  if (count > 0 && !triangles.View.Corners)
   {
     triangles.Converted.Resize(3 * static_cast<std::size_t>(count));
-    const vtkTypeInt64* const ids = polygons->GetConnectivityArray64()->GetPointer(0);
-    std::copy_n(ids, triangles.Converted.size(), triangles.Converted.begin());
-    const auto different =
-      std::mismatch(triangles.Converted.begin(), triangles.Converted.end(), ids);
-    if (different.first != triangles.Converted.end())
-    {
-      throw Error(NoSuchPoint(
-        firstCell + (different.second - ids) / 3, *different.second, input->GetNumberOfPoints()));
-    }
+    const NoPoint toBlame{ firstCell, input->GetNumberOfPoints() };
+    const vtkTypeInt64* const ids = ValuesOf<vtkTypeInt64>(corners);
+    ids ? ConvertIds(ids, triangles.Converted, toBlame)
+        : ConvertIds(corners, triangles.Converted, toBlame);
     triangles.View.Corners = triangles.Converted.data();
   }
   return triangles;

@@ -55,12 +55,13 @@ struct TrianglesOfDataSet
 {
   TriangleList View;
   PointsOfDataSet Points;
-  Buffer<Index> Converted; ///< ids, where they have 64 bits; else viewed in place
+  Buffer<Index> Converted; ///< ids, where they are not of 32 bits; those are viewed in place
 };
 
 /**
- * Views the polygons in place when their ids have 32 bits, and copies ids of 64. Vertices and lines
- * are ignored (their cells precede the polygons in the cell numbering: see FirstPolygon).
+ * Views the polygons in place when their ids have 32 bits, and copies ids of any other storage of a
+ * vtkCellArray. Vertices and lines are ignored (their cells precede the polygons in the cell
+ * numbering: see FirstPolygon).
  * @throws Error naming the cell when it is not a triangle or its cell array is invalid; also when
  *         there are triangle strips. The kernel checks that points exist.
  */

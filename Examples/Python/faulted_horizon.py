@@ -117,7 +117,7 @@ def panel(window, title, low, high, surface, faults):
     text.GetTextProperty().SetBackgroundColor(1.0, 1.0, 1.0)
     text.GetTextProperty().SetBackgroundOpacity(0.85)
     text.SetPosition(24, 20)
-    renderer.AddActor2D(text)
+    renderer.AddViewProp(text)
     camera = renderer.GetActiveCamera()
     camera.SetFocalPoint(0.0, 0.0, 0.0)
     camera.SetPosition(1.0, 0.0, 1.0)

@@ -56,7 +56,7 @@ def add_text(renderer, text, x, y, size, align="left", bold=False, rgb=INK):
         "centre": look.SetJustificationToCentered,
     }[align]()
     actor.SetPosition(x, y)
-    renderer.AddActor2D(actor)
+    renderer.AddViewProp(actor)
     return actor
 
 
@@ -124,7 +124,7 @@ def add_strokes(renderer, paths, rgb=INK, width=3.0):
     actor.SetMapper(mapper)
     actor.GetProperty().SetColor(*rgb)
     actor.GetProperty().SetLineWidth(width)
-    renderer.AddActor2D(actor)
+    renderer.AddViewProp(actor)
 
 
 def round_text(value):
@@ -188,7 +188,7 @@ def add_scalar_bar(renderer, colours, title, width, tall):
     size.SetCoordinateSystemToDisplay()
     size.SetValue(150, length)
     bar.SetBarRatio(0.22)
-    renderer.AddActor2D(bar)
+    renderer.AddViewProp(bar)
 
 
 def add_map_signs(renderer, width, pixels, bearing, height, widen):

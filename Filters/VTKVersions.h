@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What differs between the versions of VTK: every version check of the library is here. Private to
+ * the module. Where a call exists in all versions from 9.1 on, that call is used instead.
+ */
+#ifndef VTKVersions_h
+#define VTKVersions_h
+
+#include "vtkAlgorithm.h"
+#include "vtkVersionMacros.h"
+
+namespace elevation
+{
+
+/**
+ * Whether a filter is to stop. Since VTK 9.3 (and ParaView 5.11) also when a filter before it in
+ * the pipeline has been asked to, and the executive learns that the output is not complete.
+ */
+inline bool IsAbortRequested(vtkAlgorithm* filter)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 20230111)
+  return filter->CheckAbort();
+#else
+  return filter->GetAbortExecute() != 0;
+#endif
+}
+
+} // namespace elevation
+
+#endif
