@@ -11,6 +11,7 @@ import sys
 
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
 import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
@@ -124,9 +125,9 @@ def ring_area(coordinates):
 def screenshot(path, view):
     """Saves a picture and returns its pixels, height x width x 3."""
     simple.SaveScreenshot(path, view)
-    reader = simple.PNGSeriesReader(FileNames=[path])
-    image = fetch(reader)
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    image = reader.GetOutput()
     width, height = image.GetDimensions()[:2]
-    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[..., :3]
-    simple.Delete(reader)
-    return pixels
+    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[..., :3]

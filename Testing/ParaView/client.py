@@ -1,0 +1,119 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Drives ParaView's own client: opens menus, fills in fields and presses buttons as a user does.
+
+A Client is a list of steps. ParaView plays them as it plays the scripts of its own tests
+(--test-script), through the widgets of its window. A widget is named by the names of its parents,
+joined by "/"; a name that does not exist is an error that lists those that do.
+"""
+import os
+import subprocess
+import threading
+from xml.sax.saxutils import quoteattr
+
+WINDOW = "pqClientMainWindow"
+PANEL = "propertiesDock/propertiesPanel"
+SHELL = "pythonShellDock/pythonShell/consoleWidget"
+READER_DIALOG = "pqSelectReaderDialog"
+
+
+class Client:
+    """Steps, and what is needed to play them."""
+
+    def __init__(self, program, plugin, folder, width=1280, height=1000):
+        """program: paraview; plugin: the built plugin's file; folder: where the client may write."""
+        self.program = program
+        self.plugin = os.path.abspath(plugin)
+        self.folder = os.path.abspath(folder)
+        self.size = "%dx%d+0+0" % (width, height)
+        self.steps = []
+        os.makedirs(self.folder, exist_ok=True)
+
+    def do(self, widget, command, arguments=""):
+        """One step: a command for a widget of the main window."""
+        path = "/".join(part for part in (WINDOW, widget) if part)
+        self.steps.append((path, command, str(arguments)))
+
+    def press(self, button):
+        self.do(button, "activate")
+
+    def choose(self, menu, entry):
+        """Chooses an entry of a menu of the menu bar, such as "menuFilters/Elevation Surface"."""
+        self.do("menubar/" + menu, "activate", entry)
+
+    def open_menu(self, name):
+        """Unfolds a menu of the menu bar, and leaves it open until the next step that needs none."""
+        self.do("menubar", "activate", name)
+
+    def open(self, path):
+        """File > Open, and a file."""
+        self.choose("menu_File", "actionFileOpen")
+        self.do("FileOpenDialog", "filesSelected", path)
+
+    def choose_reader(self, row=0):
+        """Ends the question which reader to use, by the entry of a row of the list."""
+        self.do(READER_DIALOG + "/listWidget", "setCurrent", "%d.0" % row)
+        self.press(READER_DIALOG + "/okButton")
+
+    def set(self, name, value):
+        """Types a value into the field of a length, which has a slider beside it."""
+        self.do(self.field(name) + "/DoubleRangeWidget/DoubleLineEdit", "set_string", value)
+
+    @staticmethod
+    def field(name):
+        """The widget of a property, by the property's name."""
+        return PANEL + "/scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/" \
+            "PropertiesFrame/ProxyPanel/" + name
+
+    def apply(self):
+        self.press(PANEL + "/Accept")
+
+    def python(self, line):
+        """Runs one line in the client's Python shell, where paraview.simple knows all that is open."""
+        self.do(SHELL, "executeCommand", line)
+
+    def drag(self, start, end):
+        """Drags what is at a place of the main window to another one; both are x, y in pixels."""
+        for command, held, (x, y) in (("mousePress", 1, start), ("mouseMove", 1, end),
+                                      ("mouseRelease", 0, end)):
+            self.do("", command, "1,%d,0,%d,%d" % (held, x, y))
+
+    def run(self, timeout):
+        """Plays the steps. Returns what the client printed; raises RuntimeError when a step failed."""
+        script = os.path.join(self.folder, "client_steps.xml")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write('<?xml version="1.0" ?>\n<pqevents>\n')
+            for step in self.steps:
+                file.write("  <pqevent object=%s command=%s arguments=%s />\n"
+                           % tuple(map(quoteattr, step)))
+            file.write("</pqevents>\n")
+        folder, name = os.path.split(self.plugin)
+        command = [self.program, "-qwindowgeometry", self.size, "--dr", "--exit",
+                   "--test-script=" + script, "--plugin-search-paths=" + folder,
+                   "--plugins=" + os.path.splitext(name)[0]]
+        return play(command, self.environment(), timeout)
+
+    def environment(self):
+        """No settings of the user are read, and none are written."""
+        home = os.path.join(self.folder, "home")
+        os.makedirs(home, mode=0o700, exist_ok=True)
+        return dict(os.environ, HOME=home, XDG_CONFIG_HOME=home, XDG_RUNTIME_DIR=home,
+                    XDG_CACHE_HOME=home)
+
+
+def play(command, environment, timeout):
+    """Runs the client. It is ended when a step fails: it would wait at an open dialog for ever."""
+    process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    clock = threading.Timer(timeout, process.kill)
+    clock.start()
+    lines = []
+    for line in process.stdout:
+        lines.append(line)
+        if "In event 'object=" in line:
+            threading.Timer(1, process.kill).start()
+    clock.cancel()
+    output = "".join(lines)
+    if process.wait() != 0:
+        raise RuntimeError("the client ended with %d\n%s" % (process.returncode, output))
+    return output
