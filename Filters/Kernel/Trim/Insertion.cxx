@@ -278,7 +278,10 @@ private:
       this->VertexAt.at(p) = vertex;
       const std::vector<Index> parts = this->CutAt(t, vertex);
       this->Redistribute(point, parts);
-      work.insert(work.end(), parts.begin(), parts.end());
+      for (const Index part : parts) // g++ 14 warns of an overflow where they are inserted at once
+      {
+        work.push_back(part);
+      }
     }
   }
 
