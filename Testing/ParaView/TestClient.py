@@ -66,7 +66,7 @@ def main():
         parser.add_argument(option, required=True)
     options = parser.parse_args()
     folder = os.path.join(options.T, "Client")
-    client = Client(options.client, options.plugin, folder)
+    client = Client([options.client], options.plugin, folder)
     results = os.path.join(folder, RESULTS)
     if os.path.exists(results):
         os.remove(results)

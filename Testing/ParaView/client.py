@@ -7,6 +7,7 @@ A Client is a list of steps. ParaView plays them as it plays the scripts of its 
 joined by "/"; a name that does not exist is an error that lists those that do.
 """
 import os
+import signal
 import subprocess
 import threading
 from xml.sax.saxutils import quoteattr
@@ -21,7 +22,8 @@ class Client:
     """Steps, and what is needed to play them."""
 
     def __init__(self, program, plugin, folder, width=1280, height=1000):
-        """program: paraview; plugin: the built plugin's file; folder: where the client may write."""
+        """program: paraview, as a list with the words before it; plugin: the built plugin's file;
+        folder: where the client may write."""
         self.program = program
         self.plugin = os.path.abspath(plugin)
         self.folder = os.path.abspath(folder)
@@ -88,7 +90,7 @@ class Client:
                            % tuple(map(quoteattr, step)))
             file.write("</pqevents>\n")
         folder, name = os.path.split(self.plugin)
-        command = [self.program, "-qwindowgeometry", self.size, "--dr", "--exit",
+        command = [*self.program, "-qwindowgeometry", self.size, "--dr", "--exit",
                    "--test-script=" + script, "--plugin-search-paths=" + folder,
                    "--plugins=" + os.path.splitext(name)[0]]
         return play(command, self.environment(), timeout)
@@ -104,14 +106,20 @@ class Client:
 def play(command, environment, timeout):
     """Runs the client. It is ended when a step fails: it would wait at an open dialog for ever."""
     process = subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, text=True,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    clock = threading.Timer(timeout, process.kill)
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               start_new_session=True)
+
+    def end():
+        """Ends the client, and the programs that were started before it or by it."""
+        os.killpg(process.pid, signal.SIGTERM)
+
+    clock = threading.Timer(timeout, end)
     clock.start()
     lines = []
     for line in process.stdout:
         lines.append(line)
         if "In event 'object=" in line:
-            threading.Timer(1, process.kill).start()
+            threading.Timer(1, end).start()
     clock.cancel()
     output = "".join(lines)
     if process.wait() != 0:
