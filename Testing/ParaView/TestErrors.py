@@ -3,22 +3,7 @@
 """In ParaView too, what cannot be used gives one error that names it, and empty output."""
 from paraview import simple
 
-from plugin_testing import check, check_equal, fetch, finish, start
-
-
-def errors_of(source):
-    """Updates a filter and returns the errors that it reported."""
-    errors = []
-
-    def note(_caller, _event, text):
-        errors.append(text)
-
-    note.CallDataType = "string0"
-    algorithm = source.SMProxy.GetClientSideObject()
-    algorithm.AddObserver("ErrorEvent", note)
-    source.UpdatePipeline()
-    return errors
-
+from plugin_testing import check, check_equal, fetch, finish, messages_of, start
 
 start()
 
@@ -27,7 +12,7 @@ quadrilaterals = simple.Plane(XResolution=3, YResolution=3)
 for filter_type, outputs in ((simple.TrimOutwardTriangles, 3), (simple.FillElevationHoles, 2)):
     name = filter_type.__name__
     source = filter_type(Input=quadrilaterals)
-    errors = errors_of(source)
+    errors = messages_of(source)
     check_equal(len(errors), 1, name + ": number of errors for cells that are no triangles")
     check(errors and "cell 0" in errors[0].lower(),
           "%s: the error does not name the cell: %s" % (name, errors))
@@ -38,14 +23,14 @@ for filter_type, outputs in ((simple.TrimOutwardTriangles, 3), (simple.FillEleva
 surface = simple.GridDelaunay2D(Input=quadrilaterals)
 line = simple.Line(Point1=[-0.5, -0.5, 0], Point2=[0.5, -0.5, 0], Resolution=3)
 trimmed = simple.TrimOutwardTriangles(Input=surface, Boundary=line)
-errors = errors_of(trimmed)
+errors = messages_of(trimmed)
 check_equal(len(errors), 1, "number of errors for a boundary that is not closed")
 check(errors and "closed" in errors[0].lower(), "the error does not say why: %s" % errors)
 check_equal(fetch(trimmed).GetNumberOfPoints(), 0, "points after an error")
 
 # Taking the cause away is enough to go on.
 trimmed.Boundary = None
-check_equal(errors_of(trimmed), [], "errors without the line")
+check_equal(messages_of(trimmed), [], "errors without the line")
 check_equal(fetch(trimmed).GetNumberOfPoints(), 16, "points without the line")
 
 finish()

@@ -76,6 +76,21 @@ def fetch(source, port=0):
     return servermanager.Fetch(source, idx=port)
 
 
+def messages_of(source, event="ErrorEvent"):
+    """Updates a source and returns the errors that it reported, or another event's messages."""
+    messages = []
+
+    def note(_caller, _event, text):
+        messages.append(text)
+
+    note.CallDataType = "string0"
+    algorithm = source.SMProxy.GetClientSideObject()
+    tag = algorithm.AddObserver(event, note)
+    source.UpdatePipeline()
+    algorithm.RemoveObserver(tag)
+    return messages
+
+
 def information(source, name):
     """The value of a property that tells a result, after the last update."""
     source.SMProxy.UpdatePropertyInformation()
