@@ -15,7 +15,6 @@ from xml.sax.saxutils import quoteattr
 WINDOW = "pqClientMainWindow"
 PANEL = "propertiesDock/propertiesPanel"
 SHELL = "pythonShellDock/pythonShell/consoleWidget"
-READER_DIALOG = "pqSelectReaderDialog"
 
 
 class Client:
@@ -52,10 +51,9 @@ class Client:
         self.choose("menu_File", "actionFileOpen")
         self.do("FileOpenDialog", "filesSelected", path)
 
-    def choose_reader(self, row=0):
-        """Ends the question which reader to use, by the entry of a row of the list."""
-        self.do(READER_DIALOG + "/listWidget", "setCurrent", "%d.0" % row)
-        self.press(READER_DIALOG + "/okButton")
+    def take_marked_reader(self):
+        """Answers the question which reader to use by OK: the reader that is marked."""
+        self.press("pqSelectReaderDialog/okButton")
 
     def set(self, name, value):
         """Types a value into the field of a length, which has a slider beside it."""

@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Documentation/ParaView.md is true: its messages are those that one gets, and its Python code runs.
+
+Each message is a block of text under a heading of "What can go wrong"; "…" stands for what differs.
+Each heading has a function here that provokes the message.
+"""
+import os
+import re
+
+from paraview import simple
+
+from plugin_testing import check, check_equal, finish, messages_of, start
+
+data_folder, temporary_folder = start()
+repository = os.path.dirname(data_folder)
+with open(os.path.join(repository, "Documentation", "ParaView.md"), encoding="utf-8") as file:
+    guide = file.read()
+
+CASES = {}
+
+
+def provokes(heading):
+    """Notes that a function returns the messages that stand under a heading of the guide."""
+    def note(function):
+        CASES[heading] = function
+        return function
+    return note
+
+
+def data(name):
+    return os.path.join(data_folder, name)
+
+
+def written(name, text):
+    path = os.path.join(os.path.abspath(temporary_folder), name)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+def reader_messages(path, **properties):
+    return messages_of(simple.ElevationPoints(FileName=path, **properties))
+
+
+@provokes("The file has no numbers")
+def no_numbers():
+    return reader_messages(written("words.txt", "no points here\n"))
+
+
+@provokes("A column has another name")
+def no_column():
+    return reader_messages(data("olinda_land.xyz"), Columns="Easting,Northing,Top")
+
+
+@provokes("A column holds words")
+def words_in_column():
+    rows = "".join("W%d,%d,%d,%d\n" % (i, 100 + 7 * i, 200 + 3 * i, -1500 - i) for i in range(20))
+    table = written("wells.csv", "Well,Easting,Northing,Top\n" + rows)
+    return reader_messages(table, Columns="Easting,Northing,Well")
+
+
+def shown_text(message):
+    """A message as Output Messages shows it: without kind, class and address."""
+    return re.sub(r"^\s*(ERROR|Warning): |^\w+ \(0x[0-9a-f]+\): ", "", message).strip()
+
+
+def as_pattern(text):
+    words = [re.escape(word) for word in text.split()]
+    return r"\s+".join(words).replace("…", ".*?")
+
+
+section = guide.split("\n## What can go wrong\n")[1].split("\n## ")[0]
+told = dict(re.findall(r"^### (.+)\n(?:(?!### ).*\n)*?```text\n((?:(?!```).*\n)*)", section, re.M))
+check_equal(sorted(told), sorted(CASES), "headings with a message, and cases of this test")
+for heading, case in CASES.items():
+    messages = [shown_text(message) for message in case()]
+    check_equal(len(messages), 1, "%s: number of messages %s" % (heading, messages))
+    expected = told.get(heading, "")
+    check(messages and re.fullmatch(as_pattern(expected), messages[0], re.DOTALL),
+          "%s: %s, not %s" % (heading, messages, expected))
+
+os.chdir(temporary_folder)
+if not os.path.exists("Data"):
+    os.symlink(data_folder, "Data")
+for number, code in enumerate(re.findall(r"```python\n(.*?)```", guide, re.DOTALL), 1):
+    exec(compile(code, "code %d of the guide" % number, "exec"), {})
+
+finish()
