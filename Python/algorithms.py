@@ -7,20 +7,22 @@ reconstruct() makes of it. Both tell what they have done as text, and an error i
 """
 
 import re
+import warnings
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataObjectTree, vtkPolyData, vtkTable
+from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
-from .clouds import cells_of, set_crs
-from .messages import ElevationSurfaceError
+from .clouds import antimeridian_note, cells_of, crs_of, faults_note, set_crs
+from .inputs import ELEVATION, cloud_of, data_sets_of, lines_of, number_of_points
+from .messages import ElevationSurfaceError, ElevationSurfaceWarning
+from .ranks import fewest_ranks
 from .reading import read, read_boundary, read_faults
-from .report import counted, crs_name
-
-ELEVATION = "Elevation"
+from .reconstruction import PROPERTIES, reconstruct
+from .report import counted, crs_name, report_lines
 
 
 class Aborted(Exception):
@@ -28,10 +30,14 @@ class Aborted(Exception):
 
 
 def in_panel(words):
-    """A message with the names of options as a panel has them: --no-data 0 -> No Data 0."""
-    return re.sub(
-        r"--([a-z][a-z-]*)", lambda option: option.group(1).replace("-", " ").title(), words
-    )
+    """A message with the names that a panel has: --no-data 0 -> No Data 0."""
+
+    def title(found):
+        return found.group(1).replace("-", " ").replace("_", " ").title()
+
+    properties = "|".join(PROPERTIES)
+    words = re.sub(r"--([a-z][a-z-]*)", title, words)
+    return re.sub(rf"\b((?:{properties})(?= takes )|[a-z]+_edge_length)\b", title, words)
 
 
 def set_elevation(data):
@@ -76,20 +82,26 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
             self.Modified()
 
     def RequestData(self, request, inInfo, outInfo):
-        """Runs work(inInfo, outInfo), and tells its text or its error."""
+        """Runs work(inInfo, outInfo), and shows the lines that it returns, or its error.
+
+        work() sets _text. Lines that were shown for the last output are not shown again.
+        """
         self._text = ""
+        self.SetAbortExecute(0)
         try:
-            lines = self.work(inInfo, outInfo)
+            told = self.work(inInfo, outInfo)
         except Aborted:
             return 1
         except MemoryError:
             return self.fail("there is not enough memory")
         except (ElevationSurfaceError, ValueError, TypeError) as error:
             return self.fail(in_panel(str(error)))
-        self._text = "\n".join(lines)
-        if self._text not in ("", self._told):
-            vtkOutputWindow.GetInstance().DisplayText(self._text + "\n")
-        self._told = self._text
+        except Exception as error:  # pylint: disable=broad-except
+            return self.fail(f"this should not happen, please report it: {error!r}")
+        told = "\n".join(told)
+        if told not in ("", self._told):
+            vtkOutputWindow.GetInstance().DisplayText(told + "\n")
+        self._told = told
         return 1
 
     def fail(self, words):
@@ -221,6 +233,7 @@ class ElevationPoints(TellingAlgorithm):
             if cloud.crs:
                 told.append(f"coordinate reference system: {crs_name(cloud.crs)}")
         set_words(output, "Recognised", told)
+        self._text = "\n".join(told)
         return told
 
 
@@ -233,3 +246,260 @@ def fill_points(output, cloud):
     set_elevation(output)
     if cloud.crs:
         set_crs(output, cloud.crs)
+
+
+class ReconstructElevationSurface(TellingAlgorithm):
+    """Makes an elevation surface of points: reconstruct() as an algorithm.
+
+    Input 0: a point set, image, rectilinear grid or table, or a composite of these: each block then
+    is a surface for itself. Inputs 1 and 2, optional: boundary and faults, lines or polygons.
+    Outputs: the surface with the point array Elevation; the outlines of holes; the boundary; the
+    report as vtkTable. GetReport() gives the report as text.
+
+    Properties of the filters are set by Set<Name>(), the name being that of reconstruct() without
+    underscores: SetMaximumEdgeLength(25.0), SetInterpolation("membrane") or (1).
+    """
+
+    TITLE = "Reconstruct Elevation Surface"
+    STEPS = {
+        "triangulating": (0.0, 0.4),
+        "trimming": (0.4, 0.6),
+        "filling holes": (0.6, 0.95),
+        "measuring": (0.95, 1.0),
+    }
+
+    def __init__(self):
+        super().__init__(3, 4)
+        self._properties = {}
+        self._elevation_array = self._columns = ""
+        self._keep_nulls = False
+        self._trim = self._fill = True
+
+    def SetElevationArray(self, name):
+        """The point array that holds elevations; empty: z, of a grid its only or active array."""
+        self.change("_elevation_array", name or "")
+
+    def SetColumns(self, columns):
+        """Of a table: names, or numbers from 1, of x, y and z with commas between."""
+        self.change("_columns", columns or "")
+
+    def SetKeepNulls(self, keep):
+        self.change("_keep_nulls", bool(keep))
+
+    def SetTrim(self, trim):
+        self.change("_trim", bool(trim))
+
+    def SetFillHoles(self, fill):
+        self.change("_fill", bool(fill))
+
+    def GetReport(self):
+        """What became of every point and hole, one line each."""
+        return self._text
+
+    # -- the pipeline
+
+    def FillInputPortInformation(self, port, info):
+        info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject")
+        if port:
+            info.Set(vtkAlgorithm.INPUT_IS_OPTIONAL(), 1)
+        return 1
+
+    def FillOutputPortInformation(self, port, info):
+        info.Set(vtkDataObject.DATA_TYPE_NAME(), "vtkTable" if port == 3 else "vtkDataObject")
+        return 1
+
+    def RequestDataObject(self, request, inInfo, outInfo):
+        """Of a composite input, surface and lines are composites of the same class."""
+        data = vtkDataObject.GetData(inInfo[0])
+        wanted = data if isinstance(data, vtkDataObjectTree) else vtkPolyData()
+        for port in range(3):
+            old = vtkDataObject.GetData(outInfo, port)
+            if old is None or old.GetClassName() != wanted.GetClassName():
+                information = outInfo.GetInformationObject(port)
+                information.Set(vtkDataObject.DATA_OBJECT(), wanted.NewInstance())
+        if vtkTable.GetData(outInfo, 3) is None:
+            outInfo.GetInformationObject(3).Set(vtkDataObject.DATA_OBJECT(), vtkTable())
+        return 1
+
+    def work(self, inputs, outputs):
+        data = vtkDataObject.GetData(inputs[0])
+        if not fewest_ranks(outputs, number_of_points(data)):
+            return []
+        boundary, faults = (vtkDataObject.GetData(inputs[port]) for port in (1, 2))
+        lines = {
+            name: lines_of(given, name)
+            for name, given in (("boundary", boundary), ("faults", faults))
+            if given is not None
+        }
+        parts = data_sets_of(data)
+        results = []
+        for i, (_, name, part) in enumerate(parts):
+            self._share = (i / len(parts), 1.0 / len(parts))
+            try:
+                results.append(self.result_of(part, lines))
+            except (ElevationSurfaceError, ValueError) as error:
+                raise type(error)(f"{name}: {error}" if name else str(error)) from None
+        if not results:
+            raise ElevationSurfaceError("the input has no blocks with points")
+        self.put(data, parts, results, outputs)
+        return self.tell([name for _, name, _ in parts], results, outputs)
+
+    def result_of(self, part, lines):
+        """The Reconstruction of one data set, with notes on what looks wrong."""
+        cloud = cloud_of(part, self._elevation_array, self._columns, self._keep_nulls)
+        drop_elevation(cloud.points)
+        cloud.notes += notes_on(cloud, lines)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ElevationSurfaceWarning)  # told by warn()
+            result = reconstruct(
+                cloud,
+                trim=self._trim,
+                fill=self._fill,
+                progress=self.step,
+                **lines,
+                **self._properties,
+            )
+        result.report  # pylint: disable=pointless-statement
+        return result
+
+    def step(self, words, fraction):
+        first, last = self.STEPS[words]
+        begin, share = self._share
+        self.progress(words.capitalize(), begin + share * (first + fraction * (last - first)))
+
+    def put(self, data, parts, results, outputs):
+        """Fills the first three outputs."""
+        for port, name in enumerate(("surface", "holes", "boundary")):
+            output = vtkDataObject.GetData(outputs, port)
+            composite = isinstance(data, vtkDataObjectTree)
+            if composite:
+                output.CopyStructure(data)
+            for (place, _, _), result in zip(parts, results):
+                made = vtkPolyData()
+                made.ShallowCopy(getattr(result, name) or vtkPolyData())
+                if port == 0:
+                    set_elevation(made)
+                if composite:
+                    set_part(output, data, place, made)
+                else:
+                    output.ShallowCopy(made)
+
+    def tell(self, names, results, outputs):
+        """Fills the report and sends warnings. Returns the lines to show."""
+        rows, told = [], []
+        if len(results) > 1:
+            sums = sums_of(results)
+            rows += [("all blocks", *row) for row in sums]
+        for name, result in zip(names, results):
+            for note in result.notes:
+                self.warn(in_panel(f"{name}: {note}" if name else note))
+            for item, value in report_lines(result.report):
+                rows.append((name, item, in_panel(value)))
+        shown = [in_panel(note) for result in results for note in result.notes]
+        lines, last = [], ""
+        for block, item, value in rows:
+            if block != last:
+                lines.append(f"{block}:")
+                last = block
+            lines.append(f"{item:<10} {value}")
+            if item != "note" or value not in shown:
+                told.append(lines[-1] if not block else f"{block}: {lines[-1]}")
+        self._text = "\n".join(lines)
+        fill_table(vtkTable.GetData(outputs, 3), rows)
+        return [f"{self.TITLE}:", *told]
+
+
+def drop_elevation(points):
+    """Takes the array Elevation away where it is nothing but z; set_elevation() makes it anew."""
+    array = points.GetPointData().GetArray(ELEVATION)
+    if array is not None and array.GetNumberOfComponents() == 1:
+        z = vtk_to_numpy(points.GetPoints().GetData())[:, 2]
+        if numpy.array_equal(vtk_to_numpy(array), z, equal_nan=True):
+            points.GetPointData().RemoveArray(ELEVATION)
+
+
+def notes_on(cloud, lines):
+    """What looks wrong with points, boundary and faults, one line each. Raises FileError."""
+    notes = [antimeridian_note(cloud.points)]
+    if "faults" in lines:
+        notes.append(faults_note(cloud.points, lines["faults"]))
+    notes = [note for note in notes if note]
+    for name, data in lines.items():
+        crs = crs_of(data)
+        if crs and cloud.crs:
+            try:
+                from .gdal_common import check_system
+
+                notes += check_system(f"the {name}", crs, "the points", cloud.crs)
+            except ImportError:
+                pass  # systems cannot be compared without GDAL
+    return notes
+
+
+def set_part(output, data, place, part):
+    """Puts a part where the input has the one with this flat index."""
+    places = data.NewIterator()
+    places.InitTraversal()
+    while not places.IsDoneWithTraversal():
+        if places.GetCurrentFlatIndex() == place:
+            output.SetDataSet(places, part)
+        places.GoToNextItem()
+
+
+def sums_of(results):
+    """[(item, text)] of what all blocks have together."""
+    reports = [result.report for result in results]
+    sums = [
+        ("points", sum(report["points"] for report in reports), "read"),
+        ("unused", sum(report["points_unused"] for report in reports), ""),
+        ("triangles", sum(list(report["triangles"].values())[-1] for report in reports), ""),
+    ]
+    if results[0].trim:
+        outward = sum(report["trim"]["outward_triangles"] for report in reports)
+        sums.append(("trimmed", outward, "outward triangles"))
+    if results[0].fill:
+        for name in ("found", "filled"):
+            sums.append(("holes", sum(report["holes"][name] for report in reports), name))
+    return [(item, f"{count:,} {words}".strip()) for item, count, words in sums]
+
+
+def fill_table(table, rows):
+    """Writes rows of (block, item, value); the block is a column where there are several."""
+    names = ["Block", "Item", "Value"]
+    first = 0 if any(block for block, _, _ in rows) else 1
+    columns = [vtkStringArray() for _ in names]
+    item = ""
+    for block, name, value in rows:
+        item = name or item
+        for column, word in zip(columns, (block, item, value)):
+            column.InsertNextValue(word)
+    for name, column in list(zip(names, columns))[first:]:
+        column.SetName(name)
+        table.AddColumn(column)
+
+
+def add_setters():
+    """Gives ReconstructElevationSurface a Set<Name>() for each property of the filters."""
+
+    def setter(name, taken):
+        def set_property(self, value):
+            if name in CHOSEN_BELOW_ZERO and float(value) < 0:
+                value = None
+            elif isinstance(value, int) and taken.startswith("one of "):
+                value = taken[len("one of "):].split(", ")[value]
+            if self._properties.get(name) != value:
+                self._properties[name] = value
+                self.Modified()
+
+        set_property.__doc__ = f"{name}: {taken}"
+        return set_property
+
+    for name, one in PROPERTIES.items():
+        words = {"threads": "number_of_threads"}.get(name, name)
+        method = "Set" + words.title().replace("_", "")
+        setattr(ReconstructElevationSurface, method, setter(name, one.takes))
+
+
+# Below 0 a panel says what None says in Python; 0 is a value of its own.
+CHOSEN_BELOW_ZERO = ("open_edge_length",)
+add_setters()

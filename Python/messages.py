@@ -47,9 +47,13 @@ class Messages:
 
     Use as a context manager. `errors` and `warnings` are lists of plain lines, without the
     source file, the object's address and the follow-up complaints of VTK's executives.
+
+    sources  objects whose messages are taken before they come to the output window: programs as
+             ParaView have one of their own, which shows what comes to it
     """
 
-    def __init__(self):
+    def __init__(self, *sources):
+        self.sources = sources
         self.errors = []
         self.warnings = []
 
@@ -64,13 +68,17 @@ class Messages:
             self.take(event, text)
 
         note.CallDataType = VTK_STRING
-        self._tags = [window.AddObserver(event, note) for event in ("ErrorEvent", "WarningEvent")]
+        self._tags = [
+            (source, source.AddObserver(event, note))
+            for source in (window, *self.sources)
+            for event in ("ErrorEvent", "WarningEvent")
+        ]
         return self
 
     def __exit__(self, *_):
         window = vtkOutputWindow.GetInstance()
-        for tag in self._tags:
-            window.RemoveObserver(tag)
+        for source, tag in self._tags:
+            source.RemoveObserver(tag)
         window.SetDisplayMode(self._mode)
         vtkLogger.SetStderrVerbosity(self._verbosity)
 

@@ -373,7 +373,7 @@ class _Step:
 
         tag = algorithm.AddObserver("ProgressEvent", show)
         began = time.perf_counter()
-        with Messages() as messages:
+        with Messages(algorithm, algorithm.GetExecutive()) as messages:
             algorithm.Update()
         self.result.times["triangulate" if name == "delaunay" else name] = (
             time.perf_counter() - began

@@ -185,12 +185,40 @@ def crs_name(crs):
 
 
 def print_report(report):
-    """The report for people. Long lists are cut here, never in the JSON."""
-
-    def line(name, text):
+    """The report for people."""
+    print(report["file"])
+    for name, text in report_lines(report):
         print(f"  {name:<10} {text}")
 
-    print(report["file"])
+
+def report_lines(report):
+    """[(name, text)] of the report for people; a line that goes on has no name.
+
+    Long lists are cut here, never in the JSON.
+    """
+    result = []
+
+    def line(name, text):
+        result.append((name, text))
+
+    point_lines(report, line)
+    triangle_lines(report, line)
+    if "holes" in report:
+        hole_lines(report["holes"], line)
+    line("surface", counted(list(report["triangles"].values())[-1], "triangle"))
+    distance_lines(report, line)
+    if "written" in report and report["unused_listed"] < report["points_unused"]:
+        line("", f"--report lists the first {MOST_LISTED:,} unused points for each reason")
+    if "times" in report:
+        times = report["times"].items()
+        line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in times))
+    for path in report.get("written", ()):
+        line("written", path)
+    return result
+
+
+def point_lines(report, line):
+    """The notes, and what became of the points."""
     for note in report["notes"]:
         line("note", note)
     if report["crs"]:
@@ -208,6 +236,10 @@ def print_report(report):
         else:
             where = "point " + ", ".join(str(u["point"]) for u in some)
         line("unused", f"{count:,} {reason}: {where}{', ...' if count > len(some) else ''}")
+
+
+def triangle_lines(report, line):
+    """What the triangles were made of, and which were removed."""
     if report["lattice"]:
         steps = [
             f"{length:.7g} towards {direction + 0.0:.4g} degrees"
@@ -222,11 +254,11 @@ def print_report(report):
         line("lattice", "none: the points are not on the nodes of a grid")
     line("triangles", f"{report['triangles']['delaunay']:,} in the triangulation")
     if "faults" in report:
-        lines = report["faults"]
+        faults = report["faults"]
         line(
             "faults",
-            f"{lines['file']}: {counted(lines['added_points'], 'point')} added, "
-            f"{counted(lines['crossings'], 'crossing')}",
+            f"{faults['file']}: {counted(faults['added_points'], 'point')} added, "
+            f"{counted(faults['crossings'], 'crossing')}",
         )
     if "trim" in report:
         trim = report["trim"]
@@ -244,31 +276,36 @@ def print_report(report):
             line("", f"{counted(trim['recovered_edges'], 'boundary edge')} recovered")
         if trim["inserted_points"]:
             line("", f"{counted(trim['inserted_points'], 'boundary point')} inserted")
-    if "holes" in report:
-        holes = report["holes"]
+
+
+def hole_lines(holes, line):
+    """What became of the holes."""
+    line(
+        "holes",
+        f"{holes['found']:,} found, {holes['filled']:,} filled with "
+        f"{counted(holes['inserted_points'], 'point')}",
+    )
+    count = holes["by_status"].get("replaced", 0)
+    if count:
+        line("", f"{count:,} of them were bridged by triangles")
         line(
-            "holes",
-            f"{holes['found']:,} found, {holes['filled']:,} filled with "
-            f"{counted(holes['inserted_points'], 'point')}",
+            "",
+            f"an edge is a bridge above {holes['open_edge_length']:.4g} "
+            f"({holes['open_edge_length_is']}); see --open-edge-length",
         )
-        count = holes["by_status"].get("replaced", 0)
-        if count:
-            line("", f"{count:,} of them were bridged by triangles")
-            line(
-                "",
-                f"an edge is a bridge above {holes['open_edge_length']:.4g} "
-                f"({holes['open_edge_length_is']}); see --open-edge-length",
-            )
-        for status, count in holes["by_status"].items():
-            if status not in ("filled", "replaced"):
-                some = [h for h in holes["list"] if h["status"] == status][:5]
-                more = ", ..." if count > len(some) else ""
-                if status == "too many edges":
-                    some = [f"{h['hole']} ({counted(h['edges'], 'edge')})" for h in some]
-                else:
-                    some = [f"{h['hole']} (size {h['size']:.4g})" for h in some]
-                line("", f"{count:,} not filled, {status}: hole {', '.join(some)}{more}")
-    line("surface", counted(list(report["triangles"].values())[-1], "triangle"))
+    for status, count in holes["by_status"].items():
+        if status not in ("filled", "replaced"):
+            some = [h for h in holes["list"] if h["status"] == status][:5]
+            more = ", ..." if count > len(some) else ""
+            if status == "too many edges":
+                some = [f"{h['hole']} ({counted(h['edges'], 'edge')})" for h in some]
+            else:
+                some = [f"{h['hole']} (size {h['size']:.4g})" for h in some]
+            line("", f"{count:,} not filled, {status}: hole {', '.join(some)}{more}")
+
+
+def distance_lines(report, line):
+    """How far the points are from the surface."""
     d = report["distance"]
     boundary_given = report.get("trim", {}).get("boundary", FOUND) != FOUND
     beyond = ""
@@ -285,11 +322,6 @@ def print_report(report):
             f"from a sample: every corner, and {d['measured']:,} of the "
             f"{d['points_not_corners']:,} other points",
         )
-    if report["unused_listed"] < report["points_unused"]:
-        line("", f"--report lists the first {MOST_LISTED:,} unused points for each reason")
-    line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in report["times"].items()))
-    for path in report["written"]:
-        line("written", path)
 
 
 def picture_subtitle(result):

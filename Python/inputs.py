@@ -1,0 +1,193 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Points and lines of VTK's data objects, as reconstruct() takes them: of point sets, images,
+rectilinear grids and tables, and of composite data sets of these."""
+
+import math
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray
+from vtkmodules.vtkCommonDataModel import (
+    vtkCompositeDataSet,
+    vtkDataObjectTree,
+    vtkImageData,
+    vtkPointSet,
+    vtkPolyData,
+    vtkRectilinearGrid,
+    vtkTable,
+)
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData
+
+from .clouds import Cloud, ReadOptions, crs_of, make_points
+from .messages import ElevationSurfaceError
+from .reading.columns import choose_columns
+from .reading.nulls import take_out
+from .reading.vtk_files import points_of_grid
+
+ELEVATION = "Elevation"
+SAMPLE = 3000  # rows of a table that tell its columns
+
+
+def data_sets_of(data):
+    """[(iterator's place or None, name for messages, data set)] of what holds points.
+
+    The place is what vtkCompositeDataSet.SetDataSet() takes.
+    """
+    if not isinstance(data, vtkDataObjectTree):
+        return [(None, "", data)]
+    found = []
+    places = data.NewIterator()
+    places.InitTraversal()
+    while not places.IsDoneWithTraversal():
+        name = f"block {len(found) + 1}"
+        if places.HasCurrentMetaData():
+            given = places.GetCurrentMetaData().Get(vtkCompositeDataSet.NAME())
+            name += f" ({given})" if given else ""
+        found.append((places.GetCurrentFlatIndex(), name, places.GetCurrentDataObject()))
+        places.GoToNextItem()
+    return found
+
+
+def number_of_points(data):
+    """How many points or rows there are in a data object of any kind."""
+    return sum(
+        part.GetNumberOfRows() if isinstance(part, vtkTable) else part.GetNumberOfPoints()
+        for _, _, part in data_sets_of(data)
+        if hasattr(part, "GetNumberOfPoints") or isinstance(part, vtkTable)
+    )
+
+
+def cloud_of(data, array="", columns="", keep_nulls=False):
+    """The points of a data set as Cloud. Raises ElevationSurfaceError.
+
+    array    the point array that holds elevations; of point sets "" is z, of grids the active one
+    columns  of a table: names or numbers from 1 of x, y and z; "": recognised
+    Usual null values are taken out of grids and tables, as of files, unless they are kept.
+    """
+    options = ReadOptions(columns=columns or None, keep_nulls=keep_nulls)
+    if isinstance(data, vtkTable):
+        return take_out(cloud_of_table(data, options), options)
+    if array and data.GetPointData().GetArray(array) is None:
+        attributes = data.GetPointData()
+        names = [attributes.GetArrayName(i) for i in range(attributes.GetNumberOfArrays())]
+        raise ElevationSurfaceError(
+            f"there is no point array named {array}; there are: {', '.join(names) or 'none'}"
+        )
+    if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
+        grid = data.NewInstance()
+        grid.ShallowCopy(data)
+        if array:
+            grid.GetPointData().SetActiveScalars(array)
+        cloud = points_of_grid("input", grid)
+        cloud.crs = crs_of(data)
+        return take_out(cloud, options)
+    if not isinstance(data, vtkPointSet):
+        raise ElevationSurfaceError(f"a {data.GetClassName()} has no points with elevations")
+    return cloud_of_points(data, array)
+
+
+def cloud_of_points(data, array):
+    if data.GetNumberOfPoints() == 0:
+        raise ElevationSurfaceError("there are no points")
+    points = vtkPolyData()
+    points.SetPoints(data.GetPoints())
+    points.GetPointData().ShallowCopy(data.GetPointData())
+    points.GetFieldData().ShallowCopy(data.GetFieldData())
+    if array:
+        values = data.GetPointData().GetArray(array)
+        if values.GetNumberOfComponents() != 1:
+            raise ElevationSurfaceError(f"point array {array} is no single number for each point")
+        xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
+        xyz[:, 2] = vtk_to_numpy(values)
+        points.SetPoints(make_points(xyz).GetPoints())
+    return Cloud(points, crs=crs_of(data))
+
+
+# ---- tables -----------------------------------------------------------------------------------
+
+
+def columns_of(table):
+    """{name: (n,) numbers, or list of words}, an array of several components being several."""
+    found = {}
+    for i in range(table.GetNumberOfColumns()):
+        column = table.GetColumn(i)
+        name = column.GetName() or f"column {i + 1}"
+        if isinstance(column, vtkDataArray):
+            values = vtk_to_numpy(column)
+            if values.ndim == 1:
+                found[name] = values
+            else:
+                signs = "xyz" if values.shape[1] <= 3 else range(values.shape[1])
+                for sign, part in zip(signs, values.T):
+                    found[f"{name} {sign}"] = part
+        elif isinstance(column, vtkStringArray):
+            found[name] = [column.GetValue(row) for row in range(column.GetNumberOfValues())]
+    return found
+
+
+def number(word):
+    """The number that a word is; NaN where it is empty, None where it is no number."""
+    try:
+        return float(word) if word.strip() else math.nan
+    except ValueError:
+        return None
+
+
+def cloud_of_table(table, options):
+    """x, y and z of a table, found as those of text files are; all columns become point arrays."""
+    count = table.GetNumberOfRows()
+    columns = columns_of(table)
+    if not count or not columns:
+        raise ElevationSurfaceError("the table has no rows")
+    some = numpy.unique(numpy.linspace(0, count - 1, min(count, SAMPLE)).astype("i8"))
+    head = numpy.arange(min(count, SAMPLE))
+    rows = [[str(column[i]) for column in columns.values()] for i in [*head, *some]]
+    choice = choose_columns(
+        "input",
+        rows,
+        len(head),
+        number,
+        list(columns),
+        len(columns),
+        options.columns,
+        3,
+        "--columns chooses other columns",
+    )
+    parts = list(columns.values())
+    xyz = numpy.column_stack([numbers_of(parts[i], list(columns)[i]) for i in choice.indices])
+    cloud = Cloud(make_points(xyz), choice.notes, crs=crs_of(table))
+    for i in range(table.GetNumberOfColumns()):
+        cloud.points.GetPointData().AddArray(table.GetColumn(i))
+    if choice.downwards:
+        cloud.notes.append(choice.downwards)
+    return cloud
+
+
+def numbers_of(column, name):
+    """Doubles of a column, also of one of words that are numbers."""
+    if isinstance(column, numpy.ndarray):
+        return column.astype("f8")
+    values = [number(word) for word in column]
+    if None in values:
+        row = values.index(None)
+        raise ElevationSurfaceError(f"row {row} of column {name} is no number: {column[row]}")
+    return numpy.array(values)
+
+
+# ---- lines ------------------------------------------------------------------------------------
+
+
+def lines_of(data, what):
+    """Lines and polygons of vtkPolyData, or of all blocks of a composite together."""
+    parts = [part for _, _, part in data_sets_of(data)]
+    if not parts or not all(isinstance(part, vtkPolyData) for part in parts):
+        raise ElevationSurfaceError(f"{what}: lines or polygons (vtkPolyData) are needed", what)
+    if len(parts) == 1:
+        return parts[0]
+    append = vtkAppendPolyData()
+    append.SetOutputPointsPrecision(append.DOUBLE_PRECISION)
+    for part in parts:
+        append.AddInputData(part)
+    append.Update()
+    return append.GetOutput()

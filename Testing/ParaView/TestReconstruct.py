@@ -1,0 +1,164 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reconstruct Elevation Surface is the three filters in a row, for input of any kind, and reports."""
+import os
+
+import numpy
+from paraview import servermanager, simple
+
+from plugin_testing import (array, check, check_equal, fetch, finish, information, lines, messages_of,
+                            points, start, triangles)
+
+data_folder, temporary_folder = start()
+
+
+def data_file(name):
+    return os.path.join(data_folder, name)
+
+
+def same(one, other):
+    return (numpy.array_equal(points(one), points(other), equal_nan=True)
+            and numpy.array_equal(triangles(one), triangles(other)))
+
+
+def report(source):
+    """The rows of the report."""
+    table = fetch(source, 3)
+    return [tuple(table.GetValue(row, column).ToString() for column in range(table.GetNumberOfColumns()))
+            for row in range(table.GetNumberOfRows())]
+
+
+# ---- the three filters in a row ----------------------------------------------------------------
+cloud = simple.XMLPolyDataReader(FileName=[data_file("b9_ground.vtp")])
+whole = simple.ReconstructElevationSurface(Input=cloud, OpenEdgeLength=2.5, MaximumEdgeLength=40,
+                                           GapTolerance=6, MaximumHoleSize=60,
+                                           Interpolation="Membrane")
+delaunay = simple.GridDelaunay2D(Input=cloud, MaximumEdgeLength=40)
+trim = simple.TrimOutwardTriangles(Input=delaunay, GapTolerance=6)
+fill = simple.FillElevationHoles(Input=trim, MaximumEdgeLength=2.5, MaximumHoleSize=60,
+                                 Interpolation="Membrane")
+surface, filled = fetch(whole), fetch(fill)
+check(same(surface, filled), "the surface is that of the three filters, cell by cell")
+for name in ("FilledPoint", "FilledError"):
+    check(numpy.array_equal(array(surface.GetPointData(), name), array(filled.GetPointData(), name),
+                            equal_nan=True), "the point array %s is that of the filters" % name)
+check(numpy.array_equal(array(surface.GetCellData(), "HoleId"), array(filled.GetCellData(), "HoleId")),
+      "the cell array HoleId is that of the filters")
+for port, other, other_port in ((1, fill, 1), (2, trim, 2)):
+    one, two = fetch(whole, port), fetch(other, other_port)
+    check(numpy.array_equal(points(one), points(two)) and all(
+        numpy.array_equal(a, b) for a, b in zip(lines(one), lines(two))),
+        "output %d is that of the filters" % port)
+check(numpy.array_equal(array(surface.GetPointData(), "Elevation"), points(surface)[:, 2]),
+      "the array Elevation is z")
+shown = simple.Show(whole, simple.CreateRenderView())
+check_equal(list(shown.ColorArrayName), ["POINTS", "Elevation"], "what the surface is coloured by")
+
+# ---- the report --------------------------------------------------------------------------------
+rows = report(whole)
+check_equal(rows[0], ("points", "13,299 read"), "first row of the report")
+check(any(item == "holes" and "found" in value for item, value in rows), "holes are in the report")
+text = information(whole, "Report")
+check(all(value in text for _, value in rows), "the text of the report has all rows of the table")
+check("Open Edge Length" in text and "--" not in text, "the report speaks the panel's language")
+whole.FillHoles = 0
+check_equal(fetch(whole, 1).GetNumberOfLines(), 0, "hole outlines when nothing is filled")
+check(same(fetch(whole), fetch(trim)), "without filling, the surface is the trimmed one")
+whole.Trim = 0
+check(same(fetch(whole), fetch(delaunay)), "without trimming, the surface is the triangulation")
+
+# ---- progress and abort ------------------------------------------------------------------------
+algorithm = whole.SMProxy.GetClientSideObject()
+whole.Trim, whole.FillHoles = 1, 1
+seen = []
+tag = algorithm.AddObserver("ProgressEvent", lambda caller, _: seen.append(caller.GetProgress()))
+whole.UpdatePipeline()
+algorithm.RemoveObserver(tag)
+check(seen == sorted(seen) and max(numpy.diff([0] + seen)) < 0.5,
+      "progress rises without a jump: %s" % seen)
+tag = algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+whole.GapTolerance = 7
+check_equal(messages_of(whole), [], "errors when the user aborts")
+algorithm.RemoveObserver(tag)
+check_equal(fetch(whole).GetNumberOfPoints(), 0, "points when the user aborts")
+whole.GapTolerance = 6
+check(fetch(whole).GetNumberOfPoints() > 0, "the surface comes back after an abort")
+
+# ---- tables, images, grids ---------------------------------------------------------------------
+table = simple.CSVReader(FileName=[data_file("aegean_sea.csv")])
+of_table = simple.ReconstructElevationSurface(Input=table)
+of_file = simple.ReconstructElevationSurface(
+    Input=simple.ElevationPoints(FileName=data_file("aegean_sea.csv")))
+check(same(fetch(of_table), fetch(of_file)), "a table gives the surface of its file")
+of_table.Columns = "2,1,3"
+check(numpy.array_equal(points(fetch(of_table))[0, :2], points(fetch(of_file))[0, 1::-1]),
+      "columns of a table can be chosen")
+of_table.Columns = "Depth"
+errors = messages_of(of_table)
+check(len(errors) == 1 and "three names" in errors[0],
+      "wrong columns are told: %s" % errors)
+
+image = simple.Wavelet(WholeExtent=[-10, 10, -8, 8, 0, 0])
+of_image = simple.ReconstructElevationSurface(Input=image)
+check_equal(fetch(of_image).GetNumberOfPolys(), 2 * 20 * 16, "triangles of an image")
+values = array(fetch(image).GetPointData(), "RTData")
+check(numpy.allclose(array(fetch(of_image).GetPointData(), "Elevation"), values),
+      "elevations of an image are its array")
+image.WholeExtent = [-10, 10, -8, 8, 0, 2]
+errors = messages_of(of_image)
+check(len(errors) == 1 and "3 layers" in errors[0], "an image of layers is refused: %s" % errors)
+
+# ---- blocks ------------------------------------------------------------------------------------
+plane = simple.Plane(XResolution=5, YResolution=4)
+blocks = simple.ReconstructElevationSurface(Input=simple.GroupDatasets(Input=[cloud, plane]))
+blocks.UpdatePipeline()
+surfaces = servermanager.Fetch(blocks)
+check_equal(surfaces.GetNumberOfBlocks(), 2, "blocks of the output")
+single = fetch(simple.ReconstructElevationSurface(Input=plane))
+check(same(surfaces.GetBlock(1), single), "each block is a surface for itself")
+rows = report(blocks)
+check(("all blocks", "points", "13,329 read") in rows, "the report tells the sum of all blocks")
+check(any(block.startswith("block 2") and item == "points" and value.startswith("30 ")
+          for block, item, value in rows), "the report tells of each block")
+
+# ---- time steps --------------------------------------------------------------------------------
+names = [data_file("jacksboro_fault.vtp"), data_file("horizon_synthetic.vtp")]
+series = simple.XMLPolyDataReader(FileName=names)
+moving = simple.ReconstructElevationSurface(Input=series, FillHoles=0)
+for time, name in enumerate(names):
+    moving.UpdatePipeline(time)
+    count = fetch(simple.XMLPolyDataReader(FileName=[name])).GetNumberOfPoints()
+    check_equal(moving.GetDataInformation(0).GetNumberOfPoints(), count, "points at time %d" % time)
+    check("{:,} read".format(count) in information(moving, "Report"),
+          "the report is that of time %d" % time)
+
+# ---- boundary and faults -----------------------------------------------------------------------
+horizon = simple.XMLPolyDataReader(FileName=[data_file("horizon_synthetic.vtp")])
+given = simple.ReconstructElevationSurface(
+    Input=horizon,
+    Boundary=simple.XMLPolyDataReader(FileName=[data_file("horizon_synthetic_boundary.vtp")]),
+    Faults=simple.XMLPolyDataReader(FileName=[data_file("horizon_synthetic_faults.vtp")]))
+check_equal(messages_of(given), [], "errors with boundary and faults")
+items = dict((item, value) for item, value in report(given) if item in ("faults", "trimmed"))
+check("faults" in items, "faults are in the report")
+
+# ---- errors ------------------------------------------------------------------------------------
+line = simple.Line(Point1=[-0.5, -0.5, 0], Point2=[0.5, -0.5, 0], Resolution=3)
+wrong = simple.ReconstructElevationSurface(Input=plane)
+for change, expected in (
+    ({"Boundary": line}, "not closed"),
+    ({"Boundary": None, "MaximumEdgeLength": 1e-9}, "larger Maximum Edge Length"),
+    ({"MaximumEdgeLength": 0, "Spacing": -1}, "Spacing takes a number of 0 or more"),
+    ({"Spacing": 0, "ElevationArray": "Depth"}, "no point array named Depth"),
+    ({"ElevationArray": "", "Input": simple.Line()}, "on one line"),
+):
+    for name, value in change.items():
+        setattr(wrong, name, value)
+    errors = messages_of(wrong)
+    check(len(errors) == 1 and expected in errors[0], "the error with %s: %s" % (change, errors))
+    check_equal(fetch(wrong).GetNumberOfPoints(), 0, "points with %s" % change)
+wrong.Input = plane
+check_equal(messages_of(wrong), [], "errors after the cause is gone")
+check(same(fetch(wrong), single), "the surface after the cause is gone")
+
+finish()
