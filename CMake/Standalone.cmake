@@ -68,8 +68,8 @@ endif ()
 include(CTest)
 
 # ---- VTK ---------------------------------------------------------------------------------------
-set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel eigen)
-set(es_vtk_test_components FiltersCore FiltersModeling FiltersSources IOXML InteractionStyle
+set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore ParallelCore eigen)
+set(es_vtk_test_components FiltersModeling FiltersSources IOXML InteractionStyle
   RenderingOpenGL2 TestingCore TestingRendering)
 
 if (ES_PARAVIEW)
@@ -95,7 +95,7 @@ if (BUILD_TESTING)
   list(APPEND es_vtk_components ${es_vtk_test_components})
 endif ()
 if (ES_BENCHMARKS)
-  list(APPEND es_vtk_components FiltersCore FiltersModeling IOXML)
+  list(APPEND es_vtk_components FiltersModeling IOXML)
 endif ()
 find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components})
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}")

@@ -2,97 +2,91 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * How a filter calls the kernel: progress and abort go in, exceptions come out as one VTK error and
- * empty output. Private to the module.
+ * How a filter calls the kernel: for each block of the input; progress and abort go in, warnings
+ * and exceptions come out as one message of the filter. Private to the module.
  */
 #ifndef KernelCall_h
 #define KernelCall_h
 
 #include "Kernel/Base/Base.h"
-#include "VTKVersions.h"
 
-#include "vtkAlgorithm.h"
-#include "vtkDataObject.h"
-#include "vtkFieldData.h"
-#include "vtkIdTypeArray.h"
-#include "vtkInformationVector.h"
-#include "vtkNew.h"
-#include "vtkSetGet.h"
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
 
-#include <algorithm>
-#include <chrono>
-#include <new>
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkFieldData;
+class vtkInformation;
+class vtkInformationVector;
+class vtkPointSet;
+class vtkPolyData;
 
 namespace elevation
 {
+class Ranks;
+struct Place;
+
+/** What is worked on at a time: the input, or one block of it. */
+struct Block
+{
+  vtkPointSet* Input;                ///< of the first type that port 0 requires
+  vtkPolyData* Second;               ///< input 1, joined; nullptr if there is none
+  std::vector<vtkPolyData*> Outputs; ///< of each port
+  elevation::Progress Progress;
+  std::vector<std::string> Warnings; ///< to be reported
+};
 
 /**
- * The kernel's Progress for a filter: its progress and abort flag. The kernel reports as often as
- * suits its loops; observers, which may be slow, are called at each thousandth of the work, and at
- * least every 50 ms.
+ * Runs the body of a RequestData for each block of the input.
+ *
+ * Progress rises by the number of points of the blocks. When the body throws, the outputs of the
+ * block are emptied; after an abort, all are. What it throws, and the warnings, are reported as one
+ * error and one warning of the filter, which name the blocks.
+ *
+ * Where several ranks take part (Ranks), all of them meet here, whatever blocks each has: before
+ * the blocks, to find points of one block on several ranks, which is an error on all of them, and
+ * to hand the second input to all; and after them, to add up the results.
  */
-inline Progress ProgressOf(vtkAlgorithm* filter)
+class KernelCall
 {
-  using Clock = std::chrono::steady_clock;
-  return [filter, last = -1.0, next = Clock::time_point()](double fraction) mutable {
-    constexpr double step = 0.001;
-    constexpr std::chrono::milliseconds silence{ 50 };
-    const Clock::time_point now = Clock::now();
-    if (fraction >= std::min(1.0, last + step) || now >= next)
-    {
-      last = fraction;
-      next = now + silence;
-      filter->UpdateProgress(fraction);
-    }
-    return !IsAbortRequested(filter);
-  };
-}
+public:
+  KernelCall(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
 
-/**
- * Runs the body of a RequestData. When it throws, every output is emptied; anything but an abort is
- * reported as one error of the filter.
- * @return what RequestData returns: always 1, because on 0 the executive adds an error of its own
- *         that tells the user nothing.
- */
-template <typename Body>
-int CallKernel(vtkAlgorithm* filter, vtkInformationVector* outputs, Body&& body)
-{
-  std::string message;
-  try
-  {
-    body();
-    return 1;
-  }
-  catch (const Aborted&)
-  {
-  }
-  catch (const std::bad_alloc&)
-  {
-    message = "There is not enough memory for this input.";
-  }
-  catch (const std::exception& error)
-  {
-    message = error.what();
-  }
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    vtkDataObject::GetData(outputs, port)->Initialize();
-  }
-  if (!message.empty())
-  {
-    vtkErrorWithObjectMacro(filter, << message);
-  }
-  return 1;
-}
+  std::string Second; ///< what messages call input 1
+  /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
+  std::vector<vtkIdType*> Sums;
+  std::vector<double*> Maxima;
+
+  /**
+   * @param[in] body  adds its results to Sums and Maxima last, when it cannot fail any more
+   * @return what RequestData returns: always 1, because on 0 the executive adds an error of its own
+   *         that tells the user nothing.
+   */
+  int Run(const std::function<void(Block&)>& body);
+
+private:
+  void EmptyOutputs();
+  vtkSmartPointer<vtkPolyData> ShareSecond(const Ranks& ranks) const;
+  bool IsToBeWarned(const Place& place, const Ranks& ranks) const;
+  void RunPlaces(const std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
+    const std::function<void(Block&)>& body);
+  std::string RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
+  void ShareResults(const Ranks& ranks, bool isAborted);
+
+  vtkAlgorithm* Filter;
+  vtkInformation* Request;
+  vtkInformationVector** Inputs;
+  vtkInformationVector* Outputs;
+  std::vector<std::string> Errors, Warnings;
+  std::vector<vtkIdType> Occupied; ///< numbers of the blocks with points, on any rank
+};
 
 /** Adds a count to the field data, as an array of one value. */
-inline void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)
-{
-  vtkNew<vtkIdTypeArray> array;
-  array->SetName(name);
-  array->InsertNextValue(count);
-  fieldData->AddArray(array);
-}
+void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count);
 
 } // namespace elevation
 

@@ -5,6 +5,7 @@
 #include "Kernel/Base/Base.h"
 
 #include "vtkAOSDataArrayTemplate.h"
+#include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
@@ -329,6 +330,22 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
       visit(line);
     }
   }
+}
+
+vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
+{
+  if (parts.size() == 1)
+  {
+    return parts.front();
+  }
+  vtkNew<vtkAppendPolyData> append;
+  for (const auto& part : parts)
+  {
+    CheckCells(part);
+    append->AddInputData(part);
+  }
+  append->Update();
+  return append->GetOutput();
 }
 
 vtkSmartPointer<vtkCellArray> ToCellArray(Buffer<Index>&& triangles, int threads)

@@ -15,6 +15,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 class vtkAbstractArray;
 class vtkCellArray;
@@ -87,6 +88,9 @@ struct LineOfDataSet
  */
 void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& progress,
   const std::function<void(const LineOfDataSet&)>& visit);
+
+/** Data sets in one, as vtkAppendPolyData; a single one itself. @throws Error at invalid cells */
+vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& parts);
 
 /** The cell id of the first polygon of a polydata. */
 vtkIdType FirstPolygon(vtkPolyData* input);

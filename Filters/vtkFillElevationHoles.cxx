@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFillElevationHoles.h"
 
+#include "Blocks.h"
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "KernelCall.h"
@@ -10,9 +11,11 @@
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -312,17 +315,35 @@ vtkFillElevationHoles::vtkFillElevationHoles()
 
 vtkFillElevationHoles::~vtkFillElevationHoles() = default;
 
-int vtkFillElevationHoles::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+int vtkFillElevationHoles::FillInputPortInformation(int, vtkInformation* info)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* surface = vtkPolyData::GetData(outputVector, 0);
-  vtkPolyData* report = vtkPolyData::GetData(outputVector, 1);
-  this->NumberOfHoles = 0;
-  this->NumberOfFilledHoles = 0;
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  return 1;
+}
 
-  return elevation::CallKernel(this, outputVector, [&]() {
-    const elevation::Progress progress = elevation::ProgressOf(this);
+int vtkFillElevationHoles::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject"); // see MakeOutputs()
+  return 1;
+}
+
+vtkTypeBool vtkFillElevationHoles::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
+    ? elevation::MakeOutputs(inputVector, outputVector)
+    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+}
+
+int vtkFillElevationHoles::RequestData(vtkInformation* request,
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  elevation::KernelCall call(this, request, inputVector, outputVector);
+  call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
+  return call.Run([this](elevation::Block& block) {
+    const elevation::Progress& progress = block.Progress;
+    vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
     Report(progress, 0.0);
     CheckMaximumEdgeLength(this->MaximumEdgeLength);
     elevation::CheckArrays(input);
@@ -348,14 +369,15 @@ int vtkFillElevationHoles::RequestData(
       elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
 
     MakeSurface(
-      input, mesh, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95), surface);
-    MakeReport(input, patches, Part(progress, 0.95, 1.0), report);
+      input, mesh, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95),
+      block.Outputs[0]);
+    MakeReport(input, patches, Part(progress, 0.95, 1.0), block.Outputs[1]);
     const vtkIdType holes = patches.Found.Count();
     const vtkIdType filled = std::count_if(patches.Reports.begin(), patches.Reports.end(),
       [](const HoleReport& hole) {
         return hole.Status == FillStatus::Filled || hole.Status == FillStatus::Replaced;
       });
-    for (vtkPolyData* output : { surface, report })
+    for (vtkPolyData* output : block.Outputs)
     {
       elevation::AddCount(output->GetFieldData(), "NumberOfHoles", holes);
       elevation::AddCount(output->GetFieldData(), "NumberOfFilledHoles", filled);
@@ -363,12 +385,12 @@ int vtkFillElevationHoles::RequestData(
     const std::string complaint = Complaint(mesh, patches);
     if (!complaint.empty())
     {
-      vtkWarningMacro(<< complaint);
+      block.Warnings.push_back(complaint);
     }
     Report(progress, 1.0);
-    // Set last, as an abort or an error leaves no counts.
-    this->NumberOfHoles = holes;
-    this->NumberOfFilledHoles = filled;
+    // Added last, as an abort or an error leaves no counts.
+    this->NumberOfHoles += holes;
+    this->NumberOfFilledHoles += filled;
   });
 }
 

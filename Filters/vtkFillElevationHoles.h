@@ -272,10 +272,16 @@ public:
   /** After Update(): holes filled. */
   vtkGetMacro(NumberOfFilledHoles, vtkIdType);
 
+  /** Also makes the outputs composite where the input is. */
+  vtkTypeBool ProcessRequest(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
 protected:
   vtkFillElevationHoles();
   ~vtkFillElevationHoles() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   double MaximumEdgeLength = 0.0;

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkGridDelaunay2D.h"
 
+#include "Blocks.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -210,11 +212,26 @@ vtkGridDelaunay2D::~vtkGridDelaunay2D() = default;
 int vtkGridDelaunay2D::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPointSet" : "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;
+}
+
+int vtkGridDelaunay2D::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject"); // see MakeOutputs()
+  return 1;
+}
+
+vtkTypeBool vtkGridDelaunay2D::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
+    ? elevation::MakeOutputs(inputVector, outputVector)
+    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
 
 void vtkGridDelaunay2D::SetSourceConnection(vtkAlgorithmOutput* output)
@@ -234,20 +251,16 @@ vtkPolyData* vtkGridDelaunay2D::GetSource()
     : nullptr;
 }
 
-int vtkGridDelaunay2D::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+  vtkInformationVector* outputVector)
 {
-  vtkPointSet* input = vtkPointSet::GetData(inputVector[0]);
-  vtkPolyData* source = vtkPolyData::GetData(inputVector[1]);
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  this->NumberOfDuplicatePoints = 0;
-  this->NumberOfNonFinitePoints = 0;
-  this->NumberOfConstraintCrossings = 0;
-  this->NumberOfAddedPoints = 0;
-  this->LatticeFound = false;
-
-  return elevation::CallKernel(this, outputVector, [&]() {
-    const elevation::Progress progress = elevation::ProgressOf(this);
+  elevation::KernelCall call(this, request, inputVector, outputVector);
+  call.Second = "constraints";
+  call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
+    &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints, &this->NumberOfLattices };
+  return call.Run([this](elevation::Block& block) {
+    const elevation::Progress& progress = block.Progress;
+    vtkPolyData* const output = block.Outputs.front();
     elevation::DelaunayOptions options;
     options.Strategy = static_cast<elevation::SearchStrategy>(this->SearchStrategy);
     options.MaximumEdgeLength = this->MaximumEdgeLength;
@@ -256,29 +269,28 @@ int vtkGridDelaunay2D::RequestData(
     options.LatticeTolerance = this->LatticeTolerance;
     options.NumberOfThreads = this->NumberOfThreads;
     elevation::Report(progress, 0.0);
-    elevation::CheckPointArrays(input);
-    const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
+    elevation::CheckPointArrays(block.Input);
+    const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
     elevation::ConstrainedTriangulation constrained =
-      TriangulateWith(source, points.View, options, progress);
+      TriangulateWith(block.Second, points.View, options, progress);
     elevation::Triangulation& triangulation = constrained.Result;
     if (triangulation.NumberOfHullPoints == 0)
     {
-      vtkWarningMacro(
-        << "No triangle was made: the " << points.View.Count
-        << " input points are fewer than three distinct finite points, or all on one line.");
+      block.Warnings.push_back("No triangle was made: the " + std::to_string(points.View.Count) +
+        " input points are fewer than three distinct finite points, or all on one line.");
     }
-    PassPoints(input, source, constrained.Added, Part(progress, 0.95, 1.0), output);
-    output->GetFieldData()->PassData(input->GetFieldData());
+    PassPoints(block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
+    output->GetFieldData()->PassData(block.Input->GetFieldData());
     AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
     elevation::Report(progress, 1.0);
-    // Set last, as an abort or an error leaves no counts.
-    this->NumberOfDuplicatePoints = triangulation.NumberOfDuplicates;
-    this->NumberOfNonFinitePoints = triangulation.NumberOfNotFinite;
-    this->NumberOfConstraintCrossings = static_cast<vtkIdType>(constrained.NumberOfCrossings);
-    this->NumberOfAddedPoints = static_cast<vtkIdType>(constrained.Added.size());
-    this->LatticeFound = triangulation.LatticeFound;
+    // Added last, as an abort or an error leaves no counts.
+    this->NumberOfDuplicatePoints += triangulation.NumberOfDuplicates;
+    this->NumberOfNonFinitePoints += triangulation.NumberOfNotFinite;
+    this->NumberOfConstraintCrossings += static_cast<vtkIdType>(constrained.NumberOfCrossings);
+    this->NumberOfAddedPoints += static_cast<vtkIdType>(constrained.Added.size());
+    this->NumberOfLattices += triangulation.LatticeFound ? 1 : 0;
   });
 }
 
@@ -306,7 +318,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
   os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";
   os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
-  os << indent << "LatticeFound: " << this->LatticeFound << "\n";
+  os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";
   os << indent << "NumberOfNonFinitePoints: " << this->NumberOfNonFinitePoints << "\n";

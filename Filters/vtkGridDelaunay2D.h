@@ -192,7 +192,7 @@ public:
   ///@}
 
   /** After Update(): whether the triangles are those of a lattice; it is in the field data. */
-  vtkGetMacro(LatticeFound, bool);
+  virtual bool GetLatticeFound() { return this->NumberOfLattices > 0; }
 
   ///@{
   /**
@@ -217,11 +217,16 @@ public:
   /** After Update(): points that constraints have added behind those of the input. */
   vtkGetMacro(NumberOfAddedPoints, vtkIdType);
 
+  /** Also makes the outputs composite where the input is. */
+  vtkTypeBool ProcessRequest(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
 protected:
   vtkGridDelaunay2D();
   ~vtkGridDelaunay2D() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int SearchStrategy = VOXEL_TRAVERSAL;
@@ -231,7 +236,7 @@ protected:
   double LatticeTolerance = 0.01;
   int NumberOfThreads = 0;
 
-  bool LatticeFound = false;
+  vtkIdType NumberOfLattices = 0;
   vtkIdType NumberOfDuplicatePoints = 0;
   vtkIdType NumberOfNonFinitePoints = 0;
   vtkIdType NumberOfConstraintCrossings = 0;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTrimOutwardTriangles.h"
 
+#include "Blocks.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Trim/Trim.h"
 #include "KernelCall.h"
@@ -9,6 +10,7 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
@@ -156,11 +158,11 @@ void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, Tri
 }
 
 /** Adds the counts to the field data of all outputs. */
-void AddCounts(const Trimmed& trimmed, vtkInformationVector* outputVector)
+void AddCounts(const Trimmed& trimmed, const std::vector<vtkPolyData*>& outputs)
 {
-  for (int port = 0; port < 3; ++port)
+  for (vtkPolyData* output : outputs)
   {
-    vtkFieldData* fieldData = vtkPolyData::GetData(outputVector, port)->GetFieldData();
+    vtkFieldData* fieldData = output->GetFieldData();
     elevation::AddCount(fieldData, "NumberOfOutwardTriangles", trimmed.NumberOfOutwardTriangles);
     elevation::AddCount(fieldData, "NumberOfRecoveredEdges", trimmed.NumberOfRecoveredEdges);
     elevation::AddCount(fieldData, "NumberOfPointsLeftOut", trimmed.NumberOfPointsLeftOut);
@@ -185,11 +187,26 @@ vtkTrimOutwardTriangles::~vtkTrimOutwardTriangles() = default;
 int vtkTrimOutwardTriangles::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   }
   return 1;
+}
+
+int vtkTrimOutwardTriangles::FillOutputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject"); // see MakeOutputs()
+  return 1;
+}
+
+vtkTypeBool vtkTrimOutwardTriangles::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
+    ? elevation::MakeOutputs(inputVector, outputVector)
+    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
 }
 
 void vtkTrimOutwardTriangles::SetBoundaryConnection(vtkAlgorithmOutput* output)
@@ -209,19 +226,18 @@ vtkPolyData* vtkTrimOutwardTriangles::GetBoundary()
     : nullptr;
 }
 
-int vtkTrimOutwardTriangles::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* given = vtkPolyData::GetData(inputVector[1]);
-  this->EffectiveGapTolerance = 0.0;
-  this->NumberOfOutwardTriangles = 0;
-  this->NumberOfRecoveredEdges = 0;
-  this->NumberOfPointsLeftOut = 0;
-  this->NumberOfInsertedPoints = 0;
-
-  return elevation::CallKernel(this, outputVector, [&]() {
-    const elevation::Progress progress = elevation::ProgressOf(this);
+  elevation::KernelCall call(this, request, inputVector, outputVector);
+  call.Second = "boundary";
+  call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
+    &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
+  call.Maxima = { &this->EffectiveGapTolerance };
+  return call.Run([this](elevation::Block& block) {
+    const elevation::Progress& progress = block.Progress;
+    vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
+    vtkPolyData* const given = block.Second;
     Report(progress, 0.0);
     elevation::CheckArrays(input);
     if (!(this->GapTolerance >= 0.0))
@@ -234,8 +250,9 @@ int vtkTrimOutwardTriangles::RequestData(
       elevation::CheckArrays(given, "The boundary's");
     }
     elevation::TrianglesOfDataSet triangles = elevation::ViewTriangles(input);
+    const bool isGiven = given && triangles.View.Count > 0;
     elevation::BoundaryLines lines;
-    if (given && triangles.View.Count > 0)
+    if (isGiven)
     {
       lines = ToLines(given, Part(progress, 0.0, 0.02));
     }
@@ -250,27 +267,26 @@ int vtkTrimOutwardTriangles::RequestData(
     Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
     if (triangles.View.Count == 0)
     {
-      vtkWarningMacro("The input has no triangles, so there is nothing to trim.");
+      block.Warnings.push_back("The input has no triangles, so there is nothing to trim.");
     }
     if (!trimmed.Loss.empty())
     {
-      vtkWarningMacro(<< trimmed.Loss);
+      block.Warnings.push_back(trimmed.Loss);
     }
 
     PassSides(input, triangles, trimmed, this->NumberOfThreads, Part(progress, 0.8, 0.96),
-      vtkPolyData::GetData(outputVector, 0), vtkPolyData::GetData(outputVector, 1));
-    vtkPolyData* boundary = vtkPolyData::GetData(outputVector, 2);
-    boundary->GetPointData()->CopyAllOn();
-    elevation::PassRings(
-      trimmed.Boundary, given && triangles.View.Count > 0 ? given : input, Part(progress, 0.96, 1.0), boundary);
-    AddCounts(trimmed, outputVector);
+      block.Outputs[0], block.Outputs[1]);
+    block.Outputs[2]->GetPointData()->CopyAllOn();
+    elevation::PassRings(trimmed.Boundary, isGiven ? given : input, Part(progress, 0.96, 1.0),
+      block.Outputs[2]);
+    AddCounts(trimmed, block.Outputs);
     Report(progress, 1.0);
-    // Set last, as an abort or an error leaves no counts.
-    this->EffectiveGapTolerance = trimmed.GapTolerance;
-    this->NumberOfOutwardTriangles = trimmed.NumberOfOutwardTriangles;
-    this->NumberOfRecoveredEdges = trimmed.NumberOfRecoveredEdges;
-    this->NumberOfPointsLeftOut = trimmed.NumberOfPointsLeftOut;
-    this->NumberOfInsertedPoints = static_cast<vtkIdType>(trimmed.Inserted.size());
+    // Added last, as an abort or an error leaves no counts.
+    this->EffectiveGapTolerance = std::max(this->EffectiveGapTolerance, trimmed.GapTolerance);
+    this->NumberOfOutwardTriangles += trimmed.NumberOfOutwardTriangles;
+    this->NumberOfRecoveredEdges += trimmed.NumberOfRecoveredEdges;
+    this->NumberOfPointsLeftOut += trimmed.NumberOfPointsLeftOut;
+    this->NumberOfInsertedPoints += static_cast<vtkIdType>(trimmed.Inserted.size());
   });
 }
 

@@ -216,11 +216,16 @@ public:
   /** After Update(): the number of points that were inserted, for the boundary or for crossings. */
   vtkGetMacro(NumberOfInsertedPoints, vtkIdType);
 
+  /** Also makes the outputs composite where the input is. */
+  vtkTypeBool ProcessRequest(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
 protected:
   vtkTrimOutwardTriangles();
   ~vtkTrimOutwardTriangles() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
   int OutwardTest = EXACT;

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Blocks.h"
+
+#include "Kernel/Base/Base.h"
+#include "MeshConversion.h"
+
+#include "vtkCompositeDataIterator.h"
+#include "vtkDataObjectTree.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPolyData.h"
+
+namespace elevation
+{
+
+int MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  auto* const tree = vtkDataObjectTree::GetData(inputs[0]);
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* const info = outputs->GetInformationObject(port);
+    vtkDataObject* const old = vtkDataObject::GetData(info);
+    const char* const wanted = tree ? tree->GetClassName() : "vtkPolyData";
+    if (!old || wanted != std::string(old->GetClassName()))
+    {
+      const auto made = tree ? vtkSmartPointer<vtkDataObject>::Take(tree->NewInstance())
+                             : vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkPolyData>::New());
+      info->Set(vtkDataObject::DATA_OBJECT(), made);
+    }
+  }
+  return 1;
+}
+
+namespace
+{
+/** What the kinds of trees have in common under different names. */
+unsigned int NumberOfChildren(vtkDataObjectTree* tree)
+{
+  if (auto* const blocks = vtkMultiBlockDataSet::SafeDownCast(tree))
+  {
+    return blocks->GetNumberOfBlocks();
+  }
+  if (auto* const pieces = vtkPartitionedDataSet::SafeDownCast(tree))
+  {
+    return pieces->GetNumberOfPartitions();
+  }
+  auto* const collection = vtkPartitionedDataSetCollection::SafeDownCast(tree);
+  return collection ? collection->GetNumberOfPartitionedDataSets() : 0;
+}
+
+vtkDataObject* Child(vtkDataObjectTree* tree, unsigned int i)
+{
+  if (auto* const blocks = vtkMultiBlockDataSet::SafeDownCast(tree))
+  {
+    return blocks->GetBlock(i);
+  }
+  if (auto* const pieces = vtkPartitionedDataSet::SafeDownCast(tree))
+  {
+    return pieces->GetPartitionAsDataObject(i);
+  }
+  return vtkPartitionedDataSetCollection::SafeDownCast(tree)->GetPartitionedDataSet(i);
+}
+
+void SetChild(vtkDataObjectTree* tree, unsigned int i, vtkDataObject* child)
+{
+  if (auto* const blocks = vtkMultiBlockDataSet::SafeDownCast(tree))
+  {
+    blocks->SetBlock(i, child);
+  }
+  else if (auto* const pieces = vtkPartitionedDataSet::SafeDownCast(tree))
+  {
+    pieces->SetPartition(i, child);
+  }
+}
+
+/** ' ("name")', or nothing. */
+std::string NameOfChild(vtkDataObjectTree* tree, unsigned int i)
+{
+  const auto nameIn = [i](auto* parent) -> std::string {
+    const char* const name = parent && parent->HasMetaData(i)
+      ? parent->GetMetaData(i)->Get(vtkCompositeDataSet::NAME())
+      : nullptr;
+    return name && *name ? " (\"" + std::string(name) + "\")" : std::string();
+  };
+  return nameIn(vtkMultiBlockDataSet::SafeDownCast(tree)) +
+    nameIn(vtkPartitionedDataSet::SafeDownCast(tree)) +
+    nameIn(vtkPartitionedDataSetCollection::SafeDownCast(tree));
+}
+
+/**
+ * Adds the places of a tree.
+ * @param[in] name,path  those of the tree; empty for the whole input
+ */
+void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& outputs,
+  const std::string& name, const std::string& path, std::vector<Place>& places)
+{
+  const unsigned int count = NumberOfChildren(input);
+  const bool arePartitions = vtkPartitionedDataSet::SafeDownCast(input) != nullptr;
+  for (unsigned int i = 0; i < count; ++i)
+  {
+    vtkDataObject* const child = Child(input, i);
+    if (!child)
+    {
+      continue;
+    }
+    const std::string pathOfChild = (path.empty() ? "" : path + ".") + std::to_string(i);
+    std::string nameOfChild = "Block " + pathOfChild + NameOfChild(input, i);
+    if (arePartitions)
+    {
+      const std::string which = "artition " + std::to_string(i) + NameOfChild(input, i);
+      nameOfChild = name.empty() ? "P" + which : count == 1 ? name : name + ", p" + which;
+    }
+    if (auto* const tree = vtkDataObjectTree::SafeDownCast(child))
+    {
+      std::vector<vtkDataObjectTree*> ofChild;
+      for (vtkDataObjectTree* output : outputs)
+      {
+        ofChild.push_back(vtkDataObjectTree::SafeDownCast(Child(output, i)));
+      }
+      AddPlaces(tree, ofChild, nameOfChild, pathOfChild, places);
+      continue;
+    }
+    Place place{ child, {}, nameOfChild, arePartitions ? path : pathOfChild };
+    for (vtkDataObjectTree* output : outputs)
+    {
+      const auto data = vtkSmartPointer<vtkPolyData>::New();
+      SetChild(output, i, data);
+      place.Outputs.push_back(data);
+    }
+    places.push_back(place);
+  }
+}
+} // namespace
+
+std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* outputs)
+{
+  auto* const tree = vtkDataObjectTree::SafeDownCast(input);
+  if (!tree)
+  {
+    Place whole{ input, {}, "", "" };
+    for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+    {
+      whole.Outputs.push_back(vtkPolyData::GetData(outputs, port));
+    }
+    return { whole };
+  }
+  std::vector<vtkDataObjectTree*> trees;
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    trees.push_back(vtkDataObjectTree::GetData(outputs, port));
+    trees.back()->CopyStructure(tree);
+    trees.back()->GetFieldData()->PassData(tree->GetFieldData());
+  }
+  std::vector<Place> places;
+  AddPlaces(tree, trees, "", "", places);
+  return places;
+}
+
+vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string& name)
+{
+  auto* const tree = vtkDataObjectTree::SafeDownCast(input);
+  if (!tree)
+  {
+    return vtkPolyData::SafeDownCast(input);
+  }
+  std::vector<vtkSmartPointer<vtkPolyData>> parts;
+  auto each = vtk::TakeSmartPointer(tree->NewIterator());
+  for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
+  {
+    vtkDataObject* const part = each->GetCurrentDataObject();
+    parts.emplace_back(vtkPolyData::SafeDownCast(part));
+    if (!parts.back())
+    {
+      throw Error("A block of the " + name + " is a " + part->GetClassName() +
+        "; lines and polygons are in a vtkPolyData.");
+    }
+    CheckArrays(parts.back(), "The " + name + (name.back() == 's' ? "'" : "'s"));
+  }
+  return parts.empty() ? vtkSmartPointer<vtkPolyData>::New() : Append(parts);
+}
+
+} // namespace elevation

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The blocks of a composite input and their places in the outputs. Private to the module.
+ */
+#ifndef Blocks_h
+#define Blocks_h
+
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataObject;
+class vtkInformationVector;
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** A data set of the input, and the output of each port that stands in the same place. */
+struct Place
+{
+  vtkDataObject* Input;
+  std::vector<vtkPolyData*> Outputs;
+  std::string Name; ///< for messages: 'Block 2 ("north")'; empty where the input is no composite
+  /** Of the block; the partitions of a vtkPartitionedDataSet, of one surface, have the same. */
+  std::string Path;
+};
+
+/**
+ * For REQUEST_DATA_OBJECT: makes each output a composite of the class of the input, if that is one,
+ * else a vtkPolyData.
+ */
+int MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs);
+
+/**
+ * Gives composite outputs the structure of the input, its names and field data, with an empty
+ * vtkPolyData for each data set, and lists these. Empty places stay empty.
+ */
+std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* outputs);
+
+/**
+ * A second input: itself, or the data sets of a composite in one.
+ * @param[in] name  what messages call it: "boundary"
+ * @return nullptr if there is none
+ * @throws Error when a data set is no vtkPolyData
+ */
+vtkSmartPointer<vtkPolyData> JoinBlocks(vtkDataObject* input, const std::string& name);
+
+} // namespace elevation
+
+#endif

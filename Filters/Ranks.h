@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The ranks (processes) on which a filter runs at the same time. Private to the module.
+ */
+#ifndef Ranks_h
+#define Ranks_h
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class vtkInformation;
+class vtkInformationVector;
+class vtkMultiProcessController;
+class vtkPolyData;
+
+namespace elevation
+{
+
+/**
+ * The ranks that take part in one execution. They are several where the global controller has
+ * several processes and the data are asked for in several pieces. Else there is one, whatever the
+ * controller: a pipeline inside of one process never waits for another.
+ * All ranks have to call the same functions in the same order; with one rank these return at once.
+ */
+class Ranks
+{
+public:
+  Ranks(vtkInformation* request, vtkInformationVector* outputs);
+
+  int Own() const;
+  bool AreSeveral() const { return this->Controller != nullptr; }
+
+  /** The sums (largest values) over all ranks; the lengths are the same on all of them. */
+  void Sum(std::vector<vtkIdType>& values) const;
+  void Maximum(std::vector<double>& values) const;
+
+  /** The values of all ranks, one after another. The lengths may differ. */
+  std::vector<vtkIdType> Collect(const std::vector<vtkIdType>& values) const;
+
+  /**
+   * The cells of all ranks, on all ranks.
+   * @param[in] local  may be nullptr
+   * @return @a local itself where no other rank has points
+   */
+  vtkSmartPointer<vtkPolyData> Gather(vtkPolyData* local) const;
+
+private:
+  vtkMultiProcessController* Controller = nullptr; // nullptr: one rank
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Composite inputs: each block is a surface of its own, the outputs have the structure of the
+// input, counts are sums, messages name the block, and progress only rises.
+#include "Check.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkFieldData.h"
+#include "vtkFillElevationHoles.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkIdTypeArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTestErrorObserver.h"
+#include "vtkTrimOutwardTriangles.h"
+
+#include <cmath>
+#include <string>
+
+namespace
+{
+/** Scattered points in a square at x0, some of them twice; its field data tell x0. */
+vtkSmartPointer<vtkPolyData> MakeCloud(double x0, int duplicates)
+{
+  auto cloud = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 20 * 20; ++i)
+  {
+    if (std::hypot(i % 20 - 8.0, i / 20 - 9.0) > 2.5)
+    {
+      points->InsertNextPoint(
+        x0 + i % 20 + 0.3 * std::sin(i), i / 20 + 0.3 * std::cos(3.0 * i), 1.0);
+    }
+  }
+  for (int i = 0; i < duplicates; ++i)
+  {
+    points->InsertNextPoint(points->GetPoint(i));
+  }
+  cloud->SetPoints(points);
+  vtkNew<vtkIdTypeArray> place;
+  place->SetName("Place");
+  place->InsertNextValue(static_cast<vtkIdType>(x0));
+  cloud->GetFieldData()->AddArray(place);
+  return cloud;
+}
+
+/** A closed ring around a place. */
+vtkSmartPointer<vtkPolyData> MakeRing(double x, double radius)
+{
+  auto ring = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> polygons;
+  constexpr int count = 9;
+  polygons->InsertNextCell(count);
+  for (int i = 0; i < count; ++i)
+  {
+    const double angle = 2.0 * 3.14159265358979 * i / count;
+    polygons->InsertCellPoint(points->InsertNextPoint(
+      x + radius * std::cos(angle), 9.0 + radius * std::sin(angle), 1.0));
+  }
+  ring->SetPoints(points);
+  ring->SetPolys(polygons);
+  return ring;
+}
+
+vtkPolyData* BlockOf(vtkAlgorithm* filter, unsigned int i, int port = 0)
+{
+  auto* blocks = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(port));
+  return blocks ? vtkPolyData::SafeDownCast(blocks->GetBlock(i)) : nullptr;
+}
+
+/** Two clouds, nothing in between, the second one with a name. */
+vtkSmartPointer<vtkMultiBlockDataSet> MakeBlocks()
+{
+  auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  blocks->SetBlock(0, MakeCloud(0.0, 3));
+  blocks->SetBlock(1, nullptr);
+  blocks->SetBlock(2, MakeCloud(100.0, 2));
+  blocks->GetMetaData(2u)->Set(vtkCompositeDataSet::NAME(), "north");
+  vtkNew<vtkIdTypeArray> survey;
+  survey->SetName("Survey");
+  survey->InsertNextValue(7);
+  blocks->GetFieldData()->AddArray(survey);
+  return blocks;
+}
+
+void TestChainOfBlocks()
+{
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputDataObject(MakeBlocks());
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputConnection(delaunay->GetOutputPort());
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputConnection(trim->GetOutputPort());
+  fill->Update();
+  auto* surface = vtkMultiBlockDataSet::SafeDownCast(fill->GetOutputDataObject(0));
+  Check(surface && surface->GetNumberOfBlocks() == 3 && !surface->GetBlock(1),
+    "the output has the structure of the input");
+  Check(surface && surface->HasMetaData(2u) &&
+      std::string(surface->GetMetaData(2u)->Get(vtkCompositeDataSet::NAME())) == "north",
+    "and its names");
+  Check(surface && surface->GetFieldData()->GetArray("Survey"), "and its field data");
+  Check(delaunay->GetNumberOfDuplicatePoints() == 5, "counts are sums over the blocks");
+  vtkIdType outward = 0, holes = 0;
+  for (const unsigned int i : { 0u, 2u })
+  {
+    vtkNew<vtkGridDelaunay2D> alone;
+    alone->SetInputData(MakeCloud(50.0 * i, 3 - static_cast<int>(i / 2)));
+    vtkNew<vtkTrimOutwardTriangles> trimAlone;
+    trimAlone->SetInputConnection(alone->GetOutputPort());
+    vtkNew<vtkFillElevationHoles> fillAlone;
+    fillAlone->SetInputConnection(trimAlone->GetOutputPort());
+    fillAlone->Update();
+    outward += trimAlone->GetNumberOfOutwardTriangles();
+    holes += fillAlone->GetNumberOfHoles();
+    vtkPolyData* block = BlockOf(fill, i);
+    Check(block && block->GetNumberOfPolys() == fillAlone->GetOutput()->GetNumberOfPolys() &&
+        block->GetNumberOfPoints() == fillAlone->GetOutput()->GetNumberOfPoints(),
+      "each block is the surface that it is alone");
+    Check(block && block->GetFieldData()->GetArray("Place")->GetTuple1(0) == 50.0 * i,
+      "with the field data of its own");
+    Check(BlockOf(delaunay, i)->GetFieldData()->GetArray("NumberOfDuplicatePoints")->GetTuple1(0) ==
+        alone->GetNumberOfDuplicatePoints(),
+      "and counts of its own");
+    Check(BlockOf(trim, i, 2) && BlockOf(trim, i, 2)->GetNumberOfLines() > 0,
+      "all outputs are composite");
+  }
+  Check(trim->GetNumberOfOutwardTriangles() == outward && fill->GetNumberOfHoles() == holes &&
+      holes == 2,
+    "the other counts are sums, too");
+  Check(trim->GetEffectiveGapTolerance() == 4.5, "a tolerance is no sum");
+  // A plain input after a composite one gives plain output again.
+  delaunay->SetInputDataObject(MakeCloud(0.0, 1));
+  fill->Update();
+  Check(fill->GetOutput() && fill->GetOutput()->GetNumberOfPolys() > 0 &&
+      delaunay->GetNumberOfDuplicatePoints() == 1,
+    "a plain input gives plain output");
+}
+
+void TestPartitions()
+{
+  vtkNew<vtkPartitionedDataSetCollection> collection;
+  vtkNew<vtkPartitionedDataSet> pieces;
+  pieces->SetPartition(0, MakeCloud(0.0, 1));
+  pieces->SetPartition(1, MakeCloud(100.0, 1));
+  collection->SetPartitionedDataSet(0, pieces);
+  vtkDataObject* const inputs[] = { collection, pieces };
+  for (vtkDataObject* input : inputs)
+  {
+    vtkNew<vtkGridDelaunay2D> delaunay;
+    delaunay->SetInputDataObject(input);
+    delaunay->Update();
+    vtkDataObject* output = delaunay->GetOutputDataObject(0);
+    Check(std::string(output->GetClassName()) == input->GetClassName(), "the class is the same");
+    auto* parts = vtkPartitionedDataSet::SafeDownCast(output);
+    if (auto* all = vtkPartitionedDataSetCollection::SafeDownCast(output))
+    {
+      parts = all->GetPartitionedDataSet(0);
+    }
+    Check(parts && parts->GetNumberOfPartitions() == 2 && parts->GetPartition(0) &&
+        parts->GetPartition(1) && parts->GetPartition(1)->GetNumberOfCells() > 0 &&
+        delaunay->GetNumberOfDuplicatePoints() == 2,
+      "each partition is triangulated");
+  }
+}
+
+void TestSecondInput()
+{
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(MakeCloud(0.0, 0));
+  vtkNew<vtkMultiBlockDataSet> rings;
+  rings->SetBlock(0, MakeRing(8.0, 7.0));
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputConnection(delaunay->GetOutputPort());
+  trim->SetInputDataObject(1, rings);
+  trim->Update();
+  vtkNew<vtkTrimOutwardTriangles> plain;
+  plain->SetInputConnection(delaunay->GetOutputPort());
+  plain->SetBoundaryData(MakeRing(8.0, 7.0));
+  plain->Update();
+  Check(trim->GetNumberOfOutwardTriangles() == plain->GetNumberOfOutwardTriangles() &&
+      trim->GetOutput(2)->GetNumberOfLines() == 1 && trim->GetOutput()->GetNumberOfPolys() > 0,
+    "a block is a boundary");
+  rings->SetBlock(2, MakeRing(8.0, 3.0));
+  trim->Update();
+  Check(trim->GetOutput(2)->GetNumberOfLines() == 2 &&
+      trim->GetNumberOfOutwardTriangles() > plain->GetNumberOfOutwardTriangles(),
+    "several blocks are one boundary");
+  delaunay->SetInputDataObject(1, rings);
+  delaunay->Update();
+  Check(delaunay->GetNumberOfAddedPoints() == 18, "several blocks are constraints");
+  delaunay->SetSourceData(nullptr);
+
+  vtkNew<vtkTest::ErrorObserver> observer;
+  trim->AddObserver(vtkCommand::ErrorEvent, observer);
+  rings->SetBlock(3, vtkSmartPointer<vtkImageData>::New());
+  trim->Update();
+  Check(observer->GetErrorMessage().find("vtkImageData") != std::string::npos,
+    "a block that is no vtkPolyData is an error; it was: " + observer->GetErrorMessage());
+}
+
+void TestMessages()
+{
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputDataObject(MakeBlocks());
+  delaunay->Update();
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->CopyStructure(vtkMultiBlockDataSet::SafeDownCast(delaunay->GetOutputDataObject(0)));
+  blocks->SetBlock(0, BlockOf(delaunay, 0));
+  blocks->SetBlock(1, vtkSmartPointer<vtkPolyData>::New());
+  blocks->SetBlock(2, MakeRing(8.0, 3.0)); // a polygon of nine points
+  vtkNew<vtkTest::ErrorObserver> observer;
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->AddObserver(vtkCommand::ErrorEvent, observer);
+  fill->AddObserver(vtkCommand::WarningEvent, observer);
+  fill->SetInputDataObject(blocks);
+  fill->Update();
+  const std::string error = observer->GetErrorMessage();
+  Check(error.find("Block 2 (\"north\"): Cell 0") != std::string::npos &&
+      error.find("ERROR:") == error.rfind("ERROR:"),
+    "one error names the block; it was: " + error);
+  const std::string warning = observer->GetWarningMessage();
+  Check(warning.find("Block 1: The input has no triangles") != std::string::npos,
+    "and so does the warning; it was: " + warning);
+  Check(BlockOf(fill, 0)->GetNumberOfPolys() > 0 && BlockOf(fill, 2)->GetNumberOfPoints() == 0,
+    "a block with an error is empty, the others are filled");
+}
+
+void TestProgressAndAbort()
+{
+  struct State
+  {
+    double Last = 0.0, AbortAt = 2.0;
+    bool Falls = false;
+  } state;
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(&state);
+  command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    auto* seen = static_cast<State*>(data);
+    auto* filter = vtkAlgorithm::SafeDownCast(caller);
+    seen->Falls = seen->Falls || (filter->GetProgress() > 0.0 && filter->GetProgress() < seen->Last);
+    seen->Last = filter->GetProgress();
+    if (seen->Last >= seen->AbortAt)
+    {
+      filter->SetAbortExecute(1);
+    }
+  });
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->AddObserver(vtkCommand::ProgressEvent, command);
+  delaunay->SetInputDataObject(MakeBlocks());
+  delaunay->Update();
+  Check(!state.Falls && state.Last == 1.0, "progress rises over all blocks");
+  state.AbortAt = 0.7;
+  state.Last = 0.0;
+  delaunay->Modified();
+  delaunay->Update();
+  Check(delaunay->GetNumberOfDuplicatePoints() == 0 &&
+      (!BlockOf(delaunay, 0) || BlockOf(delaunay, 0)->GetNumberOfPoints() == 0),
+    "an abort in the second block leaves nothing of the first");
+}
+} // namespace
+
+int TestBlocks(int, char*[])
+{
+  TestChainOfBlocks();
+  TestPartitions();
+  TestSecondInput();
+  TestMessages();
+  TestProgressAndAbort();
+  return failures > 0;
+}
