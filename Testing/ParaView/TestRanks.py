@@ -1,0 +1,181 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""On several ranks, points of one surface on more than one rank are an error on all of them; empty
+ranks beside a full one are silent. Run by mpirun with pvbatch --symmetric: all ranks run this script,
+and each looks at its own outputs and messages. A rank that waits in vain ends by the time-out.
+"""
+import numpy
+from paraview import simple
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkMultiBlockDataSet, vtkPolyData
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+from plugin_testing import check, check_equal, finish, start
+
+start()
+RANKS = vtkMultiProcessController.GetGlobalController()
+RANK, COUNT = RANKS.GetLocalProcessId(), RANKS.GetNumberOfProcesses()
+LAST = COUNT - 1
+CLOUD = numpy.random.default_rng(7).uniform(0.0, 30.0, (700, 3))
+CLOUD = CLOUD[numpy.hypot(CLOUD[:, 0] - 12, CLOUD[:, 1] - 14) > 4]
+ANGLES = numpy.linspace(0.0, 2.0 * numpy.pi, 9)
+RING = numpy.stack((15 + 11 * numpy.cos(ANGLES), 15 + 11 * numpy.sin(ANGLES), 0 * ANGLES), axis=1)
+RING[-1] = RING[0]
+
+
+def cloud(coordinates=CLOUD):
+    data, points = vtkPolyData(), vtkPoints()
+    points.SetData(numpy_to_vtk(coordinates, deep=True))
+    data.SetPoints(points)
+    return data
+
+
+def line(coordinates):
+    data, cells = cloud(coordinates), vtkCellArray()
+    cells.InsertNextCell(len(coordinates))
+    for i in range(len(coordinates)):
+        cells.InsertCellPoint(i)
+    data.SetLines(cells)
+    return data
+
+
+def blocks(*parts):
+    """A multiblock; the last block is called north."""
+    data = vtkMultiBlockDataSet()
+    data.SetNumberOfBlocks(len(parts))
+    for i, part in enumerate(parts):
+        data.SetBlock(i, part)
+    if parts:
+        data.GetMetaData(len(parts) - 1).Set(data.NAME(), "north")
+    return data
+
+
+KEPT = []
+
+
+def given(data):
+    """A source of the pipeline with the data of this rank."""
+    source = simple.TrivialProducer()
+    source.GetClientSideObject().SetOutput(data)
+    KEPT.append(data)
+    return source
+
+
+def update(source):
+    """Updates on all ranks. Returns the messages and outputs of this rank."""
+    messages = []
+
+    def note(_caller, event, text):
+        messages.append((event, text))
+
+    note.CallDataType = "string0"
+    algorithm = source.SMProxy.GetClientSideObject()
+    algorithm.AddObserver("ErrorEvent", note)
+    algorithm.AddObserver("WarningEvent", note)
+    source.UpdatePipeline()
+    return messages, [algorithm.GetOutputDataObject(i) for i in range(algorithm.GetNumberOfOutputPorts())]
+
+
+def check_silent(messages, claim):
+    check_equal(messages, [], "rank %d, messages, %s" % (RANK, claim))
+
+
+def check_refused(source, part, claim):
+    """One error on each rank, and empty outputs."""
+    messages, outputs = update(source)
+    check(len(messages) == 1 and messages[0][0] == "ErrorEvent" and part in messages[0][1],
+          "rank %d, %s, one error with %r: %s" % (RANK, claim, part, messages))
+    for output in outputs:
+        cells = output.GetNumberOfElements(1)
+        check_equal(cells, 0, "rank %d, cells after an error, %s" % (RANK, claim))
+
+
+def surface(data):
+    """Triangles of a cloud, made by this rank alone: a piece of 1 asks no other rank."""
+    source = simple.GridDelaunay2D(Input=given(data))
+    algorithm = source.SMProxy.GetClientSideObject()
+    algorithm.UpdatePiece(0, 1, 0)
+    made = vtkPolyData()
+    made.DeepCopy(algorithm.GetOutputDataObject(0))
+    return made
+
+
+WHOLE = surface(cloud())  # on every rank, though each makes it for itself
+check(WHOLE.GetNumberOfPolys() > 1000, "each rank for itself makes a surface")
+EMPTY = vtkPolyData()
+FILTERS = (
+    ("delaunay", simple.GridDelaunay2D, cloud()),
+    ("trim", simple.TrimOutwardTriangles, WHOLE),
+    ("fill", simple.FillElevationHoles, WHOLE),
+)
+
+for name, make, data in FILTERS:
+    check_refused(make(Input=given(data)), "Aggregate Dataset", name + ", points on all ranks")
+    for full in {0, LAST}:
+        messages, outputs = update(make(Input=given(data if RANK == full else EMPTY)))
+        check_silent(messages, "%s, points on rank %d" % (name, full))
+        check_equal(outputs[0].GetNumberOfPolys() > 900, RANK == full,
+                    "rank %d, %s: triangles where the points are" % (RANK, name))
+    messages, outputs = update(make(Input=given(EMPTY)))
+    check_equal(len(messages), 1 if RANK == 0 else 0, "rank %d, %s, warnings of no points at all" % (RANK, name))
+
+# What the message says works.
+together = simple.AggregateDataset(Input=given(cloud(CLOUD[RANK::COUNT])))
+together.NumberOfTargetProcesses = 1
+messages, outputs = update(simple.GridDelaunay2D(Input=together))
+check_silent(messages, "after Aggregate Dataset")
+check_equal(outputs[0].GetNumberOfPolys(), WHOLE.GetNumberOfPolys() if RANK == 0 else 0,
+            "rank %d, triangles after Aggregate Dataset" % RANK)
+
+# Results are those of all ranks, on all ranks.
+twice = simple.GridDelaunay2D(Input=given(cloud(numpy.vstack((CLOUD, CLOUD[:5]))) if RANK == LAST else EMPTY))
+update(twice)
+twice.SMProxy.UpdatePropertyInformation()
+check_equal(twice.SMProxy.GetProperty("NumberOfDuplicatePoints").GetElement(0), 5,
+            "rank %d, the count of duplicates" % RANK)
+
+
+def trimmed(boundary, mesh):
+    return simple.TrimOutwardTriangles(Input=given(mesh), Boundary=given(boundary))
+
+
+# A boundary may be on another rank than the surface, or in pieces on several.
+pieces = numpy.array_split(numpy.arange(len(RING) - 1), COUNT)
+PIECE = RING[numpy.append(pieces[RANK], pieces[RANK][-1] + 1)]
+expected = update(trimmed(line(RING) if RANK == 0 else EMPTY, WHOLE if RANK == 0 else EMPTY))[1]
+kept = (expected[0].GetNumberOfPolys(), expected[1].GetNumberOfPolys())
+check(RANK > 0 or min(kept) > 100, "the ring divides the surface: %s" % (kept,))
+whole_here = WHOLE if RANK == 0 else EMPTY
+for claim, boundary in (("on the last rank", line(RING) if RANK == LAST else EMPTY), ("in pieces", line(PIECE))):
+    messages, outputs = update(trimmed(boundary, whole_here))
+    check_silent(messages, "boundary " + claim)
+    check_equal((outputs[0].GetNumberOfPolys(), outputs[1].GetNumberOfPolys()), kept,
+                "rank %d, triangles with the boundary %s" % (RANK, claim))
+check_equal(update(simple.GridDelaunay2D(Input=given(cloud() if RANK == 0 else EMPTY),
+                                         Constraints=given(line(PIECE))))[1][0].GetNumberOfPoints(),
+            len(CLOUD) + len(RING) - 1 if RANK == 0 else 0, "rank %d, points with lines in pieces" % RANK)
+# What is wrong with the second input of one rank is an error on all.
+table = blocks(vtkImageData()) if RANK == LAST else EMPTY
+check_refused(trimmed(table, whole_here), "vtkImageData" if RANK == LAST else "another rank",
+              "a boundary that is an image")
+
+# Blocks may live on different ranks, which have different numbers of them; a block may not.
+mine = blocks(*[cloud() if RANK == i else None for i in range(RANK + 1)])
+messages, outputs = update(simple.GridDelaunay2D(Input=given(mine)))
+check_silent(messages, "a block on each rank")
+check_equal(outputs[0].GetBlock(RANK).GetNumberOfPolys(), WHOLE.GetNumberOfPolys(),
+            "rank %d, triangles of its block" % RANK)
+none = blocks(cloud()) if RANK == 0 else blocks()
+check_silent(update(simple.GridDelaunay2D(Input=given(none)))[0], "a block on one rank, none on others")
+check_refused(simple.GridDelaunay2D(Input=given(blocks(EMPTY, cloud()))), 'Block 1 ("north")',
+              "a block on all ranks")
+
+# An error on one rank does not hold up the others.
+wrong = vtkPolyData()
+wrong.DeepCopy(WHOLE)
+wrong.GetPolys().ReplaceCellAtId(3, 3, [0, 1, 100000])
+messages, outputs = update(simple.TrimOutwardTriangles(Input=given(wrong if RANK == LAST else EMPTY)))
+check_equal(len(messages), 1 if RANK == LAST else 0, "rank %d, errors of a wrong cell" % RANK)
+
+finish()
