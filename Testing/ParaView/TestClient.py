@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's own client, driven as by a user: a file is opened, filters are chosen in the menu, Apply
-is pressed, a property changed. What the pipeline browser then has and the view shows is checked.
+"""ParaView's own client, driven as by a user: a text file is opened, the surface chosen in the menu,
+Apply pressed, a property changed. What the pipeline then has and the view shows is checked.
 
     TestClient.py --client <paraview> --plugin <the built plugin> -D <Data> -T <folder to write into>
 
@@ -24,40 +24,45 @@ def note(folder, failures):
     json.dump(results + [failures], open(path, "w"))
 
 
-def check_surface(folder, name, edges_at_most):
-    """The surface of a filter is shown, without triangles wider than a limit; 0: without a limit."""
+def check_surface(folder, name, largest_hole):
+    """The surface is shown, coloured by elevation, and holes up to a size are filled; 0: all."""
     from paraview import simple
-    from plugin_testing import FAILURES, check, fetch, points, screenshot, triangles
+    from plugin_testing import FAILURES, array, check, check_equal, fetch, points, screenshot
     import numpy
-    source = simple.FindSource(name)
-    surface = fetch(source)
-    corners = points(surface)[triangles(surface)][:, :, :2]
-    longest = numpy.linalg.norm(corners - numpy.roll(corners, 1, axis=1), axis=2).max()
-    check(surface.GetNumberOfPolys() > 20000, "%s has triangles" % name)
-    check((longest > 2) == (edges_at_most == 0), "%s: longest edge %g" % (name, longest))
+    source = simple.FindSource("ReconstructElevationSurface1")
+    surface, holes = fetch(source), fetch(source, 1)
+    check_equal(surface.GetNumberOfPoints() > 10266, not largest_hole, name + ": points are added")
+    status = set(array(holes.GetCellData(), "Status"))
+    check_equal(status, {1} if largest_hole else {4}, name + ": what became of the holes")
+    check(numpy.array_equal(array(surface.GetPointData(), "Elevation"), points(surface)[:, 2]),
+          name + ": Elevation is z")
     view = simple.GetActiveView()
-    check(simple.GetRepresentation(source, view).Visibility == 1, "Apply shows %s" % name)
-    pixels = screenshot(os.path.join(folder, "Client%s.png" % name), view).astype(int)
-    background = numpy.abs(pixels - pixels[0, 0]).max(axis=2) < 8
-    check(background.mean() < 0.9, "%s is seen in the view" % name)
+    shown = simple.GetRepresentation(source, view)
+    check_equal((shown.Visibility, list(shown.ColorArrayName)), (1, ["POINTS", "Elevation"]),
+                name + ": Apply shows the surface, coloured by elevation")
+    pixels = screenshot(os.path.join(folder, name + ".png"), view).astype(int)
+    red, blue = (pixels[..., i] - pixels[..., 2 - i] > 90 for i in (0, 2))
+    check(red.mean() > 0.01 and blue.mean() > 0.05,
+          "%s: high and low places are seen (%.3f, %.3f)" % (name, red.mean(), blue.mean()))
     note(folder, FAILURES)
     FAILURES.clear()
 
 
 def steps(client, data):
     """What the user does, with a check after each Apply."""
-    def check(name, limit):
-        client.python("TestClient.check_surface(%r, %r, %r)" % (client.folder, name, limit))
+    def check(name, largest_hole):
+        client.python("TestClient.check_surface(%r, %r, %r)" % (client.folder, name, largest_hole))
 
     client.python("import sys; sys.path.insert(0, %r); import TestClient" % os.path.dirname(__file__))
-    client.open(os.path.join(data, "b9_ground.vtp"))
+    client.open(os.path.join(data, "olinda_land.xyz"))
+    client.take_marked_reader()
     client.apply()
-    client.choose("menuFilters/Elevation Surface", "GridDelaunay2D")
+    client.choose("menuFilters/Elevation Surface", "ReconstructElevationSurface")
     client.apply()
-    check("GridDelaunay2D1", 0)
-    client.set("MaximumEdgeLength", 2)
+    check("all holes filled", 0)
+    client.set("MaximumHoleSize", "DoubleLineEdit0", 1)
     client.apply()
-    check("GridDelaunay2D1", 2)
+    check("no hole filled", 1)
 
 
 def main():

@@ -55,9 +55,9 @@ class Client:
         """Answers the question which reader to use by OK: the reader that is marked."""
         self.press("pqSelectReaderDialog/okButton")
 
-    def set(self, name, value):
-        """Types a value into the field of a length, which has a slider beside it."""
-        self.do(self.field(name) + "/DoubleRangeWidget/DoubleLineEdit", "set_string", value)
+    def set(self, name, part, value):
+        """Types a value into the part of a property's widget that takes text."""
+        self.do("%s/%s" % (self.field(name), part), "set_string", value)
 
     @staticmethod
     def field(name):
