@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes ElevationSurface.pvsm, the state of ParaView that shows the three filters at work.
+"""Makes ElevationSurface.pvsm, the state of ParaView that shows a text file and its surface.
 
     pvpython Plugin/make_state.py <the built plugin>
 
@@ -18,36 +18,38 @@ if len(sys.argv) != 2:
     sys.exit(__doc__)
 simple.LoadPlugin(sys.argv[1], remote=False)
 here = os.path.dirname(os.path.abspath(__file__))
-data = os.path.join(os.path.dirname(here), "Data", "b9_ground.vtp")
+data = os.path.join(os.path.dirname(here), "Data", "olinda_land.xyz")
 state = os.path.join(here, "ElevationSurface.pvsm")
 
 view = simple.CreateRenderView(ViewSize=[1000, 800], OrientationAxesVisibility=0)
-points = simple.XMLPolyDataReader(registrationName="b9_ground.vtp", FileName=[data])
-surface = simple.GridDelaunay2D(registrationName="GridDelaunay2D", Input=points, MaximumEdgeLength=2)
-trimmed = simple.TrimOutwardTriangles(registrationName="TrimOutwardTriangles", Input=surface)
-filled = simple.FillElevationHoles(registrationName="FillElevationHoles", Input=trimmed)
+points = simple.ElevationPoints(registrationName="olinda_land.xyz", FileName=data)
+surface = simple.ReconstructElevationSurface(registrationName="Surface of Olinda", Input=points)
 
-# New triangles in orange, old ones in green, the outlines of the holes in red.
-shown = simple.Show(filled, view)
-shown.SetRepresentationType("Surface With Edges")
-shown.EdgeColor = [0.3, 0.35, 0.3]
-simple.ColorBy(shown, ("CELLS", "HoleId"))
-table = simple.GetColorTransferFunction("HoleId")
-table.RGBPoints = [-1, 0.62, 0.74, 0.62, -0.5, 0.62, 0.74, 0.62, -0.49, 0.9, 0.6, 0.25, 0, 0.9, 0.6, 0.25]
-table.ColorSpace = "RGB"
-outlines = simple.Show(simple.OutputPort(filled, 1), view)
-outlines.ColorArrayName = [None, ""]
-outlines.AmbientColor = outlines.DiffuseColor = [0.6, 0, 0]
-outlines.LineWidth = 2
+# The relief from the south, heights times ten, coloured by elevation.
+shown = simple.Show(surface, view)
+shown.Scale = [1, 1, 10]
+simple.ColorBy(shown, ("POINTS", "Elevation"))
+shown.RescaleTransferFunctionToDataRange()
+shown.SetScalarBarVisibility(view, True)
+legend = simple.GetScalarBar(simple.GetColorTransferFunction("Elevation"), view)
+legend.Title = "Elevation in m"
+legend.RangeLabelFormat = "%.0f"
+
+# The outlines of the places that were filled, and of the surface.
+for port, colour in ((1, [1, 0.9, 0]), (2, [1, 1, 1])):
+    lines = simple.Show(simple.OutputPort(surface, port), view)
+    lines.ColorArrayName = [None, ""]
+    lines.AmbientColor = lines.DiffuseColor = colour
+    lines.LineWidth = 3
+    lines.Scale = [1, 1, 10]
 
 simple.ResetCamera(view)
-view.CameraParallelProjection = 1
 camera = simple.GetActiveCamera()
-camera.Elevation(-40)
+camera.Elevation(-50)
 simple.ResetCamera(view)
-camera.Zoom(1.4)
+camera.Zoom(1.3)
 simple.Render(view)
-simple.SetActiveSource(filled)
+simple.SetActiveSource(surface)
 simple.SaveState(state)
 
 with open(state) as file:

@@ -7,10 +7,12 @@ Each heading has a function here that provokes the message.
 """
 import os
 import re
+import runpy
+import sys
 
 from paraview import simple
 
-from plugin_testing import check, check_equal, finish, messages_of, start
+from plugin_testing import check, check_equal, fetch, finish, messages_of, start
 
 data_folder, temporary_folder = start()
 repository = os.path.dirname(data_folder)
@@ -70,6 +72,7 @@ def as_pattern(text):
     return r"\s+".join(words).replace("…", ".*?")
 
 
+# ---- the messages --------------------------------------------------------------------------------
 section = guide.split("\n## What can go wrong\n")[1].split("\n## ")[0]
 told = dict(re.findall(r"^### (.+)\n(?:(?!### ).*\n)*?```text\n((?:(?!```).*\n)*)", section, re.M))
 check_equal(sorted(told), sorted(CASES), "headings with a message, and cases of this test")
@@ -80,10 +83,18 @@ for heading, case in CASES.items():
     check(messages and re.fullmatch(as_pattern(expected), messages[0], re.DOTALL),
           "%s: %s, not %s" % (heading, messages, expected))
 
+# ---- the code and the example -------------------------------------------------------------------
 os.chdir(temporary_folder)
 if not os.path.exists("Data"):
     os.symlink(data_folder, "Data")
 for number, code in enumerate(re.findall(r"```python\n(.*?)```", guide, re.DOTALL), 1):
     exec(compile(code, "code %d of the guide" % number, "exec"), {})
+
+results = ["example_surface.vtp", "example_surface.png"]
+sys.argv = ["", "Data/olinda_land.xyz", *results]
+runpy.run_path(os.path.join(repository, "Examples", "ParaView", "text_to_surface.py"), None, "__main__")
+surface = fetch(simple.XMLPolyDataReader(FileName=[os.path.abspath(results[0])]))
+check(surface.GetNumberOfPoints() > 10266, "the example writes the surface")
+check(os.path.getsize(results[1]) > 50000, "the example writes the picture")
 
 finish()
