@@ -13,13 +13,19 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataObjectTree, vtkPolyData, vtkTable
+from vtkmodules.vtkCommonDataModel import (
+    vtkDataObject,
+    vtkDataObjectTree,
+    vtkMultiBlockDataSet,
+    vtkPolyData,
+    vtkTable,
+)
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
 from .clouds import antimeridian_note, cells_of, crs_of, faults_note, set_crs
-from .inputs import ELEVATION, cloud_of, data_sets_of, lines_of, number_of_points
+from .inputs import ELEVATION, cloud_of, data_sets_of, joined, lines_of, number_of_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
-from .ranks import fewest_ranks
+from .ranks import check_ranks, controller_of, shared
 from .reading import read, read_boundary, read_faults
 from .reconstruction import PROPERTIES, reconstruct
 from .report import counted, crs_name, report_lines
@@ -323,15 +329,24 @@ class ReconstructElevationSurface(TellingAlgorithm):
 
     def work(self, inputs, outputs):
         data = vtkDataObject.GetData(inputs[0])
-        if not fewest_ranks(outputs, number_of_points(data)):
-            return []
-        boundary, faults = (vtkDataObject.GetData(inputs[port]) for port in (1, 2))
-        lines = {
-            name: lines_of(given, name)
-            for name, given in (("boundary", boundary), ("faults", faults))
-            if given is not None
-        }
-        parts = data_sets_of(data)
+        controller = controller_of(outputs)
+        parts, is_here = data_sets_of(data), True
+        if controller:
+            parts = [part for part in parts if number_of_points(part[2]) > 0]
+            own_places = isinstance(data, vtkMultiBlockDataSet)
+            places = [place if own_places else 0 for place, _, _ in parts]
+            is_here = check_ranks(controller, places)
+        lines = {}
+        for name, given in (("boundary", inputs[1]), ("faults", inputs[2])):
+            if given.GetNumberOfInformationObjects():
+                given = vtkDataObject.GetData(given)
+                lines[name] = joined(
+                    shared(controller, lambda: lines_of(given, name))
+                    if controller
+                    else [lines_of(given, name)]
+                )
+        if not is_here:
+            return []  # the points are on another rank
         results = []
         for i, (_, name, part) in enumerate(parts):
             self._share = (i / len(parts), 1.0 / len(parts))
@@ -340,7 +355,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
             except (ElevationSurfaceError, ValueError) as error:
                 raise type(error)(f"{name}: {error}" if name else str(error)) from None
         if not results:
-            raise ElevationSurfaceError("the input has no blocks with points")
+            raise ElevationSurfaceError("the input has no points")
         self.put(data, parts, results, outputs)
         return self.tell([name for _, name, _ in parts], results, outputs)
 

@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkCompositeDataSet,
     vtkDataObjectTree,
+    vtkDataSet,
     vtkImageData,
     vtkPointSet,
     vtkPolyData,
@@ -50,12 +51,10 @@ def data_sets_of(data):
 
 
 def number_of_points(data):
-    """How many points or rows there are in a data object of any kind."""
-    return sum(
-        part.GetNumberOfRows() if isinstance(part, vtkTable) else part.GetNumberOfPoints()
-        for _, _, part in data_sets_of(data)
-        if hasattr(part, "GetNumberOfPoints") or isinstance(part, vtkTable)
-    )
+    """How many points or rows a data set has."""
+    if isinstance(data, vtkTable):
+        return data.GetNumberOfRows()
+    return data.GetNumberOfPoints() if isinstance(data, vtkDataSet) else 0
 
 
 def cloud_of(data, array="", columns="", keep_nulls=False):
@@ -183,6 +182,11 @@ def lines_of(data, what):
     parts = [part for _, _, part in data_sets_of(data)]
     if not parts or not all(isinstance(part, vtkPolyData) for part in parts):
         raise ElevationSurfaceError(f"{what}: lines or polygons (vtkPolyData) are needed", what)
+    return joined(parts)
+
+
+def joined(parts):
+    """Several vtkPolyData as one."""
     if len(parts) == 1:
         return parts[0]
     append = vtkAppendPolyData()

@@ -105,6 +105,7 @@ WHOLE = surface(cloud())  # on every rank, though each makes it for itself
 check(WHOLE.GetNumberOfPolys() > 1000, "each rank for itself makes a surface")
 EMPTY = vtkPolyData()
 FILTERS = (
+    ("reconstruct", simple.ReconstructElevationSurface, cloud()),
     ("delaunay", simple.GridDelaunay2D, cloud()),
     ("trim", simple.TrimOutwardTriangles, WHOLE),
     ("fill", simple.FillElevationHoles, WHOLE),
@@ -155,6 +156,12 @@ for claim, boundary in (("on the last rank", line(RING) if RANK == LAST else EMP
 check_equal(update(simple.GridDelaunay2D(Input=given(cloud() if RANK == 0 else EMPTY),
                                          Constraints=given(line(PIECE))))[1][0].GetNumberOfPoints(),
             len(CLOUD) + len(RING) - 1 if RANK == 0 else 0, "rank %d, points with lines in pieces" % RANK)
+whole_chain = [
+    update(simple.ReconstructElevationSurface(Input=given(cloud() if RANK == 0 else EMPTY), Boundary=given(ring)))[1]
+    for ring in (line(RING) if RANK == 0 else EMPTY, line(PIECE))]
+check_equal(*(outputs[0].GetNumberOfPolys() for outputs in whole_chain),
+            "rank %d, triangles of the whole chain with the boundary in pieces" % RANK)
+check_equal(whole_chain[1][0].GetNumberOfPolys() > 100, RANK == 0, "rank %d, the whole chain has triangles" % RANK)
 # What is wrong with the second input of one rank is an error on all.
 table = blocks(vtkImageData()) if RANK == LAST else EMPTY
 check_refused(trimmed(table, whole_here), "vtkImageData" if RANK == LAST else "another rank",

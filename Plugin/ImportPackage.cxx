@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PythonPath.h"
+#include "ImportPackage.h"
 
+#include "vtkCallbackCommand.h"
+#include "vtkCommand.h"
+#include "vtkNew.h"
 #include "vtkPythonInterpreter.h"
 
 #include <string>
@@ -18,7 +21,7 @@ namespace
 // The file that this function was loaded from, or "".
 std::string OwnFile()
 {
-  void* address = reinterpret_cast<void*>(&AddPackageToPythonPath);
+  void* address = reinterpret_cast<void*>(&ImportPackage);
 #ifdef _WIN32
   HMODULE module = nullptr;
   char name[MAX_PATH];
@@ -42,14 +45,44 @@ std::string OwnFile()
   return file;
 #endif
 }
+
+void Import()
+{
+  // What is missing is told where an entry needs the package.
+  vtkPythonInterpreter::RunSimpleString("try:\n"
+                                        "    __import__('vtkelevationsurface')\n"
+                                        "except ImportError:\n"
+                                        "    pass\n");
 }
 
-void AddPackageToPythonPath()
+// Imports the package each time when Python has been started.
+class Starter
+{
+public:
+  Starter()
+  {
+    this->Command->SetCallback([](vtkObject*, unsigned long, void*, void*) { Import(); });
+    this->Interpreter->AddObserver(vtkCommand::EnterEvent, this->Command);
+  }
+
+private:
+  vtkNew<vtkPythonInterpreter> Interpreter;
+  vtkNew<vtkCallbackCommand> Command;
+};
+}
+
+void ImportPackage()
 {
   const std::string file = OwnFile();
   const std::string::size_type end = file.find_last_of("/\\");
-  if (end != std::string::npos)
+  if (end == std::string::npos)
   {
-    vtkPythonInterpreter::PrependPythonPath(file.substr(0, end).c_str());
+    return;
+  }
+  vtkPythonInterpreter::PrependPythonPath(file.substr(0, end).c_str());
+  static const Starter starter;
+  if (vtkPythonInterpreter::IsInitialized())
+  {
+    Import();
   }
 }
