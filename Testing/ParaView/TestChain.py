@@ -68,6 +68,11 @@ check(numpy.array_equal(triangles(filled)[:old_triangles], triangles(kept)),
 is_new = array(filled.GetPointData(), "FilledPoint")
 check_equal(set(numpy.flatnonzero(is_new)), set(range(old_points, filled.GetNumberOfPoints())),
             "FilledPoint marks the new points")
+error = array(filled.GetPointData(), "FilledError")
+check((error[is_new == 0] == 0).all(), "points of the input have no error")
+check(numpy.isnan(error[is_new == 1]).any() or (error[is_new == 1] > 0).all(),
+      "new points have an error, or none that can be told")
+check((error[is_new == 1] > 0).mean() > 0.9, "most errors of new points can be told")
 hole_id = array(filled.GetCellData(), "HoleId")
 check((hole_id[:old_triangles] == -1).all() and (hole_id[old_triangles:] >= 0).all(),
       "HoleId marks the new triangles")

@@ -67,6 +67,12 @@ check(same(fetch(whole), fetch(trim)), "without filling, the surface is the trim
 whole.Trim = 0
 check(same(fetch(whole), fetch(delaunay)), "without trimming, the surface is the triangulation")
 
+# ---- warnings ----------------------------------------------------------------------------------
+strict = simple.ReconstructElevationSurface(Input=cloud, GapTolerance=1)
+warnings = messages_of(strict, "WarningEvent")
+check(len(warnings) == 1 and "leaves out" in warnings[0], "what the filters warn of is told: %s" % warnings)
+check("leaves out" in information(strict, "Report"), "warnings are in the report too")
+
 # ---- progress and abort ------------------------------------------------------------------------
 algorithm = whole.SMProxy.GetClientSideObject()
 whole.Trim, whole.FillHoles = 1, 1
