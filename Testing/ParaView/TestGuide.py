@@ -62,9 +62,64 @@ def words_in_column():
     return reader_messages(table, Columns="Easting,Northing,Well")
 
 
+def surface_messages(points, event="ErrorEvent", **properties):
+    return messages_of(simple.ReconstructElevationSurface(Input=points, **properties), event)
+
+
+def olinda():
+    return simple.ElevationPoints(FileName=data("olinda_land.xyz"))
+
+
+@provokes("All triangles are too long")
+def too_long():
+    return surface_messages(olinda(), MaximumEdgeLength=50)
+
+
+@provokes("The points are on a line")
+def on_a_line():
+    return surface_messages(simple.Line(Resolution=20))
+
+
+@provokes("The boundary is not closed")
+def open_boundary():
+    line = simple.Line(Point1=[288900, 9111000, 0], Point2=[298000, 9120000, 0])
+    return surface_messages(olinda(), Boundary=line)
+
+
+@provokes("The boundary is elsewhere")
+def boundary_elsewhere():
+    return surface_messages(olinda(), Boundary=simple.Disk())
+
+
+@provokes("The table has too few columns")
+def two_columns():
+    table = simple.ProgrammableSource(OutputDataSetType="vtkTable", Script="""
+import numpy
+output.RowData.append(numpy.arange(5.0), "Easting")
+output.RowData.append(numpy.arange(5.0), "Northing")
+""")
+    return surface_messages(table)
+
+
+@provokes("The image has layers")
+def layers():
+    return surface_messages(simple.Wavelet())
+
+
+@provokes("Much is left out")
+def left_out():
+    return surface_messages(simple.OpenDataFile(data("b9_ground.vtp")), "WarningEvent", GapTolerance=1)
+
+
+@provokes("The cells are no triangles")
+def quadrilaterals():
+    return messages_of(simple.FillElevationHoles(Input=simple.Plane()))
+
+
 def shown_text(message):
     """A message as Output Messages shows it: without kind, class and address."""
-    return re.sub(r"^\s*(ERROR|Warning): |^\w+ \(0x[0-9a-f]+\): ", "", message).strip()
+    place = r"^\s*((ERROR|Warning): )?(In \S+, line \d+\n)?(\w+ \(0x[0-9a-f]+\): )?"
+    return re.sub(place, "", message).strip()
 
 
 def as_pattern(text):
