@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's own client, driven as by a user: a text file is opened, the surface chosen in the menu,
-Apply pressed, a property changed. What the pipeline then has and the view shows is checked.
+"""ParaView's own client, driven as by a user: a text file is opened, the surface chosen in the
+menu, Apply pressed, a property changed. What the pipeline then has and the view shows is checked.
 
-    TestClient.py --client <paraview> --plugin <the built plugin> -D <Data> -T <folder to write into>
+    TestClient.py --client <paraview> --plugin <the built plugin> -D <Data> -T <folder>
 
 The functions check_... are called inside the client, from its Python shell.
 """
@@ -53,7 +53,8 @@ def steps(client, data):
     def check(name, largest_hole):
         client.python("TestClient.check_surface(%r, %r, %r)" % (client.folder, name, largest_hole))
 
-    client.python("import sys; sys.path.insert(0, %r); import TestClient" % os.path.dirname(__file__))
+    here = os.path.dirname(os.path.abspath(__file__))
+    client.python("import sys; sys.path.insert(0, %r); import TestClient" % here)
     client.open(os.path.join(data, "olinda_land.xyz"))
     client.take_marked_reader()
     client.apply()
@@ -81,7 +82,8 @@ def main():
     found = json.load(open(results)) if os.path.exists(results) else []
     failures = [failure for failures in found for failure in failures]
     if failures or len(found) != checks:
-        sys.exit("%s\n%d of %d checks were made\n%s" % (output, len(found), checks, "\n".join(failures)))
+        print(output, "%d of %d checks were made" % (len(found), checks), *failures, sep="\n")
+        sys.exit(1)
 
 
 if __name__ == "__main__":

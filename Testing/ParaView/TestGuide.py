@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Documentation/ParaView.md is true: its messages are those that one gets, and its Python code runs.
+"""Documentation/ParaView.md is true: its messages are those that one gets, and its code runs.
 
-Each message is a block of text under a heading of "What can go wrong"; "…" stands for what differs.
+Each message is a block of text under a heading of "What can go wrong"; "…" is what differs.
 Each heading has a function here that provokes the message.
 """
 import os
@@ -108,7 +108,8 @@ def layers():
 
 @provokes("Much is left out")
 def left_out():
-    return surface_messages(simple.OpenDataFile(data("b9_ground.vtp")), "WarningEvent", GapTolerance=1)
+    ground = simple.OpenDataFile(data("b9_ground.vtp"))
+    return surface_messages(ground, "WarningEvent", GapTolerance=1)
 
 
 @provokes("The cells are no triangles")
@@ -127,7 +128,7 @@ def as_pattern(text):
     return r"\s+".join(words).replace("…", ".*?")
 
 
-# ---- the messages --------------------------------------------------------------------------------
+# ---- the messages ------------------------------------------------------------------------------
 section = guide.split("\n## What can go wrong\n")[1].split("\n## ")[0]
 told = dict(re.findall(r"^### (.+)\n(?:(?!### ).*\n)*?```text\n((?:(?!```).*\n)*)", section, re.M))
 check_equal(sorted(told), sorted(CASES), "headings with a message, and cases of this test")
@@ -138,7 +139,7 @@ for heading, case in CASES.items():
     check(messages and re.fullmatch(as_pattern(expected), messages[0], re.DOTALL),
           "%s: %s, not %s" % (heading, messages, expected))
 
-# ---- the code and the example -------------------------------------------------------------------
+# ---- the code and the example ------------------------------------------------------------------
 os.chdir(temporary_folder)
 if not os.path.exists("Data"):
     os.symlink(data_folder, "Data")
@@ -147,7 +148,8 @@ for number, code in enumerate(re.findall(r"```python\n(.*?)```", guide, re.DOTAL
 
 results = ["example_surface.vtp", "example_surface.png"]
 sys.argv = ["", "Data/olinda_land.xyz", *results]
-runpy.run_path(os.path.join(repository, "Examples", "ParaView", "text_to_surface.py"), None, "__main__")
+example = os.path.join(repository, "Examples", "ParaView", "text_to_surface.py")
+runpy.run_path(example, None, "__main__")
 surface = fetch(simple.XMLPolyDataReader(FileName=[os.path.abspath(results[0])]))
 check(surface.GetNumberOfPoints() > 10266, "the example writes the surface")
 check(os.path.getsize(results[1]) > 50000, "the example writes the picture")

@@ -43,7 +43,7 @@ class Client:
         self.do("menubar/" + menu, "activate", entry)
 
     def open_menu(self, name):
-        """Unfolds a menu of the menu bar, and leaves it open until the next step that needs none."""
+        """Unfolds a menu of the menu bar. It stays open until the next step."""
         self.do("menubar", "activate", name)
 
     def open(self, path):
@@ -69,7 +69,7 @@ class Client:
         self.press(PANEL + "/Accept")
 
     def python(self, line):
-        """Runs one line in the client's Python shell, where paraview.simple knows all that is open."""
+        """Runs one line in the client's Python shell. paraview.simple knows all that is open."""
         self.do(SHELL, "executeCommand", line)
 
     def drag(self, start, end):
@@ -79,7 +79,7 @@ class Client:
             self.do("", command, "1,%d,0,%d,%d" % (held, x, y))
 
     def run(self, timeout):
-        """Plays the steps. Returns what the client printed; raises RuntimeError when a step failed."""
+        """Plays the steps. Returns what the client printed. RuntimeError: a step failed."""
         script = os.path.join(self.folder, "client_steps.xml")
         with open(script, "w", encoding="utf-8") as file:
             file.write('<?xml version="1.0" ?>\n<pqevents>\n')
