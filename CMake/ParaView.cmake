@@ -68,9 +68,12 @@ macro (es_build_plugin)
     REQUIRES_MODULES  es_plugin_modules)
   paraview_plugin_build(
     PLUGINS              ${es_plugins}
+    AUTOLOAD             ${es_plugins}
     PLUGINS_FILE_NAME    "vtkelevationsurface.xml"
     RUNTIME_DESTINATION  "${CMAKE_INSTALL_BINDIR}"
     LIBRARY_DESTINATION  "${CMAKE_INSTALL_LIBDIR}"
     LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
+    PLUGINS_COMPONENT    "${es_library_component}"
+    TARGET_COMPONENT     "${es_library_component}"
     ADD_INSTALL_RPATHS   OFF)
 endmacro ()

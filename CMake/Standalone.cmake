@@ -101,6 +101,14 @@ find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components})
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}")
 
 # ---- the module --------------------------------------------------------------------------------
+# The parts that can be installed, and packed, by themselves. The plugin's folder is one part.
+set(es_library_component runtime)
+set(es_python_component python)
+if (ES_PARAVIEW)
+  set(es_library_component paraview_plugins)
+  set(es_python_component paraview_plugins)
+endif ()
+
 set(es_tests OFF)
 if (BUILD_TESTING)
   set(es_tests ON)
@@ -124,6 +132,7 @@ function (es_build_module)
     HEADERS_DESTINATION   "${CMAKE_INSTALL_INCLUDEDIR}/vtkElevationSurface"
     LIBRARY_DESTINATION   "${es_library_destination}"
     HIERARCHY_DESTINATION "${CMAKE_INSTALL_LIBDIR}/vtk/hierarchy/vtkElevationSurface"
+    TARGETS_COMPONENT     "${es_library_component}"
     CMAKE_DESTINATION     "${es_cmake_destination}"
     VERSION               "${PROJECT_VERSION}"
     SOVERSION             "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}"
@@ -144,7 +153,8 @@ install(
   FILES
     "${CMAKE_BINARY_DIR}/${es_cmake_destination}/vtkElevationSurfaceConfig.cmake"
     "${CMAKE_BINARY_DIR}/${es_cmake_destination}/vtkElevationSurfaceConfigVersion.cmake"
-  DESTINATION "${es_cmake_destination}")
+  DESTINATION "${es_cmake_destination}"
+  COMPONENT   development)
 install(FILES "${CMAKE_CURRENT_SOURCE_DIR}/LICENSE"
   DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/licenses/vtkElevationSurface")
 
@@ -161,6 +171,7 @@ if (ES_WRAP_PYTHON)
     MODULE_DESTINATION  "${es_python_destination}"
     CMAKE_DESTINATION   "${es_cmake_destination}"
     LIBRARY_DESTINATION "${es_library_destination}"
+    COMPONENT           "${es_python_component}"
     INSTALL_HEADERS     OFF
     BUILD_STATIC        OFF)
   set(es_python_package "${es_python_destination}/vtkelevationsurface")
@@ -171,10 +182,13 @@ if (ES_WRAP_PYTHON)
   foreach (file IN LISTS es_python_files)
     configure_file("Python/${file}" "${CMAKE_BINARY_DIR}/${es_python_package}/${file}" COPYONLY)
     get_filename_component(folder "${file}" DIRECTORY)
-    install(FILES "Python/${file}" DESTINATION "${es_python_package}/${folder}")
+    install(FILES "Python/${file}"
+      DESTINATION "${es_python_package}/${folder}"
+      COMPONENT   "${es_python_component}")
   endforeach ()
   install(FILES "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py"
-    DESTINATION "${es_python_package}")
+    DESTINATION "${es_python_package}"
+    COMPONENT   "${es_python_component}")
 endif ()
 
 # ---- the ParaView plugin -----------------------------------------------------------------------
@@ -192,4 +206,9 @@ endif ()
 # ---- benchmarks --------------------------------------------------------------------------------
 if (ES_BENCHMARKS)
   add_subdirectory(Utilities/Benchmarks)
+endif ()
+
+# ---- packages ----------------------------------------------------------------------------------
+if (UNIX AND NOT APPLE)
+  include("${CMAKE_CURRENT_LIST_DIR}/Packages.cmake")
 endif ()

@@ -40,6 +40,8 @@ class Client:
 
     def choose(self, menu, entry):
         """Chooses an entry of a menu of the menu bar, such as "menuFilters/Elevation Surface"."""
+        if "/" in menu:
+            self.open_menu(menu.split("/")[0])  # from ParaView 5.13 on, it is filled when it is shown
         self.do("menubar/" + menu, "activate", entry)
 
     def open_menu(self, name):
