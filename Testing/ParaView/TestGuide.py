@@ -12,12 +12,12 @@ import sys
 
 from paraview import simple
 
+from guide import guide_messages, guide_text, is_message
 from plugin_testing import check, check_equal, fetch, finish, messages_of, start
 
 data_folder, temporary_folder = start()
 repository = os.path.dirname(data_folder)
-with open(os.path.join(repository, "Documentation", "ParaView.md"), encoding="utf-8") as file:
-    guide = file.read()
+guide = guide_text()
 
 CASES = {}
 
@@ -117,26 +117,14 @@ def quadrilaterals():
     return messages_of(simple.FillElevationHoles(Input=simple.Plane()))
 
 
-def shown_text(message):
-    """A message as Output Messages shows it: without kind, class and address."""
-    place = r"^\s*((ERROR|Warning): )?(In \S+, line \d+\n)?(\w+ \(0x[0-9a-f]+\): )?"
-    return re.sub(place, "", message).strip()
-
-
-def as_pattern(text):
-    words = [re.escape(word) for word in text.split()]
-    return r"\s+".join(words).replace("…", ".*?")
-
-
 # ---- the messages ------------------------------------------------------------------------------
-section = guide.split("\n## What can go wrong\n")[1].split("\n## ")[0]
-told = dict(re.findall(r"^### (.+)\n(?:(?!### ).*\n)*?```text\n((?:(?!```).*\n)*)", section, re.M))
+told = guide_messages("What can go wrong")
 check_equal(sorted(told), sorted(CASES), "headings with a message, and cases of this test")
 for heading, case in CASES.items():
-    messages = [shown_text(message) for message in case()]
+    messages = case()
     check_equal(len(messages), 1, "%s: number of messages %s" % (heading, messages))
     expected = told.get(heading, "")
-    check(messages and re.fullmatch(as_pattern(expected), messages[0], re.DOTALL),
+    check(messages and is_message(messages[0], expected),
           "%s: %s, not %s" % (heading, messages, expected))
 
 # ---- the code and the example ------------------------------------------------------------------

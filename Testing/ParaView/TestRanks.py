@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
+from guide import guide_messages, is_message
 from plugin_testing import check, check_equal, finish, start
 
 start()
@@ -120,6 +121,10 @@ for name, make, data in FILTERS:
                     "rank %d, %s: triangles where the points are" % (RANK, name))
     messages, outputs = update(make(Input=given(EMPTY)))
     check_equal(len(messages), 1 if RANK == 0 else 0, "rank %d, %s, warnings of no points at all" % (RANK, name))
+
+told = guide_messages("Servers and ranks")["Servers and ranks"].replace("2 ranks", "%d ranks" % COUNT)
+messages, _ = update(simple.GridDelaunay2D(Input=given(cloud())))
+check(is_message(messages[0][1], told), "the guide tells the message: %s, not %s" % (messages, told))
 
 # What the message says works.
 together = simple.AggregateDataset(Input=given(cloud(CLOUD[RANK::COUNT])))

@@ -111,7 +111,8 @@ def play(command, environment, timeout):
 
     def end():
         """Ends the client, and the programs that were started before it or by it."""
-        os.killpg(process.pid, signal.SIGTERM)
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGTERM)
 
     clock = threading.Timer(timeout, end)
     clock.start()
