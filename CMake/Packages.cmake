@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Debian packages by "cpack -G DEB", for a build with -DCMAKE_INSTALL_PREFIX=/usr. Utilities/packages makes
-# both kinds of build and all packages:
-#   against VTK:       libvtkelevationsurface0.1, libvtkelevationsurface-dev, python3-vtkelevationsurface
+# Debian packages by "cpack -G DEB", for a build with -DCMAKE_INSTALL_PREFIX=/usr. Both kinds of
+# build and all packages are made by Utilities/packages:
+#   against VTK:       libvtkelevationsurface0.1, libvtkelevationsurface-dev,
+#                      python3-vtkelevationsurface
 #   against ParaView:  paraview-elevationsurface, which holds all it needs beside ParaView
 # dpkg-shlibdeps finds what the libraries depend on; what it cannot see is said here.
 
@@ -40,7 +41,7 @@ else ()
 endif ()
 string(TIMESTAMP es_package_date "%a, %d %b %Y %H:%M:%S +0000" UTC) # of SOURCE_DATE_EPOCH, if set
 
-# es_next_version(<variable> <version> <index>): the version from which another one is to be expected.
+# es_next_version(<variable> <version> <index>): the first version that is another one in that part.
 function (es_next_version variable version index)
   string(REPLACE "." ";" parts "${version}")
   list(SUBLIST parts 0 ${index} next)
@@ -57,11 +58,12 @@ set(es_package_scripts "${CMAKE_CURRENT_LIST_DIR}/Debian")
 # es_package(<component> <name> SECTION <section> SUMMARY <line> DESCRIPTION <text>
 #   [DEPENDS <packages>] [RECOMMENDS <packages>] [CONTROL <file>...])
 #
-# A package of one component. A control file is made of CMake/Debian/<file>.in; its name is what stands
-# before the first point.
+# A package of one component. A control file is made of CMake/Debian/<file>.in; its name is what
+# stands before the first point.
 macro (es_package component name)
   set(es_package_name "${name}")
-  cmake_parse_arguments(es_package "" "SECTION;SUMMARY;DESCRIPTION;RECOMMENDS" "DEPENDS;CONTROL" ${ARGN})
+  cmake_parse_arguments(es_package
+    "" "SECTION;SUMMARY;DESCRIPTION;RECOMMENDS" "DEPENDS;CONTROL" ${ARGN})
   list(JOIN es_package_DEPENDS ", " es_package_DEPENDS)
   list(APPEND CPACK_COMPONENTS_ALL "${component}")
   string(TOUPPER "${component}" es_upper)
@@ -75,18 +77,19 @@ macro (es_package component name)
   set("CPACK_DEBIAN_${es_upper}_PACKAGE_CONTROL_EXTRA")
   foreach (es_file IN LISTS es_package_CONTROL)
     string(REGEX REPLACE "\\..*" "" es_control "${es_file}")
-    configure_file("${es_package_scripts}/${es_file}.in" "${es_package_folder}/${name}/${es_control}" @ONLY)
-    list(APPEND "CPACK_DEBIAN_${es_upper}_PACKAGE_CONTROL_EXTRA"
-      "${es_package_folder}/${name}/${es_control}")
+    set(es_control "${es_package_folder}/${name}/${es_control}")
+    configure_file("${es_package_scripts}/${es_file}.in" "${es_control}" @ONLY)
+    list(APPEND "CPACK_DEBIAN_${es_upper}_PACKAGE_CONTROL_EXTRA" "${es_control}")
   endforeach ()
 
-  # Debian wants these two, compressed without a date.
-  configure_file("${es_package_scripts}/changelog.in" "${es_package_folder}/${name}/changelog.Debian" @ONLY)
-  execute_process(COMMAND gzip -9 -n -f "${es_package_folder}/${name}/changelog.Debian")
+  # Debian wants these, compressed without a date.
+  set(es_doc "${es_package_folder}/${name}")
+  configure_file("${es_package_scripts}/changelog.in" "${es_doc}/changelog.Debian" @ONLY)
+  execute_process(COMMAND gzip -9 -n -f "${es_doc}/changelog.Debian")
   execute_process(COMMAND gzip -9 -n -c "${CMAKE_CURRENT_SOURCE_DIR}/CHANGELOG.md"
-    OUTPUT_FILE "${es_package_folder}/${name}/changelog.gz")
+    OUTPUT_FILE "${es_doc}/changelog.gz")
   install(
-    FILES       "${es_package_folder}/${name}/changelog.Debian.gz" "${es_package_folder}/${name}/changelog.gz"
+    FILES       "${es_doc}/changelog.Debian.gz" "${es_doc}/changelog.gz"
                 "${es_package_scripts}/copyright"
     DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/doc/${name}"
     COMPONENT   "${component}"
@@ -106,8 +109,8 @@ Every unused point and every hole that stays open is told.
 ")
 if (ES_PARAVIEW)
   es_next_version(es_next "${ParaView_VERSION}" 1)
-  # ParaView reads paraview.conf when it starts. The package brings one that names the plugin too, in the
-  # place of the distribution's, which dpkg puts aside.
+  # ParaView reads paraview.conf when it starts. The package brings one that names the plugin too,
+  # in place of the distribution's, which dpkg puts aside.
   get_filename_component(es_conf "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}" DIRECTORY)
   if (EXISTS "${ParaView_PREFIX_PATH}/${es_conf}/paraview.conf")
     file(READ "${ParaView_PREFIX_PATH}/${es_conf}/paraview.conf" es_conf_lines)

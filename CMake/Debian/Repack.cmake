@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Run by cpack when its packages are made. Each is unpacked and packed again by dpkg-deb: without the scripts
-# that cpack writes to call ldconfig, for which the package has a trigger; and with the date of
-# SOURCE_DATE_EPOCH for all files, so that two builds of the same sources are the same bytes.
+# Run by cpack when its packages are made. Each is unpacked and packed again by dpkg-deb: without
+# the scripts that cpack writes to call ldconfig, for which the package has a trigger; and with the
+# date of SOURCE_DATE_EPOCH for all files, so that two builds of the same sources are the same bytes.
 string(TIMESTAMP epoch "%s" UTC) # of SOURCE_DATE_EPOCH, if set
 
 function (step)

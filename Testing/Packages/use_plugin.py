@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A file to a surface in ParaView, where nobody has loaded the plugin: pvpython, or paraview --script.
+"""A file to a surface in ParaView, where nobody has loaded the plugin.
 
-In the environment: POINTS, the file; SERVER, "host port", if a server is to do it; PICTURE, a file to draw
-the surface into, which ends the client.
+For pvpython or paraview --script. In the environment: POINTS, the file; SERVER, "host port", if a
+server is to do it; PICTURE, a file to draw the surface into, which ends the client.
 """
 import os
 import sys
