@@ -28,7 +28,7 @@ from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .ranks import check_ranks, controller_of, shared
 from .reading import read, read_boundary, read_faults
 from .reconstruction import PROPERTIES, reconstruct
-from .report import counted, crs_name, report_lines
+from .report import counted, crs_name, main_counts, report_lines
 
 
 class Aborted(Exception):
@@ -403,8 +403,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
         """Fills the report and sends warnings. Returns the lines to show."""
         rows, told = [], []
         if len(results) > 1:
-            sums = sums_of(results)
-            rows += [("all blocks", *row) for row in sums]
+            rows += [("all blocks", *row) for row in sums_of(results)]
         for name, result in zip(names, results):
             for note in result.notes:
                 self.warn(in_panel(f"{name}: {note}" if name else note))
@@ -421,7 +420,11 @@ class ReconstructElevationSurface(TellingAlgorithm):
                 told.append(lines[-1] if not block else f"{block}: {lines[-1]}")
         self._text = "\n".join(lines)
         fill_table(vtkTable.GetData(outputs, 3), rows)
-        return [f"{self.TITLE}:", *told]
+        counts = main_counts(results[0])
+        if len(results) > 1:
+            counts = [counted(len(results), "block")]
+            counts += [f"{row[2].split()[0]} {row[1]}" for row in rows[:3] if row[1] != "unused"]
+        return [f"{self.TITLE}: {', '.join(counts)}", *told]
 
 
 def drop_elevation(points):

@@ -324,8 +324,8 @@ def distance_lines(report, line):
         )
 
 
-def picture_subtitle(result):
-    """The counts under a picture's title."""
+def main_counts(result):
+    """What one wants to know first: how many points, triangles and holes, as a list of words."""
     parts = [
         counted(result.cloud.points.GetNumberOfPoints(), "point"),
         counted(result.surface.GetNumberOfPolys(), "triangle"),
@@ -336,4 +336,9 @@ def picture_subtitle(result):
         parts.append(f"{filled:,} of {found:,} holes filled")
     elif found:
         parts.append(f"{counted(found, 'hole')} filled")
-    return "   \u00b7   ".join(parts)
+    return parts
+
+
+def picture_subtitle(result):
+    """The counts under a picture's title."""
+    return "   \u00b7   ".join(main_counts(result))
