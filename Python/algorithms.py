@@ -353,7 +353,9 @@ class ReconstructElevationSurface(TellingAlgorithm):
             try:
                 results.append(self.result_of(part, lines))
             except (ElevationSurfaceError, ValueError) as error:
-                raise type(error)(f"{name}: {error}" if name else str(error)) from None
+                about = getattr(error, "about", "points")
+                words = [word for word in (name, about) if word not in ("", "points")]
+                raise type(error)(": ".join([*words, str(error)])) from None
         if not results:
             raise ElevationSurfaceError("the input has no points")
         self.put(data, parts, results, outputs)
