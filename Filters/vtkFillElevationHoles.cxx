@@ -245,7 +245,8 @@ std::string Complaint(const Mesh& mesh, const FillResult& patches)
   const Holes& holes = patches.Found;
   if (mesh.NumberOfTriangles() == 0)
   {
-    return "The input has no triangles, so there is nothing to fill.";
+    return "The input has no triangles, so there is nothing to fill. Points alone are triangulated "
+           "first, by Grid Delaunay 2D.";
   }
   constexpr int listed = 5;
   std::ostringstream text;

@@ -87,6 +87,17 @@
  * holes passes; an input without triangles passes with a warning. An abort also leaves empty
  * output, which counts as up to date: call Modified() to start again.
  *
+ * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs
+ * of the same structure: each block (each partition) is filled on its own, and has its own holes
+ * and field data. Counts of getters are sums. Messages name the block; one with an error is empty,
+ * the others stay.
+ *
+ * On several ranks (processes), the triangles of a block must be on one of them; points on several
+ * are an error on all ranks. Empty ranks have empty output and say nothing. Getters tell the counts
+ * of all ranks. This holds where data are asked for in several pieces and
+ * vtkMultiProcessController's global controller has several processes; all ranks have to update
+ * then, as in ParaView.
+ *
  * Cost: linear in the size of the input and in the number of new points, plus sorting the border.
  *
  * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation

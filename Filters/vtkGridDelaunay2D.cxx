@@ -23,8 +23,12 @@
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -55,9 +59,54 @@ ConstraintLines ToLines(
   return lines;
 }
 
+/**
+ * Checks that lines and points are in the same place.
+ * @param[out] warnings  one is added when most of the lines lie outside
+ * @throws Error if there is no line, or all are elsewhere
+ */
+void CheckLines(const ConstraintLines& lines, const elevation::PointView& points, int threads,
+  const Progress& progress, std::vector<std::string>& warnings)
+{
+  if (lines.Vertices.empty())
+  {
+    throw elevation::Error("The constraints have no line and no polygon.");
+  }
+  const elevation::Box box = elevation::FindExtent(points,
+    elevation::ResolveNumberOfThreads(threads), progress, [](Index, const elevation::Point2&) {});
+  // Outlines may lie a little outside.
+  const double dx = 0.1 * box.Width(), dy = 0.1 * box.Height();
+  const elevation::Box wide{ { box.Low.X - dx, box.Low.Y - dy },
+    { box.High.X + dx, box.High.Y + dy } };
+  elevation::Box ofLines;
+  std::size_t outside = 0;
+  for (const Index vertex : lines.Vertices)
+  {
+    const elevation::Point2 p = lines.Points.At(vertex);
+    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || box.Low.X > box.High.X)
+    {
+      return; // an error of its own, or there is no point
+    }
+    ofLines.Add(p);
+    outside += wide.Contains(p) ? 0 : 1;
+  }
+  if (!ofLines.Intersects(box))
+  {
+    throw elevation::Error("No constraint meets the points. The constraints are at " +
+      NameOf(ofLines) + ", the points at " + NameOf(box) + ": are both in the same coordinates?");
+  }
+  if (2 * outside > lines.Vertices.size())
+  {
+    warnings.push_back(std::to_string(outside) + " of the " +
+      std::to_string(lines.Vertices.size()) + " points along the constraints' lines lie far " +
+      "outside the points, and become vertices there. The constraints are at " + NameOf(ofLines) +
+      ", the points at " + NameOf(box) + ": are both in the same coordinates?");
+  }
+}
+
 /** Triangulates points, with the lines of a source if there is one. */
 elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
-  const elevation::PointView& points, elevation::DelaunayOptions options, const Progress& progress)
+  const elevation::PointView& points, elevation::DelaunayOptions options, const Progress& progress,
+  std::vector<std::string>& warnings)
 {
   if (!source)
   {
@@ -68,9 +117,75 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   }
   elevation::CheckPointArrays(source, "The constraints'");
   const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
-  const ConstraintLines lines = ToLines(source, own, Part(progress, 0.0, 0.02));
-  options.Monitor = Part(progress, 0.02, 0.95);
+  const ConstraintLines lines = ToLines(source, own, Part(progress, 0.0, 0.01));
+  CheckLines(lines, points, options.NumberOfThreads, Part(progress, 0.01, 0.02), warnings);
+  options.Monitor = Part(progress, 0.02, 1.0);
   return elevation::TriangulateConstrained(points, lines, options);
+}
+
+/** Of the vertices of a triangulation, how many have a triangle. */
+Index CountInTriangles(const elevation::Buffer<Index>& triangles, std::size_t numberOfIds,
+  const Progress& progress)
+{
+  std::vector<char> has(numberOfIds, 0);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+  {
+    ReportStep(progress, i, triangles.size(), 1 << 18);
+    has[triangles[i]] = 1;
+  }
+  return static_cast<Index>(std::count(has.begin(), has.end(), char(1)));
+}
+
+/** The value that a part of the values, of which there are some, is at most. */
+double Quantile(std::vector<double>& values, double part)
+{
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * (values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/** Rounded up to three digits. */
+double RoundedUp(double length)
+{
+  const double unit = std::pow(10.0, std::floor(std::log10(length)) - 2.0);
+  return unit > 0.0 && std::isfinite(unit) ? std::ceil(length / unit) * unit : length;
+}
+
+/**
+ * What limit would keep most points, told by the triangulation without a limit.
+ * @param[in] placeOf  the place of a vertex
+ */
+template <typename PlaceOf>
+std::string AdviceOnLimit(const elevation::Buffer<Index>& triangles, std::size_t numberOfIds,
+  const PlaceOf& placeOf, const Progress& progress)
+{
+  constexpr double unset = std::numeric_limits<double>::infinity();
+  std::vector<double> edges;
+  std::vector<double> limits(numberOfIds, unset); // that keep a triangle at each vertex
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    ReportStep(progress, i / 3, triangles.size() / 3, 1 << 16);
+    double longest = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const elevation::Point2 p = placeOf(triangles[i + k]);
+      const elevation::Point2 q = placeOf(triangles[i + (k + 1) % 3]);
+      edges.push_back(std::hypot(p.X - q.X, p.Y - q.Y));
+      longest = std::max(longest, edges.back());
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      double& limit = limits[triangles[i + k]];
+      limit = std::min(limit, longest);
+    }
+  }
+  limits.erase(std::remove(limits.begin(), limits.end(), unset), limits.end());
+  std::ostringstream text;
+  text << std::setprecision(4) << "Between neighbours, the shortest edge is "
+       << *std::min_element(edges.begin(), edges.end()) << " long, the median "
+       << Quantile(edges, 0.5) << ". A MaximumEdgeLength of " << std::setprecision(10)
+       << RoundedUp(Quantile(limits, 0.95)) << " keeps a triangle at 95 % of the points.";
+  return text.str();
 }
 
 /** The type of the output's points: float if the added ones are exact in it. */
@@ -86,6 +201,42 @@ int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
     }
   }
   return isFloat ? VTK_FLOAT : VTK_DOUBLE;
+}
+
+/** Tells why there is no triangle, or why most points are without one. */
+void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
+  elevation::DelaunayOptions options, const elevation::ConstrainedTriangulation& constrained,
+  const Progress& progress, std::vector<std::string>& warnings)
+{
+  const elevation::Triangulation& found = constrained.Result;
+  if (found.NumberOfHullPoints == 0)
+  {
+    warnings.push_back("No triangle was made: the " + std::to_string(points.Count) +
+      " input points are fewer than three distinct finite points, or all on one line.");
+    return;
+  }
+  if (!(options.MaximumEdgeLength > 0.0))
+  {
+    return;
+  }
+  const std::size_t ids = points.Count + constrained.Added.size();
+  const std::size_t vertices = ids - found.UnusedPoints.size();
+  const std::size_t missing = vertices - CountInTriangles(found.Triangles, ids, progress);
+  if (2 * missing <= vertices)
+  {
+    return;
+  }
+  std::ostringstream text;
+  text << "MaximumEdgeLength is " << options.MaximumEdgeLength << ", and " << missing << " of "
+       << vertices << " points are left without a triangle, because the points are farther apart. ";
+  options.MaximumEdgeLength = 0.0;
+  std::vector<std::string> again;
+  const elevation::ConstrainedTriangulation full =
+    TriangulateWith(source, points, options, progress, again);
+  const auto placeOf = [&](Index id) {
+    return id < points.Count ? points.At(id) : full.Added[id - points.Count].Position;
+  };
+  warnings.push_back(text.str() + AdviceOnLimit(full.Result.Triangles, ids, placeOf, progress));
 }
 
 /** The array of the constraints that matches one of the input, or nullptr. */
@@ -271,14 +422,11 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
     elevation::Report(progress, 0.0);
     elevation::CheckPointArrays(block.Input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
-    elevation::ConstrainedTriangulation constrained =
-      TriangulateWith(block.Second, points.View, options, progress);
+    elevation::ConstrainedTriangulation constrained = TriangulateWith(block.Second, points.View,
+      options, block.Second ? Part(progress, 0.0, 0.95) : progress, block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
-    if (triangulation.NumberOfHullPoints == 0)
-    {
-      block.Warnings.push_back("No triangle was made: the " + std::to_string(points.View.Count) +
-        " input points are fewer than three distinct finite points, or all on one line.");
-    }
+    WarnOfMissing(block.Second, points.View, options, constrained, Part(progress, 1.0, 1.0),
+      block.Warnings);
     PassPoints(block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
     AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());

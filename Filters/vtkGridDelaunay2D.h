@@ -60,12 +60,27 @@
  *   are those of LatticeMode Off without constraints. So on a lattice that rounding has moved, each
  *   cell is cut according to its own rounding, unlike without lines, even far from them.
  * - MaximumEdgeLength applies to the constrained triangulation, also to edges of lines.
- * - If no line or polygon has a point, the result is as without constraints.
+ * - Several blocks of a composite are taken as one.
  *
- * Fewer than three distinct points, or points all on one line, give a warning, the points, and no
- * triangle. Errors leave empty output: more points than can be handled (357,913,941); a point array
- * whose number of tuples is not that of the points; constraints with triangle strips, an invalid
- * vtkCellArray, or a point that does not exist or is not finite (the error names it).
+ * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives output
+ * of the same structure: each block (each partition) is a surface of its own, with its own field
+ * data. Counts of getters are sums. Messages name the block; one with an error is empty, the others
+ * stay.
+ *
+ * On several ranks (processes), the points of a block must be on one of them; points on several are
+ * an error on all ranks. Empty ranks have empty output and say nothing. Constraints may be on other
+ * ranks than the points, or spread over them: each rank gets them all. Getters tell the counts of
+ * all ranks. This holds where data are asked for in several pieces and vtkMultiProcessController's
+ * global controller has several processes; all ranks have to update then, as in ParaView.
+ *
+ * Warnings: fewer than three distinct points, or points all on one line, which give the points and
+ * no triangle; a MaximumEdgeLength that leaves more than half of the points without a triangle (it
+ * tells one that does not, for which it triangulates once more); constraints of which more than
+ * half lies farther outside the points' bounding box than a tenth of its size.
+ * Errors leave empty output: more points than can be handled (357,913,941); a point array whose
+ * number of tuples is not that of the points; constraints without a line or polygon, all beside the
+ * points' bounding box, with triangle strips, an invalid vtkCellArray, or a point that does not
+ * exist or is not finite (the error names it).
  * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
  *
  * Field data of the output:
@@ -105,7 +120,8 @@ public:
 
   ///@{
   /**
-   * The constraints, input 1, see above. Default: none. nullptr takes them away again.
+   * The constraints, input 1, see above. Default: none. nullptr takes them away again. GetSource()
+   * is nullptr also where they are a composite.
    */
   void SetSourceConnection(vtkAlgorithmOutput* output);
   void SetSourceData(vtkPolyData* constraints);
@@ -191,7 +207,7 @@ public:
   vtkGetMacro(LatticeTolerance, double);
   ///@}
 
-  /** After Update(): whether the triangles are those of a lattice; it is in the field data. */
+  /** After Update(): whether the triangles, of any block, are those of a lattice. */
   virtual bool GetLatticeFound() { return this->NumberOfLattices > 0; }
 
   ///@{

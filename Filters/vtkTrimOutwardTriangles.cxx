@@ -267,7 +267,8 @@ int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
     Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
     if (triangles.View.Count == 0)
     {
-      block.Warnings.push_back("The input has no triangles, so there is nothing to trim.");
+      block.Warnings.push_back("The input has no triangles, so there is nothing to trim. Points "
+                               "alone are triangulated first, by Grid Delaunay 2D.");
     }
     if (!trimmed.Loss.empty())
     {

@@ -74,6 +74,19 @@
  * parts of a cut triangle have its cell data, and all but one come after the input's triangles.
  * Field data passes to outputs 0 and 1. Nothing is written to the inputs.
  *
+ * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs
+ * of the same structure: each block (each partition) is trimmed on its own, along the same boundary
+ * if one is given, and has its own field data. Counts of getters are sums. Messages name the block;
+ * one with an error is empty, the others stay. Several blocks of a composite input 1 are one
+ * boundary.
+ *
+ * On several ranks (processes), the triangles of a block must be on one of them; points on several
+ * are an error on all ranks. Empty ranks have empty output and say nothing. A boundary may be on
+ * other ranks than the triangles, or in pieces on several: each rank gets all of it. Getters tell
+ * the counts of all ranks. This holds where data are asked for in several pieces and
+ * vtkMultiProcessController's global controller has several processes; all ranks have to update
+ * then, as in ParaView.
+ *
  * Guarantee (OutwardTest EXACT): all decisions are exact. The triangles of output 0 cover exactly
  * what is inside the boundary and covered by the mesh (apart from the rounding of crossings);
  * interior holes of the mesh stay.
@@ -116,6 +129,7 @@ public:
   ///@{
   /**
    * The boundary, input 1. Default: none, so that it is extracted. nullptr takes it away again.
+   * GetBoundary() is nullptr also where it is a composite.
    */
   void SetBoundaryConnection(vtkAlgorithmOutput* output);
   void SetBoundaryData(vtkPolyData* boundary);
@@ -191,8 +205,9 @@ public:
   ///@}
 
   /**
-   * After Update(): the GapTolerance that was used, in spacings; 0 when a boundary was given. One
-   * that was chosen from the data is that at the median point: 4.5, or more for lines of points.
+   * After Update(): the GapTolerance that was used, in spacings (of several blocks, the largest); 0
+   * when a boundary was given. One that was chosen from the data is that at the median point: 4.5,
+   * or more for lines of points.
    */
   vtkGetMacro(EffectiveGapTolerance, double);
 

@@ -248,7 +248,8 @@ void TestProgressAndAbort()
   command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
     auto* seen = static_cast<State*>(data);
     auto* filter = vtkAlgorithm::SafeDownCast(caller);
-    seen->Falls = seen->Falls || (filter->GetProgress() > 0.0 && filter->GetProgress() < seen->Last);
+    const double now = filter->GetProgress();
+    seen->Falls = seen->Falls || (now > 0.0 && now < seen->Last);
     seen->Last = filter->GetProgress();
     if (seen->Last >= seen->AbortAt)
     {

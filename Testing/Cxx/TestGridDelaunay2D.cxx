@@ -10,6 +10,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkGridDelaunay2D.h"
+#include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
 #include "vtkMinimalStandardRandomSequence.h"
@@ -205,6 +206,52 @@ std::vector<vtkIdType> Corners(vtkPolyData* surface)
   return corners;
 }
 
+/** A limit that leaves most points without a triangle is told, with one that does not. */
+void TestLimitTooSmall()
+{
+  for (const double step : { 3e-7, 25.0, 4e9 })
+  {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (int i = 0; i < 30 * 30; ++i)
+    {
+      points->InsertNextPoint(
+        step * (i % 30 + 0.2 * std::sin(i)), step * (i / 30 + 0.2 * std::cos(7.0 * i)), 0.0);
+    }
+    vtkNew<vtkPolyData> cloud;
+    cloud->SetPoints(points);
+    vtkNew<vtkGridDelaunay2D> delaunay;
+    vtkNew<vtkTest::ErrorObserver> observer;
+    delaunay->AddObserver(vtkCommand::WarningEvent, observer);
+    delaunay->SetInputData(cloud);
+    delaunay->SetMaximumEdgeLength(0.5 * step);
+    delaunay->Update();
+    const std::string text = observer->GetWarningMessage();
+    Check(text.find("900 of 900 points are left without a triangle") != std::string::npos &&
+        delaunay->GetOutput()->GetNumberOfPoints() == 900,
+      "an empty result says why; it was: " + text);
+    const std::string before = "A MaximumEdgeLength of ";
+    const double limit = std::atof(text.c_str() + text.find(before) + before.size());
+    Check(limit > step && limit < 3.0 * step, "the limit fits the points: " + text);
+    observer->Clear();
+    delaunay->SetMaximumEdgeLength(limit);
+    delaunay->Update();
+    std::vector<char> has(900, 0);
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType i = 0; i < delaunay->GetOutput()->GetNumberOfPolys(); ++i)
+    {
+      delaunay->GetOutput()->GetCellPoints(i, ids);
+      for (int k = 0; k < 3; ++k)
+      {
+        has[ids->GetId(k)] = 1;
+      }
+    }
+    Check(std::count(has.begin(), has.end(), 1) >= 0.95 * 900 &&
+        std::count(has.begin(), has.end(), 1) < 900 && !observer->GetWarning(),
+      "the limit that is told keeps triangles at 95 % of the points");
+  }
+}
+
 void TestSearchStrategy()
 {
   vtkNew<vtkGridDelaunay2D> delaunay;
@@ -353,6 +400,7 @@ int TestGridDelaunay2D(int, char*[])
   TestOutput(VTK_DOUBLE);
   TestOtherPointSets();
   TestTooFewPoints();
+  TestLimitTooSmall();
   TestSearchStrategy();
   TestProgressAndAbort();
   TestReportsAreNotTooMany();

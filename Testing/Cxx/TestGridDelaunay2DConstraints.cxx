@@ -137,17 +137,6 @@ void TestNothingIsAdded()
     "no lattice with constraints");
   Check(NumberOfFindings(output, RulesOfConstrained()) == 0, "the whole hull is covered");
 
-  // Vertex cells and points in no cell are no constraints.
-  vtkNew<vtkPolyData> vertices;
-  vertices->SetPoints(lines->GetPoints());
-  vtkNew<vtkCellArray> cells;
-  const vtkIdType ids[2] = { 0, 1 };
-  cells->InsertNextCell(2, ids);
-  vertices->SetVerts(cells);
-  delaunay->SetSourceData(vertices);
-  delaunay->Update();
-  Check(delaunay->GetLatticeFound(), "without lines all is as without constraints");
-
   vtkNew<vtkTrivialProducer> producer;
   producer->SetOutput(lines);
   delaunay->SetSourceConnection(producer->GetOutputPort());
@@ -333,6 +322,17 @@ void TestRefusals()
   strips->SetStrips(strip);
   expect(strips, "There are triangle strips in the constraints");
 
+  // Vertex cells and points in no cell are no constraints.
+  auto pointsOnly = MakeLines({ { { 1, 1, 0 }, { 3, 2, 0 } } });
+  pointsOnly->SetVerts(pointsOnly->GetLines());
+  pointsOnly->SetLines(nullptr);
+  expect(pointsOnly, "The constraints have no line and no polygon.");
+  expect(vtkSmartPointer<vtkPolyData>::New(), "The constraints have no line and no polygon.");
+
+  expect(MakeLines({ { { 100, 200, 0 }, { 101, 205, 0 } } }),
+    "The constraints are at x 100 to 101, y 200 to 205, the points at x 0 to 8, y 0 to 8: are both "
+    "in the same coordinates?");
+
   auto arrays = MakeLines({ { { 0, 0, 0 }, { 1, 1, 0 } } });
   arrays->GetPointData()->GetArray("Inline")->InsertNextTuple1(3);
   expect(arrays, "The constraints' point array \"Inline\" has 3 tuples, but there are 2 points.");
@@ -343,6 +343,31 @@ void TestRefusals()
     expect(faulty, "The constraints' " + kind);
     expect(faulty, fault);
   });
+}
+
+/** Lines that lie mostly far outside the points add them with a warning. */
+void TestLinesOutside()
+{
+  const auto warningOf = [](vtkPolyData* source, vtkIdType added) {
+    vtkNew<vtkGridDelaunay2D> delaunay;
+    vtkNew<vtkTest::ErrorObserver> observer;
+    delaunay->AddObserver(vtkCommand::WarningEvent, observer);
+    delaunay->SetInputData(MakeInput(VTK_DOUBLE));
+    delaunay->SetSourceData(source);
+    delaunay->Update();
+    Check(delaunay->GetNumberOfAddedPoints() == added, "points of lines outside are added");
+    return observer->GetWarningMessage();
+  };
+  const std::string far = warningOf(MakeLines({ { { 4, 4, 0 }, { 30, 5, 0 }, { 40, 9, 0 } } }), 2);
+  Check(far.find("2 of the 3 points along the constraints' lines lie far outside the points") !=
+        std::string::npos &&
+      far.find("x 4 to 40, y 4 to 9, the points at x 0 to 8, y 0 to 8") != std::string::npos,
+    "a warning gives both places; it was: " + far);
+  Check(warningOf(MakeLines({ { { 4, 4, 0 }, { 3, 5, 0 }, { 40, 9, 0 } } }), 1).empty(),
+    "one point of three is no reason");
+  Check(warningOf(MakeLines({ { { -0.5, -0.5, 0 }, { 8.5, -0.5, 0 }, { 8.5, 8.5, 0 },
+                      { -0.5, 8.5, 0 } } }, true), 4).empty(),
+    "nor is an outline around the points");
 }
 
 void TestProgressAndAbort()
@@ -405,6 +430,7 @@ int TestGridDelaunay2DConstraints(int, char*[])
   TestNormalsAtCrossings();
   TestIds();
   TestRefusals();
+  TestLinesOutside();
   TestProgressAndAbort();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -613,7 +613,8 @@ void TestErrors()
   ExpectError(mesh, MakeRings({ { { 0, 0 }, { 9.5, 6 }, { 7, 0 } } }), false,
     "edge from point 0 (0, 0) to point 1 (9.5, 6) leaves the mesh");
   ExpectError(mesh, MakeRings({ { { 10, 10 }, { 19, 10 }, { 10, 20 } } }), true,
-    "The boundary encloses no triangle of the mesh. Its first ring begins at (10, 10).");
+    "The boundary encloses no triangle of the mesh. It is at x 10 to 19, y 10 to 20, the mesh at "
+    "x 0 to 8, y 0 to 8: are both in the same coordinates?");
   ExpectError(mesh,
     MakeRings({ { { 1, 1 }, { 4, 1 }, { 1, 5 } }, { { 1, 1 }, { 4, 1 }, { 1, 5 } } }), true,
     "Its first ring begins at (1, 1); of rings in each other, what lies between two is enclosed.");

@@ -12,6 +12,9 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <iomanip>
+#include <sstream>
+#include <string>
 #include <vector>
 
 namespace elevation
@@ -46,6 +49,15 @@ struct Box
     this->High = { std::max(this->High.X, box.High.X), std::max(this->High.Y, box.High.Y) };
   }
 };
+
+/** For messages: "x 1 to 2, y 3 to 4". */
+inline std::string NameOf(const Box& box)
+{
+  std::ostringstream text;
+  text << std::setprecision(10) << "x " << box.Low.X << " to " << box.High.X << ", y " << box.Low.Y
+       << " to " << box.High.Y;
+  return text.str();
+}
 
 /** The bounding box of the finite points of a cloud, and a list of the others. */
 struct Extent : Box

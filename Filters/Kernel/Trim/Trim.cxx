@@ -109,15 +109,25 @@ void PutBackInserted(const NearTriangles& near, const Mesh& mesh, InsertedRings&
 }
 
 /** @throws Error when all is outward */
-void CheckEnclosed(
-  const std::vector<char>& isOutward, const NamedPoints& points, const Rings& rings)
+void CheckEnclosed(const TriangleList& list, const std::vector<char>& isOutward,
+  const NamedPoints& points, const Rings& rings)
 {
-  if (std::find(isOutward.begin(), isOutward.end(), char(0)) == isOutward.end())
+  if (std::find(isOutward.begin(), isOutward.end(), char(0)) != isOutward.end())
   {
-    throw Error("The boundary encloses no triangle of the mesh. Its first ring begins at " +
-      NameOf(points[rings.Vertices.front()]) +
-      (rings.Count() > 1 ? "; of rings in each other, what lies between two is enclosed." : "."));
+    return;
   }
+  Box box;
+  for (const Index vertex : rings.Vertices)
+  {
+    box.Add(points[vertex]);
+  }
+  const Box ofMesh = FindExtent(list.Points, 1, Progress(), [](Index, const Point2&) {});
+  throw Error("The boundary encloses no triangle of the mesh. " +
+    (box.Intersects(ofMesh)
+        ? "Its first ring begins at " + NameOf(points[rings.Vertices.front()]) +
+          (rings.Count() > 1 ? "; of rings in each other, what lies between two is enclosed." : ".")
+        : "It is at " + NameOf(box) + ", the mesh at " + NameOf(ofMesh) +
+          ": are both in the same coordinates?"));
 }
 
 void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimOptions& options,
@@ -144,14 +154,14 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
     mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
   if (options.Test == OutwardTest::InwardNormal)
   {
-    CheckEnclosed(outward.IsOutward, lines.Points, result.Boundary);
+    CheckEnclosed(list, outward.IsOutward, lines.Points, result.Boundary);
     ApplyInwardNormalTest(
       mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.95, 0.97));
   }
   PutBack(list, near, mesh, Part(progress, 0.97, 1.0), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
   PutBackInserted(near, mesh, rings, changes, result);
-  CheckEnclosed(changes.IsOutward, lines.Points, result.Boundary);
+  CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
   for (Index& vertex : result.Boundary.Vertices)
   {
     vertex = lines.Points.IdOf(vertex);
