@@ -242,7 +242,7 @@ def triangle_lines(report, line):
     """What the triangles were made of, and which were removed."""
     if report["lattice"]:
         steps = [
-            f"{length:.7g} towards {direction + 0.0:.4g} degrees"
+            f"{length:.7g} towards {round(direction, 3) + 0.0:.4g} degrees"
             for length, direction in zip(
                 report["lattice"]["lengths"], report["lattice"]["directions"]
             )
