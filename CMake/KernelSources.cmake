@@ -32,7 +32,8 @@ set(es_kernel_Triangulate
   LatticeApexes
   LatticeGrowth
   Constrained
-  Triangulate)
+  Triangulate
+  Pieces)
 set(es_kernel_Trim
   Rings
   NearTriangles

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The triangulation of a cloud that is cut into pieces, each of which is triangulated by itself.
+ *
+ * A triangle depends on the points in and on its circle alone. So in a cell of the plane, all of
+ * whose points are known, each triangle whose circle lies in the cell is one of the whole cloud: it
+ * is settled. The others touch few points, those of the seam: near the border of the cell, and on the
+ * hull of its points.
+ *
+ * Settled triangles cover parts of the plane. Every other triangle of the whole cloud has its three
+ * corners on seams: a corner with settled triangles all around has no others. So the triangulation of
+ * the points of all seams has these triangles too; what else it has lies where the settled ones are,
+ * and their edges tell where that is. Two pieces are therefore joined by triangulating the points of
+ * their two seams, and what is settled then is what lies in the two cells together. Level by level
+ * this gives all triangles, while only seams are passed on.
+ *
+ * The seam of a cell with m evenly spread points has some multiple of sqrt(m) points.
+ */
+#ifndef elevation_Triangulate_Pieces_h
+#define elevation_Triangulate_Pieces_h
+
+#include "Kernel/Base/Base.h"
+#include "Options.h"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace elevation
+{
+
+/** The part of the plane of which all points are known; unlimited sides are infinite. */
+struct Cell
+{
+  Point2 Low{ -std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity() };
+  Point2 High{ std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity() };
+
+  bool IsWholePlane() const
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return this->Low.X == -infinity && this->Low.Y == -infinity && this->High.X == infinity &&
+      this->High.Y == infinity;
+  }
+
+  /**
+   * Whether the circle through three points is certain to lie in the cell: rounding errors count
+   * against it, so that a circle near the border may be refused, but never one taken by mistake.
+   */
+  bool HoldsCircle(Point2 a, Point2 b, Point2 c) const;
+};
+
+/** A number of a point in the whole cloud, which may have more points than an Index counts. */
+using GlobalId = std::int64_t;
+
+/** Points of a cell, all of them or those of its seam. */
+struct Piece
+{
+  std::vector<double> Coordinates; ///< x, y, z of each point
+  std::vector<GlobalId> Ids;       ///< of each point
+  /** Pairs of places in Ids: edges that have a settled triangle on their left, and none on their
+      right. */
+  std::vector<Index> Edges;
+
+  Index Count() const { return static_cast<Index>(this->Ids.size()); }
+};
+
+using GlobalTriangle = std::array<GlobalId, 3>;
+
+/**
+ * Finds the triangles that are settled once all points of a cell are known.
+ * @param[in] piece  all points of the cell, without edges; or the seams of cells that make up the
+ *                   cell, joined
+ * @param[in] options  without a lattice and a limit of edges
+ * @param[in,out] settled  gets the triangles, counter-clockwise
+ * @return the seam: the points and edges that triangles across the border of the cell may have
+ * @throws std::bad_alloc; Aborted
+ */
+Piece Settle(const Piece& piece, const Cell& cell, const DelaunayOptions& options,
+  std::vector<GlobalTriangle>& settled);
+
+/** The points and edges of two pieces. */
+Piece Join(Piece&& one, const Piece& other);
+
+} // namespace elevation
+
+#endif
