@@ -64,6 +64,13 @@ def steps(client, data):
     client.set("MaximumHoleSize", "DoubleLineEdit0", 1)
     client.apply()
     check("no hole filled", 1)
+    # What plays no part is greyed out.
+    client.python("source = GetActiveSource(); ring = Disk(); SetActiveSource(source)")
+    for name, change in (("GapTolerance", "source.Boundary = ring"), ("Spacing", "source.FillHoles = 0")):
+        field = client.field(name) + "/DoubleLineEdit0"
+        client.expect(field, "enabled", "true")
+        client.python(change)
+        client.expect(field, "enabled", "false")
 
 
 def main():
@@ -78,7 +85,7 @@ def main():
         os.remove(results)
     steps(client, os.path.abspath(options.D))
     output = client.run(timeout=60)
-    checks = sum("check_" in arguments for _, _, arguments in client.steps)
+    checks = sum("check_" in arguments for *_, arguments in client.steps)
     found = json.load(open(results)) if os.path.exists(results) else []
     failures = [failure for failures in found for failure in failures]
     if failures or len(found) != checks:

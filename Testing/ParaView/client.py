@@ -33,7 +33,11 @@ class Client:
     def do(self, widget, command, arguments=""):
         """One step: a command for a widget of the main window."""
         path = "/".join(part for part in (WINDOW, widget) if part)
-        self.steps.append((path, command, str(arguments)))
+        self.steps.append(("pqevent", path, "command", command, str(arguments)))
+
+    def expect(self, widget, name, value):
+        """A property that a widget of the main window has to have, such as enabled, "true"."""
+        self.steps.append(("pqcheck", "/".join((WINDOW, widget)), "property", name, value))
 
     def press(self, button):
         self.do(button, "activate")
@@ -85,9 +89,9 @@ class Client:
         script = os.path.join(self.folder, "client_steps.xml")
         with open(script, "w", encoding="utf-8") as file:
             file.write('<?xml version="1.0" ?>\n<pqevents>\n')
-            for step in self.steps:
-                file.write("  <pqevent object=%s command=%s arguments=%s />\n"
-                           % tuple(map(quoteattr, step)))
+            for element, path, what, word, arguments in self.steps:
+                file.write("  <%s object=%s %s=%s arguments=%s />\n"
+                           % (element, quoteattr(path), what, quoteattr(word), quoteattr(arguments)))
             file.write("</pqevents>\n")
         folder, name = os.path.split(self.plugin)
         command = [*self.program, "-qwindowgeometry", self.size, "--dr", "--exit",
