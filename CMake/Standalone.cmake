@@ -68,6 +68,7 @@ endif ()
 include(CTest)
 
 # ---- VTK ---------------------------------------------------------------------------------------
+set(CMAKE_POLICY_DEFAULT_CMP0174 OLD) # else CMake 3.31 and newer warn of VTK's own files
 set(es_vtk_components CommonCore CommonDataModel CommonExecutionModel FiltersCore ParallelCore eigen)
 set(es_vtk_test_components FiltersModeling FiltersSources IOXML InteractionStyle
   RenderingOpenGL2 TestingCore TestingRendering)
