@@ -159,7 +159,10 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   bool interpolate, const Progress& progress, vtkPolyData* output)
 {
   Report(progress, 0.0);
-  PassPoints(input, patches, interpolate, Part(progress, 0.0, 0.6), output);
+  const bool isExtended = patches.NumberOfPoints() > 0;
+  PassPoints(
+    input, patches, interpolate, Part(progress, 0.0, isExtended ? 0.6 : 0.0), output);
+  Report(progress, isExtended ? 0.6 : 0.15);
   vtkNew<vtkUnsignedCharArray> isNew;
   isNew->SetName("FilledPoint");
   isNew->SetNumberOfTuples(output->GetNumberOfPoints());
@@ -168,6 +171,7 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   // An array of the input that it replaces may be the active scalars, say; this one is not.
   output->GetPointData()->RemoveArray(isNew->GetName());
   output->GetPointData()->AddArray(isNew);
+  Report(progress, isExtended ? 0.62 : 0.3);
   vtkNew<vtkDoubleArray> errors;
   errors->SetName("FilledError");
   errors->SetNumberOfTuples(output->GetNumberOfPoints());
@@ -177,9 +181,9 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
   output->GetPointData()->RemoveArray(errors->GetName());
   output->GetPointData()->AddArray(errors);
 
-  Report(progress, 0.6);
+  Report(progress, isExtended ? 0.64 : 0.5);
   const std::vector<Index> kept = ListKept(mesh, patches);
-  PassCells(input, mesh, kept, patches, Part(progress, 0.6, 0.9), output);
+  PassCells(input, mesh, kept, patches, Part(progress, 0.7, 0.9), output);
   Report(progress, 0.9);
   vtkNew<vtkIdTypeArray> holeIds;
   holeIds->SetName("HoleId");
@@ -351,13 +355,14 @@ int vtkFillElevationHoles::RequestData(vtkInformation* request,
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));
     Mesh mesh;
-    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.1));
-    mesh.ConnectTwins(firstPolygon, Part(progress, 0.1, 0.2));
-    Holes found = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.2, 0.3));
+    elevation::ToMesh(input, mesh, Part(progress, 0.0, 0.15));
+    mesh.ConnectTwins(firstPolygon, Part(progress, 0.15, 0.4));
+    Holes found = elevation::FindHoles(mesh, firstPolygon, Part(progress, 0.4, 0.5));
     Mesh opened;
     const bool isOpened = this->MaximumEdgeLength > 0.0 &&
       elevation::OpenLongTriangles(
-        mesh, this->MaximumEdgeLength, found, opened, Part(progress, 0.3, 0.35));
+        mesh, this->MaximumEdgeLength, found, opened, Part(progress, 0.5, 0.55));
+    const bool isToBeFilled = found.Count() > 0;
 
     FillOptions options = OptionsOf(this);
     if (this->InterpolatePointData)
@@ -365,14 +370,14 @@ int vtkFillElevationHoles::RequestData(vtkInformation* request,
       options.Attributes = AttributesOf(input->GetPointData());
     }
     options.SinglePrecision = HasFloatPoints(input);
-    options.Monitor = Part(progress, 0.35, 0.8);
+    const elevation::Progress filling = Part(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
+    options.Monitor = filling;
     const FillResult patches =
       elevation::FillHoles(isOpened ? opened : mesh, points.View, std::move(found), options);
 
-    MakeSurface(
-      input, mesh, patches, this->InterpolatePointData, Part(progress, 0.8, 0.95),
-      block.Outputs[0]);
-    MakeReport(input, patches, Part(progress, 0.95, 1.0), block.Outputs[1]);
+    MakeSurface(input, mesh, patches, this->InterpolatePointData,
+      Part(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);
+    MakeReport(input, patches, Part(progress, 0.97, 1.0), block.Outputs[1]);
     const vtkIdType holes = patches.Found.Count();
     const vtkIdType filled = std::count_if(patches.Reports.begin(), patches.Reports.end(),
       [](const HoleReport& hole) {

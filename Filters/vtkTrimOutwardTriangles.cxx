@@ -256,7 +256,9 @@ int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
     {
       lines = ToLines(given, Part(progress, 0.0, 0.02));
     }
-    const elevation::Progress trimming = Part(progress, 0.02, 0.8);
+    // Cell data take time to pass, all else is shared.
+    const double trimmedAt = input->GetCellData()->GetNumberOfArrays() > 0 ? 0.85 : 0.95;
+    const elevation::Progress trimming = Part(progress, 0.02, trimmedAt);
     elevation::TrimOptions options;
     options.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
     options.RecoverBoundary = this->RecoverBoundary;
@@ -275,10 +277,10 @@ int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
       block.Warnings.push_back(trimmed.Loss);
     }
 
-    PassSides(input, triangles, trimmed, this->NumberOfThreads, Part(progress, 0.8, 0.96),
+    PassSides(input, triangles, trimmed, this->NumberOfThreads, Part(progress, trimmedAt, 0.98),
       block.Outputs[0], block.Outputs[1]);
     block.Outputs[2]->GetPointData()->CopyAllOn();
-    elevation::PassRings(trimmed.Boundary, isGiven ? given : input, Part(progress, 0.96, 1.0),
+    elevation::PassRings(trimmed.Boundary, isGiven ? given : input, Part(progress, 0.98, 1.0),
       block.Outputs[2]);
     AddCounts(trimmed, block.Outputs);
     Report(progress, 1.0);

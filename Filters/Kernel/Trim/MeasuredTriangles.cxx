@@ -137,7 +137,7 @@ bool MeasureBySweep(
   std::atomic<Index> numbers{ 0 };
   if (!sweep.Run(
         Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers },
-        Part(progress, 0.0, 0.75)))
+        Part(progress, 0.0, 0.85)))
   {
     return false;
   }
@@ -152,13 +152,13 @@ bool MeasureBySweep(
   measured.List.Count = count;
   measured.List.Points.Double = measured.Coordinates.data();
   measured.List.Points.Count = numbers;
-  TakeVertices(sweep, Part(progress, 0.75, 0.85), measured);
+  TakeVertices(sweep, Part(progress, 0.85, 0.96), measured);
   if (largest > LargestUnscaled || largest < LeastUnscaled ||
-    !CoversOnce(measured.Border, list.Points, Part(progress, 0.85, 0.95)))
+    !CoversOnce(measured.Border, list.Points, Part(progress, 0.96, 0.98)))
   {
     return false;
   }
-  AddBorder(sweep, Part(progress, 0.95, 1.0), measured);
+  AddBorder(sweep, Part(progress, 0.98, 1.0), measured);
   return true;
 }
 

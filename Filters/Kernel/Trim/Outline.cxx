@@ -578,22 +578,23 @@ public:
   {
     const TriangleList& list = this->Measured.List;
     this->SortBorder(Part(progress, 0.0, 0.02));
-    const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.25));
+    const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.15));
     this->Spacings.Resize(list.Points.Count);
-    this->KeepCertainTriangles(Part(progress, 0.25, 0.5));
-    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.5, 0.62));
+    this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
+    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.2, 0.32));
     if (this->IsAutomatic)
     {
       this->Scales = FindScales(this->Measured, neighbors, this->AtBorder, this->CornersNear(doubtful),
-        this->Threads, Part(progress, 0.62, 0.68), this->Spacings.data());
+        this->Threads, Part(progress, 0.32, 0.57), this->Spacings.data());
       this->Result.GapTolerance *= this->TypicalScale();
     }
-    this->FindSpacingsOf(doubtful, neighbors, Part(progress, 0.68, 0.74));
-    this->Decide(doubtful, Part(progress, 0.74, 0.75));
+    this->FindSpacingsOf(
+      doubtful, neighbors, Part(progress, this->IsAutomatic ? 0.57 : 0.32, 0.82));
+    this->Decide(doubtful, Part(progress, 0.82, 0.85));
     TraceSurface(
       this->Measured, this->AtBorder, [&](Index t) { return this->ToleranceOf(t); },
-      this->CornersNear(doubtful), Part(progress, 0.75, 0.95), this->Result);
-    this->MeasureLoss(neighbors, Part(progress, 0.95, 1.0));
+      this->CornersNear(doubtful), Part(progress, 0.85, 0.97), this->Result);
+    this->MeasureLoss(neighbors, Part(progress, 0.97, 1.0));
     if (this->Measured.Ids.size() > 0)
     {
       ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), Part(progress, 1.0, 1.0));

@@ -139,16 +139,16 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   if (options.Test == OutwardTest::Exact)
   {
     near = FindNearTriangles(list, lines.Points.Places, result.Boundary, threads,
-      Part(progress, 0.0, 0.5), changes.IsOutward);
+      Part(progress, 0.0, 0.3), changes.IsOutward);
   }
   changes.IsOutward.resize(list.Count);
-  const Progress making = Part(progress, 0.5, 0.65);
+  const Progress making = Part(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
   const Index before = mesh.NumberOfPoints();
   InsertedRings rings = InsertRings(
-    mesh, lines.Points, result.Boundary, options.RecoverBoundary, Part(progress, 0.65, 0.8));
+    mesh, lines.Points, result.Boundary, options.RecoverBoundary, Part(progress, 0.5, 0.75));
   OutwardTriangles outward =
-    FindOutward(mesh, rings.Vertices, options.RecoverBoundary, Part(progress, 0.8, 0.95));
+    FindOutward(mesh, rings.Vertices, options.RecoverBoundary, Part(progress, 0.75, 0.95));
   result.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
   result.Places.assign(
     mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
@@ -201,22 +201,26 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   Changes& changes, Trimmed& result)
 {
   const bool isExact = options.Test == OutwardTest::Exact;
-  const Progress finding = Part(progress, 0.45, 0.9);
   ExtractOptions extraction;
   extraction.GapTolerance = options.GapTolerance;
   extraction.NumberOfThreads = options.NumberOfThreads;
-  extraction.Monitor = finding;
   MeasuredTriangles measured;
   ExtractedBoundary found;
   Mesh mesh; // of all triangles, if the sweep fails
-  if (isExact && MeasureBySweep(list, options.NumberOfThreads, Part(progress, 0.0, 0.4), measured))
+  if (isExact && MeasureBySweep(list, options.NumberOfThreads, Part(progress, 0.0, 0.6), measured))
   {
+    const Progress finding = Part(progress, 0.6, 1.0);
+    extraction.Monitor = finding;
     found = FindOutline(std::move(measured), extraction);
   }
   else
   {
     measured = MeasuredTriangles();
-    mesh = ProvenMesh(list, options.NumberOfThreads, Part(progress, 0.4, 0.45));
+    // After a sweep that failed, or from the start.
+    const double begin = isExact ? 0.6 : 0.0, proven = isExact ? 0.7 : 0.45;
+    mesh = ProvenMesh(list, options.NumberOfThreads, Part(progress, begin, proven));
+    const Progress finding = Part(progress, proven, 0.9);
+    extraction.Monitor = finding;
     found = ExtractBoundary(mesh, extraction);
   }
   result.Boundary = std::move(found.Vertices);
@@ -340,7 +344,7 @@ Trimmed Trim(
     return result;
   }
   Changes changes;
-  const Progress finding = Part(options.Monitor, 0.0, 0.9);
+  const Progress finding = Part(options.Monitor, 0.0, 0.95);
   if (boundary)
   {
     TrimAlong(triangles, *boundary, options, finding, changes, result);
@@ -349,7 +353,7 @@ Trimmed Trim(
   {
     TrimExtracted(triangles, options, finding, changes, result);
   }
-  WriteSides(triangles, changes, options, Part(options.Monitor, 0.9, 1.0), result);
+  WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
   Report(options.Monitor, 1.0);
   return result;
 }

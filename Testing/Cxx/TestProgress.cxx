@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// On many points, the progress of the three filters rises in small steps, without long silences, and
+// an abort is honoured wherever it comes. On one thread, and in the time of its processor, so that
+// the claims hold on a machine that has other work to do.
+#include "Check.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkCellArray.h"
+#include "vtkFillElevationHoles.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkMinimalStandardRandomSequence.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkTrimOutwardTriangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <string>
+
+namespace
+{
+constexpr double LargestStep = 0.1;
+constexpr double LongestSilence = 0.5; // seconds
+
+struct Reports
+{
+  double Last = 0.0, Step = 0.0, StepAt = 0.0, Silence = 0.0, SilenceAt = 0.0, AbortAt = 2.0;
+  bool Falls = false;
+  std::clock_t Time = std::clock();
+
+  void Add(double progress)
+  {
+    const std::clock_t now = std::clock();
+    const double silence = static_cast<double>(now - this->Time) / CLOCKS_PER_SEC;
+    if (progress - this->Last > this->Step)
+    {
+      this->Step = progress - this->Last;
+      this->StepAt = this->Last;
+    }
+    if (silence > this->Silence)
+    {
+      this->Silence = silence;
+      this->SilenceAt = this->Last;
+    }
+    this->Falls = this->Falls || progress < this->Last;
+    this->Last = progress;
+    this->Time = now;
+  }
+};
+
+/** Updates a filter, and tells how it reported. */
+Reports Watch(vtkPolyDataAlgorithm* filter, double abortAt = 2.0)
+{
+  Reports reports;
+  reports.AbortAt = abortAt;
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(&reports);
+  command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    auto* const seen = static_cast<Reports*>(data);
+    auto* const observed = vtkAlgorithm::SafeDownCast(caller);
+    // The executive reports 0 before and 1 after the filter.
+    if (observed->GetProgress() > 0.0)
+    {
+      seen->Add(observed->GetProgress());
+    }
+    if (observed->GetProgress() >= seen->AbortAt)
+    {
+      observed->SetAbortExecute(1);
+    }
+  });
+  const unsigned long tag = filter->AddObserver(vtkCommand::ProgressEvent, command);
+  filter->Modified();
+  filter->Update();
+  filter->RemoveObserver(tag);
+  return reports;
+}
+
+void CheckReports(vtkPolyDataAlgorithm* filter, const std::string& name)
+{
+  const Reports reports = Watch(filter);
+  Check(!reports.Falls && reports.Last == 1.0, name + ": progress rises to 1");
+  Check(reports.Step <= LargestStep, name + ": a step of " + std::to_string(reports.Step) +
+      " at " + std::to_string(reports.StepAt));
+  Check(reports.Silence <= LongestSilence, name + ": a silence of " +
+      std::to_string(reports.Silence) + " s at " + std::to_string(reports.SilenceAt));
+}
+
+/** An abort from each tenth of the way on leaves nothing. */
+void CheckAborts(vtkPolyDataAlgorithm* filter, const std::string& name)
+{
+  for (const double at : { 0.05, 0.3, 0.55, 0.8, 0.97 })
+  {
+    const Reports reports = Watch(filter, at);
+    Check(reports.Last < 1.0 + at && filter->GetOutput()->GetNumberOfPoints() == 0,
+      name + ": an abort at " + std::to_string(at) + " leaves nothing");
+  }
+}
+
+vtkSmartPointer<vtkPolyData> MakeCloud(int count)
+{
+  auto cloud = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkMinimalStandardRandomSequence> random;
+  random->SetSeed(19);
+  const auto next = [&random]() {
+    random->Next();
+    return random->GetRangeValue(0.0, 1000.0);
+  };
+  while (points->GetNumberOfPoints() < count)
+  {
+    const double x = next(), y = next();
+    if (std::hypot(x - 400.0, y - 600.0) > 30.0)
+    {
+      points->InsertNextPoint(x, y, std::sin(0.01 * x));
+    }
+  }
+  cloud->SetPoints(points);
+  return cloud;
+}
+
+vtkSmartPointer<vtkPolyData> MakeRing()
+{
+  auto ring = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> polygons;
+  constexpr int count = 2000;
+  polygons->InsertNextCell(count);
+  for (int i = 0; i < count; ++i)
+  {
+    const double angle = 2.0 * 3.14159265358979 * i / count;
+    const double radius = 450.0 + 40.0 * std::sin(9.0 * angle);
+    polygons->InsertCellPoint(points->InsertNextPoint(
+      500.0 + radius * std::cos(angle), 500.0 + radius * std::sin(angle), 0.0));
+  }
+  ring->SetPoints(points);
+  ring->SetPolys(polygons);
+  return ring;
+}
+} // namespace
+
+int TestProgress(int, char*[])
+{
+  const auto ring = MakeRing();
+  for (const int count : { 1000000, 100000 })
+  {
+    const bool isLarge = count == 1000000;
+    vtkNew<vtkGridDelaunay2D> delaunay;
+    delaunay->SetInputData(MakeCloud(count));
+    delaunay->SetNumberOfThreads(1);
+    vtkNew<vtkTrimOutwardTriangles> extracted, given;
+    extracted->SetInputConnection(delaunay->GetOutputPort());
+    extracted->SetNumberOfThreads(1);
+    given->SetInputConnection(delaunay->GetOutputPort());
+    given->SetBoundaryData(ring);
+    given->SetNumberOfThreads(1);
+    vtkNew<vtkFillElevationHoles> fill;
+    fill->SetInputConnection(extracted->GetOutputPort());
+    fill->SetNumberOfThreads(1);
+    for (const auto& [filter, name] :
+      std::initializer_list<std::pair<vtkPolyDataAlgorithm*, const char*>>{
+        { delaunay, "vtkGridDelaunay2D" }, { extracted, "vtkTrimOutwardTriangles, extracted" },
+        { given, "vtkTrimOutwardTriangles, given" }, { fill, "vtkFillElevationHoles" } })
+    {
+      if (isLarge)
+      {
+        CheckReports(filter, name);
+        continue;
+      }
+      CheckAborts(filter, name);
+      filter->Modified();
+      filter->Update(); // for the next one
+    }
+  }
+  return failures > 0;
+}
