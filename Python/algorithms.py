@@ -125,7 +125,7 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
         self._report("WarningEvent", "DisplayWarningText", "Warning", words)
 
     def _report(self, event, display, kind, words):
-        text = f"{kind}: {self.TITLE}: {words}"
+        text = f"{kind}: {words} ({self.TITLE})"  # ParaView shows the beginning alone at first
         if self.HasObserver(event):
             self.InvokeEvent(event, text)
         else:
