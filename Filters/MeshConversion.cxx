@@ -240,7 +240,8 @@ TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
 {
   if (input->GetNumberOfStrips() > 0)
   {
-    throw Error("The input has triangle strips; pass it through vtkTriangleFilter first.");
+    throw Error("The input has triangle strips; pass it through vtkTriangleFilter (in ParaView: "
+                "Triangulate) first.");
   }
   vtkCellArray* polygons = input->GetPolys();
   const vtkIdType count = polygons->GetNumberOfCells();
@@ -263,7 +264,7 @@ TrianglesOfDataSet ViewTriangles(vtkPolyData* input)
         throw Error("Cell " + std::to_string(firstCell + i) + " has " +
           std::to_string(polygons->GetCellSize(i)) +
           " points, but only triangles can be handled; pass the input through vtkTriangleFilter "
-          "first.");
+          "(in ParaView: Triangulate) first.");
       }
     }
   }

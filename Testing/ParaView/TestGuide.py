@@ -91,6 +91,16 @@ def boundary_elsewhere():
     return surface_messages(olinda(), Boundary=simple.Disk())
 
 
+@provokes("The faults are elsewhere")
+def faults_elsewhere():
+    return surface_messages(olinda(), Faults=simple.Disk())
+
+
+@provokes("The faults are points")
+def faults_are_points():
+    return surface_messages(olinda(), Faults=olinda())
+
+
 @provokes("The table has too few columns")
 def two_columns():
     table = simple.ProgrammableSource(OutputDataSetType="vtkTable", Script="""
@@ -110,6 +120,11 @@ def layers():
 def left_out():
     ground = simple.OpenDataFile(data("b9_ground.vtp"))
     return surface_messages(ground, "WarningEvent", GapTolerance=1)
+
+
+@provokes("Grid Delaunay 2D leaves nothing")
+def nothing_left():
+    return messages_of(simple.GridDelaunay2D(Input=olinda(), MaximumEdgeLength=50), "WarningEvent")
 
 
 @provokes("The cells are no triangles")
