@@ -6,13 +6,10 @@ ElevationPoints reads what read() reads; ReconstructElevationSurface makes of it
 reconstruct() makes of it. Both tell what they have done as text, and an error in one line.
 """
 
-import re
 import warnings
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkDataObject,
     vtkDataObjectTree,
@@ -23,120 +20,20 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
 from .clouds import antimeridian_note, cells_of, crs_of, faults_note, set_crs
-from .inputs import ELEVATION, cloud_of, data_sets_of, joined, lines_of, number_of_points
+from .inputs import cloud_of, data_sets_of, joined, lines_of, number_of_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .ranks import check_ranks, controller_of, shared
 from .reading import read, read_boundary, read_faults
 from .reconstruction import PROPERTIES, reconstruct
 from .report import counted, crs_name, main_counts, report_lines
-
-
-class Aborted(Exception):
-    """The user wants no result any more."""
-
-
-def in_panel(words):
-    """A message with the names that a panel has: --no-data 0 -> No Data 0."""
-
-    def title(found):
-        return found.group(1).replace("-", " ").replace("_", " ").title()
-
-    properties = "|".join(PROPERTIES)
-    words = re.sub(r"--([a-z][a-z-]*)", title, words)
-    return re.sub(rf"\b((?:{properties})(?= takes )|[a-z]+_edge_length)\b", title, words)
-
-
-def set_elevation(data):
-    """Adds z as the point array to colour by. Another array of this name gets another name."""
-    z = numpy.ascontiguousarray(vtk_to_numpy(data.GetPoints().GetData())[:, 2])
-    attributes = data.GetPointData()
-    old = attributes.GetArray(ELEVATION)
-    if old is not None:
-        attributes.RemoveArray(ELEVATION)
-        if old.GetNumberOfComponents() != 1 or not numpy.array_equal(vtk_to_numpy(old), z):
-            kept = old.NewInstance()
-            kept.DeepCopy(old)
-            kept.SetName(f"{ELEVATION} of the input")
-            attributes.AddArray(kept)
-    array = numpy_to_vtk(z, deep=True)
-    array.SetName(ELEVATION)
-    attributes.SetScalars(array)
-
-
-def set_words(data, name, lines):
-    """Writes lines of text into a field array."""
-    words = vtkStringArray()
-    words.SetName(name)
-    for line in lines:
-        words.InsertNextValue(line)
-    data.GetFieldData().AddArray(words)
-
-
-class TellingAlgorithm(VTKPythonAlgorithmBase):
-    """An algorithm that tells its user what it has done and why it cannot, each once."""
-
-    def __init__(self, inputs, outputs):
-        VTKPythonAlgorithmBase.__init__(
-            self, nInputPorts=inputs, nOutputPorts=outputs, outputType="vtkPolyData"
-        )
-        self._told = self._text = ""
-
-    def change(self, name, value):
-        """Sets an attribute, and marks the output as out of date where it differs."""
-        if getattr(self, name) != value:
-            setattr(self, name, value)
-            self.Modified()
-
-    def RequestData(self, request, inInfo, outInfo):
-        """Runs work(inInfo, outInfo), and shows the lines that it returns, or its error.
-
-        work() sets _text. Lines that were shown for the last output are not shown again.
-        """
-        self._text = ""
-        self.SetAbortExecute(0)
-        try:
-            told = self.work(inInfo, outInfo)
-        except Aborted:
-            return 1
-        except MemoryError:
-            return self.fail("there is not enough memory")
-        except (ElevationSurfaceError, ValueError, TypeError) as error:
-            return self.fail(in_panel(str(error)))
-        except Exception as error:  # pylint: disable=broad-except
-            return self.fail(f"this should not happen, please report it: {error!r}")
-        told = "\n".join(told)
-        if told not in ("", self._told):
-            vtkOutputWindow.GetInstance().DisplayText(told + "\n")
-        self._told = told
-        return 1
-
-    def fail(self, words):
-        """Reports an error as vtkErrorMacro() does. Returns what RequestData() is to return.
-
-        That is success, with empty output. After a failure the executive would add lines that tell
-        nothing, and ParaView would never update a picture of this output again.
-        """
-        self._report("ErrorEvent", "DisplayErrorText", "ERROR", words)
-        self._told = ""
-        return 1
-
-    def warn(self, words):
-        """Reports a warning as vtkWarningMacro() does."""
-        self._report("WarningEvent", "DisplayWarningText", "Warning", words)
-
-    def _report(self, event, display, kind, words):
-        text = f"{kind}: {words} ({self.TITLE})"  # ParaView shows the beginning alone at first
-        if self.HasObserver(event):
-            self.InvokeEvent(event, text)
-        else:
-            getattr(vtkOutputWindow.GetInstance(), display)(text + "\n")
-
-    def progress(self, words, fraction):
-        """Shows the progress of a step. Raises Aborted where the user does not want to wait."""
-        self.SetProgressText(words)
-        self.UpdateProgress(fraction)
-        if self.GetAbortExecute():
-            raise Aborted
+from .telling import (
+    TellingAlgorithm,
+    drop_elevation,
+    in_panel,
+    set_elevation,
+    set_words,
+    words_of,
+)
 
 
 class ElevationPoints(TellingAlgorithm):
@@ -365,7 +262,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
         """The Reconstruction of one data set, with notes on what looks wrong."""
         cloud = cloud_of(part, self._elevation_array, self._columns, self._keep_nulls)
         drop_elevation(cloud.points)
-        cloud.notes += notes_on(cloud, lines)
+        cloud.notes += words_of(cloud.points, "Recognised") + notes_on(cloud, lines)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ElevationSurfaceWarning)  # told by warn()
             result = reconstruct(
@@ -411,7 +308,9 @@ class ReconstructElevationSurface(TellingAlgorithm):
                 self.warn(in_panel(f"{name}: {note}" if name else note))
             for item, value in report_lines(result.report):
                 rows.append((name, item, in_panel(value)))
+        # Warnings, and what a reader has found out, have been shown already.
         shown = [in_panel(note) for result in results for note in result.notes]
+        shown += [line for one in results for line in words_of(one.cloud.points, "Recognised")]
         lines, last = [], ""
         for block, item, value in rows:
             if block != last:
@@ -427,15 +326,6 @@ class ReconstructElevationSurface(TellingAlgorithm):
             counts = [counted(len(results), "block")]
             counts += [f"{row[2].split()[0]} {row[1]}" for row in rows[:3] if row[1] != "unused"]
         return [f"{self.TITLE}: {', '.join(counts)}", *told]
-
-
-def drop_elevation(points):
-    """Takes the array Elevation away where it is nothing but z; set_elevation() makes it anew."""
-    array = points.GetPointData().GetArray(ELEVATION)
-    if array is not None and array.GetNumberOfComponents() == 1:
-        z = vtk_to_numpy(points.GetPoints().GetData())[:, 2]
-        if numpy.array_equal(vtk_to_numpy(array), z, equal_nan=True):
-            points.GetPointData().RemoveArray(ELEVATION)
 
 
 def notes_on(cloud, lines):

@@ -26,7 +26,6 @@ from .reading.columns import choose_columns
 from .reading.nulls import take_out
 from .reading.vtk_files import points_of_grid
 
-ELEVATION = "Elevation"
 SAMPLE = 3000  # rows of a table that tell its columns
 
 

@@ -96,6 +96,7 @@ of_table = simple.ReconstructElevationSurface(Input=table)
 of_file = simple.ReconstructElevationSurface(
     Input=simple.ElevationPoints(FileName=data_file("aegean_sea.csv")))
 check(same(fetch(of_table), fetch(of_file)), "a table gives the surface of its file")
+check("separated by commas" in information(of_file, "Report"), "what the reader found out is in the report")
 of_table.Columns = "2,1,3"
 check(numpy.array_equal(points(fetch(of_table))[0, :2], points(fetch(of_file))[0, 1::-1]),
       "columns of a table can be chosen")

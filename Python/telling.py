@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the algorithms of this package have in common: how they tell what they have done, and how data
+sets carry words and elevations."""
+
+import re
+
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringArray
+
+from .messages import ElevationSurfaceError
+from .reconstruction import PROPERTIES
+
+ELEVATION = "Elevation"
+
+
+class Aborted(Exception):
+    """The user wants no result any more."""
+
+
+def in_panel(words):
+    """A message with the names that a panel has: --no-data 0 -> No Data 0."""
+
+    def title(found):
+        return found.group(1).replace("-", " ").replace("_", " ").title()
+
+    properties = "|".join(PROPERTIES)
+    words = re.sub(r"--([a-z][a-z-]*)", title, words)
+    return re.sub(rf"\b((?:{properties})(?= takes )|[a-z]+_edge_length)\b", title, words)
+
+
+def set_elevation(data):
+    """Adds z as the point array to colour by. Another array of this name gets another name."""
+    z = numpy.ascontiguousarray(vtk_to_numpy(data.GetPoints().GetData())[:, 2])
+    attributes = data.GetPointData()
+    old = attributes.GetArray(ELEVATION)
+    if old is not None:
+        attributes.RemoveArray(ELEVATION)
+        if old.GetNumberOfComponents() != 1 or not numpy.array_equal(vtk_to_numpy(old), z):
+            kept = old.NewInstance()
+            kept.DeepCopy(old)
+            kept.SetName(f"{ELEVATION} of the input")
+            attributes.AddArray(kept)
+    array = numpy_to_vtk(z, deep=True)
+    array.SetName(ELEVATION)
+    attributes.SetScalars(array)
+
+
+def drop_elevation(points):
+    """Takes the array Elevation away where it is nothing but z; set_elevation() makes it anew."""
+    array = points.GetPointData().GetArray(ELEVATION)
+    if array is not None and array.GetNumberOfComponents() == 1:
+        z = vtk_to_numpy(points.GetPoints().GetData())[:, 2]
+        if numpy.array_equal(vtk_to_numpy(array), z, equal_nan=True):
+            points.GetPointData().RemoveArray(ELEVATION)
+
+
+def set_words(data, name, lines):
+    """Writes lines of text into a field array."""
+    words = vtkStringArray()
+    words.SetName(name)
+    for line in lines:
+        words.InsertNextValue(line)
+    data.GetFieldData().AddArray(words)
+
+
+def words_of(data, name):
+    """The lines of a field array, as set_words() writes them; none where there is no such array."""
+    words = data.GetFieldData().GetAbstractArray(name)
+    if not isinstance(words, vtkStringArray):
+        return []
+    return [words.GetValue(i) for i in range(words.GetNumberOfValues())]
+
+
+class TellingAlgorithm(VTKPythonAlgorithmBase):
+    """An algorithm that tells its user what it has done and why it cannot, each once."""
+
+    def __init__(self, inputs, outputs):
+        VTKPythonAlgorithmBase.__init__(
+            self, nInputPorts=inputs, nOutputPorts=outputs, outputType="vtkPolyData"
+        )
+        self._told = self._text = ""
+
+    def change(self, name, value):
+        """Sets an attribute, and marks the output as out of date where it differs."""
+        if getattr(self, name) != value:
+            setattr(self, name, value)
+            self.Modified()
+
+    def RequestData(self, request, inInfo, outInfo):
+        """Runs work(inInfo, outInfo), and shows the lines that it returns, or its error.
+
+        work() sets _text. Lines that were shown for the last output are not shown again.
+        """
+        self._text = ""
+        self.SetAbortExecute(0)
+        try:
+            told = self.work(inInfo, outInfo)
+        except Aborted:
+            return 1
+        except MemoryError:
+            return self.fail("there is not enough memory")
+        except (ElevationSurfaceError, ValueError, TypeError) as error:
+            return self.fail(in_panel(str(error)))
+        except Exception as error:  # pylint: disable=broad-except
+            return self.fail(f"this should not happen, please report it: {error!r}")
+        told = "\n".join(told)
+        if told not in ("", self._told):
+            vtkOutputWindow.GetInstance().DisplayText(told + "\n")
+        self._told = told
+        return 1
+
+    def fail(self, words):
+        """Reports an error as vtkErrorMacro() does. Returns what RequestData() is to return.
+
+        That is success, with empty output. After a failure the executive would add lines that tell
+        nothing, and ParaView would never update a picture of this output again.
+        """
+        self._report("ErrorEvent", "DisplayErrorText", "ERROR", words)
+        self._told = ""
+        return 1
+
+    def warn(self, words):
+        """Reports a warning as vtkWarningMacro() does."""
+        self._report("WarningEvent", "DisplayWarningText", "Warning", words)
+
+    def _report(self, event, display, kind, words):
+        text = f"{kind}: {words} ({self.TITLE})"  # ParaView shows the beginning alone at first
+        if self.HasObserver(event):
+            self.InvokeEvent(event, text)
+        else:
+            getattr(vtkOutputWindow.GetInstance(), display)(text + "\n")
+
+    def progress(self, words, fraction):
+        """Shows the progress of a step. Raises Aborted where the user does not want to wait."""
+        self.SetProgressText(words)
+        self.UpdateProgress(fraction)
+        if self.GetAbortExecute():
+            raise Aborted
