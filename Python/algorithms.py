@@ -6,6 +6,7 @@ ElevationPoints reads what read() reads; ReconstructElevationSurface makes of it
 reconstruct() makes of it. Both tell what they have done as text, and an error in one line.
 """
 
+import re
 import warnings
 
 import numpy
@@ -24,7 +25,7 @@ from .inputs import cloud_of, data_sets_of, joined, lines_of, number_of_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .ranks import check_ranks, controller_of, shared
 from .reading import read, read_boundary, read_faults
-from .reconstruction import PROPERTIES, reconstruct
+from .reconstruction import PROPERTIES, STEPS, reconstruct
 from .report import counted, crs_name, main_counts, report_lines
 from .telling import (
     TellingAlgorithm,
@@ -250,9 +251,8 @@ class ReconstructElevationSurface(TellingAlgorithm):
             try:
                 results.append(self.result_of(part, lines))
             except (ElevationSurfaceError, ValueError) as error:
-                about = getattr(error, "about", "points")
-                words = [word for word in (name, about) if word not in ("", "points")]
-                raise type(error)(": ".join([*words, str(error)])) from None
+                words = of_panel(str(error), getattr(error, "about", "points"))
+                raise type(error)(f"{name}: {words}" if name else words) from None
         if not results:
             raise ElevationSurfaceError("the input has no points")
         self.put(data, parts, results, outputs)
@@ -326,6 +326,12 @@ class ReconstructElevationSurface(TellingAlgorithm):
             counts = [counted(len(results), "block")]
             counts += [f"{row[2].split()[0]} {row[1]}" for row in rows[:3] if row[1] != "unused"]
         return [f"{self.TITLE}: {', '.join(counts)}", *told]
+
+
+def of_panel(words, about):
+    """A message of a filter without its step; lines that the panel calls faults are constraints there."""
+    words = re.sub(rf"^({'|'.join(STEPS.values())}): ", "", words)
+    return re.sub(r"\bconstraint(s?)\b", r"fault\1", words) if about == "faults" else words
 
 
 def notes_on(cloud, lines):

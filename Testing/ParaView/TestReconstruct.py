@@ -154,7 +154,10 @@ line = simple.Line(Point1=[-0.5, -0.5, 0], Point2=[0.5, -0.5, 0], Resolution=3)
 wrong = simple.ReconstructElevationSurface(Input=plane)
 for change, expected in (
     ({"Boundary": line}, "not closed"),
-    ({"Boundary": None, "MaximumEdgeLength": 1e-9}, "larger Maximum Edge Length"),
+    ({"Boundary": simple.Disk(OuterRadius=1e4, InnerRadius=9e3)}, "The boundary encloses no triangle"),
+    ({"Boundary": None, "Faults": cloud}, "The faults have no line and no polygon"),
+    ({"Faults": simple.Line(Point1=[80, 80, 0], Point2=[90, 80, 0])}, "No fault meets the points"),
+    ({"Faults": None, "MaximumEdgeLength": 1e-9}, "larger Maximum Edge Length"),
     ({"MaximumEdgeLength": 0, "Spacing": -1}, "Spacing takes a number of 0 or more"),
     ({"Spacing": 0, "ElevationArray": "Depth"}, "no point array named Depth"),
     ({"ElevationArray": "", "Input": simple.Line()}, "on one line"),
