@@ -20,10 +20,11 @@ from mesh_rules import findings, number_of_border_edges  # noqa: E402,F401
 FAILURES = []
 
 
-def start(place=lambda plugin, folder: plugin):
+def start(place=lambda plugin, folder: plugin, remote=False):
     """Reads the command line and loads the plugin.
 
-    place  makes the file to load of the built plugin and the folder for what the test writes
+    place   makes the file to load of the built plugin and the folder for what the test writes
+    remote  whether the server loads it, to which the script has connected
     Returns the folder of the data and the folder for what the test writes.
     """
     parser = argparse.ArgumentParser()
@@ -33,7 +34,7 @@ def start(place=lambda plugin, folder: plugin):
     options = parser.parse_args()
     simple._DisableFirstRenderCameraReset()
     os.makedirs(options.temporary, exist_ok=True)
-    simple.LoadPlugin(place(options.plugin, options.temporary), remote=False)
+    simple.LoadPlugin(place(options.plugin, options.temporary), remote=remote)
     return os.path.abspath(options.data), options.temporary
 
 

@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A client and a server of two ranks: points on both ranks give empty output and an error that the
+client sees; on one rank, where Aggregate Dataset brings them, they give the surface. The script starts
+the server itself, by the command after "--server", to which it adds a port.
+"""
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+
+split = sys.argv.index("--server")
+SERVER = sys.argv[split + 1:]
+sys.argv = sys.argv[:split]
+
+from paraview import simple  # noqa: E402
+from plugin_testing import FAILURES, check, check_equal, start  # noqa: E402
+
+ATTEMPTS = 3
+# pvpython has made itself a rank, which mpirun must not see.
+ENVIRONMENT = {name: value for name, value in os.environ.items()
+               if not name.startswith(("OMPI_", "PMIX_", "OPAL_", "ORTE_", "PMI_"))}
+
+
+def launch(port):
+    """Starts the server. Returns it when it waits for a client, or None."""
+    server = subprocess.Popen(SERVER + ["--server-port=%d" % port], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, start_new_session=True,
+                              env=ENVIRONMENT)
+    said = []
+    for line in server.stdout:
+        said.append(line)
+        if "Accepting connection" in line:
+            # What it says later is read, so that it never waits for a full pipe.
+            threading.Thread(target=lambda: said.extend(server.stdout), daemon=True).start()
+            return server, said
+    stop(server)
+    print("no server on port %d: %s" % (port, "".join(said)))
+    return None, said
+
+
+def stop(server):
+    if server.poll() is None:
+        os.killpg(server.pid, signal.SIGTERM)
+    try:
+        server.wait(10)
+    except subprocess.TimeoutExpired:
+        os.killpg(server.pid, signal.SIGKILL)
+        server.wait()
+
+
+def free_port():
+    with socket.socket() as free:
+        free.bind(("localhost", 0))
+        return free.getsockname()[1]
+
+
+def cells(source, port=0):
+    source.UpdatePipeline()
+    return source.GetDataInformation(port).GetNumberOfCells()
+
+
+server = None
+for _ in range(ATTEMPTS):
+    port = free_port()
+    server, said = launch(port)
+    if server:
+        break
+check(server, "a server of two ranks starts")
+if server:
+    try:
+        simple.Connect("localhost", port)
+        start(remote=True)
+        sphere = simple.Sphere(ThetaResolution=60, PhiResolution=40)  # of which each rank makes a part
+        check(cells(sphere) > 4000, "the server makes a sphere")
+        spread = simple.GridDelaunay2D(Input=sphere)
+        check_equal(cells(spread), 0, "triangles of points on two ranks")
+        together = simple.AggregateDataset(Input=sphere)
+        together.NumberOfTargetProcesses = 1
+        surface = simple.GridDelaunay2D(Input=together)
+        check(cells(surface) > 1000, "triangles of points on one rank")
+        filled = simple.FillElevationHoles(Input=simple.TrimOutwardTriangles(Input=surface))
+        check(cells(filled) > 1000, "triangles after the chain of filters")
+        simple.Disconnect()
+    finally:
+        stop(server)
+    text = "".join(said)
+    check("Aggregate Dataset" in text, "the server tells what to do: %s" % text[-2000:])
+
+print("%d checks failed" % len(FAILURES))
+sys.stdout.flush()
+os._exit(1 if FAILURES else 0)  # the client would wait for the server that is gone
