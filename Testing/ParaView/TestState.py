@@ -5,7 +5,7 @@ import os
 
 from paraview import simple
 
-from plugin_testing import check, check_equal, fetch, finish, information, screenshot, start
+from plugin_testing import check, fetch, finish, information, screenshot, start
 
 data_folder, temporary_folder = start()
 state = os.path.join(os.path.dirname(data_folder), "Plugin", "ElevationSurface.pvsm")
@@ -14,7 +14,7 @@ simple.LoadState(state, data_directory=data_folder)
 surface = simple.FindSource("Surface of Olinda")
 check(surface is not None, "the state has the surface")
 check(fetch(surface).GetNumberOfPoints() > 10266, "the state finds its data, and holes are filled")
-check_equal(information(surface, "Report").split()[:2], ["points", "10,266"], "the report")
+check("10,266 read" in information(surface, "Report"), "the report")
 
 view = simple.GetActiveViewOrCreate("RenderView")
 pixels = screenshot(os.path.join(temporary_folder, "ParaViewState.png"), view).astype(int)
