@@ -29,7 +29,7 @@ NO_TABLES = (
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
 NO_NUMBERS = (
     (
-        r"\d[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
+        r"(?<!\w)\d{1,3}[,.' ]\d{3}[,.' ]\d{3}|\d,\d{3}\.\d|\d\.\d{3},\d|" + BLANK_IN_NUMBER,
         "marks between thousands",
     ),
     (r"\d\s*(\u00b0|\u00ba|d)\s*\d+\s*'", "degrees, minutes and seconds"),

@@ -491,6 +491,15 @@ class Doubts(Tables):
                 notes = " ".join(self.read(head + "\n" + rows).notes)
                 self.assertEqual("in metres and z is in feet" in notes, told, notes)
 
+    def test_the_columns_are_always_told(self):
+        for head in ("x y z\n", ""):
+            cloud = self.read(head + "1.5 2.5 3\n2.5 7 4\n3 1 5\n")
+            self.assertIn("x, y, z in columns 1, 2, 3", cloud.notes[0])
+
+    def test_a_name_before_large_numbers_is_no_mark_between_thousands(self):
+        with self.assertRaisesRegex(FileError, "no line holds 3 numbers; the most is 2"):
+            self.read("Well,Easting,Northing\nW0,100,300\nW1,107,301\nW20,140,400\n")
+
     def test_two_columns_named_z_are_told_or_refused(self):
         rows = "5.5;7.5;121.5;122.5\n6.5;7.75;123.5;124.5\n"
         self.assertIn("3 (Höhe_alt) and 4 (Höhe_neu) may all be z",
