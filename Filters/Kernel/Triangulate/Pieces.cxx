@@ -21,7 +21,9 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   }
   // The centre from a, and a bound of its error: of each product a few units in the last place.
   constexpr double unit = 32.0 * std::numeric_limits<double>::epsilon();
-  constexpr double smallest = 1e-250; // below it, products may have lost digits
+  // With d above it, the radius is above 1e-101, and what products lose below 1e-308 shifts the centre
+  // by less than 1e-122: far less than the rounding that is allowed for.
+  constexpr double smallest = 1e-200;
   const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
   const double d = 2.0 * (bx * cy - by * cx);
   const double errorOfD = unit * (std::fabs(bx * cy) + std::fabs(by * cx));

@@ -16,6 +16,10 @@
  * their two seams, and what is settled then is what lies in the two cells together. Level by level
  * this gives all triangles, while only seams are passed on.
  *
+ * It rests on the rule for points on one circle, the fan of the lowest one: it keeps a triangle when
+ * other points of its circle go. For among fewer points its lowest corner still is the lowest, and its
+ * other two are still neighbours on the circle.
+ *
  * The seam of a cell with m evenly spread points has some multiple of sqrt(m) points.
  */
 #ifndef elevation_Triangulate_Pieces_h

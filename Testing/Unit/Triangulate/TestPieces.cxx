@@ -230,3 +230,20 @@ TEST(Cell, HoldsNoCircleThatLeavesIt)
   }
   EXPECT_GT(held, 3000);
 }
+
+TEST(Cell, HoldsNoCircleWhoseProductsUnderflow)
+{
+  int held = 0;
+  for (int exponent = -320; exponent <= 150; ++exponent)
+  {
+    const double s = std::pow(10.0, exponent);
+    const Point2 a{ 0.0, 0.0 }, b{ s, 0.0 }, c{ 0.0, s }; // the circle reaches to x = -0.207 s
+    Cell cell{ { -1e-3 * s, -1e200 }, { 1e200, 1e200 } };
+    EXPECT_FALSE(cell.HoldsCircle(a, b, c)) << s;
+    cell.Low.X = -0.2071 * s;
+    EXPECT_FALSE(cell.HoldsCircle(a, b, c)) << s;
+    cell.Low.X = -0.2072 * s;
+    held += cell.HoldsCircle(a, b, c) ? 1 : 0;
+  }
+  EXPECT_GT(held, 200);
+}
