@@ -27,7 +27,19 @@ def numbers(text):
     """The numbers that a text of bytes begins with."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
-        return numpy.fromstring(text, sep=" ") if text.strip() else numpy.empty(0)
+        try:
+            return numpy.fromstring(text, sep=" ") if text.strip() else numpy.empty(0)
+        except ValueError:  # newer NumPys take no text that goes on with something else
+            return numpy.array(list(floats(text.split())))
+
+
+def floats(words):
+    """The words as numbers, up to the first that is none."""
+    for word in words:
+        try:
+            yield float(word)
+        except ValueError:
+            return
 
 
 def check_count(path, found, count):

@@ -185,7 +185,7 @@ def read_points(path, options):
     cloud = Cloud(make_points(points[:count], copy=False), crs=header.crs)
     cloud.notes.append(
         f"LAS {header.version[0]}.{header.version[1]}, point format {header.kind}; classes {shown}"
-        + ("" if options.classes else " (see --classes)" * (numpy.count_nonzero(of_class) > 1))
+        + ("" if options.classes else " (see --classes)" * bool(numpy.count_nonzero(of_class) > 1))
     )
     if withheld:
         cloud.left_out["points marked as withheld"] = withheld

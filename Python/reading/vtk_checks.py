@@ -10,12 +10,11 @@ of its own first.
 import math
 import os
 import re
-import warnings
 
-import numpy
 from vtkmodules.vtkCommonCore import vtkSMPTools
 
 from ..messages import FileError
+from .horizons import numbers
 
 TYPES = {"char": 1, "short": 2, "int": 4, "long": 8, "float": 4, "double": 8, "vtkidtype": 4}
 TYPES.update({"vtktypeint64": 8, "vtktypeuint64": 8})
@@ -171,6 +170,4 @@ def why_no_legacy(path):
 
 def numbers_in(text):
     """How many numbers a text begins with."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
-        return len(numpy.fromstring(text, sep=" ")) if text.strip() else 0
+    return len(numbers(text))
