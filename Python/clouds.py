@@ -22,6 +22,7 @@ class Cloud:
     left_out {reason: count} of what the file holds but is no point, as pixels without data
     lines    for text files, the line of each point in the file, else None
     crs      the coordinate reference system as WKT or AUTHORITY:CODE, or None where it is not known
+    largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
     """
 
     def __init__(self, points, notes=(), left_out=None, lines=None, crs=None):
@@ -30,6 +31,7 @@ class Cloud:
         self.left_out = dict(left_out or {})
         self.lines = lines
         self.crs = crs
+        self.largest_cell = 0.0
 
 
 def three_columns(columns):

@@ -20,11 +20,11 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
-from .clouds import Cloud, ReadOptions, crs_of, make_points
+from .clouds import Cloud, ReadOptions, crs_of, keep_points, make_points
 from .messages import ElevationSurfaceError
 from .reading.columns import choose_columns
 from .reading.nulls import take_out
-from .reading.vtk_files import points_of_grid
+from .reading.vtk_files import hidden_points, points_of_grid
 
 SAMPLE = 3000  # rows of a table that tell its columns
 
@@ -99,7 +99,12 @@ def cloud_of_points(data, array):
         xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
         xyz[:, 2] = vtk_to_numpy(values)
         points.SetPoints(make_points(xyz).GetPoints())
-    return Cloud(points, crs=crs_of(data))
+    cloud = Cloud(points, crs=crs_of(data))
+    hidden = hidden_points(data)
+    if hidden.any():
+        cloud.left_out["hidden points"] = int(numpy.count_nonzero(hidden))
+        keep_points(cloud, numpy.flatnonzero(~hidden))
+    return cloud
 
 
 # ---- tables -----------------------------------------------------------------------------------

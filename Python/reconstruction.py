@@ -439,6 +439,10 @@ def run_chain(
             result.why_opened = "as given"
         else:
             length, result.why_opened = length_to_open(last.GetOutput(), boundary is not None)
+            of_cell = CELL_DIAGONALS * cloud.largest_cell
+            if 0 < length < of_cell:
+                length = of_cell
+                result.why_opened = f"{CELL_DIAGONALS:g} diagonals of the grid's largest cell"
             filling.SetMaximumEdgeLength(length)
         result.fill = run("fill", filling)
     return result

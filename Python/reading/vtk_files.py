@@ -9,6 +9,7 @@ import warnings
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
+    vtkDataSetAttributes,
     vtkImageData,
     vtkPointSet,
     vtkPolyData,
@@ -193,18 +194,56 @@ def points_of_grid(path, grid):
     columns, rows, layers = grid.GetDimensions()
     if layers != 1:
         raise FileError(f"{path}: is a grid of {layers} layers; one in the x,y plane is needed")
-    if isinstance(grid, vtkImageData):
-        first = grid.GetPoint(0)
-        x = first[0] + grid.GetSpacing()[0] * numpy.arange(columns)
-        y = first[1] + grid.GetSpacing()[1] * numpy.arange(rows)
-    else:
-        x = vtk_to_numpy(grid.GetXCoordinates()).astype("f8")
-        y = vtk_to_numpy(grid.GetYCoordinates()).astype("f8")
+    x, y = places_of_image(path, grid) if isinstance(grid, vtkImageData) else places_of(grid)
     z = vtk_to_numpy(scalars).reshape(rows, columns)
-    x, y = numpy.meshgrid(x, y)
+    hidden = hidden_nodes(grid)
+    if hidden.any():
+        z = numpy.where(hidden, numpy.nan, z)
     cloud = points_of_raster(path, x, y, z)
     cloud.notes.insert(0, f"elevation: point array {scalars.GetName() or '(unnamed)'}")
+    if isinstance(grid, vtkRectilinearGrid) and rows > 1 and columns > 1:
+        cloud.largest_cell = float(numpy.hypot(*(abs(numpy.diff(v)).max() for v in (x[0], y[:, 0]))))
     return cloud
+
+
+def places_of(grid):
+    """x and y of the nodes of a rectilinear grid, (rows, columns) each."""
+    return numpy.meshgrid(
+        vtk_to_numpy(grid.GetXCoordinates()).astype("f8"),
+        vtk_to_numpy(grid.GetYCoordinates()).astype("f8"),
+    )
+
+
+def places_of_image(path, grid):
+    """x and y of the nodes of an image, which may be turned, (rows, columns) each."""
+    matrix, spacing = grid.GetDirectionMatrix(), grid.GetSpacing()
+    steps = [[matrix.GetElement(k, axis) * spacing[axis] for k in range(3)] for axis in (0, 1)]
+    if steps[0][2] or steps[1][2]:
+        raise FileError(f"{path}: is an image that leans; one in the x,y plane is needed")
+    first, (columns, rows, _) = grid.GetPoint(0), grid.GetDimensions()
+    across, up = numpy.meshgrid(numpy.arange(columns), numpy.arange(rows))
+    return [first[k] + steps[0][k] * across + steps[1][k] * up for k in (0, 1)]
+
+
+def hidden_nodes(grid):
+    """(rows, columns) of bool: the nodes that are blanked, or of which all cells are."""
+    columns, rows, _ = grid.GetDimensions()
+    hidden = hidden_points(grid).reshape(rows, columns)
+    ghosts = grid.GetCellData().GetArray(vtkDataSetAttributes.GhostArrayName())
+    if ghosts is not None and rows > 1 and columns > 1:
+        blank = vtk_to_numpy(ghosts).reshape(rows - 1, columns - 1) & vtkDataSetAttributes.HIDDENCELL
+        around = numpy.pad(blank == 0, 1)
+        shown = around[:-1, :-1] | around[:-1, 1:] | around[1:, :-1] | around[1:, 1:]
+        hidden = hidden | ~shown
+    return hidden
+
+
+def hidden_points(data):
+    """(n,) of bool: the points that are blanked."""
+    ghosts = data.GetPointData().GetArray(vtkDataSetAttributes.GhostArrayName())
+    if ghosts is None:
+        return numpy.zeros(data.GetNumberOfPoints(), dtype=bool)
+    return (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT) != 0
 
 
 def read_lines(path, singular):
