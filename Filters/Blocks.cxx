@@ -125,7 +125,8 @@ void AddPlaces(vtkDataObjectTree* input, const std::vector<vtkDataObjectTree*>& 
       AddPlaces(tree, ofChild, nameOfChild, pathOfChild, places);
       continue;
     }
-    Place place{ child, {}, nameOfChild, arePartitions ? path : pathOfChild };
+    Place place{ child, {}, nameOfChild, arePartitions ? path : pathOfChild,
+      arePartitions ? name : nameOfChild };
     for (vtkDataObjectTree* output : outputs)
     {
       const auto data = vtkSmartPointer<vtkPolyData>::New();
@@ -142,7 +143,7 @@ std::vector<Place> ListPlaces(vtkDataObject* input, vtkInformationVector* output
   auto* const tree = vtkDataObjectTree::SafeDownCast(input);
   if (!tree)
   {
-    Place whole{ input, {}, "", "" };
+    Place whole{ input, {}, "", "", "" };
     for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
     {
       whole.Outputs.push_back(vtkPolyData::GetData(outputs, port));

@@ -25,8 +25,12 @@ struct Place
   vtkDataObject* Input;
   std::vector<vtkPolyData*> Outputs;
   std::string Name; ///< for messages: 'Block 2 ("north")'; empty where the input is no composite
-  /** Of the block; the partitions of a vtkPartitionedDataSet, of one surface, have the same. */
+  /**
+   * Of the block; the partitions of a vtkPartitionedDataSet have the same. On one rank each of them
+   * is a surface of its own; on several, they are taken for parts of one, which must not be spread.
+   */
   std::string Path;
+  std::string NameOfBlock; ///< without the partition; empty for the whole input
 };
 
 /**

@@ -60,6 +60,12 @@ bool HasPoints(const Place& place)
   return points && points->GetNumberOfPoints() > 0;
 }
 
+/** Whether it can have no points: it is an image, say, and an error. */
+bool IsOtherType(const Place& place)
+{
+  return !vtkPointSet::SafeDownCast(place.Input);
+}
+
 /** Messages as one, the first of them where they are many. */
 std::string Joined(const std::vector<std::string>& messages)
 {
@@ -104,7 +110,7 @@ std::vector<vtkIdType> ListOccupied(const std::vector<Place>& places, const Rank
   {
     if (IdOf(place.Path) == *twice)
     {
-      name = place.Name.substr(0, place.Name.find(", partition"));
+      name = place.NameOfBlock;
     }
   }
   throw Error("The points of " + (name.empty() ? "the input" : name) + " are on " +
@@ -141,6 +147,11 @@ int KernelCall::Run(const std::function<void(Block&)>& body)
     const vtkSmartPointer<vtkPolyData> second = this->ShareSecond(ranks);
     this->Occupied = ListOccupied(places, ranks);
     this->RunPlaces(places, ranks, second, body);
+    if (this->IsFirst && places.empty() && this->Occupied.empty() && ranks.Own() == 0)
+    {
+      this->Warnings.push_back("The input has no data set in any of its blocks, so the output has "
+                               "none.");
+    }
   }
   catch (const std::exception& error)
   {
@@ -198,9 +209,9 @@ vtkSmartPointer<vtkPolyData> KernelCall::ShareSecond(const Ranks& ranks) const
   return own ? ranks.Gather(own) : nullptr;
 }
 
-bool KernelCall::IsToBeWarned(const Place& place, const Ranks& ranks) const
+bool KernelCall::IsToBeToldOf(const Place& place, const Ranks& ranks) const
 {
-  return HasPoints(place) ||
+  return HasPoints(place) || IsOtherType(place) ||
     (ranks.Own() == 0 &&
       !std::binary_search(this->Occupied.begin(), this->Occupied.end(), IdOf(place.Path)));
 }
@@ -221,10 +232,10 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
   bool isAborted = false;
   for (const Place& place : places)
   {
-    // A rank without points has the rest of the outputs, and leaves the warnings to the others.
-    const bool isToBeWarned = this->IsToBeWarned(place, ranks);
+    // A rank without points has the rest of the outputs, and leaves the messages to the others.
+    const bool isToBeTold = this->IsToBeToldOf(place, ranks);
     const double next = done + workOf(place);
-    Block block{ nullptr, isToBeWarned ? second : nullptr, place.Outputs,
+    Block block{ nullptr, isToBeTold ? second : nullptr, place.Outputs,
       Part(progress, done / all, next / all), {} };
     done = next;
     std::string error;
@@ -238,6 +249,10 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
       break;
     }
     const std::string name = place.Name.empty() ? "" : place.Name + ": ";
+    if (!isToBeTold)
+    {
+      continue;
+    }
     if (!error.empty())
     {
       this->Errors.push_back(name + error);
@@ -245,10 +260,7 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
     }
     for (const std::string& warning : block.Warnings)
     {
-      if (isToBeWarned)
-      {
-        this->Warnings.push_back(name + warning);
-      }
+      this->Warnings.push_back(name + warning);
     }
   }
   if (isAborted)
@@ -318,6 +330,12 @@ void KernelCall::ShareResults(const Ranks& ranks, bool isAborted)
   {
     *this->Maxima[i] = maxima[i];
   }
+}
+
+bool IsToBeTold(vtkPolyData* meshWithoutTriangles)
+{
+  return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
+    !meshWithoutTriangles->GetFieldData()->HasArray("UnusedPointIds");
 }
 
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)

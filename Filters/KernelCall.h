@@ -43,8 +43,8 @@ struct Block
  * Runs the body of a RequestData for each block of the input.
  *
  * Progress rises by the number of points of the blocks. When the body throws, the outputs of the
- * block are emptied; after an abort, all are. What it throws, and the warnings, are reported as one
- * error and one warning of the filter, which name the blocks.
+ * block are emptied; after an abort, all of this rank are. What it throws, and the warnings, are
+ * reported as one error and one warning of the filter; these name the blocks of a composite.
  *
  * Where several ranks take part (Ranks), all of them meet here, whatever blocks each has: before
  * the blocks, to find points of one block on several ranks, which is an error on all of them, and
@@ -57,6 +57,8 @@ public:
     vtkInformationVector* outputs);
 
   std::string Second; ///< what messages call input 1
+  /** Whether to tell of a composite without any data set; the filter before has told the others. */
+  bool IsFirst = false;
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
   std::vector<vtkIdType*> Sums;
   std::vector<double*> Maxima;
@@ -71,7 +73,7 @@ public:
 private:
   void EmptyOutputs();
   vtkSmartPointer<vtkPolyData> ShareSecond(const Ranks& ranks) const;
-  bool IsToBeWarned(const Place& place, const Ranks& ranks) const;
+  bool IsToBeToldOf(const Place& place, const Ranks& ranks) const;
   void RunPlaces(const std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
     const std::function<void(Block&)>& body);
   std::string RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
@@ -84,6 +86,12 @@ private:
   std::vector<std::string> Errors, Warnings;
   std::vector<vtkIdType> Occupied; ///< numbers of the blocks with points, on any rank
 };
+
+/**
+ * Whether a mesh without triangles needs a warning. It needs none where the filter before has told
+ * why: a mesh without points comes of an error, and vtkGridDelaunay2D leaves its counts.
+ */
+bool IsToBeTold(vtkPolyData* meshWithoutTriangles);
 
 /** Adds a count to the field data, as an array of one value. */
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count);

@@ -4,12 +4,15 @@
 
 #include "MeshConversion.h"
 
+#include "vtkCellArray.h"
 #include "vtkCommunicator.h"
 #include "vtkExecutive.h"
+#include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -18,6 +21,45 @@
 
 namespace elevation
 {
+
+namespace
+{
+bool AreEqual(vtkPoints* one, vtkPoints* other)
+{
+  const vtkIdType count = one->GetNumberOfPoints();
+  bool isEqual = other->GetNumberOfPoints() == count;
+  for (vtkIdType i = 0; i < count && isEqual; ++i)
+  {
+    double p[3], q[3];
+    one->GetPoint(i, p);
+    other->GetPoint(i, q);
+    isEqual = std::equal(p, p + 3, q);
+  }
+  return isEqual;
+}
+
+bool AreEqual(vtkCellArray* one, vtkCellArray* other)
+{
+  const vtkIdType count = one->GetNumberOfCells();
+  bool isEqual = other->GetNumberOfCells() == count;
+  vtkNew<vtkIdList> ids, otherIds;
+  for (vtkIdType i = 0; i < count && isEqual; ++i)
+  {
+    one->GetCellAtId(i, ids);
+    other->GetCellAtId(i, otherIds);
+    isEqual = std::equal(ids->begin(), ids->end(), otherIds->begin(), otherIds->end());
+  }
+  return isEqual;
+}
+
+/** Whether both have the same points and cells; both have points. */
+bool AreEqual(vtkPolyData* one, vtkPolyData* other)
+{
+  return AreEqual(one->GetPoints(), other->GetPoints()) &&
+    AreEqual(one->GetVerts(), other->GetVerts()) && AreEqual(one->GetLines(), other->GetLines()) &&
+    AreEqual(one->GetPolys(), other->GetPolys()) && AreEqual(one->GetStrips(), other->GetStrips());
+}
+} // namespace
 
 Ranks::Ranks(vtkInformation* request, vtkInformationVector* outputs)
 {
@@ -91,6 +133,11 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
       if (this->Controller)
       {
         this->Controller->Broadcast(parts.back(), rank);
+      }
+      const auto isAsLast = [&](vtkPolyData* part) { return AreEqual(part, parts.back()); };
+      if (std::any_of(parts.begin(), parts.end() - 1, isAsLast))
+      {
+        parts.pop_back();
       }
     }
   }

@@ -33,7 +33,6 @@ public:
   Ranks(vtkInformation* request, vtkInformationVector* outputs);
 
   int Own() const;
-  bool AreSeveral() const { return this->Controller != nullptr; }
 
   /** The sums (largest values) over all ranks; the lengths are the same on all of them. */
   void Sum(std::vector<vtkIdType>& values) const;
@@ -43,7 +42,8 @@ public:
   std::vector<vtkIdType> Collect(const std::vector<vtkIdType>& values) const;
 
   /**
-   * The cells of all ranks, on all ranks.
+   * The cells of all ranks, on all ranks. What several ranks have as a whole, the same points and
+   * cells, counts once.
    * @param[in] local  may be nullptr
    * @return @a local itself where no other rank has points
    */

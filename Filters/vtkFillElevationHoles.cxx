@@ -244,10 +244,10 @@ void MakeReport(
 }
 
 /** A warning about holes that failed, and about contacts; empty if there are none. */
-std::string Complaint(const Mesh& mesh, const FillResult& patches)
+std::string Complaint(vtkPolyData* input, const Mesh& mesh, const FillResult& patches)
 {
   const Holes& holes = patches.Found;
-  if (mesh.NumberOfTriangles() == 0)
+  if (mesh.NumberOfTriangles() == 0 && elevation::IsToBeTold(input))
   {
     return "The input has no triangles, so there is nothing to fill. Points alone are triangulated "
            "first, by Grid Delaunay 2D.";
@@ -388,7 +388,7 @@ int vtkFillElevationHoles::RequestData(vtkInformation* request,
       elevation::AddCount(output->GetFieldData(), "NumberOfHoles", holes);
       elevation::AddCount(output->GetFieldData(), "NumberOfFilledHoles", filled);
     }
-    const std::string complaint = Complaint(mesh, patches);
+    const std::string complaint = Complaint(input, mesh, patches);
     if (!complaint.empty())
     {
       block.Warnings.push_back(complaint);

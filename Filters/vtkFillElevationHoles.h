@@ -84,8 +84,9 @@
  * cells other than triangles, triangles that are flat in x,y, an edge with more than two triangles,
  * cells that overlap in x,y. So does an invalid vtkCellArray, and a point or cell array whose
  * number of tuples is not that of the points or cells; the error names the array. A surface without
- * holes passes; an input without triangles passes with a warning. An abort also leaves empty
- * output, which counts as up to date: call Modified() to start again.
+ * holes passes; an input without triangles passes with a warning (none where it has no points, or
+ * vtkGridDelaunay2D has made it and told why). An abort also leaves empty output, which counts
+ * as up to date: call Modified() to start again.
  *
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs
  * of the same structure: each block (each partition) is filled on its own, and has its own holes
@@ -93,10 +94,11 @@
  * the others stay.
  *
  * On several ranks (processes), the triangles of a block must be on one of them; points on several
- * are an error on all ranks. Empty ranks have empty output and say nothing. Getters tell the counts
- * of all ranks. This holds where data are asked for in several pieces and
- * vtkMultiProcessController's global controller has several processes; all ranks have to update
- * then, as in ParaView.
+ * are an error on all ranks. Partitions of one vtkPartitionedDataSet are one block in this. Empty
+ * ranks have empty output and say nothing. Getters tell the counts of all ranks. This holds where
+ * data are asked for in several pieces and vtkMultiProcessController's global controller has
+ * several processes. All ranks have to update then, as in ParaView: where a source before the
+ * filter fails on one rank, VTK does not run the filter there, and the others wait for it for ever.
  *
  * Cost: linear in the size of the input and in the number of new points, plus sorting the border.
  *

@@ -407,6 +407,7 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
 {
   elevation::KernelCall call(this, request, inputVector, outputVector);
   call.Second = "constraints";
+  call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints, &this->NumberOfLattices };
   return call.Run([this](elevation::Block& block) {

@@ -68,10 +68,13 @@
  * stay.
  *
  * On several ranks (processes), the points of a block must be on one of them; points on several are
- * an error on all ranks. Empty ranks have empty output and say nothing. Constraints may be on other
- * ranks than the points, or spread over them: each rank gets them all. Getters tell the counts of
- * all ranks. This holds where data are asked for in several pieces and vtkMultiProcessController's
- * global controller has several processes; all ranks have to update then, as in ParaView.
+ * an error on all ranks. Partitions of one vtkPartitionedDataSet are one block in this. Empty ranks
+ * have empty output and say nothing. Constraints may be on other ranks than the points, or spread
+ * over them: each rank gets them all; those that are the same on several ranks count once. Getters
+ * tell the counts of all ranks. This holds where data are asked for in several pieces and
+ * vtkMultiProcessController's global controller has several processes. All ranks have to update
+ * then, as in ParaView: where a source before the filter fails on one rank, VTK does not run the
+ * filter there, and the others wait for it for ever.
  *
  * Warnings: fewer than three distinct points, or points all on one line, which give the points and
  * no triangle; a MaximumEdgeLength that leaves more than half of the points without a triangle (it

@@ -267,7 +267,7 @@ int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
     options.NumberOfThreads = this->NumberOfThreads;
     options.Monitor = trimming;
     Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
-    if (triangles.View.Count == 0)
+    if (triangles.View.Count == 0 && elevation::IsToBeTold(input))
     {
       block.Warnings.push_back("The input has no triangles, so there is nothing to trim. Points "
                                "alone are triangulated first, by Grid Delaunay 2D.");

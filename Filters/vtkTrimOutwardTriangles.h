@@ -81,11 +81,13 @@
  * boundary.
  *
  * On several ranks (processes), the triangles of a block must be on one of them; points on several
- * are an error on all ranks. Empty ranks have empty output and say nothing. A boundary may be on
- * other ranks than the triangles, or in pieces on several: each rank gets all of it. Getters tell
- * the counts of all ranks. This holds where data are asked for in several pieces and
- * vtkMultiProcessController's global controller has several processes; all ranks have to update
- * then, as in ParaView.
+ * are an error on all ranks. Partitions of one vtkPartitionedDataSet are one block in this. Empty
+ * ranks have empty output and say nothing. A boundary may be on other ranks than the triangles, or
+ * in pieces on several: each rank gets all of it; one that is the same on several ranks counts
+ * once. Getters tell the counts of all ranks. This holds where data are asked for in several pieces
+ * and vtkMultiProcessController's global controller has several processes. All ranks have to update
+ * then, as in ParaView: where a source before the filter fails on one rank, VTK does not run the
+ * filter there, and the others wait for it for ever.
  *
  * Guarantee (OutwardTest EXACT): all decisions are exact. The triangles of output 0 cover exactly
  * what is inside the boundary and covered by the mesh (apart from the rounding of crossings);
@@ -102,8 +104,9 @@
  * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
  * a ring of fewer than three points, edges or rings that cross each other, a boundary that encloses
  * no triangle; also an invalid vtkCellArray, and a point or cell array of an input whose number of
- * tuples is not that of the points or cells. A mesh without triangles passes with a warning, and
- * the lines of input 1 are ignored; so does a mesh in which no triangle is surface (all are outward
+ * tuples is not that of the points or cells. A mesh without triangles passes with a warning (none
+ * where it has no points, or vtkGridDelaunay2D has made it and told why), and the lines of input 1
+ * are ignored; so does a mesh in which no triangle is surface (all are outward
  * then). Where borders of the mesh coincide without common points, as between tiles, a ring that
  * passes there may be refused: merge the points, as vtkStaticCleanPolyData does. An abort also
  * leaves empty output, which counts as up to date: call Modified() to start again.

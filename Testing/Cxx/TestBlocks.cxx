@@ -18,6 +18,7 @@
 #include "vtkNew.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -25,7 +26,9 @@
 #include "vtkTrimOutwardTriangles.h"
 
 #include <cmath>
+#include <initializer_list>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -217,7 +220,7 @@ void TestMessages()
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->CopyStructure(vtkMultiBlockDataSet::SafeDownCast(delaunay->GetOutputDataObject(0)));
   blocks->SetBlock(0, BlockOf(delaunay, 0));
-  blocks->SetBlock(1, vtkSmartPointer<vtkPolyData>::New());
+  blocks->SetBlock(1, MakeCloud(50.0, 0));
   blocks->SetBlock(2, MakeRing(8.0, 3.0)); // a polygon of nine points
   vtkNew<vtkTest::ErrorObserver> observer;
   vtkNew<vtkFillElevationHoles> fill;
@@ -234,6 +237,58 @@ void TestMessages()
     "and so does the warning; it was: " + warning);
   Check(BlockOf(fill, 0)->GetNumberOfPolys() > 0 && BlockOf(fill, 2)->GetNumberOfPoints() == 0,
     "a block with an error is empty, the others are filled");
+}
+
+/** The messages of the three filters in a row. */
+std::vector<std::string> MessagesOfChain(vtkDataObject* input, double maximumEdgeLength = 0.0)
+{
+  std::vector<std::string> messages;
+  vtkNew<vtkCallbackCommand> note;
+  note->SetClientData(&messages);
+  note->SetCallback([](vtkObject*, unsigned long, void* data, void* text) {
+    static_cast<std::vector<std::string>*>(data)->emplace_back(static_cast<char*>(text));
+  });
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputDataObject(input);
+  delaunay->SetMaximumEdgeLength(maximumEdgeLength);
+  vtkNew<vtkTrimOutwardTriangles> trim;
+  trim->SetInputConnection(delaunay->GetOutputPort());
+  vtkNew<vtkFillElevationHoles> fill;
+  fill->SetInputConnection(trim->GetOutputPort());
+  for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{ delaunay, trim, fill })
+  {
+    filter->AddObserver(vtkCommand::ErrorEvent, note);
+    filter->AddObserver(vtkCommand::WarningEvent, note);
+  }
+  fill->Update();
+  return messages;
+}
+
+void TestChainTellsOnce()
+{
+  vtkNew<vtkPolyData> two;
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(0.0, 0.0, 0.0);
+  points->InsertNextPoint(1.0, 0.0, 0.0);
+  two->SetPoints(points);
+  const auto wrong = MakeCloud(0.0, 0);
+  vtkNew<vtkIdTypeArray> tooShort;
+  tooShort->SetName("TooShort");
+  tooShort->InsertNextValue(1);
+  wrong->GetPointData()->AddArray(tooShort);
+  vtkNew<vtkMultiBlockDataSet> nothing;
+  nothing->SetNumberOfBlocks(2);
+  const auto check = [](const std::vector<std::string>& messages, const std::string& part) {
+    Check(messages.size() == 1 && messages.front().find(part) != std::string::npos,
+      "one message with '" + part + "'; they were " + std::to_string(messages.size()) + ": " +
+        (messages.empty() ? "" : messages.front()));
+  };
+  check(MessagesOfChain(two), "the 2 input points");
+  check(MessagesOfChain(vtkNew<vtkPolyData>()), "the 0 input points");
+  check(MessagesOfChain(wrong), "TooShort");
+  check(MessagesOfChain(MakeCloud(0.0, 0), 0.01), "MaximumEdgeLength");
+  check(MessagesOfChain(nothing), "no data set");
+  Check(MessagesOfChain(MakeCloud(0.0, 0)).empty(), "a cloud passes in silence");
 }
 
 void TestProgressAndAbort()
@@ -277,6 +332,7 @@ int TestBlocks(int, char*[])
   TestPartitions();
   TestSecondInput();
   TestMessages();
+  TestChainTellsOnce();
   TestProgressAndAbort();
   return failures > 0;
 }
