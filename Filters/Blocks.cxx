@@ -5,6 +5,7 @@
 #include "Kernel/Base/Base.h"
 #include "MeshConversion.h"
 
+#include "vtkAlgorithm.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkDataObjectTree.h"
 #include "vtkFieldData.h"
@@ -17,6 +18,23 @@
 
 namespace elevation
 {
+
+int FillInput(int port, const char* typeOfInput0, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? typeOfInput0 : "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+int FillOutput(vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject");
+  return 1;
+}
 
 int MakeOutputs(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {

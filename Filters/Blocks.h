@@ -13,6 +13,7 @@
 #include <vector>
 
 class vtkDataObject;
+class vtkInformation;
 class vtkInformationVector;
 class vtkPolyData;
 
@@ -32,6 +33,12 @@ struct Place
   std::string Path;
   std::string NameOfBlock; ///< without the partition; empty for the whole input
 };
+
+/** For FillInputPortInformation: a type, or a composite. Input 1 is an optional vtkPolyData. */
+int FillInput(int port, const char* typeOfInput0, vtkInformation* info);
+
+/** For FillOutputPortInformation: what MakeOutputs() makes. */
+int FillOutput(vtkInformation* info);
 
 /**
  * For REQUEST_DATA_OBJECT: makes each output a composite of the class of the input, if that is one,

@@ -320,17 +320,14 @@ vtkFillElevationHoles::vtkFillElevationHoles()
 
 vtkFillElevationHoles::~vtkFillElevationHoles() = default;
 
-int vtkFillElevationHoles::FillInputPortInformation(int, vtkInformation* info)
+int vtkFillElevationHoles::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
-  return 1;
+  return elevation::FillInput(port, "vtkPolyData", info);
 }
 
 int vtkFillElevationHoles::FillOutputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject"); // see MakeOutputs()
-  return 1;
+  return elevation::FillOutput(info);
 }
 
 vtkTypeBool vtkFillElevationHoles::ProcessRequest(

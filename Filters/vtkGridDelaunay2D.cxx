@@ -27,6 +27,7 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <new>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -203,40 +204,59 @@ int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
   return isFloat ? VTK_FLOAT : VTK_DOUBLE;
 }
 
-/** Tells why there is no triangle, or why most points are without one. */
-void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
+/** Tells why most points are without a triangle, and advises a limit. */
+void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::DelaunayOptions options, const elevation::ConstrainedTriangulation& constrained,
   const Progress& progress, std::vector<std::string>& warnings)
 {
   const elevation::Triangulation& found = constrained.Result;
-  if (found.NumberOfHullPoints == 0)
-  {
-    warnings.push_back("No triangle was made: the " + std::to_string(points.Count) +
-      " input points are fewer than three distinct finite points, or all on one line.");
-    return;
-  }
   if (!(options.MaximumEdgeLength > 0.0))
   {
     return;
   }
   const std::size_t ids = points.Count + constrained.Added.size();
   const std::size_t vertices = ids - found.UnusedPoints.size();
-  const std::size_t missing = vertices - CountInTriangles(found.Triangles, ids, progress);
+  const std::size_t missing =
+    vertices - CountInTriangles(found.Triangles, ids, Part(progress, 0.0, 0.05));
   if (2 * missing <= vertices)
   {
     return;
   }
   std::ostringstream text;
   text << "MaximumEdgeLength is " << options.MaximumEdgeLength << ", and " << missing << " of "
-       << vertices << " points are left without a triangle, because the points are farther apart. ";
+       << vertices << " points are left without a triangle, because the points are farther apart.";
+  warnings.push_back(text.str());
   options.MaximumEdgeLength = 0.0;
   std::vector<std::string> again;
   const elevation::ConstrainedTriangulation full =
-    TriangulateWith(source, points, options, progress, again);
+    TriangulateWith(source, points, options, Part(progress, 0.05, 0.7), again);
+  const Progress last = Part(progress, 0.7, 1.0);
   const auto placeOf = [&](Index id) {
     return id < points.Count ? points.At(id) : full.Added[id - points.Count].Position;
   };
-  warnings.push_back(text.str() + AdviceOnLimit(full.Result.Triangles, ids, placeOf, progress));
+  warnings.back() += " " + AdviceOnLimit(full.Result.Triangles, ids, placeOf, last);
+}
+
+/** Tells why there is no triangle, or why most points are without one. */
+void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
+  const elevation::DelaunayOptions& options,
+  const elevation::ConstrainedTriangulation& constrained, const Progress& progress,
+  std::vector<std::string>& warnings)
+{
+  if (constrained.Result.NumberOfHullPoints == 0)
+  {
+    warnings.push_back("No triangle was made: the " + std::to_string(points.Count) +
+      " input points are fewer than three distinct finite points, or all on one line.");
+    return;
+  }
+  try
+  {
+    WarnOfLimit(source, points, options, constrained, progress, warnings);
+  }
+  catch (const std::bad_alloc&)
+  {
+    // The advice takes as much memory again. The triangles are there without it.
+  }
 }
 
 /** The array of the constraints that matches one of the input, or nullptr. */
@@ -362,19 +382,12 @@ vtkGridDelaunay2D::~vtkGridDelaunay2D() = default;
 
 int vtkGridDelaunay2D::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkPointSet" : "vtkPolyData");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
-  if (port == 1)
-  {
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return 1;
+  return elevation::FillInput(port, "vtkPointSet", info);
 }
 
 int vtkGridDelaunay2D::FillOutputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject"); // see MakeOutputs()
-  return 1;
+  return elevation::FillOutput(info);
 }
 
 vtkTypeBool vtkGridDelaunay2D::ProcessRequest(
@@ -423,11 +436,14 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
     elevation::Report(progress, 0.0);
     elevation::CheckPointArrays(block.Input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
-    elevation::ConstrainedTriangulation constrained = TriangulateWith(block.Second, points.View,
-      options, block.Second ? Part(progress, 0.0, 0.95) : progress, block.Warnings);
+    const double told = block.Second ? 0.95 : 1.0;
+    // Little, as a limit seldom needs advice.
+    const double triangulated = this->MaximumEdgeLength > 0.0 ? told - 0.09 : told;
+    elevation::ConstrainedTriangulation constrained = TriangulateWith(
+      block.Second, points.View, options, Part(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
-    WarnOfMissing(block.Second, points.View, options, constrained, Part(progress, 1.0, 1.0),
-      block.Warnings);
+    WarnOfMissing(block.Second, points.View, options, constrained,
+      Part(progress, triangulated, told), block.Warnings);
     PassPoints(block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
     AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());

@@ -186,19 +186,12 @@ vtkTrimOutwardTriangles::~vtkTrimOutwardTriangles() = default;
 
 int vtkTrimOutwardTriangles::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
-  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObjectTree");
-  if (port == 1)
-  {
-    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  }
-  return 1;
+  return elevation::FillInput(port, "vtkPolyData", info);
 }
 
 int vtkTrimOutwardTriangles::FillOutputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkDataObject"); // see MakeOutputs()
-  return 1;
+  return elevation::FillOutput(info);
 }
 
 vtkTypeBool vtkTrimOutwardTriangles::ProcessRequest(

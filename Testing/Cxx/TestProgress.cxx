@@ -21,6 +21,7 @@
 #include <cmath>
 #include <ctime>
 #include <string>
+#include <utility>
 
 namespace
 {
@@ -141,10 +142,36 @@ vtkSmartPointer<vtkPolyData> MakeRing()
   ring->SetPolys(polygons);
   return ring;
 }
+/** A limit that leaves nothing: the advice, for which all is triangulated again, has its share. */
+void CheckAdvice()
+{
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(MakeCloud(200000));
+  delaunay->SetMaximumEdgeLength(0.001);
+  delaunay->SetNumberOfThreads(1);
+  delaunay->GlobalWarningDisplayOff();
+  int before = 0, after = 0; // reports
+  const auto counts = std::make_pair(&before, &after);
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(const_cast<std::pair<int*, int*>*>(&counts));
+  command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
+    const auto* const seen = static_cast<std::pair<int*, int*>*>(data);
+    const double progress = vtkAlgorithm::SafeDownCast(caller)->GetProgress();
+    *seen->first += progress > 0.915 && progress < 0.99 ? 1 : 0;
+    *seen->second += progress == 1.0 ? 1 : 0;
+  });
+  delaunay->AddObserver(vtkCommand::ProgressEvent, command);
+  delaunay->Modified();
+  delaunay->Update();
+  delaunay->GlobalWarningDisplayOn();
+  Check(before >= 8 && after <= 3, "the advice reports " + std::to_string(before) +
+      " times while it works, " + std::to_string(after) + " times at the end");
+}
 } // namespace
 
 int TestProgress(int, char*[])
 {
+  CheckAdvice();
   const auto ring = MakeRing();
   for (const int count : { 1000000, 100000 })
   {

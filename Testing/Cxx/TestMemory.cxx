@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where memory ends while a filter looks for advice, its result stays, and the warning too.
+#include "Check.h"
+
+#include "vtkCallbackCommand.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkMinimalStandardRandomSequence.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTestErrorObserver.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <string>
+
+namespace
+{
+std::atomic<bool> isMemoryShort{ false };
+}
+
+// For the whole program: large pieces are refused while memory is short.
+void* operator new(std::size_t size)
+{
+  constexpr std::size_t large = 100000;
+  void* const piece = isMemoryShort && size > large ? nullptr : std::malloc(size > 0 ? size : 1);
+  if (!piece)
+  {
+    throw std::bad_alloc();
+  }
+  return piece;
+}
+
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept
+{
+  return std::malloc(size > 0 ? size : 1);
+}
+
+void operator delete(void* piece) noexcept
+{
+  std::free(piece);
+}
+
+void operator delete(void* piece, std::size_t) noexcept
+{
+  std::free(piece);
+}
+
+int TestMemory(int, char*[])
+{
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkMinimalStandardRandomSequence> random;
+  random->SetSeed(23);
+  const auto next = [&random]() {
+    random->Next();
+    return random->GetRangeValue(0.0, 100.0);
+  };
+  while (points->GetNumberOfPoints() < 20000)
+  {
+    const double x = next();
+    points->InsertNextPoint(x, next(), 1.0);
+  }
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  delaunay->SetInputData(cloud);
+  delaunay->SetMaximumEdgeLength(0.5); // leaves some triangles
+  vtkNew<vtkTest::ErrorObserver> observer;
+  delaunay->AddObserver(vtkCommand::ErrorEvent, observer);
+  delaunay->AddObserver(vtkCommand::WarningEvent, observer);
+  delaunay->Update();
+  const std::string advice = "keeps a triangle at 95 %";
+  Check(observer->GetWarningMessage().find(advice) != std::string::npos, "there is advice");
+  const vtkIdType triangles = delaunay->GetOutput()->GetNumberOfPolys();
+  Check(triangles > 100, "there are triangles");
+
+  observer->Clear();
+  vtkNew<vtkCallbackCommand> command;
+  command->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    const double progress = vtkAlgorithm::SafeDownCast(caller)->GetProgress();
+    isMemoryShort = progress > 0.9 && progress < 1.0; // while it looks for advice
+  });
+  delaunay->AddObserver(vtkCommand::ProgressEvent, command);
+  delaunay->Modified();
+  delaunay->Update();
+  isMemoryShort = false;
+  const std::string warning = observer->GetWarningMessage();
+  Check(!observer->GetError() && delaunay->GetOutput()->GetNumberOfPolys() == triangles,
+    "without memory for the advice, the result stays");
+  Check(warning.find("MaximumEdgeLength is 0.5, and ") != std::string::npos &&
+      warning.find(advice) == std::string::npos,
+    "the warning comes without the advice; it was: " + warning);
+  return failures > 0;
+}
