@@ -14,14 +14,14 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkDataObject,
     vtkDataObjectTree,
-    vtkMultiBlockDataSet,
     vtkPolyData,
     vtkTable,
 )
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
+from .blocks import is_empty, number_of_points, parts_of, put_parts
 from .clouds import antimeridian_note, cells_of, crs_of, faults_note, set_crs
-from .inputs import cloud_of, data_sets_of, joined, lines_of, number_of_points
+from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .ranks import check_ranks, controller_of, shared
 from .reading import read, read_boundary, read_faults
@@ -35,6 +35,9 @@ from .telling import (
     set_words,
     words_of,
 )
+
+
+MOST_ERRORS = 5  # of blocks, in one message
 
 
 class ElevationPoints(TellingAlgorithm):
@@ -228,12 +231,9 @@ class ReconstructElevationSurface(TellingAlgorithm):
     def work(self, inputs, outputs):
         data = vtkDataObject.GetData(inputs[0])
         controller = controller_of(outputs)
-        parts, is_here = data_sets_of(data), True
+        parts, is_here = parts_of(data), True
         if controller:
-            parts = [part for part in parts if number_of_points(part[2]) > 0]
-            own_places = isinstance(data, vtkMultiBlockDataSet)
-            places = [place if own_places else 0 for place, _, _ in parts]
-            is_here = check_ranks(controller, places)
+            is_here = check_ranks(controller, [p for p in parts if number_of_points(p.data) > 0])
         lines = {}
         for name, given in (("boundary", inputs[1]), ("faults", inputs[2])):
             if given.GetNumberOfInformationObjects():
@@ -244,19 +244,33 @@ class ReconstructElevationSurface(TellingAlgorithm):
                     else [lines_of(given, name)]
                 )
         if not is_here:
+            self.put(data, parts, {}, outputs)
             return []  # the points are on another rank
-        results = []
-        for i, (_, name, part) in enumerate(parts):
+        results, errors = self.results_of(parts, lines)
+        if errors and not parts[0].name:
+            raise ElevationSurfaceError(errors[0][1])
+        self.put(data, parts, results, outputs)
+        if errors:
+            self.error(in_panel(joined_errors(errors, len(results))))
+        elif not results:
+            raise ElevationSurfaceError("the input has no points")
+        if not results:
+            return []
+        return self.tell([part.name for part in results], list(results.values()), outputs)
+
+    def results_of(self, parts, lines):
+        """({part: Reconstruction}, [(name, why there is none)]); empty parts are in neither."""
+        results, errors = {}, []
+        parts = [part for part in parts if not is_empty(part.data)]
+        for i, part in enumerate(parts):
             self._share = (i / len(parts), 1.0 / len(parts))
             try:
-                results.append(self.result_of(part, lines))
+                results[part] = self.result_of(part.data, lines)
             except (ElevationSurfaceError, ValueError) as error:
-                words = of_panel(str(error), getattr(error, "about", "points"))
-                raise type(error)(f"{name}: {words}" if name else words) from None
-        if not results:
-            raise ElevationSurfaceError("the input has no points")
-        self.put(data, parts, results, outputs)
-        return self.tell([name for _, name, _ in parts], results, outputs)
+                errors.append((part.name, of_panel(str(error), getattr(error, "about", "points"))))
+            except MemoryError:
+                errors.append((part.name, "there is not enough memory"))
+        return results, errors
 
     def result_of(self, part, lines):
         """The Reconstruction of one data set, with notes on what looks wrong."""
@@ -282,21 +296,19 @@ class ReconstructElevationSurface(TellingAlgorithm):
         self.progress(words.capitalize(), begin + share * (first + fraction * (last - first)))
 
     def put(self, data, parts, results, outputs):
-        """Fills the first three outputs."""
+        """Fills the first three outputs with the results, {part: Reconstruction}."""
         for port, name in enumerate(("surface", "holes", "boundary")):
+            made = [vtkPolyData() for _ in parts]
+            for part, one in zip(parts, made):
+                if part in results:
+                    one.ShallowCopy(getattr(results[part], name) or vtkPolyData())
+                    if port == 0:
+                        set_elevation(one)
             output = vtkDataObject.GetData(outputs, port)
-            composite = isinstance(data, vtkDataObjectTree)
-            if composite:
-                output.CopyStructure(data)
-            for (place, _, _), result in zip(parts, results):
-                made = vtkPolyData()
-                made.ShallowCopy(getattr(result, name) or vtkPolyData())
-                if port == 0:
-                    set_elevation(made)
-                if composite:
-                    set_part(output, data, place, made)
-                else:
-                    output.ShallowCopy(made)
+            if isinstance(data, vtkDataObjectTree):
+                put_parts(output, data, parts, made)
+            else:
+                output.ShallowCopy(made[0])
 
     def tell(self, names, results, outputs):
         """Fills the report and sends warnings. Returns the lines to show."""
@@ -352,14 +364,14 @@ def notes_on(cloud, lines):
     return notes
 
 
-def set_part(output, data, place, part):
-    """Puts a part where the input has the one with this flat index."""
-    places = data.NewIterator()
-    places.InitTraversal()
-    while not places.IsDoneWithTraversal():
-        if places.GetCurrentFlatIndex() == place:
-            output.SetDataSet(places, part)
-        places.GoToNextItem()
+def joined_errors(errors, others):
+    """The errors of blocks as one message; once where it is the same in all."""
+    if not others and len({words for _, words in errors}) == 1:
+        return errors[0][1]
+    lines = [f"{name}: {words}" for name, words in errors[:MOST_ERRORS]]
+    if len(errors) > MOST_ERRORS:
+        lines.append(f"And {len(errors) - MOST_ERRORS} more like these.")
+    return "\n".join(lines)
 
 
 def sums_of(results):

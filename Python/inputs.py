@@ -9,9 +9,6 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
-    vtkCompositeDataSet,
-    vtkDataObjectTree,
-    vtkDataSet,
     vtkImageData,
     vtkPointSet,
     vtkPolyData,
@@ -20,6 +17,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
+from .blocks import parts_of
 from .clouds import Cloud, ReadOptions, crs_of, keep_points, make_points
 from .messages import ElevationSurfaceError
 from .reading.columns import choose_columns
@@ -27,33 +25,6 @@ from .reading.nulls import take_out
 from .reading.vtk_files import hidden_points, points_of_grid
 
 SAMPLE = 3000  # rows of a table that tell its columns
-
-
-def data_sets_of(data):
-    """[(iterator's place or None, name for messages, data set)] of what holds points.
-
-    The place is what vtkCompositeDataSet.SetDataSet() takes.
-    """
-    if not isinstance(data, vtkDataObjectTree):
-        return [(None, "", data)]
-    found = []
-    places = data.NewIterator()
-    places.InitTraversal()
-    while not places.IsDoneWithTraversal():
-        name = f"block {len(found) + 1}"
-        if places.HasCurrentMetaData():
-            given = places.GetCurrentMetaData().Get(vtkCompositeDataSet.NAME())
-            name += f" ({given})" if given else ""
-        found.append((places.GetCurrentFlatIndex(), name, places.GetCurrentDataObject()))
-        places.GoToNextItem()
-    return found
-
-
-def number_of_points(data):
-    """How many points or rows a data set has."""
-    if isinstance(data, vtkTable):
-        return data.GetNumberOfRows()
-    return data.GetNumberOfPoints() if isinstance(data, vtkDataSet) else 0
 
 
 def cloud_of(data, array="", columns="", keep_nulls=False):
@@ -66,6 +37,8 @@ def cloud_of(data, array="", columns="", keep_nulls=False):
     options = ReadOptions(columns=columns or None, keep_nulls=keep_nulls)
     if isinstance(data, vtkTable):
         return take_out(cloud_of_table(data, options), options)
+    if not isinstance(data, (vtkImageData, vtkRectilinearGrid, vtkPointSet)):
+        raise ElevationSurfaceError(f"a {data.GetClassName()} has no points with elevations")
     if array and data.GetPointData().GetArray(array) is None:
         attributes = data.GetPointData()
         names = [attributes.GetArrayName(i) for i in range(attributes.GetNumberOfArrays())]
@@ -80,8 +53,6 @@ def cloud_of(data, array="", columns="", keep_nulls=False):
         cloud = points_of_grid("input", grid)
         cloud.crs = crs_of(data)
         return take_out(cloud, options)
-    if not isinstance(data, vtkPointSet):
-        raise ElevationSurfaceError(f"a {data.GetClassName()} has no points with elevations")
     return cloud_of_points(data, array)
 
 
@@ -183,7 +154,7 @@ def numbers_of(column, name):
 
 def lines_of(data, what):
     """Lines and polygons of vtkPolyData, or of all blocks of a composite together."""
-    parts = [part for _, _, part in data_sets_of(data)]
+    parts = [part.data for part in parts_of(data)]
     if not parts or not all(isinstance(part, vtkPolyData) for part in parts):
         raise ElevationSurfaceError(f"{what}: lines or polygons (vtkPolyData) are needed", what)
     return joined(parts)

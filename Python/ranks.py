@@ -6,8 +6,10 @@ They are several where the global controller has several processes and several p
 All of them have to call the same functions in the same order.
 """
 
-from vtkmodules.vtkCommonCore import vtkIntArray
-from vtkmodules.vtkCommonDataModel import vtkPolyData
+import hashlib
+
+from vtkmodules.vtkCommonCore import vtkIdTypeArray
+from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkTable
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from .messages import ElevationSurfaceError
@@ -35,7 +37,7 @@ def collected(controller, values):
     """The whole numbers of all ranks, one list for each."""
 
     def all_of(numbers):
-        own, everywhere = vtkIntArray(), vtkIntArray()
+        own, everywhere = vtkIdTypeArray(), vtkIdTypeArray()
         for number in numbers:
             own.InsertNextValue(number)
         everywhere.SetNumberOfValues(len(numbers) * controller.GetNumberOfProcesses())
@@ -48,24 +50,35 @@ def collected(controller, values):
     return [padded[i * most : i * most + length] for i, length in enumerate(lengths)]
 
 
-def check_ranks(controller, places):
+def number_of(place):
+    """A place as a number that is the same on all ranks."""
+    return int.from_bytes(hashlib.blake2b(repr(place).encode(), digest_size=7).digest(), "big")
+
+
+def check_ranks(controller, parts):
     """Raises ElevationSurfaceError on all ranks where the points of one surface are on several.
 
-    places  the places in the input that hold points here, a number for each
+    parts  those of the input (Part) that hold points here
 
     Returns whether this rank is to speak of the result: it has points, or is the first of those
     where none has.
     """
-    ranks = collected(controller, places)
-    for place in sorted(set().union(*ranks)):
-        count = sum(place in here for here in ranks)
+    own = {number_of(part.surface): part for part in parts}
+    ranks = collected(controller, list(own))
+    for number in sorted(set().union(*ranks)):
+        count = sum(number in here for here in ranks)
         if count > 1:
+            part = own.get(number)
+            name = part.block if part and part.block else "the input"
+            what, first = "points", ""
+            if part and isinstance(part.data, vtkTable):
+                what, first = "rows", "Table To Points and then "
             raise ElevationSurfaceError(
-                f"the points of the input are on {count} ranks (processes), but a surface can only be "
-                "made on one. Bring them to one rank first, in ParaView with the filter Aggregate "
-                "Dataset (1 target process), or run on one rank."
+                f"the {what} of {name} are on {count} ranks (processes), but a surface can only be "
+                f"made on one. Bring them to one rank first, in ParaView with the filter {first}"
+                "Aggregate Dataset (1 target process), or run on one rank."
             )
-    return bool(places) or not any(ranks) and controller.GetLocalProcessId() == 0
+    return bool(parts) or not any(ranks) and controller.GetLocalProcessId() == 0
 
 
 def shared(controller, work):

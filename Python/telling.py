@@ -8,7 +8,7 @@ import re
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
 
 from .messages import ElevationSurfaceError
 from .reconstruction import PROPERTIES
@@ -35,10 +35,10 @@ def set_elevation(data):
     """Adds z as the point array to colour by. Another array of this name gets another name."""
     z = numpy.ascontiguousarray(vtk_to_numpy(data.GetPoints().GetData())[:, 2])
     attributes = data.GetPointData()
-    old = attributes.GetArray(ELEVATION)
+    old = attributes.GetAbstractArray(ELEVATION)
     if old is not None:
         attributes.RemoveArray(ELEVATION)
-        if old.GetNumberOfComponents() != 1 or not numpy.array_equal(vtk_to_numpy(old), z):
+        if not is_same(old, z):
             kept = old.NewInstance()
             kept.DeepCopy(old)
             kept.SetName(f"{ELEVATION} of the input")
@@ -51,10 +51,16 @@ def set_elevation(data):
 def drop_elevation(points):
     """Takes the array Elevation away where it is nothing but z; set_elevation() makes it anew."""
     array = points.GetPointData().GetArray(ELEVATION)
-    if array is not None and array.GetNumberOfComponents() == 1:
-        z = vtk_to_numpy(points.GetPoints().GetData())[:, 2]
-        if numpy.array_equal(vtk_to_numpy(array), z, equal_nan=True):
-            points.GetPointData().RemoveArray(ELEVATION)
+    z = vtk_to_numpy(points.GetPoints().GetData())[:, 2]
+    if array is not None and is_same(array, z):
+        points.GetPointData().RemoveArray(ELEVATION)
+
+
+def is_same(array, z):
+    """Whether an array, which may be of words, holds these numbers."""
+    if not isinstance(array, vtkDataArray) or array.GetNumberOfComponents() != 1:
+        return False
+    return numpy.array_equal(vtk_to_numpy(array), z, equal_nan=True)
 
 
 def set_words(data, name, lines):
@@ -118,9 +124,13 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
         That is success, with empty output. After a failure the executive would add lines that tell
         nothing, and ParaView would never update a picture of this output again.
         """
-        self._report("ErrorEvent", "DisplayErrorText", "ERROR", words)
+        self.error(words)
         self._told = ""
         return 1
+
+    def error(self, words):
+        """Reports an error; what there is of the output stays."""
+        self._report("ErrorEvent", "DisplayErrorText", "ERROR", words)
 
     def warn(self, words):
         """Reports a warning as vtkWarningMacro() does."""

@@ -125,7 +125,7 @@ single = fetch(simple.ReconstructElevationSurface(Input=plane))
 check(same(surfaces.GetBlock(1), single), "each block is a surface for itself")
 rows = report(blocks)
 check(("all blocks", "points", "13,329 read") in rows, "the report tells the sum of all blocks")
-check(any(block.startswith("block 2") and item == "points" and value.startswith("30 ")
+check(any(block.startswith("Block 1") and item == "points" and value.startswith("30 ")
           for block, item, value in rows), "the report tells of each block")
 
 # ---- time steps --------------------------------------------------------------------------------

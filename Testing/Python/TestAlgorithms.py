@@ -3,25 +3,36 @@
 """The reader and the whole chain as VTK algorithms, in a pipeline without ParaView."""
 
 import os
+import re
 import sys
 import unittest
 
 import numpy
-from vtkelevationsurface import read, reconstruct
+from vtkelevationsurface import read, reconstruct, vtkGridDelaunay2D
 from vtkelevationsurface.algorithms import ElevationPoints, ReconstructElevationSurface
+from vtkelevationsurface.blocks import parts_of
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkTable
+from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow, vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import (
+    vtkImageData,
+    vtkMultiBlockDataSet,
+    vtkMultiPieceDataSet,
+    vtkMutableDirectedGraph,
+    vtkPartitionedDataSet,
+    vtkPartitionedDataSetCollection,
+    vtkPolyData,
+    vtkTable,
+)
 
 
-def errors_of(algorithm):
+def errors_of(algorithm, event="ErrorEvent"):
     errors = []
 
     def note(_caller, _event, text):
         errors.append(text)
 
     note.CallDataType = VTK_STRING
-    tag = algorithm.AddObserver("ErrorEvent", note)
+    tag = algorithm.AddObserver(event, note)
     algorithm.Update()
     algorithm.RemoveObserver(tag)
     return errors
@@ -115,6 +126,25 @@ class Algorithms(unittest.TestCase):
         numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Elevation")), x)
         numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Elevation of the input")), y)
 
+    def test_an_array_elevation_of_words_is_kept(self):
+        x, y = GRID
+        chain = ReconstructElevationSurface()
+        chain.SetInputDataObject(0, table_of(x=x, y=y, z=x, Elevation=["low"] * x.size))
+        chain.SetColumns("x,y,z")
+        self.assertEqual(errors_of(chain), [])
+        data = chain.GetOutputDataObject(0).GetPointData()
+        numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Elevation")), x)
+        self.assertEqual(data.GetAbstractArray("Elevation of the input").GetValue(3), "low")
+
+    def test_what_has_no_points_is_an_error(self):
+        chain = ReconstructElevationSurface()
+        chain.SetInputDataObject(0, vtkMutableDirectedGraph())
+        for array in ("", "Depth"):
+            chain.SetElevationArray(array)
+            errors = errors_of(chain)
+            self.assertEqual(len(errors), 1, errors)
+            self.assertIn("a vtkMutableDirectedGraph has no points", errors[0])
+
     def test_errors_are_one_line(self):
         chain = ReconstructElevationSurface()
         chain.SetInputDataObject(0, table_of(a=["x"], b=["y"], c=["z"]))
@@ -124,6 +154,112 @@ class Algorithms(unittest.TestCase):
             self.assertNotIn("\n", errors[0])
             self.assertNotIn("should not happen", errors[0])
             self.assertEqual(wrong.GetOutputDataObject(0).GetNumberOfPoints(), 0)
+
+
+def composites():
+    """{what it is: composite input}; blocks of two points are no surface."""
+    nested = blocks(None, blocks(cloud(2), None, cloud(), name="south"), cloud(2), name="north")
+    pieces = vtkMultiPieceDataSet()
+    pieces.SetPiece(0, cloud(2))
+    pieces.SetPiece(1, cloud())
+    partitions = vtkPartitionedDataSet()
+    for i in range(3):
+        partitions.SetPartition(i, cloud(2 if i == 1 else 25 + i))
+    collection = vtkPartitionedDataSetCollection()
+    for i, counts in enumerate(((30, 2), (2,))):
+        collection.SetPartitionedDataSet(i, vtkPartitionedDataSet())
+        for k, count in enumerate(counts):
+            collection.GetPartitionedDataSet(i).SetPartition(k, cloud(count))
+    collection.GetMetaData(1).Set(collection.NAME(), "east")
+    return {
+        "nested": nested,
+        "empty blocks": blocks(cloud(), vtkPolyData(), cloud(2), name="west"),
+        "pieces": blocks(pieces, cloud(2), name="first"),
+        "partitions": partitions,
+        "collection": collection,
+    }
+
+
+def cloud(count=30):
+    data = vtkPolyData()
+    data.SetPoints(vtkPoints())
+    for i in range(count):
+        data.GetPoints().InsertNextPoint(i % 6, i // 6, i)
+    return data
+
+
+def blocks(*parts, name):
+    """A multiblock whose last block has the name."""
+    data = vtkMultiBlockDataSet()
+    for i, part in enumerate(parts):
+        data.SetBlock(i, part)
+    data.GetMetaData(len(parts) - 1).Set(data.NAME(), name)
+    return data
+
+
+def leaves(data):
+    """(flat index, points, cells) of each data set of a composite."""
+    places, found = data.NewIterator(), []
+    places.InitTraversal()
+    while not places.IsDoneWithTraversal():
+        leaf = places.GetCurrentDataObject()
+        found.append((places.GetCurrentFlatIndex(), leaf.GetNumberOfPoints() if leaf.GetNumberOfPolys() else 0,
+                      leaf.GetNumberOfPolys()))
+        places.GoToNextItem()
+    return found
+
+
+class Composites(unittest.TestCase):
+    """The chain and the filters name blocks alike, and a block that fails leaves the others."""
+
+    def setUp(self):
+        vtkOutputWindow.GetInstance().SetDisplayModeToNever()
+
+    def test_blocks_are_those_of_the_filters(self):
+        for what, data in composites().items():
+            with self.subTest(what):
+                chain, filtered = ReconstructElevationSurface(), vtkGridDelaunay2D()
+                chain.SetTrim(False)
+                chain.SetFillHoles(False)
+                names = []
+                for algorithm, event in ((chain, "ErrorEvent"), (filtered, "WarningEvent")):
+                    algorithm.SetInputDataObject(0, data)
+                    told = errors_of(algorithm, event)
+                    self.assertEqual(len(told), 1, told)
+                    names.append(re.findall(r"((?:Block|Partition) [^:\n]*): (?!.*\b0 input points)", told[0]))
+                self.assertEqual(*names)
+                self.assertEqual(len(names[0]), 1 + (what in ("nested", "pieces", "collection")))
+                surfaces = chain.GetOutputDataObject(0)
+                self.assertEqual(leaves(surfaces), leaves(filtered.GetOutputDataObject(0)))
+                self.assertGreater(sum(cells for _, _, cells in leaves(surfaces)), 0)
+                self.assertEqual(surfaces.GetClassName(), data.GetClassName())
+
+    def test_blocks_without_points_are_left_out(self):
+        chain = ReconstructElevationSurface()
+        chain.SetInputDataObject(0, blocks(cloud(), vtkPolyData(), None, cloud(), name="north"))
+        self.assertEqual(errors_of(chain), [])
+        self.assertIn("all blocks:\npoints     60 read", chain.GetReport())
+        self.assertIn('Block 3 ("north"):\n', chain.GetReport())
+        chain.SetInputDataObject(0, blocks(vtkPolyData(), None, name="none"))
+        errors = errors_of(chain)
+        self.assertEqual(len(errors), 1)
+        self.assertIn("the input has no points", errors[0])
+
+    def test_an_error_of_all_blocks_is_told_once(self):
+        chain = ReconstructElevationSurface()
+        chain.SetInputDataObject(0, blocks(cloud(), cloud(), name="north"))
+        chain.SetSpacing(-1)
+        errors = errors_of(chain)
+        self.assertEqual(len(errors), 1)
+        self.assertNotIn("Block", errors[0])
+
+    def test_pieces_of_a_block_are_one_surface_on_ranks(self):
+        pieces = vtkMultiPieceDataSet()
+        pieces.SetPiece(0, cloud())
+        pieces.SetPiece(1, cloud())
+        parts = parts_of(blocks(pieces, cloud(), name="alone"))
+        self.assertEqual([part.surface for part in parts], [(0,), (0,), (1,)])
+        self.assertEqual([part.block for part in parts], ["Block 0", "Block 0", 'Block 1 ("alone")'])
 
 
 if __name__ == "__main__":
