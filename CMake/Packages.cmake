@@ -85,9 +85,14 @@ macro (es_package component name)
   # Debian wants these, compressed without a date.
   set(es_doc "${es_package_folder}/${name}")
   configure_file("${es_package_scripts}/changelog.in" "${es_doc}/changelog.Debian" @ONLY)
-  execute_process(COMMAND gzip -9 -n -f "${es_doc}/changelog.Debian")
-  execute_process(COMMAND gzip -9 -n -c "${CMAKE_CURRENT_SOURCE_DIR}/CHANGELOG.md"
-    OUTPUT_FILE "${es_doc}/changelog.gz")
+  execute_process(COMMAND gzip -9 -n -f "${es_doc}/changelog.Debian" RESULT_VARIABLE es_failed)
+  if (NOT es_failed)
+    execute_process(COMMAND gzip -9 -n -c "${CMAKE_CURRENT_SOURCE_DIR}/CHANGELOG.md"
+      OUTPUT_FILE "${es_doc}/changelog.gz" RESULT_VARIABLE es_failed)
+  endif ()
+  if (es_failed)
+    message(FATAL_ERROR "gzip, which Debian's packages need, failed: ${es_failed}")
+  endif ()
   install(
     FILES       "${es_doc}/changelog.Debian.gz" "${es_doc}/changelog.gz"
                 "${es_package_scripts}/copyright"
@@ -137,7 +142,7 @@ reader of files of points, and the menu Filters > Elevation Surface."
     DEPENDS     "python3-paraview (>= ${ParaView_VERSION}), python3-paraview (<< ${es_next})"
                 "python3-numpy"
     RECOMMENDS  "python3-gdal"
-    CONTROL     preinst.plugin postrm.plugin postinst.python prerm.python)
+    CONTROL     preinst.plugin postrm.plugin postinst.plugin prerm.python)
 else ()
   set(es_soname "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
   set(es_library_package "libvtkelevationsurface${es_soname}")

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
 # Finds ParaView; its VTK_DIR is then the one that find_package(VTK) takes. Where ParaView_DIR does not
-# say where it is, the folder of "Utilities/setup test" comes before the system: Debian's ParaView beside
+# say where it is, the folder of "Utilities/setup plugin" comes before the system: Debian's ParaView beside
 # Debian's VTK lacks files that its CMake package wants.
 macro (es_find_paraview)
   set(es_paraview_hints)
@@ -26,7 +26,7 @@ macro (es_find_paraview)
     COMPONENTS RemotingCore RemotingServerManager
     HINTS ${es_paraview_hints})
   if (NOT ParaView_FOUND)
-    message(FATAL_ERROR "ParaView 5.11 or newer was not found. Set it up with \"Utilities/setup test\" "
+    message(FATAL_ERROR "ParaView 5.11 or newer was not found. Set it up with \"Utilities/setup plugin\" "
       "(Debian, Ubuntu), or point to it with -DParaView_DIR=<folder of paraview-config.cmake>.\n"
       "${ParaView_NOT_FOUND_MESSAGE}")
   endif ()

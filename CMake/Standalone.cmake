@@ -210,6 +210,8 @@ if (ES_BENCHMARKS)
 endif ()
 
 # ---- packages ----------------------------------------------------------------------------------
-if (UNIX AND NOT APPLE)
+find_program(ES_DPKG_DEB dpkg-deb DOC "Where it is found, cpack makes Debian packages")
+mark_as_advanced(ES_DPKG_DEB)
+if (ES_DPKG_DEB)
   include("${CMAKE_CURRENT_LIST_DIR}/Packages.cmake")
 endif ()
