@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <chrono>
 #include <new>
+#include <sstream>
 
 namespace elevation
 {
@@ -336,6 +337,16 @@ bool IsToBeTold(vtkPolyData* meshWithoutTriangles)
 {
   return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
     !meshWithoutTriangles->GetFieldData()->HasArray("UnusedPointIds");
+}
+
+void CheckMaximumEdgeLength(double length)
+{
+  if (!(length >= 0.0))
+  {
+    std::ostringstream text;
+    text << "MaximumEdgeLength is " << length << "; it must be 0 (off) or a length in x,y.";
+    throw Error(text.str());
+  }
 }
 
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)

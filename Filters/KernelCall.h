@@ -93,6 +93,9 @@ private:
  */
 bool IsToBeTold(vtkPolyData* meshWithoutTriangles);
 
+/** @throws Error if the limit is no length */
+void CheckMaximumEdgeLength(double length);
+
 /** Adds a count to the field data, as an array of one value. */
 void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count);
 

@@ -300,17 +300,6 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   options.NumberOfThreads = filter->GetNumberOfThreads();
   return options;
 }
-
-/** @throws Error if the limit is no length */
-void CheckMaximumEdgeLength(double length)
-{
-  if (!(length >= 0.0))
-  {
-    std::ostringstream text;
-    text << "MaximumEdgeLength is " << length << "; it must be 0 (off) or a length in x,y.";
-    throw elevation::Error(text.str());
-  }
-}
 } // namespace
 
 vtkFillElevationHoles::vtkFillElevationHoles()
@@ -347,7 +336,7 @@ int vtkFillElevationHoles::RequestData(vtkInformation* request,
     const elevation::Progress& progress = block.Progress;
     vtkPolyData* const input = vtkPolyData::SafeDownCast(block.Input);
     Report(progress, 0.0);
-    CheckMaximumEdgeLength(this->MaximumEdgeLength);
+    elevation::CheckMaximumEdgeLength(this->MaximumEdgeLength);
     elevation::CheckArrays(input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(input);
     const Index firstPolygon = static_cast<Index>(elevation::FirstPolygon(input));

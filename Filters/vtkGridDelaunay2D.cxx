@@ -434,6 +434,7 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
     options.LatticeTolerance = this->LatticeTolerance;
     options.NumberOfThreads = this->NumberOfThreads;
     elevation::Report(progress, 0.0);
+    elevation::CheckMaximumEdgeLength(this->MaximumEdgeLength);
     elevation::CheckPointArrays(block.Input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
     const double told = block.Second ? 0.95 : 1.0;

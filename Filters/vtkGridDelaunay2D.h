@@ -80,10 +80,10 @@
  * no triangle; a MaximumEdgeLength that leaves more than half of the points without a triangle (it
  * tells one that does not, for which it triangulates once more); constraints of which more than
  * half lies farther outside the points' bounding box than a tenth of its size.
- * Errors leave empty output: more points than can be handled (357,913,941); a point array whose
- * number of tuples is not that of the points; constraints without a line or polygon, all beside the
- * points' bounding box, with triangle strips, an invalid vtkCellArray, or a point that does not
- * exist or is not finite (the error names it).
+ * Errors leave empty output: a MaximumEdgeLength that is no length; more points than can be handled
+ * (357,913,941); a point array whose number of tuples is not that of the points; constraints
+ * without a line or polygon, all beside the points' bounding box, with triangle strips, an invalid
+ * vtkCellArray, or a point that does not exist or is not finite (the error names it).
  * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
  *
  * Field data of the output:
@@ -156,9 +156,9 @@ public:
   /**
    * Triangles with an edge longer than this in x,y (input units) are not made: gaps in the data
    * stay holes, pockets of the outline stay open. The triangles that remain are those of the full
-   * triangulation. 0 (default): no limit; negative values are taken as 0.
+   * triangulation. 0 (default): no limit. A negative value, or one that is not a number, is an error.
    */
-  vtkSetClampMacro(MaximumEdgeLength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(MaximumEdgeLength, double);
   vtkGetMacro(MaximumEdgeLength, double);
   ///@}
 

@@ -392,6 +392,34 @@ void TestArraysThatDoNotFit()
     "an array that does not fit the points is refused by name");
   Check(delaunay->GetOutput()->GetNumberOfPoints() == 0, "and leaves empty output");
 }
+
+void TestLimitIsALength()
+{
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(0, 0, 0);
+  points->InsertNextPoint(1, 0, 0);
+  points->InsertNextPoint(0, 1, 0);
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(points);
+  vtkNew<vtkGridDelaunay2D> delaunay;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  delaunay->AddObserver(vtkCommand::ErrorEvent, observer);
+  delaunay->SetInputData(input);
+  for (const double length : { -1.0, std::nan("") })
+  {
+    delaunay->SetMaximumEdgeLength(length);
+    delaunay->Modified();
+    delaunay->Update();
+    Check(observer->GetErrorMessage().find("MaximumEdgeLength is ") != std::string::npos &&
+        delaunay->GetOutput()->GetNumberOfPoints() == 0,
+      "a limit that is no length is an error");
+    observer->Clear();
+  }
+  delaunay->SetMaximumEdgeLength(HUGE_VAL);
+  delaunay->Update();
+  Check(!observer->GetError() && delaunay->GetOutput()->GetNumberOfPolys() == 1,
+    "an infinite limit is none");
+}
 } // namespace
 
 int TestGridDelaunay2D(int, char*[])
@@ -405,5 +433,6 @@ int TestGridDelaunay2D(int, char*[])
   TestProgressAndAbort();
   TestReportsAreNotTooMany();
   TestArraysThatDoNotFit();
+  TestLimitIsALength();
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -54,8 +54,6 @@ class TestGridDelaunay2D(unittest.TestCase):
 
     def test_values_are_clamped(self):
         delaunay = vtkGridDelaunay2D()
-        delaunay.SetMaximumEdgeLength(-1.0)
-        self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         delaunay.SetDuplicatePolicy(99)
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_HIGHEST)
         delaunay.SetSearchStrategy(5)
