@@ -37,6 +37,8 @@ from .telling import (
 )
 
 
+RECOGNISED = "Recognised"  # the field array in which ElevationPoints tells what a file is
+NOTHING = "nothing was read"
 MOST_ERRORS = 5  # of blocks, in one message
 
 
@@ -114,13 +116,22 @@ class ElevationPoints(TellingAlgorithm):
             options["classes"] = self._classes
         return options
 
-    def work(self, _inputs, outputs):
+    def work(self, inputs, outputs):
+        output = vtkPolyData.GetData(outputs)
+        try:
+            return self.read_into(output, outputs)
+        except BaseException:
+            output.Initialize()
+            set_words(output, RECOGNISED, [NOTHING])
+            raise
+
+    def read_into(self, output, outputs):
+        """Returns the lines to show."""
         information = outputs.GetInformationObject(0)
         if information.Get(vtkStreamingDemandDrivenPipeline.UPDATE_PIECE_NUMBER()):
             return []  # one rank has it all
         if not self._file:
             raise ValueError("no file is chosen")
-        output = vtkPolyData.GetData(outputs)
         if self._contents:
             lines = (None, read_boundary, read_faults)[self._contents](self._file)
             output.ShallowCopy(lines)
@@ -139,7 +150,7 @@ class ElevationPoints(TellingAlgorithm):
             told += [in_panel(note) for note in cloud.notes]
             if cloud.crs:
                 told.append(f"coordinate reference system: {crs_name(cloud.crs)}")
-        set_words(output, "Recognised", told)
+        set_words(output, RECOGNISED, told)
         self._text = "\n".join(told)
         return told
 
@@ -252,6 +263,8 @@ class ReconstructElevationSurface(TellingAlgorithm):
         self.put(data, parts, results, outputs)
         if errors:
             self.error(in_panel(joined_errors(errors, len(results))))
+        elif not results and any(has_failed_reader(part.data) for part in parts):
+            self._text = "The input is empty; its reader has told why."
         elif not results:
             raise ElevationSurfaceError("the input has no points")
         if not results:
@@ -276,7 +289,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
         """The Reconstruction of one data set, with notes on what looks wrong."""
         cloud = cloud_of(part, self._elevation_array, self._columns, self._keep_nulls)
         drop_elevation(cloud.points)
-        cloud.notes += words_of(cloud.points, "Recognised") + notes_on(cloud, lines)
+        cloud.notes += recognised(cloud.points) + notes_on(cloud, lines)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ElevationSurfaceWarning)  # told by warn()
             result = reconstruct(
@@ -322,7 +335,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
                 rows.append((name, item, in_panel(value)))
         # Warnings, and what a reader has found out, have been shown already.
         shown = [in_panel(note) for result in results for note in result.notes]
-        shown += [line for one in results for line in words_of(one.cloud.points, "Recognised")]
+        shown += [line for one in results for line in recognised(one.cloud.points)]
         lines, last = [], ""
         for block, item, value in rows:
             if block != last:
@@ -338,6 +351,19 @@ class ReconstructElevationSurface(TellingAlgorithm):
             counts = [counted(len(results), "block")]
             counts += [f"{row[2].split()[0]} {row[1]}" for row in rows[:3] if row[1] != "unused"]
         return [f"{self.TITLE}: {', '.join(counts)}", *told]
+
+
+def recognised(points):
+    """What a reader has found out, for the report of these points, which may be some of the file's."""
+    told, count = words_of(points, RECOGNISED), points.GetNumberOfPoints()
+    if told and not told[0].endswith(f": {counted(count, 'point')}"):
+        told[0] += f"; this surface is of {counted(count, 'point')}"
+    return told
+
+
+def has_failed_reader(data):
+    """Whether ElevationPoints has left this empty, and told why."""
+    return words_of(data, RECOGNISED)[:1] == [NOTHING]
 
 
 def of_panel(words, about):

@@ -419,7 +419,7 @@ def run_chain(
     result.delaunay = last = run("delaunay", delaunay)
     if delaunay.GetOutput().GetNumberOfPolys() == 0:
         limit = given.get("maximum_edge_length", 0.0)
-        raise ElevationSurfaceError(why_no_triangle(cloud.points, limit))
+        raise ElevationSurfaceError(why_no_triangle(cloud.points, limit, result.notes))
     if trim:
         trimming = made("trim", vtkTrimOutwardTriangles())
         trimming.SetInputData(0, last.GetOutput())
@@ -569,8 +569,8 @@ def check_spacing(points, spacing):
             )
 
 
-def why_no_triangle(points, limit):
-    """The reason in words when the triangulation is empty."""
+def why_no_triangle(points, limit, notes):
+    """The reason in words when the triangulation is empty; notes: what the filter warned of."""
     xyz = vtk_to_numpy(points.GetPoints().GetData())
     count = len(xyz)
     finite = xyz[numpy.isfinite(xyz).all(axis=1)]
@@ -595,7 +595,9 @@ def why_no_triangle(points, limit):
             f"no surface: all {len(finite):,} finite points lie on one line in x,y, from "
             f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
         )
+    advice = re.search(r"Between neighbours.*", " ".join(notes))
+    advice = advice.group().replace("MaximumEdgeLength", "maximum_edge_length") if advice else ""
     return (
         f"no surface: no triangle has edges of at most {limit:g}; "
-        "use a larger maximum_edge_length"
+        f"use a larger maximum_edge_length. {advice}".rstrip()
     )

@@ -82,6 +82,20 @@ for change, expected in (
           "the error with %r does not tell why: %s" % (change, errors))
     check_equal(fetch(reader).GetNumberOfPoints(), 0, "points with %r" % change)
 
+# What is made of it does not tell the cause again; nor does it after the user has stopped the reader.
+chain = simple.ReconstructElevationSurface(Input=reader)
+check_equal(messages_of(chain), [], "errors of the chain behind a reader that failed")
+check("reader" in information(chain, "Report"), "the report says who has told why")
+reader.FileName = olinda
+algorithm = reader.SMProxy.GetClientSideObject()
+tag = algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+check_equal(messages_of(reader), [], "errors when the user stops the reader")
+algorithm.RemoveObserver(tag)
+check_equal(fetch(reader).GetNumberOfPoints(), 0, "points when the user stops the reader")
+check_equal(messages_of(chain), [], "errors of the chain behind a reader that was stopped")
+reader.KeepNulls = 1 - reader.KeepNulls
+check_equal(fetch(chain).GetNumberOfPoints() > 10266, True, "the surface comes when the file is read")
+
 # ---- the file has changed ----------------------------------------------------------------------
 path = written("grows.xyz", "0 0 1\n1 0 2\n0 1 3\n")
 reader.FileName = path

@@ -90,6 +90,20 @@ check_equal(fetch(whole).GetNumberOfPoints(), 0, "points when the user aborts")
 whole.GapTolerance = 6
 check(fetch(whole).GetNumberOfPoints() > 0, "the surface comes back after an abort")
 
+for each in (delaunay, trim, fill):
+    name = type(each).__name__
+    check(fetch(each).GetNumberOfPolys() > 0, "%s has made triangles" % name)
+    algorithm = each.SMProxy.GetClientSideObject()
+    tag = algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+    each.NumberOfThreads = 1
+    check_equal(messages_of(each), [], "%s: errors when the user aborts" % name)
+    algorithm.RemoveObserver(tag)
+    check_equal(algorithm.GetOutputDataObject(0).GetNumberOfPolys(), 0,
+                "%s: triangles when the user aborts" % name)
+    algorithm.SetAbortExecute(0)  # what a script has set stays
+    each.NumberOfThreads = 2
+    check(fetch(each).GetNumberOfPolys() > 0, "%s: the surface comes back after an abort" % name)
+
 # ---- tables, images, grids ---------------------------------------------------------------------
 table = simple.CSVReader(FileName=[data_file("aegean_sea.csv")])
 of_table = simple.ReconstructElevationSurface(Input=table)
@@ -157,7 +171,7 @@ for change, expected in (
     ({"Boundary": simple.Disk(OuterRadius=1e4, InnerRadius=9e3)}, "The boundary encloses no triangle"),
     ({"Boundary": None, "Faults": cloud}, "The faults have no line and no polygon"),
     ({"Faults": simple.Line(Point1=[80, 80, 0], Point2=[90, 80, 0])}, "No fault meets the points"),
-    ({"Faults": None, "MaximumEdgeLength": 1e-9}, "larger Maximum Edge Length"),
+    ({"Faults": None, "MaximumEdgeLength": 1e-9}, "A Maximum Edge Length of 0."),
     ({"MaximumEdgeLength": 0, "Spacing": -1}, "Spacing takes a number of 0 or more"),
     ({"Spacing": 0, "ElevationArray": "Depth"}, "no point array named Depth"),
     ({"ElevationArray": "", "Input": simple.Line()}, "on one line"),

@@ -11,6 +11,7 @@ import numpy
 from vtkelevationsurface import read, reconstruct, vtkGridDelaunay2D
 from vtkelevationsurface.algorithms import ElevationPoints, ReconstructElevationSurface
 from vtkelevationsurface.blocks import parts_of
+from vtkelevationsurface.telling import set_words
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
@@ -125,6 +126,15 @@ class Algorithms(unittest.TestCase):
         data = chain.GetOutputDataObject(0).GetPointData()
         numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Elevation")), x)
         numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Elevation of the input")), y)
+
+    def test_the_count_of_a_file_is_told_as_such(self):
+        for count, words in ((30, "note       f.xyz: 30 points\n"),
+                             (24, "note       f.xyz: 30 points; this surface is of 24 points\n")):
+            chain, data = ReconstructElevationSurface(), cloud(count)
+            set_words(data, "Recognised", ["f.xyz: 30 points"])
+            chain.SetInputDataObject(0, data)
+            self.assertEqual(errors_of(chain), [])
+            self.assertIn(words, chain.GetReport())
 
     def test_an_array_elevation_of_words_is_kept(self):
         x, y = GRID
