@@ -56,7 +56,8 @@ def members(header):
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
     # The second inputs.
     parameters -= {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData"}
-    results = set(re.findall(r"vtkGet\w*Macro\((\w+)", header)) - parameters
+    results = set(re.findall(r"vtkGet\w*Macro\((\w+)|bool Get(\w+)\(\)", header))
+    results = {one or other for one, other in results} - parameters
     return parameters, results
 
 
@@ -100,6 +101,34 @@ for name, values in OTHER_VALUES.items():
     else:
         check_equal([proxy.SMProxy.GetOutputPortName(i) for i in range(count)], names,
                     name + ": outputs")
+
+# The entries made of Python classes: documentation, names of choices, and defaults, which are those
+# of the filters.
+from vtkelevationsurface.reconstruction import PROPERTIES  # noqa: E402  (the plugin brings it)
+
+FILTERS = {"delaunay": "GridDelaunay2D", "trim": "TrimOutwardTriangles", "fill": "FillElevationHoles"}
+chain = simple.ReconstructElevationSurface(Input=plane)
+for proxy in (chain, simple.ElevationPoints()):
+    name = type(proxy).__name__
+    for each in proxy.ListProperties():
+        documentation = proxy.SMProxy.GetProperty(each).GetDocumentation()
+        text = (documentation.GetDescription() or "").strip() if documentation else ""
+        check(len(text) > 10, "%s: %s is not documented" % (name, each))
+for name, one in PROPERTIES.items():
+    own = {"threads": "NumberOfThreads"}.get(name, name.title().replace("_", ""))
+    entry = chain.SMProxy.GetProperty(own)
+    check(entry is not None, "the chain has no property for " + name)
+    if one.takes.startswith("one of "):
+        domain = entry.GetDomain("enum")
+        given = [domain.GetEntryText(i).lower().replace(" ", "-")
+                 for i in range(domain.GetNumberOfEntries())]
+        check_equal(given, one.takes[len("one of "):].split(", "), "choices of " + own)
+        check_equal([domain.GetEntryValue(i) for i in range(len(given))], list(range(len(given))),
+                    "numbers of the choices of " + own)
+    if own != "OpenEdgeLength":  # below 0: chosen, which the filter alone cannot
+        filter_proxy = getattr(simple, FILTERS.get(one.step, "GridDelaunay2D"))(Input=plane)
+        other = filter_proxy.SMProxy.GetProperty(one.setter[len("Set"):])
+        check_equal(entry.GetElement(0), other.GetElement(0), "default of " + own)
 
 # The menu has all of them, in the order of the work.
 menu = xml.etree.ElementTree.parse(os.path.join(os.path.dirname(data_folder), "Plugin", "Menu.xml"))
