@@ -582,18 +582,21 @@ public:
     this->Spacings.Resize(list.Points.Count);
     this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
     const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.2, 0.32));
+    // How long the next steps take depends on how many are doubtful.
+    const double share = std::min(1.0, 20.0 * static_cast<double>(doubtful.size()) / list.Count);
+    const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
+    const double decided = scaled + 0.25 * share + 0.03;
     if (this->IsAutomatic)
     {
       this->Scales = FindScales(this->Measured, neighbors, this->AtBorder, this->CornersNear(doubtful),
-        this->Threads, Part(progress, 0.32, 0.57), this->Spacings.data());
+        this->Threads, Part(progress, 0.32, scaled), this->Spacings.data());
       this->Result.GapTolerance *= this->TypicalScale();
     }
-    this->FindSpacingsOf(
-      doubtful, neighbors, Part(progress, this->IsAutomatic ? 0.57 : 0.32, 0.82));
-    this->Decide(doubtful, Part(progress, 0.82, 0.85));
+    this->FindSpacingsOf(doubtful, neighbors, Part(progress, scaled, decided - 0.03));
+    this->Decide(doubtful, Part(progress, decided - 0.03, decided));
     TraceSurface(
       this->Measured, this->AtBorder, [&](Index t) { return this->ToleranceOf(t); },
-      this->CornersNear(doubtful), Part(progress, 0.85, 0.97), this->Result);
+      this->CornersNear(doubtful), Part(progress, decided, 0.97), this->Result);
     this->MeasureLoss(neighbors, Part(progress, 0.97, 1.0));
     if (this->Measured.Ids.size() > 0)
     {
