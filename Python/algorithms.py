@@ -116,6 +116,17 @@ class ElevationPoints(TellingAlgorithm):
             options["classes"] = self._classes
         return options
 
+    def lines(self):
+        """The boundary or the faults of the file. Raises ValueError for options of points."""
+        options = {name: value for name, value in self.options().items() if value is not False}
+        depth = options.pop("depth", False)
+        if options:
+            names = " and ".join(f"--{name.replace('_', '-')}" for name in options)
+            raise ValueError(f"{names}: of points only; lines are read as they are")
+        if self.CONTENTS[self._contents] == "faults":
+            return read_faults(self._file, depth)
+        return read_boundary(self._file)
+
     def work(self, inputs, outputs):
         output = vtkPolyData.GetData(outputs)
         try:
@@ -133,8 +144,7 @@ class ElevationPoints(TellingAlgorithm):
         if not self._file:
             raise ValueError("no file is chosen")
         if self._contents:
-            lines = (None, read_boundary, read_faults)[self._contents](self._file)
-            output.ShallowCopy(lines)
+            output.ShallowCopy(self.lines())
             count = output.GetNumberOfLines() + output.GetNumberOfPolys()
             told = [f"{self._file}: {counted(count, 'line')} of {self.CONTENTS[self._contents]}"]
         else:

@@ -46,9 +46,12 @@ def three_columns(columns):
 def class_numbers(classes):
     """Numbers from 0 to 255, of text with commas between or of a list. Raises ValueError."""
     classes = classes.split(",") if isinstance(classes, str) else classes
-    classes = [int(number) for number in classes]
+    try:
+        classes = [int(number) for number in classes]
+    except ValueError:
+        classes = [-1]
     if not all(0 <= number <= 255 for number in classes):
-        raise ValueError("classes takes numbers from 0 to 255")
+        raise ValueError("classes takes numbers from 0 to 255, as 2,8")
     return classes
 
 
@@ -70,6 +73,8 @@ class ReadOptions:
             self.columns = three_columns(self.columns)
         if self.classes is not None:
             self.classes = class_numbers(self.classes)
+        if self.band is not None and self.band < 1:
+            raise ValueError(f"band takes a number from 1, not {self.band}")
 
 
 def make_points(coordinates, copy=True):

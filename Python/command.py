@@ -323,7 +323,11 @@ class Run:
         except ValueError as error:
             raise WrongOption(f"{options.file}: --{error}") from None
         self.set_crs(cloud)
-        faults = reading.read_faults(options.faults) if options.faults else None
+        faults = None
+        if options.faults:
+            faults = reading.read_faults(options.faults, options.depth)
+            if options.depth:
+                cloud.notes.append("z of the faults is turned over too, as --depth says")
         boundary = reading.read_boundary(options.boundary) if options.boundary else None
         for path, lines in ((options.boundary, boundary), (options.faults, faults)):
             if lines is not None:

@@ -36,7 +36,11 @@ def cloud_of(data, array="", columns="", keep_nulls=False):
     """
     options = ReadOptions(columns=columns or None, keep_nulls=keep_nulls)
     if isinstance(data, vtkTable):
+        if array:
+            raise ElevationSurfaceError("of a table, Columns chooses z, not Elevation Array")
         return take_out(cloud_of_table(data, options), options)
+    if columns:
+        raise ElevationSurfaceError("Columns is for tables; of points and grids, Elevation Array chooses z")
     if not isinstance(data, (vtkImageData, vtkRectilinearGrid, vtkPointSet)):
         raise ElevationSurfaceError(f"a {data.GetClassName()} has no points with elevations")
     if array and data.GetPointData().GetArray(array) is None:

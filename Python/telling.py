@@ -10,6 +10,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
 
+from .clouds import ReadOptions
 from .messages import ElevationSurfaceError
 from .reconstruction import PROPERTIES
 
@@ -26,7 +27,7 @@ def in_panel(words):
     def title(found):
         return found.group(1).replace("-", " ").replace("_", " ").title()
 
-    properties = "|".join(PROPERTIES)
+    properties = "|".join([*PROPERTIES, *ReadOptions.__dataclass_fields__])
     words = re.sub(r"--([a-z][a-z-]*)", title, words)
     return re.sub(rf"\b((?:{properties})(?= takes )|[a-z]+_edge_length)\b", title, words)
 

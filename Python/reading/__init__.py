@@ -103,13 +103,18 @@ def leave_out(path, cloud, no_data):
         keep_points(cloud, numpy.flatnonzero(keep))
 
 
-def read_faults(path):
+def read_faults(path, depth=False):
     """The faults or breaklines of a file as vtkPolyData with lines or polygons.
+
+    depth    True: their z counts downwards, and is turned over
 
     A text file holds one line after the other, x, y and z in the first columns, a blank line
     between them. Raises FileError.
     """
-    return read_lines(os.fspath(path), "a fault", "faults", text_faults)
+    faults = Cloud(read_lines(os.fspath(path), "a fault", "faults", text_faults))
+    if depth:
+        turn_over(faults)
+    return faults.points
 
 
 def read_boundary(path):

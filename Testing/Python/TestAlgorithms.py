@@ -5,6 +5,7 @@
 import os
 import re
 import sys
+import tempfile
 import unittest
 
 import numpy
@@ -154,6 +155,46 @@ class Algorithms(unittest.TestCase):
             errors = errors_of(chain)
             self.assertEqual(len(errors), 1, errors)
             self.assertIn("a vtkMutableDirectedGraph has no points", errors[0])
+
+    def test_depths_of_faults_are_turned_over_and_options_of_points_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "faults.txt")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("15 33 -18\n155 133 11\n")
+            reader = ElevationPoints()
+            reader.SetFileName(path)
+            reader.SetContents(2)
+            reader.SetDepth(True)
+            self.assertEqual(errors_of(reader), [])
+            self.assertEqual(points(reader.GetOutputDataObject(0))[:, 2].tolist(), [18.0, -11.0])
+            for name, value, told in (
+                ("Columns", "1,2,4", "Columns"), ("NoData", "0", "No Data"), ("Band", 2, "Band"),
+                ("Classes", "2", "Classes"), ("Layer", "a", "Layer"), ("KeepNulls", 1, "Keep Nulls"),
+            ):
+                getattr(reader, "Set" + name)(value)
+                self.assertIn(f"{told}: of points only", " ".join(errors_of(reader)))
+                getattr(reader, "Set" + name)(type(value)())
+            reader.SetContents(0)
+            for name, value, told in (
+                ("Classes", "2-5", "Classes takes numbers from 0 to 255, as 2,8"),
+                ("Band", -1, "Band takes a number from 1, not -1"),
+            ):
+                getattr(reader, "Set" + name)(value)
+                self.assertIn(told, " ".join(errors_of(reader)))
+                getattr(reader, "Set" + name)(type(value)())
+
+    def test_columns_are_of_tables_and_arrays_of_others(self):
+        x, y = GRID
+        chain = ReconstructElevationSurface()
+        chain.SetInputDataObject(0, table_of(x=x, y=y, z=x + y, amp=x))
+        chain.SetElevationArray("amp")
+        self.assertIn("Columns chooses z", " ".join(errors_of(chain)))
+        chain.SetElevationArray("")
+        self.assertEqual(errors_of(chain), [])
+        of_points = ReconstructElevationSurface()
+        of_points.SetInputDataObject(0, chain.GetOutputDataObject(0))
+        of_points.SetColumns("x,y,z")
+        self.assertIn("Columns is for tables", " ".join(errors_of(of_points)))
 
     def test_errors_are_one_line(self):
         chain = ReconstructElevationSurface()
