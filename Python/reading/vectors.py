@@ -82,7 +82,7 @@ class Layer:
     labels    how many are texts of a drawing
     """
 
-    def __init__(self, path, layer):
+    def __init__(self, path, layer, kind):
         self.path = path
         self.parts, self.features, self.empty, self.labels, self.flat = [], [], 0, 0, 0
         definition = layer.GetLayerDefn()
@@ -90,13 +90,22 @@ class Layer:
             definition.GetFieldDefn(i).GetName() for i in range(definition.GetFieldCount())
         ]
         columns = [[] for _ in names]
+        count = 0
         try:
             for number, feature in enumerate(layer):
+                count = number + 1
                 for i, column in enumerate(columns):
                     column.append(feature.GetField(i))
                 self.add(number, feature, names)
+            # Where this format is cut off, newer GDALs end without a word.
+            announced = layer.GetFeatureCount() if kind == "FlatGeobuf" else 0
         except RuntimeError as error:
             raise FileError(f"{path}: cannot be read: {one_line(error)}") from None
+        if announced > count:
+            raise FileError(
+                f"{path}: is cut off or damaged: {announced:,} features are announced, "
+                f"{count:,} found"
+            )
         self.fields = dict(zip(names, columns))
 
     def add(self, number, feature, names):
@@ -183,7 +192,7 @@ def read_layer(path, wanted, columns):
     with quiet():
         data = open_file(path)
         found, notes = open_layer(path, data, wanted)
-        layer = Layer(path, found)
+        layer = Layer(path, found, data.GetDriver().ShortName)
         reference = found.GetSpatialRef()
         notes.insert(0, f"vectors: {data.GetDriver().LongName}")
         if not layer.parts:

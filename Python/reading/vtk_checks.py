@@ -26,6 +26,15 @@ ANNOUNCED = re.compile(
     rb"[ \t]+(?P<words>[^\n]*\S)[ \t\r]*(?P<end>\n|\Z)(?:LOOKUP_TABLE[^\n]*\n)?",
     re.IGNORECASE | re.MULTILINE,
 )
+# What a text STL file consists of.
+SOLID = re.compile(rb"\s*solid\b[^\n]*(?:\n|\Z)", re.IGNORECASE)
+NUMBER = rb"\s+[-+]?(?:\d+\.?\d*(?:e[-+]?\d+)?|\.\d+(?:e[-+]?\d+)?|nan|inf)"
+FACET = re.compile(
+    rb"\s*(?:color\b[^\n]*\s+)*facet\b[^\n]*\s+outer\s*loop"
+    rb"(?:\s+vertex" + 3 * NUMBER + rb"){3}\s+end\s*loop\s+end\s*facet(?!\S)",
+    re.IGNORECASE,
+)
+END_OF_SOLID = re.compile(rb"\s*end\s*solid\b[^\n]*", re.IGNORECASE)
 # Equal numbers can be packed to some thousandth of their size.
 PACKED = 10000
 
@@ -76,13 +85,35 @@ def why_no_stl(path):
     with open(path, "rb") as stream:
         head = stream.read(84)
     size, facets = os.path.getsize(path), int.from_bytes(head[80:84], "little")
-    is_text = head.lstrip()[:5].lower() == b"solid" and b"\0" not in head
-    if not is_text and size != 84 + 50 * facets:
+    if head.lstrip()[:5].lower() == b"solid" and b"\0" not in head:
+        return why_no_stl_text(path)
+    if size != 84 + 50 * facets:
         return (
             f"is cut off, or not an STL file: {facets:,} facets are announced, "
             f"which take {84 + 50 * facets:,} bytes, not {size:,}"
         )
     return None
+
+
+def why_no_stl_text(path):
+    with open(path, "rb") as stream:
+        data = stream.read().rstrip()
+    at, facets = 0, 0
+    while at < len(data) and (found := SOLID.match(data, at)):
+        while found:
+            at, facets = found.end(), facets + 1
+            found = FACET.match(data, at)
+        facets -= 1
+        found = END_OF_SOLID.match(data, at)
+        if not found:
+            break
+        at = found.end()
+    if found and at == len(data):
+        return None
+    return (
+        f"cannot be read: it is cut off or damaged after {facets:,} whole facets, "
+        f"in line {data.count(bytes([10]), 0, at) + 1:,} or later"
+    )
 
 
 def why_no_xml(path):

@@ -110,9 +110,8 @@ def check_point_ids(path, data):
 def read_points(path, options):
     suffix = kind_of(path)
     if suffix in VERTEX and is_text(path):
-        # VTK reads these texts in single precision, but notices where one is cut off.
-        if suffix == ".stl":
-            run_vtk_reader(path)
+        # VTK reads these texts in single precision.
+        check(path, suffix)
         data = make_points(vertices_of_text(path, VERTEX[suffix]))
         cloud = Cloud(data, ["only the points are used, not the file's cells"])
     else:

@@ -239,7 +239,9 @@ class Package(unittest.TestCase):
             vtkelevationsurface.reconstrct  # pylint: disable=pointless-statement
 
     def test_the_filters_need_no_numpy(self):
-        script = "import sys, vtkelevationsurface; sys.exit('numpy' in sys.modules)"
+        # Where VTK has it, a newer one loads it itself.
+        script = "import sys; sys.modules['numpy'] = None; import vtkelevationsurface as surface; "
+        script += "surface.vtkGridDelaunay2D()"
         self.assertEqual(subprocess.run([sys.executable, "-c", script], check=False).returncode, 0)
 
 
