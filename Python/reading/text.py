@@ -403,7 +403,7 @@ class Parser:
                 seen.append(f"{count} {what} line{'s' * (count > 1)}")
         if not any(" as x" in note or ", y = " in note for note in notes):
             columns = ", ".join(str(index + 1) for index in table.indices)
-            seen.append(f"{', '.join('xyz'[:table.needed])} in columns {columns}")
+            notes.insert(0, f"{', '.join('xyz'[:table.needed])} are in columns {columns}")
         notes.insert(0, "text: " + ", ".join(seen))
         if self.repeated:
             notes.append(f"header lines that come again are left out: {self.repeated:,}")

@@ -25,7 +25,7 @@
 
 namespace
 {
-constexpr double LargestStep = 0.1;
+constexpr double LargestStep = 0.15;
 constexpr double LongestSilence = 0.5; // seconds
 
 struct Reports

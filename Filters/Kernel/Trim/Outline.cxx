@@ -582,8 +582,11 @@ public:
     this->Spacings.Resize(list.Points.Count);
     this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
     const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.2, 0.32));
-    // How long the next steps take depends on how many are doubtful.
-    const double share = std::min(1.0, 20.0 * static_cast<double>(doubtful.size()) / list.Count);
+    Report(progress, 0.32);
+    // How long the next steps take depends on how many are doubtful. Where these are few, no step has
+    // so large a share that progress jumps.
+    const double share =
+      std::clamp(20.0 * static_cast<double>(doubtful.size()) / list.Count, 0.6, 1.0);
     const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
     const double decided = scaled + 0.25 * share + 0.03;
     if (this->IsAutomatic)
