@@ -14,10 +14,13 @@ import sys
 
 from paraview import simple
 
+here = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(os.path.dirname(here), "Examples", "ParaView"))
+from text_to_surface import show_relief  # noqa: E402
+
 if len(sys.argv) != 2:
     sys.exit(__doc__)
 simple.LoadPlugin(sys.argv[1], remote=False)
-here = os.path.dirname(os.path.abspath(__file__))
 data = os.path.join(os.path.dirname(here), "Data", "olinda_land.xyz")
 state = os.path.join(here, "ElevationSurface.pvsm")
 
@@ -25,15 +28,8 @@ view = simple.CreateRenderView(ViewSize=[1000, 800], OrientationAxesVisibility=0
 points = simple.ElevationPoints(registrationName="olinda_land.xyz", FileName=data)
 surface = simple.ReconstructElevationSurface(registrationName="Surface of Olinda", Input=points)
 
-# The relief from the south, heights times ten, coloured by elevation.
-shown = simple.Show(surface, view)
-shown.Scale = [1, 1, 10]
-simple.ColorBy(shown, ("POINTS", "Elevation"))
-shown.RescaleTransferFunctionToDataRange()
-shown.SetScalarBarVisibility(view, True)
-legend = simple.GetScalarBar(simple.GetColorTransferFunction("Elevation"), view)
-legend.Title = "Elevation in m"
-legend.RangeLabelFormat = "%.0f"
+# The relief from the south.
+show_relief(surface, view)
 
 # The outlines of the places that were filled, and of the surface.
 for port, colour in ((1, [1, 0.9, 0]), (2, [1, 1, 1])):

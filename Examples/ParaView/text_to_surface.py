@@ -12,12 +12,8 @@ import sys
 from paraview import simple
 
 
-def main(points_file, surface_file, picture_file):
-    points = simple.ElevationPoints(FileName=points_file)
-    surface = simple.ReconstructElevationSurface(Input=points)
-    simple.SaveData(surface_file, surface)
-
-    view = simple.CreateRenderView(ViewSize=[1200, 800], OrientationAxesVisibility=0)
+def show_relief(surface, view):
+    """Heights times ten, coloured by elevation, with a legend."""
     shown = simple.Show(surface, view)
     shown.Scale = [1, 1, 10]
     simple.ColorBy(shown, ("POINTS", "Elevation"))
@@ -26,6 +22,15 @@ def main(points_file, surface_file, picture_file):
     legend = simple.GetScalarBar(simple.GetColorTransferFunction("Elevation"), view)
     legend.Title = "Elevation in m"
     legend.RangeLabelFormat = "%.0f"
+
+
+def main(points_file, surface_file, picture_file):
+    points = simple.ElevationPoints(FileName=points_file)
+    surface = simple.ReconstructElevationSurface(Input=points)
+    simple.SaveData(surface_file, surface)
+
+    view = simple.CreateRenderView(ViewSize=[1200, 800], OrientationAxesVisibility=0)
+    show_relief(surface, view)
     simple.ResetCamera(view)
     simple.GetActiveCamera().Elevation(-50)
     simple.ResetCamera(view)

@@ -4,12 +4,12 @@
 // The filters take every storage that a vtkCellArray may have, and make the same of it: ids of 32
 // and 64 bits; from VTK 9.6 on also cells of a fixed size, and ids of any other type.
 #include "Check.h"
+#include "SameMesh.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
-#include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -93,31 +93,6 @@ vtkSmartPointer<vtkPolyData> Stored(vtkPolyData* data, const Storage& storage)
     stored->SetPolys(polygons);
   }
   return stored;
-}
-
-bool AreSame(vtkPolyData* a, vtkPolyData* b)
-{
-  bool isSame = a->GetNumberOfPoints() == b->GetNumberOfPoints() &&
-    a->GetNumberOfCells() == b->GetNumberOfCells();
-  for (vtkIdType i = 0; isSame && i < a->GetNumberOfPoints(); ++i)
-  {
-    double p[3], q[3];
-    a->GetPoint(i, p);
-    b->GetPoint(i, q);
-    isSame = p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
-  }
-  for (vtkIdType i = 0; isSame && i < a->GetNumberOfCells(); ++i)
-  {
-    vtkNew<vtkIdList> p, q;
-    a->GetCellPoints(i, p);
-    b->GetCellPoints(i, q);
-    isSame = p->GetNumberOfIds() == q->GetNumberOfIds();
-    for (vtkIdType k = 0; isSame && k < p->GetNumberOfIds(); ++k)
-    {
-      isSame = p->GetId(k) == q->GetId(k);
-    }
-  }
-  return isSame;
 }
 
 /** Points with a hole around a place. */
