@@ -27,7 +27,7 @@ class Part:
     block    the name of that
     """
 
-    data: Any
+    data: Any = dataclasses.field(compare=False)  # newer VTKs compare what data sets hold
     place: tuple = ()
     name: str = ""
     surface: tuple = ()

@@ -10,6 +10,7 @@ of its own first.
 import math
 import os
 import re
+import warnings
 
 from vtkmodules.vtkCommonCore import vtkSMPTools
 
@@ -43,7 +44,10 @@ def survives(work):
     """Whether work() comes to an end, tried in a child where there is fork."""
     if not hasattr(os, "fork"):
         return True
-    child = os.fork()
+    with warnings.catch_warnings():
+        # VTK's threads wait, and the child uses none of them.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
     if child == 0:
         try:
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
