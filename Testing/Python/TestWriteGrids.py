@@ -51,7 +51,7 @@ def interpolated(surface, x, y):
         if cell >= 0:
             ids = corners[cell]
             a, b, c = vtk_to_numpy(flat.GetPoints().GetData())[ids, :2] - place
-            areas = numpy.array([numpy.cross(b, c), numpy.cross(c, a), numpy.cross(a, b)])
+            areas = numpy.linalg.det([(b, c), (c, a), (a, b)])
             result[i] = areas @ z[ids] / areas.sum()
     return result
 

@@ -207,7 +207,7 @@ class LargeSurfaces(unittest.TestCase):
 
         def area(corners):
             a, b, c = (points[corners[:, i], :2] for i in range(3))
-            return 0.5 * float(numpy.cross(b - a, c - a).sum())
+            return 0.5 * float(numpy.linalg.det(numpy.stack((b - a, c - a), axis=1)).sum())
 
         self.assertAlmostEqual(area(mesh.ids[mesh.triangles]), area(triangles), places=9)
 
