@@ -12,7 +12,6 @@ from vtkmodules.vtkCommonDataModel import (
     vtkDataSet,
     vtkMultiBlockDataSet,
     vtkPartitionedDataSet,
-    vtkPolyData,
     vtkTable,
 )
 
@@ -79,14 +78,13 @@ def _child(tree, i):
 
 
 def put_parts(output, data, parts, made):
-    """Gives output the structure of data, with made[i] or an empty vtkPolyData for parts[i]."""
+    """Gives output the structure of data, with the vtkPolyData made[i] for parts[i]."""
     output.CopyStructure(data)
     output.GetFieldData().PassData(data.GetFieldData())
     for part, surface in zip(parts, made):
         tree = output
         for i in part.place[:-1]:
             tree = _child(tree, i)
-        surface = surface or vtkPolyData()
         if isinstance(tree, vtkMultiBlockDataSet):
             tree.SetBlock(part.place[-1], surface)
         else:
