@@ -33,7 +33,8 @@ set(es_kernel_Triangulate
   LatticeGrowth
   Constrained
   Triangulate
-  Pieces)
+  Pieces
+  Cuts)
 set(es_kernel_Trim
   Rings
   NearTriangles

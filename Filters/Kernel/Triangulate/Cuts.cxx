@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Cuts.h"
+
+#include <algorithm>
+
+namespace elevation
+{
+
+namespace
+{
+double Coordinate(Point2 p, bool isOfY)
+{
+  return isOfY ? p.Y : p.X;
+}
+
+struct IsLess
+{
+  bool IsOfY;
+  bool operator()(Point2 p, Point2 q) const
+  {
+    return Coordinate(p, this->IsOfY) < Coordinate(q, this->IsOfY);
+  }
+};
+
+/**
+ * Brings lesser points before greater ones.
+ * @return where the greater ones begin: as near to a place as equal coordinates, which stay together,
+ *         let it; never the end
+ */
+std::vector<Point2>::iterator CutAt(std::vector<Point2>::iterator first,
+  std::vector<Point2>::iterator place, std::vector<Point2>::iterator last, bool isOfY)
+{
+  std::nth_element(first, place, last, IsLess{ isOfY });
+  const Point2 at = *place;
+  const auto low =
+    std::partition(first, place, [at, isOfY](Point2 p) { return IsLess{ isOfY }(p, at); });
+  const auto high =
+    std::partition(place, last, [at, isOfY](Point2 p) { return !IsLess{ isOfY }(at, p); });
+  return high == last || place - low <= high - place ? low : high;
+}
+} // namespace
+
+Cuts::Cuts(std::vector<Point2> sample, int count)
+  : Lines(static_cast<std::size_t>(count))
+{
+  this->Cut(sample.begin(), sample.end(), 0, count);
+}
+
+void Cuts::Cut(Iterator first, Iterator last, int begin, int end)
+{
+  if (end - begin < 2)
+  {
+    return;
+  }
+  const int middle = MiddleOf(begin, end);
+  Line& line = this->Lines[middle];
+  Iterator cut = first;
+  if (first != last)
+  {
+    Box box;
+    std::for_each(first, last, [&box](Point2 p) { box.Add(p); });
+    line.IsOfY = box.Height() > box.Width();
+    const double ratio = static_cast<double>(middle - begin) / (end - begin);
+    cut += static_cast<std::ptrdiff_t>(ratio * static_cast<double>(last - first));
+    cut = CutAt(first, cut, last, line.IsOfY);
+    const bool isOfY = line.IsOfY;
+    line.Value = Coordinate(*std::min_element(cut, last, IsLess{ isOfY }), isOfY);
+  }
+  this->Cut(first, cut, begin, middle);
+  this->Cut(cut, last, middle, end);
+}
+
+int Cuts::OwnerOf(Point2 p) const
+{
+  int begin = 0, end = this->Count();
+  while (end - begin > 1)
+  {
+    const int middle = MiddleOf(begin, end);
+    const Line& line = this->Lines[middle];
+    (Coordinate(p, line.IsOfY) < line.Value ? end : begin) = middle;
+  }
+  return begin;
+}
+
+Cell Cuts::CellOf(int begin, int end) const
+{
+  Cell cell;
+  int first = 0, last = this->Count();
+  while (last - first > end - begin)
+  {
+    const int middle = MiddleOf(first, last);
+    const Line& line = this->Lines[middle];
+    const bool isLower = begin < middle;
+    Point2& corner = isLower ? cell.High : cell.Low;
+    (line.IsOfY ? corner.Y : corner.X) = line.Value;
+    (isLower ? last : first) = middle;
+  }
+  return cell;
+}
+
+} // namespace elevation
