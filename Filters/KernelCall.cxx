@@ -230,7 +230,6 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
   {
     all += workOf(place);
   }
-  bool isAborted = false;
   for (const Place& place : places)
   {
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
@@ -246,7 +245,7 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
     }
     catch (const Aborted&)
     {
-      isAborted = true;
+      this->IsAborted = true;
       break;
     }
     const std::string name = place.Name.empty() ? "" : place.Name + ": ";
@@ -264,13 +263,7 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
       this->Warnings.push_back(name + warning);
     }
   }
-  if (isAborted)
-  {
-    this->EmptyOutputs();
-    this->Errors.clear();
-    this->Warnings.clear();
-  }
-  this->ShareResults(ranks, isAborted);
+  this->ShareResults(ranks);
 }
 
 std::string KernelCall::RunPlace(
@@ -309,27 +302,49 @@ std::string KernelCall::RunPlace(
   return message;
 }
 
-void KernelCall::ShareResults(const Ranks& ranks, bool isAborted)
+void KernelCall::ShareResults(const Ranks& ranks)
 {
-  std::vector<vtkIdType> sums;
+  std::vector<vtkIdType> sums = { this->IsAborted || IsAbortRequested(this->Filter) ? 1 : 0 };
   for (vtkIdType* sum : this->Sums)
   {
-    sums.push_back(isAborted ? 0 : *sum);
+    sums.push_back(*sum);
   }
   std::vector<double> maxima;
   for (double* maximum : this->Maxima)
   {
-    maxima.push_back(isAborted ? 0.0 : *maximum);
+    maxima.push_back(*maximum);
   }
   ranks.Sum(sums);
   ranks.Maximum(maxima);
-  for (std::size_t i = 0; i < sums.size(); ++i)
+  this->IsAborted = sums[0] > 0; // on any rank
+  for (std::size_t i = 0; i < this->Sums.size(); ++i)
   {
-    *this->Sums[i] = sums[i];
+    *this->Sums[i] = this->IsAborted ? 0 : sums[i + 1];
   }
   for (std::size_t i = 0; i < maxima.size(); ++i)
   {
-    *this->Maxima[i] = maxima[i];
+    *this->Maxima[i] = this->IsAborted ? 0.0 : maxima[i];
+  }
+  if (this->IsAborted)
+  {
+    this->EmptyOutputs();
+    this->Errors.clear();
+    this->Warnings.clear();
+  }
+  this->TellOfAbort();
+}
+
+void KernelCall::TellOfAbort()
+{
+  // ParaView updates each output, and VTK runs the filter for each while its abort flag is set.
+  constexpr const char* stopped = "Stopped";
+  const char* const last = this->Filter->GetProgressText();
+  const bool isTold = last && std::string(last) == stopped;
+  this->Filter->SetProgressText(this->IsAborted ? stopped : nullptr);
+  if (this->IsAborted && !isTold && this->Filter->GetAbortExecute())
+  {
+    this->Warnings.push_back("Stopped, so the output is empty. To make it, change a property and "
+                             "press Apply; in scripts, SetAbortExecute(0) and Modified().");
   }
 }
 

@@ -43,8 +43,9 @@ struct Block
  * Runs the body of a RequestData for each block of the input.
  *
  * Progress rises by the number of points of the blocks. When the body throws, the outputs of the
- * block are emptied; after an abort, all of this rank are. What it throws, and the warnings, are
- * reported as one error and one warning of the filter; these name the blocks of a composite.
+ * block are emptied. What it throws, and the warnings, are reported as one error and one warning of
+ * the filter; these name the blocks of a composite. After an abort all outputs are empty, on all
+ * ranks, and one warning tells so.
  *
  * Where several ranks take part (Ranks), all of them meet here, whatever blocks each has: before
  * the blocks, to find points of one block on several ranks, which is an error on all of them, and
@@ -77,13 +78,15 @@ private:
   void RunPlaces(const std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
     const std::function<void(Block&)>& body);
   std::string RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
-  void ShareResults(const Ranks& ranks, bool isAborted);
+  void ShareResults(const Ranks& ranks);
+  void TellOfAbort();
 
   vtkAlgorithm* Filter;
   vtkInformation* Request;
   vtkInformationVector** Inputs;
   vtkInformationVector* Outputs;
   std::vector<std::string> Errors, Warnings;
+  bool IsAborted = false;
   std::vector<vtkIdType> Occupied; ///< numbers of the blocks with points, on any rank
 };
 

@@ -136,6 +136,11 @@ class ElevationPoints(TellingAlgorithm):
             set_words(output, RECOGNISED, [NOTHING])
             raise
 
+    def stop(self, outputs):
+        result = super().stop(outputs)
+        set_words(vtkPolyData.GetData(outputs), RECOGNISED, [NOTHING])
+        return result
+
     def read_into(self, output, outputs):
         """Returns the lines to show."""
         information = outputs.GetInformationObject(0)
@@ -274,7 +279,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
         if errors:
             self.error(in_panel(joined_errors(errors, len(results))))
         elif not results and any(has_failed_reader(part.data) for part in parts):
-            self._text = "The input is empty; its reader has told why."
+            self._text = "the input is empty; its reader has told why"
         elif not results:
             raise ElevationSurfaceError("the input has no points")
         if not results:

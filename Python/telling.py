@@ -9,12 +9,17 @@ import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from .clouds import ReadOptions
 from .messages import ElevationSurfaceError
 from .reconstruction import PROPERTIES
 
 ELEVATION = "Elevation"
+STOPPED = (
+    "stopped, so the output is empty. To make it, change a property and press Apply; in scripts, "
+    "call Modified()."
+)
 
 
 class Aborted(Exception):
@@ -105,8 +110,10 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
         self.SetAbortExecute(0)
         try:
             told = self.work(inInfo, outInfo)
+            self.UpdateProgress(1.0)
+            self.check_abort()
         except Aborted:
-            return 1
+            return self.stop(outInfo)
         except MemoryError:
             return self.fail("there is not enough memory")
         except (ElevationSurfaceError, ValueError, TypeError) as error:
@@ -117,6 +124,18 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
         if told not in ("", self._told):
             vtkOutputWindow.GetInstance().DisplayText(told + "\n")
         self._told = told
+        return 1
+
+    def stop(self, outputs):
+        """Empties the outputs, and tells it. Returns as fail() does.
+
+        They count as up to date: ParaView updates each of them in one Apply, which would begin anew.
+        """
+        for port in range(outputs.GetNumberOfInformationObjects()):
+            vtkDataObject.GetData(outputs, port).Initialize()
+        self._text = STOPPED
+        self._told = ""
+        vtkOutputWindow.GetInstance().DisplayText(f"{self.TITLE}: {STOPPED}\n")
         return 1
 
     def fail(self, words):
@@ -148,5 +167,8 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
         """Shows the progress of a step. Raises Aborted where the user does not want to wait."""
         self.SetProgressText(words)
         self.UpdateProgress(fraction)
+        self.check_abort()
+
+    def check_abort(self):
         if self.GetAbortExecute():
             raise Aborted

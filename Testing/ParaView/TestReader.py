@@ -92,8 +92,9 @@ tag = algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortEx
 check_equal(messages_of(reader), [], "errors when the user stops the reader")
 algorithm.RemoveObserver(tag)
 check_equal(fetch(reader).GetNumberOfPoints(), 0, "points when the user stops the reader")
+check("stopped" in information(reader, "Recognised"), "the panel tells that the reader was stopped")
 check_equal(messages_of(chain), [], "errors of the chain behind a reader that was stopped")
-reader.KeepNulls = 1 - reader.KeepNulls
+algorithm.Modified()
 check_equal(fetch(chain).GetNumberOfPoints() > 10266, True, "the surface comes when the file is read")
 
 # ---- the file has changed ----------------------------------------------------------------------
