@@ -39,6 +39,7 @@ from .reconstruction import (
 )
 from .report import picture_subtitle, print_report
 from .results import Failure, Progress, Results, WrongOption, write_report
+from .supervisor import allow_stops
 
 HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "help.txt")
 READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
@@ -445,6 +446,7 @@ class Run:
 
 def run_one(options):
     """The exit code of one run. Says why, where it fails."""
+    allow_stops()  # those that were held back while results of the run before appeared
     results = Results()
     run = Run(options, results)
     try:

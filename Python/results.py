@@ -8,7 +8,7 @@ import sys
 
 from .messages import ElevationSurfaceError, FileError, PictureError
 from .paths import partial_path
-from .supervisor import note_partial_file
+from .supervisor import hold_stops, note_finished_file, note_partial_file
 
 
 class Failure(ElevationSurfaceError):
@@ -65,11 +65,14 @@ class Results:
             raise Failure(f"{path}: cannot be written: {reason}") from None
 
     def publish(self):
+        """Lets all files appear. From here on the run counts as done: nothing stops it any more."""
+        hold_stops()
         for partial, path in self.pending:
             try:
                 os.replace(partial, path)
             except OSError as error:
                 raise Failure(f"{path}: cannot be written: {error.strerror}") from None
+            note_finished_file(path)
         self.pending = []
 
     def discard(self):

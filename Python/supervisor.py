@@ -4,7 +4,11 @@
 
 Libraries in C++ do not hear of Ctrl-C until they are done. So the program works in a child. The
 parent waits for it, asks it to stop, ends it if it does not, and removes what it has left behind:
-unfinished results and the folder of its temporary files. Nothing here is imported that takes time.
+unfinished results and the folder of its temporary files. While finished results appear, the child is
+not stopped. Nothing here is imported that takes time.
+
+They talk by SIGTERM from the parent, and by files in a folder: the names of unfinished results, the
+names of those that have appeared, and a file that is there while stops are held back.
 """
 
 import ctypes
@@ -19,8 +23,12 @@ PATIENCE = 0.5  # seconds from the request to stop to the end by force
 STOPPING = [
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
-STOPPED = "reconstruct: stopped; nothing is written"
-PARTIAL_FILES = "partial-files"
+STOPPED = "reconstruct: stopped"
+NOTHING = "nothing is written"
+MOST_NAMED = 10
+RUN = "ELEVATION_SURFACE_RUN"  # the environment variable that tells the child the folder
+PARTIAL_FILES, FINISHED_FILES, HELD = "partial-files", "finished-files", "held"
+held_back = []  # stops that were asked for since hold_stops()
 PR_SET_PDEATHSIG = 1  # <sys/prctl.h>
 
 
@@ -32,21 +40,77 @@ def end_with_parent():
 
 def note_partial_file(path):
     """Tells the parent of a file that is not finished, for it to remove if this process cannot."""
-    folder = os.environ.get("ELEVATION_SURFACE_RUN")
+    note(PARTIAL_FILES, os.path.abspath(path))
+
+
+def note_finished_file(path):
+    """Tells the parent of a result that has appeared."""
+    note(FINISHED_FILES, path)
+
+
+def note(name, words):
+    folder = os.environ.get(RUN)
     if folder:
-        with open(os.path.join(folder, PARTIAL_FILES), "a", encoding="utf-8") as stream:
-            stream.write(os.path.abspath(path) + "\0")
+        with open(os.path.join(folder, name), "a", encoding="utf-8") as stream:
+            stream.write(words + "\0")
+
+
+def noted(folder, name):
+    """What note() has written, in its order."""
+    try:
+        with open(os.path.join(folder, name), encoding="utf-8") as stream:
+            return stream.read().split("\0")[:-1]
+    except OSError:
+        return []
+
+
+def hold_stops():
+    """Lets nothing stop this process from now on: its results appear, and its code will count.
+
+    Raises KeyboardInterrupt where it has been asked to stop before.
+    """
+    folder = os.environ.get(RUN)
+    if folder:
+        # The parent asks, waits, looks for this file, and only then ends this process by force. So
+        # where the file comes too late, what was asked is heard in the next line.
+        note(HELD, "")
+        signal.signal(signal.SIGTERM, lambda *_: held_back.append(True))
+
+
+def allow_stops():
+    """The end of hold_stops(). Raises KeyboardInterrupt where a stop was asked for meanwhile."""
+    folder = os.environ.get(RUN)
+    if folder and is_held(folder):
+        signal.signal(signal.SIGTERM, stop)
+        os.remove(os.path.join(folder, HELD))
+        if held_back:
+            stop()
+
+
+def is_held(folder):
+    return os.path.exists(os.path.join(folder, HELD))
+
+
+def stop(*_):
+    """Whatever comes of being interrupted somewhere, nobody needs to hear of it."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+    raise KeyboardInterrupt
 
 
 def remove_leftovers(folder):
-    try:
-        with open(os.path.join(folder, PARTIAL_FILES), encoding="utf-8") as stream:
-            for path in stream.read().split("\0"):
-                if os.path.isfile(path):
-                    os.remove(path)
-    except OSError:
-        pass
+    for path in noted(folder, PARTIAL_FILES):
+        if os.path.isfile(path):
+            os.remove(path)
     shutil.rmtree(folder, ignore_errors=True)
+
+
+def what_is_written(folder):
+    """The results that have appeared, for messages."""
+    names = noted(folder, FINISHED_FILES)
+    if not names:
+        return NOTHING
+    more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
+    return f"written before: {', '.join(names[:MOST_NAMED])}{more}"
 
 
 def supervised(work):
@@ -65,15 +129,16 @@ def supervised(work):
     child = os.fork()
     if child == 0:
         be_child(work, folder)
-    status = wait_for(child, stops)
+    status = wait_for(child, stops, folder)
+    is_done, written = is_held(folder), what_is_written(folder)
     remove_leftovers(folder)
     code = os.WEXITSTATUS(status) if os.WIFEXITED(status) else None
-    if code == 0 or code in (1, 2) and not stops:
+    if code == 0 or code in (1, 2) and (is_done or not stops):
         return code
     if sys.stderr.isatty():
         sys.stderr.write("\r" + " " * 60 + "\r")
     if stops:
-        print(STOPPED, file=sys.stderr)
+        print(f"{STOPPED}; {written}", file=sys.stderr)
         return 130
     if os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGKILL:
         reason = "was ended by the system, most likely for want of memory"
@@ -81,25 +146,19 @@ def supervised(work):
         reason = f"crashed in a library ({signal.Signals(os.WTERMSIG(status)).name})"
     else:
         reason = f"ended with code {code}"
-    print(f"reconstruct: error: the run {reason}; nothing is written", file=sys.stderr)
+    print(f"reconstruct: error: the run {reason}; {written}", file=sys.stderr)
     return 1
 
 
 def be_child(work, folder):
     """Does not return. Ctrl-C is for the parent, who then sends SIGTERM."""
     code = 1
-
-    def stop(*_):
-        # Whatever comes of being interrupted somewhere, nobody needs to hear of it.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
-        raise KeyboardInterrupt
-
     try:
         for number in STOPPING:
             signal.signal(number, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, stop)
         end_with_parent()
-        os.environ["ELEVATION_SURFACE_RUN"] = folder
+        os.environ[RUN] = folder
         tempfile.tempdir = folder
         code = work()
     except KeyboardInterrupt:
@@ -117,8 +176,9 @@ def be_child(work, folder):
             os._exit(code or 0)
 
 
-def wait_for(child, stops):
-    """The child's status. A child that does not stop when asked is ended by force."""
+def wait_for(child, stops, folder):
+    """The child's status. A child that does not stop when asked is ended by force, but not while its
+    results appear."""
     asked = None
     while True:
         done, status = os.waitpid(child, os.WNOHANG)
@@ -127,7 +187,7 @@ def wait_for(child, stops):
         if stops and asked is None:
             asked = time.monotonic()
             os.kill(child, signal.SIGTERM)
-        elif asked is not None and time.monotonic() - asked > PATIENCE:
+        elif asked is not None and time.monotonic() - asked > PATIENCE and not is_held(folder):
             os.kill(child, signal.SIGKILL)
             return os.waitpid(child, 0)[1]
         time.sleep(0.01)

@@ -17,6 +17,18 @@ from vtkelevationsurface import clouds, supervisor
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 
+STOPPED = "reconstruct: stopped; nothing is written\n"
+# A signal comes as the first of some files appears, and the next takes longer than the parent waits.
+SIGNAL_AMONG_FILES = """
+def interrupted(*names, replace=os.replace, sent=[]):
+    replace(*names)
+    if not sent:
+        sent.append(os.kill(os.getppid(), signal.{signal}))
+        time.sleep(2 * supervisor.PATIENCE)
+os.replace = interrupted
+"""
+
+
 def sheet(size, x=0.0):
     """size x size points of a plane, one apart."""
     rows = [(x + i, j, 0.5 * i - 0.25 * j) for j in range(size) for i in range(size)]
@@ -160,15 +172,16 @@ class Interrupts(InFolder):
                 asked = time.monotonic()
                 _, errors = program.communicate(timeout=300)
                 self.assertLess(time.monotonic() - asked, self.LIMIT)
+                made = sorted(set(os.listdir(self.folder)) - set(before))
+                for name in made:
+                    os.remove(os.path.join(self.folder, name))
                 self.assertEqual(os.listdir(self.temporary), [])
                 if program.returncode == 0:
-                    os.remove(os.path.join(self.folder, "a.ply"))
-                    os.remove(os.path.join(self.folder, "a.png"))
+                    self.assertEqual((errors, made), ("", ["a.ply", "a.png"]))
                 else:
                     stopped += 1
                     self.assertEqual(program.returncode, 130)
-                    self.assertEqual(errors, "reconstruct: stopped; nothing is written\n")
-                self.assertEqual(sorted(os.listdir(self.folder)), before)
+                    self.assertEqual((errors, made), (STOPPED, []))
         self.assertGreater(stopped, 10)
 
 
@@ -213,8 +226,52 @@ class Supervised(InFolder):
         )
         began = time.monotonic()
         done = self.supervise(body)
-        self.assertEqual((done.returncode, done.stderr), (130, supervisor.STOPPED + "\n"))
+        self.assertEqual((done.returncode, done.stderr), (130, STOPPED))
         self.assertLess(time.monotonic() - began, 40)
+
+    def test_files_that_appear_all_appear_whatever_is_signalled_meanwhile(self):
+        self.file("a.xyz", sheet(5))
+        body = (
+            "from vtkelevationsurface.command import main\n"
+            "def work(): return main(['a.xyz', '--no-picture', '--report'])"
+        )
+        for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+            with self.subTest(signal=name):
+                done = self.supervise(SIGNAL_AMONG_FILES.format(signal=name) + body)
+                made = sorted(set(os.listdir(self.folder)) - {"a.xyz"})
+                for file in made:
+                    os.remove(self.path(file))
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertEqual(made, ["a_surface.json", "a_surface.vtp"])
+                self.assertIn("written", done.stdout)
+
+    def test_each_is_stopped_between_files_and_tells_what_is_written(self):
+        for name in "abc":
+            self.file(f"{name}.xyz", sheet(5))
+        body = (
+            "from vtkelevationsurface.command import main\n"
+            "def work(): return main(['a.xyz', 'b.xyz', 'c.xyz', '--each', '--no-picture'])"
+        )
+        done = self.supervise(SIGNAL_AMONG_FILES.format(signal="SIGINT") + body)
+        words = "reconstruct: stopped; written before: a_surface.vtp\n"
+        self.assertEqual((done.returncode, done.stderr), (130, words))
+        made = sorted(set(os.listdir(self.folder)))
+        self.assertEqual(made, ["a.xyz", "a_surface.vtp", "b.xyz", "c.xyz"])
+
+    def test_what_was_asked_before_files_appear_leaves_none(self):
+        body = (
+            "from vtkelevationsurface.results import Results\n"
+            "def work():\n"
+            "    results = Results()\n"
+            "    results.add('a', lambda path: open(path, 'w').close())\n"
+            "    os.kill(os.getppid(), signal.SIGTERM)\n"
+            "    os.kill(os.getpid(), signal.SIGTERM)\n"
+            "    results.publish()\n"
+            "    return 0\n"
+        )
+        done = self.supervise(body)
+        self.assertEqual((done.returncode, done.stderr), (130, STOPPED))
+        self.assertEqual(os.listdir(self.folder), [])
 
 
 if __name__ == "__main__":
