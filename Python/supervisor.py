@@ -4,8 +4,8 @@
 
 Libraries in C++ do not hear of Ctrl-C until they are done. So the program works in a child. The
 parent waits for it, asks it to stop, ends it if it does not, and removes what it has left behind:
-unfinished results and the folder of its temporary files. While finished results appear, the child is
-not stopped. Nothing here is imported that takes time.
+unfinished results and the folder of its temporary files. While finished results appear, the child
+is not stopped. Nothing here is imported that takes time.
 
 They talk by SIGTERM from the parent, and by files in a folder: the names of unfinished results, the
 names of those that have appeared, and a file that is there while stops are held back.
@@ -177,8 +177,8 @@ def be_child(work, folder):
 
 
 def wait_for(child, stops, folder):
-    """The child's status. A child that does not stop when asked is ended by force, but not while its
-    results appear."""
+    """The child's status. A child that does not stop when asked is ended by force, but not while
+    its results appear."""
     asked = None
     while True:
         done, status = os.waitpid(child, os.WNOHANG)

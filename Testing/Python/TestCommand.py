@@ -18,7 +18,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 
 STOPPED = "reconstruct: stopped; nothing is written\n"
-# A signal comes as the first of some files appears, and the next takes longer than the parent waits.
+# A signal comes as the first of some files appears; the next takes longer than the parent waits.
 SIGNAL_AMONG_FILES = """
 def interrupted(*names, replace=os.replace, sent=[]):
     replace(*names)
