@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
 from .blocks import is_empty, number_of_points, parts_of, put_parts
-from .clouds import antimeridian_note, cells_of, crs_of, faults_note, set_crs
+from .clouds import cells_of, notes_on, set_crs
 from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .ranks import check_ranks, controller_of, shared
@@ -304,7 +304,9 @@ class ReconstructElevationSurface(TellingAlgorithm):
         """The Reconstruction of one data set, with notes on what looks wrong."""
         cloud = cloud_of(part, self._elevation_array, self._columns, self._keep_nulls)
         drop_elevation(cloud.points)
-        cloud.notes += recognised(cloud.points) + notes_on(cloud, lines)
+        cloud.notes += recognised(cloud.points)
+        names = {"points": "the points", "boundary": "the boundary", "faults": "the faults"}
+        cloud.notes += notes_on(cloud, lines, names)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ElevationSurfaceWarning)  # told by warn()
             result = reconstruct(
@@ -332,11 +334,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
                     one.ShallowCopy(getattr(results[part], name) or vtkPolyData())
                     if port == 0:
                         set_elevation(one)
-            output = vtkDataObject.GetData(outputs, port)
-            if isinstance(data, vtkDataObjectTree):
-                put_parts(output, data, parts, made)
-            else:
-                output.ShallowCopy(made[0])
+            put_parts(vtkDataObject.GetData(outputs, port), data, parts, made)
 
     def tell(self, names, results, outputs):
         """Fills the report and sends warnings. Returns the lines to show."""
@@ -385,24 +383,6 @@ def of_panel(words, about):
     """A message of a filter without its step; lines that the panel calls faults are constraints there."""
     words = re.sub(rf"^({'|'.join(STEPS.values())}): ", "", words)
     return re.sub(r"\bconstraint(s?)\b", r"fault\1", words) if about == "faults" else words
-
-
-def notes_on(cloud, lines):
-    """What looks wrong with points, boundary and faults, one line each. Raises FileError."""
-    notes = [antimeridian_note(cloud.points)]
-    if "faults" in lines:
-        notes.append(faults_note(cloud.points, lines["faults"]))
-    notes = [note for note in notes if note]
-    for name, data in lines.items():
-        crs = crs_of(data)
-        if crs and cloud.crs:
-            try:
-                from .gdal_common import check_system
-
-                notes += check_system(f"the {name}", crs, "the points", cloud.crs)
-            except ImportError:
-                pass  # systems cannot be compared without GDAL
-    return notes
 
 
 def joined_errors(errors, others):

@@ -79,6 +79,9 @@ def _child(tree, i):
 
 def put_parts(output, data, parts, made):
     """Gives output the structure of data, with the vtkPolyData made[i] for parts[i]."""
+    if not isinstance(data, vtkDataObjectTree):
+        output.ShallowCopy(made[0])
+        return
     output.CopyStructure(data)
     output.GetFieldData().PassData(data.GetFieldData())
     for part, surface in zip(parts, made):

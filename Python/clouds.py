@@ -191,13 +191,33 @@ def merged(names, clouds):
 
 def system_of(names, clouds):
     """(crs, notes) of several clouds. Raises FileError where they differ."""
-    from .gdal_common import check_system  # imports this module
-
     known = [(name, cloud.crs) for name, cloud in zip(names, clouds) if cloud.crs]
     if not known:
         return None, []
     first, crs = known[0]
     return crs, [note for name, other in known for note in check_system(name, other, first, crs)]
+
+
+def notes_on(cloud, lines, names):
+    """What looks wrong with points and the lines beside them, one line each.
+
+    lines   {"boundary": vtkPolyData, "faults": vtkPolyData}, of these what there is
+    names   how messages call the "points" and each of the lines
+    Raises FileError where coordinate reference systems differ.
+    """
+    notes = [antimeridian_note(cloud.points)]
+    for name, data in lines.items():
+        notes += check_system(names[name], crs_of(data), names["points"], cloud.crs)
+    if "faults" in lines:
+        notes.append(faults_note(cloud.points, lines["faults"]))
+    return [note for note in notes if note]
+
+
+def check_system(*pair):
+    """That of gdal_common, which imports this module."""
+    from .gdal_common import check_system as check
+
+    return check(*pair)
 
 
 def faults_note(points, faults):

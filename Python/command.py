@@ -15,14 +15,12 @@ import numpy
 from . import reading
 from .clouds import (
     ReadOptions,
-    antimeridian_note,
     class_numbers,
-    crs_of,
-    faults_note,
     merged,
+    notes_on,
     three_columns,
 )
-from .gdal_common import check_system, name_of, reference_of
+from .gdal_common import name_of, reference_of
 from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name, write_output
@@ -316,27 +314,21 @@ class Run:
                 options.files, [reading.read(path, **wanted) for path in options.files]
             ),
         )
-        note = antimeridian_note(cloud.points)
-        if note:
-            cloud.notes.append(note)
         try:
             check_spacing(cloud.points, options.given.get("spacing", 0.0))
         except ValueError as error:
             raise WrongOption(f"{options.file}: --{error}") from None
         self.set_crs(cloud)
-        faults = None
+        lines = {}
+        if options.boundary:
+            lines["boundary"] = reading.read_boundary(options.boundary)
         if options.faults:
-            faults = reading.read_faults(options.faults, options.depth)
+            lines["faults"] = reading.read_faults(options.faults, options.depth)
             if options.depth:
                 cloud.notes.append("z of the faults is turned over too, as --depth says")
-        boundary = reading.read_boundary(options.boundary) if options.boundary else None
-        for path, lines in ((options.boundary, boundary), (options.faults, faults)):
-            if lines is not None:
-                crs = crs_of(lines)
-                cloud.notes += check_system(path, crs, options.files[0], cloud.crs)
-        note = faults_note(cloud.points, faults) if faults is not None else None
-        cloud.notes += [note] if note else []
-        return cloud, boundary, faults
+        names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
+        cloud.notes += notes_on(cloud, lines, names)
+        return cloud, lines.get("boundary"), lines.get("faults")
 
     def set_crs(self, cloud):
         """What --crs says counts, and is told where the file says something else."""
