@@ -10,7 +10,6 @@ import re
 import warnings
 
 import numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkDataObject,
     vtkDataObjectTree,
@@ -19,14 +18,28 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
+from .accounts import (
+    RECOGNISED,
+    account_of,
+    account_of_error,
+    counts_of,
+    fill_table,
+    in_block,
+    joined_errors,
+    lines_to_show,
+    once,
+    recognised,
+    report_rows,
+    report_text,
+)
 from .blocks import is_empty, number_of_points, parts_of, put_parts
 from .clouds import cells_of, notes_on, set_crs
 from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
-from .ranks import check_ranks, controller_of, shared
+from .ranks import check_ranks, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import PROPERTIES, STEPS, reconstruct
-from .report import counted, crs_name, main_counts, report_lines
+from .report import counted, crs_name
 from .telling import (
     TellingAlgorithm,
     drop_elevation,
@@ -37,9 +50,7 @@ from .telling import (
 )
 
 
-RECOGNISED = "Recognised"  # the field array in which ElevationPoints tells what a file is
 NOTHING = "nothing was read"
-MOST_ERRORS = 5  # of blocks, in one message
 
 
 class ElevationPoints(TellingAlgorithm):
@@ -264,41 +275,35 @@ class ReconstructElevationSurface(TellingAlgorithm):
         for name, given in (("boundary", inputs[1]), ("faults", inputs[2])):
             if given.GetNumberOfInformationObjects():
                 given = vtkDataObject.GetData(given)
-                lines[name] = joined(
-                    shared(controller, lambda: lines_of(given, name))
-                    if controller
-                    else [lines_of(given, name)]
-                )
-        if not is_here:
-            self.put(data, parts, {}, outputs)
-            return []  # the points are on another rank
-        results, errors = self.results_of(parts, lines)
-        if errors and not parts[0].name:
-            raise ElevationSurfaceError(errors[0][1])
+                lines[name] = shared(controller, lambda: lines_of(given, name))
+        results = {}
+        accounts = together(
+            controller, lambda: self.reconstruct_parts(parts, lines, results) if is_here else []
+        )
         self.put(data, parts, results, outputs)
-        if errors:
-            self.error(in_panel(joined_errors(errors, len(results))))
-        elif not results and any(has_failed_reader(part.data) for part in parts):
-            self._text = "the input is empty; its reader has told why"
-        elif not results:
-            raise ElevationSurfaceError("the input has no points")
-        if not results:
-            return []
-        return self.tell([part.name for part in results], list(results.values()), outputs)
+        if controller:
+            accounts = once(accounts)
+        self._text = report_text(accounts)
+        if controller and controller.GetLocalProcessId() > 0:
+            return []  # the first rank tells of all
+        return self.tell(accounts, any(has_failed_reader(part.data) for part in parts), outputs)
 
-    def results_of(self, parts, lines):
-        """({part: Reconstruction}, [(name, why there is none)]); empty parts are in neither."""
-        results, errors = {}, []
+    def reconstruct_parts(self, parts, lines, results):
+        """Adds the Reconstruction of each part to results. Returns their accounts."""
+        lines = {name: joined(given) for name, given in lines.items()}
+        accounts = []
         parts = [part for part in parts if not is_empty(part.data)]
         for i, part in enumerate(parts):
             self._share = (i / len(parts), 1.0 / len(parts))
             try:
                 results[part] = self.result_of(part.data, lines)
+                accounts.append(account_of(part, results[part]))
             except (ElevationSurfaceError, ValueError) as error:
-                errors.append((part.name, of_panel(str(error), getattr(error, "about", "points"))))
+                words = of_panel(str(error), getattr(error, "about", "points"))
+                accounts.append(account_of_error(part, words))
             except MemoryError:
-                errors.append((part.name, "there is not enough memory"))
-        return results, errors
+                accounts.append(account_of_error(part, "there is not enough memory"))
+        return accounts
 
     def result_of(self, part, lines):
         """The Reconstruction of one data set, with notes on what looks wrong."""
@@ -336,42 +341,23 @@ class ReconstructElevationSurface(TellingAlgorithm):
                         set_elevation(one)
             put_parts(vtkDataObject.GetData(outputs, port), data, parts, made)
 
-    def tell(self, names, results, outputs):
-        """Fills the report and sends warnings. Returns the lines to show."""
-        rows, told = [], []
-        if len(results) > 1:
-            rows += [("all blocks", *row) for row in sums_of(results)]
-        for name, result in zip(names, results):
-            for note in result.notes:
-                self.warn(in_panel(f"{name}: {note}" if name else note))
-            for item, value in report_lines(result.report):
-                rows.append((name, item, in_panel(value)))
-        # Warnings, and what a reader has found out, have been shown already.
-        shown = [in_panel(note) for result in results for note in result.notes]
-        shown += [line for one in results for line in recognised(one.cloud.points)]
-        lines, last = [], ""
-        for block, item, value in rows:
-            if block != last:
-                lines.append(f"{block}:")
-                last = block
-            lines.append(f"{item:<10} {value}")
-            if item != "note" or value not in shown:
-                told.append(lines[-1] if not block else f"{block}: {lines[-1]}")
-        self._text = "\n".join(lines)
-        fill_table(vtkTable.GetData(outputs, 3), rows)
-        counts = main_counts(results[0])
-        if len(results) > 1:
-            counts = [counted(len(results), "block")]
-            counts += [f"{row[2].split()[0]} {row[1]}" for row in rows[:3] if row[1] != "unused"]
-        return [f"{self.TITLE}: {', '.join(counts)}", *told]
-
-
-def recognised(points):
-    """What a reader has found out, for the report of these points, which may be some of the file's."""
-    told, count = words_of(points, RECOGNISED), points.GetNumberOfPoints()
-    if told and not told[0].endswith(f": {counted(count, 'point')}"):
-        told[0] += f"; this surface is of {counted(count, 'point')}"
-    return told
+    def tell(self, accounts, reader_has_told, outputs):
+        """Fills the table, and sends warnings and errors. Returns the lines to show."""
+        errors = [account for account in accounts if "error" in account]
+        made = [account for account in accounts if "error" not in account]
+        for account in made:
+            for note in account["notes"]:
+                self.warn(in_block(account, note))
+        if errors:
+            self.error(joined_errors(errors, len(made)))
+        elif not made and reader_has_told:
+            self._text = "the input is empty; its reader has told why"
+        elif not made:
+            raise ElevationSurfaceError("the input has no points")
+        if not made:
+            return []
+        fill_table(vtkTable.GetData(outputs, 3), report_rows(accounts))
+        return [f"{self.TITLE}: {', '.join(counts_of(made))}", *lines_to_show(accounts)]
 
 
 def has_failed_reader(data):
@@ -383,48 +369,6 @@ def of_panel(words, about):
     """A message of a filter without its step; lines that the panel calls faults are constraints there."""
     words = re.sub(rf"^({'|'.join(STEPS.values())}): ", "", words)
     return re.sub(r"\bconstraint(s?)\b", r"fault\1", words) if about == "faults" else words
-
-
-def joined_errors(errors, others):
-    """The errors of blocks as one message; once where it is the same in all."""
-    if not others and len({words for _, words in errors}) == 1:
-        return errors[0][1]
-    lines = [f"{name}: {words}" for name, words in errors[:MOST_ERRORS]]
-    if len(errors) > MOST_ERRORS:
-        lines.append(f"And {len(errors) - MOST_ERRORS} more like these.")
-    return "\n".join(lines)
-
-
-def sums_of(results):
-    """[(item, text)] of what all blocks have together."""
-    reports = [result.report for result in results]
-    sums = [
-        ("points", sum(report["points"] for report in reports), "read"),
-        ("unused", sum(report["points_unused"] for report in reports), ""),
-        ("triangles", sum(list(report["triangles"].values())[-1] for report in reports), ""),
-    ]
-    if results[0].trim:
-        outward = sum(report["trim"]["outward_triangles"] for report in reports)
-        sums.append(("trimmed", outward, "outward triangles"))
-    if results[0].fill:
-        for name in ("found", "filled"):
-            sums.append(("holes", sum(report["holes"][name] for report in reports), name))
-    return [(item, f"{count:,} {words}".strip()) for item, count, words in sums]
-
-
-def fill_table(table, rows):
-    """Writes rows of (block, item, value); the block is a column where there are several."""
-    names = ["Block", "Item", "Value"]
-    first = 0 if any(block for block, _, _ in rows) else 1
-    columns = [vtkStringArray() for _ in names]
-    item = ""
-    for block, name, value in rows:
-        item = name or item
-        for column, word in zip(columns, (block, item, value)):
-            column.InsertNextValue(word)
-    for name, column in list(zip(names, columns))[first:]:
-        column.SetName(name)
-        table.AddColumn(column)
 
 
 def add_setters():

@@ -7,12 +7,18 @@ All of them have to call the same functions in the same order.
 """
 
 import hashlib
+import json
 
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkTable
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from .messages import ElevationSurfaceError
+from .telling import Aborted
+
+ELSEWHERE = "the message of another rank tells why"
 
 
 def controller_of(outputs):
@@ -34,20 +40,46 @@ def controller_of(outputs):
 
 
 def collected(controller, values):
-    """The whole numbers of all ranks, one list for each."""
+    """The whole numbers of all ranks, a numpy array for each."""
 
     def all_of(numbers):
-        own, everywhere = vtkIdTypeArray(), vtkIdTypeArray()
-        for number in numbers:
-            own.InsertNextValue(number)
+        own = numpy_to_vtk(numbers, deep=True)
+        everywhere = own.NewInstance()
         everywhere.SetNumberOfValues(len(numbers) * controller.GetNumberOfProcesses())
         controller.AllGather(own, everywhere)
-        return [everywhere.GetValue(i) for i in range(everywhere.GetNumberOfValues())]
+        return vtk_to_numpy(everywhere).copy()
 
-    lengths = all_of([len(values)])
-    most = max(lengths)
-    padded = all_of([*values, *[0] * (most - len(values))]) if most else []
-    return [padded[i * most : i * most + length] for i, length in enumerate(lengths)]
+    values = numpy.asarray(values, dtype="i8")
+    lengths = all_of(numpy.array([len(values)]))
+    padded = numpy.zeros(max(lengths.max(), 1), dtype="i8")
+    padded[: len(values)] = values
+    rows = all_of(padded).reshape(len(lengths), -1)
+    return [row[:length] for row, length in zip(rows, lengths)]
+
+
+def together(controller, work):
+    """The lists that work() gives on each rank, as one list on all ranks. They hold plain values.
+
+    Where work() raises on a rank, all ranks raise. Without a controller there is one rank.
+    """
+    if controller is None:
+        return work()
+    failure = None
+    try:
+        words = json.dumps(["done", work()])
+    except Exception as error:  # pylint: disable=broad-except
+        failure = error
+        words = json.dumps(["stopped" if isinstance(error, Aborted) else "failed", []])
+    found = collected(controller, list(words.encode()))
+    found = [json.loads(bytes(row.astype("u1"))) for row in found]
+    states = [state for state, _ in found]
+    if failure:
+        raise failure
+    if "failed" in states:
+        raise ElevationSurfaceError(ELSEWHERE)
+    if "stopped" in states:
+        raise Aborted
+    return [value for _, values in found for value in values]
 
 
 def number_of(place):
@@ -64,7 +96,7 @@ def check_ranks(controller, parts):
     where none has.
     """
     own = {number_of(part.surface): part for part in parts}
-    ranks = collected(controller, list(own))
+    ranks = [row.tolist() for row in collected(controller, list(own))]
     for number in sorted(set().union(*ranks)):
         count = sum(number in here for here in ranks)
         if count > 1:
@@ -84,20 +116,35 @@ def check_ranks(controller, parts):
 def shared(controller, work):
     """The vtkPolyData parts of all ranks, on all of them; work() gives the one of this rank.
 
-    Where work() raises ElevationSurfaceError on a rank, all ranks raise one.
+    What several ranks have as a whole, the same points and cells, counts once. Where work() raises
+    on a rank, all ranks raise.
     """
-    own, failure = vtkPolyData(), None
-    try:
-        own = work()
-    except ElevationSurfaceError as error:
-        failure = error
-    found = collected(controller, [int(failure is not None), int(own.GetNumberOfPoints() > 0)])
-    if any(failed for failed, _ in found):
-        raise failure or ElevationSurfaceError("the message of another rank tells why")
+    if controller is None:
+        return [work()]
+    own = []
+
+    def size():
+        own.append(work())
+        return [own[0].GetNumberOfPoints()]
+
     parts = []
-    for rank, (_, has_points) in enumerate(found):
-        if has_points:
-            part = own if rank == controller.GetLocalProcessId() else vtkPolyData()
+    for rank, count in enumerate(together(controller, size)):
+        if count:
+            part = own[0] if rank == controller.GetLocalProcessId() else vtkPolyData()
             controller.Broadcast(part, rank)
-            parts.append(part)
-    return parts or [own]
+            if not any(are_equal(part, other) for other in parts):
+                parts.append(part)
+    return parts or own
+
+
+def are_equal(one, other):
+    """Whether two vtkPolyData have the same points and cells; both have points."""
+
+    def numbers(data):
+        yield vtk_to_numpy(data.GetPoints().GetData())
+        for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
+            ids = vtkIdTypeArray()
+            cells.ExportLegacyFormat(ids)
+            yield vtk_to_numpy(ids)
+
+    return all(numpy.array_equal(a, b) for a, b in zip(numbers(one), numbers(other)))

@@ -135,7 +135,8 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
             vtkDataObject.GetData(outputs, port).Initialize()
         self._text = STOPPED
         self._told = ""
-        vtkOutputWindow.GetInstance().DisplayText(f"{self.TITLE}: {STOPPED}\n")
+        if self.GetAbortExecute():  # not on another rank
+            vtkOutputWindow.GetInstance().DisplayText(f"{self.TITLE}: {STOPPED}\n")
         return 1
 
     def fail(self, words):

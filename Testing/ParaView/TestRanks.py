@@ -167,9 +167,10 @@ check_equal(update(simple.GridDelaunay2D(Input=given(cloud() if RANK == 0 else E
             len(CLOUD) + len(RING) - 1 if RANK == 0 else 0, "rank %d, points with lines in pieces" % RANK)
 whole_chain = [
     update(simple.ReconstructElevationSurface(Input=given(cloud() if RANK == 0 else EMPTY), Boundary=given(ring)))[1]
-    for ring in (line(RING) if RANK == 0 else EMPTY, line(PIECE))]
-check_equal(*(outputs[0].GetNumberOfPolys() for outputs in whole_chain),
-            "rank %d, triangles of the whole chain with the boundary in pieces" % RANK)
+    for ring in (line(RING) if RANK == 0 else EMPTY, line(PIECE), line(RING))]
+for claim, outputs in zip(("in pieces", "on each rank"), whole_chain[1:]):
+    check_equal(outputs[0].GetNumberOfPolys(), whole_chain[0][0].GetNumberOfPolys(),
+                "rank %d, triangles of the whole chain with the boundary %s" % (RANK, claim))
 check_equal(whole_chain[1][0].GetNumberOfPolys() > 100, RANK == 0, "rank %d, the whole chain has triangles" % RANK)
 # What is wrong with the second input of one rank is an error on all.
 table = blocks(vtkImageData()) if RANK == LAST else EMPTY
@@ -186,6 +187,55 @@ none = blocks(cloud()) if RANK == 0 else blocks()
 check_silent(update(simple.GridDelaunay2D(Input=given(none)))[0], "a block on one rank, none on others")
 check_refused(simple.GridDelaunay2D(Input=given(blocks(EMPTY, cloud()))), 'Block 1 ("north")',
               "a block on all ranks")
+
+
+# The report of the whole chain is that of all ranks: the text on each, rows and messages on the first.
+def check_report(source, told, missing, messages, claim):
+    """told, missing: lines that the report has once, or not; messages: parts of the first rank's."""
+    found, outputs = update(source)
+    found = [text for _, text in found]
+    for part in messages if RANK == 0 else []:
+        check(any(part in text for text in found), "%s: no message %r: %s" % (claim, part, found))
+    check_equal(len(found), len(messages) if RANK == 0 else 0, "rank %d, messages, %s" % (RANK, claim))
+    source.SMProxy.UpdatePropertyInformation()
+    report = source.SMProxy.GetProperty("Report").GetElement(0).split("\n")
+    for line in told:
+        check_equal(report.count(line), 1, "rank %d, %s: %r in the report %s" % (RANK, claim, line, report))
+    for part in missing:
+        check(part not in "".join(report), "rank %d, %s: %r is in the report" % (RANK, claim, part))
+    check_equal(outputs[3].GetNumberOfRows() > 8, RANK == 0 and bool(told),
+                "rank %d, rows of the report, %s" % (RANK, claim))
+    return outputs
+
+
+read = "points     %s read" % len(CLOUD)
+names = ["Block %d:" % i for i in range(COUNT - 1)] + ['Block %d ("north"):' % LAST]
+mine = [cloud() if RANK == i else EMPTY for i in range(COUNT)]
+check_report(simple.ReconstructElevationSurface(Input=given(blocks(*mine))),
+             ["all blocks:", "points     {:,} read".format(COUNT * len(CLOUD)), *names], [], [],
+             "a block on each rank")
+check_report(simple.ReconstructElevationSurface(Input=given(cloud() if RANK == LAST else EMPTY)),
+             [read], ["Block"], [], "points on the last rank")
+far = cloud(CLOUD[:2]) if RANK == LAST else mine[RANK]
+outputs = check_report(
+    simple.ReconstructElevationSurface(Input=given(blocks(*mine[:RANK], far, *mine[RANK + 1:]))),
+    [names[0], names[LAST]], [], [names[LAST]], "a block of two points on the last rank")
+check_equal(outputs[0].GetBlock(RANK).GetNumberOfPolys() > 900, RANK < LAST,
+            "rank %d, triangles beside a block of two points" % RANK)
+check_report(simple.ReconstructElevationSurface(Input=given(blocks(*mine)), Spacing=-1), [], ["Block"],
+             ["Spacing takes"], "a wrong property")
+check_report(simple.ReconstructElevationSurface(Input=given(blocks(*mine)), GapTolerance=1),
+             names, [], ["leaves out"] * COUNT, "a warning for each block")
+# A stop on one rank stops all of them.
+for make, data in ((simple.ReconstructElevationSurface, blocks(*mine)), (simple.GridDelaunay2D, blocks(*mine))):
+    source = make(Input=given(data))
+    if RANK == LAST:
+        algorithm = source.SMProxy.GetClientSideObject()
+        algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+    _, outputs = update(source)
+    check_equal([output.GetNumberOfElements(1) for output in outputs], [0] * len(outputs),
+                "rank %d, cells after a stop on the last rank" % RANK)
+
 partitions = vtkPartitionedDataSet()
 partitions.SetPartition(0, cloud())
 check_refused(simple.GridDelaunay2D(Input=given(partitions)), "The points of the input are on",
