@@ -33,7 +33,7 @@ from .accounts import (
     report_text,
 )
 from .blocks import is_empty, number_of_points, parts_of, put_parts
-from .clouds import cells_of, notes_on, set_crs
+from .clouds import ReadOptions, cells_of, notes_on, set_crs
 from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .ranks import check_ranks, controller_of, shared, together
@@ -51,6 +51,7 @@ from .telling import (
 
 
 NOTHING = "nothing was read"
+IS_BOUNDARY = re.compile(r": [\d,]+ lines? of boundary$")  # Recognised of one
 
 
 class ElevationPoints(TellingAlgorithm):
@@ -115,10 +116,7 @@ class ElevationPoints(TellingAlgorithm):
         if self._columns.strip():
             options["columns"] = self._columns
         if self._no_data.strip():
-            try:
-                options["no_data"] = float(self._no_data)
-            except ValueError:
-                raise ValueError(f"--no-data takes a number, not {self._no_data!r}") from None
+            options["no_data"] = no_data_of(self._no_data)
         if self._band:
             options["band"] = self._band
         if self._layer.strip():
@@ -181,6 +179,14 @@ class ElevationPoints(TellingAlgorithm):
         return told
 
 
+def no_data_of(words):
+    """The number that a panel's field says. Raises ValueError."""
+    try:
+        return float(words)
+    except ValueError:
+        raise ValueError(f"--no-data takes a number, not {words!r}") from None
+
+
 def fill_points(output, cloud):
     """The points of a Cloud with their data and a vertex for each, so that they can be seen."""
     output.SetPoints(cloud.points.GetPoints())
@@ -215,8 +221,8 @@ class ReconstructElevationSurface(TellingAlgorithm):
     def __init__(self):
         super().__init__(3, 4)
         self._properties = {}
-        self._elevation_array = self._columns = ""
-        self._keep_nulls = False
+        self._elevation_array = self._columns = self._no_data = ""
+        self._keep_nulls = self._depth = False
         self._trim = self._fill = True
 
     def SetElevationArray(self, name):
@@ -227,8 +233,16 @@ class ReconstructElevationSurface(TellingAlgorithm):
         """Of a table: names, or numbers from 1, of x, y and z with commas between."""
         self.change("_columns", columns or "")
 
+    def SetNoData(self, value):
+        """The elevation that marks missing data, as text; empty: none."""
+        self.change("_no_data", "" if value is None else str(value))
+
     def SetKeepNulls(self, keep):
         self.change("_keep_nulls", bool(keep))
+
+    def SetDepth(self, depth):
+        """Whether z of the points counts downwards; faults stay as they are."""
+        self.change("_depth", bool(depth))
 
     def SetTrim(self, trim):
         self.change("_trim", bool(trim))
@@ -307,7 +321,18 @@ class ReconstructElevationSurface(TellingAlgorithm):
 
     def result_of(self, part, lines):
         """The Reconstruction of one data set, with notes on what looks wrong."""
-        cloud = cloud_of(part, self._elevation_array, self._columns, self._keep_nulls)
+        if IS_BOUNDARY.search("".join(words_of(part, RECOGNISED)[:1])):
+            raise ElevationSurfaceError(
+                "the input is a boundary, which has no elevations; choose it as Boundary, or set "
+                "Contents to Points where the file was opened"
+            )
+        options = ReadOptions(
+            columns=self._columns or None,
+            no_data=no_data_of(self._no_data) if self._no_data.strip() else None,
+            keep_nulls=self._keep_nulls,
+            depth=self._depth,
+        )
+        cloud = cloud_of(part, self._elevation_array, options)
         drop_elevation(cloud.points)
         cloud.notes += recognised(cloud.points)
         names = {"points": "the points", "boundary": "the boundary", "faults": "the faults"}
@@ -366,7 +391,7 @@ def has_failed_reader(data):
 
 
 def of_panel(words, about):
-    """A message of a filter without its step; lines that the panel calls faults are constraints there."""
+    """A message of a filter without its step. What the panel calls faults are constraints there."""
     words = re.sub(rf"^({'|'.join(STEPS.values())}): ", "", words)
     return re.sub(r"\bconstraint(s?)\b", r"fault\1", words) if about == "faults" else words
 

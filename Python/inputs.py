@@ -18,37 +18,49 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .blocks import parts_of
-from .clouds import Cloud, ReadOptions, crs_of, keep_points, make_points
+from .clouds import Cloud, ReadOptions, crs_of, keep_points, make_points, turn_over
 from .messages import ElevationSurfaceError
+from .reading import leave_out
 from .reading.columns import choose_columns
+from .reading.layouts import MISSING
 from .reading.nulls import take_out
 from .reading.vtk_files import hidden_points, points_of_grid
 
 SAMPLE = 3000  # rows of a table that tell its columns
 
 
-def cloud_of(data, array="", columns="", keep_nulls=False):
+def cloud_of(data, array="", options=None):
     """The points of a data set as Cloud. Raises ElevationSurfaceError.
 
     array    the point array that holds elevations; of point sets "" is z, of grids the active one
-    columns  of a table: names or numbers from 1 of x, y and z; "": recognised
+    options  ReadOptions: columns of a table, no_data, keep_nulls and depth
     Usual null values are taken out of grids and tables, as of files, unless they are kept.
     """
-    options = ReadOptions(columns=columns or None, keep_nulls=keep_nulls)
+    options = options or ReadOptions()
+    cloud = given_cloud(data, array, options)
+    if options.no_data is not None:
+        leave_out("input", cloud, options.no_data)
+    if not isinstance(data, vtkPointSet):
+        take_out(cloud, options)
+    if options.depth:
+        turn_over(cloud)
+    return cloud
+
+
+def given_cloud(data, array, options):
+    """The points of a data set with all their nulls."""
     if isinstance(data, vtkTable):
         if array:
             raise ElevationSurfaceError("of a table, Columns chooses z, not Elevation Array")
-        return take_out(cloud_of_table(data, options), options)
-    if columns:
-        raise ElevationSurfaceError("Columns is for tables; of points and grids, Elevation Array chooses z")
+        return cloud_of_table(data, options)
+    if options.columns:
+        raise ElevationSurfaceError(
+            "Columns is for tables; of points and grids, Elevation Array chooses z"
+        )
     if not isinstance(data, (vtkImageData, vtkRectilinearGrid, vtkPointSet)):
         raise ElevationSurfaceError(f"a {data.GetClassName()} has no points with elevations")
-    if array and data.GetPointData().GetArray(array) is None:
-        attributes = data.GetPointData()
-        names = [attributes.GetArrayName(i) for i in range(attributes.GetNumberOfArrays())]
-        raise ElevationSurfaceError(
-            f"there is no point array named {array}; there are: {', '.join(names) or 'none'}"
-        )
+    if array:
+        check_array(data.GetPointData(), array)
     if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
         grid = data.NewInstance()
         grid.ShallowCopy(data)
@@ -56,8 +68,23 @@ def cloud_of(data, array="", columns="", keep_nulls=False):
             grid.GetPointData().SetActiveScalars(array)
         cloud = points_of_grid("input", grid)
         cloud.crs = crs_of(data)
-        return take_out(cloud, options)
+        return cloud
     return cloud_of_points(data, array)
+
+
+def check_array(attributes, name):
+    """Raises ElevationSurfaceError where a point array has no elevations; it tells those that may."""
+    if attributes.GetAbstractArray(name) is None:
+        wrong = f"there is no point array named {name}"
+    elif attributes.GetArray(name) is None:
+        wrong = f"point array {name} holds words, not numbers"
+    elif attributes.GetArray(name).GetNumberOfComponents() != 1:
+        wrong = f"point array {name} is no single number for each point"
+    else:
+        return
+    arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
+    names = [a.GetName() or "" for a in arrays if a and a.GetNumberOfComponents() == 1]
+    raise ElevationSurfaceError(f"{wrong}; there are: {', '.join(names) or 'none'}")
 
 
 def cloud_of_points(data, array):
@@ -68,11 +95,8 @@ def cloud_of_points(data, array):
     points.GetPointData().ShallowCopy(data.GetPointData())
     points.GetFieldData().ShallowCopy(data.GetFieldData())
     if array:
-        values = data.GetPointData().GetArray(array)
-        if values.GetNumberOfComponents() != 1:
-            raise ElevationSurfaceError(f"point array {array} is no single number for each point")
         xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
-        xyz[:, 2] = vtk_to_numpy(values)
+        xyz[:, 2] = vtk_to_numpy(data.GetPointData().GetArray(array))
         points.SetPoints(make_points(xyz).GetPoints())
     cloud = Cloud(points, crs=crs_of(data))
     hidden = hidden_points(data)
@@ -105,9 +129,9 @@ def columns_of(table):
 
 
 def number(word):
-    """The number that a word is; NaN where it is empty, None where it is no number."""
+    """The number that a word is; NaN where it says that there is none, None where it is another."""
     try:
-        return float(word) if word.strip() else math.nan
+        return math.nan if word.strip().lower() in MISSING else float(word)
     except ValueError:
         return None
 
@@ -137,8 +161,12 @@ def cloud_of_table(table, options):
     cloud = Cloud(make_points(xyz), choice.notes, crs=crs_of(table))
     for i in range(table.GetNumberOfColumns()):
         cloud.points.GetPointData().AddArray(table.GetColumn(i))
-    if choice.downwards:
+    if choice.downwards and not options.depth:
         cloud.notes.append(choice.downwards)
+    finite = numpy.isfinite(xyz).all(axis=1)
+    if finite.any() and not finite.all():
+        cloud.left_out["rows without numbers"] = int(numpy.count_nonzero(~finite))
+        keep_points(cloud, numpy.flatnonzero(finite))
     return cloud
 
 

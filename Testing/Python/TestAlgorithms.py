@@ -196,6 +196,60 @@ class Algorithms(unittest.TestCase):
         of_points.SetColumns("x,y,z")
         self.assertIn("Columns is for tables", " ".join(errors_of(of_points)))
 
+    def test_rows_of_a_table_without_numbers_are_left_out(self):
+        x, y = GRID
+        z = [str(v) for v in x]
+        z[3], z[8], z[9] = "N/A", "", "nan"
+        chain = ReconstructElevationSurface()
+        chain.SetInputDataObject(0, table_of(x=x, y=y, z=z))
+        self.assertEqual(errors_of(chain), [])
+        self.assertIn("27 read; 3 rows without numbers left out", chain.GetReport())
+        z[3] = "high"
+        chain.SetInputDataObject(0, table_of(x=x, y=y, z=z))
+        self.assertIn("row 3 of column z is no number: high", " ".join(errors_of(chain)))
+
+    def test_depths_and_null_values_of_a_table_are_set_where_they_are_told(self):
+        x, y = GRID
+        depth = numpy.where(numpy.arange(x.size) % 7, 1000 + x, 0)
+        chain = ReconstructElevationSurface()
+        chain.SetInputDataObject(0, table_of(X=x, Y=y, Depth=depth))
+        self.assertEqual(errors_of(chain), [])
+        self.assertIn("Depth turns it over", chain.GetReport())
+        self.assertIn("No Data 0", chain.GetReport())
+        chain.SetDepth(1)
+        chain.SetNoData("0")
+        self.assertEqual(errors_of(chain), [])
+        z = points(chain.GetOutputDataObject(0))[:, 2]
+        self.assertEqual((z.max(), z.min()), (-1000, -1005))
+        self.assertNotIn("upside down", chain.GetReport())
+        chain.SetNoData("none")
+        self.assertIn("No Data takes a number, not 'none'", " ".join(errors_of(chain)))
+
+    def test_an_array_of_words_is_no_elevation(self):
+        chain, data = ReconstructElevationSurface(), cloud()
+        for array in table_of(s=["a"] * 30, h=numpy.arange(30.0), v=numpy.ones((30, 3))).GetRowData(),:
+            for i in range(3):
+                data.GetPointData().AddArray(array.GetAbstractArray(i))
+        chain.SetInputDataObject(0, data)
+        for name, told in (("s", "point array s holds words"), ("v", "is no single number"), ("w", "named w")):
+            chain.SetElevationArray(name)
+            errors = errors_of(chain)
+            self.assertIn(told, errors[0])
+            self.assertIn("; there are: h ", errors[0] + " ")
+
+    def test_a_boundary_is_no_cloud(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "ring.txt")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("0 0\n9 0\n9 9\n0 9\n0 0\n")
+            reader, chain = ElevationPoints(), ReconstructElevationSurface()
+            reader.SetFileName(path)
+            reader.SetContents(1)
+            chain.SetInputConnection(0, reader.GetOutputPort())
+            errors = errors_of(chain)
+            self.assertEqual(len(errors), 1, errors)
+            self.assertIn("the input is a boundary, which has no elevations", errors[0])
+
     def test_errors_are_one_line(self):
         chain = ReconstructElevationSurface()
         chain.SetInputDataObject(0, table_of(a=["x"], b=["y"], c=["z"]))
