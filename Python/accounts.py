@@ -5,7 +5,8 @@ and the report that they make together."""
 
 from vtkmodules.vtkCommonCore import vtkStringArray
 
-from .report import counted, main_counts, report_lines
+from .messages import counted
+from .report import main_counts, report_lines
 from .telling import in_panel, words_of
 
 RECOGNISED = "Recognised"  # the field array in which ElevationPoints tells what a file is

@@ -10,6 +10,7 @@ import re
 import warnings
 
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
     vtkDataObject,
     vtkDataObjectTree,
@@ -33,13 +34,13 @@ from .accounts import (
     report_text,
 )
 from .blocks import is_empty, number_of_points, parts_of, put_parts
-from .clouds import ReadOptions, cells_of, notes_on, set_crs
+from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
 from .inputs import cloud_of, joined, lines_of
-from .messages import ElevationSurfaceError, ElevationSurfaceWarning
+from .messages import ElevationSurfaceError, ElevationSurfaceWarning, counted, of_reason
 from .ranks import check_ranks, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import PROPERTIES, STEPS, reconstruct
-from .report import counted, crs_name
+from .report import crs_name
 from .telling import (
     TellingAlgorithm,
     drop_elevation,
@@ -168,9 +169,11 @@ class ElevationPoints(TellingAlgorithm):
                 progress=lambda fraction: self.progress("Reading", fraction),
                 **options,
             )
+            finite_points(cloud)
             fill_points(output, cloud)
             told = [f"{self._file}: {counted(output.GetNumberOfPoints(), 'point')}"]
-            told += [f"{count:,} {reason} left out" for reason, count in cloud.left_out.items()]
+            lost = cloud.left_out.items()
+            told += [f"{of_reason(count, reason)} left out" for reason, count in lost]
             told += [in_panel(note) for note in cloud.notes]
             if cloud.crs:
                 told.append(f"coordinate reference system: {crs_name(cloud.crs)}")
@@ -185,6 +188,14 @@ def no_data_of(words):
         return float(words)
     except ValueError:
         raise ValueError(f"--no-data takes a number, not {words!r}") from None
+
+
+def finite_points(cloud):
+    """Leaves out what cannot be shown, where anything is left."""
+    finite = numpy.isfinite(vtk_to_numpy(cloud.points.GetPoints().GetData())).all(axis=1)
+    if finite.any() and not finite.all():
+        cloud.left_out["points with NaN or infinity"] = int(numpy.count_nonzero(~finite))
+        keep_points(cloud, numpy.flatnonzero(finite))
 
 
 def fill_points(output, cloud):

@@ -11,6 +11,8 @@ from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkPoints, vtkSt
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
+from .messages import counted
+
 AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
 
 
@@ -182,7 +184,7 @@ def merged(names, clouds):
         result.notes.append("point arrays that not all files have are left out")
     for name, cloud in zip(names, clouds):
         count = cloud.points.GetNumberOfPoints()
-        result.notes.append(f"{name}: {count:,} points")
+        result.notes.append(f"{name}: {counted(count, 'point')}")
         result.notes += [f"{name}: {note}" for note in cloud.notes]
         for reason, number in cloud.left_out.items():
             result.left_out[reason] = result.left_out.get(reason, 0) + number

@@ -43,13 +43,15 @@ def distance_to(surface, coordinates, chosen, progress=None):
     distance = distances(corners, is_corner, triangles, away, progress) if others else away[:, 0]
     count = int(numpy.count_nonzero(chosen))
     share = others / max(len(away), 1) / count
+    maximum = float(distance.max(initial=0.0))
+    unit = maximum if maximum > 1e100 else 1.0  # squares of larger ones would be infinite
     return {
         "points": count,
         "points_not_corners": others,
         "measured": len(away),
-        "maximum": float(distance.max(initial=0.0)),
+        "maximum": maximum,
         "mean": float(distance.sum() * share),
-        "rms": float(math.sqrt((distance**2).sum() * share)),
+        "rms": float(unit * math.sqrt(((distance / unit) ** 2).sum() * share)),
     }
 
 
@@ -80,6 +82,8 @@ def distances(corners, is_corner, triangles, away, progress=None):
         some = make_points(away[i : i + AT_ONCE])
         search.EvaluateFunction(some.GetPoints().GetData(), values)
         result[i : i + AT_ONCE] = vtk_to_numpy(values)
+    # From so far away that triangles shrink to nothing, all of the surface is about as far.
+    result = numpy.where(numpy.isnan(result), numpy.linalg.norm(away, axis=1), result)
     return unit * numpy.abs(result)
 
 

@@ -101,7 +101,7 @@ def cloud_of_points(data, array):
     cloud = Cloud(points, crs=crs_of(data))
     hidden = hidden_points(data)
     if hidden.any():
-        cloud.left_out["hidden points"] = int(numpy.count_nonzero(hidden))
+        cloud.left_out["points marked as hidden"] = int(numpy.count_nonzero(hidden))
         keep_points(cloud, numpy.flatnonzero(~hidden))
     return cloud
 

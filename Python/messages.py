@@ -42,6 +42,16 @@ def did_you_mean(word, words):
     return f"; did you mean {plain[near[0]]}?" if near else ""
 
 
+def counted(count, singular, plural=None):
+    """1 hole, 2 holes"""
+    return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
+
+
+def of_reason(count, reason):
+    """"1 row without data" of a reason of Cloud.left_out, "rows without data"."""
+    return counted(count, re.sub(r"s\b", "", reason, 1), reason)
+
+
 class Messages:
     """Collects what VTK reports instead of letting it print.
 

@@ -10,6 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import corner_flags
 from .distance import distance_to
+from .messages import counted, of_reason
 from .reconstruction import INTERPOLATIONS, LATTICE_MODES, lattice_of
 
 OUTSIDE = "outside the boundary"
@@ -169,11 +170,6 @@ def bounds_of(surface):
     return {axis: [float(c.min()), float(c.max())] for axis, c in columns.items()}
 
 
-def counted(count, singular, plural=None):
-    """1 hole, 2 holes"""
-    return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
-
-
 def crs_name(crs):
     """A short name of a coordinate reference system."""
     try:
@@ -224,8 +220,8 @@ def point_lines(report, line):
     if report["crs"]:
         line("crs", crs_name(report["crs"]))
     text = f"{report['points']:,} read"
-    for name, count in report["left_out"].items():
-        text += f"; {count:,} {name} left out"
+    for reason, count in report["left_out"].items():
+        text += f"; {of_reason(count, reason)} left out"
     line("points", text)
     if report["points_unused"] == 0:
         line("unused", "none")

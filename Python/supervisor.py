@@ -130,6 +130,8 @@ def supervised(work):
     if child == 0:
         be_child(work, folder)
     status = wait_for(child, stops, folder)
+    for number in STOPPING:
+        signal.signal(number, signal.SIG_IGN)  # too late; Python's own end would reset handlers
     is_done, written = is_held(folder), what_is_written(folder)
     remove_leftovers(folder)
     code = os.WEXITSTATUS(status) if os.WIFEXITED(status) else None

@@ -99,7 +99,7 @@ def leave_out(path, cloud, no_data):
     if not keep.any():
         raise FileError(f"{path}: all points have the elevation that marks missing data")
     if not keep.all():
-        cloud.left_out["no data"] = int(len(keep) - numpy.count_nonzero(keep))
+        cloud.left_out["points without data"] = int(len(keep) - numpy.count_nonzero(keep))
         keep_points(cloud, numpy.flatnonzero(keep))
 
 

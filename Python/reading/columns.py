@@ -106,6 +106,12 @@ class Search:
             else:
                 known = ", ".join(self.names or []) or "none: the file has no header line"
                 raise FileError(f"{self.path}: there is no column named {column}; names: {known}")
+            if index in self.indices:
+                other = self.axes[self.indices.index(index)]
+                raise FileError(
+                    f"{self.path}: --columns takes both {other} and {axis} from column "
+                    f"{self.called(index)}; each needs a column of its own"
+                )
             self.indices.append(index)
 
     # -- names
@@ -212,6 +218,10 @@ class Search:
         """Sets the indices from the values of the columns."""
         if self.width == self.needed:
             self.indices = list(range(self.width))
+            if self.names:
+                axes = "x, y or z" if self.needed == 3 else "x or y"
+                taken = ", ".join(f"{a} = {self.called(i)}" for i, a in enumerate(self.axes))
+                self.notes.append(f"no column is named as {axes}: {taken} (see --columns)")
             self.look_at_order()
             return
         numbers = [

@@ -10,7 +10,7 @@ import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points
 from .columns import meaning
-from ..messages import FileError
+from ..messages import FileError, counted
 from .rasters import points_of_raster
 
 MOST_COLUMNS = 12  # of an array of numpy; one with more is a grid
@@ -206,7 +206,7 @@ def read_segments(path, options):
     points = numpy.concatenate(parts)
     if numpy.isnan(points[:, 2]).all():
         raise FileError(f"{path}: its lines have no z")
-    return Cloud(make_points(points), [f"the points of {len(parts):,} lines"])
+    return Cloud(make_points(points), [f"the points of {counted(len(parts), 'line')}"])
 
 
 def read_lines(path, singular):

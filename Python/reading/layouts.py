@@ -4,6 +4,7 @@
 
 import contextlib
 import csv
+import importlib.util
 import math
 import re
 
@@ -14,10 +15,11 @@ COMMENT_MARKS = ("#", "%", "//", "!", "*", ">")
 MISSING = set(
     "na n/a #n/a n.a. null none nil nodata no-data missing void - -- ? * -nan nan(ind)".split()
 ) | {""}
+ESRI_GRID, SURFER_GRID = "an ESRI ASCII grid", "a Surfer grid"  # which GDAL reads
 # How files begin that are no tables, and what they are.
 NO_TABLES = (
-    (r"ncols\b", "an ESRI ASCII grid"),
-    (r"dsaa\b", "a Surfer grid"),
+    (r"ncols\b", ESRI_GRID),
+    (r"dsaa\b", SURFER_GRID),
     (r"fsasci\b", "a CPS-3 grid"),
     (r"gocad\b", "a GOCAD file"),
     (r"\*?11\d{4}[+-]", "a Leica GSI file"),
@@ -25,6 +27,7 @@ NO_TABLES = (
     (r"<[?!a-z]", "XML or HTML"),
     (r"[{\[]\s*[\"{\[]", "JSON"),
 )
+COMMA_IN_QUOTES = r"\"\s*[-+]?\d+,\d+\s*\"\s*,"  # "1,5","2,5"
 # What keeps words from being numbers, and what it is.
 BLANK_IN_NUMBER = r"\d[\u00a0\u202f]\d{3}"
 NO_NUMBERS = (
@@ -115,7 +118,9 @@ def find_layout(path, lines, needed):
     head = "\n".join([line.strip().lower() for line in lines if line.strip()][:20])
     for pattern, what in NO_TABLES:
         if re.match(pattern, head):
-            raise FileError(f"{path}: is {what}, not a table of points")
+            lacks = what in (ESRI_GRID, SURFER_GRID) and importlib.util.find_spec("osgeo") is None
+            advice = "; install python3-gdal to read it" if lacks else ""
+            raise FileError(f"{path}: is {what}, not a table of points{advice}")
     best, best_score, most = None, (0, 0), 0
     for layout in LAYOUTS:
         counts = [layout.numbers(line) for line in sample]
@@ -131,6 +136,8 @@ def find_layout(path, lines, needed):
     for pattern, what in NO_NUMBERS:
         if any(re.search(pattern, line) for line in sample):
             raise FileError(f"{path}: numbers with {what} cannot be read; export plain decimals")
+    if any(re.search(COMMA_IN_QUOTES, line) for line in sample):
+        raise FileError(f"{path}: commas stand for decimals and between columns; {SEMICOLONS}")
     if most == 0:
         raise FileError(f"{path}: holds text, but no numbers")
     raise FileError(
@@ -220,7 +227,7 @@ def check_names(path, layout, before, rows, names, width, advice):
     if not before or known_axes(names or []):
         return
     for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:
-        found = [word.strip("\"' ") for word in other.words(before[-1])]
+        found = [unquoted(word) for word in other.words(before[-1])]
         while found and not found[-1]:
             found.pop()
         if known_axes(found) < set("xyz") or len(found) == width:
@@ -282,7 +289,7 @@ def find_names(layout, head, width, one_may_lack=True):
         candidates.append([found[i] for i in range(1, width + 1)])
     for line in reversed(head):
         for other in [layout] + [Layout(s) for s in (";", "\t", ",", None)]:
-            words = [word.strip("\"' ") for word in other.words(line)]
+            words = [unquoted(word) for word in other.words(line)]
             candidates.append(words)
             if other.separator is None:
                 candidates.append(re.split(r"\s{2,}|\t", line.strip()))
@@ -295,6 +302,15 @@ def find_names(layout, head, width, one_may_lack=True):
     candidates = [names for names in candidates if len(names) == width and any(names)]
     candidates = [names for names in candidates if not all(is_number(name) for name in names)]
     return max(candidates, key=known_names, default=None)
+
+
+def unquoted(word):
+    """A name without the quotes around it; those that belong to it stay, as in Top "A"."""
+    word = word.strip()
+    for sign in "\"'":
+        if word[:1] == word[-1:] == sign or word.count(sign) % 2:
+            word = word.strip(sign).strip()
+    return word
 
 
 def doubtful_units(layout, head, names, indices):

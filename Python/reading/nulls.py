@@ -11,6 +11,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ..clouds import keep_points
+from ..messages import counted, of_reason
 
 FLOAT_MAX = float(numpy.finfo("f4").max)
 NULLS = (
@@ -23,6 +24,7 @@ SAMPLE = 200_000
 CHUNK = 1 << 21  # points at once: arrays of a size that memory is kept for
 SUSPECTS = 1000  # no more are looked at
 NAMED = 5  # that many blunders are named
+FAR = 1e100  # no coordinate is that large, and squares of larger ones are infinite
 
 
 @numpy.errstate(all="ignore")
@@ -49,7 +51,7 @@ def take_out(cloud, options):
         null |= found
     if counts and not null.all():
         if options.keep_nulls:
-            words = ", ".join(f"{count:,} {name}" for name, count in counts.items())
+            words = ", ".join(of_reason(count, name) for name, count in counts.items())
             cloud.notes.append(f"kept: {words}")
         else:
             keep_points(cloud, numpy.flatnonzero(~null))
@@ -70,10 +72,11 @@ def doubts(x, y, z, lines):
             f"--no-data {value:.9g}"
         )
         z[z == value] = numpy.nan
+    where = "point" if lines is None else "line"
+    number = range(len(z)) if lines is None else lines
+    notes += far_off(x, y, z, where, number)
     single = blunders(x, y, z)
     if single:
-        where = "point" if lines is None else "line"
-        number = range(len(z)) if lines is None else lines
         words = [
             f"{where} {number[i]} has {z[i]:.7g} where others have {low:.7g} to {high:.7g}"
             for i, low, high in single[:NAMED]
@@ -86,6 +89,25 @@ def doubts(x, y, z, lines):
             f"all around: {', '.join(words)}{more}"
         )
     return notes
+
+
+def far_off(x, y, z, where, number):
+    """A note on points with a coordinate of FAR or more: blunders() does not look at them."""
+    far = numpy.zeros(len(z), dtype=bool)
+    for values in (x, y, z):
+        far |= (abs(values) >= FAR) & numpy.isfinite(values)
+    ids = numpy.flatnonzero(far)
+    if not len(ids):
+        return []
+    words = []
+    for i in ids[:NAMED].tolist():
+        axis, value = max(zip("xyz", (x[i], y[i], z[i])), key=lambda pair: abs(pair[1]))
+        words.append(f"{where} {number[i]} has {axis} = {value:.7g}")
+    more = ", ..." if len(ids) > NAMED else ""
+    return [
+        f"{counted(len(ids), 'point')} cannot be a place on earth; take it out of the file: "
+        f"{', '.join(words)}{more}"
+    ]
 
 
 def body(values):
@@ -200,7 +222,7 @@ class Cells:
 
     def of(self, x, y, z):
         """The cell of each point."""
-        whole = numpy.abs(x + y + z) < 1e100
+        whole = numpy.abs(x + y + z) < FAR
         parts = []
         for values, low, most in ((x, self.low[0], self.columns), (y, self.low[1], self.rows)):
             place = numpy.where(whole, (values - low) / self.side, 0.0)
@@ -220,7 +242,7 @@ def blunders(x, y, z):
         return []
     parts = [slice(start, start + CHUNK) for start in range(0, len(x), CHUNK)]
     cell = numpy.concatenate([cells.of(x[p], y[p], z[p]) for p in parts])
-    middle = z[:SAMPLE][numpy.abs(z[:SAMPLE]) < 1e100]
+    middle = z[:SAMPLE][numpy.abs(z[:SAMPLE]) < FAR]
     middle = float(numpy.median(middle)) if len(middle) else 0.0
     sums = numpy.zeros((3, cells.count))
     for part in parts:

@@ -29,7 +29,7 @@ from .layouts import (
     is_comment,
     is_data,
 )
-from ..messages import FileError
+from ..messages import FileError, counted
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
@@ -324,7 +324,7 @@ class Parser:
         for axis, index in zip("xyz", table.indices):
             if index >= len(words):
                 raise FileError(
-                    f"{where}: {len(words)} column{'s' * (len(words) != 1)} found, "
+                    f"{where}: {counted(len(words), 'column')} found, "
                     f"but {axis} is column {index + 1}"
                 )
             value = table.layout.number(words[index])
@@ -388,9 +388,10 @@ class Parser:
         for column in self.table.of_numbers:
             if column >= len(words) or number(words[column]) is None:
                 raise FileError(
-                    f"{self.table.path}, line {self.line + 1 + i}: {len(words)} columns found "
-                    f"where {self.table.words} are expected, and blanks do not show which one "
-                    "lacks; part the columns by commas or write nan for what is missing"
+                    f"{self.table.path}, line {self.line + 1 + i}: "
+                    f"{counted(len(words), 'column')} found where {self.table.words} are "
+                    "expected, and blanks do not show which one lacks; part the columns by commas "
+                    "or write nan for what is missing"
                 )
 
     def finish(self):
@@ -400,7 +401,7 @@ class Parser:
         seen = [f"separated by {table.layout}"]
         for count, what in ((table.headers, "header"), (comments, "comment")):
             if count:
-                seen.append(f"{count} {what} line{'s' * (count > 1)}")
+                seen.append(counted(count, f"{what} line"))
         if not any(" as x" in note or ", y = " in note for note in notes):
             columns = ", ".join(str(index + 1) for index in table.indices)
             notes.insert(0, f"{', '.join('xyz'[:table.needed])} are in columns {columns}")

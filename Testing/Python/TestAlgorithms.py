@@ -137,6 +137,23 @@ class Algorithms(unittest.TestCase):
             self.assertEqual(errors_of(chain), [])
             self.assertIn(words, chain.GetReport())
 
+    def test_rows_without_numbers_are_left_out_and_counted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            name = os.path.join(folder, "p.xyz")
+            for bad, words in (
+                ("7 7 inf\n", "1 point with NaN or infinity left out"),
+                ("7 7 nan\n8 -inf 7\n", "2 points with NaN or infinity left out"),
+                ("7 7 -9999\n", "1 null value (z = -9999) left out"),
+            ):
+                with open(name, "w", encoding="utf-8") as stream:
+                    numpy.savetxt(stream, numpy.column_stack([a.ravel() for a in (*GRID, GRID[0])]))
+                    stream.write(bad)
+                reader = ElevationPoints()
+                reader.SetFileName(name)
+                self.assertEqual(errors_of(reader), [])
+                self.assertIn(words, reader.GetRecognised().split("\n"))
+                self.assertEqual(reader.GetOutputDataObject(0).GetNumberOfPoints(), GRID[0].size)
+
     def test_an_array_elevation_of_words_is_kept(self):
         x, y = GRID
         chain = ReconstructElevationSurface()

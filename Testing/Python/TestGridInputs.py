@@ -78,7 +78,7 @@ class GridInputs(unittest.TestCase):
         points.GetPointData().AddArray(named(GHOSTS, ghosts, "u1"))
         cloud = cloud_of(points)
         self.assertEqual(cloud.points.GetNumberOfPoints(), 28)
-        self.assertEqual(cloud.left_out, {"hidden points": 2})
+        self.assertEqual(cloud.left_out, {"points marked as hidden": 2})
 
     def test_a_grid_of_unequal_steps_has_no_holes_where_its_steps_are_large(self):
         x = numpy.append(numpy.arange(10.0), 9.0 + 5.0 * numpy.arange(1, 11))

@@ -146,7 +146,7 @@ class Las(InFolder):
     def test_no_data_and_content_in_place_of_the_name(self):
         cloud = self.read(las(0), "a.txt", no_data=float(EXPECTED[2][2]), keep_nulls=True)
         self.assert_rows(cloud, numpy.delete(EXPECTED, 2, axis=0))
-        self.assertEqual(cloud.left_out["no data"], 1)
+        self.assertEqual(cloud.left_out["points without data"], 1)
         self.assertIn("by its content this is a LAS file, not a text table", cloud.notes)
 
     def test_damaged_files_are_refused_in_one_line(self):

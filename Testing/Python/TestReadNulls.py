@@ -8,8 +8,10 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 
 import numpy
+from vtkelevationsurface import reconstruct
 from vtkelevationsurface.clouds import Cloud, ReadOptions, make_points, turn_over
 from vtkelevationsurface.reading.nulls import take_out
 from vtkelevationsurface.reading import read
@@ -213,6 +215,21 @@ class Blunders(unittest.TestCase):
         self.assertTrue(note.startswith("9 single"), note)
         self.assertEqual(note.count("point"), 5)
         self.assertTrue(note.endswith(", ..."))
+
+    def test_points_that_are_no_places_are_named_and_measured(self):
+        for axis in range(3):
+            rows = terrain(500)
+            rows[77, axis] = 1e300
+            rows[78, axis] = numpy.nan
+            cloud = taken(rows, lines=range(2, 502))
+            words = "1 point cannot be a place on earth; take it out of the file: line 79 has "
+            self.assertIn(f"{words}{'xyz'[axis]} = 1e+300", cloud.notes)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                distance = reconstruct(cloud).report["distance"]
+            for value in distance.values():
+                self.assertTrue(numpy.isfinite(value), distance)
+            self.assertEqual(distance["maximum"] > 9e299, axis < 2)
 
     def test_cliffs_slopes_noise_and_rims_are_no_blunders(self):
         generator = numpy.random.default_rng(4)

@@ -9,6 +9,7 @@ import re
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import warnings
 
 import numpy
@@ -463,6 +464,11 @@ class Doubts(Tables):
         cloud = self.read("455017,1;5623027,0;1.25\n455047,4;5623112,0;1.5\n")
         self.assertEqual(cloud.points.GetPoint(1), (455047.4, 5623112.0, 1.5))
 
+    def test_decimal_commas_in_quotes_between_commas_are_told(self):
+        for text in ('"600000,1","5000000,2","-999,3"\n"600001,1","5000001,2","-99,3"\n',
+                     'x,y,z\n"1,5","2,5","3,5"\n"1,25","2,5",7\n'):
+            self.assertIn("commas stand for decimals and between columns", self.refusal(text))
+
     def test_marks_of_the_end_and_headers_that_come_again_are_left_out(self):
         for end in (b"\x1a", b"\n\x1a\n", b"\r\n" + bytes(300)):
             cloud = self.read(b"x,y,z\n1,2,3\n4,5,7" + end)
@@ -495,6 +501,26 @@ class Doubts(Tables):
         for head in ("x y z\n", ""):
             cloud = self.read(head + "1.5 2.5 3\n2.5 7 4\n3 1 5\n")
             self.assertEqual("x, y, z are in columns 1, 2, 3", cloud.notes[1])
+
+    def test_names_that_say_nothing_are_told_with_the_axes(self):
+        cloud = self.read("foo;bar;baz\n1;2;3\n5;6;7\n")
+        self.assertIn(
+            "no column is named as x, y or z: x = 1 (foo), y = 2 (bar), z = 3 (baz) (see --columns)",
+            cloud.notes,
+        )
+        self.assertNotIn("no column", " ".join(self.read("1;2;3\n5;6;7\n").notes))
+
+    def test_quotes_that_belong_to_a_name_are_kept(self):
+        cloud = self.read('X,Y,"Top ""A""","Top"\n1,2,3,4\n5,6,7,8\n', columns="X,Y,Top")
+        self.assertEqual(cloud.points.GetPointData().GetArrayName(0), 'Top "A"')
+
+    def test_a_column_cannot_be_two_axes(self):
+        text = "Top_A,x,y\n1,2,3\n5,6,7\n"
+        for columns, words in (
+            ("x,x,Top_A", "takes both x and y from column 2 (x)"),
+            ("2,3,y", "takes both y and z from column 3 (y)"),
+        ):
+            self.assertIn(words, self.refusal(text, columns=columns))
 
     def test_a_name_before_large_numbers_is_no_mark_between_thousands(self):
         with self.assertRaisesRegex(FileError, "no line holds 3 numbers; the most is 2"):
@@ -553,6 +579,9 @@ class Doubts(Tables):
         ):
             with self.subTest(head):
                 self.assertIn(words, self.refusal(head + "1 2 3 4\n5 6 7 8\n"))
+                with unittest.mock.patch.dict("sys.modules", osgeo=None):
+                    advice = self.refusal(head + "1 2 3 4\n5 6 7 8\n")
+                self.assertTrue(advice.endswith("; install python3-gdal to read it"), advice)
 
 
 def random_table(generator):

@@ -193,7 +193,7 @@ class VtkFormats(InFolder):
         self.assert_rows(cloud, [ROWS[0], ROWS[2]])
         kept = vtk_to_numpy(cloud.points.GetPointData().GetArray("Amplitude"))
         self.assertEqual(kept.tolist(), [10.0, 30.0])
-        self.assertEqual(cloud.left_out, {"no data": 1})
+        self.assertEqual(cloud.left_out, {"points without data": 1})
 
     def test_an_image_becomes_points_with_its_values_as_elevation(self):
         from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
