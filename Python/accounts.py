@@ -14,7 +14,7 @@ MOST_ERRORS = 5  # of blocks, in one message
 
 
 def recognised(points):
-    """What a reader has found out, for the report of these points, which may be some of the file's."""
+    """What a reader has found out, for the report of these points: all of the file, or some."""
     told, count = words_of(points, RECOGNISED), points.GetNumberOfPoints()
     if told and not told[0].endswith(f": {counted(count, 'point')}"):
         told[0] += f"; this surface is of {counted(count, 'point')}"
@@ -118,7 +118,7 @@ def report_text(accounts):
 
 
 def lines_to_show(accounts):
-    """The lines of the report without warnings, and what a reader has found out: these were shown."""
+    """The lines of the report without those that were shown: warnings, and what a reader told."""
     shown = {line for account in accounts for line in account.get("shown", ())}
     return [
         f"{block}: {item:<10} {value}" if block else f"{item:<10} {value}"

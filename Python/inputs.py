@@ -73,7 +73,7 @@ def given_cloud(data, array, options):
 
 
 def check_array(attributes, name):
-    """Raises ElevationSurfaceError where a point array has no elevations; it tells those that may."""
+    """Raises ElevationSurfaceError where a point array has no elevations, and tells which may."""
     if attributes.GetAbstractArray(name) is None:
         wrong = f"there is no point array named {name}"
     elif attributes.GetArray(name) is None:
@@ -129,7 +129,7 @@ def columns_of(table):
 
 
 def number(word):
-    """The number that a word is; NaN where it says that there is none, None where it is another."""
+    """The number that a word is; NaN where it says that there is none, None for other words."""
     try:
         return math.nan if word.strip().lower() in MISSING else float(word)
     except ValueError:

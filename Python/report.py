@@ -10,8 +10,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import corner_flags
 from .distance import distance_to
+from .holes import hole_counts, hole_lines, holes_of
 from .messages import counted, of_reason
-from .reconstruction import INTERPOLATIONS, LATTICE_MODES, lattice_of
+from .reconstruction import LATTICE_MODES, lattice_of
 
 OUTSIDE = "outside the boundary"
 # Why a point is not used, by number: the first two are those of vtkGridDelaunay2D.
@@ -23,7 +24,6 @@ REASONS = {
 }
 MOST_LISTED = 25_000  # unused points for each reason
 FOUND = "found from the points"
-STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced"}
 
 
 def make_report(result):
@@ -69,40 +69,7 @@ def make_report(result):
             report["trim"]["points_left_out"] = trim.GetNumberOfPointsLeftOut()
         report["triangles"]["trimmed"] = trim.GetOutput().GetNumberOfPolys()
     if fill:
-        cells = fill.GetOutput(1).GetCellData()
-        names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
-                 "Interpolation")
-        columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
-        columns += hole_places(fill.GetOutput(1))
-        holes = [
-            {
-                "hole": hole,
-                "status": STATUS[status],
-                "edges": edges,
-                "perimeter": perimeter,
-                "area": area,
-                "size": size,
-                "centre": centre,
-                "box": box,
-                "inserted_points": inserted,
-                "interpolation": INTERPOLATIONS[method] if inserted else None,
-            }
-            for hole, status, edges, perimeter, area, inserted, method, size, centre, box in zip(
-                *columns
-            )
-        ]
-        by_status = {}
-        for hole in holes:
-            by_status[hole["status"]] = by_status.get(hole["status"], 0) + 1
-        report["holes"] = {
-            "open_edge_length": fill.GetMaximumEdgeLength(),
-            "open_edge_length_is": result.why_opened,
-            "found": fill.GetNumberOfHoles(),
-            "filled": fill.GetNumberOfFilledHoles(),
-            "by_status": by_status,
-            "inserted_points": sum(hole["inserted_points"] for hole in holes),
-            "list": holes,
-        }
+        report["holes"] = holes_of(result)
         report["triangles"]["filled"] = surface.GetNumberOfPolys()
 
     # All points that the user wants in the surface, used or not.
@@ -144,21 +111,6 @@ def list_unused(reasons, lines):
         if lines is not None:
             listed[-1]["line"] = int(lines[point])
     return counts, listed
-
-
-def hole_places(lines):
-    """Of each line's box in x,y: [its diagonals, which --maximum-hole-size is compared with; its
-    centres (x, y); its corners ((x, y) lowest, (x, y) highest)]."""
-    if lines.GetNumberOfLines() == 0:
-        return [[], [], []]
-    cells = lines.GetLines()
-    xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
-    xy = xy[vtk_to_numpy(cells.GetConnectivityArray())]
-    starts = vtk_to_numpy(cells.GetOffsetsArray())[:-1]
-    low = numpy.minimum.reduceat(xy, starts, axis=0)
-    high = numpy.maximum.reduceat(xy, starts, axis=0)
-    boxes = numpy.stack((low, high), axis=1)
-    return [numpy.hypot(*(high - low).T).tolist(), boxes.mean(axis=1).tolist(), boxes.tolist()]
 
 
 def bounds_of(surface):
@@ -274,32 +226,6 @@ def triangle_lines(report, line):
             line("", f"{counted(trim['inserted_points'], 'boundary point')} inserted")
 
 
-def hole_lines(holes, line):
-    """What became of the holes."""
-    line(
-        "holes",
-        f"{holes['found']:,} found, {holes['filled']:,} filled with "
-        f"{counted(holes['inserted_points'], 'point')}",
-    )
-    count = holes["by_status"].get("replaced", 0)
-    if count:
-        line("", f"{count:,} of them were bridged by triangles")
-        line(
-            "",
-            f"an edge is a bridge above {holes['open_edge_length']:.4g} "
-            f"({holes['open_edge_length_is']}); see --open-edge-length",
-        )
-    for status, count in holes["by_status"].items():
-        if status not in ("filled", "replaced"):
-            some = [h for h in holes["list"] if h["status"] == status][:5]
-            more = ", ..." if count > len(some) else ""
-            if status == "too many edges":
-                some = [f"{h['hole']} ({counted(h['edges'], 'edge')})" for h in some]
-            else:
-                some = [f"{h['hole']} (size {h['size']:.4g})" for h in some]
-            line("", f"{count:,} not filled, {status}: hole {', '.join(some)}{more}")
-
-
 def distance_lines(report, line):
     """How far the points are from the surface."""
     d = report["distance"]
@@ -326,8 +252,7 @@ def main_counts(result):
         counted(result.cloud.points.GetNumberOfPoints(), "point"),
         counted(result.surface.GetNumberOfPolys(), "triangle"),
     ]
-    found = result.fill.GetNumberOfHoles() if result.fill else 0
-    filled = result.fill.GetNumberOfFilledHoles() if result.fill else 0
+    found, filled = hole_counts(result.fill) if result.fill else (0, 0)
     if filled < found:
         parts.append(f"{filled:,} of {found:,} holes filled")
     elif found:

@@ -147,6 +147,7 @@ class Report(Program):
             with self.subTest(option=option):
                 report = self.report(*common, option, value)
                 self.assertEqual(report["holes"]["by_status"], {reason: 1})
+                self.assertEqual((report["holes"]["found"], report["holes"]["bridged_left"]), (1, 0))
                 self.assertEqual(report["holes"]["inserted_points"], 0)
                 self.assertIn(f"1 not filled, {reason}: hole 0 ({told})", self.output)
                 self.assertAlmostEqual(
@@ -164,6 +165,11 @@ class Report(Program):
         self.assertEqual((holes["filled"], holes["inserted_points"]), (1, 4))
         for words in ("1 found, 1 filled", "1 of them were bridged", "--open-edge-length"):
             self.assertIn(words, self.output)
+        # Over a limit, the void is bridged still, so that it is no hole.
+        holes = self.report(name, "--maximum-hole-size", "1")["holes"]
+        self.assertEqual((holes["found"], holes["filled"], holes["bridged_left"]), (0, 0, 1))
+        self.assertEqual(holes["list"][0]["bridged"], True)
+        self.assertIn("1 bridged by long triangles and left as they are, too large: void 0", self.output)
         self.assertEqual(self.report(name, "--open-edge-length", "0")["holes"]["found"], 0)
         holes = self.report(name, "--open-edge-length", "2.9")["holes"]
         self.assertEqual((holes["open_edge_length_is"], holes["found"]), ("as given", 1))

@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What became of the holes of a surface, for the report."""
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .messages import counted
+from .reconstruction import INTERPOLATIONS
+
+STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced"}
+
+
+def holes_of(result):
+    """The part of the report on holes.
+
+    found, filled  counts of holes, and of voids that triangles bridged and that were filled
+    bridged_left   count of voids whose triangles are left as they are
+    """
+    cells = result.fill.GetOutput(1).GetCellData()
+    names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
+             "Interpolation")
+    columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
+    places = hole_places(result.fill.GetOutput(1))
+    rows = zip(*columns, are_bridged(result.fill).tolist(), *places)
+    holes = [
+        {
+            "hole": hole,
+            "status": STATUS[status],
+            "bridged": bridged,
+            "edges": edges,
+            "perimeter": perimeter,
+            "area": area,
+            "size": size,
+            "centre": centre,
+            "box": box,
+            "inserted_points": inserted,
+            "interpolation": INTERPOLATIONS[method] if inserted else None,
+        }
+        for hole, status, edges, perimeter, area, inserted, method, bridged, size, centre, box in rows
+    ]
+    by_status = {}
+    for hole in holes:
+        by_status[hole["status"]] = by_status.get(hole["status"], 0) + 1
+    found, filled = hole_counts(result.fill)
+    return {
+        "open_edge_length": result.fill.GetMaximumEdgeLength(),
+        "open_edge_length_is": result.why_opened,
+        "found": found,
+        "filled": filled,
+        "bridged_left": len(holes) - found,
+        "by_status": by_status,
+        "inserted_points": sum(hole["inserted_points"] for hole in holes),
+        "list": holes,
+    }
+
+
+def hole_counts(fill):
+    """(found, filled) of holes. A void that triangles bridge, and that stays so, is no hole."""
+    status = vtk_to_numpy(fill.GetOutput(1).GetCellData().GetArray("Status"))
+    left = numpy.count_nonzero(are_bridged(fill) & (status != 4))
+    return fill.GetNumberOfHoles() - int(left), fill.GetNumberOfFilledHoles()
+
+
+def are_bridged(fill):
+    """Which outlines are of voids that triangles bridge, or did until they were filled: (n,) bool.
+
+    A hole is on the left of its outline. Where a triangle is there, it bridges a void.
+    """
+    surface, outlines = fill.GetOutput(), fill.GetOutput(1)
+    status = vtk_to_numpy(outlines.GetCellData().GetArray("Status"))
+    bridged = status == 4
+    left = numpy.flatnonzero((status != 0) & ~bridged)
+    if not len(left):
+        return bridged
+    lines = outlines.GetLines()
+    starts = vtk_to_numpy(lines.GetOffsetsArray())[left]
+    ids = vtk_to_numpy(lines.GetConnectivityArray())
+    places = complex_places(outlines)
+    first, second = places[ids[starts]], places[ids[starts + 1]]
+    places = complex_places(surface)
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    corners = corners[numpy.isin(places, first)[corners].any(axis=1)]
+    ends = places[numpy.roll(corners, -1, axis=1)]
+    edges = set(zip(places[corners].ravel().tolist(), ends.ravel().tolist()))
+    bridged[left] = [edge in edges for edge in zip(first.tolist(), second.tolist())]
+    return bridged
+
+
+def complex_places(data):
+    """x + iy of the points of a data set."""
+    x, y = vtk_to_numpy(data.GetPoints().GetData())[:, :2].astype("f8").T
+    return x + 1j * y
+
+
+def hole_places(lines):
+    """Of each line's box in x,y: [its diagonals, which --maximum-hole-size is compared with; its
+    centres (x, y); its corners ((x, y) lowest, (x, y) highest)]."""
+    if lines.GetNumberOfLines() == 0:
+        return [[], [], []]
+    cells = lines.GetLines()
+    xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2]
+    xy = xy[vtk_to_numpy(cells.GetConnectivityArray())]
+    starts = vtk_to_numpy(cells.GetOffsetsArray())[:-1]
+    low = numpy.minimum.reduceat(xy, starts, axis=0)
+    high = numpy.maximum.reduceat(xy, starts, axis=0)
+    boxes = numpy.stack((low, high), axis=1)
+    return [numpy.hypot(*(high - low).T).tolist(), boxes.mean(axis=1).tolist(), boxes.tolist()]
+
+
+def hole_lines(holes, line):
+    """What became of the holes."""
+    line(
+        "holes",
+        f"{holes['found']:,} found, {holes['filled']:,} filled with "
+        f"{counted(holes['inserted_points'], 'point')}",
+    )
+    count = holes["by_status"].get("replaced", 0)
+    if count:
+        line("", f"{count:,} of them were bridged by triangles")
+        line(
+            "",
+            f"an edge is a bridge above {holes['open_edge_length']:.4g} "
+            f"({holes['open_edge_length_is']}); see --open-edge-length",
+        )
+    for status in holes["by_status"]:
+        for bridged, words in (
+            (False, f"not filled, {status}: hole"),
+            (True, f"bridged by long triangles and left as they are, {status}: void"),
+        ):
+            listed = [h for h in holes["list"] if (h["status"], h["bridged"]) == (status, bridged)]
+            if listed and status not in ("filled", "replaced"):
+                line("", f"{len(listed):,} {words} {', '.join(map(size_of, listed[:5]))}"
+                     f"{', ...' if len(listed) > 5 else ''}")
+
+
+def size_of(hole):
+    """Number and size of a hole that is over a limit."""
+    if hole["status"] == "too many edges":
+        return f"{hole['hole']} ({counted(hole['edges'], 'edge')})"
+    return f"{hole['hole']} (size {hole['size']:.4g})"
