@@ -19,7 +19,8 @@ set(es_kernel_Mesh
 set(es_kernel_Lattice
   FindLattice
   Nodes
-  Metric)
+  Metric
+  SharedLattice)
 set(es_kernel_Triangulate
   BoxTree
   BinGrid

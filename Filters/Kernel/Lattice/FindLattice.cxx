@@ -304,8 +304,11 @@ private:
   std::size_t Count = 0;
 };
 
-/** The distinct points of several sets, sorted. */
-std::vector<Point2> Join(std::vector<std::vector<Point2>> sets, const Progress& progress)
+/** Distinct points, by range. */
+using Picked = std::vector<std::vector<Point2>>;
+
+/** The distinct points of all ranges, sorted. */
+std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
 {
   PlaceSet all;
   std::size_t joined = 0;
@@ -669,143 +672,153 @@ private:
   Lattice Steps;
 };
 
-/** One run of FindLattice(); the members carry data between its passes. */
-class LatticeFinder
+/** All points of the place, or of its fullest part. */
+std::vector<Point2> FullestPart(std::vector<Point2>&& points, const Progress& progress)
 {
-public:
-  LatticeFinder(const PointView& points, int threads)
-    : Points(points)
-    , Threads(threads)
-    , Pieces(NumberOfRanges(points.Count))
-  {
-  }
+  std::vector<Point2> part = std::move(points);
+  KeepFullestCells(part, progress);
+  KeepFullest(part);
+  return part;
+}
 
-  LatticeSearch Run(double tolerance, const Progress& progress)
+/** The sample as the fit takes it: smaller, with the points around, relative to the middle. */
+std::vector<Point2> SortedOutwards(
+  const LatticeSample& ofAll, const std::vector<Point2>& around, const Point2& middle)
+{
+  const std::uint64_t limit = HashLimit(SampleSize, ofAll.CountOfAll);
+  std::vector<Point2> sample;
+  std::copy_if(ofAll.Points.begin(), ofAll.Points.end(), std::back_inserter(sample),
+    [limit](const Point2& p) { return HashOf(p) < limit; });
+  sample.insert(sample.end(), around.begin(), around.end());
+  SortUnique(sample);
+  for (Point2& p : sample)
   {
-    this->TakeSample(Part(progress, 0.0, 0.55));
-    const double width = this->Search.Width(), height = this->Search.Height();
-    const double extent = width + height;
-    // There is no lattice where squares and quotients might leave the range of double.
-    if (this->Count < FewestPoints || !(width > 1e-60 && height > 1e-60 && extent < 1e60))
+    p = Minus(p, middle);
+  }
+  std::sort(sample.begin(), sample.end(), [](const Point2& p, const Point2& q) {
+    const double a = Dot(p, p), b = Dot(q, q);
+    return a != b ? a < b : IsLower(p, q);
+  });
+  return sample;
+}
+} // namespace
+
+bool LatticeSample::MayBeOfLattice() const
+{
+  const double width = this->Width(), height = this->Height();
+  // There is no lattice where squares and quotients might leave the range of double.
+  return this->Count >= FewestPoints && width > 1e-60 && height > 1e-60 && width + height < 1e60;
+}
+
+void LatticeSample::Add(LatticeSample&& part)
+{
+  this->Join(part);
+  this->Count += part.Count;
+  this->Points.insert(this->Points.end(), part.Points.begin(), part.Points.end());
+  SortUnique(this->Points);
+}
+
+LatticeSample SampleForLattice(const PointView& points, double countOfAll, int threads,
+  const Progress& progress, std::vector<Index>& notFinite)
+{
+  Picked picked(NumberOfRanges(points.Count));
+  std::vector<PlaceSet> sets(picked.size());
+  const std::uint64_t limit = HashLimit(WideSampleSize, countOfAll);
+  Extent extent =
+    FindExtent(points, threads, Part(progress, 0.0, 0.9), [&](Index piece, const Point2& p) {
+      if (HashOf(p) < limit)
+      {
+        sets[piece].Add(p);
+      }
+    });
+  std::transform(sets.begin(), sets.end(), picked.begin(),
+    [](const PlaceSet& set) { return set.Places(); });
+  LatticeSample sample;
+  static_cast<Box&>(sample) = extent;
+  sample.CountOfAll = countOfAll;
+  sample.Count = static_cast<double>(points.Count) - static_cast<double>(extent.NotFinite.size());
+  sample.Points = JoinPicked(std::move(picked), Part(progress, 0.9, 1.0));
+  notFinite = std::move(extent.NotFinite);
+  return sample;
+}
+
+Box FullestPlace(const LatticeSample& ofAll)
+{
+  Box place = ofAll;
+  std::vector<Point2> crowd = ofAll.Points;
+  for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
+  {
+    const double here = ofAll.Count * (crowd.size() / static_cast<double>(ofAll.Points.size()));
+    const double cells = std::sqrt(here / static_cast<double>(Neighbors));
+    Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
+    if (histogram.Side < 2 || !histogram.HasCells())
     {
-      return std::move(this->Search);
+      break;
     }
-    this->GatherAround(this->FullestPlace(), Part(progress, 0.55, 1.0));
-    const Point2 middle = this->Around[this->Around.size() / 2];
-    this->SortSample(middle);
-    const double leastArea =
-      0.5 * MeanAreaOf(this->Around, width * height / this->Count) / MaximumNodesPerPoint;
-    const std::vector<Point2> differences = ShortestDifferences(this->Around);
-    const auto isLattice = [&](double zeroTolerance) {
-      Generators generators(leastArea, 1e-9 * extent / this->Count, zeroTolerance);
-      return std::all_of(differences.begin(), differences.end(),
-               [&](const Point2& vector) { return generators.Insert(vector); }) &&
-        OutwardFit(this->Sample, generators)
-          .Run(tolerance, extent, MaximumNodesPerPoint * this->Count, this->Search.Steps);
-    };
-    this->Search.Found = std::any_of(ZeroTolerances.begin(), ZeroTolerances.end(), isLattice);
-    this->Search.Steps.Origin.X += middle.X;
-    this->Search.Steps.Origin.Y += middle.Y;
-    return std::move(this->Search);
+    const int fullest = histogram.KeepFullest(crowd);
+    place = BoxOf(crowd); // rounding may have put a point beside its cell
+    place.Add(histogram.CornerOf(fullest, 0));
+    place.Add(histogram.CornerOf(fullest, 1));
   }
+  return place;
+}
 
-private:
-  /** Pass 1. */
-  void TakeSample(const Progress& progress)
-  {
-    std::vector<PlaceSet> picked(this->Pieces.size());
-    const std::uint64_t limit = HashLimit(WideSampleSize, this->Points.Count);
-    static_cast<Extent&>(this->Search) = FindExtent(
-      this->Points, this->Threads, Part(progress, 0.0, 0.9), [&](Index piece, const Point2& p) {
-        if (HashOf(p) < limit)
+std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
+  const std::vector<Index>& notFinite, int threads, const Progress& progress)
+{
+  Picked picked(NumberOfRanges(points.Count));
+  ForEachRange(points.Count, threads, Part(progress, 0.0, 0.8),
+    [&](Index piece, Index begin, Index end) {
+      PlaceSet here;
+      ForEachPoint(points, begin, end, notFinite, [&](Index, const Point2& p) {
+        if (place.Contains(p))
         {
-          picked[piece].Add(p);
+          here.Add(p);
         }
       });
-    this->Count = this->Points.Count - static_cast<Index>(this->Search.NotFinite.size());
-    std::transform(picked.begin(), picked.end(), this->Pieces.begin(),
-      [](const PlaceSet& set) { return set.Places(); });
-    this->Sample = Join(this->Pieces, Part(progress, 0.9, 1.0));
-  }
-
-  /**
-   * The fullest cell of the sample's extent, the fullest cell of that, and so on; all of the extent
-   * where few points are distinct.
-   */
-  Box FullestPlace() const
-  {
-    Box place = this->Search;
-    std::vector<Point2> crowd = this->Sample;
-    for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
-    {
-      const double here = this->Count * (crowd.size() / static_cast<double>(this->Sample.size()));
-      const double cells = std::sqrt(here / static_cast<double>(Neighbors));
-      Histogram histogram(place, static_cast<int>(std::min(std::max(cells, 1.0), 1.0 * MostCells)));
-      if (histogram.Side < 2 || !histogram.HasCells())
-      {
-        break;
-      }
-      const int fullest = histogram.KeepFullest(crowd);
-      place = BoxOf(crowd); // rounding may have put a point beside its cell
-      place.Add(histogram.CornerOf(fullest, 0));
-      place.Add(histogram.CornerOf(fullest, 1));
-    }
-    return place;
-  }
-
-  /** All points of the place, or of its fullest part. */
-  void GatherAround(const Box& place, const Progress& progress)
-  {
-    ForEachRange(this->Points.Count, this->Threads, Part(progress, 0.0, 0.75),
-      [&](Index piece, Index begin, Index end) {
-        PlaceSet here;
-        ForEachPoint(this->Points, begin, end, this->Search.NotFinite, [&](Index, const Point2& p) {
-          if (place.Contains(p))
-          {
-            here.Add(p);
-          }
-        });
-        this->Pieces[piece] = here.Places();
-      });
-    this->Around = Join(std::move(this->Pieces), Part(progress, 0.75, 0.9));
-    KeepFullestCells(this->Around, Part(progress, 0.9, 1.0));
-    KeepFullest(this->Around);
-  }
-
-  /** Reduces the sample, makes it relative to @a middle, and sorts it outwards. */
-  void SortSample(const Point2& middle)
-  {
-    const std::uint64_t limit = HashLimit(SampleSize, this->Points.Count);
-    std::vector<Point2>& sample = this->Sample;
-    sample.erase(std::remove_if(sample.begin(), sample.end(),
-                   [limit](const Point2& p) { return HashOf(p) >= limit; }),
-      sample.end());
-    sample.insert(sample.end(), this->Around.begin(), this->Around.end());
-    SortUnique(sample);
-    for (Point2& p : sample)
-    {
-      p = Minus(p, middle);
-    }
-    std::sort(sample.begin(), sample.end(), [](const Point2& p, const Point2& q) {
-      const double a = Dot(p, p), b = Dot(q, q);
-      return a != b ? a < b : IsLower(p, q);
+      picked[piece] = here.Places();
     });
-  }
+  return JoinPicked(std::move(picked), Part(progress, 0.8, 1.0));
+}
 
-  const PointView& Points;
-  const int Threads;
-  LatticeSearch Search;
-  Index Count = 0;                         ///< of the finite points
-  std::vector<std::vector<Point2>> Pieces; ///< distinct points, by range
-  std::vector<Point2> Sample;
-  std::vector<Point2> Around; ///< the points of the fullest place
-};
-} // namespace
+bool FitLattice(const LatticeSample& ofAll, std::vector<Point2>&& inFullestPlace, double tolerance,
+  const Progress& progress, Lattice& lattice)
+{
+  const std::vector<Point2> around = FullestPart(std::move(inFullestPlace), progress);
+  const Point2 middle = around[around.size() / 2];
+  const std::vector<Point2> sample = SortedOutwards(ofAll, around, middle);
+  const double width = ofAll.Width(), height = ofAll.Height(), extent = width + height;
+  const double leastArea =
+    0.5 * MeanAreaOf(around, width * height / ofAll.Count) / MaximumNodesPerPoint;
+  const std::vector<Point2> differences = ShortestDifferences(around);
+  const auto isLattice = [&](double zeroTolerance) {
+    Generators generators(leastArea, 1e-9 * extent / ofAll.Count, zeroTolerance);
+    return std::all_of(differences.begin(), differences.end(),
+             [&](const Point2& vector) { return generators.Insert(vector); }) &&
+      OutwardFit(sample, generators)
+        .Run(tolerance, extent, MaximumNodesPerPoint * ofAll.Count, lattice);
+  };
+  const bool isFound = std::any_of(ZeroTolerances.begin(), ZeroTolerances.end(), isLattice);
+  lattice.Origin.X += middle.X;
+  lattice.Origin.Y += middle.Y;
+  return isFound;
+}
 
 LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
-  return LatticeFinder(points, threads).Run(tolerance, progress);
+  LatticeSearch search;
+  const LatticeSample sample = SampleForLattice(
+    points, points.Count, threads, Part(progress, 0.0, 0.55), search.NotFinite);
+  static_cast<Box&>(search) = sample;
+  if (sample.MayBeOfLattice())
+  {
+    std::vector<Point2> around = DistinctPointsIn(
+      FullestPlace(sample), points, search.NotFinite, threads, Part(progress, 0.55, 0.95));
+    search.Found = FitLattice(
+      sample, std::move(around), tolerance, Part(progress, 0.95, 1.0), search.Steps);
+  }
+  return search;
 }
 
 } // namespace elevation

@@ -25,6 +25,7 @@
 
 #include "Kernel/Base/Base.h"
 
+#include <vector>
 
 namespace elevation
 {
@@ -47,6 +48,19 @@ struct Lattice
 /** The most nodes a point that a lattice may have in a parallelogram around the cloud. */
 constexpr double MaximumNodesPerPoint = 64.0;
 
+/** What the search needs of a cloud, or of a part of it; the box is that of its finite points. */
+struct LatticeSample : Box
+{
+  double CountOfAll = 0.0;    ///< points of the whole cloud, also those that are not finite
+  double Count = 0.0;         ///< finite points
+  std::vector<Point2> Points; ///< the sample, distinct and sorted
+
+  /** Whether the search has any prospect. */
+  bool MayBeOfLattice() const;
+  /** Adds another part of the same cloud. */
+  void Add(LatticeSample&& part);
+};
+
 /** The result of FindLattice(). */
 struct LatticeSearch : Extent
 {
@@ -61,6 +75,31 @@ struct LatticeSearch : Extent
  */
 LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress);
+
+/**
+ * @name The steps of the search, for a cloud in parts.
+ * Each part is sampled; the samples are added up; each part tells its points in the fullest place
+ * of the sum, which together are fitted, if MayBeOfLattice(). This gives the lattice of the whole.
+ * @{
+ */
+/** @param[out] notFinite  ids of points with a non-finite coordinate, increasing */
+LatticeSample SampleForLattice(const PointView& points, double countOfAll, int threads,
+  const Progress& progress, std::vector<Index>& notFinite);
+
+/** A place with some hundred points where they are densest: where a sample has most, repeatedly. */
+Box FullestPlace(const LatticeSample& ofAll);
+
+std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
+  const std::vector<Index>& notFinite, int threads, const Progress& progress);
+
+/**
+ * @param[in] inFullestPlace  the distinct points there, of all parts, sorted by IsLower()
+ * @param[out] lattice  if there is one
+ * @return whether there is one
+ */
+bool FitLattice(const LatticeSample& ofAll, std::vector<Point2>&& inFullestPlace, double tolerance,
+  const Progress& progress, Lattice& lattice);
+/** @} */
 
 } // namespace elevation
 

@@ -10,5 +10,6 @@
 #include "FindLattice.h"
 #include "Metric.h"
 #include "Nodes.h"
+#include "SharedLattice.h"
 
 #endif

@@ -12,81 +12,8 @@ namespace elevation
 {
 namespace
 {
-/** How far beyond the tolerance a point may be from its node, in steps, because of rounding. */
-constexpr double Roundoff = 1e-8;
-
 /** Points handled at a time, so that their memory can be prefetched. */
 constexpr Index Few = 32;
-
-/** The node of a point, relative to the lower left one. */
-class NodeOfPoint
-{
-public:
-  NodeOfPoint(const Lattice& lattice)
-    : Origin(lattice.Origin)
-    , IX(lattice.StepV.Y / lattice.Area())
-    , IY(-lattice.StepV.X / lattice.Area())
-    , JX(-lattice.StepU.Y / lattice.Area())
-    , JY(lattice.StepU.X / lattice.Area())
-  {
-  }
-
-  /** A box around the nodes of points, in steps. */
-  struct NodeBox : Box
-  {
-    double FirstI() const { return std::floor(this->Low.X + 0.25); }
-    double FirstJ() const { return std::floor(this->Low.Y + 0.25); }
-    double Columns() const { return std::ceil(this->High.X - 0.25) - this->FirstI() + 1.0; }
-    double Rows() const { return std::ceil(this->High.Y - 0.25) - this->FirstJ() + 1.0; }
-  };
-
-  void Extend(NodeBox& box, const Point2& p) const { box.Add({ this->I(p), this->J(p) }); }
-
-  void Start(const NodeBox& box)
-  {
-    this->FirstI = box.FirstI();
-    this->FirstJ = box.FirstJ();
-  }
-
-  double I(const Point2& p) const
-  {
-    return (p.X - this->Origin.X) * this->IX + (p.Y - this->Origin.Y) * this->IY;
-  }
-  double J(const Point2& p) const
-  {
-    return (p.X - this->Origin.X) * this->JX + (p.Y - this->Origin.Y) * this->JY;
-  }
-
-  /** @return how far the point lies from the node, along the step where it is more */
-  double operator()(const Point2& p, Index& column, Index& row) const
-  {
-    const double i = this->I(p) - this->FirstI, j = this->J(p) - this->FirstJ;
-    column = static_cast<Index>(i + 0.5);
-    row = static_cast<Index>(j + 0.5);
-    return std::max(std::fabs(i - column), std::fabs(j - row));
-  }
-
-  /**
-   * A bound on the rounding error of that distance: where steps are very unequal, i is a small
-   * difference of large numbers. The factors count as exact, as they define the lattice.
-   */
-  double Roundoff(const Point2& low, const Point2& high) const
-  {
-    const double x =
-      std::max(std::fabs(low.X - this->Origin.X), std::fabs(high.X - this->Origin.X));
-    const double y =
-      std::max(std::fabs(low.Y - this->Origin.Y), std::fabs(high.Y - this->Origin.Y));
-    const double i = x * std::fabs(this->IX) + y * std::fabs(this->IY);
-    const double j = x * std::fabs(this->JX) + y * std::fabs(this->JY);
-    return 6.0 * DBL_EPSILON * std::max(i, j);
-  }
-
-  double FirstI = 0.0, FirstJ = 0.0;
-
-private:
-  Point2 Origin;
-  double IX, IY, JX, JY;
-};
 
 /**
  * Whether the points are too many for a core's cache and come in no order. In rows, in columns and
@@ -167,54 +94,38 @@ private:
     Index Count() const { return static_cast<Index>(this->Begins.size()) - 1; }
   };
 
-  /** The box of the points' nodes; on a lattice along the axes, that of their bounding box. */
-  NodeOfPoint::NodeBox FindBox(const Progress& progress) const
+  NodeBox FindBox(const Progress& progress) const
   {
-    NodeOfPoint::NodeBox box;
-    const Point2 &low = this->Search.Low, &high = this->Search.High;
-    for (const Point2& p : { low, Point2{ high.X, low.Y }, Point2{ low.X, high.Y }, high })
-    {
-      this->NodeOf.Extend(box, p);
-    }
-    const double nodesInBox =
-      this->Search.Width() * this->Search.Height() / this->Search.Steps.Area();
-    if (box.Columns() * box.Rows() <= 1.05 * nodesInBox + 64.0)
-    {
+    return FindNodeBox(this->NodeOf, this->Search, this->Search.Steps, [&]() {
+      std::vector<NodeBox> pieces(NumberOfRanges(this->Points.Count));
+      this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
+        NodeBox here;
+        ForEachPoint(this->Points, begin, end, this->Search.NotFinite,
+          [&](Index, const Point2& p) { this->NodeOf.Extend(here, p); });
+        pieces[piece] = here;
+      });
+      NodeBox box;
+      for (const NodeBox& piece : pieces)
+      {
+        box.Join(piece);
+      }
       return box;
-    }
-    // On a lattice askew to the axes, the points themselves give a smaller one.
-    std::vector<NodeOfPoint::NodeBox> pieces(NumberOfRanges(this->Points.Count));
-    this->ForEachRange(progress, [&](Index piece, Index begin, Index end) {
-      NodeOfPoint::NodeBox here;
-      ForEachPoint(this->Points, begin, end, this->Search.NotFinite,
-        [&](Index, const Point2& p) { this->NodeOf.Extend(here, p); });
-      pieces[piece] = here;
     });
-    box = NodeOfPoint::NodeBox();
-    for (const NodeOfPoint::NodeBox& piece : pieces)
-    {
-      box.Join(piece);
-    }
-    return box;
   }
 
   /** Allocates the bitmap for a box of nodes. @return false when it takes too much memory */
-  bool MakeBitmap(const NodeOfPoint::NodeBox& box, const Progress& progress)
+  bool MakeBitmap(const NodeBox& box, const Progress& progress)
   {
     const double count = this->Points.Count - static_cast<double>(this->Search.NotFinite.size());
-    const double columns = box.Columns(), rows = box.Rows();
-    const double wordsPerRow = std::floor((columns + 63.0) / 64.0) + 1.0;
-    const double words = wordsPerRow * (rows + RowsBeyond) + 2.0;
-    if (!(columns <= MaximumSide && rows <= MaximumSide) ||
-      columns * rows > MaximumNodesPerPoint * count || words > 2.0 * count + 256.0 ||
-      words * 64.0 > std::numeric_limits<Index>::max())
+    if (!box.IsFilledEnough(count) || box.Words() * 64.0 > std::numeric_limits<Index>::max())
     {
       return false;
     }
     this->NodeOf.Start(box);
-    this->Nodes.Columns = static_cast<Index>(columns);
-    this->Nodes.Rows = static_cast<Index>(rows);
-    this->Nodes.WordsPerRow = static_cast<Index>(wordsPerRow);
+    this->Nodes.Columns = static_cast<Index>(box.Columns());
+    this->Nodes.Rows = static_cast<Index>(box.Rows());
+    this->Nodes.WordsPerRow = static_cast<Index>(box.WordsPerRow());
+    const double words = box.Words();
     this->Nodes.Memory.Resize(static_cast<std::size_t>(words));
     this->Nodes.Words = reinterpret_cast<AtomicWord*>(this->Nodes.Memory.data());
     elevation::ForEachRange(
@@ -264,7 +175,7 @@ private:
           this->Occupy(begin, last, second);
         }
       }
-      if (!(largest <= tolerance + Roundoff))
+      if (!(largest <= tolerance + NodeRoundoff))
       {
         fits = false;
       }
@@ -272,7 +183,7 @@ private:
       this->Second[piece] = std::move(second);
     });
     this->Nodes.LargestOffset = *std::max_element(offsets.begin(), offsets.end()) +
-      std::max(Roundoff, this->NodeOf.Roundoff(this->Search.Low, this->Search.High));
+      std::max(NodeRoundoff, this->NodeOf.Roundoff(this->Search.Low, this->Search.High));
     return fits;
   }
 

@@ -21,7 +21,7 @@
 #ifndef elevation_Lattice_Nodes_h
 #define elevation_Lattice_Nodes_h
 
-#include "FindLattice.h"
+#include "NodeOfPoint.h"
 
 #include <atomic>
 
@@ -31,12 +31,6 @@ namespace elevation
 class LatticeNodes
 {
 public:
-  /** Columns and rows beyond the last that may be read without a bounds check. */
-  static constexpr Index ColumnsBeyond = 64;
-  static constexpr Index RowsBeyond = 16;
-  /** The most columns or rows: products of four coordinates and steps then fit into 128 bits. */
-  static constexpr Index MaximumSide = 1 << 20;
-
   /**
    * Assigns the points to nodes.
    * @return false when a point lies farther from its node than the tolerance, two points that are

@@ -72,8 +72,8 @@ class LatticeApexes
 public:
   /** How far lists reach from the first node of an edge: columns to each side, and rows. */
   static constexpr Index Range = 15;
-  static_assert(Range <= LatticeNodes::RowsBeyond, "rows beyond the last are looked at");
-  static_assert(Range < LatticeNodes::ColumnsBeyond, "nodes beyond a row are looked at");
+  static_assert(Range <= NodeBox::RowsBeyond, "rows beyond the last are looked at");
+  static_assert(Range < NodeBox::ColumnsBeyond, "nodes beyond a row are looked at");
 
   LatticeApexes(const LatticeNodes& nodes, const LatticeMetric& metric);
   LatticeApexes(const LatticeApexes&) = delete;
@@ -83,7 +83,7 @@ public:
   /** First and last occupied column of a row, or of a band of rows. */
   struct RowEnds
   {
-    Index Left = LatticeNodes::MaximumSide, Right = -1;
+    Index Left = NodeBox::MaximumSide, Right = -1;
     bool IsEmpty() const { return this->Left > this->Right; }
   };
   const RowEnds& EndsOf(Index row) const { return this->Ends[0][row]; }

@@ -408,15 +408,6 @@ void Growth::LatticeStrip::GrowFan(Index row, Index node, Index rank, Index firs
   }
 }
 
-/** Whether so few points may fit some lattice by chance, which large tolerances make likely. */
-bool IsByChance(double count, double tolerance)
-{
-  // Three points make a lattice; every other one fits with the probability of its node's area; the
-  // number of lattices to choose from grows with the nodes allowed.
-  const double fits = std::log(1.0 / std::min(4.0 * tolerance * tolerance + 1e-12, 0.99));
-  return (count - 3.0) * fits < std::log(MaximumNodesPerPoint * count) + std::log(1e6);
-}
-
 /** @return false when the lattice is of no use: all on one line, or a triangle would be flat */
 bool GrowOnLattice(const PointView& points, LatticeNodes& nodes, const LatticeMetric& metric,
   const DelaunayOptions& options, int threads, Triangulation& result)
@@ -465,7 +456,7 @@ bool TriangulateOnLattice(const PointView& points, const LatticeSearch& search,
   if (!metric.Set(search.Steps) ||
     !nodes.Place(
       points, search, tolerance, options.Duplicates, threads, Part(options.Monitor, 0.15, 0.4)) ||
-    IsByChance(nodes.NumberOfPoints(), tolerance) ||
+    IsLatticeByChance(nodes.NumberOfPoints(), tolerance) ||
     !GrowOnLattice(points, nodes, metric, options, threads, result))
   {
     return false;

@@ -26,6 +26,7 @@
 #define elevation_Triangulate_Pieces_h
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Lattice/SharedLattice.h"
 #include "Options.h"
 
 #include <array>
@@ -47,6 +48,12 @@ struct Cell
     constexpr double infinity = std::numeric_limits<double>::infinity();
     return this->Low.X == -infinity && this->Low.Y == -infinity && this->High.X == infinity &&
       this->High.Y == infinity;
+  }
+
+  bool Holds(const Box& box) const
+  {
+    return box.Low.X > this->Low.X && box.Low.Y > this->Low.Y && box.High.X < this->High.X &&
+      box.High.Y < this->High.Y;
   }
 
   /**
@@ -79,11 +86,13 @@ using GlobalTriangle = std::array<GlobalId, 3>;
  *                   cell, joined
  * @param[in] options  without a lattice and a limit of edges
  * @param[in,out] settled  gets the triangles, counter-clockwise
+ * @param[in] lattice  that of the whole cloud, if its nodes are to be triangulated
  * @return the seam: the points and edges that triangles across the border of the cell may have
- * @throws std::bad_alloc; Aborted
+ * @throws std::bad_alloc; Aborted; NotOnLattice: then all cells have to go without it. They also
+ *         have to if none has settled a triangle: the nodes are on one line.
  */
 Piece Settle(const Piece& piece, const Cell& cell, const DelaunayOptions& options,
-  std::vector<GlobalTriangle>& settled);
+  std::vector<GlobalTriangle>& settled, const SharedLattice* lattice = nullptr);
 
 /** The points and edges of two pieces. */
 Piece Join(Piece&& one, const Piece& other);

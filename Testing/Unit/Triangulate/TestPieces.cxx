@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Triangulate/Pieces.h"
 #include "Kernel/Base/Predicates.h"
+#include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace elevation;
 using namespace testing_points;
@@ -23,9 +25,8 @@ GlobalTriangle Turned(GlobalTriangle triangle)
   return triangle;
 }
 
-std::vector<GlobalTriangle> WholeOf(const Cloud& cloud)
+std::vector<GlobalTriangle> TrianglesOf(const Triangulation& whole)
 {
-  const Triangulation whole = Triangulate(cloud.View(), DelaunayOptions());
   std::vector<GlobalTriangle> triangles;
   for (std::size_t i = 0; i + 2 < whole.Triangles.size(); i += 3)
   {
@@ -36,10 +37,17 @@ std::vector<GlobalTriangle> WholeOf(const Cloud& cloud)
   return triangles;
 }
 
+std::vector<GlobalTriangle> WholeOf(const Cloud& cloud)
+{
+  return TrianglesOf(Triangulate(cloud.View(), DelaunayOptions()));
+}
+
 /** Cuts a cloud into cells, each in two halves of as many points, and settles them upwards. */
 struct Pieces
 {
   const Cloud& Whole;
+  const SharedLattice* Lattice = nullptr;
+  DelaunayOptions Options;
   std::vector<GlobalTriangle> Triangles;
   Index LargestSeam = 0; // of a leaf
 
@@ -56,7 +64,7 @@ struct Pieces
       {
         leaf.Coordinates.insert(leaf.Coordinates.end(), this->At(id), this->At(id) + 3);
       }
-      const Piece seam = Settle(leaf, cell, DelaunayOptions(), this->Triangles);
+      const Piece seam = Settle(leaf, cell, this->Options, this->Triangles, this->Lattice);
       this->LargestSeam = std::max(this->LargestSeam, seam.Count());
       return seam;
     }
@@ -66,7 +74,8 @@ struct Pieces
     const int half = count / 2;
     Piece one = this->Settled(below, low, half);
     const Piece other = this->Settled(above, high, count - half);
-    return Settle(Join(std::move(one), other), cell, DelaunayOptions(), this->Triangles);
+    return Settle(
+      Join(std::move(one), other), cell, this->Options, this->Triangles, this->Lattice);
   }
 
   void Cut(const std::vector<GlobalId>& ids, int count, Cell& low, Cell& high,
@@ -110,9 +119,10 @@ struct Pieces
   }
 };
 
-Pieces Cut(const Cloud& cloud, int count)
+Pieces Cut(const Cloud& cloud, int count, const SharedLattice* lattice = nullptr,
+  const DelaunayOptions& options = DelaunayOptions())
 {
-  Pieces pieces{ cloud, {} };
+  Pieces pieces{ cloud, lattice, options, {} };
   std::vector<GlobalId> ids(cloud.Count());
   for (Index i = 0; i < cloud.Count(); ++i)
   {
@@ -159,6 +169,95 @@ Cloud UnevenCloud(std::mt19937_64& random, Index count)
   }
   return cloud;
 }
+/** A cloud on a lattice that is turned and sheared, with coordinates rounded as in exports. */
+Cloud TurnedLattice(std::mt19937_64& random, Index side, double filled)
+{
+  const Cloud nodes = LatticeCloud(random, side, filled);
+  const double angle = 6.283185307179586 * Uniform(random), shear = Uniform(random) - 0.5;
+  const double ratio = random() % 3 == 0 ? 1.0 : 0.2 + 2.0 * Uniform(random);
+  const double lean = random() % 2 == 0 ? 0.0 : shear;
+  const double places = random() % 2 == 0 ? 10.0 : 100.0;
+  Cloud cloud;
+  for (Index k = 0; k < nodes.Count(); ++k)
+  {
+    const double* const p = nodes.Coordinates.data() + 3 * static_cast<std::size_t>(k);
+    const double u = 25.0 * (p[0] + lean * p[1]), v = 25.0 * ratio * p[1];
+    const double x = std::cos(angle) * u - std::sin(angle) * v;
+    const double y = std::sin(angle) * u + std::cos(angle) * v;
+    cloud.Add(612000.0 + std::round(places * x) / places,
+      6073000.0 + std::round(places * y) / places, static_cast<double>(random() % 9));
+  }
+  return cloud;
+}
+
+/** Some points twice or three times, at other elevations, and one that is not finite. */
+Cloud WithDuplicates(std::mt19937_64& random, const Cloud& cloud)
+{
+  Cloud more = cloud;
+  for (Index k = 0; k < cloud.Count() / 7; ++k)
+  {
+    const double* const p = cloud.Coordinates.data() + 3 * (random() % cloud.Count());
+    more.Add(p[0], p[1], static_cast<double>(random() % 9));
+  }
+  more.Add(612000.0, 6073000.0, std::numeric_limits<double>::quiet_NaN());
+  return more;
+}
+
+/** The lattice of a cloud, found in parts of it: every part-th point. */
+struct FoundInParts
+{
+  SharedLattice Lattice;
+  bool IsFound = false;
+
+  FoundInParts(const Cloud& cloud, Index parts, double tolerance)
+  {
+    std::vector<Cloud> split(parts);
+    for (Index k = 0; k < cloud.Count(); ++k)
+    {
+      const double* const p = cloud.Coordinates.data() + 3 * static_cast<std::size_t>(k);
+      split[k % parts].Add(p[0], p[1], p[2]);
+    }
+    LatticeSample sample;
+    sample.CountOfAll = cloud.Count();
+    std::vector<std::vector<Index>> notFinite(parts);
+    for (Index k = 0; k < parts; ++k)
+    {
+      sample.Add(
+        SampleForLattice(split[k].View(), cloud.Count(), 1, Progress(), notFinite[k]));
+    }
+    if (!sample.MayBeOfLattice())
+    {
+      return;
+    }
+    const Box place = FullestPlace(sample);
+    std::vector<Point2> there;
+    for (Index k = 0; k < parts; ++k)
+    {
+      const std::vector<Point2> of =
+        DistinctPointsIn(place, split[k].View(), notFinite[k], 1, Progress());
+      there.insert(there.end(), of.begin(), of.end());
+    }
+    std::sort(there.begin(), there.end(), IsLower);
+    there.erase(std::unique(there.begin(), there.end()), there.end());
+    elevation::Lattice steps;
+    if (FitLattice(sample, std::move(there), tolerance, Progress(), steps))
+    {
+      const NodeOfPoint nodeOf(steps);
+      const NodeBox nodes = FindNodeBox(nodeOf, sample, steps, [&]() {
+        NodeBox box;
+        for (Index k = 0; k < cloud.Count(); ++k)
+        {
+          if (std::isfinite(cloud.View().Elevation(k)))
+          {
+            nodeOf.Extend(box, cloud.View().At(k));
+          }
+        }
+        return box;
+      });
+      this->IsFound = this->Lattice.Set(steps, sample, nodes, sample.Count, tolerance);
+    }
+  }
+};
 } // namespace
 
 TEST(Pieces, TogetherAreTheTriangulationOfTheWhole)
@@ -246,4 +345,96 @@ TEST(Cell, HoldsNoCircleWhoseProductsUnderflow)
     held += cell.HoldsCircle(a, b, c) ? 1 : 0;
   }
   EXPECT_GT(held, 200);
+}
+
+TEST(Pieces, OfALatticeAreTogetherTheTriangulationOfItsNodes)
+{
+  std::mt19937_64 random(95);
+  int found = 0;
+  for (int i = 0; i < 300; ++i)
+  {
+    Cloud cloud =
+      TurnedLattice(random, 8 + static_cast<Index>(random() % 30), 0.1 + 0.9 * Uniform(random));
+    cloud = i % 2 == 0 ? cloud : WithDuplicates(random, cloud);
+    DelaunayOptions options;
+    options.UseLattice = LatticeMode::Automatic;
+    options.Duplicates = static_cast<DuplicatePolicy>(random() % 4);
+    const Triangulation whole = Triangulate(cloud.View(), options);
+    const FoundInParts parts(
+      cloud, 1 + static_cast<Index>(random() % 5), options.LatticeTolerance);
+    ASSERT_TRUE(parts.IsFound || !whole.LatticeFound) << "cloud " << i;
+    if (!whole.LatticeFound)
+    {
+      continue;
+    }
+    ++found;
+    ASSERT_EQ(parts.Lattice.Steps().StepU, whole.Steps.StepU);
+    ASSERT_EQ(parts.Lattice.Steps().StepV, whole.Steps.StepV);
+    options.UseLattice = LatticeMode::Off;
+    const int pieces = 2 + static_cast<int>(random() % 16);
+    ASSERT_EQ(Cut(cloud, pieces, &parts.Lattice, options).Triangles, TrianglesOf(whole))
+      << "cloud " << i << " in " << pieces << " pieces";
+  }
+  EXPECT_GT(found, 200);
+}
+
+TEST(Pieces, TellWhenPointsAreNotOnTheLattice)
+{
+  std::mt19937_64 random(96);
+  const Cloud cloud = TurnedLattice(random, 30, 0.8);
+  const FoundInParts parts(cloud, 3, 0.01);
+  ASSERT_TRUE(parts.IsFound);
+  Cloud off = cloud, twice = cloud;
+  const Lattice& steps = parts.Lattice.Steps();
+  const double* const p = cloud.Coordinates.data();
+  off.Add(p[0] + 0.1 * steps.StepU.X, p[1] + 0.1 * steps.StepU.Y);
+  twice.Add(p[0] + 0.001 * steps.StepU.X, p[1] + 0.001 * steps.StepU.Y);
+  EXPECT_NO_THROW(Cut(cloud, 5, &parts.Lattice));
+  EXPECT_THROW(Cut(off, 5, &parts.Lattice), NotOnLattice);
+  EXPECT_THROW(Cut(twice, 5, &parts.Lattice), NotOnLattice);
+}
+
+TEST(SharedLattice, HoldsAllPointsOfACircleInItsBox)
+{
+  std::mt19937_64 random(97);
+  int found = 0;
+  for (int i = 0; i < 2000; ++i)
+  {
+    const Cloud cloud = TurnedLattice(random, 12, 0.7);
+    const FoundInParts parts(cloud, 1, 0.2); // rounding may be a good part of the steps
+    if (!parts.IsFound)
+    {
+      continue;
+    }
+    ++found;
+    const SharedLattice& lattice = parts.Lattice;
+    const auto at = [&](std::size_t k) { return cloud.View().At(static_cast<Index>(k)); };
+    const LatticeNode a = lattice.NodeOf(at(random() % cloud.Count()));
+    const LatticeNode b = lattice.NodeOf(at(random() % cloud.Count()));
+    const LatticeNode c = lattice.NodeOf(at(random() % cloud.Count()));
+    const std::int64_t turn = (b.I - a.I) * (c.J - a.J) - (b.J - a.J) * (c.I - a.I);
+    if (turn == 0)
+    {
+      continue;
+    }
+    const Box box = lattice.BoxOfCircle(a, b, c);
+    for (Index k = 0; k < cloud.Count(); ++k)
+    {
+      const LatticeNode d = lattice.NodeOf(at(k));
+      const auto squared = [&](const LatticeNode& p) {
+        return lattice.Metric().Dot(p.I - d.I, p.J - d.J, p.I - d.I, p.J - d.J);
+      };
+      const auto minor = [&](const LatticeNode& p, const LatticeNode& q) {
+        return (p.I - d.I) * (q.J - d.J) - (p.J - d.J) * (q.I - d.I);
+      };
+      const long double inCircle = static_cast<long double>(squared(a)) * minor(b, c) -
+        static_cast<long double>(squared(b)) * minor(a, c) +
+        static_cast<long double>(squared(c)) * minor(a, b);
+      if ((turn > 0) == (inCircle > 0) && inCircle != 0)
+      {
+        ASSERT_TRUE(box.Contains(at(k)));
+      }
+    }
+  }
+  EXPECT_GT(found, 1000);
 }
