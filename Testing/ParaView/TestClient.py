@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""ParaView's own client, driven as by a user: a text file is opened, the surface chosen in the
-menu, Apply pressed, a property changed. What the pipeline then has and the view shows is checked.
+"""ParaView's own client, driven as by a user: the plugin is there by itself, a text file is opened, the
+surface chosen in the menu, Apply pressed, a property changed. What the pipeline then has and the view
+shows is checked. A LAS file, which no other reader takes, opens without a question.
 
     TestClient.py --client <paraview> --plugin <the built plugin> -D <Data> -T <folder>
 
@@ -10,6 +11,7 @@ The functions check_... are called inside the client, from its Python shell.
 import argparse
 import json
 import os
+import struct
 import sys
 
 from client import Client
@@ -48,6 +50,43 @@ def check_surface(folder, name, largest_hole):
     FAILURES.clear()
 
 
+def check_plugin(folder):
+    """The plugin manager has the plugin, loaded, with Auto Load on."""
+    from paraview import servermanager
+    from plugin_testing import FAILURES, check_equal
+    manager = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager()
+    known = manager.GetLocalInformation()
+    found = [(bool(known.GetPluginLoaded(i)), bool(known.GetAutoLoad(i)))
+             for i in range(known.GetNumberOfPlugins())
+             if known.GetPluginName(i) == "ElevationSurfacePlugin"]
+    check_equal(found, [(True, True)], "the plugin is loaded, and Auto Load is on")
+    note(folder, FAILURES)
+    FAILURES.clear()
+
+
+def check_las(folder):
+    """The LAS file that was opened is read by Elevation Points."""
+    from paraview import simple
+    from plugin_testing import FAILURES, check_equal, points
+    source = simple.GetActiveSource()
+    check_equal(type(source).__name__, "ElevationPoints", "the reader of a LAS file")
+    check_equal(os.path.basename(str(source.FileName)), "seven.las", "the file")
+    cloud = source.SMProxy.GetClientSideObject().GetOutputDataObject(0)
+    check_equal(points(cloud).tolist(), [[i, 3 * i, i * i] for i in range(7)], "points of a LAS file")
+    note(folder, FAILURES)
+    FAILURES.clear()
+
+
+def write_las(path):
+    """Seven points (i, 3 i, i i) in a LAS 1.2 file."""
+    header = struct.pack("<4sHH16sBB32s32sHHHIIBHI20s12d", b"LASF", 0, 0, b"", 1, 2, b"", b"", 1, 2026,
+                         227, 227, 0, 0, 20, 7, struct.pack("<5I", 7, 0, 0, 0, 0),
+                         1, 1, 1, 0, 0, 0, 6, 0, 18, 0, 36, 0)
+    records = [struct.pack("<iiiHBBbBH", i, 3 * i, i * i, 0, 9, 2, 0, 0, 0) for i in range(7)]
+    with open(path, "wb") as file:
+        file.write(header + b"".join(records))
+
+
 def steps(client, data):
     """What the user does, with a check after each Apply."""
     def check(name, largest_hole):
@@ -55,6 +94,7 @@ def steps(client, data):
 
     here = os.path.dirname(os.path.abspath(__file__))
     client.python("import sys; sys.path.insert(0, %r); import TestClient" % here)
+    client.python("TestClient.check_plugin(%r)" % client.folder)
     client.open(os.path.join(data, "olinda_land.xyz"))
     client.take_marked_reader()
     client.apply()
@@ -71,6 +111,11 @@ def steps(client, data):
         client.expect(field, "enabled", "true")
         client.python(change)
         client.expect(field, "enabled", "false")
+    las = os.path.join(client.folder, "seven.las")
+    write_las(las)
+    client.open(las)
+    client.apply()
+    client.python("TestClient.check_las(%r)" % client.folder)
 
 
 def main():
@@ -79,7 +124,9 @@ def main():
         parser.add_argument(option, required=True)
     options = parser.parse_args()
     folder = os.path.join(options.T, "Client")
-    client = Client([options.client], options.plugin, folder)
+    # Beside the plugin's folder is the file that has ParaView load it, as the package has it.
+    plugins = os.path.dirname(os.path.dirname(os.path.abspath(options.plugin)))
+    client = Client([options.client], os.path.join(plugins, "vtkelevationsurface.xml"), folder)
     results = os.path.join(folder, RESULTS)
     if os.path.exists(results):
         os.remove(results)

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A client and a server of two ranks: points on both ranks give empty output and an error that the
-client sees; on one rank, where Aggregate Dataset brings them, they give the surface. The script starts
-the server itself, by the command after "--server", to which it adds a port.
+client sees; on one rank, where Aggregate Dataset brings them, they give the surface. So do the points of
+a file, with a report. The script starts the server itself, by the command after "--server", to which it
+adds a port.
 """
 import os
 import signal
@@ -16,7 +17,8 @@ SERVER = sys.argv[split + 1:]
 sys.argv = sys.argv[:split]
 
 from paraview import simple  # noqa: E402
-from plugin_testing import FAILURES, check, check_equal, start  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkOutputWindow  # noqa: E402
+from plugin_testing import FAILURES, check, check_equal, fetch, information, start  # noqa: E402
 
 ATTEMPTS = 3
 # pvpython has made itself a rank, which mpirun must not see.
@@ -35,10 +37,10 @@ def launch(port):
         if "Accepting connection" in line:
             # What it says later is read, so that it never waits for a full pipe.
             threading.Thread(target=lambda: said.extend(server.stdout), daemon=True).start()
-            return server, said
+            return server
     stop(server)
     print("no server on port %d: %s" % (port, "".join(said)))
-    return None, said
+    return None
 
 
 def stop(server):
@@ -62,32 +64,54 @@ def cells(source, port=0):
     return source.GetDataInformation(port).GetNumberOfCells()
 
 
+def errors_at_client(source):
+    """The errors that the client's output window gets in an update; the source is to stay empty."""
+    found = []
+
+    def note(_caller, _event, text):
+        found.append(text)
+
+    note.CallDataType = "string0"
+    tag = vtkOutputWindow.GetInstance().AddObserver("ErrorEvent", note)
+    check_equal(cells(source), 0, "cells of points on two ranks")
+    vtkOutputWindow.GetInstance().RemoveObserver(tag)
+    return found
+
+
 server = None
 for _ in range(ATTEMPTS):
     port = free_port()
-    server, said = launch(port)
+    server = launch(port)
     if server:
         break
 check(server, "a server of two ranks starts")
 if server:
     try:
         simple.Connect("localhost", port)
-        start(remote=True)
+        data, _ = start(remote=True)
         sphere = simple.Sphere(ThetaResolution=60, PhiResolution=40)  # of which each rank makes a part
         check(cells(sphere) > 4000, "the server makes a sphere")
-        spread = simple.GridDelaunay2D(Input=sphere)
-        check_equal(cells(spread), 0, "triangles of points on two ranks")
+        for spread in (simple.GridDelaunay2D(Input=sphere), simple.ReconstructElevationSurface(Input=sphere)):
+            errors = errors_at_client(spread)
+            check(len(errors) == 1 and "Aggregate Dataset" in errors[0], "what the client is told: %s" % errors)
         together = simple.AggregateDataset(Input=sphere)
         together.NumberOfTargetProcesses = 1
         surface = simple.GridDelaunay2D(Input=together)
         check(cells(surface) > 1000, "triangles of points on one rank")
         filled = simple.FillElevationHoles(Input=simple.TrimOutwardTriangles(Input=surface))
         check(cells(filled) > 1000, "triangles after the chain of filters")
+        olinda = simple.ElevationPoints(FileName=os.path.join(data, "olinda_land.xyz"))
+        check_equal(cells(olinda), 10266, "points of a file that the server reads")
+        whole = simple.ReconstructElevationSurface(Input=olinda)
+        check(cells(whole) > 20000, "triangles of the whole chain")
+        check("10,266 read" in information(whole, "Report"), "the report is in the client's panel")
+        check(fetch(whole, 3).GetNumberOfRows() > 8, "the rows of the report come to the client")
+        wrong = simple.ElevationPoints(FileName="/no/such/file.csv")
+        errors = errors_at_client(wrong)
+        check(len(errors) == 1 and "no such file" in errors[0], "the client is told of a wrong file: %s" % errors)
         simple.Disconnect()
     finally:
         stop(server)
-    text = "".join(said)
-    check("Aggregate Dataset" in text, "the server tells what to do: %s" % text[-2000:])
 
 print("%d checks failed" % len(FAILURES))
 sys.stdout.flush()

@@ -5,6 +5,7 @@ import os
 
 import numpy
 from paraview import servermanager, simple
+from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 from plugin_testing import (array, check, check_equal, fetch, finish, information, lines, messages_of,
                             points, start, triangles)
@@ -66,6 +67,26 @@ check_equal(fetch(whole, 1).GetNumberOfLines(), 0, "hole outlines when nothing i
 check(same(fetch(whole), fetch(trim)), "without filling, the surface is the trimmed one")
 whole.Trim = 0
 check(same(fetch(whole), fetch(delaunay)), "without trimming, the surface is the triangulation")
+
+# What Output Messages shows: the main counts, then the report; nothing where nothing has changed.
+shown = []
+
+
+def note(_caller, _event, words):
+    shown.append(words)
+
+
+note.CallDataType = "string0"
+window = vtkOutputWindow.GetInstance()
+tag = window.AddObserver("MessageEvent", note)
+whole.Trim, whole.FillHoles = 1, 1
+whole.UpdatePipeline()
+window.RemoveObserver(tag)
+lines_shown = "".join(shown).splitlines()
+check(len(shown) == 1 and lines_shown[0].startswith(
+    "Reconstruct Elevation Surface: 13,299 points, 26,479 triangles"), "the text shown begins: %s" % shown)
+check_equal("\n".join(lines_shown[1:]), information(whole, "Report"), "the text shown goes on with the report")
+whole.Trim = whole.FillHoles = 0
 
 # ---- warnings ----------------------------------------------------------------------------------
 strict = simple.ReconstructElevationSurface(Input=cloud, GapTolerance=1)

@@ -21,8 +21,8 @@ class Client:
     """Steps, and what is needed to play them."""
 
     def __init__(self, program, plugin, folder, width=1280, height=1000):
-        """program: paraview, as a list with the words before it; plugin: the built plugin's file;
-        folder: where the client may write."""
+        """program: paraview, as a list with the words before it; plugin: the built plugin's file, or
+        the .xml file that has it loaded by itself; folder: where the client may write."""
         self.program = program
         self.plugin = os.path.abspath(plugin)
         self.folder = os.path.abspath(folder)
@@ -93,11 +93,15 @@ class Client:
                 file.write("  <%s object=%s %s=%s arguments=%s />\n"
                            % (element, quoteattr(path), what, quoteattr(word), quoteattr(arguments)))
             file.write("</pqevents>\n")
-        folder, name = os.path.split(self.plugin)
         command = [*self.program, "-qwindowgeometry", self.size, "--dr", "--exit",
-                   "--test-script=" + script, "--plugin-search-paths=" + folder,
-                   "--plugins=" + os.path.splitext(name)[0]]
-        return play(command, self.environment(), timeout)
+                   "--test-script=" + script]
+        environment = self.environment()
+        folder, name = os.path.split(self.plugin)
+        if name.endswith(".xml"):
+            environment["PV_PLUGIN_CONFIG_FILE"] = self.plugin
+        else:
+            command += ["--plugin-search-paths=" + folder, "--plugins=" + os.path.splitext(name)[0]]
+        return play(command, environment, timeout)
 
     def environment(self):
         """No settings of the user are read, and none are written."""
