@@ -65,7 +65,7 @@ set(es_kernel_headers_Base
 set(es_kernel_headers_Mesh
   Mesh TriangleSweep)
 set(es_kernel_headers_Lattice
-  Lattice)
+  Lattice NodeOfPoint)
 set(es_kernel_headers_Triangulate
   Growth Instructions Options WorkBudget)
 set(es_kernel_headers_Trim)

@@ -731,8 +731,8 @@ LatticeSample SampleForLattice(const PointView& points, double countOfAll, int t
         sets[piece].Add(p);
       }
     });
-  std::transform(sets.begin(), sets.end(), picked.begin(),
-    [](const PlaceSet& set) { return set.Places(); });
+  std::transform(
+    sets.begin(), sets.end(), picked.begin(), [](const PlaceSet& set) { return set.Places(); });
   LatticeSample sample;
   static_cast<Box&>(sample) = extent;
   sample.CountOfAll = countOfAll;
@@ -767,8 +767,8 @@ std::vector<Point2> DistinctPointsIn(const Box& place, const PointView& points,
   const std::vector<Index>& notFinite, int threads, const Progress& progress)
 {
   Picked picked(NumberOfRanges(points.Count));
-  ForEachRange(points.Count, threads, Part(progress, 0.0, 0.8),
-    [&](Index piece, Index begin, Index end) {
+  ForEachRange(
+    points.Count, threads, Part(progress, 0.0, 0.8), [&](Index piece, Index begin, Index end) {
       PlaceSet here;
       ForEachPoint(points, begin, end, notFinite, [&](Index, const Point2& p) {
         if (place.Contains(p))
@@ -808,15 +808,15 @@ LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress)
 {
   LatticeSearch search;
-  const LatticeSample sample = SampleForLattice(
-    points, points.Count, threads, Part(progress, 0.0, 0.55), search.NotFinite);
+  const LatticeSample sample =
+    SampleForLattice(points, points.Count, threads, Part(progress, 0.0, 0.55), search.NotFinite);
   static_cast<Box&>(search) = sample;
   if (sample.MayBeOfLattice())
   {
     std::vector<Point2> around = DistinctPointsIn(
       FullestPlace(sample), points, search.NotFinite, threads, Part(progress, 0.55, 0.95));
-    search.Found = FitLattice(
-      sample, std::move(around), tolerance, Part(progress, 0.95, 1.0), search.Steps);
+    search.Found =
+      FitLattice(sample, std::move(around), tolerance, Part(progress, 0.95, 1.0), search.Steps);
   }
   return search;
 }

@@ -82,8 +82,7 @@ public:
     const double i = this->I(p), j = this->J(p);
     column = static_cast<Index>(i - this->FirstI + 0.5);
     row = static_cast<Index>(j - this->FirstJ + 0.5);
-    return std::max(
-      std::fabs(i - (this->FirstI + column)), std::fabs(j - (this->FirstJ + row)));
+    return std::max(std::fabs(i - (this->FirstI + column)), std::fabs(j - (this->FirstJ + row)));
   }
 
   /**
@@ -118,9 +117,8 @@ NodeBox FindNodeBox(
   const NodeOfPoint& nodeOf, const Box& cloud, const Lattice& steps, OfPoints&& ofPoints)
 {
   NodeBox box;
-  for (const Point2& p :
-    { cloud.Low, Point2{ cloud.High.X, cloud.Low.Y }, Point2{ cloud.Low.X, cloud.High.Y },
-      cloud.High })
+  for (const Point2& p : { cloud.Low, Point2{ cloud.High.X, cloud.Low.Y },
+         Point2{ cloud.Low.X, cloud.High.Y }, cloud.High })
   {
     nodeOf.Extend(box, p);
   }

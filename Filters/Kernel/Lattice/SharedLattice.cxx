@@ -31,8 +31,7 @@ Bounded Sum(double p, const Bounded& a, double q, const Bounded& b)
 Bounded Product(const Bounded& a, const Bounded& b)
 {
   const double value = a.Value * b.Value;
-  return { value,
-    a.Size() * b.Error + b.Size() * a.Error + Unit * std::fabs(value) };
+  return { value, a.Size() * b.Error + b.Size() * a.Error + Unit * std::fabs(value) };
 }
 } // namespace
 
@@ -44,8 +43,8 @@ bool IsLatticeByChance(double count, double tolerance)
   return (count - 3.0) * fits < std::log(MaximumNodesPerPoint * count) + std::log(1e6);
 }
 
-bool SharedLattice::Set(const Lattice& steps, const Box& cloud, const NodeBox& nodes, double count,
-  double tolerance)
+bool SharedLattice::Set(
+  const Lattice& steps, const Box& cloud, const NodeBox& nodes, double count, double tolerance)
 {
   static_cast<Box&>(this->Search) = cloud;
   this->Search.Found = true;
@@ -53,8 +52,7 @@ bool SharedLattice::Set(const Lattice& steps, const Box& cloud, const NodeBox& n
   this->ToleranceInSteps = tolerance;
   this->ToNode = NodeOfPoint(steps);
   const Point2 &u = steps.StepU, &v = steps.StepV;
-  const double off =
-    tolerance + NodeRoundoff + this->ToNode.Roundoff(cloud.Low, cloud.High);
+  const double off = tolerance + NodeRoundoff + this->ToNode.Roundoff(cloud.Low, cloud.High);
   // Besides, nodes are rounded when they are computed from steps.
   const double across = nodes.Columns() + std::fabs(nodes.FirstI());
   const double up = nodes.Rows() + std::fabs(nodes.FirstJ());
@@ -96,8 +94,7 @@ Box SharedLattice::BoxOfCircle(
   const Bounded wj = Sum(static_cast<double>(bi), ofC, -static_cast<double>(ci), ofB);
   const double ma = static_cast<double>(metric.A), mb = static_cast<double>(metric.B);
   const double mc = static_cast<double>(metric.C);
-  const double determinant =
-    static_cast<double>(metric.A * metric.C - metric.B * metric.B);
+  const double determinant = static_cast<double>(metric.A * metric.C - metric.B * metric.B);
   const Bounded mi = Sum(mc / determinant, wi, -mb / determinant, wj);
   const Bounded mj = Sum(-mb / determinant, wi, ma / determinant, wj);
   const Bounded squared = Sum(1.0, Product(wi, mi), 1.0, Product(wj, mj));

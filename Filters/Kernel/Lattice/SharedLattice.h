@@ -44,8 +44,8 @@ public:
    * @param[in] tolerance  how far a point may lie from its node along each step, in steps
    * @return false if the cloud does not fit the lattice, as on one that is not in parts
    */
-  bool Set(const Lattice& steps, const Box& cloud, const NodeBox& nodes, double count,
-    double tolerance);
+  bool Set(
+    const Lattice& steps, const Box& cloud, const NodeBox& nodes, double count, double tolerance);
 
   const Lattice& Steps() const { return this->Search.Steps; }
   const LatticeMetric& Metric() const { return this->MetricOfSteps; }

@@ -3,7 +3,6 @@
 #include "Pieces.h"
 
 #include "DivideAndConquer.h"
-#include "Kernel/Base/Predicates.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "LatticeGrowth.h"
 #include "Triangulate.h"
@@ -123,8 +122,8 @@ std::vector<PlacedNode> FindNodes(const PointView& points, const SharedLattice& 
  * Sorts nodes from the lowest up, and keeps one point on each.
  * @throws NotOnLattice when two points are on a node that are not equal
  */
-void KeepOneOnEach(const PointView& points, DuplicatePolicy policy,
-  std::vector<PlacedNode>& placed, std::vector<Index>& duplicates, const Progress& progress)
+void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<PlacedNode>& placed,
+  std::vector<Index>& duplicates, const Progress& progress)
 {
   const auto isSame = [](const PlacedNode& p, const PlacedNode& q) {
     return p.Node.I == q.Node.I && p.Node.J == q.Node.J;
@@ -185,8 +184,8 @@ Triangulation TriangulateNodes(
   return triangulation;
 }
 
-Triangulation TriangulatePoints(
-  const PointView& points, const DelaunayOptions& options, const SharedLattice* lattice, bool areAll)
+Triangulation TriangulatePoints(const PointView& points, const DelaunayOptions& options,
+  const SharedLattice* lattice, bool areAll)
 {
   if (!lattice)
   {
@@ -217,8 +216,7 @@ SettledMesh Triangulated(
   PointView view;
   view.Double = piece.Coordinates.data();
   view.Count = piece.Count();
-  Triangulation triangulation =
-    TriangulatePoints(view, options, lattice, piece.Edges.empty());
+  Triangulation triangulation = TriangulatePoints(view, options, lattice, piece.Edges.empty());
   SettledMesh mesh;
   mesh.Unused = std::move(triangulation.UnusedPoints);
   mesh.Surface.Points.reserve(view.Count);
@@ -253,7 +251,8 @@ void MarkCovered(SettledMesh& mesh)
   }
   if (found != mesh.Seam.size())
   {
-    throw std::logic_error("An edge of a settled triangle is missing in the triangulation of seams.");
+    throw std::logic_error(
+      "An edge of a settled triangle is missing in the triangulation of seams.");
   }
   while (!stack.empty())
   {

@@ -26,7 +26,7 @@
 #define elevation_Triangulate_Pieces_h
 
 #include "Kernel/Base/Base.h"
-#include "Kernel/Lattice/SharedLattice.h"
+#include "Kernel/Lattice/Lattice.h"
 #include "Options.h"
 
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Triangulate/Pieces.h"
 #include "Kernel/Base/Predicates.h"
 #include "Kernel/Lattice/Lattice.h"
+#include "Kernel/Triangulate/Pieces.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 
@@ -20,8 +20,7 @@ namespace
 /** From the lowest of its ids on, to compare sets of triangles. */
 GlobalTriangle Turned(GlobalTriangle triangle)
 {
-  std::rotate(
-    triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+  std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
   return triangle;
 }
 
@@ -74,8 +73,7 @@ struct Pieces
     const int half = count / 2;
     Piece one = this->Settled(below, low, half);
     const Piece other = this->Settled(above, high, count - half);
-    return Settle(
-      Join(std::move(one), other), cell, this->Options, this->Triangles, this->Lattice);
+    return Settle(Join(std::move(one), other), cell, this->Options, this->Triangles, this->Lattice);
   }
 
   void Cut(const std::vector<GlobalId>& ids, int count, Cell& low, Cell& high,
@@ -222,8 +220,7 @@ struct FoundInParts
     std::vector<std::vector<Index>> notFinite(parts);
     for (Index k = 0; k < parts; ++k)
     {
-      sample.Add(
-        SampleForLattice(split[k].View(), cloud.Count(), 1, Progress(), notFinite[k]));
+      sample.Add(SampleForLattice(split[k].View(), cloud.Count(), 1, Progress(), notFinite[k]));
     }
     if (!sample.MayBeOfLattice())
     {
@@ -267,8 +264,8 @@ TEST(Pieces, TogetherAreTheTriangulationOfTheWhole)
   {
     const Index count = 3 + static_cast<Index>(random() % 600);
     const Cloud clouds[] = { RandomCloud(random, count), LatticeCloud(random, 20, 1.0),
-      LatticeCloud(random, 30, 0.3), SmallLatticeCloud(random, 12, 90),
-      UnevenCloud(random, count), LineCloud(random, count), CircleCloud(count % 100) };
+      LatticeCloud(random, 30, 0.3), SmallLatticeCloud(random, 12, 90), UnevenCloud(random, count),
+      LineCloud(random, count), CircleCloud(count % 100) };
     for (const Cloud& cloud : clouds)
     {
       const int pieces = 1 + static_cast<int>(random() % 17);
@@ -360,8 +357,7 @@ TEST(Pieces, OfALatticeAreTogetherTheTriangulationOfItsNodes)
     options.UseLattice = LatticeMode::Automatic;
     options.Duplicates = static_cast<DuplicatePolicy>(random() % 4);
     const Triangulation whole = Triangulate(cloud.View(), options);
-    const FoundInParts parts(
-      cloud, 1 + static_cast<Index>(random() % 5), options.LatticeTolerance);
+    const FoundInParts parts(cloud, 1 + static_cast<Index>(random() % 5), options.LatticeTolerance);
     ASSERT_TRUE(parts.IsFound || !whole.LatticeFound) << "cloud " << i;
     if (!whole.LatticeFound)
     {
