@@ -37,6 +37,7 @@ from .blocks import is_empty, number_of_points, parts_of, put_parts
 from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
 from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, counted, of_reason
+from .progress import share
 from .ranks import check_ranks, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import PROPERTIES, STEPS, reconstruct
@@ -134,8 +135,11 @@ class ElevationPoints(TellingAlgorithm):
             names = " and ".join(f"--{name.replace('_', '-')}" for name in options)
             raise ValueError(f"{names}: of points only; lines are read as they are")
         if self.CONTENTS[self._contents] == "faults":
-            return read_faults(self._file, depth)
-        return read_boundary(self._file)
+            return read_faults(self._file, depth, self.reading)
+        return read_boundary(self._file, self.reading)
+
+    def reading(self, fraction):
+        self.progress("Reading", fraction)
 
     def work(self, inputs, outputs):
         output = vtkPolyData.GetData(outputs)
@@ -164,12 +168,9 @@ class ElevationPoints(TellingAlgorithm):
             told = [f"{self._file}: {counted(count, 'line')} of {self.CONTENTS[self._contents]}"]
         else:
             options = self.options()
-            cloud = read(
-                self._file,
-                progress=lambda fraction: self.progress("Reading", fraction),
-                **options,
-            )
+            cloud = read(self._file, progress=share(self.reading, 0.0, 0.9), **options)
             finite_points(cloud)
+            self.reading(0.95)
             fill_points(output, cloud)
             told = [f"{self._file}: {counted(output.GetNumberOfPoints(), 'point')}"]
             lost = cloud.left_out.items()

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .messages import counted
+from .progress import no_progress
 
 AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
 
@@ -65,7 +66,7 @@ class ReadOptions:
     no_data: object = None  # None, or the elevation that marks missing values
     keep_nulls: bool = False  # usual null values are kept, though they stand apart
     depth: bool = False  # z counts downwards; it is turned over
-    progress: object = None  # None, or a function that is called with the fraction read
+    progress: object = no_progress  # is called with the fraction read; what it raises ends it
     band: object = None  # None, or the number from 1 of a raster's band of elevations
     layer: object = None  # None, or the name of a layer or variable, of files that hold several
     classes: object = None  # None, or the numbers of the classes of a LAS file to read

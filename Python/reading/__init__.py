@@ -15,6 +15,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
 from .formats import recognise
 from ..messages import FileError, did_you_mean
+from ..progress import no_progress, share
 from .nulls import take_out
 from .text import read_table
 from .unpacking import is_plain, unpacked
@@ -50,6 +51,7 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     columns  of text: names, or numbers from 1, of x, y and z, as ("X", "Y", "Top") or (3, 4, 5)
     no_data  the elevation that marks missing values
     keep_nulls, depth   True as --keep-nulls and --depth of the program
+    progress  a function that is called with the fraction read; what it raises ends the reading
     band, layer, classes   which of a raster's bands, a file's layers, a LAS file's classes
     A misspelt option is a TypeError.
 
@@ -61,8 +63,12 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
             known = did_you_mean(name, ReadOptions.__dataclass_fields__)
             raise TypeError(f"read() has no option {name}{known}")
     options = ReadOptions(**options)
-    with unpacked(os.fspath(path)) as local:
-        cloud = take_out(read_any(local, options), options)
+    whole = options.progress
+    with unpacked(os.fspath(path), whole) as (local, begun):
+        options.progress = share(whole, begun, 0.7)
+        cloud = read_any(local, options)
+        options.progress = share(whole, 0.7, 1.0)
+        cloud = take_out(cloud, options)
     if options.depth:
         turn_over(cloud)
     return cloud
@@ -103,43 +109,45 @@ def leave_out(path, cloud, no_data):
         keep_points(cloud, numpy.flatnonzero(keep))
 
 
-def read_faults(path, depth=False):
+def read_faults(path, depth=False, progress=no_progress):
     """The faults or breaklines of a file as vtkPolyData with lines or polygons.
 
     depth    True: their z counts downwards, and is turned over
+    progress a function that is called with the fraction read; what it raises ends the reading
 
     A text file holds one line after the other, x, y and z in the first columns, a blank line
     between them. Raises FileError.
     """
-    faults = Cloud(read_lines(os.fspath(path), "a fault", "faults", text_faults))
+    faults = Cloud(read_lines(os.fspath(path), "a fault", "faults", text_faults, progress))
     if depth:
         turn_over(faults)
     return faults.points
 
 
-def read_boundary(path):
-    """The boundary rings of a file as vtkPolyData with lines or polygons.
+def read_boundary(path, progress=no_progress):
+    """The boundary rings of a file as vtkPolyData with lines or polygons. Progress as of faults.
 
     A text file holds one ring after the other, x and y in the first columns, a blank line between
     rings, and each ring's first point again at its end. Raises FileError, also for a ring that is
     not closed.
     """
-    return read_lines(os.fspath(path), "a boundary", "a boundary", text_boundary)
+    return read_lines(os.fspath(path), "a boundary", "a boundary", text_boundary, progress)
 
 
-def read_lines(path, singular, what, read_text_lines):
-    with unpacked(path) as local:
+def read_lines(path, singular, what, read_text_lines, progress):
+    with unpacked(path, progress) as (local, begun):
+        progress = share(progress, begun, 1.0)
         kind, _ = recognise(local)
         if kind.module == "text.read_text":
-            return read_text_lines(local)
+            return read_text_lines(local, progress)
         if not kind.lines:
             raise FileError(f"{local}: {kind.name} cannot be read as {what}")
-        return kind.line_reader()(local, singular)
+        return kind.line_reader()(local, singular, progress)
 
 
-def text_parts(path, needed, what):
+def text_parts(path, needed, what, progress):
     """The lines of a text file as arrays, and the first and last line number of each."""
-    rows, lines, starts, _ = read_table(path, needed=needed)
+    rows, lines, starts, _ = read_table(path, needed, progress)
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
     if len(bad):
         raise FileError(f"{path}, line {lines[bad[0]]}: {what} is not finite")
@@ -147,13 +155,14 @@ def text_parts(path, needed, what):
     return [(rows[a:b], lines[a], lines[b - 1]) for a, b in zip(starts, ends)]
 
 
-def text_faults(path):
-    return make_lines([part for part, _, _ in text_parts(path, 3, "a point of a fault")])
+def text_faults(path, progress):
+    parts = text_parts(path, 3, "a point of a fault", progress)
+    return make_lines([part for part, _, _ in parts])
 
 
-def text_boundary(path):
+def text_boundary(path, progress):
     rings = []
-    for ring, first, last in text_parts(path, 2, "a boundary point"):
+    for ring, first, last in text_parts(path, 2, "a boundary point", progress):
         if len(ring) < 4 or not numpy.array_equal(ring[0], ring[-1]):
             raise FileError(
                 f"{path}: the boundary from line {first} to line {last} is not closed; its last "

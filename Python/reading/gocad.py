@@ -7,6 +7,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from ..clouds import Cloud, add_array, make_points
 from ..messages import FileError
+from ..progress import told_lines
 
 KINDS = ("TSurf", "VSet", "PLine")
 
@@ -22,14 +23,14 @@ class Gocad:
     no_data     the z that marks missing data, which is left as it is, or None
     """
 
-    def __init__(self, path, turn=True, no_data=None):
+    def __init__(self, path, progress, turn=True, no_data=None):
         self.path, self.turn, self.turned, self.sign = path, turn, False, 1.0
         self.no_data = no_data
         self.points, self.properties, self.segments, self.triangles = [], {}, [], []
         self.ids, self.names, self.sizes, self.missing = {}, [], [], []
         key = ""
         with open(path, encoding="latin-1") as stream:
-            for number, line in enumerate(stream, 1):
+            for number, line in enumerate(told_lines(stream, progress), 1):
                 words = line.split()
                 if not words or words[0].startswith("#"):
                     continue
@@ -86,7 +87,7 @@ class Gocad:
 
 def read_points(path, options):
     """The vertices; properties become point arrays."""
-    gocad = Gocad(path, turn=not options.depth, no_data=options.no_data)
+    gocad = Gocad(path, options.progress, turn=not options.depth, no_data=options.no_data)
     cloud = Cloud(make_points(numpy.array(gocad.points)))
     for name, values in gocad.properties.items():
         values = values + [numpy.nan] * (len(gocad.points) - len(values))
@@ -98,9 +99,9 @@ def read_points(path, options):
     return cloud
 
 
-def read_lines(path, singular):
+def read_lines(path, singular, progress):
     """The lines, or triangles where there are none, as vtkPolyData."""
-    gocad = Gocad(path)
+    gocad = Gocad(path, progress)
     chains = []
     for start, end in gocad.segments:
         if chains and chains[-1][-1] == start:

@@ -11,8 +11,11 @@ import numpy
 from ..clouds import Cloud, add_array, make_lines, make_points
 from .columns import meaning
 from ..messages import FileError, counted
+from ..progress import no_progress, told_lines
 from .rasters import points_of_raster
 
+AT_ONCE = 1 << 22  # bytes
+BLANK = re.compile(rb"\s")
 MOST_COLUMNS = 12  # of an array of numpy; one with more is a grid
 SEPARATORS = (b">", b"->")
 END_OF_LINE = re.compile(rb"\s*999(\.0*)?(\s+999(\.0*)?){2}\s*")
@@ -23,14 +26,22 @@ def read_bytes(path):
         return stream.read()
 
 
-def numbers(text):
+def numbers(text, progress=no_progress):
     """The numbers that a text of bytes begins with."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
-        try:
-            return numpy.fromstring(text, sep=" ") if text.strip() else numpy.empty(0)
-        except ValueError:  # newer NumPys take no text that goes on with something else
-            return numpy.array(list(floats(text.split())))
+    found, begin = [numpy.empty(0)], 0
+    while begin < len(text):
+        blank = BLANK.search(text, begin + AT_ONCE)
+        end = blank.end() if blank else len(text)
+        part, begin = text[begin:end], end
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", DeprecationWarning)
+            try:
+                found.append(numpy.fromstring(part, sep=" ") if part.strip() else numpy.empty(0))
+            except (ValueError, DeprecationWarning):  # numpy takes no text that goes on with words
+                found.append(numpy.array(list(floats(part.split()))))
+                break
+        progress(end / len(text))
+    return numpy.concatenate(found)
 
 
 def floats(words):
@@ -57,7 +68,7 @@ def grid_cloud(path, x, y, z, null, note):
 
 def read_irap_grid(path, options):
     """IRAP (RMS) classic grid: rows from south to north, which may be turned about a point."""
-    values = numbers(read_bytes(path))
+    values = numbers(read_bytes(path), options.progress)
     if len(values) < 19:
         raise FileError(f"{path}: is cut off within the header of an IRAP classic grid")
     rows, dx, dy, x_min, x_max, y_min, _, columns, turned, x0, y0 = values[1:12]
@@ -92,7 +103,7 @@ def read_cps3_grid(path, options):
         dx, dy = words.get(b"FSXINC", (dx, dy))[:2]
     except (KeyError, ValueError):
         raise FileError(f"{path}: is damaged: its FSLIMI, FSNROW or FSXINC is missing") from None
-    values = numbers(body.partition(b"\n")[2])
+    values = numbers(body.partition(b"\n")[2], options.progress)
     check_count(path, len(values), rows * columns)
     null = min((value for value in words[b"FSASCI"] if value >= 1e20), default=1e30)
     x, y = numpy.meshgrid(x_min + dx * numpy.arange(columns), y_min + dy * numpy.arange(rows))
@@ -100,7 +111,7 @@ def read_cps3_grid(path, options):
     return grid_cloud(path, x, y, z, 0.999 * null, "CPS-3 grid, columns from north to south")
 
 
-def read_table(path, names, first, null=None):
+def read_table(path, names, first, progress, null=None):
     """Rows of numbers below line number `first`, in columns of these names, as a Cloud."""
     axes = {}
     for i, name in enumerate(names):
@@ -111,7 +122,7 @@ def read_table(path, names, first, null=None):
 
     def lines(stream):
         nonlocal number
-        for number, line in enumerate(stream, 1):
+        for number, line in enumerate(told_lines(stream, progress), 1):
             if number > first and line.strip() and not line.startswith((b"#", b"!")):
                 yield line
 
@@ -156,7 +167,7 @@ def read_earthvision(path, options):
                 names.append(words[1])
             elif key.strip() == "Null_value" and words:
                 null = float(words[0])
-    return read_table(path, names or ["x", "y", "z"], first, null)
+    return read_table(path, names or ["x", "y", "z"], first, options.progress, null)
 
 
 def read_petrel_points(path, options):
@@ -166,14 +177,14 @@ def read_petrel_points(path, options):
         for number, line in enumerate(stream, 1):
             word = line.strip()
             if word == "END HEADER":
-                return read_table(path, names, number)
+                return read_table(path, names, number, options.progress)
             if inside and word:
                 names.append(word.split(",")[-1])
             inside = inside or word == "BEGIN HEADER"
     raise FileError(f"{path}: is cut off: its END HEADER is missing")
 
 
-def segments(path):
+def segments(path, progress):
     """Arrays of (n, 3) points, one for each line of a file of lines; z NaN where there is none."""
     parts, rows, z = [], [], numpy.nan
 
@@ -183,7 +194,7 @@ def segments(path):
             rows.clear()
 
     with open(path, "rb") as stream:
-        for number, line in enumerate(stream, 1):
+        for number, line in enumerate(told_lines(stream, progress), 1):
             if line.startswith(SEPARATORS) or END_OF_LINE.fullmatch(line):
                 close()
                 found = re.search(rb"-Z\s*([-+.\deE]+)", line)
@@ -202,16 +213,16 @@ def segments(path):
 
 def read_segments(path, options):
     """The points of lines in segments."""
-    parts = segments(path)
+    parts = segments(path, options.progress)
     points = numpy.concatenate(parts)
     if numpy.isnan(points[:, 2]).all():
         raise FileError(f"{path}: its lines have no z")
     return Cloud(make_points(points), [f"the points of {counted(len(parts), 'line')}"])
 
 
-def read_lines(path, singular):
+def read_lines(path, singular, progress):
     """Lines in segments as vtkPolyData. Those of a boundary are closed, as GMT closes polygons."""
-    parts = segments(path)
+    parts = segments(path, progress)
     if singular == "a boundary":
         parts = [numpy.column_stack((part[:, :2], numpy.zeros(len(part)))) for part in parts]
         parts = [

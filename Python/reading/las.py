@@ -171,6 +171,7 @@ def read_points(path, options):
             if name in arrays:
                 arrays[name][here] = rows[name]
         count, total = here.stop, total + len(keep)
+        options.progress(total / header.count)
     if total < header.count:
         raise FileError(
             f"{path}: is cut off: {header.count:,} points are announced, {total:,} are there"

@@ -12,6 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ..clouds import keep_points
 from ..messages import counted, of_reason
+from ..progress import share, told_items
 
 FLOAT_MAX = float(numpy.finfo("f4").max)
 NULLS = (
@@ -36,10 +37,14 @@ def take_out(cloud, options):
     notes. A cloud of nothing but nulls stays as it is.
     """
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
-    axes = [numpy.ascontiguousarray(coordinates[:, i], dtype="f8") for i in range(3)]
+    axes, progress = [], options.progress
+    for i in range(3):
+        axes.append(numpy.ascontiguousarray(coordinates[:, i], dtype="f8"))
+        progress(0.1 * i)
     null, counts = numpy.zeros(len(coordinates), dtype=bool), {}
-    for axis, name in ((2, "z"), (0, "x"), (1, "y")):
+    for done, (axis, name) in enumerate(((2, "z"), (0, "x"), (1, "y"))):
         values = axes[axis]
+        progress(0.2 + 0.05 * done)
         for value, found in usual_nulls(values, is_place=axis < 2):
             found &= ~null
             if found.any():
@@ -49,6 +54,7 @@ def take_out(cloud, options):
     if found.any():
         counts["rows 0 0 0"] = int(numpy.count_nonzero(found))
         null |= found
+    progress(0.35)
     if counts and not null.all():
         if options.keep_nulls:
             words = ", ".join(of_reason(count, name) for name, count in counts.items())
@@ -59,14 +65,14 @@ def take_out(cloud, options):
             cloud.left_out.update(counts)
             cloud.notes.append("usual null values are left out; --keep-nulls keeps them")
     if not options.keep_nulls:
-        cloud.notes += doubts(*axes, cloud.lines)
+        cloud.notes += doubts(*axes, cloud.lines, share(progress, 0.4, 1.0))
     return cloud
 
 
-def doubts(x, y, z, lines):
+def doubts(x, y, z, lines, progress):
     """Notes on values that may be nulls, and on single elevations far from all around them."""
     notes = []
-    for value, count in repeated_extremes(z):
+    for value, count in repeated_extremes(z, share(progress, 0.0, 0.2)):
         notes.append(
             f"{count:,} points have z = {value:.9g}, far from all others; if that means no data: "
             f"--no-data {value:.9g}"
@@ -75,7 +81,7 @@ def doubts(x, y, z, lines):
     where = "point" if lines is None else "line"
     number = range(len(z)) if lines is None else lines
     notes += far_off(x, y, z, where, number)
-    single = blunders(x, y, z)
+    single = blunders(x, y, z, share(progress, 0.25, 1.0))
     if single:
         words = [
             f"{where} {number[i]} has {z[i]:.7g} where others have {low:.7g} to {high:.7g}"
@@ -95,7 +101,9 @@ def far_off(x, y, z, where, number):
     """A note on points with a coordinate of FAR or more: blunders() does not look at them."""
     far = numpy.zeros(len(z), dtype=bool)
     for values in (x, y, z):
-        far |= (abs(values) >= FAR) & numpy.isfinite(values)
+        low, high = limits(values)
+        if max(-low, high) >= FAR:
+            far |= (abs(values) >= FAR) & numpy.isfinite(values)
     ids = numpy.flatnonzero(far)
     if not len(ids):
         return []
@@ -186,10 +194,11 @@ def zero_rows(x, y, z):
     return zero
 
 
-def repeated_extremes(z):
+def repeated_extremes(z, progress):
     """[(value, count)]: the least and the greatest value, where it is repeated and stands apart."""
     result = []
-    for value in limits(z):
+    for i, value in enumerate(limits(z)):
+        progress(0.5 * i)
         is_it = z == value
         count = int(numpy.count_nonzero(is_it))
         if 3 <= count < len(z) // 2:
@@ -230,7 +239,7 @@ class Cells:
         return numpy.where(whole, parts[1] * numpy.int32(self.columns) + parts[0], self.count - 1)
 
 
-def blunders(x, y, z):
+def blunders(x, y, z, progress):
     """Single elevations far from everything around them: [(index, low, high)], the worst first.
 
     low and high are what the points around have. Each point is compared with the others of its
@@ -241,11 +250,13 @@ def blunders(x, y, z):
     if not cells.count:
         return []
     parts = [slice(start, start + CHUNK) for start in range(0, len(x), CHUNK)]
-    cell = numpy.concatenate([cells.of(x[p], y[p], z[p]) for p in parts])
+    told, count = share(progress, 0.0, 0.4), len(parts)
+    cell = [cells.of(x[p], y[p], z[p]) for p in told_items(parts, told, count, 1)]
+    cell = numpy.concatenate(cell)
     middle = z[:SAMPLE][numpy.abs(z[:SAMPLE]) < FAR]
     middle = float(numpy.median(middle)) if len(middle) else 0.0
     sums = numpy.zeros((3, cells.count))
-    for part in parts:
+    for part in told_items(parts, share(progress, 0.4, 0.7), count, 1):
         known = cell[part] != cells.count - 1
         height = numpy.where(known, z[part] - middle, 0.0)
         for total, weights in zip(sums, (None, height, height * height)):
@@ -264,16 +275,18 @@ def blunders(x, y, z):
     suspects = numpy.concatenate(
         [
             part.start + numpy.flatnonzero(abs(z[part] - mean[cell[part]]) > limit[cell[part]])
-            for part in parts
+            for part in told_items(parts, share(progress, 0.7, 0.9), count, 1)
         ]
     )
     if not len(suspects):
         return []
     order = numpy.argsort(-abs(z[suspects] - mean[cell[suspects]]), kind="stable")
-    return compared(suspects[order][:SUSPECTS], z, cell, cells, least)
+    return compared(
+        suspects[order][:SUSPECTS], z, cell, cells, least, share(progress, 0.9, 1.0)
+    )
 
 
-def compared(suspects, z, cell, cells, least):
+def compared(suspects, z, cell, cells, least, progress):
     """Those suspects that are far from the points of the 3 x 3 cells around them.
 
     least  a smaller distance does not count
@@ -287,7 +300,7 @@ def compared(suspects, z, cell, cells, least):
     near = near[numpy.argsort(cell[near], kind="stable")]
     starts = cell[near]
     result = []
-    for i in suspects.tolist():
+    for i in told_items(suspects.tolist(), progress, len(suspects), 50):
         first = numpy.searchsorted(starts, cell[i] + around)
         last = numpy.searchsorted(starts, cell[i] + around, "right")
         ids = numpy.concatenate([near[a:b] for a, b in zip(first, last)])

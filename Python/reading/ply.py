@@ -9,8 +9,9 @@ import os
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from ..clouds import Cloud, add_array, make_points, rounding_note
+from ..clouds import Cloud, ReadOptions, add_array, make_points, rounding_note
 from ..messages import FileError
+from ..progress import share, told_items
 
 TYPES = {
     name: code
@@ -127,7 +128,9 @@ def read_points(path, options):
         order, elements, place, number = open_vertices(path, stream)
         vertex, before, after = elements[place], elements[:place], elements[place + 1 :]
         read = read_binary if order else read_text
-        rows, notes = read(path, stream, order or number, vertex, before, after)
+        rows, notes = read(
+            path, stream, order or number, vertex, before, after, options.progress
+        )
     coordinates = coordinates_of(rows)
     cloud = Cloud(make_points(coordinates, copy=False), notes)
     add_arrays(cloud.points, rows)
@@ -139,15 +142,16 @@ def read_points(path, options):
     return cloud
 
 
-def read_lines(path, singular):
+def read_lines(path, singular, progress):
     """The faces, or edges where there are none, as vtkPolyData. Takes seconds for 100,000 faces."""
-    points = read_points(path, None).points
+    points = read_points(path, ReadOptions(progress=share(progress, 0.0, 0.3))).points
+    progress = share(progress, 0.3, 1.0)
     with open(path, "rb") as stream:
         order, elements, _, number = open_vertices(path, stream)
         rows = {}
         for element in elements:
             rows[element.name] = []
-            for i in range(element.count):
+            for i in told_items(range(element.count), progress, element.count):
                 row = element.read_row(stream, order)
                 if row is None:
                     raise FileError(f"{path}: is damaged in its {element.name} {i + 1}")
@@ -184,14 +188,14 @@ def add_arrays(points, rows):
         add_array(points, name, values.astype(values.dtype.newbyteorder("=")))
 
 
-def read_text(path, stream, number, vertex, before, after):
+def read_text(path, stream, number, vertex, before, after, progress):
     skip = sum(element.count for element in before)
     number += sum(1 for _ in itertools.islice(stream, skip))
     seen, last = itertools.count(number + 1), b"\n"
 
     def lines():
         nonlocal number, last
-        for number, last in zip(seen, stream):
+        for number, last in zip(seen, told_items(stream, progress, vertex.count)):
             yield last
 
     try:
@@ -217,7 +221,7 @@ def check_count(path, found, vertex):
         )
 
 
-def read_binary(path, stream, order, vertex, before, after):
+def read_binary(path, stream, order, vertex, before, after, _progress):
     size = os.fstat(stream.fileno()).st_size
     for element in before:
         step_over(path, stream, order, element)

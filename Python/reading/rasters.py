@@ -11,6 +11,7 @@ from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError
 from ..paths import suffix_of
+from ..progress import share, told_lines
 
 # Text of decimals would else become single precision, plain axes x and y be overlooked.
 OPEN_OPTIONS = {
@@ -27,7 +28,8 @@ HINTS = {
     ".hgt": "; its name must tell its place, as N45E006.hgt, and its size be whole",
 }
 # Pixels that are read at once.
-AT_ONCE = 1 << 22
+AT_ONCE = 1 << 20
+WORDS = 0.5  # of the work: the words of text are looked at first
 
 
 def data_of_saga(path):
@@ -81,11 +83,11 @@ def body_of(kind, stream):
             yield number, line
 
 
-def check_words(path, kind, nodes):
+def check_words(path, kind, nodes, progress):
     """Refuses text that is no number, and more or fewer numbers than nodes. Returns notes."""
     count, line = 0, b"\n"
     with open(path, "rb") as stream:
-        for number, line in body_of(kind, stream):
+        for number, line in body_of(kind, told_lines(stream, progress)):
             if line.translate(None, IN_NUMBERS):
                 raise FileError(f"{path}, band 1, line {number}: holds a word that is no number")
             count += len(line.split())
@@ -199,7 +201,9 @@ def notes_of_raster(path, data, band, options):
             "outer edges of pixels there, so the points may be half a step away"
         )
     if kind in TEXT_KINDS:
-        notes += check_words(path, kind, data.RasterXSize * data.RasterYSize)
+        notes += check_words(
+            path, kind, data.RasterXSize * data.RasterYSize, share(options.progress, 0.0, WORDS)
+        )
     return notes + (note_of_dem(path) if kind == "USGSDEM" else [])
 
 
@@ -213,6 +217,8 @@ def read_points(path, options):
         band = choose_band(path, data, options, notes)
         notes += notes_of_raster(path, data, band, options)
         place = placement(path, data, band, notes)
+        begun = WORDS if data.GetDriver().ShortName in TEXT_KINDS else 0.0
+        progress = share(options.progress, begun, 1.0)
         points, count = numpy.empty((data.RasterYSize * data.RasterXSize, 3)), 0
         for first, z, valid in blocks(path, data, band, options.no_data):
             for row, (values, keep) in enumerate(zip(z, valid), first):
@@ -221,6 +227,7 @@ def read_points(path, options):
                 here[:, 0], here[:, 1] = x[keep], y[keep]
                 here[:, 2] = values[keep]
                 count += len(here)
+            progress((first + len(z)) / len(points) * data.RasterXSize)
         reference = data.GetSpatialRef()
     if count == 0:
         raise FileError(f"{path}: all {len(points):,} pixels are without data")

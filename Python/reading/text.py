@@ -13,9 +13,8 @@ import os
 import re
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk
 
-from ..clouds import Cloud, make_points
+from ..clouds import Cloud, add_array, make_points
 from .columns import choose_columns
 from .layouts import (
     COMMENT_MARKS,
@@ -30,6 +29,7 @@ from .layouts import (
     is_data,
 )
 from ..messages import FileError, counted
+from ..progress import no_progress, told_items
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
@@ -41,18 +41,19 @@ SAMPLE = 3000  # lines at the start, and as many from the rest of the first bloc
 # ---- blocks -----------------------------------------------------------------------------------
 
 
-def blocks(path, stream, progress=None):
-    """Yields whole lines of a binary stream as bytes, some 8 MB at once.
+def blocks(path, stream):
+    """Yields (whole lines of a binary stream as bytes, fraction read), some 8 MB at once.
 
     UTF-16 with its mark becomes UTF-8; the mark of UTF-8 is taken away.
     """
-    size = os.fstat(stream.fileno()).st_size if progress else 0
+    size = os.fstat(stream.fileno()).st_size
     rest, done = b"", 0
     try:
         data = stream.read(BLOCK)
         if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
             text = (data + stream.read()).decode("utf-16", "replace")
-            stream, size = io.BytesIO(text.encode()), 0
+            stream = io.BytesIO(text.encode())
+            size = len(stream.getbuffer())
             data = stream.read(BLOCK)
         elif b"\0" in (data[:4096].rstrip(END_MARKS) or data[:4096]):
             raise FileError(f"{path}: is not a text file")
@@ -64,14 +65,12 @@ def blocks(path, stream, progress=None):
             cut = 1 + max(data.rfind(b"\n"), data.rfind(b"\r", 0, len(data) - 1))
             data, rest = data[:cut], data[cut:]
             if data:
-                yield plain(data)
-            if size:
-                progress(min(done / size, 1.0))
+                yield plain(data), min(done / size, 1.0)
             data = stream.read(BLOCK)
     except OSError as error:
         raise FileError(f"{path}: cannot be read: {error.strerror}") from None
     if rest.strip(END_MARKS):
-        yield plain(rest)
+        yield plain(rest), 1.0
 
 
 def plain(data):
@@ -230,10 +229,13 @@ def first_of_data(table, preamble):
 
 
 class Parser:
-    """Turns blocks of lines into rows of numbers: those of the axes first, then the extras."""
+    """Turns blocks of lines into rows of numbers: those of the axes first, then the extras.
 
-    def __init__(self, table):
-        self.table = table
+    alive    is called now and then where a block takes long
+    """
+
+    def __init__(self, table, alive):
+        self.table, self.alive = table, alive
         self.used = list(table.indices) + list(table.extras)
         self.parts, self.numbers, self.starts = [], [], []
         self.count = self.line = self.comments = self.repeated = 0
@@ -284,7 +286,7 @@ class Parser:
     def add_carefully(self, lines, skip, quoted):
         """Lines among which are comments, blank lines, missing values, quotes or errors."""
         kept = []
-        for i, line in enumerate(lines):
+        for i, line in enumerate(told_items(lines, self.alive, len(lines), 20 * CHUNK)):
             if i < skip or not line.strip():
                 self.after_blank |= i >= skip or not self.count
             elif is_comment(line):
@@ -305,6 +307,7 @@ class Parser:
             if rows is None or len(rows) < len(some):
                 rows = numpy.array([self.row(lines[i], i) for i in some])
             self.keep(rows, self.line + 1 + numpy.array(some))
+            self.alive(0.0)
 
     def row(self, line, i):
         """The numbers of a line, its place in the block being i."""
@@ -429,29 +432,32 @@ class Parser:
         return rows, numpy.concatenate(self.numbers), self.starts, notes
 
 
-def parse(path, columns, needed, advice, progress=None):
+def parse(path, columns, needed, advice, progress):
     """(table, rows, line numbers, starts, notes) of a text file."""
-    parser = None
+    parser, done = None, 0.0
+
     with open(path, "rb") as stream:
-        for block in blocks(path, stream, progress):
+        for block, read in blocks(path, stream):
             lines, skip = lines_of(block), 0
             if parser is None:
                 table = Table(path, lines, columns, needed, advice)
-                parser, skip = Parser(table), table.first
+                parser, skip = Parser(table, lambda _: progress(done)), table.first
             parser.add(block, lines, skip)
+            done = read
+            progress(done)
     if parser is None:
         raise FileError(f"{path}: is empty")
     return (parser.table, *parser.finish())
 
 
-def read_table(path, columns=None, needed=3):
+def read_table(path, needed=3, progress=no_progress):
     """Rows of numbers of a text file.
 
     Returns (rows, line numbers, starts, notes): rows is an array of n * needed doubles, a start is
     the index of a row that follows a blank line or one that begins with ">".
     """
     advice = f"a header line with {', '.join('xyz'[:needed])} tells the columns"
-    _, rows, numbers, starts, notes = parse(path, columns, needed, advice)
+    _, rows, numbers, starts, notes = parse(path, None, needed, advice, progress)
     return rows[:, :needed].copy(), numbers, starts, notes
 
 
@@ -473,11 +479,11 @@ def read_text(path, options):
         if not len(rows):
             raise FileError(f"{path}: all rows are without data")
     cloud.points = make_points(rows[:, :3])
-    add_arrays(cloud.points.GetPointData(), table.extras, rows[:, 3:])
+    add_arrays(cloud.points, table.extras, rows[:, 3:])
     return cloud
 
 
-def add_arrays(data, extras, values):
+def add_arrays(points, extras, values):
     """Adds columns as point arrays. Red, green and blue become one array RGB of bytes."""
     names = list(extras.values())
     colours = [names.index(name) for name in ("red", "green", "blue") if name in names]
@@ -494,6 +500,4 @@ def add_arrays(data, extras, values):
                 column = column.astype("i4")
             arrays.append((name, column))
     for name, column in arrays:
-        array = numpy_to_vtk(column, deep=True)
-        array.SetName(name)
-        data.AddArray(array)
+        add_array(points, name, column)

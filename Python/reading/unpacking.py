@@ -7,16 +7,17 @@ import contextlib
 import gzip
 import lzma
 import os
-import shutil
 import sys
 import tempfile
 import zlib
 
 from ..messages import FileError
 from ..paths import check_readable
+from ..progress import no_progress
 
 PACKED = ((b"\x1f\x8b", gzip.open), (b"BZh", bz2.open), (b"\xfd7zXZ\0", lzma.open))
 STANDARD_INPUT = "standard input"
+UNPACKING = 0.3  # of the whole work
 
 
 def opener_of(path):
@@ -31,10 +32,13 @@ def is_plain(path):
     return os.path.isfile(path) and os.access(path, os.R_OK) and opener_of(path) is None
 
 
-def copy(source, target, shown):
+def copy(source, target, shown, report):
+    """Copies a stream to a file, and calls report() after each part."""
     try:
         with open(target, "wb") as stream:
-            shutil.copyfileobj(source, stream, 1 << 20)
+            while part := source.read(1 << 20):
+                stream.write(part)
+                report()
     except (EOFError, zlib.error, lzma.LZMAError, gzip.BadGzipFile) as error:
         raise FileError(f"{shown}: is cut off or damaged: {error}") from None
     except OSError as error:
@@ -42,29 +46,30 @@ def copy(source, target, shown):
 
 
 @contextlib.contextmanager
-def unpacked(path):
-    """Gives the path of a plain file with what standard input ("-") or a packed file holds.
+def unpacked(path, progress=no_progress):
+    """Gives the path of a plain file with what standard input ("-") or a packed file holds, and the
+    fraction of the work that is done then.
 
     Such a file lies in a folder that goes away. Errors name the file that the user named.
     """
     shown = STANDARD_INPUT if path == "-" else path
     with contextlib.ExitStack() as stack:
-        local = path
+        local, begun = path, 0.0
         if path == "-":
             folder = stack.enter_context(tempfile.TemporaryDirectory())
             local = os.path.join(folder, "input")
-            copy(sys.stdin.buffer, local, shown)
+            copy(sys.stdin.buffer, local, shown, lambda: progress(0.0))
         else:
             check_readable(path)
         opener = os.path.getsize(local) and opener_of(local)
         if opener:
             folder = stack.enter_context(tempfile.TemporaryDirectory())
             packed, name = local, os.path.basename(os.path.splitext(local)[0])
-            local = os.path.join(folder, name)
-            with opener(packed) as source:
-                copy(source, local, shown)
+            local, begun, size = os.path.join(folder, name), UNPACKING, os.path.getsize(packed)
+            with open(packed, "rb") as raw, opener(raw) as source:
+                copy(source, local, shown, lambda: progress(UNPACKING * raw.tell() / size))
         try:
             check_readable(local)
-            yield local
+            yield local, begun
         except FileError as error:
             raise type(error)(str(error).replace(local, shown)) from None

@@ -9,6 +9,7 @@ from .columns import meaning
 from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError
+from ..progress import share, told_items
 
 OPEN_OPTIONS = {
     "CSV": ["AUTODETECT_TYPE=YES", "GEOM_POSSIBLE_NAMES=WKT,*wkt*,*geom*,shape"],
@@ -82,7 +83,7 @@ class Layer:
     labels    how many are texts of a drawing
     """
 
-    def __init__(self, path, layer, kind):
+    def __init__(self, path, layer, kind, progress):
         self.path = path
         self.parts, self.features, self.empty, self.labels, self.flat = [], [], 0, 0, 0
         definition = layer.GetLayerDefn()
@@ -92,7 +93,7 @@ class Layer:
         columns = [[] for _ in names]
         count = 0
         try:
-            for number, feature in enumerate(layer):
+            for number, feature in enumerate(told_items(layer, progress, layer.GetFeatureCount(0))):
                 count = number + 1
                 for i, column in enumerate(columns):
                     column.append(feature.GetField(i))
@@ -124,6 +125,10 @@ class Layer:
             self.parts.append((kind, points))
             self.features.append(number)
 
+    def coordinates(self):
+        """(n, 3): all points of all parts."""
+        return numpy.concatenate([points for _, points in self.parts])
+
     def numbers(self, name):
         """The values of an attribute as doubles, or None where one of them is no number."""
         try:
@@ -137,7 +142,7 @@ class Layer:
         columns  None, or three names of which the third is the attribute
         """
         name = self.height_attribute(columns)
-        has_z = any(numpy.nan_to_num(points[:, 2]).any() for _, points in self.parts)
+        has_z = bool(numpy.nan_to_num(self.coordinates()[:, 2]).any())
         if name is None or has_z and not columns and not self.flat:
             return [] if name is None or not has_z else [f"z from the geometry, not from {name}"]
         values = self.numbers(name)
@@ -184,15 +189,15 @@ def is_number(value):
 
 def are_angles(layer):
     """Whether x and y of all points can be degrees."""
-    return all((numpy.abs(points[:, :2]) <= (540.0, 90.0)).all() for _, points in layer.parts)
+    return (numpy.abs(layer.coordinates()[:, :2]) <= (540.0, 90.0)).all()
 
 
-def read_layer(path, wanted, columns):
+def read_layer(path, wanted, columns, progress):
     """(Layer with its elevations, notes, crs)."""
     with quiet():
         data = open_file(path)
         found, notes = open_layer(path, data, wanted)
-        layer = Layer(path, found, data.GetDriver().ShortName)
+        layer = Layer(path, found, data.GetDriver().ShortName, share(progress, 0.0, 0.8))
         reference = found.GetSpatialRef()
         notes.insert(0, f"vectors: {data.GetDriver().LongName}")
         if not layer.parts:
@@ -204,7 +209,9 @@ def read_layer(path, wanted, columns):
         if reference and reference.IsGeographic():
             notes.append("x,y are angles: project them first to give triangles their true shape")
         crs = reference.ExportToWkt() if reference else None
+    progress(0.85)
     notes += layer.set_heights(columns)
+    progress(0.9)
     return layer, notes, crs
 
 
@@ -213,9 +220,12 @@ def read_points(path, options):
 
     Takes about 20 seconds for a million features.
     """
-    layer, notes, crs = read_layer(path, options.layer, options.columns)
+    layer, notes, crs = read_layer(
+        path, options.layer, options.columns, options.progress
+    )
     parts = [points[:-1] if kind == "ring" else points for kind, points in layer.parts]
     coordinates = numpy.concatenate(parts)
+    options.progress(0.95)
     if numpy.isnan(coordinates[:, 2]).all():
         names = ", ".join(layer.fields) or "none"
         raise FileError(
@@ -239,9 +249,9 @@ def read_points(path, options):
     return cloud
 
 
-def read_lines(path, singular):
+def read_lines(path, singular, progress):
     """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS."""
-    layer, _, crs = read_layer(path, None, None)
+    layer, _, crs = read_layer(path, None, None, progress)
     parts = [points for kind, points in layer.parts if kind != "point"]
     if not parts:
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")

@@ -10,6 +10,8 @@ of its own first.
 import math
 import os
 import re
+import signal
+import time
 import warnings
 
 from vtkmodules.vtkCommonCore import vtkSMPTools
@@ -40,8 +42,11 @@ END_OF_SOLID = re.compile(rb"\s*end\s*solid\b[^\n]*", re.IGNORECASE)
 PACKED = 10000
 
 
-def survives(work):
-    """Whether work() comes to an end, tried in a child where there is fork."""
+def survives(work, waiting):
+    """Whether work() comes to an end, tried in a child where there is fork.
+
+    waiting()  is called while it works; what it raises ends the child
+    """
     if not hasattr(os, "fork"):
         return True
     with warnings.catch_warnings():
@@ -57,7 +62,15 @@ def survives(work):
             work()
         finally:
             os._exit(0)
-    return os.WIFEXITED(os.waitpid(child, 0)[1])
+    try:
+        while not (done := os.waitpid(child, os.WNOHANG))[0]:
+            waiting()
+            time.sleep(0.001)
+    except BaseException:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        raise
+    return os.WIFEXITED(done[1])
 
 
 def limit_memory():
@@ -71,12 +84,12 @@ def limit_memory():
         pass
 
 
-def check(path, suffix):
+def check(path, suffix, progress):
     """Raises FileError for a file that VTK's reader of this suffix would take for whole."""
     if suffix == ".stl":
         reason = why_no_stl(path)
     elif suffix == ".vtk":
-        reason = why_no_legacy(path)
+        reason = why_no_legacy(path, lambda _: progress(0.0))
     elif suffix.startswith(".vt"):
         reason = why_no_xml(path)
     else:
@@ -159,7 +172,7 @@ def why_no_xml(path):
     return None
 
 
-def why_no_legacy(path):
+def why_no_legacy(path, progress):
     """Compares how many numbers a legacy file announces with how many follow."""
     with open(path, "rb") as stream:
         data = stream.read()
@@ -196,13 +209,8 @@ def why_no_legacy(path):
             continue  # VTK tells itself what this is
         there = (len(data) - at) // size
         if is_text:
-            there = numbers_in(data[at:]) if count else 0
+            there = len(numbers(data[at:], progress)) if count else 0
         if not 0 <= count <= there:
             return f"is cut off or damaged: {count:,} {name} are announced, {there:,} found"
         at += 0 if is_text else count * size
     return None
-
-
-def numbers_in(text):
-    """How many numbers a text begins with."""
-    return len(numbers(text))

@@ -20,6 +20,7 @@ from ..clouds import Cloud, crs_of, make_points, rounding_note
 from .formats import FORMATS, HEAD
 from ..messages import FileError, Messages
 from ..paths import suffix_of
+from ..progress import no_progress, share, told_lines
 from .rasters import points_of_raster
 from .vtk_checks import check, survives
 
@@ -70,18 +71,19 @@ def vtk_reader(suffix):
     return reader()
 
 
-def run_vtk_reader(path):
+def run_vtk_reader(path, progress=no_progress):
     """The data object of a file in one of VTK's formats."""
     suffix = kind_of(path)
-    check(path, suffix)
+    check(path, suffix, progress)
     reader = vtk_reader(suffix)
     reader.SetFileName(path)
     with Messages() as messages:
         # Those of XML notice by themselves what is wrong.
         if not suffix.startswith(".vt") or suffix == ".vtk":
-            if not survives(reader.Update):
+            if not survives(reader.Update, lambda: progress(0.0)):
                 raise FileError(f"{path}: is damaged: VTK's reader crashes on it")
-        reader.Update()
+            progress = share(progress, 0.5, 1.0)
+        update(reader, progress)
     # What VTK's legacy readers could not read, they leave as it was, with a warning only.
     short = [words for words in messages.warnings if words.startswith("Error reading")]
     if messages.errors or short:
@@ -93,6 +95,28 @@ def run_vtk_reader(path):
     if isinstance(data, vtkPolyData):
         check_point_ids(path, data)
     return data
+
+
+def update(reader, progress):
+    """Runs a reader of VTK. What progress() raises is raised when the reader has stopped."""
+    raised, done = [], 0.0
+
+    def show(caller, _event):
+        nonlocal done
+        if raised:
+            return
+        done = max(done, min(caller.GetProgress(), 1.0))  # some begin anew with each array
+        try:
+            progress(done)
+        except BaseException as error:  # pylint: disable=broad-except
+            raised.append(error)
+            caller.SetAbortExecute(1)
+
+    tag = reader.AddObserver("ProgressEvent", show)
+    reader.Update()
+    reader.RemoveObserver(tag)
+    if raised:
+        raise raised[0]
 
 
 def check_point_ids(path, data):
@@ -111,11 +135,11 @@ def read_points(path, options):
     suffix = kind_of(path)
     if suffix in VERTEX and is_text(path):
         # VTK reads these texts in single precision.
-        check(path, suffix)
-        data = make_points(vertices_of_text(path, VERTEX[suffix]))
+        check(path, suffix, options.progress)
+        data = make_points(vertices_of_text(path, VERTEX[suffix], options.progress))
         cloud = Cloud(data, ["only the points are used, not the file's cells"])
     else:
-        data = run_vtk_reader(path)
+        data = run_vtk_reader(path, options.progress)
         if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
             return points_of_grid(path, data)
         if not isinstance(data, vtkPointSet):
@@ -151,13 +175,13 @@ def ends_with_line(path):
         return stream.read().isspace()
 
 
-def vertices_of_text(path, word, once=True):
+def vertices_of_text(path, word, progress, once=True):
     """(n, 3) coordinates of lines that begin with a word, in the file's order."""
     number = 0
 
     def rows(stream):
         nonlocal number
-        for number, line in enumerate(stream, 1):
+        for number, line in enumerate(told_lines(stream, progress), 1):
             words = line.split(None, 4) if line.lstrip()[:1].lower() == b"v" else ()
             if words and words[0].lower() == word:
                 yield b" ".join(words[1:4])
@@ -245,15 +269,15 @@ def hidden_points(data):
     return (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT) != 0
 
 
-def read_lines(path, singular):
+def read_lines(path, singular, progress):
     """The vtkPolyData of a file in one of VTK's formats, which must hold lines or polygons."""
-    data = run_vtk_reader(path)
+    data = run_vtk_reader(path, share(progress, 0.0, 0.8))
     if not isinstance(data, vtkPolyData):
         raise FileError(f"{path}: holds a {data.GetClassName()}; {singular} is vtkPolyData")
     if data.GetNumberOfLines() + data.GetNumberOfPolys() == 0:
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
     if kind_of(path) == ".obj":
-        exact = vertices_of_text(path, b"v", once=False)
+        exact = vertices_of_text(path, b"v", share(progress, 0.8, 1.0), once=False)
         if len(exact) == data.GetNumberOfPoints():
             data.SetPoints(make_points(exact).GetPoints())
     return data
