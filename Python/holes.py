@@ -35,9 +35,9 @@ def holes_of(result):
             "centre": centre,
             "box": box,
             "inserted_points": inserted,
-            "interpolation": INTERPOLATIONS[method] if inserted else None,
+            "interpolation": INTERPOLATIONS[way] if inserted else None,
         }
-        for hole, status, edges, perimeter, area, inserted, method, bridged, size, centre, box in rows
+        for hole, status, edges, perimeter, area, inserted, way, bridged, size, centre, box in rows
     ]
     by_status = {}
     for hole in holes:
