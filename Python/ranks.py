@@ -127,13 +127,14 @@ def shared(controller, work):
         own.append(work())
         return [own[0].GetNumberOfPoints()]
 
-    parts = []
+    everywhere, parts = [], []
     for rank, count in enumerate(together(controller, size)):
         if count:
-            part = own[0] if rank == controller.GetLocalProcessId() else vtkPolyData()
-            controller.Broadcast(part, rank)
-            if not any(are_equal(part, other) for other in parts):
-                parts.append(part)
+            everywhere.append(own[0] if rank == controller.GetLocalProcessId() else vtkPolyData())
+            controller.Broadcast(everywhere[-1], rank)
+    for part in everywhere:
+        if not any(are_equal(part, other) for other in parts):
+            parts.append(part)
     return parts or own
 
 

@@ -267,6 +267,30 @@ class Algorithms(unittest.TestCase):
             self.assertEqual(len(errors), 1, errors)
             self.assertIn("the input is a boundary, which has no elevations", errors[0])
 
+    def test_a_stop_leaves_nothing_however_late(self):
+        reader, chain, filtered = ElevationPoints(), ReconstructElevationSurface(), vtkGridDelaunay2D()
+        reader.SetFileName(os.path.join(sys.argv[sys.argv.index("-D") + 1], "aegean_sea.csv"))
+        chain.SetInputConnection(0, reader.GetOutputPort())
+        filtered.SetInputConnection(0, reader.GetOutputPort())
+        for algorithm in (reader, chain, filtered):
+            algorithm.Update()
+            whole = algorithm.GetOutputDataObject(0).GetNumberOfPoints()
+            for share in (0.0, 0.6, 0.97):
+                with self.subTest(algorithm=type(algorithm).__name__, share=share):
+                    def stop(caller, _event):
+                        if caller.GetProgress() >= share:
+                            caller.SetAbortExecute(1)
+
+                    tag = algorithm.AddObserver("ProgressEvent", stop)
+                    algorithm.Modified()
+                    errors_of(algorithm, "WarningEvent")
+                    algorithm.RemoveObserver(tag)
+                    self.assertEqual(algorithm.GetOutputDataObject(0).GetNumberOfPoints(), 0)
+                    algorithm.SetAbortExecute(0)
+                    algorithm.Modified()
+                    algorithm.Update()
+                    self.assertEqual(algorithm.GetOutputDataObject(0).GetNumberOfPoints(), whole)
+
     def test_errors_are_one_line(self):
         chain = ReconstructElevationSurface()
         chain.SetInputDataObject(0, table_of(a=["x"], b=["y"], c=["z"]))
