@@ -38,9 +38,10 @@ from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
 from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, counted, of_reason
 from .progress import share
+from .properties import PROPERTIES
 from .ranks import check_ranks, controller_of, shared, together
 from .reading import read, read_boundary, read_faults
-from .reconstruction import PROPERTIES, STEPS, reconstruct
+from .reconstruction import STEPS, reconstruct
 from .report import crs_name
 from .telling import (
     TellingAlgorithm,

@@ -25,16 +25,14 @@ from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name, write_output
 from .paths import check_suffix, check_writable
-from .reconstruction import (
+from .properties import (
     COLOURS,
     PROPERTIES,
-    STEPS,
-    check_spacing,
     number_above_zero,
     number_at_least_zero,
-    run_chain,
     view_angles,
 )
+from .reconstruction import STEPS, check_spacing, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, Progress, Results, WrongOption, write_report
 from .supervisor import allow_stops

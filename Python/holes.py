@@ -6,7 +6,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .messages import counted
-from .reconstruction import INTERPOLATIONS
+from .properties import INTERPOLATIONS
 
 STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced"}
 

@@ -12,7 +12,8 @@ from .clouds import corner_flags
 from .distance import distance_to
 from .holes import hole_counts, hole_lines, holes_of
 from .messages import counted, of_reason
-from .reconstruction import LATTICE_MODES, lattice_of
+from .properties import LATTICE_MODES
+from .reconstruction import lattice_of
 
 OUTSIDE = "outside the boundary"
 # Why a point is not used, by number: the first two are those of vtkGridDelaunay2D.
@@ -28,25 +29,22 @@ FOUND = "found from the points"
 
 def make_report(result):
     """Everything the user may want to know of a Reconstruction, as plain numbers and words."""
-    cloud, delaunay, trim, fill = result.cloud, result.delaunay, result.trim, result.fill
+    cloud, delaunay, trim = result.cloud, result.delaunay, result.trim
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
-    fields = delaunay.GetOutput().GetFieldData()
     surface = result.surface
     reasons = reasons_unused(len(coordinates), delaunay.GetOutput(), surface)
     counts, listed = list_unused(reasons, cloud.lines)
-    unused = sum(counts.values())
-
     report = {
         "notes": cloud.notes + result.notes,
         "left_out": cloud.left_out,
         "bounds": bounds_of(surface),
         "crs": result.crs,
         "points": len(coordinates),
-        "points_unused": unused,
+        "points_unused": sum(counts.values()),
         "unused_reasons": counts,
         "unused": listed,
         "unused_listed": len(listed),
-        "lattice": lattice_of(fields),
+        "lattice": lattice_of(delaunay.GetOutput().GetFieldData()),
         "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
         "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
     }
@@ -57,29 +55,40 @@ def make_report(result):
             "crossings": delaunay.GetNumberOfConstraintCrossings(),
         }
     if trim:
-        report["trim"] = {
-            "outward_triangles": trim.GetNumberOfOutwardTriangles(),
-            "recovered_edges": trim.GetNumberOfRecoveredEdges(),
-            "inserted_points": trim.GetNumberOfInsertedPoints(),
-            "boundary": result.boundary_name or FOUND,
-            "boundary_rings": trim.GetOutput(2).GetNumberOfLines(),
-        }
-        if not result.boundary_name:
-            report["trim"]["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
-            report["trim"]["points_left_out"] = trim.GetNumberOfPointsLeftOut()
+        report["trim"] = trimming_of(result)
         report["triangles"]["trimmed"] = trim.GetOutput().GetNumberOfPolys()
-    if fill:
+    if result.fill:
         report["holes"] = holes_of(result)
         report["triangles"]["filled"] = surface.GetNumberOfPolys()
+    report["distance"] = distance_of(result, coordinates, reasons)
+    return report
 
-    # All points that the user wants in the surface, used or not.
+
+def trimming_of(result):
+    """The part of the report on trimming."""
+    trim = result.trim
+    report = {
+        "outward_triangles": trim.GetNumberOfOutwardTriangles(),
+        "recovered_edges": trim.GetNumberOfRecoveredEdges(),
+        "inserted_points": trim.GetNumberOfInsertedPoints(),
+        "boundary": result.boundary_name or FOUND,
+        "boundary_rings": trim.GetOutput(2).GetNumberOfLines(),
+    }
+    if not result.boundary_name:
+        report["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
+        report["points_left_out"] = trim.GetNumberOfPointsLeftOut()
+    return report
+
+
+def distance_of(result, coordinates, reasons):
+    """The distance of all points that the user wants in the surface, used or not."""
     measured = numpy.isfinite(coordinates).all(axis=1)
     if result.boundary_name:
         measured &= reasons != 4
     began = time.perf_counter()
-    report["distance"] = distance_to(surface, coordinates, measured, result.measuring)
+    distance = distance_to(result.surface, coordinates, measured, result.measuring)
     result.times["measure"] = time.perf_counter() - began
-    return report
+    return distance
 
 
 def reasons_unused(count, delaunay, surface):

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from .clouds import ReadOptions
 from .messages import ElevationSurfaceError
-from .reconstruction import PROPERTIES
+from .properties import PROPERTIES
 
 ELEVATION = "Elevation"
 STOPPED = (

@@ -421,12 +421,9 @@ class Parser:
             more = f" and {len(self.summaries) - 5:,} more" if len(self.summaries) > 5 else ""
             notes.append(f"summary lines are left out: {words}{more}")
         for index, (count, line, word) in self.no_numbers.items():
-            words = "word is no number" if count == 1 else "words are no numbers"
-            first = "" if count == 1 else "first in "
-            notes.append(
-                f"column {table.extras[index]}: {count:,} {words} ({first}line {line:,}: "
-                f"{word[:40]})"
-            )
+            words = counted(count, "word is no number", "words are no numbers")
+            where = f"line {line:,}" if count == 1 else f"first in line {line:,}"
+            notes.append(f"column {table.extras[index]}: {words} ({where}: {word[:40]})")
         rows = self.parts[0] if len(self.parts) == 1 else numpy.concatenate(self.parts)
         self.parts = []
         return rows, numpy.concatenate(self.numbers), self.starts, notes
@@ -487,17 +484,14 @@ def add_arrays(points, extras, values):
     """Adds columns as point arrays. Red, green and blue become one array RGB of bytes."""
     names = list(extras.values())
     colours = [names.index(name) for name in ("red", "green", "blue") if name in names]
-    arrays = []
     if len(colours) == 3:
         rgb = values[:, colours]
         if ((rgb >= 0) & (rgb <= 255) & (rgb == numpy.floor(rgb))).all():
-            arrays.append(("RGB", rgb.astype("u1")))
+            add_array(points, "RGB", rgb.astype("u1"))
             names = [None if i in colours else name for i, name in enumerate(names)]
     for i, name in enumerate(names):
         if name:
             column = numpy.ascontiguousarray(values[:, i])
             if (numpy.abs(column) < 2**31).all() and (column == numpy.floor(column)).all():
                 column = column.astype("i4")
-            arrays.append((name, column))
-    for name, column in arrays:
-        add_array(points, name, column)
+            add_array(points, name, column)

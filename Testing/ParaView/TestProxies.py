@@ -104,7 +104,7 @@ for name, values in OTHER_VALUES.items():
 
 # The entries made of Python classes: documentation, names of choices, and defaults, which are those
 # of the filters.
-from vtkelevationsurface.reconstruction import PROPERTIES  # noqa: E402  (the plugin brings it)
+from vtkelevationsurface.properties import PROPERTIES  # noqa: E402  (the plugin brings it)
 
 FILTERS = {"delaunay": "GridDelaunay2D", "trim": "TrimOutwardTriangles", "fill": "FillElevationHoles"}
 chain = simple.ReconstructElevationSurface(Input=plane)

@@ -18,7 +18,8 @@ from vtkelevationsurface import (
     read,
     reconstruct,
 )
-from vtkelevationsurface.reconstruction import PROPERTIES, as_lines
+from vtkelevationsurface.properties import PROPERTIES
+from vtkelevationsurface.reconstruction import as_lines
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
