@@ -123,13 +123,13 @@ public:
   /** Any double. */
   double Real()
   {
-    std::uint8_t bytes[8];
-    for (std::uint8_t& byte : bytes)
+    std::uint64_t bits = 0;
+    for (int byte = 0; byte < 8; ++byte)
     {
-      byte = static_cast<std::uint8_t>(this->Byte());
+      bits |= std::uint64_t{ this->Byte() } << 8 * byte;
     }
     double value;
-    std::memcpy(&value, bytes, sizeof(value));
+    std::memcpy(&value, &bits, sizeof(value));
     return value;
   }
   template <typename T, std::size_t Count>

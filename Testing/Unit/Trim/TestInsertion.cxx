@@ -7,10 +7,10 @@
 #include "Silence.h"
 #include "Surface.h"
 
+#include "Kernel/Base/Predicates.h"
+#include "Kernel/Mesh/Holes.h"
 #include "Kernel/Mesh/Segments.h"
 #include "Kernel/Trim/Insertion.h"
-#include "Kernel/Mesh/Holes.h"
-#include "Kernel/Base/Predicates.h"
 #include "Kernel/Trim/OutwardTriangles.h"
 
 #include <gtest/gtest.h>
@@ -81,6 +81,15 @@ struct TurnedLattice
 
   Point2 Step;
 };
+
+Mesh MeshOf(const std::vector<Point2>& points, const std::vector<Index>& triangles)
+{
+  Mesh mesh;
+  mesh.Points = points;
+  mesh.Triangles = triangles;
+  mesh.ConnectTwins();
+  return mesh;
+}
 
 Mesh LatticeMesh(int size)
 {
@@ -563,10 +572,8 @@ TEST(InsertRings, RefusesByNameWhatCrossesOrMayNotBeInserted)
   around.Add({ { -1, -1 }, { 9, -1 }, { 9, 9 }, { -1, 9 } });
   EXPECT_EQ(MessageOf(mesh, around, false), "no error");
 
-  Mesh pinched;
-  pinched.Points = { { 0, 0 }, { 1, 0 }, { 0, 1 }, { 0, 0 }, { -1, 0 }, { 0, -1 } };
-  pinched.Triangles = { 0, 1, 2, 3, 4, 5 };
-  pinched.ConnectTwins();
+  Mesh pinched =
+    MeshOf({ { 0, 0 }, { 1, 0 }, { 0, 1 }, { 0, 0 }, { -1, 0 }, { 0, -1 } }, { 0, 1, 2, 3, 4, 5 });
   Boundary through;
   through.Add({ { 0, 0 }, { 1, 0 }, { 0, 1 } });
   EXPECT_HAS(MessageOf(pinched, through), "Points 0 and 3 of the mesh");
@@ -621,10 +628,7 @@ TEST(InsertRings, RefusesRingsThatCrossInPointsOfBoth)
 
 TEST(InsertRings, RefusesRingsThatCrossAlongEdges)
 {
-  Mesh mesh;
-  mesh.Points = { { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } };
-  mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
-  mesh.ConnectTwins();
+  Mesh mesh = MeshOf({ { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } }, { 0, 1, 2, 0, 2, 3 });
   const std::vector<Point2> square{ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 0, 4 } };
   const auto messageOf = [&](std::vector<Point2> ring, bool isReversed) {
     Boundary boundary;
@@ -665,10 +669,7 @@ TEST(InsertRings, RefusesRingsThatCrossAlongEdges)
 TEST(InsertRings, RefusesOneOfManyRingsThatCrossesAlongEdges)
 {
   // All run along two edges, between them farther and farther out to the left and to the right.
-  Mesh mesh;
-  mesh.Points = { { -99, -99 }, { 99, -99 }, { 99, 99 }, { -99, 99 } };
-  mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
-  mesh.ConnectTwins();
+  Mesh mesh = MeshOf({ { -99, -99 }, { 99, -99 }, { 99, 99 }, { -99, 99 } }, { 0, 1, 2, 0, 2, 3 });
   constexpr int count = 20;
   const auto messageOf = [&](int left, int right, bool isReversed) {
     Boundary boundary;
@@ -699,10 +700,7 @@ TEST(InsertRings, RefusesOneOfManyRingsThatCrossesAlongEdges)
 
 TEST(InsertRings, RefusesARingThatCrossesItself)
 {
-  Mesh mesh;
-  mesh.Points = { { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } };
-  mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
-  mesh.ConnectTwins();
+  Mesh mesh = MeshOf({ { -9, -9 }, { 9, -9 }, { 9, 9 }, { -9, 9 } }, { 0, 1, 2, 0, 2, 3 });
   const auto messageOf = [&](const std::vector<Point2>& ring) {
     Boundary boundary;
     boundary.Add(ring);
@@ -739,10 +737,7 @@ TEST(InsertRings, RefusesARingThatCrossesItself)
 TEST(InsertRings, RefusesRingsIfAndOnlyIfTheirRegionsOverlapInPart)
 {
   // Outlines of sets of cells that share many edges and points.
-  Mesh mesh;
-  mesh.Points = { { -99, -99 }, { 99, -99 }, { 99, 99 }, { -99, 99 } };
-  mesh.Triangles = { 0, 1, 2, 0, 2, 3 };
-  mesh.ConnectTwins();
+  Mesh mesh = MeshOf({ { -99, -99 }, { 99, -99 }, { 99, 99 }, { -99, 99 } }, { 0, 1, 2, 0, 2, 3 });
   using Node = std::pair<int, int>;
   Random random(41);
   int refused = 0, taken = 0;
@@ -826,10 +821,7 @@ TEST(InsertRings, RefusesRingsIfAndOnlyIfTheirRegionsOverlapInPart)
 
 TEST(InsertRings, TakesManyPointsInOneTriangleInReasonableTime)
 {
-  Mesh mesh;
-  mesh.Points = { { -10, -10 }, { 10, -10 }, { 0, 10 } };
-  mesh.Triangles = { 0, 1, 2 };
-  mesh.ConnectTwins();
+  Mesh mesh = MeshOf({ { -10, -10 }, { 10, -10 }, { 0, 10 } }, { 0, 1, 2 });
   Boundary boundary;
   std::vector<Point2> ring;
   for (int i = 0; i < 100000; ++i)
@@ -1219,14 +1211,11 @@ TEST(InsertRings, DoesNotMoveABorderOverAnotherOneThatRunsAlongIt)
     const bool isAbove = units > 0;
     for (const bool isUpperFirst : { false, true })
     {
-      Mesh mesh;
-      mesh.Points = { { 4, -3 }, { 8, 1 }, { 0, 1 }, { 4, 5 }, { 0, 1 + unit }, { 8, 1 + unit } };
-      mesh.Triangles = { 0, 1, 2, 3, 4, 5 };
-      if (isUpperFirst)
-      {
-        mesh.Triangles = { 3, 4, 5, 0, 1, 2 };
-      }
-      mesh.ConnectTwins();
+      const std::vector<Index> lower{ 0, 1, 2, 3, 4, 5 };
+      const std::vector<Index> upper{ 3, 4, 5, 0, 1, 2 };
+      Mesh mesh =
+        MeshOf({ { 4, -3 }, { 8, 1 }, { 0, 1 }, { 4, 5 }, { 0, 1 + unit }, { 8, 1 + unit } },
+          isUpperFirst ? upper : lower);
       const double far = isAbove ? 3.0 : -1.0;
       Boundary boundary;
       boundary.Add({ { 4, 1 + units * unit }, { 4.5, far }, { 3.5, far } });
@@ -1255,10 +1244,7 @@ TEST(InsertRings, TakesPointsInABorderInTheOrderAlongIt)
   const std::vector<Point2> ring{ { 2, 1 + unit }, { 4, -1 }, { 6, 1 + unit } };
   for (const bool isReversed : { false, true })
   {
-    Mesh mesh;
-    mesh.Points = { { 4, -3 }, { 8, 1 }, { 0, 1 } };
-    mesh.Triangles = { 0, 1, 2 };
-    mesh.ConnectTwins();
+    Mesh mesh = MeshOf({ { 4, -3 }, { 8, 1 }, { 0, 1 } }, { 0, 1, 2 });
     Boundary boundary;
     boundary.Add(isReversed ? std::vector<Point2>(ring.rbegin(), ring.rend()) : ring);
     const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
@@ -1272,10 +1258,9 @@ TEST(InsertRings, InterpolatesOnAnEdgeBetweenItsEndsAlone)
 {
   // The first point is exactly on the edge between two triangles, though the differences to its end
   // near the origin, once rounded, are not.
-  Mesh mesh;
-  mesh.Points = { { std::ldexp(5, -57), std::ldexp(15, -59) }, { 1, 0.75 }, { 0, 2 }, { 2, -1 } };
-  mesh.Triangles = { 0, 1, 2, 1, 0, 3 };
-  mesh.ConnectTwins();
+  Mesh mesh =
+    MeshOf({ { std::ldexp(5, -57), std::ldexp(15, -59) }, { 1, 0.75 }, { 0, 2 }, { 2, -1 } },
+      { 0, 1, 2, 1, 0, 3 });
   const Point2 p{ 0.5, 0.375 };
   ASSERT_EQ(Orientation(mesh.Points[0], mesh.Points[1], p), Zero);
   Boundary boundary;
@@ -1294,10 +1279,7 @@ TEST(InsertRings, InterpolatesOnAnEdgeBetweenItsEndsAlone)
 TEST(InsertRings, TakesInABorderFarLongerThanItsPointsCoordinates)
 {
   // What rounding may do to a border follows from its ends, also next to the origin.
-  Mesh mesh;
-  mesh.Points = { { 0, 0 }, { 1e6, 3e5 }, { 0, 1e6 } };
-  mesh.Triangles = { 0, 1, 2 };
-  mesh.ConnectTwins();
+  Mesh mesh = MeshOf({ { 0, 0 }, { 1e6, 3e5 }, { 0, 1e6 } }, { 0, 1, 2 });
   Boundary boundary;
   boundary.Add({ { 3e-10, -1e-10 }, { 1, 2 }, { 0.5, 3 } });
   const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
@@ -1340,10 +1322,7 @@ TEST(InsertRings, InterpolatesAlikeAtAnyScale)
 
 TEST(InsertRings, NamesCornersOfTrianglesWhoseAreasVanish)
 {
-  Mesh mesh;
-  mesh.Points = { { 0, 0 }, { 8, 0 }, { 4, 1e-322 } };
-  mesh.Triangles = { 0, 1, 2 };
-  mesh.ConnectTwins();
+  Mesh mesh = MeshOf({ { 0, 0 }, { 8, 0 }, { 4, 1e-322 } }, { 0, 1, 2 });
   Boundary boundary;
   boundary.Add({ { 3, 2e-323 }, { 5, 2e-323 }, { 4, 4e-323 } });
   const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, true);
