@@ -49,7 +49,7 @@ def counted(count, singular, plural=None):
 
 def of_reason(count, reason):
     """"1 row without data" of a reason of Cloud.left_out, "rows without data"."""
-    return counted(count, re.sub(r"s\b", "", reason, 1), reason)
+    return counted(count, re.sub(r"s\b", "", reason, count=1), reason)
 
 
 class Messages:
