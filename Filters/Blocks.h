@@ -28,10 +28,12 @@ struct Place
   std::string Name; ///< for messages: 'Block 2 ("north")'; empty where the input is no composite
   /**
    * Of the block; the partitions of a vtkPartitionedDataSet have the same. On one rank each of them
-   * is a surface of its own; on several, they are taken for parts of one, which must not be spread.
+   * is a surface of its own; on several, they are the parts of one.
    */
   std::string Path;
   std::string NameOfBlock; ///< without the partition; empty for the whole input
+  vtkSmartPointer<vtkDataObject> Own = nullptr; ///< what Input points to, if it was made here
+  bool IsDone = false;                          ///< has its outputs
 };
 
 /** For FillInputPortInformation: a type, or a composite. Input 1 is an optional vtkPolyData. */

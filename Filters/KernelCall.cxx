@@ -3,7 +3,9 @@
 #include "KernelCall.h"
 
 #include "Blocks.h"
+#include "Gathering.h"
 #include "Ranks.h"
+#include "SpreadBlocks.h"
 #include "VTKVersions.h"
 
 #include "vtkAlgorithm.h"
@@ -19,6 +21,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <new>
 #include <sstream>
 
@@ -49,22 +52,16 @@ Progress ProgressOf(vtkAlgorithm* filter)
   };
 }
 
-/** A block's path as a number that is the same on all ranks. */
-vtkIdType IdOf(const std::string& path)
-{
-  return static_cast<vtkIdType>(std::hash<std::string>()(path) >> 2);
-}
-
-bool HasPoints(const Place& place)
-{
-  auto* const points = vtkPointSet::SafeDownCast(place.Input);
-  return points && points->GetNumberOfPoints() > 0;
-}
-
 /** Whether it can have no points: it is an image, say, and an error. */
 bool IsOtherType(const Place& place)
 {
   return !vtkPointSet::SafeDownCast(place.Input);
+}
+
+/** The type of the first input, in any block. */
+const char* RequiredType(vtkAlgorithm* filter)
+{
+  return filter->GetInputPortInformation(0)->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
 }
 
 /** Messages as one, the first of them where they are many. */
@@ -83,42 +80,28 @@ std::string Joined(const std::vector<std::string>& messages)
   return text;
 }
 
-/**
- * The numbers of the blocks that have points, on any rank, in order.
- * @throws Error on all ranks when a block has points on more than one
- */
-std::vector<vtkIdType> ListOccupied(const std::vector<Place>& places, const Ranks& ranks)
+/** The messages of all ranks, on the first, each once. */
+std::vector<std::string> OnFirst(const std::vector<std::string>& messages, const Ranks& ranks)
 {
-  std::vector<vtkIdType> own;
-  for (const Place& place : places)
+  std::vector<std::string> all;
+  for (const std::string& message : ranks.Collect(messages))
   {
-    if (HasPoints(place))
+    if (ranks.Own() == 0 && std::find(all.begin(), all.end(), message) == all.end())
     {
-      own.push_back(IdOf(place.Path));
+      all.push_back(message);
     }
   }
-  std::sort(own.begin(), own.end());
-  own.erase(std::unique(own.begin(), own.end()), own.end()); // partitions of one block
-  std::vector<vtkIdType> all = ranks.Collect(own);
-  std::sort(all.begin(), all.end());
-  const auto twice = std::adjacent_find(all.begin(), all.end());
-  if (twice == all.end())
-  {
-    return all;
-  }
-  std::string name;
-  for (const Place& place : places)
-  {
-    if (IdOf(place.Path) == *twice)
-    {
-      name = place.NameOfBlock;
-    }
-  }
-  throw Error("The points of " + (name.empty() ? "the input" : name) + " are on " +
-    std::to_string(std::count(all.begin(), all.end(), *twice)) +
-    " ranks (processes), but a surface can only be made on one. Bring them to one rank first, in "
-    "ParaView with the filter Aggregate Dataset (1 target process), or run on one rank.");
+  return all;
 }
+
+void EmptyOutputs(const Place& place)
+{
+  for (vtkPolyData* output : place.Outputs)
+  {
+    output->Initialize();
+  }
+}
+
 } // namespace
 
 KernelCall::KernelCall(vtkAlgorithm* filter, vtkInformation* request,
@@ -143,10 +126,10 @@ int KernelCall::Run(const std::function<void(Block&)>& body)
   }
   try
   {
-    const std::vector<Place> places =
-      ListPlaces(vtkDataObject::GetData(this->Inputs[0]), this->Outputs);
+    std::vector<Place> places;
+    ranks.Agree(
+      [&] { places = ListPlaces(vtkDataObject::GetData(this->Inputs[0]), this->Outputs); });
     const vtkSmartPointer<vtkPolyData> second = this->ShareSecond(ranks);
-    this->Occupied = ListOccupied(places, ranks);
     this->RunPlaces(places, ranks, second, body);
     if (this->IsFirst && places.empty() && this->Occupied.empty() && ranks.Own() == 0)
     {
@@ -160,15 +143,22 @@ int KernelCall::Run(const std::function<void(Block&)>& body)
     this->Errors = { error.what() };
     this->Warnings.clear();
   }
-  if (!this->Errors.empty())
-  {
-    vtkErrorWithObjectMacro(this->Filter, << Joined(this->Errors));
-  }
-  if (!this->Warnings.empty())
-  {
-    vtkWarningWithObjectMacro(this->Filter, << Joined(this->Warnings));
-  }
+  this->Tell(ranks);
   return 1;
+}
+
+void KernelCall::Tell(const Ranks& ranks)
+{
+  const std::vector<std::string> errors = OnFirst(this->Errors, ranks);
+  const std::vector<std::string> warnings = OnFirst(this->Warnings, ranks);
+  if (!errors.empty())
+  {
+    vtkErrorWithObjectMacro(this->Filter, << Joined(errors));
+  }
+  if (!warnings.empty())
+  {
+    vtkWarningWithObjectMacro(this->Filter, << Joined(warnings));
+  }
 }
 
 void KernelCall::EmptyOutputs()
@@ -186,24 +176,11 @@ vtkSmartPointer<vtkPolyData> KernelCall::ShareSecond(const Ranks& ranks) const
     return nullptr;
   }
   vtkSmartPointer<vtkPolyData> own;
-  std::string failure;
-  try
-  {
-    own = JoinBlocks(vtkDataObject::GetData(this->Inputs[1]), this->Second);
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
-  std::vector<vtkIdType> found = { failure.empty() ? 0 : 1, own ? 1 : 0 };
+  ranks.Agree(
+    [&] { own = JoinBlocks(vtkDataObject::GetData(this->Inputs[1]), this->Second); });
+  std::vector<vtkIdType> found = { own ? 1 : 0 };
   ranks.Sum(found);
-  if (found[0] > 0)
-  {
-    throw Error(failure.empty()
-        ? "The " + this->Second + " cannot be used; the message of another rank tells why."
-        : failure);
-  }
-  if (found[1] > 0 && !own)
+  if (found[0] > 0 && !own)
   {
     own = vtkSmartPointer<vtkPolyData>::New(); // on other ranks only
   }
@@ -217,10 +194,104 @@ bool KernelCall::IsToBeToldOf(const Place& place, const Ranks& ranks) const
       !std::binary_search(this->Occupied.begin(), this->Occupied.end(), IdOf(place.Path)));
 }
 
-void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
-  vtkPolyData* second, const std::function<void(Block&)>& body)
+double KernelCall::BringTogether(
+  std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress)
 {
-  const Progress progress = ProgressOf(this->Filter);
+  const std::map<vtkIdType, int> spread = FindSpread(places, ranks, this->Occupied);
+  const double share = this->Spread ? 0.9 : 0.1;
+  double done = 0.0;
+  for (const auto& block : spread)
+  {
+    const double next = done + share / static_cast<double>(spread.size());
+    const Progress ofBlock = Part(progress, done, next);
+    done = next;
+    std::vector<Place*> own;
+    for (Place& place : places)
+    {
+      if (IdOf(place.Path) == block.first && !IsOtherType(place))
+      {
+        own.push_back(&place);
+      }
+    }
+    try
+    {
+      if (!this->RunSpread(own, ranks, second, ofBlock))
+      {
+        std::vector<std::string> warnings;
+        GatherBlock(own, block.second, this->KindOfParts(), ranks, ofBlock, warnings);
+        this->TellOf(own, warnings, this->Warnings);
+      }
+    }
+    catch (const Aborted&) // on all ranks
+    {
+      this->IsAborted = true;
+      return done;
+    }
+    catch (const std::exception& error) // on all ranks
+    {
+      this->TellOf(own, { error.what() }, this->Errors);
+      for (Place* place : own)
+      {
+        elevation::EmptyOutputs(*place);
+        place->IsDone = true;
+      }
+    }
+  }
+  return done;
+}
+
+void KernelCall::TellOf(const std::vector<Place*>& places,
+  const std::vector<std::string>& messages, std::vector<std::string>& all) const
+{
+  for (std::size_t i = 0; i < messages.size() && !places.empty(); ++i)
+  {
+    const std::string& name = places.front()->NameOfBlock;
+    all.push_back((name.empty() ? "" : name + ": ") + messages[i]);
+  }
+}
+
+bool KernelCall::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
+  vtkPolyData* second, const Progress& progress)
+{
+  if (!this->Spread)
+  {
+    return false;
+  }
+  Block block{ nullptr, second, {}, progress, {} };
+  vtkSmartPointer<vtkPointSet> own;
+  ranks.Agree([&] { own = JoinHere(PartsOf(places), this->KindOfParts(), block.Warnings); });
+  block.Input = own;
+  const auto home = FirstWithPoints(places);
+  std::vector<vtkSmartPointer<vtkPolyData>> none; // outputs where the block has no place
+  for (int port = 0; port < this->Outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    none.push_back(vtkSmartPointer<vtkPolyData>::New());
+    block.Outputs.push_back(home ? home->Outputs[port] : none.back().Get());
+  }
+  if (!this->Spread(block, ranks))
+  {
+    return false;
+  }
+  this->TellOf(places, block.Warnings, this->Warnings);
+  Empty(places);
+  if (home)
+  {
+    home->IsDone = true;
+  }
+  return true;
+}
+
+PartKind KernelCall::KindOfParts() const
+{
+  return std::string(RequiredType(this->Filter)) == "vtkPolyData" ? PartKind::Mesh
+                                                                  : PartKind::Points;
+}
+
+void KernelCall::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
+  const std::function<void(Block&)>& body)
+{
+  const Progress ofAll = ProgressOf(this->Filter);
+  const Progress progress = Part(ofAll, this->BringTogether(places, ranks, second, ofAll), 1.0);
   const auto workOf = [](const Place& place) {
     auto* const points = vtkPointSet::SafeDownCast(place.Input);
     return 1.0 + (points ? points->GetNumberOfPoints() : 0);
@@ -232,6 +303,10 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
   }
   for (const Place& place : places)
   {
+    if (this->IsAborted)
+    {
+      break;
+    }
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
     const bool isToBeTold = this->IsToBeToldOf(place, ranks);
     const double next = done + workOf(place);
@@ -241,7 +316,7 @@ void KernelCall::RunPlaces(const std::vector<Place>& places, const Ranks& ranks,
     std::string error;
     try
     {
-      error = this->RunPlace(place, block, body);
+      error = place.IsDone ? "" : this->RunPlace(place, block, body);
     }
     catch (const Aborted&)
     {
@@ -272,8 +347,7 @@ std::string KernelCall::RunPlace(
   std::string message;
   try
   {
-    const char* const required = this->Filter->GetInputPortInformation(0)->Get(
-      vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
+    const char* const required = RequiredType(this->Filter);
     if (!place.Input->IsA(required))
     {
       throw Error(std::string("It is a ") + place.Input->GetClassName() + ", but a " + required +
@@ -289,16 +363,13 @@ std::string KernelCall::RunPlace(
   }
   catch (const std::bad_alloc&)
   {
-    message = "There is not enough memory for this input.";
+    message = NotEnoughMemory;
   }
   catch (const std::exception& error)
   {
     message = error.what();
   }
-  for (vtkPolyData* output : place.Outputs)
-  {
-    output->Initialize();
-  }
+  elevation::EmptyOutputs(place);
   return message;
 }
 
@@ -330,6 +401,9 @@ void KernelCall::ShareResults(const Ranks& ranks)
     this->EmptyOutputs();
     this->Errors.clear();
     this->Warnings.clear();
+    // The executive runs an aborted filter again for each output: on all ranks, or on none.
+    this->Filter->SetAbortExecute(1);
+    IsAbortRequested(this->Filter); // it makes the executive aware
   }
   this->TellOfAbort();
 }

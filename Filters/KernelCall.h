@@ -27,6 +27,7 @@ class vtkPolyData;
 namespace elevation
 {
 class Ranks;
+enum class PartKind;
 struct Place;
 
 /** What is worked on at a time: the input, or one block of it. */
@@ -48,8 +49,9 @@ struct Block
  * ranks, and one warning tells so.
  *
  * Where several ranks take part (Ranks), all of them meet here, whatever blocks each has: before
- * the blocks, to find points of one block on several ranks, which is an error on all of them, and
- * to hand the second input to all; and after them, to add up the results.
+ * the blocks, to hand the second input to all, and to bring blocks that are spread over ranks to
+ * one of them, the one with most of it (or the filter works on them in its own way: Spread); and
+ * after them, to add up the results. Rank 0 reports for all.
  */
 class KernelCall
 {
@@ -63,6 +65,15 @@ public:
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
   std::vector<vtkIdType*> Sums;
   std::vector<double*> Maxima;
+  /**
+   * The filter's own way to work on a block that is spread over ranks, instead of gathering it and
+   * running the body there; may be empty. All ranks call it for the same blocks in the same order.
+   * Input is this rank's part, without points where it has none: such a rank has no output to fill.
+   * It throws on all ranks or on none, with the same message (Ranks::Agree), and adds its results
+   * to Sums and Maxima last.
+   * @return on all ranks, false to have the block gathered
+   */
+  std::function<bool(Block&, const Ranks&)> Spread;
 
   /**
    * @param[in] body  adds its results to Sums and Maxima last, when it cannot fail any more
@@ -75,11 +86,20 @@ private:
   void EmptyOutputs();
   vtkSmartPointer<vtkPolyData> ShareSecond(const Ranks& ranks) const;
   bool IsToBeToldOf(const Place& place, const Ranks& ranks) const;
-  void RunPlaces(const std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
+  /** Works on the blocks that are spread over ranks. @return the progress that has been made */
+  double BringTogether(
+    std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
+  bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
+    const Progress& progress);
+  void TellOf(const std::vector<Place*>& places, const std::vector<std::string>& messages,
+    std::vector<std::string>& all) const;
+  PartKind KindOfParts() const;
+  void RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
     const std::function<void(Block&)>& body);
   std::string RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
   void ShareResults(const Ranks& ranks);
   void TellOfAbort();
+  void Tell(const Ranks& ranks);
 
   vtkAlgorithm* Filter;
   vtkInformation* Request;

@@ -432,6 +432,29 @@ bool IsGhostArray(vtkAbstractArray* array)
   return array->GetName() && !std::strcmp(array->GetName(), vtkDataSetAttributes::GhostArrayName());
 }
 
+vtkSmartPointer<vtkAbstractArray> NewLike(vtkAbstractArray* array)
+{
+  auto made = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(array->GetDataType()));
+  made->SetName(array->GetName());
+  made->SetNumberOfComponents(array->GetNumberOfComponents());
+  made->CopyComponentNames(array);
+  made->CopyInformation(array->GetInformation(), /*deep=*/1);
+  if (vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(made.Get()))
+  {
+    numbers->SetLookupTable(vtkArrayDownCast<vtkDataArray>(array)->GetLookupTable());
+  }
+  return made;
+}
+
+void SetTuples(vtkIdType count, vtkAbstractArray* array)
+{
+  array->SetNumberOfTuples(count);
+  if (array->GetNumberOfTuples() != count)
+  {
+    throw std::bad_alloc();
+  }
+}
+
 bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array)
 {
   return array == data->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) ||
@@ -472,20 +495,8 @@ vtkSmartPointer<vtkAbstractArray> Extend(
   vtkAbstractArray* input, vtkIdType numberOfNew, bool areIds, const Progress& progress)
 {
   const vtkIdType count = input->GetNumberOfTuples();
-  auto output = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(input->GetDataType()));
-  output->SetName(input->GetName());
-  output->SetNumberOfComponents(input->GetNumberOfComponents());
-  output->CopyComponentNames(input);
-  output->CopyInformation(input->GetInformation(), /*deep=*/1);
-  if (vtkDataArray* numbers = vtkArrayDownCast<vtkDataArray>(output.Get()))
-  {
-    numbers->SetLookupTable(vtkArrayDownCast<vtkDataArray>(input)->GetLookupTable());
-  }
-  output->SetNumberOfTuples(count + numberOfNew);
-  if (output->GetNumberOfTuples() != count + numberOfNew)
-  {
-    throw std::bad_alloc();
-  }
+  const vtkSmartPointer<vtkAbstractArray> output = NewLike(input);
+  SetTuples(count + numberOfNew, output);
   const std::size_t all = static_cast<std::size_t>(count + numberOfNew);
   for (vtkIdType i = 0; i < count; i += TuplesAtOnce)
   {
@@ -540,6 +551,35 @@ void SetNewTuples(vtkAbstractArray* input, const NewValues& values, bool areNorm
     }
   }
 }
+
+/**
+ * Numbers the new tuples of an array of global ids after its largest.
+ * @return whether the type has numbers for them
+ */
+bool NumberNewTuples(vtkIdType numberOfNew, vtkAbstractArray* output)
+{
+  auto* const ids = vtkArrayDownCast<vtkDataArray>(output);
+  if (!ids || IsFloatingPoint(ids) || ids->GetNumberOfComponents() != 1)
+  {
+    return false;
+  }
+  const vtkIdType count = ids->GetNumberOfTuples() - numberOfNew;
+  double first = 0.0;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    first = std::max(first, ids->GetComponent(i, 0) + 1.0);
+  }
+  constexpr double largest = 9007199254740992.0; // up to which doubles are exact
+  if (first + static_cast<double>(numberOfNew) > std::min(largest, ids->GetDataTypeMax()))
+  {
+    return false;
+  }
+  for (vtkIdType i = 0; i < numberOfNew; ++i)
+  {
+    ids->SetComponent(count + i, 0, first + static_cast<double>(i));
+  }
+  return true;
+}
 } // namespace
 
 void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
@@ -558,7 +598,10 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
     const Progress ofArray = Part(progress, i / count, (i + 1) / count);
     const vtkSmartPointer<vtkAbstractArray> after =
       Extend(before, numberOfNew, IsIdArray(input, before), Part(ofArray, 0.0, 0.5));
-    if (valuesOf && !IsGhostArray(before))
+    const bool areGlobalIds =
+      before == input->GetAbstractAttribute(vtkDataSetAttributes::GLOBALIDS) &&
+      NumberNewTuples(numberOfNew, after);
+    if (valuesOf && !areGlobalIds && !IsGhostArray(before))
     {
       const NewValues values = valuesOf(before, after, Part(ofArray, 0.5, 0.7));
       const bool areNormals = before == input->GetAbstractAttribute(vtkDataSetAttributes::NORMALS);
@@ -567,8 +610,9 @@ void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSet
     const int index = output->AddArray(after);
     for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
     {
-      // As values repeat, they are no longer global ids.
-      if (type != vtkDataSetAttributes::GLOBALIDS && input->GetAbstractAttribute(type) == before)
+      // Values that repeat are no longer global ids.
+      if (input->GetAbstractAttribute(type) == before &&
+        (type != vtkDataSetAttributes::GLOBALIDS || areGlobalIds))
       {
         output->SetActiveAttribute(index, type);
       }

@@ -123,6 +123,12 @@ bool IsFloatingPoint(vtkAbstractArray* array);
 /** Whether the array holds the flags of ghost points or cells. */
 bool IsGhostArray(vtkAbstractArray* array);
 
+/** An empty array of the same type, name, components and information. */
+vtkSmartPointer<vtkAbstractArray> NewLike(vtkAbstractArray* array);
+
+/** Sets the number of tuples. @throws std::bad_alloc */
+void SetTuples(vtkIdType count, vtkAbstractArray* array);
+
 /** Whether an array of @a data holds global or pedigree ids. */
 bool IsIdArray(vtkDataSetAttributes* data, vtkAbstractArray* array);
 
@@ -150,8 +156,9 @@ struct NewValues
  * Passes all arrays of the input, extended by new tuples with the values of valuesOf(input array,
  * output array, progress), normals at unit length. A tuple without a value gets NaN, 0 or an empty
  * string; in arrays of ids, -1 in place of 0 (the largest number of an unsigned type). Ghost flags
- * are 0. As values repeat, global ids are no longer marked as such. Without new tuples, the input's
- * own arrays are passed.
+ * are 0. Global ids go on after the largest; where their type has no such number, they are treated
+ * as other values, and no longer marked as global ids. Without new tuples, the input's own arrays
+ * are passed.
  */
 void PassExtended(vtkDataSetAttributes* input, vtkIdType numberOfNew, vtkDataSetAttributes* output,
   const Progress& progress,

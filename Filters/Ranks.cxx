@@ -17,6 +17,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <new>
 #include <numeric>
 
 namespace elevation
@@ -24,6 +25,8 @@ namespace elevation
 
 namespace
 {
+constexpr int TagOfBytes = 20200; // of no other message
+
 bool AreEqual(vtkPoints* one, vtkPoints* other)
 {
   const vtkIdType count = one->GetNumberOfPoints();
@@ -98,30 +101,105 @@ void Ranks::Maximum(std::vector<double>& values) const
   }
 }
 
+namespace
+{
+/** The values of all ranks, one after another. */
+template <typename Value>
+std::vector<Value> AllOf(vtkMultiProcessController* ranks, const Value* values, std::size_t count)
+{
+  std::vector<vtkIdType> lengths(ranks->GetNumberOfProcesses());
+  const vtkIdType length = static_cast<vtkIdType>(count);
+  ranks->AllGather(&length, lengths.data(), 1);
+  std::vector<vtkIdType> offsets(lengths.size(), 0);
+  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
+  std::vector<Value> all(offsets.back() + lengths.back());
+  if (!all.empty())
+  {
+    ranks->AllGatherV(values, all.data(), length, lengths.data(), offsets.data());
+  }
+  return all;
+}
+} // namespace
+
 std::vector<vtkIdType> Ranks::Collect(const std::vector<vtkIdType>& values) const
+{
+  return this->Controller ? AllOf(this->Controller, values.data(), values.size()) : values;
+}
+
+std::vector<std::string> Ranks::Collect(const std::vector<std::string>& texts) const
 {
   if (!this->Controller)
   {
-    return values;
+    return texts;
   }
-  std::vector<vtkIdType> lengths(this->Controller->GetNumberOfProcesses());
-  const vtkIdType length = static_cast<vtkIdType>(values.size());
-  this->Controller->AllGather(&length, lengths.data(), 1);
-  std::vector<vtkIdType> offsets(lengths.size(), 0);
-  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
-  std::vector<vtkIdType> all(offsets.back() + lengths.back());
-  if (!all.empty())
+  std::vector<vtkIdType> lengths;
+  std::string joined;
+  for (const std::string& text : texts)
   {
-    this->Controller->AllGatherV(
-      values.data(), all.data(), length, lengths.data(), offsets.data());
+    lengths.push_back(static_cast<vtkIdType>(text.size()));
+    joined += text;
+  }
+  lengths = this->Collect(lengths);
+  const std::vector<char> letters = AllOf(this->Controller, joined.data(), joined.size());
+  std::vector<std::string> all;
+  auto next = letters.begin();
+  for (const vtkIdType length : lengths)
+  {
+    all.emplace_back(next, next + length);
+    next += length;
   }
   return all;
+}
+
+void Ranks::Agree(const std::function<void()>& step) const
+{
+  // A letter that tells of the kind, and the message.
+  std::vector<std::string> failures;
+  try
+  {
+    step();
+  }
+  catch (const Aborted&)
+  {
+    failures = { "A" };
+  }
+  catch (const std::bad_alloc&)
+  {
+    failures = { std::string("E") + NotEnoughMemory };
+  }
+  catch (const std::exception& error)
+  {
+    failures = { std::string("E") + error.what() };
+  }
+  failures = this->Collect(failures);
+  for (const char kind : { 'A', 'E' })
+  {
+    for (const std::string& failure : failures)
+    {
+      if (failure.front() == kind)
+      {
+        kind == 'A' ? throw Aborted() : throw Error(failure.substr(1));
+      }
+    }
+  }
+}
+
+void Ranks::Send(const void* bytes, std::size_t size, int rank) const
+{
+  this->Controller->Send(
+    static_cast<const char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+}
+
+void Ranks::Receive(void* bytes, std::size_t size, int rank) const
+{
+  this->Controller->Receive(
+    static_cast<char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
 }
 
 vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
 {
   const vtkIdType count = local ? local->GetNumberOfPoints() : 0;
-  const std::vector<vtkIdType> counts = this->Collect({ count });
+  const std::vector<vtkIdType> counts = this->Collect(std::vector<vtkIdType>{ count });
   std::vector<vtkSmartPointer<vtkPolyData>> parts;
   for (int rank = 0; rank < static_cast<int>(counts.size()); ++rank)
   {

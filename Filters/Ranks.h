@@ -10,6 +10,8 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,9 @@ class vtkPolyData;
 
 namespace elevation
 {
+
+/** What is told where memory has run out. */
+constexpr const char* NotEnoughMemory = "There is not enough memory for this input.";
 
 /**
  * The ranks that take part in one execution. They are several where the global controller has
@@ -38,8 +43,20 @@ public:
   void Sum(std::vector<vtkIdType>& values) const;
   void Maximum(std::vector<double>& values) const;
 
-  /** The values of all ranks, one after another. The lengths may differ. */
+  /** The values (texts) of all ranks, one after another. The lengths may differ. */
   std::vector<vtkIdType> Collect(const std::vector<vtkIdType>& values) const;
+  std::vector<std::string> Collect(const std::vector<std::string>& texts) const;
+
+  /**
+   * Does a step in which no rank waits for another. Then all of them know how it went.
+   * @throws Error on all ranks where the step fails on any: the error of the first of these
+   * @throws Aborted on all ranks where the step is aborted on any
+   */
+  void Agree(const std::function<void()>& step) const;
+
+  /** Bytes from one rank to another; both know their number, and that the other is there. */
+  void Send(const void* bytes, std::size_t size, int rank) const;
+  void Receive(void* bytes, std::size_t size, int rank) const;
 
   /**
    * The cells of all ranks, on all ranks. What several ranks have as a whole, the same points and

@@ -27,9 +27,9 @@
  * - Other point arrays: see InterpolatePointData. Other cell arrays: new triangles get NaN
  *   (floating-point numbers), 0 (integers), or an empty string. Arrays of the input called
  *   FilledPoint, FilledError or HoleId are replaced.
- * - Global and pedigree ids: new points and triangles get -1 (the largest number of an unsigned
- *   type, NaN, an empty string). As this value repeats, an array of global ids is no longer marked
- *   as such when points (triangles) were added; an array of pedigree ids stays marked.
+ * - Global ids of new points and triangles go on after the largest. Pedigree ids are -1 there (the
+ *   largest number of an unsigned type, NaN, an empty string), as are global ids whose type has no
+ *   more numbers, which are no longer marked as such.
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
  *   before they are triangulated, so that the result stays exact.
  *
@@ -93,12 +93,17 @@
  * and field data. Counts of getters are sums. Messages name the block; one with an error is empty,
  * the others stay.
  *
- * On several ranks (processes), the triangles of a block must be on one of them; points on several
- * are an error on all ranks. Partitions of one vtkPartitionedDataSet are one block in this. Empty
- * ranks have empty output and say nothing. Getters tell the counts of all ranks. This holds where
- * data are asked for in several pieces and vtkMultiProcessController's global controller has
- * several processes. All ranks have to update then, as in ParaView: where a source before the
- * filter fails on one rank, VTK does not run the filter there, and the others wait for it for ever.
+ * On several ranks (processes), a block may be spread over them. Its triangles are gathered on the
+ * rank with most of them, which gets the result; the others have empty output with the same
+ * arrays. Points with the same global id are one, and are in the order of these ids; where not all
+ * ranks have global ids, points with the same x,y,z are one. Cells marked as another rank's
+ * (vtkGhostType) are left out, and arrays that not all ranks have, with a warning. Partitions of
+ * one vtkPartitionedDataSet are one block in this. Getters tell the counts of all ranks; rank 0
+ * reports errors and warnings of all. An error or abort in a block ends it on all ranks. This
+ * holds where data are asked for in several pieces and vtkMultiProcessController's global
+ * controller has several processes. All ranks have to update then, as in ParaView: where a source
+ * before the filter fails on one rank, VTK does not run the filter there, and the others wait for
+ * it for ever.
  *
  * Cost: linear in the size of the input and in the number of new points, plus sorting the border.
  *

@@ -52,10 +52,9 @@
  *   if the added ones are exact in it, else they become double. Arrays get their values at added
  *   points from the constraints' array with the same name and number of components (for integers
  *   and strings also of the same type); at crossings these are interpolated as z, and normals
- *   brought to unit length. Where there are none, the value is NaN (float and double), 0 (in global
- *   and pedigree ids -1, or the largest number of an unsigned type) or an empty string. As values
- *   may repeat, an array of global ids is no longer marked as such, and pedigree ids of added
- *   points are those of the constraints' array, if any.
+ *   brought to unit length. Where there are none, the value is NaN (float and double), 0 (in pedigree
+ *   ids -1, or the largest number of an unsigned type) or an empty string. Global ids of added
+ *   points go on after the largest; pedigree ids are those of the constraints' array, if any.
  * - The coordinates are triangulated as they are, never as a lattice: far from lines the triangles
  *   are those of LatticeMode Off without constraints. So on a lattice that rounding has moved, each
  *   cell is cut according to its own rounding, unlike without lines, even far from them.
@@ -67,14 +66,18 @@
  * data. Counts of getters are sums. Messages name the block; one with an error is empty, the others
  * stay.
  *
- * On several ranks (processes), the points of a block must be on one of them; points on several are
- * an error on all ranks. Partitions of one vtkPartitionedDataSet are one block in this. Empty ranks
- * have empty output and say nothing. Constraints may be on other ranks than the points, or spread
- * over them: each rank gets them all; those that are the same on several ranks count once. Getters
- * tell the counts of all ranks. This holds where data are asked for in several pieces and
- * vtkMultiProcessController's global controller has several processes. All ranks have to update
- * then, as in ParaView: where a source before the filter fails on one rank, VTK does not run the
- * filter there, and the others wait for it for ever.
+ * On several ranks (processes), a block may be spread over them. Its points are gathered on the
+ * rank with most of them, which gets the surface; the others have empty output with the same
+ * arrays. The points are in the order of their global ids if all ranks have these, else rank after
+ * rank; those marked as another rank's (vtkGhostType) count once. Arrays that not all ranks have
+ * are left out, with a warning. Partitions of one vtkPartitionedDataSet are one block in this.
+ * Constraints may be on other ranks than the points, or spread over them: each rank gets them all;
+ * those that are the same on several ranks count once. Getters tell the counts of all ranks; rank
+ * 0 reports errors and warnings of all. An error or abort in a block ends it on all ranks. This
+ * holds where data are asked for in several pieces and vtkMultiProcessController's global
+ * controller has several processes. All ranks have to update then, as in ParaView: where a source
+ * before the filter fails on one rank, VTK does not run the filter there, and the others wait for
+ * it for ever.
  *
  * Warnings: fewer than three distinct points, or points all on one line, which give the points and
  * no triangle; a MaximumEdgeLength that leaves more than half of the points without a triangle (it

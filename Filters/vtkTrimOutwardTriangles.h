@@ -22,8 +22,9 @@
  * - A point of it with exactly the x,y of a corner of the mesh is that corner.
  * - Any other point within the mesh is inserted: it cuts the triangle that it is in into three, or
  *   the triangles beside the edge that it is on into two each. Its z and point data are those of
- *   the surface there: linear on the triangle or edge; values that are not floating point (ids,
- *   strings, integers) are those of the nearest corner. So inserting does not change the surface.
+ *   the surface there: linear on the triangle or edge; values that are not floating point (pedigree
+ *   ids, strings, integers) are those of the nearest corner. So inserting does not change the
+ *   surface. Global ids go on after the largest.
  * - Parts outside the mesh or in one of its holes need no edges: what is kept is both inside the
  *   boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is
  *   inserted in the border, at the crossing, rounded to double precision. (An edge that follows a
@@ -80,14 +81,18 @@
  * one with an error is empty, the others stay. Several blocks of a composite input 1 are one
  * boundary.
  *
- * On several ranks (processes), the triangles of a block must be on one of them; points on several
- * are an error on all ranks. Partitions of one vtkPartitionedDataSet are one block in this. Empty
- * ranks have empty output and say nothing. A boundary may be on other ranks than the triangles, or
- * in pieces on several: each rank gets all of it; one that is the same on several ranks counts
- * once. Getters tell the counts of all ranks. This holds where data are asked for in several pieces
- * and vtkMultiProcessController's global controller has several processes. All ranks have to update
- * then, as in ParaView: where a source before the filter fails on one rank, VTK does not run the
- * filter there, and the others wait for it for ever.
+ * On several ranks (processes), a block may be spread over them. Its triangles are gathered on the
+ * rank with most of them, which gets the result; the others have empty output with the same
+ * arrays. Points with the same global id are one, and are in the order of these ids; where not all
+ * ranks have global ids, points with the same x,y,z are one. Cells marked as another rank's
+ * (vtkGhostType) are left out, and arrays that not all ranks have, with a warning. Partitions of
+ * one vtkPartitionedDataSet are one block in this. A boundary may be on other ranks than the
+ * triangles, or in pieces on several: each rank gets all of it; one that is the same on several
+ * ranks counts once. Getters tell the counts of all ranks; rank 0 reports errors and warnings of
+ * all. An error or abort in a block ends it on all ranks. This holds where data are asked for in
+ * several pieces and vtkMultiProcessController's global controller has several processes. All
+ * ranks have to update then, as in ParaView: where a source before the filter fails on one rank,
+ * VTK does not run the filter there, and the others wait for it for ever.
  *
  * Guarantee (OutwardTest EXACT): all decisions are exact. The triangles of output 0 cover exactly
  * what is inside the boundary and covered by the mesh (apart from the rounding of crossings);

@@ -150,7 +150,7 @@ void TestArrays(int precision)
     Named<vtkUnsignedCharArray>(output->GetPointData(), vtkDataSetAttributes::GhostArrayName());
   Check(output->GetPointData()->GetScalars() == amplitude, "scalars stay scalars");
   Check(output->GetPointData()->GetNormals() == normals, "normals stay normals");
-  Check(!output->GetPointData()->GetGlobalIds(), "repeated ids are no global ids");
+  Check(output->GetPointData()->GetGlobalIds() == ids, "global ids stay global ids");
   for (vtkIdType i = 0; i < points + newPoints; ++i)
   {
     double p[3];
@@ -174,7 +174,7 @@ void TestArrays(int precision)
     const vtkIdType nearest = numbers->GetValue(i) - 1000;
     Check(nearest >= 0 && nearest < points, "integers are taken from a point");
     Check(names->GetValue(i) == "p" + std::to_string(nearest), "strings from the same");
-    Check(ids->GetValue(i) == -1, "new points have no ids");
+    Check(ids->GetValue(i) == 50 + i, "new points have ids after the largest");
     Check(ghosts->GetValue(i) == 0, "new points are no ghosts");
     double q[3];
     output->GetPoint(nearest, q);

@@ -219,14 +219,16 @@ void TestCells(vtkPolyData* input, vtkPolyData* output)
 {
   vtkCellData* data = output->GetCellData();
   CheckFirstTuples(input->GetCellData(), data, output->GetNumberOfCells());
-  Check(!data->GetGlobalIds(), "repeated cell ids are no global ids");
+  Check(data->GetGlobalIds() == data->GetArray("CellIds"), "global ids of cells stay global ids");
   Check(data->GetPedigreeIds() != nullptr && data->GetVectors() != nullptr &&
       data->GetScalars() == data->GetArray("CellColors"),
     "other attributes of cells keep their roles");
   auto* names = vtkStringArray::SafeDownCast(data->GetAbstractArray("CellOrigin"));
-  for (vtkIdType i = input->GetNumberOfCells(); i < output->GetNumberOfCells(); ++i)
+  const vtkIdType cells = input->GetNumberOfCells();
+  for (vtkIdType i = cells; i < output->GetNumberOfCells(); ++i)
   {
-    Check(data->GetArray("CellIds")->GetComponent(i, 0) == -1.0, "-1 for ids of new triangles");
+    Check(data->GetArray("CellIds")->GetComponent(i, 0) == 3.0 * cells - 1.0 + (i - cells),
+      "new triangles have ids after the largest");
     Check(names->GetValue(i).empty(), "no name for new triangles");
     Check(std::isnan(data->GetArray("Flow")->GetComponent(i, 2)), "NaN for floating point");
     Check(data->GetArray("CellColors")->GetComponent(i, 3) == 0.0, "0 for colours");
@@ -235,13 +237,14 @@ void TestCells(vtkPolyData* input, vtkPolyData* output)
   }
 }
 
-/** New points and triangles have no ids, whatever the type; ids are not interpolated. */
+/** Ids are not interpolated, whatever their type; global ids go on where the type has numbers. */
 void TestIds()
 {
   auto input = MakeInput();
   const vtkIdType points = input->GetNumberOfPoints();
   const vtkIdType cells = input->GetNumberOfCells();
   input->GetPointData()->SetGlobalIds(MakeNumbered<vtkUnsignedLongLongArray>(points, "Large", 1));
+  input->GetPointData()->GetGlobalIds()->SetComponent(0, 0, 9007199254740992.0);
   input->GetPointData()->SetPedigreeIds(MakeNumbered<vtkDoubleArray>(points, "Real", 1));
   input->GetCellData()->SetPedigreeIds(MakeNumbered<vtkUnsignedCharArray>(cells, "Small", 1));
   vtkNew<vtkFillElevationHoles> fill;
@@ -250,7 +253,7 @@ void TestIds()
   vtkPolyData* output = fill->GetOutput();
   vtkPointData* ofPoints = output->GetPointData();
   auto* large = vtkUnsignedLongLongArray::SafeDownCast(ofPoints->GetArray("Large"));
-  Check(!ofPoints->GetGlobalIds(), "repeated point ids are no global ids");
+  Check(!ofPoints->GetGlobalIds(), "without numbers for new points, ids are no global ids");
   Check(ofPoints->GetPedigreeIds() == ofPoints->GetArray("Real"), "pedigree ids of a point");
   for (vtkIdType i = points; i < output->GetNumberOfPoints(); ++i)
   {

@@ -275,9 +275,10 @@ void TestIds()
       data->GetArray("Inline")->GetTuple1(81) == 7 &&
       data->GetArray("Inline")->GetTuple1(last) == -1,
     "a crossing has no pedigree id");
-  Check(!data->GetGlobalIds() && data->GetArray("Own")->GetTuple1(80) == 80 &&
-      data->GetArray("Own")->GetTuple1(81) == -1 && data->GetArray("Own")->GetTuple1(last) == -1,
-    "added points have no global ids, which then are no longer one for each point");
+  Check(data->GetGlobalIds() && data->GetGlobalIds() == data->GetArray("Own") &&
+      data->GetArray("Own")->GetTuple1(80) == 80 && data->GetArray("Own")->GetTuple1(81) == 81 &&
+      data->GetArray("Own")->GetTuple1(last) == static_cast<double>(last),
+    "added points have global ids after the largest");
 }
 
 void TestRefusals()

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Brings the parts of a data set from all ranks to one of them. Private to the module.
+ */
+#ifndef Gathering_h
+#define Gathering_h
+
+#include "Joining.h"
+
+class vtkPointSet;
+
+namespace elevation
+{
+class Ranks;
+
+/**
+ * Gathers and joins the parts of a data set: see Join(). All ranks have to call it.
+ *
+ * Data are only sent when all ranks have agreed that the parts are valid and that the first of them
+ * has the memory, so that none waits for another that has failed.
+ *
+ * @param[in] parts  those of this rank, all with points; there may be none
+ * @param[in] kind   Points: cells are not sent
+ * @param[in] home   the rank that gets the result
+ * @param[out] warnings of Join(), on that rank
+ * @return nullptr on other ranks
+ * @throws Error on all ranks, which names the rank with the invalid part
+ * @throws Aborted on all ranks
+ */
+vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, PartKind kind, int home,
+  const Ranks& ranks, const Progress& progress, std::vector<std::string>& warnings);
+
+/** Joins parts that are on this rank; one part is returned itself. @throws Error as Gather() */
+vtkSmartPointer<vtkPointSet> JoinHere(
+  const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<std::string>& warnings);
+
+/** The same data set without points and cells, its arrays without values. */
+vtkSmartPointer<vtkPolyData> EmptyCopy(vtkPointSet* input);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The blocks of the input that have points on several ranks. Private to the module.
+ */
+#ifndef SpreadBlocks_h
+#define SpreadBlocks_h
+
+#include "Gathering.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace elevation
+{
+struct Place;
+
+/** A block's path as a number that is the same on all ranks. */
+vtkIdType IdOf(const std::string& path);
+
+bool HasPoints(const Place& place);
+
+/**
+ * All ranks have to call it.
+ * @param[out] occupied  the numbers of the blocks that have points, on any rank, in order
+ * @return the blocks that have points on several ranks, and the rank with most of each
+ */
+std::map<vtkIdType, int> FindSpread(
+  const std::vector<Place>& places, const Ranks& ranks, std::vector<vtkIdType>& occupied);
+
+/** Of the places of a block on this rank: the parts with points. */
+std::vector<vtkPointSet*> PartsOf(const std::vector<Place*>& places);
+
+/** The first place with points; nullptr if none has. */
+Place* FirstWithPoints(const std::vector<Place*>& places);
+
+/** Leaves no points in the places. */
+void Empty(const std::vector<Place*>& places);
+
+/**
+ * Gathers a block: the first place with points on the rank @a home has it then, all others have no
+ * points. All ranks have to call it. @throws as Gather()
+ */
+void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, const Ranks& ranks,
+  const Progress& progress, std::vector<std::string>& warnings);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,268 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Points and triangles that are spread over ranks give what they give on one rank: the surface, its
+arrays, counts and messages. Run by mpirun with pvbatch --symmetric, as TestRanks.py is.
+"""
+import resource
+
+import numpy
+from paraview import simple
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import (
+    vtkCellArray, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData, vtkUnstructuredGrid)
+
+from on_ranks import COUNT, LAST, RANK, alone, everywhere, given, update
+from plugin_testing import check, check_equal, finish, start
+
+start()
+DUPLICATE = 1  # the flag of ghost points and cells
+EMPTY = vtkPolyData()
+random = numpy.random.default_rng(11)
+XYZ = random.uniform(0.0, 30.0, (600, 3))
+XYZ = XYZ[numpy.hypot(XYZ[:, 0] - 12, XYZ[:, 1] - 14) > 4]
+XYZ = numpy.vstack((XYZ, XYZ[:3] + [0, 0, 1], [[numpy.nan, 1, 1]]))  # three duplicates, one not finite
+ANGLES = numpy.linspace(0.0, 2.0 * numpy.pi, 9)
+RING = numpy.stack((15 + 11 * numpy.cos(ANGLES), 15 + 11 * numpy.sin(ANGLES), 0 * ANGLES), axis=1)
+
+
+def named(array, name):
+    array.SetName(name)
+    return array
+
+
+def cloud(rows, ids=True, kind=vtkPolyData):
+    """Some of the points, with an array of numbers and one of names."""
+    rows = numpy.asarray(rows, dtype=int)
+    data, points, names = kind(), vtkPoints(), vtkStringArray()
+    points.SetData(numpy_to_vtk(XYZ[rows], deep=True))
+    data.SetPoints(points)
+    data.GetPointData().AddArray(named(numpy_to_vtk(2.0 * XYZ[rows, 2], deep=True), "Amplitude"))
+    for row in rows:
+        names.InsertNextValue("p%d" % row)
+    data.GetPointData().AddArray(named(names, "Name"))
+    if ids:
+        data.GetPointData().SetGlobalIds(named(numpy_to_vtkIdTypeArray(rows, deep=True), "Id"))
+    return data
+
+
+def piece(mesh, triangles, ids=True, ghosts=()):
+    """Some triangles of a mesh with the points that they use; ghosts: triangles of other ranks."""
+    triangles = numpy.append(triangles, ghosts).astype(int)
+    corners = corners_of(mesh)[triangles]
+    rows = numpy.unique(corners)
+    data = cloud(rows, ids)
+    cells = vtkCellArray()
+    for triangle in numpy.searchsorted(rows, corners):
+        cells.InsertNextCell(3, triangle.tolist())
+    data.SetPolys(cells)
+    data.GetCellData().AddArray(named(numpy_to_vtk(triangles, deep=True), "Triangle"))
+    if len(ghosts):
+        own = len(triangles) - len(ghosts)
+        marks = numpy.arange(len(triangles)) >= own
+        data.GetCellData().AddArray(named(numpy_to_vtk(marks.astype("u1"), deep=True), "vtkGhostType"))
+        marks = ~numpy.isin(rows, corners[:own])
+        data.GetPointData().AddArray(named(numpy_to_vtk(marks.astype("u1"), deep=True), "vtkGhostType"))
+    return data
+
+
+def corners_of(mesh):
+    ids = vtkIdTypeArray()
+    mesh.GetPolys().ExportLegacyFormat(ids)
+    return vtk_to_numpy(ids).reshape(-1, 4)[:, 1:]
+
+
+def ring():
+    data, points, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
+    points.SetData(numpy_to_vtk(RING[:-1], deep=True))
+    data.SetPoints(points)
+    cells.InsertNextCell(9, [*range(8), 0])
+    data.SetLines(cells)
+    return data
+
+
+def triangles_of(mesh):
+    """The corners' coordinates, nine for each triangle, in one order."""
+    if mesh.GetNumberOfPolys() == 0:
+        return numpy.zeros((0, 9))
+    xyz = vtk_to_numpy(mesh.GetPoints().GetData()).round(9)[corners_of(mesh)]
+    order = numpy.lexsort((xyz[:, :, 2], xyz[:, :, 1], xyz[:, :, 0]))
+    return numpy.take_along_axis(xyz, order[:, :, None], 1).reshape(-1, 9)
+
+
+def check_same(mesh, expected, claim):
+    """The triangles of all ranks together are those of one, each once, and so are the points."""
+    found, wanted = everywhere(triangles_of(mesh)), triangles_of(expected)
+    check_equal(found.shape, wanted.shape, "rank %d, triangles, %s" % (RANK, claim))
+    found, wanted = (rows[numpy.lexsort(rows.T)] for rows in (found, wanted))
+    check(numpy.array_equal(found, wanted), "rank %d, the same triangles, %s" % (RANK, claim))
+    marks = mesh.GetPointData().GetArray("vtkGhostType")
+    owned = mesh.GetNumberOfPoints() - (numpy.count_nonzero(vtk_to_numpy(marks)) if marks else 0)
+    check_equal(everywhere([owned]).sum(), expected.GetNumberOfPoints(), "rank %d, points, %s" % (RANK, claim))
+
+
+def check_points(mesh, ids, claim):
+    """Values of the points stay with them; on ranks without points, arrays are empty."""
+    data, names = mesh.GetPointData(), mesh.GetPointData().GetAbstractArray("Name")
+    check(names and data.HasArray("Amplitude") and bool(data.GetGlobalIds()) == ids,
+          "rank %d, arrays, %s" % (RANK, claim))
+    for i in range(0, mesh.GetNumberOfPoints(), 7):
+        row = int(names.GetValue(i)[1:])
+        check(numpy.array_equal(mesh.GetPoint(i), XYZ[row], equal_nan=True)
+              and numpy.array_equal(data.GetArray("Amplitude").GetValue(i), 2 * XYZ[row, 2])
+              and (not ids or data.GetGlobalIds().GetValue(i) == row),
+              "rank %d, values of point %d, %s" % (RANK, i, claim))
+
+
+def check_told(messages, part, claim):
+    """One message of all ranks, which the first tells."""
+    check_equal(len(messages), 1 if part and RANK == 0 else 0, "rank %d, messages %s, %s" % (RANK, messages, claim))
+    check(not messages or part in messages[0][1], "%s: %r in %s" % (claim, part, messages))
+
+
+def value(source, name):
+    source.SMProxy.UpdatePropertyInformation()
+    return source.SMProxy.GetProperty(name).GetElement(0)
+
+
+ALL = numpy.arange(len(XYZ))
+WHOLE = alone(simple.GridDelaunay2D(Input=given(cloud(ALL))))[0]
+check(WHOLE.GetNumberOfPolys() > 900 and WHOLE.GetFieldData().GetArray("UnusedPointIds").GetNumberOfTuples() == 4,
+      "each rank for itself makes a surface, and leaves four points")
+
+# Points, in any distribution. Without ids they are taken rank after rank, so that these are in order.
+spreads = {
+    "slices": numpy.array_split(ALL, COUNT),
+    "in no order": numpy.array_split(random.permutation(ALL), COUNT),
+    "two points beside all others": [ALL[2:]] + [[]] * (COUNT - 2) + [ALL[:2]],
+}
+for claim, rows in spreads.items():
+    for ids in (True, False) if claim == "slices" else (True,):
+        kind = vtkUnstructuredGrid if claim == "slices" and ids else vtkPolyData
+        source = simple.GridDelaunay2D(Input=given(cloud(rows[RANK], ids, kind)))
+        messages, (mesh,) = update(source)
+        check_told(messages, "", claim)
+        check_same(mesh, WHOLE, claim)
+        check_points(mesh, ids, claim)
+        check_equal((value(source, "NumberOfDuplicatePoints"), value(source, "NumberOfNonFinitePoints")), (3, 1),
+                    "rank %d, counts, %s" % (RANK, claim))
+        unused = mesh.GetFieldData().GetArray("UnusedPointIds")
+        unused = [int(mesh.GetPointData().GetAbstractArray("Name").GetValue(unused.GetValue(i))[1:])
+                  for i in range(unused.GetNumberOfTuples())]
+        check_equal(sorted(everywhere(unused)), list(ALL[-4:]), "rank %d, unused points, %s" % (RANK, claim))
+
+# Points that other ranks have, too: each counts once.
+for ids in (True, False):
+    rows = numpy.array_split(ALL[:-4], COUNT)
+    mine = cloud(numpy.append(rows[RANK], rows[RANK - 1][:9]), ids)
+    marks = numpy.arange(mine.GetNumberOfPoints()) >= len(rows[RANK])
+    mine.GetPointData().AddArray(named(numpy_to_vtk(marks.astype("u1") * DUPLICATE, deep=True), "vtkGhostType"))
+    source = simple.GridDelaunay2D(Input=given(mine))
+    messages, (mesh,) = update(source)
+    check_same(mesh, alone(simple.GridDelaunay2D(Input=given(cloud(ALL[:-4]))))[0], "points of other ranks")
+    check_equal(value(source, "NumberOfDuplicatePoints"), 0, "rank %d, points of other ranks are no duplicates" % RANK)
+
+# Triangles: the common points of ranks are one. Ghosts are left out.
+used = numpy.unique(corners_of(WHOLE))
+BARE = piece(WHOLE, numpy.arange(WHOLE.GetNumberOfPolys()))
+owner = random.integers(0, COUNT, WHOLE.GetNumberOfPolys())
+owner[: len(owner) // 2] = 0  # which has most
+here = numpy.flatnonzero(owner == RANK)
+for ids in (True, False):
+    beside = numpy.flatnonzero(owner == (RANK + 1) % COUNT)[:50]
+    for ghosts in ((), beside):
+        claim = "%s, %d ghosts" % ("ids" if ids else "no ids", len(ghosts))
+        mine = piece(WHOLE, here, ids, ghosts)
+        trim = simple.TrimOutwardTriangles(Input=given(mine), Boundary=given(ring() if RANK == LAST else EMPTY))
+        alike = simple.TrimOutwardTriangles(Input=given(BARE), Boundary=given(ring()))
+        messages, outputs = update(trim)
+        expected = alone(alike)
+        check_told(messages, "", "trim, " + claim)
+        for port in range(3):
+            check_same(outputs[port], expected[port], "trim, output %d, %s" % (port, claim))
+        check_equal((value(trim, "NumberOfOutwardTriangles"), value(trim, "NumberOfInsertedPoints")),
+                    (expected[1].GetNumberOfPolys(),
+                     expected[0].GetFieldData().GetArray("NumberOfInsertedPoints").GetValue(0)),
+                    "rank %d, counts of trim, %s" % (RANK, claim))
+        long = 3.0  # of the triangles over the gap
+        fill = simple.FillElevationHoles(Input=given(mine), MaximumEdgeLength=long, Interpolation="Membrane")
+        messages, outputs = update(fill)
+        expected = alone(simple.FillElevationHoles(Input=given(BARE), MaximumEdgeLength=long,
+                                                   Interpolation="Membrane"))
+        check_told(messages, "", "fill, " + claim)
+        for port in range(2):
+            check_same(outputs[port], expected[port], "fill, output %d, %s" % (port, claim))
+        check_equal((value(fill, "NumberOfHoles"), value(fill, "NumberOfFilledHoles")),
+                    (expected[1].GetNumberOfLines(),) * 2, "rank %d, counts of fill, %s" % (RANK, claim))
+        check(RANK > 0 or outputs[0].GetCellData().HasArray("Triangle"), "cell data stay, " + claim)
+        if ids and RANK == 0:
+            found = vtk_to_numpy(outputs[0].GetPointData().GetGlobalIds())
+            fresh = vtk_to_numpy(outputs[0].GetPointData().GetArray("FilledPoint")) == 1
+            check(fresh.sum() > 10, "the fill adds points: %d" % fresh.sum())
+            check_equal(sorted(found), [*used, *range(used[-1] + 1, used[-1] + 1 + fresh.sum())],
+                        "ids of new points follow the largest")
+
+# The three filters in a row.
+mine = given(cloud(spreads["in no order"][RANK]))
+chain = simple.FillElevationHoles(Input=simple.TrimOutwardTriangles(Input=simple.GridDelaunay2D(Input=mine)))
+expected = simple.FillElevationHoles(
+    Input=simple.TrimOutwardTriangles(Input=simple.GridDelaunay2D(Input=given(cloud(ALL)))))
+messages, outputs = update(chain)
+check_told(messages, "", "filters in a row")
+check_same(outputs[0], alone(expected)[0], "filters in a row")
+
+# Blocks and partitions.
+whole = cloud(ALL) if RANK == LAST else EMPTY
+mine = vtkMultiBlockDataSet()
+for i, block in enumerate((whole, cloud(spreads["slices"][RANK]))):
+    mine.SetBlock(i, block)
+mine.GetMetaData(1).Set(mine.NAME(), "north")
+messages, (blocks,) = update(simple.GridDelaunay2D(Input=given(mine)))
+check_told(messages, "", "blocks")
+for i in range(2):
+    check_same(blocks.GetBlock(i), WHOLE, "block %d" % i)
+mine.SetBlock(1, cloud(ALL[:1]) if RANK in (0, LAST) else EMPTY)
+messages, _ = update(simple.GridDelaunay2D(Input=given(mine)))
+check_told(messages, 'Block 1 ("north"): No triangle was made: the 1 input points', "two ranks with one point")
+parts = vtkPartitionedDataSet()
+for i, rows in enumerate(numpy.array_split(spreads["in no order"][RANK], 2)):
+    parts.SetPartition(i, cloud(rows))
+messages, (parts,) = update(simple.GridDelaunay2D(Input=given(parts)))
+check_told(messages, "", "partitions")
+check_same(parts.GetPartition(0), WHOLE, "partitions of all ranks are one surface")
+check_equal(parts.GetPartition(1).GetNumberOfPolys(), 0, "rank %d, triangles of the second partition" % RANK)
+
+# What is wrong on one rank is told by the first, and leaves nothing on any.
+wrong = piece(WHOLE, here)
+if RANK == LAST:
+    wrong.GetPolys().ReplaceCellAtId(3, 3, [0, 1, 100000])
+short = cloud(spreads["slices"][RANK])
+short.GetPointData().GetArray("Amplitude").SetNumberOfTuples(5 if RANK == LAST else short.GetNumberOfPoints())
+for make, data, part in (
+        (simple.TrimOutwardTriangles, wrong, "On rank %d: Cell 3 names point 100000" % LAST),
+        (simple.FillElevationHoles, wrong, "On rank %d: Cell 3 names point 100000" % LAST),
+        (simple.GridDelaunay2D, short, 'On rank %d: Point array "Amplitude" has 5' % LAST)):
+    messages, outputs = update(make(Input=given(data)))
+    check_told(messages, part, "wrong input")
+    check_equal([output.GetNumberOfPoints() for output in outputs], [0] * len(outputs),
+                "rank %d, points after an error" % RANK)
+bare = cloud(spreads["slices"][RANK])
+if RANK == LAST:
+    bare.GetPointData().RemoveArray("Amplitude")
+messages, (mesh,) = update(simple.GridDelaunay2D(Input=given(bare)))
+check_told(messages, 'the point array "Amplitude"', "an array that one rank lacks")
+check_equal(everywhere([mesh.GetNumberOfPolys()]).sum(), WHOLE.GetNumberOfPolys(), "triangles without an array")
+
+# A stop on one rank stops all of them.
+for make, data in ((simple.GridDelaunay2D, cloud(spreads["slices"][RANK])), (simple.FillElevationHoles, piece(WHOLE, here))):
+    for stopped in (0, LAST):
+        source = make(Input=given(data))
+        if RANK == stopped:
+            algorithm = source.SMProxy.GetClientSideObject()
+            algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+        messages, outputs = update(source)
+        check_told(messages, "Stopped", "a stop on rank %d of %s" % (stopped, source.SMProxy.GetXMLName()))
+        check_equal([output.GetNumberOfPoints() for output in outputs], [0] * len(outputs),
+                    "rank %d, points after a stop" % RANK)
+
+finish()
