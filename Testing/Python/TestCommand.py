@@ -13,7 +13,7 @@ import unittest
 
 import numpy
 from in_folder import Program
-from vtkelevationsurface import clouds, supervisor
+from vtkelevationsurface import clouds
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 

@@ -174,7 +174,7 @@ class Progress(InFolder):
             tag = reader.AddObserver("ProgressEvent", stop)
             reader.Update()
             self.assertLess(len(told), 4, name)
-            self.assertLess(max(told), 0.9, name)
+            self.assertLess(told[1], 0.9, name)  # the first is of the pipeline itself
             self.assertEqual(reader.GetOutputDataObject(0).GetNumberOfPoints(), 0)
             reader.RemoveObserver(tag)
 
