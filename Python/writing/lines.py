@@ -114,7 +114,8 @@ def write_lines(lines, path, layer, crs=None, progress=None):
     for _, values in lines:
         for name, value in values.items():
             if value is not None:
-                kinds[name] = max(kinds.get(name, 0), (int, float, str).index(type(value)))
+                kind = 0 if isinstance(value, int) else 1 if isinstance(value, float) else 2
+                kinds[name] = max(kinds.get(name, 0), kind)
     types = (ogr.OFTInteger64, ogr.OFTReal, ogr.OFTString)
 
     def make(target):
