@@ -137,6 +137,9 @@ check_equal(whole_chain[1][0].GetNumberOfPolys() > 100, RANK == 0, "rank %d, the
 # What is wrong with the second input of one rank is an error on all.
 table = blocks(vtkImageData()) if RANK == LAST else EMPTY
 check_refused(trimmed(table, whole_here), "vtkImageData", "a boundary that is an image")
+check_refused(simple.ReconstructElevationSurface(Input=given(cloud() if RANK == 0 else EMPTY), Boundary=given(table)),
+              "lines or polygons" if RANK == LAST else "another rank", "a boundary of the chain that is an image",
+              teller=None)
 
 # Blocks may live on different ranks, which have different numbers of them; a block may not.
 mine = blocks(*[cloud() if RANK == i else None for i in range(RANK + 1)])
@@ -185,6 +188,16 @@ check_report(simple.ReconstructElevationSurface(Input=given(blocks(*mine)), Spac
              ["Spacing takes"], "a wrong property")
 check_report(simple.ReconstructElevationSurface(Input=given(blocks(*mine)), GapTolerance=1),
              names, [], ["leaves out"] * COUNT, "a warning for each block")
+# What nobody expects on one rank does not hold up the others.
+import vtkelevationsurface.algorithms as algorithms  # noqa: E402  (the plugin brings it)
+
+cloud_of = algorithms.cloud_of
+if RANK == LAST:
+    algorithms.cloud_of = lambda *_: 1 // 0
+check_refused(simple.ReconstructElevationSurface(Input=given(blocks(*mine))),
+              "should not happen" if RANK == LAST else "another rank", "a fault of the program on one rank",
+              teller=None)
+algorithms.cloud_of = cloud_of
 # A stop on one rank stops all of them.
 for make, data in ((simple.ReconstructElevationSurface, blocks(*mine)), (simple.GridDelaunay2D, blocks(*mine))):
     source = make(Input=given(data))
