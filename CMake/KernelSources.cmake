@@ -32,6 +32,7 @@ set(es_kernel_Triangulate
   GridGrowth
   LatticeApexes
   LatticeGrowth
+  TriangulateNodes
   Constrained
   Triangulate
   Pieces

@@ -431,6 +431,8 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
     options.MaximumEdgeLength = this->MaximumEdgeLength;
     options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
     options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
+    options.GivenLattice = { { this->Lattice[0], this->Lattice[1] },
+      { this->Lattice[2], this->Lattice[3] }, { this->Lattice[4], this->Lattice[5] } };
     options.LatticeTolerance = this->LatticeTolerance;
     options.NumberOfThreads = this->NumberOfThreads;
     elevation::Report(progress, 0.0);
@@ -483,6 +485,12 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
   os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";
+  os << indent << "Lattice:";
+  for (const double value : this->Lattice)
+  {
+    os << " " << value;
+  }
+  os << "\n";
   os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
   os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";

@@ -206,6 +206,18 @@ public:
 
   ///@{
   /**
+   * The lattice, if it is known: the x,y of a node, of the first step and of the second, as in the
+   * field data array Lattice of an output. With LatticeMode Automatic all points must fit it, else
+   * it is an error that names the first one that does not. So parts of a cloud get the triangles of
+   * the whole cloud's lattice, also where they are too few to find it. Default: steps of 0; the
+   * lattice is looked for.
+   */
+  vtkSetVector6Macro(Lattice, double);
+  vtkGetVector6Macro(Lattice, double);
+  ///@}
+
+  ///@{
+  /**
    * How far a point may lie from its node, along each of the two steps, in steps: 0.01 (default) is
    * 0.25 for a step of 25. Clamped to 0 .. 0.25. Two points that are not equal never share a node.
    */
@@ -255,6 +267,7 @@ protected:
   double MaximumEdgeLength = 0.0;
   int DuplicatePolicy = KEEP_FIRST;
   int LatticeMode = AUTOMATIC;
+  double Lattice[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double LatticeTolerance = 0.01;
   int NumberOfThreads = 0;
 

@@ -17,6 +17,7 @@ OTHER_VALUES = {
         "MaximumEdgeLength": 2.5,
         "DuplicatePolicy": "Keep Highest",
         "LatticeMode": "Off",
+        "Lattice": [0.0, 0.0, 25.0, 0.0, 0.0, 25.0],
         "LatticeTolerance": 0.05,
         "NumberOfThreads": 2,
     },

@@ -49,6 +49,7 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetDuplicatePolicyAsString(), "KeepFirst")
         self.assertEqual(delaunay.GetLatticeMode(), vtkGridDelaunay2D.AUTOMATIC)
         self.assertEqual(delaunay.GetLatticeModeAsString(), "Automatic")
+        self.assertEqual(delaunay.GetLattice(), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
         self.assertEqual(delaunay.GetLatticeTolerance(), 0.01)
         self.assertEqual(delaunay.GetNumberOfThreads(), 0)
 
@@ -69,7 +70,7 @@ class TestGridDelaunay2D(unittest.TestCase):
     def test_every_property_is_printed(self):
         text = str(vtkGridDelaunay2D())
         for name in ("SearchStrategy", "MaximumEdgeLength", "DuplicatePolicy", "LatticeMode",
-                     "LatticeTolerance", "LatticeFound", "NumberOfThreads",
+                     "Lattice:", "LatticeTolerance", "LatticeFound", "NumberOfThreads",
                      "NumberOfDuplicatePoints", "NumberOfNonFinitePoints",
                      "NumberOfConstraintCrossings", "NumberOfAddedPoints"):
             self.assertIn(name, text)
@@ -117,6 +118,33 @@ class TestGridDelaunay2D(unittest.TestCase):
         delaunay.SetLatticeModeToOff()
         delaunay.Update()
         self.assertFalse(delaunay.GetLatticeFound())
+
+    def test_a_part_of_a_grid_takes_the_lattice_of_the_whole(self):
+        j, i = numpy.mgrid[0:40, 0:40]
+        u, v = numpy.array([20.0, 15.0]), numpy.array([-15.0, 20.0])
+        xy = numpy.array([612000.0, 6073000.0]) + i.reshape(-1, 1) * u + j.reshape(-1, 1) * v
+        xy += 0.04 * numpy.random.RandomState(6).rand(1600, 2) - 0.02
+        whole = vtkGridDelaunay2D()
+        whole.SetInputData(cloud(numpy.column_stack([xy, numpy.zeros(1600)])))
+        whole.Update()
+        found = whole.GetOutput().GetFieldData().GetArray("Lattice").GetTuple(0)
+        four = numpy.column_stack([xy[[0, 1, 40, 41]], numpy.zeros(4)])
+        part = vtkGridDelaunay2D()
+        part.SetInputData(cloud(four))
+        part.Update()
+        self.assertFalse(part.GetLatticeFound())
+        part.SetLattice(found)
+        part.Update()
+        self.assertTrue(part.GetLatticeFound())
+        self.assertEqual(part.GetOutput().GetFieldData().GetArray("Lattice").GetTuple(0)[2:],
+                         found[2:])
+
+        part.SetLattice(found[0] + 8.0, *found[1:])
+        messages = []
+        part.AddObserver("ErrorEvent", lambda *_: messages.append(1))
+        part.Update()
+        self.assertEqual(len(messages), 1)
+        self.assertEqual(part.GetOutput().GetNumberOfPoints(), 0)
 
     def test_both_searches_give_the_same_bytes(self):
         data = cloud(numpy.random.RandomState(5).rand(20000, 3))

@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FindLattice.h"
 
+#include "NodeOfPoint.h"
+
 #include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstring>
+#include <iomanip>
 #include <iterator>
 #include <limits>
+#include <sstream>
 
 namespace elevation
 {
@@ -499,6 +503,19 @@ void Direct(Point2& u, Point2& v)
   v = bestV;
 }
 
+/** A lattice with the same nodes and reduced steps; the given one if it has them. */
+Lattice Reduced(const Lattice& given)
+{
+  const Point2 &u = given.StepU, &v = given.StepV;
+  const double shorter = std::min(Dot(u, u), Dot(v, v));
+  Lattice lattice = given;
+  if (given.Area() < 0.0 || 2.0 * std::fabs(Dot(u, v)) > shorter * (1.0 + 1e-9))
+  {
+    Direct(lattice.StepU, lattice.StepV);
+  }
+  return lattice;
+}
+
 /** The number with the fewest decimals within @a allowed of a value. */
 double Rounded(double value, double allowed)
 {
@@ -818,6 +835,42 @@ LatticeSearch FindLattice(
     search.Found =
       FitLattice(sample, std::move(around), tolerance, Part(progress, 0.95, 1.0), search.Steps);
   }
+  return search;
+}
+
+LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double tolerance,
+  int threads, const Progress& progress)
+{
+  const Point2 &u = given.StepU, &v = given.StepV;
+  std::ostringstream text;
+  text << std::setprecision(10);
+  const double sine = std::fabs(given.Area()) / std::sqrt(Dot(u, u) * Dot(v, v));
+  if (!std::isfinite(given.Origin.X + given.Origin.Y) || !(sine > 1e-6))
+  {
+    text << "The given lattice has no nodes: its origin is (" << given.Origin.X << ", "
+         << given.Origin.Y << "), its steps are (" << u.X << ", " << u.Y << ") and (" << v.X << ", "
+         << v.Y << "). Steps must be finite and not parallel.";
+    throw Error(text.str());
+  }
+  LatticeSearch search;
+  search.Found = true;
+  search.Steps = Reduced(given);
+  static_cast<Extent&>(search) =
+    FindExtent(points, threads, Part(progress, 0.0, 0.4), [](Index, const Point2&) {});
+  const NodeOfPoint nodeOf(search.Steps);
+  const Progress checking = Part(progress, 0.4, 1.0);
+  ForEachPoint(points, 0, points.Count, search.NotFinite, [&](Index id, const Point2& p) {
+    ReportStep(checking, id, points.Count);
+    const double i = nodeOf.I(p), j = nodeOf.J(p);
+    const double off = std::max(std::fabs(i - std::round(i)), std::fabs(j - std::round(j)));
+    if (!(off <= tolerance + NodeRoundoff))
+    {
+      text << "Point " << id << " at (" << p.X << ", " << p.Y << ") is " << std::setprecision(3)
+           << off << " steps away from the nearest node of the given lattice; LatticeTolerance is "
+           << tolerance << ".";
+      throw Error(text.str());
+    }
+  });
   return search;
 }
 

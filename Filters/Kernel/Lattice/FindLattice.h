@@ -37,6 +37,10 @@ struct Lattice
   Point2 StepU{ 0.0, 0.0 };
   Point2 StepV{ 0.0, 0.0 };
 
+  bool IsSet() const
+  {
+    return this->StepU != Point2{ 0.0, 0.0 } || this->StepV != Point2{ 0.0, 0.0 };
+  }
   double Area() const { return this->StepU.X * this->StepV.Y - this->StepU.Y * this->StepV.X; }
   Point2 Node(double i, double j) const
   {
@@ -75,6 +79,14 @@ struct LatticeSearch : Extent
  */
 LatticeSearch FindLattice(
   const PointView& points, double tolerance, int threads, const Progress& progress);
+
+/**
+ * The search, when the lattice is known.
+ * @throws Error if the steps are parallel or not finite, or the lattice does not fit: it names the
+ *         first point that is too far from its node
+ */
+LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double tolerance,
+  int threads, const Progress& progress);
 
 /**
  * @name The steps of the search, for a cloud in parts.

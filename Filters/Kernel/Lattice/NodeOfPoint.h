@@ -34,10 +34,15 @@ struct NodeBox : Box
   double WordsPerRow() const { return std::floor((this->Columns() + 63.0) / 64.0) + 1.0; }
   double Words() const { return this->WordsPerRow() * (this->Rows() + RowsBeyond) + 2.0; }
 
+  bool IsSmallEnough() const
+  {
+    return this->Columns() <= MaximumSide && this->Rows() <= MaximumSide;
+  }
+
   /** Whether points are many enough to be on a lattice with so many nodes. */
   bool IsFilledEnough(double points) const
   {
-    return this->Columns() <= MaximumSide && this->Rows() <= MaximumSide &&
+    return this->IsSmallEnough() &&
       this->Columns() * this->Rows() <= MaximumNodesPerPoint * points &&
       this->Words() <= 2.0 * points + 256.0;
   }

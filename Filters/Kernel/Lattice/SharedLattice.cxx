@@ -44,7 +44,7 @@ bool IsLatticeByChance(double count, double tolerance)
 }
 
 bool SharedLattice::Set(
-  const Lattice& steps, const Box& cloud, const NodeBox& nodes, double count, double tolerance)
+  const Lattice& steps, const Box& cloud, const NodeBox& nodes, double tolerance)
 {
   static_cast<Box&>(this->Search) = cloud;
   this->Search.Found = true;
@@ -61,7 +61,7 @@ bool SharedLattice::Set(
       Unit * (std::fabs(origin) + across * std::fabs(alongU) + up * std::fabs(alongV));
   };
   this->Reach = { reach(steps.Origin.X, u.X, v.X), reach(steps.Origin.Y, u.Y, v.Y) };
-  return this->MetricOfSteps.Set(steps) && nodes.IsFilledEnough(count);
+  return this->MetricOfSteps.Set(steps) && nodes.IsSmallEnough();
 }
 
 LatticeNode SharedLattice::NodeOf(const Point2& p) const

@@ -40,12 +40,11 @@ public:
   /**
    * @param[in] cloud      the box of all finite points of the whole cloud
    * @param[in] nodes      that of their nodes, by FindNodeBox()
-   * @param[in] count      of the finite points
    * @param[in] tolerance  how far a point may lie from its node along each step, in steps
-   * @return false if the cloud does not fit the lattice, as on one that is not in parts
+   * @return false if there are too many rows or columns, or too unequal steps. A lattice that was
+   *         found is only one if its nodes are NodeBox::IsFilledEnough(), too.
    */
-  bool Set(
-    const Lattice& steps, const Box& cloud, const NodeBox& nodes, double count, double tolerance);
+  bool Set(const Lattice& steps, const Box& cloud, const NodeBox& nodes, double tolerance);
 
   const Lattice& Steps() const { return this->Search.Steps; }
   const LatticeMetric& Metric() const { return this->MetricOfSteps; }

@@ -436,8 +436,8 @@ bool TriangulateLattice(
   const PointView& points, const DelaunayOptions& options, Triangulation& result, Extent& extent)
 {
   const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
-  LatticeSearch search = FindLattice(
-    points, tolerance, ThreadsAtOnce(options.NumberOfThreads), Part(options.Monitor, 0.0, 0.15));
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
+  LatticeSearch search = FindLattice(points, tolerance, threads, Part(options.Monitor, 0.0, 0.15));
   if (search.Found && TriangulateOnLattice(points, search, options, result))
   {
     return true;

@@ -48,6 +48,8 @@ struct DelaunayOptions
   Progress Monitor;
   /** Off by default: other parts of the kernel need the triangulation by coordinates. */
   LatticeMode UseLattice = LatticeMode::Off;
+  /** With Automatic: the lattice that all points must fit; steps of 0: it is looked for. */
+  Lattice GivenLattice;
   /** How far a point may lie from its node along each step, in steps; at most 0.25. */
   double LatticeTolerance = 0.01;
   /** Threads to use; 0: one per core. The result is the same, byte for byte. */
@@ -62,9 +64,9 @@ struct DelaunayOptions
 
 struct Triangulation
 {
-  Buffer<Index> Triangles;      ///< three point ids per triangle, counter-clockwise
-  Index NumberOfHullPoints = 0; ///< on the border of the convex hull, with collinear points
-  std::vector<Index> UnusedPoints;         ///< ids, increasing
+  Buffer<Index> Triangles;         ///< three point ids per triangle, counter-clockwise
+  Index NumberOfHullPoints = 0;    ///< on the border of the convex hull, with collinear points
+  std::vector<Index> UnusedPoints; ///< ids, increasing
   std::vector<UnusedReason> UnusedReasons; ///< one per unused point
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;

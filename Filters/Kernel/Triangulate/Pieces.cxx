@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Pieces.h"
 
-#include "DivideAndConquer.h"
 #include "Kernel/Mesh/Mesh.h"
-#include "LatticeGrowth.h"
 #include "Triangulate.h"
+#include "TriangulateNodes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 namespace elevation
@@ -92,131 +90,15 @@ struct SettledMesh
   }
 };
 
-/** A point by its node, column and row, and its place in a piece. */
-struct PlacedNode
-{
-  LatticeNode Node;
-  Index Place;
-};
-
-/** @throws NotOnLattice if a point is on no node */
-std::vector<PlacedNode> FindNodes(const PointView& points, const SharedLattice& lattice,
-  std::vector<Index>& notFinite, const Progress& progress)
-{
-  std::vector<PlacedNode> placed;
-  for (Index id = 0; id < points.Count; ++id)
-  {
-    ReportStep(progress, id, points.Count);
-    const Point2 p = points.At(id);
-    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(id)))
-    {
-      notFinite.push_back(id);
-      continue;
-    }
-    placed.push_back({ lattice.NodeOf(p), id });
-  }
-  return placed;
-}
-
-/**
- * Sorts nodes from the lowest up, and keeps one point on each.
- * @throws NotOnLattice when two points are on a node that are not equal
- */
-void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<PlacedNode>& placed,
-  std::vector<Index>& duplicates, const Progress& progress)
-{
-  const auto isSame = [](const PlacedNode& p, const PlacedNode& q) {
-    return p.Node.I == q.Node.I && p.Node.J == q.Node.J;
-  };
-  Sort(
-    placed.begin(), placed.end(),
-    [&](const PlacedNode& p, const PlacedNode& q) {
-      return isSame(p, q) ? IsPreferred(points, policy, p.Place, q.Place)
-                          : std::tie(p.Node.J, p.Node.I) < std::tie(q.Node.J, q.Node.I);
-    },
-    progress);
-  std::size_t kept = 0;
-  for (std::size_t i = 1; i < placed.size(); ++i)
-  {
-    if (!isSame(placed[kept], placed[i]))
-    {
-      placed[++kept] = placed[i];
-      continue;
-    }
-    if (points.At(placed[kept].Place) != points.At(placed[i].Place))
-    {
-      throw NotOnLattice();
-    }
-    duplicates.push_back(placed[i].Place);
-  }
-  placed.resize(std::min(placed.size(), kept + 1));
-  std::sort(duplicates.begin(), duplicates.end());
-}
-
-/** By divide and conquer, which minds no wide gaps between points, as seams have them. */
-Triangulation TriangulateNodes(
-  const PointView& points, const SharedLattice& lattice, const DelaunayOptions& options)
-{
-  Triangulation triangulation;
-  std::vector<Index> notFinite, duplicates;
-  std::vector<PlacedNode> placed =
-    FindNodes(points, lattice, notFinite, Part(options.Monitor, 0.0, 0.1));
-  KeepOneOnEach(points, options.Duplicates, placed, duplicates, Part(options.Monitor, 0.1, 0.2));
-  Buffer<Point2> nodes;
-  nodes.Reserve(placed.size());
-  std::int64_t firstColumn = placed.empty() ? 0 : placed.front().Node.I;
-  for (const PlacedNode& one : placed)
-  {
-    firstColumn = std::min(firstColumn, one.Node.I);
-  }
-  for (const PlacedNode& one : placed)
-  {
-    nodes.Append({ static_cast<double>(one.Node.I - firstColumn),
-      static_cast<double>(one.Node.J - placed.front().Node.J) });
-  }
-  triangulation.Triangles =
-    DivideAndConquer(nodes, Part(options.Monitor, 0.2, 1.0), &lattice.Metric());
-  for (Index& corner : triangulation.Triangles)
-  {
-    corner = placed[corner].Place;
-  }
-  SetUnusedPoints(std::move(duplicates), notFinite, Progress(), triangulation);
-  return triangulation;
-}
-
-Triangulation TriangulatePoints(const PointView& points, const DelaunayOptions& options,
-  const SharedLattice* lattice, bool areAll)
-{
-  if (!lattice)
-  {
-    return Triangulate(points, options);
-  }
-  Triangulation triangulation;
-  LatticeSearch search;
-  if (areAll)
-  {
-    // All points of a cell: mostly well filled, so that nodes are found fast.
-    static_cast<Extent&>(search) = FindExtent(
-      points, ThreadsAtOnce(options.NumberOfThreads), Progress(), [](Index, const Point2&) {});
-    search.Found = true;
-    search.Steps = lattice->Steps();
-  }
-  DelaunayOptions onLattice = options;
-  onLattice.LatticeTolerance = lattice->Tolerance();
-  if (search.Found && TriangulateOnLattice(points, search, onLattice, triangulation))
-  {
-    return triangulation;
-  }
-  return TriangulateNodes(points, *lattice, options);
-}
-
 SettledMesh Triangulated(
   const Piece& piece, const DelaunayOptions& options, const SharedLattice* lattice)
 {
   PointView view;
   view.Double = piece.Coordinates.data();
   view.Count = piece.Count();
-  Triangulation triangulation = TriangulatePoints(view, options, lattice, piece.Edges.empty());
+  const bool areAll = piece.Edges.empty(); // points of a cell: mostly a lattice well filled
+  Triangulation triangulation =
+    lattice ? TriangulateNodes(view, *lattice, options, areAll) : Triangulate(view, options);
   SettledMesh mesh;
   mesh.Unused = std::move(triangulation.UnusedPoints);
   mesh.Surface.Points.reserve(view.Count);

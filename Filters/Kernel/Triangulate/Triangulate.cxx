@@ -5,8 +5,9 @@
 #include "BinGrid.h"
 #include "GridGrowth.h"
 #include "Hull.h"
-#include "LatticeGrowth.h"
 #include "Kernel/Base/Base.h"
+#include "LatticeGrowth.h"
+#include "TriangulateNodes.h"
 
 #include <algorithm>
 
@@ -61,6 +62,10 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
   }
   Extent extent;
   const bool isLatticeAsked = options.UseLattice == LatticeMode::Automatic;
+  if (isLatticeAsked && options.GivenLattice.IsSet())
+  {
+    return TriangulateOnGivenLattice(points, options);
+  }
   if (isLatticeAsked && TriangulateLattice(points, options, result, extent))
   {
     return result;

@@ -251,7 +251,8 @@ struct FoundInParts
         }
         return box;
       });
-      this->IsFound = this->Lattice.Set(steps, sample, nodes, sample.Count, tolerance);
+      this->IsFound =
+        nodes.IsFilledEnough(sample.Count) && this->Lattice.Set(steps, sample, nodes, tolerance);
     }
   }
 };

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TriangulateNodes.h"
+
+#include "DivideAndConquer.h"
+#include "LatticeGrowth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** A point by its node, column and row, and its place in a piece. */
+struct PlacedNode
+{
+  LatticeNode Node;
+  Index Place;
+};
+
+/** @throws NotOnLattice if a point is on no node */
+std::vector<PlacedNode> FindNodes(const PointView& points, const SharedLattice& lattice,
+  std::vector<Index>& notFinite, const Progress& progress)
+{
+  std::vector<PlacedNode> placed;
+  for (Index id = 0; id < points.Count; ++id)
+  {
+    ReportStep(progress, id, points.Count);
+    const Point2 p = points.At(id);
+    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(id)))
+    {
+      notFinite.push_back(id);
+      continue;
+    }
+    placed.push_back({ lattice.NodeOf(p), id });
+  }
+  return placed;
+}
+
+/**
+ * Sorts nodes from the lowest up, and keeps one point on each.
+ * @throws NotOnLattice when two points are on a node that are not equal
+ */
+void KeepOneOnEach(const PointView& points, DuplicatePolicy policy, std::vector<PlacedNode>& placed,
+  std::vector<Index>& duplicates, const Progress& progress)
+{
+  const auto isSame = [](const PlacedNode& p, const PlacedNode& q) {
+    return p.Node.I == q.Node.I && p.Node.J == q.Node.J;
+  };
+  Sort(
+    placed.begin(), placed.end(),
+    [&](const PlacedNode& p, const PlacedNode& q) {
+      return isSame(p, q) ? IsPreferred(points, policy, p.Place, q.Place)
+                          : std::tie(p.Node.J, p.Node.I) < std::tie(q.Node.J, q.Node.I);
+    },
+    progress);
+  std::size_t kept = 0;
+  for (std::size_t i = 1; i < placed.size(); ++i)
+  {
+    if (!isSame(placed[kept], placed[i]))
+    {
+      placed[++kept] = placed[i];
+      continue;
+    }
+    if (points.At(placed[kept].Place) != points.At(placed[i].Place))
+    {
+      throw NotOnLattice();
+    }
+    duplicates.push_back(placed[i].Place);
+  }
+  placed.resize(std::min(placed.size(), kept + 1));
+  std::sort(duplicates.begin(), duplicates.end());
+}
+
+/** By divide and conquer, which minds no wide gaps between points. */
+Triangulation TriangulateSparse(
+  const PointView& points, const SharedLattice& lattice, const DelaunayOptions& options)
+{
+  Triangulation result;
+  std::vector<Index> notFinite, duplicates;
+  std::vector<PlacedNode> placed =
+    FindNodes(points, lattice, notFinite, Part(options.Monitor, 0.0, 0.1));
+  KeepOneOnEach(points, options.Duplicates, placed, duplicates, Part(options.Monitor, 0.1, 0.2));
+  result.LatticeFound = true;
+  result.Steps = lattice.Steps();
+  SetUnusedPoints(std::move(duplicates), notFinite, Progress(), result);
+  if (placed.empty())
+  {
+    return result;
+  }
+  const LatticeNode lowest = placed.front().Node;
+  result.Steps.Origin =
+    result.Steps.Node(static_cast<double>(lowest.I), static_cast<double>(lowest.J));
+  Buffer<Point2> nodes;
+  nodes.Reserve(placed.size());
+  for (const PlacedNode& one : placed)
+  {
+    nodes.Append(
+      { static_cast<double>(one.Node.I - lowest.I), static_cast<double>(one.Node.J - lowest.J) });
+  }
+  result.Triangles = DivideAndConquer(nodes, Part(options.Monitor, 0.2, 1.0), &lattice.Metric());
+  const Index triangles = static_cast<Index>(result.Triangles.size() / 3);
+  if (triangles > 0)
+  {
+    result.NumberOfHullPoints = 2 * static_cast<Index>(placed.size()) - 2 - triangles;
+  }
+  for (Index& corner : result.Triangles)
+  {
+    corner = placed[corner].Place;
+  }
+  return result;
+}
+
+/** @throws NotOnLattice if a triangle is flat or inverted in the coordinates of its points */
+void CheckTriangles(const PointView& points, const Buffer<Index>& triangles)
+{
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    const Index* const corners = triangles.data() + i;
+    if (Orientation(points.At(corners[0]), points.At(corners[1]), points.At(corners[2])) !=
+      Positive)
+    {
+      throw NotOnLattice();
+    }
+  }
+}
+
+void LeaveOutLong(const PointView& points, double length, Buffer<Index>& triangles)
+{
+  const EdgeLimit limit(length);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    const Index* const corners = triangles.data() + i;
+    if (limit.Admits([&](Index id) { return points.At(id); }, corners[0], corners[1], corners[2]))
+    {
+      std::copy(corners, corners + 3, triangles.data() + kept);
+      kept += 3;
+    }
+  }
+  triangles.Resize(kept);
+}
+} // namespace
+
+Triangulation TriangulateNodes(const PointView& points, const SharedLattice& lattice,
+  const DelaunayOptions& options, bool isFilled)
+{
+  if (isFilled)
+  {
+    LatticeSearch search;
+    static_cast<Extent&>(search) = FindExtent(
+      points, ThreadsAtOnce(options.NumberOfThreads), Progress(), [](Index, const Point2&) {});
+    search.Found = true;
+    search.Steps = lattice.Steps();
+    DelaunayOptions onLattice = options;
+    onLattice.LatticeTolerance = lattice.Tolerance();
+    Triangulation result;
+    if (TriangulateOnLattice(points, search, onLattice, result))
+    {
+      return result;
+    }
+  }
+  return TriangulateSparse(points, lattice, options);
+}
+
+Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayOptions& options)
+{
+  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  const LatticeSearch search = GivenLattice(points, options.GivenLattice, tolerance,
+    ThreadsAtOnce(options.NumberOfThreads), Part(options.Monitor, 0.0, 0.15));
+  const NodeOfPoint nodeOf(search.Steps);
+  const NodeBox nodes = FindNodeBox(nodeOf, search, search.Steps, [&]() {
+    NodeBox box;
+    ForEachPoint(points, 0, points.Count, search.NotFinite,
+      [&](Index, const Point2& p) { nodeOf.Extend(box, p); });
+    return box;
+  });
+  SharedLattice lattice;
+  const bool hasPoints = static_cast<std::size_t>(points.Count) > search.NotFinite.size();
+  if (hasPoints && !lattice.Set(search.Steps, search, nodes, tolerance))
+  {
+    throw Error(
+      "The points cannot be triangulated on the given lattice: its steps are too unequal, "
+      "or it has more than " +
+      std::to_string(NodeBox::MaximumSide) + " rows or columns.");
+  }
+  try
+  {
+    Triangulation result = TriangulateNodes(points, lattice, options, true);
+    CheckTriangles(points, result.Triangles);
+    LeaveOutLong(points, options.MaximumEdgeLength, result.Triangles);
+    Report(options.Monitor, 1.0);
+    return result;
+  }
+  catch (const NotOnLattice&)
+  {
+    throw Error("The points cannot be triangulated on the given lattice: two that are not equal "
+                "share a node, or a triangle would be flat. Is it the lattice of these points?");
+  }
+}
+
+} // namespace elevation
