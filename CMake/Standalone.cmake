@@ -98,7 +98,7 @@ endif ()
 if (ES_BENCHMARKS)
   list(APPEND es_vtk_components FiltersModeling IOXML)
 endif ()
-find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components})
+find_package(VTK 9.1 REQUIRED COMPONENTS ${es_vtk_components} OPTIONAL_COMPONENTS ParallelMPI)
 message(STATUS "VTK ${VTK_VERSION} in ${VTK_DIR}")
 
 # ---- the module --------------------------------------------------------------------------------

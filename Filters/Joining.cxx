@@ -168,22 +168,6 @@ std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
   return left;
 }
 
-void WarnOfLeft(
-  const std::string& kind, const std::set<std::string>& left, std::vector<std::string>& warnings)
-{
-  std::string names;
-  for (const std::string& name : left)
-  {
-    names += (names.empty() ? "\"" : ", \"") + name + "\"";
-  }
-  if (!left.empty())
-  {
-    warnings.push_back("Not all ranks (processes) have the " + kind + " array" +
-      (left.size() > 1 ? "s " : " ") + names + " in the same type, so " +
-      (left.size() > 1 ? "they are" : "it is") + " left out.");
-  }
-}
-
 /** The joined cells of one kind. @param[in,out] rows  of the cells, to which they are added */
 vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vtkCellArray*>& kind,
   const CommonPoints& points, const std::vector<vtkIdType>& firstCells, const Progress& progress,
@@ -267,6 +251,22 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
   output->AddArray(reasons);
 }
 } // namespace
+
+void WarnOfLeft(
+  const std::string& kind, const std::set<std::string>& left, std::vector<std::string>& warnings)
+{
+  std::string names;
+  for (const std::string& name : left)
+  {
+    names += (names.empty() ? "\"" : ", \"") + name + "\"";
+  }
+  if (!left.empty())
+  {
+    warnings.push_back("Not all ranks (processes) have the " + kind + " array" +
+      (left.size() > 1 ? "s " : " ") + names + " in the same type, so " +
+      (left.size() > 1 ? "they are" : "it is") + " left out.");
+  }
+}
 
 vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<std::string>& warnings)

@@ -12,6 +12,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ namespace elevation
  */
 vtkSmartPointer<vtkPolyData> Join(
   const Parts& parts, PartKind kind, const Progress& progress, std::vector<std::string>& warnings);
+
+/** Adds a warning of arrays that are left out, if any. @param[in] kind  "point", say */
+void WarnOfLeft(
+  const std::string& kind, const std::set<std::string>& left, std::vector<std::string>& warnings);
 
 } // namespace elevation
 

@@ -261,12 +261,12 @@ bool KernelCall::RunSpread(const std::vector<Place*>& places, const Ranks& ranks
   vtkSmartPointer<vtkPointSet> own;
   ranks.Agree([&] { own = JoinHere(PartsOf(places), this->KindOfParts(), block.Warnings); });
   block.Input = own;
-  const auto home = FirstWithPoints(places);
-  std::vector<vtkSmartPointer<vtkPolyData>> none; // outputs where the block has no place
-  for (int port = 0; port < this->Outputs->GetNumberOfInformationObjects(); ++port)
+  // A rank without points of the block may get some, if it has a place for them.
+  Place* home = FirstWithPoints(places);
+  home = home || places.empty() ? home : places.front();
+  if (home)
   {
-    none.push_back(vtkSmartPointer<vtkPolyData>::New());
-    block.Outputs.push_back(home ? home->Outputs[port] : none.back().Get());
+    block.Outputs = home->Outputs;
   }
   if (!this->Spread(block, ranks))
   {

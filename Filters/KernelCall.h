@@ -68,7 +68,8 @@ public:
   /**
    * The filter's own way to work on a block that is spread over ranks, instead of gathering it and
    * running the body there; may be empty. All ranks call it for the same blocks in the same order.
-   * Input is this rank's part, without points where it has none: such a rank has no output to fill.
+   * Input is this rank's part, maybe without points; Outputs are none where the block has no place
+   * on this rank.
    * It throws on all ranks or on none, with the same message (Ranks::Agree), and adds its results
    * to Sums and Maxima last.
    * @return on all ranks, false to have the block gathered

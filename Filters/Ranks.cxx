@@ -73,12 +73,18 @@ Ranks::Ranks(vtkInformation* request, vtkInformationVector* outputs)
     output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
   {
     this->Controller = global;
+    this->Notes = std::make_unique<FailureNotes>(global);
   }
 }
 
 int Ranks::Own() const
 {
   return this->Controller ? this->Controller->GetLocalProcessId() : 0;
+}
+
+int Ranks::Count() const
+{
+  return this->Controller ? this->Controller->GetNumberOfProcesses() : 1;
 }
 
 void Ranks::Sum(std::vector<vtkIdType>& values) const
@@ -123,6 +129,13 @@ std::vector<Value> AllOf(vtkMultiProcessController* ranks, const Value* values, 
 
 std::vector<vtkIdType> Ranks::Collect(const std::vector<vtkIdType>& values) const
 {
+  this->CountCollected(values.size() * sizeof(vtkIdType));
+  return this->Controller ? AllOf(this->Controller, values.data(), values.size()) : values;
+}
+
+std::vector<double> Ranks::CollectReals(const std::vector<double>& values) const
+{
+  this->CountCollected(values.size() * sizeof(double));
   return this->Controller ? AllOf(this->Controller, values.data(), values.size()) : values;
 }
 
@@ -140,6 +153,7 @@ std::vector<std::string> Ranks::Collect(const std::vector<std::string>& texts) c
     joined += text;
   }
   lengths = this->Collect(lengths);
+  this->CountCollected(joined.size());
   const std::vector<char> letters = AllOf(this->Controller, joined.data(), joined.size());
   std::vector<std::string> all;
   auto next = letters.begin();
@@ -171,7 +185,22 @@ void Ranks::Agree(const std::function<void()>& step) const
   {
     failures = { std::string("E") + error.what() };
   }
+  const bool isStopped = this->IsStopped; // and not by a failure of its own
+  this->IsStopped = false;
+  if (isStopped)
+  {
+    failures.clear();
+  }
+  if (this->Notes && !failures.empty())
+  {
+    this->Notes->Send();
+  }
+  const int own = static_cast<int>(failures.size());
   failures = this->Collect(failures);
+  if (this->Notes)
+  {
+    this->Notes->Take(static_cast<int>(failures.size()) - own);
+  }
   for (const char kind : { 'A', 'E' })
   {
     for (const std::string& failure : failures)
@@ -182,6 +211,74 @@ void Ranks::Agree(const std::function<void()>& step) const
       }
     }
   }
+}
+
+Progress Ranks::Watched(const Progress& progress) const
+{
+  if (!this->Controller)
+  {
+    return progress;
+  }
+  return [this, progress](double fraction) {
+    this->IsStopped = this->IsStopped || this->Notes->HasCome();
+    return !this->IsStopped && (!progress || progress(fraction));
+  };
+}
+
+void Ranks::Meet(const std::function<void(int)>& withOther) const
+{
+  const int count = this->Count();
+  for (int bits = 1; bits < 2 * count; ++bits) // until beyond the highest bit of a rank
+  {
+    const int other = this->Own() ^ bits;
+    if (other < count)
+    {
+      withOther(other);
+    }
+  }
+}
+
+std::vector<Bytes> Ranks::Exchange(std::vector<Bytes>&& toEach) const
+{
+  std::vector<Bytes> fromEach(toEach.size());
+  std::swap(fromEach[this->Own()], toEach[this->Own()]);
+  std::vector<vtkIdType> sizes(toEach.size(), 0);
+  this->Meet([&](int other) {
+    const vtkIdType size = static_cast<vtkIdType>(toEach[other].size());
+    const auto send = [&]() { this->Send(&size, sizeof(size), other); };
+    const auto receive = [&]() { this->Receive(&sizes[other], sizeof(size), other); };
+    this->Own() < other ? (send(), receive()) : (receive(), send());
+    this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(size)) + size;
+  });
+  this->Agree([&]() {
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+    {
+      fromEach[i].Resize(std::max(fromEach[i].size(), static_cast<std::size_t>(sizes[i])));
+    }
+  });
+  this->Meet([&](int other) {
+    const auto send = [&]() {
+      if (!toEach[other].empty())
+      {
+        this->Send(toEach[other].data(), toEach[other].size(), other);
+      }
+    };
+    const auto receive = [&]() {
+      if (!fromEach[other].empty())
+      {
+        this->Receive(fromEach[other].data(), fromEach[other].size(), other);
+      }
+    };
+    this->Own() < other ? (send(), receive()) : (receive(), send());
+    toEach[other] = Bytes();
+  });
+  ++this->Sent.Rounds;
+  return fromEach;
+}
+
+void Ranks::CountCollected(std::size_t bytes) const
+{
+  this->Sent.BytesSent += static_cast<vtkIdType>(bytes) * (this->Count() - 1);
 }
 
 void Ranks::Send(const void* bytes, std::size_t size, int rank) const

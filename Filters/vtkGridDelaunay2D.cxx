@@ -3,16 +3,18 @@
 #include "vtkGridDelaunay2D.h"
 
 #include "Blocks.h"
+#include "DelaunayReport.h"
+#include "DistributedDelaunay.h"
+#include "Joining.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "KernelCall.h"
+#include "LimitAdvice.h"
 #include "MeshConversion.h"
 
 #include "vtkCellArray.h"
 #include "vtkDemandDrivenPipeline.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -21,14 +23,11 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <limits>
 #include <new>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -140,53 +139,10 @@ Index CountInTriangles(const elevation::Buffer<Index>& triangles, std::size_t nu
 /** The value that a part of the values, of which there are some, is at most. */
 double Quantile(std::vector<double>& values, double part)
 {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * (values.size() - 1));
+  const auto at =
+    values.begin() + elevation::PlaceOfQuantile(part, static_cast<vtkIdType>(values.size()));
   std::nth_element(values.begin(), at, values.end());
   return *at;
-}
-
-/** Rounded up to three digits. */
-double RoundedUp(double length)
-{
-  const double unit = std::pow(10.0, std::floor(std::log10(length)) - 2.0);
-  return unit > 0.0 && std::isfinite(unit) ? std::ceil(length / unit) * unit : length;
-}
-
-/**
- * What limit would keep most points, told by the triangulation without a limit.
- * @param[in] placeOf  the place of a vertex
- */
-template <typename PlaceOf>
-std::string AdviceOnLimit(const elevation::Buffer<Index>& triangles, std::size_t numberOfIds,
-  const PlaceOf& placeOf, const Progress& progress)
-{
-  constexpr double unset = std::numeric_limits<double>::infinity();
-  std::vector<double> edges;
-  std::vector<double> limits(numberOfIds, unset); // that keep a triangle at each vertex
-  for (std::size_t i = 0; i < triangles.size(); i += 3)
-  {
-    ReportStep(progress, i / 3, triangles.size() / 3, 1 << 16);
-    double longest = 0.0;
-    for (int k = 0; k < 3; ++k)
-    {
-      const elevation::Point2 p = placeOf(triangles[i + k]);
-      const elevation::Point2 q = placeOf(triangles[i + (k + 1) % 3]);
-      edges.push_back(std::hypot(p.X - q.X, p.Y - q.Y));
-      longest = std::max(longest, edges.back());
-    }
-    for (int k = 0; k < 3; ++k)
-    {
-      double& limit = limits[triangles[i + k]];
-      limit = std::min(limit, longest);
-    }
-  }
-  limits.erase(std::remove(limits.begin(), limits.end(), unset), limits.end());
-  std::ostringstream text;
-  text << std::setprecision(4) << "Between neighbours, the shortest edge is "
-       << *std::min_element(edges.begin(), edges.end()) << " long, the median "
-       << Quantile(edges, 0.5) << ". A MaximumEdgeLength of " << std::setprecision(10)
-       << RoundedUp(Quantile(limits, 0.95)) << " keeps a triangle at 95 % of the points.";
-  return text.str();
 }
 
 /** The type of the output's points: float if the added ones are exact in it. */
@@ -215,26 +171,33 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
     return;
   }
   const std::size_t ids = points.Count + constrained.Added.size();
-  const std::size_t vertices = ids - found.UnusedPoints.size();
-  const std::size_t missing =
-    vertices - CountInTriangles(found.Triangles, ids, Part(progress, 0.0, 0.05));
-  if (2 * missing <= vertices)
+  elevation::EffectOfLimit effect;
+  effect.Vertices = static_cast<vtkIdType>(ids - found.UnusedPoints.size());
+  effect.Missing =
+    effect.Vertices - CountInTriangles(found.Triangles, ids, Part(progress, 0.0, 0.05));
+  if (!effect.AreMostMissing())
   {
     return;
   }
-  std::ostringstream text;
-  text << "MaximumEdgeLength is " << options.MaximumEdgeLength << ", and " << missing << " of "
-       << vertices << " points are left without a triangle, because the points are farther apart.";
-  warnings.push_back(text.str());
+  warnings.push_back(elevation::TextOfLimit(options.MaximumEdgeLength, effect));
+  const double limit = options.MaximumEdgeLength;
   options.MaximumEdgeLength = 0.0;
   std::vector<std::string> again;
   const elevation::ConstrainedTriangulation full =
     TriangulateWith(source, points, options, Part(progress, 0.05, 0.7), again);
-  const Progress last = Part(progress, 0.7, 1.0);
   const auto placeOf = [&](Index id) {
     return id < points.Count ? points.At(id) : full.Added[id - points.Count].Position;
   };
-  warnings.back() += " " + AdviceOnLimit(full.Result.Triangles, ids, placeOf, last);
+  elevation::LengthsOfEdges lengths =
+    elevation::MeasureEdges(full.Result.Triangles, ids, placeOf, Part(progress, 0.7, 1.0));
+  std::vector<double>& limits = lengths.Limits;
+  limits.erase(std::remove(limits.begin(), limits.end(), std::numeric_limits<double>::infinity()),
+    limits.end());
+  effect.HasLengths = true;
+  effect.Shortest = Quantile(lengths.Edges, 0.0);
+  effect.Median = Quantile(lengths.Edges, elevation::HalfOfAll);
+  effect.ForMost = Quantile(limits, elevation::PartOfMost);
+  warnings.back() = elevation::TextOfLimit(limit, effect);
 }
 
 /** Tells why there is no triangle, or why most points are without one. */
@@ -245,8 +208,7 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 {
   if (constrained.Result.NumberOfHullPoints == 0)
   {
-    warnings.push_back("No triangle was made: the " + std::to_string(points.Count) +
-      " input points are fewer than three distinct finite points, or all on one line.");
+    warnings.push_back(elevation::TextOfNoTriangle(points.Count));
     return;
   }
   try
@@ -324,52 +286,41 @@ void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<Added
     });
 }
 
-void AddUnusedPoints(
-  const elevation::Triangulation& triangulation, const Progress& progress, vtkFieldData* fieldData)
+/**
+ * Triangulates a block whose points are on several ranks.
+ * @return the part of this rank, without triangles
+ */
+elevation::Triangulation TriangulateSpread(
+  const elevation::Ranks& ranks, elevation::DelaunayOptions options, elevation::Block& block)
 {
-  const std::size_t count = triangulation.UnusedPoints.size();
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("UnusedPointIds");
-  ids->SetNumberOfValues(static_cast<vtkIdType>(count));
-  vtkNew<vtkUnsignedCharArray> reasons;
-  reasons->SetName("UnusedPointReasons");
-  reasons->SetNumberOfValues(static_cast<vtkIdType>(count));
-  for (std::size_t i = 0; i < count; ++i)
+  elevation::CheckMaximumEdgeLength(options.MaximumEdgeLength);
+  options.Monitor = block.Progress;
+  const elevation::PointsOfRank points{ block.Input, !block.Outputs.empty() };
+  elevation::DistributedSurface surface = elevation::TriangulateOnRanks(ranks, points, options);
+  elevation::WarnOfLeft("point", surface.Part.LeftOut, block.Warnings);
+  if (surface.NumberOfTriangles == 0)
   {
-    ReportStep(progress, i, count, 1 << 18);
-    const vtkIdType at = static_cast<vtkIdType>(i);
-    ids->SetValue(at, triangulation.UnusedPoints[i]);
-    reasons->SetValue(at, static_cast<unsigned char>(triangulation.UnusedReasons[i]));
+    block.Warnings.push_back(elevation::TextOfNoTriangle(surface.NumberOfPoints));
   }
-  fieldData->AddArray(ids);
-  fieldData->AddArray(reasons);
-}
-
-/** Adds the field data on points, lines and lattice. */
-void AddReport(const elevation::ConstrainedTriangulation& constrained, const Progress& progress,
-  vtkFieldData* fieldData)
-{
-  const elevation::Triangulation& triangulation = constrained.Result;
-  AddUnusedPoints(triangulation, progress, fieldData);
-  const auto add = [fieldData](const char* name, auto count) {
-    elevation::AddCount(fieldData, name, static_cast<vtkIdType>(count));
-  };
-  add("NumberOfDuplicatePoints", triangulation.NumberOfDuplicates);
-  add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
-  add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
-  add("NumberOfAddedPoints", constrained.Added.size());
-  fieldData->RemoveArray("Lattice"); // passed from the input, of other points
-  if (triangulation.LatticeFound)
+  else if (surface.Effect.AreMostMissing())
   {
-    const elevation::Lattice& lattice = triangulation.Steps;
-    vtkNew<vtkDoubleArray> array;
-    array->SetName("Lattice");
-    array->SetNumberOfComponents(6);
-    const double values[] = { lattice.Origin.X, lattice.Origin.Y, lattice.StepU.X, lattice.StepU.Y,
-      lattice.StepV.X, lattice.StepV.Y };
-    array->InsertNextTuple(values);
-    fieldData->AddArray(array);
+    block.Warnings.push_back(elevation::TextOfLimit(options.MaximumEdgeLength, surface.Effect));
   }
+  elevation::ConstrainedTriangulation counts;
+  if (!block.Outputs.empty())
+  {
+    vtkPolyData* const output = block.Outputs.front();
+    elevation::PassPart(
+      surface.Part, elevation::ResolveNumberOfThreads(options.NumberOfThreads), output);
+    if (block.Input)
+    {
+      output->GetFieldData()->PassData(block.Input->GetFieldData());
+    }
+    counts.Result = std::move(surface.Part.Result);
+    elevation::AddReport(counts, Part(options.Monitor, 1.0, 1.0), output->GetFieldData());
+    elevation::AddWork(ranks.GetTraffic(), surface, output->GetFieldData());
+  }
+  return std::move(counts.Result);
 }
 } // namespace
 
@@ -423,18 +374,29 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
   call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints, &this->NumberOfLattices };
-  return call.Run([this](elevation::Block& block) {
+  elevation::DelaunayOptions options;
+  options.Strategy = static_cast<elevation::SearchStrategy>(this->SearchStrategy);
+  options.MaximumEdgeLength = this->MaximumEdgeLength;
+  options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
+  options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
+  options.GivenLattice = { { this->Lattice[0], this->Lattice[1] },
+    { this->Lattice[2], this->Lattice[3] }, { this->Lattice[4], this->Lattice[5] } };
+  options.LatticeTolerance = this->LatticeTolerance;
+  options.NumberOfThreads = this->NumberOfThreads;
+  call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
+    if (block.Second || options.GivenLattice.IsSet())
+    {
+      return false;
+    }
+    const elevation::Triangulation part = TriangulateSpread(ranks, options, block);
+    this->NumberOfDuplicatePoints += part.NumberOfDuplicates;
+    this->NumberOfNonFinitePoints += part.NumberOfNotFinite;
+    this->NumberOfLattices += part.LatticeFound ? 1 : 0;
+    return true;
+  };
+  return call.Run([this, options](elevation::Block& block) {
     const elevation::Progress& progress = block.Progress;
     vtkPolyData* const output = block.Outputs.front();
-    elevation::DelaunayOptions options;
-    options.Strategy = static_cast<elevation::SearchStrategy>(this->SearchStrategy);
-    options.MaximumEdgeLength = this->MaximumEdgeLength;
-    options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
-    options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
-    options.GivenLattice = { { this->Lattice[0], this->Lattice[1] },
-      { this->Lattice[2], this->Lattice[3] }, { this->Lattice[4], this->Lattice[5] } };
-    options.LatticeTolerance = this->LatticeTolerance;
-    options.NumberOfThreads = this->NumberOfThreads;
     elevation::Report(progress, 0.0);
     elevation::CheckMaximumEdgeLength(this->MaximumEdgeLength);
     elevation::CheckPointArrays(block.Input);
@@ -449,7 +411,7 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
       Part(progress, triangulated, told), block.Warnings);
     PassPoints(block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
-    AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
+    elevation::AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
     elevation::Report(progress, 1.0);

@@ -66,11 +66,16 @@
  * data. Counts of getters are sums. Messages name the block; one with an error is empty, the others
  * stay.
  *
- * On several ranks (processes), a block may be spread over them. Its points are gathered on the
- * rank with most of them, which gets the surface; the others have empty output with the same
- * arrays. The points are in the order of their global ids if all ranks have these, else rank after
- * rank; those marked as another rank's (vtkGhostType) count once. Arrays that not all ranks have
- * are left out, with a warning. Partitions of one vtkPartitionedDataSet are one block in this.
+ * On several ranks (processes), a block may be spread over them. They triangulate it together: each
+ * gets the points in a part of the plane, all with about as many, and the triangles of all ranks are
+ * those of one, each on one of them. A rank has the points of its part first, then those of other
+ * ranks that its triangles have, marked as such (vtkGhostType), both in the order of their global
+ * ids and with all their values. Global ids are those of the input, if all ranks with points have
+ * them, else the points are numbered rank after rank; DuplicatePolicy goes by them. Points that are
+ * marked as another rank's, or have the same global id, count once. Points that are not finite stay
+ * on their rank. Field data are those of the rank's part. Arrays that not all ranks have are left
+ * out, with a warning. With constraints or a given lattice, the points are gathered on the rank with
+ * most of them; the others have empty output. Partitions of one vtkPartitionedDataSet are one block in this.
  * Constraints may be on other ranks than the points, or spread over them: each rank gets them all;
  * those that are the same on several ranks count once. Getters tell the counts of all ranks; rank
  * 0 reports errors and warnings of all. An error or abort in a block ends it on all ranks. This
@@ -96,7 +101,10 @@
  * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value);
  * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node
  *   x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units;
- * - NumberOfConstraintCrossings, NumberOfAddedPoints (vtkIdTypeArray, one value).
+ * - NumberOfConstraintCrossings, NumberOfAddedPoints (vtkIdTypeArray, one value);
+ * - WorkOfRank (vtkIdTypeArray, one tuple of 4), only where a block is spread over ranks: the points
+ *   in the part of this rank, those that it had to pass on for triangles across the border of its
+ *   part, the bytes it has sent, and in how many exchanges of all ranks.
  *
  * Cost: linear expected time for points of even density, n log n where density is very uneven,
  * which is also the worst case. Memory during the run, above input and output: about 35 bytes a

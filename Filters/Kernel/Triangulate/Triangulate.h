@@ -36,8 +36,9 @@
 #define elevation_Triangulate_Triangulate_h
 
 #include "Constrained.h"
+#include "Cuts.h"
 #include "Options.h"
-
+#include "Pieces.h"
 
 namespace elevation
 {

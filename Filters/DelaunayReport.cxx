@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunayReport.h"
+
+#include "KernelCall.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkUnsignedCharArray.h"
+
+namespace elevation
+{
+
+namespace
+{
+void AddUnusedPoints(
+  const Triangulation& triangulation, const Progress& progress, vtkFieldData* fieldData)
+{
+  const std::size_t count = triangulation.UnusedPoints.size();
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("UnusedPointIds");
+  ids->SetNumberOfValues(static_cast<vtkIdType>(count));
+  vtkNew<vtkUnsignedCharArray> reasons;
+  reasons->SetName("UnusedPointReasons");
+  reasons->SetNumberOfValues(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    ReportStep(progress, i, count, 1 << 18);
+    const vtkIdType at = static_cast<vtkIdType>(i);
+    ids->SetValue(at, triangulation.UnusedPoints[i]);
+    reasons->SetValue(at, static_cast<unsigned char>(triangulation.UnusedReasons[i]));
+  }
+  fieldData->AddArray(ids);
+  fieldData->AddArray(reasons);
+}
+
+} // namespace
+
+void AddReport(
+  const ConstrainedTriangulation& constrained, const Progress& progress, vtkFieldData* fieldData)
+{
+  const Triangulation& triangulation = constrained.Result;
+  AddUnusedPoints(triangulation, progress, fieldData);
+  const auto add = [fieldData](const char* name, auto count) {
+    AddCount(fieldData, name, static_cast<vtkIdType>(count));
+  };
+  add("NumberOfDuplicatePoints", triangulation.NumberOfDuplicates);
+  add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
+  add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
+  add("NumberOfAddedPoints", constrained.Added.size());
+  fieldData->RemoveArray("Lattice"); // passed from the input, of other points
+  if (triangulation.LatticeFound)
+  {
+    const Lattice& lattice = triangulation.Steps;
+    vtkNew<vtkDoubleArray> array;
+    array->SetName("Lattice");
+    array->SetNumberOfComponents(6);
+    const double values[] = { lattice.Origin.X, lattice.Origin.Y, lattice.StepU.X, lattice.StepU.Y,
+      lattice.StepV.X, lattice.StepV.Y };
+    array->InsertNextTuple(values);
+    fieldData->AddArray(array);
+  }
+}
+
+void AddWork(
+  const Ranks::Traffic& traffic, const DistributedSurface& surface, vtkFieldData* fieldData)
+{
+  vtkNew<vtkIdTypeArray> work;
+  work->SetName("WorkOfRank");
+  work->SetNumberOfComponents(4);
+  const char* const names[] = { "OwnPoints", "SeamPoints", "BytesSent", "Exchanges" };
+  const vtkIdType values[] = { static_cast<vtkIdType>(surface.Part.Own.Count()),
+    surface.NumberOfSeamPoints, traffic.BytesSent, traffic.Rounds };
+  for (int i = 0; i < 4; ++i)
+  {
+    work->SetComponentName(i, names[i]);
+    work->InsertNextValue(values[i]);
+  }
+  fieldData->AddArray(work);
+}
+
+} // namespace elevation

@@ -1,0 +1,431 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DistributedDelaunay.h"
+
+#include "Kernel/Base/Base.h"
+#include "LatticeOfRanks.h"
+#include "PointOwners.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace elevation
+{
+
+namespace
+{
+/** Cells [Begin, End) of the cuts. */
+struct Node
+{
+  int Begin, End;
+
+  int Size() const { return this->End - this->Begin; }
+  int Middle() const { return Cuts::MiddleOf(this->Begin, this->End); }
+};
+
+/** The node of a cell that is some levels below the whole plane, or the cell itself. */
+Node NodeOf(int cell, int level, int count)
+{
+  Node node{ 0, count };
+  for (; level > 0 && node.Size() > 1; --level)
+  {
+    const int middle = node.Middle();
+    (cell < middle ? node.End : node.Begin) = middle;
+  }
+  return node;
+}
+
+Bytes PackPiece(const Piece& piece)
+{
+  Bytes bytes;
+  AppendTo(bytes, std::vector<std::size_t>{ piece.Ids.size(), piece.Edges.size() });
+  AppendTo(bytes, piece.Coordinates);
+  AppendTo(bytes, piece.Ids);
+  AppendTo(bytes, piece.Edges);
+  return bytes;
+}
+
+Piece UnpackPiece(const Bytes& bytes)
+{
+  const char* from = bytes.data();
+  std::vector<std::size_t> sizes;
+  TakeFrom(from, 2, sizes);
+  Piece piece;
+  TakeFrom(from, 3 * sizes[0], piece.Coordinates);
+  TakeFrom(from, sizes[0], piece.Ids);
+  TakeFrom(from, sizes[1], piece.Edges);
+  return piece;
+}
+
+Error TooMany(std::size_t count)
+{
+  return Error("A rank would have " + std::to_string(count) + " points; at most " +
+    std::to_string(MaximumNumberOfPoints) + " can be handled at once. Use more ranks.");
+}
+
+/** The work of one rank; the functions are its steps, in their order. */
+class Work
+{
+public:
+  Work(const Ranks& ranks, const DelaunayOptions& options, PointOwners&& owners, SurfacePart& part)
+    : All(ranks)
+    , Options(options)
+    , Owners(std::move(owners))
+    , Cell(this->Owners.CellOfRank(ranks.Own()))
+    , Part(part)
+    , First(part.Bases[ranks.Own()])
+    , Last(part.Bases[ranks.Own() + 1])
+  {
+  }
+
+  void Settle();
+  void SendTriangles();
+  void FetchOthers();
+  void PlaceCorners();
+
+  Index NumberOfSeamPoints = 0;
+
+private:
+  Progress Watched(double begin, double end) const
+  {
+    return this->All.Watched(elevation::Part(this->Options.Monitor, begin, end));
+  }
+  bool SettleOn(const SharedLattice* lattice);
+  void SettleOwn(const SharedLattice* lattice);
+  bool JoinSeams(const SharedLattice* lattice);
+  Piece SettlePiece(const Piece& piece, const Node& node, const Progress& progress,
+    const SharedLattice* lattice, std::vector<GlobalTriangle>& triangles);
+  bool IsOffAnywhere(const SharedLattice* lattice) const;
+  PointView OwnPoints() const;
+  void ListUnused(const Progress& progress);
+  int RankOf(int cell) const { return this->Owners.RankOfCell[cell]; }
+  bool IsOwn(GlobalId number) const { return number >= this->First && number < this->Last; }
+
+  const Ranks& All;
+  const DelaunayOptions& Options;
+  const PointOwners Owners;
+  const int Cell; // that this rank owns, or -1
+  SurfacePart& Part;
+  const GlobalId First, Last; // numbers of own points
+  Piece Seam;
+  bool IsOffLattice = false; // this rank's points are
+  std::vector<GlobalTriangle> Triangles;
+  std::vector<GlobalTriangle> OfSeams; // settled by this rank for all
+};
+
+PointView Work::OwnPoints() const
+{
+  PointView view;
+  view.Double = this->Part.Own.Coordinates.data();
+  view.Count = static_cast<Index>(this->Part.Own.Count());
+  return view;
+}
+
+/** All triangles, on the lattice of all points if there is one. */
+void Work::Settle()
+{
+  this->All.Agree([&]() {
+    if (this->Part.Own.Count() > static_cast<std::size_t>(MaximumNumberOfPoints))
+    {
+      throw TooMany(this->Part.Own.Count());
+    }
+  });
+  SharedLattice lattice;
+  const Progress searching = elevation::Part(this->Options.Monitor, 0.15, 0.2);
+  if (this->Options.UseLattice == LatticeMode::Automatic &&
+    FindLatticeOnRanks(this->All, this->OwnPoints(), this->Options, searching, lattice) &&
+    this->SettleOn(&lattice))
+  {
+    this->Part.Result.LatticeFound = true;
+    this->Part.Result.Steps = FromLowestNode(this->All, this->OwnPoints(), lattice);
+    return;
+  }
+  this->SettleOn(nullptr);
+}
+
+/** @return false if not all points are on the lattice, or by chance, or on one line of it */
+bool Work::SettleOn(const SharedLattice* lattice)
+{
+  this->Seam = Piece();
+  this->IsOffLattice = false;
+  this->Triangles.clear();
+  this->OfSeams.clear();
+  this->Part.Result = Triangulation();
+  this->SettleOwn(lattice);
+  if (this->IsOffAnywhere(lattice))
+  {
+    return false;
+  }
+  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(
+    this->Part.Own.Count() - this->Part.Result.UnusedPoints.size()) };
+  this->All.Sum(sums);
+  if (lattice && IsLatticeByChance(static_cast<double>(sums[0]), lattice->Tolerance()))
+  {
+    return false;
+  }
+  if (!this->JoinSeams(lattice))
+  {
+    return false;
+  }
+  sums[0] = static_cast<vtkIdType>(this->Triangles.size() + this->OfSeams.size());
+  this->All.Sum(sums);
+  return sums[0] > 0;
+}
+
+bool Work::IsOffAnywhere(const SharedLattice* lattice) const
+{
+  std::vector<vtkIdType> off = { this->IsOffLattice ? 1 : 0 };
+  if (lattice)
+  {
+    this->All.Sum(off);
+  }
+  return off[0] > 0;
+}
+
+/** Settles what a node can. @return its seam */
+Piece Work::SettlePiece(const Piece& piece, const Node& node, const Progress& progress,
+  const SharedLattice* lattice, std::vector<GlobalTriangle>& triangles)
+{
+  DelaunayOptions options = this->Options;
+  options.MaximumEdgeLength = 0.0;
+  options.UseLattice = LatticeMode::Off;
+  options.Monitor = progress;
+  try
+  {
+    const elevation::Cell cell = this->Owners.Plane.CellOf(node.Begin, node.End);
+    return elevation::Settle(piece, cell, options, triangles, lattice);
+  }
+  catch (const NotOnLattice&)
+  {
+    this->IsOffLattice = true;
+    return Piece();
+  }
+}
+
+void Work::SettleOwn(const SharedLattice* lattice)
+{
+  this->All.Agree([&]() {
+    const PointRows& own = this->Part.Own;
+    Piece piece;
+    piece.Coordinates.reserve(own.Coordinates.size());
+    piece.Ids.reserve(own.Count());
+    for (std::size_t i = 0; i < own.Count(); ++i)
+    {
+      if (own.IsFinite(i))
+      {
+        piece.Coordinates.insert(piece.Coordinates.end(), own.At(i), own.At(i) + 3);
+        piece.Ids.push_back(this->First + static_cast<GlobalId>(i));
+      }
+    }
+    this->Triangles.reserve(2 * piece.Ids.size());
+    if (this->Cell >= 0)
+    {
+      this->Seam = this->SettlePiece(
+        piece, { this->Cell, this->Cell + 1 }, this->Watched(0.2, 0.75), lattice, this->Triangles);
+    }
+    this->NumberOfSeamPoints = this->Seam.Count();
+    this->ListUnused(this->Watched(0.75, 0.78));
+  });
+}
+
+/** What is neither settled nor on the seam is a duplicate. */
+void Work::ListUnused(const Progress& progress)
+{
+  const PointRows& own = this->Part.Own;
+  std::vector<char> isUsed(own.Count(), 0);
+  for (const GlobalTriangle& triangle : this->Triangles)
+  {
+    for (const GlobalId id : triangle)
+    {
+      isUsed[id - this->First] = 1;
+    }
+  }
+  for (const GlobalId id : this->Seam.Ids)
+  {
+    isUsed[id - this->First] = 1;
+  }
+  std::vector<Index> duplicates, notFinite;
+  for (std::size_t i = 0; i < own.Count(); ++i)
+  {
+    ReportStep(progress, i, own.Count(), 1 << 18);
+    if (!isUsed[i])
+    {
+      (own.IsFinite(i) ? duplicates : notFinite).push_back(static_cast<Index>(i));
+    }
+  }
+  SetUnusedPoints(std::move(duplicates), notFinite, progress, this->Part.Result);
+}
+
+bool Work::JoinSeams(const SharedLattice* lattice)
+{
+  const int count = this->Owners.Plane.Count();
+  int levels = 0;
+  while ((1 << levels) < count)
+  {
+    ++levels;
+  }
+  for (int level = levels - 1; level >= 0; --level)
+  {
+    const Node node = NodeOf(std::max(0, this->Cell), level, count);
+    const bool isCut = node.Size() > 1;
+    std::vector<Bytes> packed(this->All.Count());
+    this->All.Agree([&]() {
+      if (isCut && this->Cell == node.Middle())
+      {
+        packed[this->RankOf(node.Begin)] = PackPiece(this->Seam);
+        this->Seam = Piece();
+      }
+    });
+    packed = this->All.Exchange(std::move(packed));
+    this->All.Agree([&]() {
+      if (isCut && this->Cell == node.Begin)
+      {
+        const double step = 0.12 / levels, begin = 0.78 + step * (levels - 1 - level);
+        const Progress progress = this->Watched(begin, begin + step);
+        const Piece joined =
+          Join(std::move(this->Seam), UnpackPiece(packed[this->RankOf(node.Middle())]));
+        this->Seam = this->SettlePiece(joined, node, progress, lattice, this->OfSeams);
+      }
+    });
+    if (this->IsOffAnywhere(lattice))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Work::SendTriangles()
+{
+  std::vector<Bytes> packed(this->All.Count());
+  this->All.Agree([&]() {
+    std::vector<std::vector<GlobalTriangle>> ofRanks(packed.size());
+    for (const GlobalTriangle& triangle : this->OfSeams)
+    {
+      ofRanks[this->Part.OwnerOf(triangle[0])].push_back(triangle);
+    }
+    std::transform(ofRanks.begin(), ofRanks.end(), packed.begin(), [](const auto& triangles) {
+      Bytes bytes;
+      AppendTo(bytes, triangles);
+      return bytes;
+    });
+  });
+  packed = this->All.Exchange(std::move(packed));
+  this->All.Agree([&]() {
+    std::vector<GlobalTriangle> triangles;
+    for (const Bytes& bytes : packed)
+    {
+      const char* from = bytes.data();
+      TakeFrom(from, bytes.size() / sizeof(GlobalTriangle), triangles);
+      this->Triangles.insert(this->Triangles.end(), triangles.begin(), triangles.end());
+      for (const GlobalTriangle& triangle : triangles)
+      {
+        std::copy_if(triangle.begin(), triangle.end(), std::back_inserter(this->Part.OtherNumbers),
+          [this](GlobalId id) { return !this->IsOwn(id); });
+      }
+    }
+    std::sort(this->Part.OtherNumbers.begin(), this->Part.OtherNumbers.end());
+    this->Part.OtherNumbers.erase(
+      std::unique(this->Part.OtherNumbers.begin(), this->Part.OtherNumbers.end()),
+      this->Part.OtherNumbers.end());
+  });
+}
+
+void Work::FetchOthers()
+{
+  std::vector<Bytes> packed(this->All.Count());
+  this->All.Agree([&]() {
+    std::vector<std::vector<vtkIdType>> places(packed.size());
+    for (const GlobalId id : this->Part.OtherNumbers)
+    {
+      const int owner = this->Part.OwnerOf(id);
+      places[owner].push_back(id - this->Part.Bases[owner]);
+    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      AppendTo(packed[i], places[i]);
+    }
+  });
+  packed = this->All.Exchange(std::move(packed));
+  this->All.Agree([&]() {
+    std::vector<vtkIdType> places;
+    for (Bytes& bytes : packed)
+    {
+      const char* from = bytes.data();
+      TakeFrom(from, bytes.size() / sizeof(vtkIdType), places);
+      bytes = places.empty() ? Bytes() : this->Part.Own.Pack(places);
+    }
+  });
+  packed = this->All.Exchange(std::move(packed));
+  this->All.Agree([&]() {
+    this->Part.Others.Unpack(packed);
+    const std::size_t count = this->Part.Own.Count() + this->Part.Others.Count();
+    if (count > static_cast<std::size_t>(MaximumNumberOfPoints))
+    {
+      throw TooMany(count);
+    }
+  });
+}
+
+/** The corners of the triangles as places of the rank's points. */
+void Work::PlaceCorners()
+{
+  this->All.Agree([&]() {
+    const Progress progress = this->Watched(0.92, 0.95);
+    const std::vector<GlobalId>& others = this->Part.OtherNumbers;
+    const GlobalId ownCount = this->Last - this->First;
+    const auto placeOf = [&](GlobalId id) {
+      return this->IsOwn(id)
+        ? id - this->First
+        : ownCount + (std::lower_bound(others.begin(), others.end(), id) - others.begin());
+    };
+    Buffer<Index>& corners = this->Part.Result.Triangles;
+    corners.Resize(3 * this->Triangles.size());
+    Index* corner = corners.data();
+    for (std::size_t t = 0; t < this->Triangles.size(); ++t)
+    {
+      ReportStep(progress, t, this->Triangles.size(), 1 << 16);
+      for (const GlobalId id : this->Triangles[t])
+      {
+        *corner++ = static_cast<Index>(placeOf(id));
+      }
+    }
+    this->Triangles = std::vector<GlobalTriangle>();
+  });
+}
+} // namespace
+
+DistributedSurface TriangulateOnRanks(
+  const Ranks& ranks, const PointsOfRank& points, const DelaunayOptions& options)
+{
+  DistributedSurface surface;
+  SurfacePart& part = surface.Part;
+  const Progress first = Part(options.Monitor, 0.0, 0.15), last = Part(options.Monitor, 0.95, 1.0);
+  PointOwners owners = BringToOwners(ranks, points, first, part);
+  Work work(ranks, options, std::move(owners), part);
+  work.Settle();
+  surface.NumberOfSeamPoints = work.NumberOfSeamPoints;
+  work.SendTriangles();
+  work.FetchOthers();
+  work.PlaceCorners();
+  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(part.Own.Count()),
+    static_cast<vtkIdType>(part.Result.Triangles.size() / 3) };
+  ranks.Sum(sums);
+  surface.NumberOfPoints = sums[0];
+  surface.NumberOfTriangles = sums[1];
+  if (options.MaximumEdgeLength > 0.0)
+  {
+    surface.Effect = LimitEdges(ranks, options.MaximumEdgeLength, last, part);
+  }
+  ranks.Agree([&]() {
+    KeepCorners(part);
+    Report(ranks.Watched(options.Monitor), 1.0);
+  });
+  return surface;
+}
+
+} // namespace elevation

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LatticeOfRanks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace elevation
+{
+
+namespace
+{
+/** As reals: the box, two counts and the points. */
+std::vector<double> ToReals(const LatticeSample& sample)
+{
+  std::vector<double> reals = { sample.Low.X, sample.Low.Y, sample.High.X, sample.High.Y,
+    sample.Count, static_cast<double>(sample.Points.size()) };
+  for (const Point2 p : sample.Points)
+  {
+    reals.insert(reals.end(), { p.X, p.Y });
+  }
+  return reals;
+}
+
+/** The next sample of some. */
+LatticeSample FromReals(const double*& reals)
+{
+  LatticeSample sample;
+  sample.Low = { reals[0], reals[1] };
+  sample.High = { reals[2], reals[3] };
+  sample.Count = reals[4];
+  sample.Points.resize(static_cast<std::size_t>(reals[5]));
+  reals += 6;
+  for (Point2& p : sample.Points)
+  {
+    p = { reals[0], reals[1] };
+    reals += 2;
+  }
+  return sample;
+}
+
+/** The points of all ranks, each once. */
+std::vector<Point2> CollectPoints(const Ranks& ranks, const std::vector<Point2>& own)
+{
+  std::vector<double> reals;
+  for (const Point2 p : own)
+  {
+    reals.insert(reals.end(), { p.X, p.Y });
+  }
+  reals = ranks.CollectReals(reals);
+  std::vector<Point2> all;
+  for (std::size_t i = 0; i < reals.size(); i += 2)
+  {
+    all.push_back({ reals[i], reals[i + 1] });
+  }
+  std::sort(all.begin(), all.end(), IsLower);
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+/** The box of all ranks. */
+NodeBox Joined(const Ranks& ranks, const NodeBox& own)
+{
+  std::vector<double> sides = { -own.Low.X, -own.Low.Y, own.High.X, own.High.Y };
+  ranks.Maximum(sides);
+  NodeBox box;
+  box.Low = { -sides[0], -sides[1] };
+  box.High = { sides[2], sides[3] };
+  return box;
+}
+
+template <typename Visit>
+void ForEachFinite(const PointView& points, const Progress& progress, const Visit& visit)
+{
+  for (Index i = 0; i < points.Count; ++i)
+  {
+    ReportStep(progress, i, points.Count, 1 << 16);
+    const Point2 p = points.At(i);
+    if (std::isfinite(p.X) && std::isfinite(p.Y) && std::isfinite(points.Elevation(i)))
+    {
+      visit(p);
+    }
+  }
+}
+} // namespace
+
+bool FindLatticeOnRanks(const Ranks& ranks, const PointView& points, const DelaunayOptions& options,
+  const Progress& progress, SharedLattice& lattice)
+{
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
+  std::vector<vtkIdType> count = { points.Count };
+  ranks.Sum(count);
+  LatticeSample all;
+  all.CountOfAll = static_cast<double>(count[0]);
+  std::vector<Index> notFinite;
+  std::vector<double> reals;
+  ranks.Agree([&]() {
+    reals = ToReals(SampleForLattice(
+      points, all.CountOfAll, threads, ranks.Watched(Part(progress, 0.0, 0.4)), notFinite));
+  });
+  reals = ranks.CollectReals(reals);
+  for (const double* at = reals.data(); at != reals.data() + reals.size();)
+  {
+    all.Add(FromReals(at));
+  }
+  if (!all.MayBeOfLattice())
+  {
+    return false;
+  }
+  std::vector<Point2> there;
+  ranks.Agree([&]() {
+    there = DistinctPointsIn(
+      FullestPlace(all), points, notFinite, threads, ranks.Watched(Part(progress, 0.4, 0.7)));
+  });
+  there = CollectPoints(ranks, there);
+  Lattice steps;
+  bool isFound = false;
+  const double tolerance = options.LatticeTolerance;
+  ranks.Agree([&]() {
+    isFound = FitLattice(all, std::move(there), tolerance, ranks.Watched(progress), steps);
+  });
+  if (!isFound)
+  {
+    return false;
+  }
+  const NodeOfPoint nodeOf(steps);
+  const NodeBox nodes = FindNodeBox(nodeOf, all, steps, [&]() {
+    NodeBox own;
+    ranks.Agree([&]() {
+      ForEachFinite(points, ranks.Watched(Part(progress, 0.7, 1.0)),
+        [&](const Point2& p) { nodeOf.Extend(own, p); });
+    });
+    return Joined(ranks, own);
+  });
+  return lattice.Set(steps, all, nodes, tolerance) && nodes.IsFilledEnough(all.Count);
+}
+
+Lattice FromLowestNode(const Ranks& ranks, const PointView& points, const SharedLattice& lattice)
+{
+  // Numbers of rows and columns are below 2^53. The lowest node is first by row, then by column.
+  constexpr double least = std::numeric_limits<double>::lowest();
+  std::vector<double> row = { least }, column = { least };
+  const auto forEachNode = [&](const auto& visit) {
+    ranks.Agree([&]() {
+      ForEachFinite(points, Progress(), [&](const Point2& p) { visit(lattice.NodeOf(p)); });
+    });
+  };
+  forEachNode(
+    [&](const LatticeNode& node) { row[0] = std::max(row[0], -static_cast<double>(node.J)); });
+  ranks.Maximum(row);
+  forEachNode([&](const LatticeNode& node) {
+    if (-static_cast<double>(node.J) == row[0])
+    {
+      column[0] = std::max(column[0], -static_cast<double>(node.I));
+    }
+  });
+  ranks.Maximum(column);
+  Lattice steps = lattice.Steps();
+  steps.Origin = steps.Node(-column[0], -row[0]);
+  return steps;
+}
+
+} // namespace elevation

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The lattice of points that are spread over ranks. Private to the module.
+ */
+#ifndef LatticeOfRanks_h
+#define LatticeOfRanks_h
+
+#include "Kernel/Lattice/Lattice.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "Ranks.h"
+
+namespace elevation
+{
+
+/**
+ * Looks for the lattice of the points of all ranks; each rank samples its own. The same lattice is
+ * found as on one rank.
+ * @param[in] points  of this rank
+ * @param[in] options  with LatticeMode::Automatic
+ * @param[out] lattice  the same on all ranks, if there is one
+ */
+bool FindLatticeOnRanks(const Ranks& ranks, const PointView& points, const DelaunayOptions& options,
+  const Progress& progress, SharedLattice& lattice);
+
+/** The lattice with the lowest node that a point of any rank is on as its origin. */
+Lattice FromLowestNode(const Ranks& ranks, const PointView& points, const SharedLattice& lattice);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What is told where a triangulation has no triangle, or a MaximumEdgeLength leaves few. Private to
+ * the module.
+ */
+#ifndef LimitAdvice_h
+#define LimitAdvice_h
+
+#include "Kernel/Base/Base.h"
+
+#include "vtkType.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace elevation
+{
+
+/** What a limit leaves, and how long edges are without it. */
+struct EffectOfLimit
+{
+  vtkIdType Vertices = 0;
+  vtkIdType Missing = 0; ///< of these, without a triangle
+
+  bool AreMostMissing() const { return 2 * this->Missing > this->Vertices; }
+
+  bool HasLengths = false; ///< whether the following are known
+  double Shortest = 0.0;
+  double Median = 0.0;
+  double ForMost = 0.0; ///< the limit that keeps a triangle at 95 % of the points
+};
+
+/** The quantiles that ForMost and Median are. */
+constexpr double PartOfMost = 0.95, HalfOfAll = 0.5;
+
+/** The place of a quantile among some sorted values. */
+inline vtkIdType PlaceOfQuantile(double part, vtkIdType count)
+{
+  return static_cast<vtkIdType>(part * static_cast<double>(count - 1));
+}
+
+std::string TextOfNoTriangle(vtkIdType numberOfPoints);
+
+/** That most points are without a triangle, and which limit would keep them. */
+std::string TextOfLimit(double limit, const EffectOfLimit& effect);
+
+/** Of triangles without a limit. */
+struct LengthsOfEdges
+{
+  std::vector<double> Edges;  ///< three of each triangle
+  std::vector<double> Limits; ///< of each vertex, the least that keeps a triangle; maybe infinite
+};
+
+/** @param[in] placeOf  the place of a vertex */
+template <typename PlaceOf>
+LengthsOfEdges MeasureEdges(const Buffer<Index>& triangles, std::size_t numberOfVertices,
+  const PlaceOf& placeOf, const Progress& progress)
+{
+  LengthsOfEdges lengths;
+  lengths.Edges.reserve(triangles.size());
+  lengths.Limits.assign(numberOfVertices, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    ReportStep(progress, i / 3, triangles.size() / 3, 1 << 16);
+    double longest = 0.0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const Point2 p = placeOf(triangles[i + k]);
+      const Point2 q = placeOf(triangles[i + (k + 1) % 3]);
+      lengths.Edges.push_back(std::hypot(p.X - q.X, p.Y - q.Y));
+      longest = std::max(longest, lengths.Edges.back());
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      double& limit = lengths.Limits[triangles[i + k]];
+      limit = std::min(limit, longest);
+    }
+  }
+  return lengths;
+}
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Points with their arrays, which go from rank to rank. Private to the module.
+ */
+#ifndef PointRows_h
+#define PointRows_h
+
+#include "Bytes.h"
+#include "Ranks.h"
+
+#include "vtkSmartPointer.h"
+
+#include <set>
+#include <string>
+#include <vector>
+
+class vtkAbstractArray;
+class vtkPointData;
+
+namespace elevation
+{
+
+/** What an array is, so that ranks can make one that has none. */
+struct ArrayKind
+{
+  std::string Name;
+  int Type = 0; // VTK_DOUBLE and so on
+  int Components = 1;
+  int Attribute = -1; // of vtkDataSetAttributes
+  std::vector<std::string> ComponentNames;
+};
+
+/**
+ * The point arrays that all ranks with points have, the same on all ranks.
+ * @param[in] own  of this rank; nullptr: it has no points
+ * @param[out] leftOut  names of the others, the same on all ranks
+ */
+std::vector<ArrayKind> CommonArrays(
+  const Ranks& ranks, vtkPointData* own, std::set<std::string>& leftOut);
+
+/** Points: positions, global ids and the values of arrays, those of each kind. */
+class PointRows
+{
+public:
+  PointRows() = default;
+  /** Of no points. */
+  explicit PointRows(const std::vector<ArrayKind>& kinds);
+
+  std::size_t Count() const { return this->Ids.size(); }
+  const double* At(std::size_t place) const { return this->Coordinates.data() + 3 * place; }
+
+  bool IsFinite(std::size_t place) const;
+
+  /** Takes the arrays of a rank's own points; they are not copied. */
+  void View(vtkPointData* data);
+
+  /** The chosen points as bytes: 32 a point, and the values of the arrays. */
+  Bytes Pack(const std::vector<vtkIdType>& places) const;
+
+  /** Appends what Pack() has packed on other ranks. */
+  void Unpack(const std::vector<Bytes>& packed);
+
+  /** Keeps the chosen points, in the order given. */
+  void Choose(const std::vector<vtkIdType>& places);
+
+  Buffer<double> Coordinates; ///< x, y, z of each point
+  Buffer<vtkIdType> Ids;
+  std::vector<ArrayKind> Kinds;
+  std::vector<vtkSmartPointer<vtkAbstractArray>> Arrays; ///< one of each kind
+};
+
+} // namespace elevation
+
+#endif

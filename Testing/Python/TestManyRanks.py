@@ -1,0 +1,337 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Points that are spread over ranks give the triangles of one rank, whatever the ranks have.
+
+Run by mpirun: all ranks run this script. Each case is also made by rank 0 alone, and compared with what
+all ranks have made: points, arrays, triangles, unused points and counts, by global ids. With --clouds
+more random clouds are compared than the suite has time for, with --aborts more aborts.
+"""
+import argparse
+import sys
+import time
+
+from mpi4py import MPI  # before VTK: it starts MPI
+import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkPolyData
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+from vtkmodules.vtkParallelMPI import vtkMPIController
+
+from vtkelevationsurface import vtkGridDelaunay2D
+
+WORLD = MPI.COMM_WORLD
+RANK, COUNT = WORLD.rank, WORLD.size
+CONTROLLER = vtkMPIController()
+CONTROLLER.Initialize()
+vtkMultiProcessController.SetGlobalController(CONTROLLER)
+FAILURES = []
+POLICIES = 4
+
+
+def check(is_true, claim):
+    if not is_true:
+        FAILURES.append(claim)
+        print("rank %d: FAILED: %s" % (RANK, claim), flush=True)
+
+
+def cloud(coordinates, ids=None, arrays=()):
+    """A data set; ids are marked as global ids."""
+    data, points = vtkPolyData(), vtkPoints()
+    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates), deep=True))
+    data.SetPoints(points)
+    if ids is not None:
+        array = vtkIdTypeArray()
+        array.SetName("numbers")
+        array.SetNumberOfValues(len(ids))
+        for i, number in enumerate(ids):
+            array.SetValue(i, number)
+        data.GetPointData().SetGlobalIds(array)
+    for name, values in arrays:
+        if values.dtype.kind == "U":
+            array = vtkStringArray()
+            for value in values:
+                array.InsertNextValue(str(value))
+        else:
+            array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        data.GetPointData().AddArray(array)
+    return data
+
+
+def triangulate(data, alone, **properties):
+    """The filter after its update, and its messages."""
+    delaunay = vtkGridDelaunay2D()
+    delaunay.SetNumberOfThreads(1)
+    delaunay.SetInputData(data)
+    messages = []
+
+    def note(_caller, event, text):
+        messages.append((event, text.split("): ", 1)[1].strip()))  # without the address
+
+    note.CallDataType = "string0"
+    delaunay.AddObserver("ErrorEvent", note)
+    delaunay.AddObserver("WarningEvent", note)
+    for name, value in properties.items():
+        getattr(delaunay, "Set" + name)(value)
+    delaunay.UpdatePiece(*(0, 1, 0) if alone else (RANK, COUNT, 0))
+    return delaunay, messages
+
+
+def values_of(array):
+    """The values of an array, as a list of what can be compared."""
+    if isinstance(array, vtkStringArray):
+        return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
+    values = vtk_to_numpy(array)
+    return [repr(value) for value in values.tolist()]
+
+
+def turned(triangles):
+    """Triangles from their least id on, as a list."""
+    first = numpy.argmin(triangles, axis=1)
+    rows = numpy.arange(len(triangles))
+    return list(map(tuple, numpy.stack(
+        [triangles[rows, (first + i) % 3] for i in range(3)], axis=1).tolist()))
+
+
+def part_of(delaunay, ids=None):
+    """What a rank has made, by global ids: of the output, given, or places where all points are here."""
+    output = delaunay.GetOutput()
+    data, count = output.GetPointData(), output.GetNumberOfPoints()
+    ghosts = numpy.zeros(count, int)
+    if ids is None and data.GetGlobalIds():
+        ids = vtk_to_numpy(data.GetGlobalIds())
+    elif ids is None:
+        ids = numpy.arange(count)
+    if data.GetArray("vtkGhostType"):
+        ghosts = vtk_to_numpy(data.GetArray("vtkGhostType"))
+    part = {"ids": ids.tolist(), "ghosts": ghosts.tolist(), "triangles": [], "unused": []}
+    if output.GetNumberOfPolys():
+        corners = vtk_to_numpy(output.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+        part["triangles"] = turned(ids[corners])
+    unused = output.GetFieldData().GetArray("UnusedPointIds")
+    reasons = output.GetFieldData().GetArray("UnusedPointReasons")
+    for i in range(unused.GetNumberOfTuples() if unused else 0):
+        part["unused"].append((int(ids[unused.GetValue(i)]), reasons.GetValue(i)))
+    part["points"] = values_of(output.GetPoints().GetData()) if count else []
+    part["type"] = output.GetPoints().GetDataType() if count else None
+    part["arrays"] = {data.GetArrayName(i): values_of(data.GetAbstractArray(i))
+                      for i in range(data.GetNumberOfArrays())
+                      if data.GetArrayName(i) not in ("vtkGhostType", "GlobalPointIds")}
+    found = output.GetFieldData().GetArray("Lattice")
+    part["counts"] = (delaunay.GetNumberOfDuplicatePoints(), delaunay.GetNumberOfNonFinitePoints(),
+                      delaunay.GetLatticeFound())
+    part["lattice"] = found and found.GetTuple(0)
+    return part
+
+
+def check_union(parts, whole, claim):
+    """Compares what all ranks have made with what one has."""
+    owned = {}
+    for part in parts:
+        for i, number in enumerate(part["ids"]):
+            values = [part["points"][i]] + [part["arrays"][name][i] for name in sorted(part["arrays"])]
+            if not part["ghosts"][i]:
+                check(number not in owned, "%s: point %d has one owner" % (claim, number))
+                owned[number] = values
+    expected = {number: [whole["points"][i]] + [whole["arrays"][name][i] for name in sorted(whole["arrays"])]
+                for i, number in enumerate(whole["ids"])}
+    check(owned == expected, claim + ": points and their values are those of one rank")
+    for part in parts:
+        ghosts = [i for i, flag in enumerate(part["ghosts"]) if flag]
+        check(ghosts == list(range(len(part["ids"]) - len(ghosts), len(part["ids"]))),
+              claim + ": points of other ranks come last")
+        for i in ghosts:
+            values = [part["points"][i]] + [part["arrays"][name][i] for name in sorted(part["arrays"])]
+            check(part["ghosts"][i] == 1 and values == expected[part["ids"][i]],
+                  "%s: point %d is the owner's" % (claim, part["ids"][i]))
+        used = {corner for triangle in part["triangles"] for corner in triangle}
+        check(all(part["ids"][i] in used for i in ghosts), claim + ": points of other ranks are corners")
+        check(part["counts"] == whole["counts"], "%s: counts %s, not %s" % (claim, part["counts"], whole["counts"]))
+        check(not part["ids"] or part["lattice"] == whole["lattice"], claim + ": the lattice")
+        check(part["type"] in (None, whole["type"]), claim + ": the type of points")
+    triangles = [triangle for part in parts for triangle in part["triangles"]]
+    check(len(triangles) == len(set(triangles)), claim + ": each triangle is on one rank")
+    check(set(triangles) == set(whole["triangles"]),
+          "%s: %d triangles are the %d of one rank" % (claim, len(triangles), len(whole["triangles"])))
+    unused = [point for part in parts for point in part["unused"]]
+    check(sorted(unused) == sorted(whole["unused"]), claim + ": each unused point is told once")
+
+
+def compare(claim, coordinates, owners, ids=None, arrays=(), **properties):
+    """Triangulates a cloud on all ranks, and on rank 0 alone. All ranks have the same arguments.
+
+    Without ids, points are numbered rank by rank, and by their places on each.
+    """
+    mine = numpy.flatnonzero(owners == RANK)
+    if ids is not None and len(set(owners)) == 1:
+        mine = mine[numpy.argsort(ids[mine])]  # on one rank, places decide, not ids
+    order = numpy.argsort(owners, kind="stable") if ids is None else numpy.argsort(ids, kind="stable")
+    part, messages = triangulate(
+        cloud(coordinates[mine], None if ids is None else ids[mine], [(n, a[mine]) for n, a in arrays]), False,
+        **properties)
+    check(RANK == 0 or not messages, "%s: rank %d is silent: %s" % (claim, RANK, messages))
+    parts = WORLD.gather(part_of(part))
+    if RANK == 0:
+        numbers = numpy.arange(len(order)) if ids is None else ids[order]
+        given = arrays if ids is None else (("numbers", ids),) + tuple(arrays)
+        whole, expected = triangulate(
+            cloud(coordinates[order], None, [(n, a[order]) for n, a in given]), True, **properties)
+        check(messages == expected, "%s: messages %s, not %s" % (claim, messages, expected))
+        check_union(parts, part_of(whole, numbers), claim)
+
+
+def owners_of(random, count):
+    """Which rank has which point: drawn, in stretches, in rows, on few ranks, on one but for a point."""
+    kind = random.integers(5)
+    if kind == 0 or count < COUNT:
+        return random.integers(COUNT, size=count)
+    if kind == 1:
+        return numpy.sort(random.integers(COUNT, size=count))
+    if kind == 2:
+        return numpy.arange(count) % COUNT
+    if kind == 3:
+        return random.choice(random.integers(COUNT, size=max(1, COUNT // 2)), size=count)
+    owners = numpy.full(count, random.integers(COUNT))
+    owners[random.integers(count)] = random.integers(COUNT)
+    return owners
+
+
+def tracks(random, count):
+    """Points along lines of a ship, dense along them and far between."""
+    line = random.integers(6, size=count)
+    along = random.uniform(0, 100, count)
+    return numpy.stack((along, 20.0 * line + 0.1 * numpy.sin(along), along), axis=1)
+
+
+def clusters(random, count):
+    centres = random.uniform(0, 1e5, (5, 2))
+    spread = 10.0 ** random.integers(-3, 4, 5)
+    which = random.integers(5, size=count)
+    places = centres[which] + spread[which, None] * random.standard_normal((count, 2))
+    return numpy.column_stack((places, random.random(count)))
+
+
+def lattice(random, count):
+    """Nodes of a lattice along the axes or turned, some missing; sometimes a point beside them."""
+    side = max(2, int(count ** 0.5))
+    i, j = numpy.meshgrid(numpy.arange(side), numpy.arange(side))
+    kept = random.random(side * side) < random.choice([1.0, 0.8, 0.3])
+    u, v = random.choice([((25.0, 0.0), (0.0, 12.5)), ((20.0, 15.0), (-9.0, 12.0))])
+    nodes = numpy.stack((i.ravel() * u[0] + j.ravel() * v[0], i.ravel() * u[1] + j.ravel() * v[1],
+                         (i * j).ravel()), axis=1)[kept]
+    nodes += [612000.0, 6073000.0, 0.0]
+    if random.random() < 0.3:
+        nodes[:, :2] += random.uniform(-0.01, 0.01, (len(nodes), 2))
+    if random.random() < 0.2 and len(nodes):
+        nodes[random.integers(len(nodes)), 0] += 3.0
+    return nodes
+
+
+def small_lattice(random, count):
+    return random.integers(2 + random.integers(9), size=(count, 3)).astype(float)
+
+
+def line(random, count):
+    along = random.integers(1000, size=count)
+    return numpy.stack((along, 3.0 + along, random.random(count)), axis=1)
+
+
+def circle(random, count):
+    angles = numpy.linspace(0.0, 2.0 * numpy.pi, min(count, 200), endpoint=False)
+    return numpy.stack((numpy.cos(angles), numpy.sin(angles), angles), axis=1)
+
+
+CLOUDS = (lambda random, count: random.random((count, 3)), tracks, clusters, lattice, small_lattice, line, circle)
+
+
+def compare_random(random, claim):
+    """Compares one cloud, drawn with what else can be drawn."""
+    count = int(random.choice([0, 1, 2, 3, 5, COUNT, 30, 300, 2000]))
+    coordinates = CLOUDS[random.integers(len(CLOUDS))](random, count)
+    count = len(coordinates)
+    if random.random() < 0.2 and count:
+        wrong = random.integers(count, size=1 + count // 20)
+        coordinates[wrong, random.integers(3, size=len(wrong))] = random.choice([numpy.nan, numpy.inf, -numpy.inf])
+    if random.random() < 0.3 and count:
+        twice = random.integers(count, size=1 + count // 3)
+        again = coordinates[twice]
+        again[:, 2] = random.integers(3, size=len(again))
+        coordinates = numpy.vstack((coordinates, again))
+        count = len(coordinates)
+    if random.random() < 0.3:
+        coordinates = coordinates.astype(numpy.float32)
+    ids = random.permutation(3 * count)[:count] if random.random() < 0.4 else None
+    arrays = ()
+    if random.random() < 0.3:
+        arrays = (("whole", random.integers(-9, 9, count).astype(numpy.int16)),
+                  ("vector", random.random((count, 3))),
+                  ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
+    limit = random.choice([0.0, 0.0, 0.05, 1.5, 30.0])
+    compare(claim, coordinates, owners_of(random, count), ids, arrays,
+            DuplicatePolicy=int(random.integers(POLICIES)), MaximumEdgeLength=float(limit),
+            LatticeMode=int(random.random() < 0.3))
+
+
+def check_aborts(random, count, size):
+    """An abort on one rank, at any moment, ends all of them."""
+    late, reached = [], 0
+    for i in range(count):
+        at, culprit = 0.9 * random.random(), random.integers(COUNT)  # the last tenth is one rank's own
+        coordinates = random.random((size, 3))
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetNumberOfThreads(1)
+        delaunay.SetInputData(cloud(coordinates[RANK::COUNT]))
+        begun = []
+
+        def stop(caller, _event):
+            if RANK == culprit and caller.GetProgress() >= at and not begun:
+                begun.append(time.monotonic())
+                caller.SetAbortExecute(1)
+
+        delaunay.AddObserver("ProgressEvent", stop)
+        delaunay.AddObserver("WarningEvent", lambda *_: None)  # that it was stopped
+        delaunay.UpdatePiece(RANK, COUNT, 0)
+        ended = time.monotonic()
+        begun = WORLD.bcast(begun, int(culprit))
+        if begun:
+            reached += 1
+            late.append(ended - begun[0])
+            check(delaunay.GetOutput().GetNumberOfPoints() == 0, "rank %d is empty after abort %d" % (RANK, i))
+    check(reached > count // 2, "%d of %d aborts have come to pass" % (reached, count))
+    return max(WORLD.allgather(max(late, default=0.0)))
+
+
+def check_kinds():
+    """One cloud of each kind, with its own name."""
+    random = numpy.random.default_rng(21)
+    for make in CLOUDS:
+        coordinates = make(random, 1500)
+        compare(make.__name__, coordinates, random.integers(COUNT, size=len(coordinates)))
+    coordinates = random.random((1500, 3))
+    compare("points on every other rank", coordinates, 2 * random.integers((COUNT + 1) // 2, size=1500))
+    compare("a point on each rank", coordinates[:COUNT], numpy.arange(COUNT))
+    compare("two points", coordinates[:2], numpy.arange(2) % COUNT)
+    compare("no point", coordinates[:0], numpy.zeros(0, int))
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--clouds", type=int, default=40)
+    parser.add_argument("--aborts", type=int, default=4)
+    parser.add_argument("--size", type=int, default=20000, help="points of a cloud that is aborted")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    check_kinds()
+    random = numpy.random.default_rng(options.seed)
+    for i in range(options.clouds):
+        compare_random(random, "cloud %d of seed %d" % (i, options.seed))
+    latest = check_aborts(random, options.aborts, options.size)
+    failures = sum(WORLD.allgather(len(FAILURES)))
+    if RANK == 0:
+        print("%d ranks, %d clouds, %d aborts (the latest took %.2f s): %d failures" % (
+            COUNT, options.clouds, options.aborts, latest, failures))
+    sys.exit(1 if failures else 0)
+
+
+main()
