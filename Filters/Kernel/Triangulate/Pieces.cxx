@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -25,6 +27,10 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   // With d above it, the radius is above 1e-101, and what products lose below 1e-308 shifts the centre
   // by less than 1e-122: far less than the rounding that is allowed for.
   constexpr double smallest = 1e-200;
+  if (this->HoldsByFar(a, b, c))
+  {
+    return true;
+  }
   const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
   const double d = 2.0 * (bx * cy - by * cx);
   const double errorOfD = unit * (std::fabs(bx * cy) + std::fabs(by * cx));
@@ -46,6 +52,19 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   return isInside(a.X, x, this->Low.X, this->High.X) && isInside(a.Y, y, this->Low.Y, this->High.Y);
 }
 
+bool Cell::HoldsByFar(Point2 a, Point2 b, Point2 c) const
+{
+  const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
+  const double d = 2.0 * (bx * cy - by * cx);
+  const double distance = std::min(std::min(a.X - this->Low.X, this->High.X - a.X),
+    std::min(a.Y - this->Low.Y, this->High.Y - a.Y));
+  // The product of the squared sides is that of radius and d, squared.
+  const double sides = (bx * bx + by * by) * (cx * cx + cy * cy) * SquaredLength(b, c);
+  // Where nothing cancels or underflows, rounding takes far less than the hundredth that is spared.
+  return std::fabs(d) > 1e-6 * (std::fabs(bx * cy) + std::fabs(by * cx)) && sides > 1e-250 &&
+    sides < 1e300 && distance > 0.0 && 4.1 * sides < distance * distance * d * d;
+}
+
 Piece Join(Piece&& one, const Piece& other)
 {
   Piece joined = std::move(one);
@@ -64,6 +83,15 @@ namespace
 {
 using Edge = std::pair<Index, Index>;
 
+/** In loops after the triangulation, which has told all progress: lets an abort in. */
+void CheckAbort(const Progress& progress, std::size_t step)
+{
+  if (step % 49152 == 0) // also a multiple of three
+  {
+    Report(progress, 1.0);
+  }
+}
+
 /** The mesh of a piece, with the state of its triangles. */
 struct SettledMesh
 {
@@ -73,7 +101,7 @@ struct SettledMesh
     Covered, // lies where triangles have been settled before
     Settled  // by this cell
   };
-  Mesh Surface;
+  Buffer<Index> Triangles;
   std::vector<State> States; // of each triangle
   std::vector<Edge> Seam;    // the edges of the piece, sorted
   std::vector<Index> Unused; // places of duplicates and the like, increasing
@@ -86,7 +114,7 @@ struct SettledMesh
   Edge EndsOf(Index halfEdge) const
   {
     const Index next = halfEdge % 3 == 2 ? halfEdge - 2 : halfEdge + 1;
-    return { this->Surface.Triangles[halfEdge], this->Surface.Triangles[next] };
+    return { this->Triangles[halfEdge], this->Triangles[next] };
   }
 };
 
@@ -101,14 +129,8 @@ SettledMesh Triangulated(
     lattice ? TriangulateNodes(view, *lattice, options, areAll) : Triangulate(view, options);
   SettledMesh mesh;
   mesh.Unused = std::move(triangulation.UnusedPoints);
-  mesh.Surface.Points.reserve(view.Count);
-  for (Index i = 0; i < view.Count; ++i)
-  {
-    mesh.Surface.Points.push_back(view.At(i));
-  }
-  mesh.Surface.Triangles.assign(triangulation.Triangles.begin(), triangulation.Triangles.end());
-  mesh.Surface.ConnectTwins();
-  mesh.States.assign(mesh.Surface.Triangles.size() / 3, SettledMesh::Open);
+  mesh.Triangles = std::move(triangulation.Triangles);
+  mesh.States.assign(mesh.Triangles.size() / 3, SettledMesh::Open);
   for (std::size_t i = 0; i < piece.Edges.size(); i += 2)
   {
     mesh.Seam.emplace_back(piece.Edges[i], piece.Edges[i + 1]);
@@ -118,12 +140,20 @@ SettledMesh Triangulated(
 }
 
 /** Marks what lies to the left of edges of the piece, as far as the next such edges. */
-void MarkCovered(SettledMesh& mesh)
+void MarkCovered(Index numberOfPoints, SettledMesh& mesh)
 {
+  if (mesh.Seam.empty())
+  {
+    return;
+  }
+  Mesh surface;
+  surface.Points.resize(static_cast<std::size_t>(numberOfPoints));
+  surface.Triangles.assign(mesh.Triangles.begin(), mesh.Triangles.end());
+  surface.ConnectTwins();
   std::vector<Index> stack;
   std::size_t found = 0;
-  const Index count = static_cast<Index>(mesh.Surface.Triangles.size());
-  for (Index h = 0; !mesh.Seam.empty() && h < count; ++h)
+  const Index count = static_cast<Index>(mesh.Triangles.size());
+  for (Index h = 0; h < count; ++h)
   {
     if (mesh.IsOnSeam(h))
     {
@@ -147,7 +177,7 @@ void MarkCovered(SettledMesh& mesh)
     mesh.States[t] = SettledMesh::Covered;
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
-      const Index twin = mesh.Surface.Twins[h];
+      const Index twin = surface.Twins[h];
       if (twin != Mesh::Border && !mesh.IsOnSeam(h))
       {
         stack.push_back(twin / 3);
@@ -156,8 +186,70 @@ void MarkCovered(SettledMesh& mesh)
   }
 }
 
+/**
+ * Marks the vertices on the border of the mesh. Around any other vertex, the ends of the edges that
+ * leave it are those from which edges come in, so that their sums are equal.
+ */
+std::vector<char> FindBorder(
+  Index numberOfPoints, const Buffer<Index>& triangles, const Progress& progress)
+{
+  std::vector<std::uint32_t> sums(static_cast<std::size_t>(numberOfPoints), 0);
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    CheckAbort(progress, i);
+    const Index a = triangles[i], b = triangles[i + 1], c = triangles[i + 2];
+    sums[a] += static_cast<std::uint32_t>(b - c);
+    sums[b] += static_cast<std::uint32_t>(c - a);
+    sums[c] += static_cast<std::uint32_t>(a - b);
+  }
+  std::vector<char> isOnBorder(sums.size());
+  std::transform(sums.begin(), sums.end(), isOnBorder.begin(),
+    [](std::uint32_t sum) { return static_cast<char>(sum != 0); });
+  return isOnBorder;
+}
+
+bool Has(const std::vector<Edge>& sorted, Index from, Index to)
+{
+  return std::binary_search(sorted.begin(), sorted.end(), Edge{ from, to });
+}
+
+/**
+ * The edges of settled or covered triangles that have none of these on their right.
+ * @param[in] open  the edges of open triangles, sorted
+ */
+std::vector<Edge> FindEdgesOfSeam(const std::vector<Edge>& open,
+  const std::vector<char>& isOnBorder, const SettledMesh& mesh, const Progress& progress)
+{
+  std::vector<Edge> across; // edges between vertices of the border: those of the border, and others
+  const Index count = static_cast<Index>(mesh.Triangles.size());
+  for (Index h = 0; h < count; ++h)
+  {
+    CheckAbort(progress, h);
+    const Edge ends = mesh.EndsOf(h);
+    if (isOnBorder[ends.first] && isOnBorder[ends.second])
+    {
+      across.push_back(ends);
+    }
+  }
+  std::sort(across.begin(), across.end());
+  const auto isBorder = [&across](const Edge& edge) {
+    return Has(across, edge.first, edge.second) && !Has(across, edge.second, edge.first);
+  };
+  std::vector<Edge> edges;
+  for (const Edge& edge : open)
+  {
+    if (!Has(open, edge.second, edge.first) && !isBorder(edge))
+    {
+      edges.emplace_back(edge.second, edge.first);
+    }
+  }
+  std::copy_if(across.begin(), across.end(), std::back_inserter(edges),
+    [&](const Edge& edge) { return isBorder(edge) && !Has(open, edge.first, edge.second); });
+  return edges;
+}
+
 /** The corners of open triangles, and the edges between settled ones and these or the outside. */
-Piece SeamOf(const Piece& piece, const SettledMesh& mesh)
+Piece SeamOf(const Piece& piece, const SettledMesh& mesh, const Progress& progress)
 {
   std::vector<Index> placeOf(piece.Ids.size(), None);
   Piece seam;
@@ -171,23 +263,24 @@ Piece SeamOf(const Piece& piece, const SettledMesh& mesh)
     }
     return placeOf[vertex];
   };
-  const auto isOpen = [&](Index t) { return mesh.States[t] == SettledMesh::Open; };
-  const Index count = static_cast<Index>(mesh.Surface.Triangles.size());
-  for (Index h = 0; h < count; ++h)
+  std::vector<Edge> open;
+  for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
-    const Edge ends = mesh.EndsOf(h);
-    const Index twin = mesh.Surface.Twins[h];
-    if (isOpen(h / 3))
+    for (Index h = 3 * static_cast<Index>(t), k = 0; mesh.States[t] == SettledMesh::Open && k < 3;
+         ++k)
     {
-      place(ends.first);
-    }
-    if (!isOpen(h / 3) && (twin == Mesh::Border || isOpen(twin / 3)))
-    {
-      const Index first = place(ends.first);
-      seam.Edges.insert(seam.Edges.end(), { first, place(ends.second) });
+      open.push_back(mesh.EndsOf(h + k));
     }
   }
-  for (Index i = 0; count == 0 && i < piece.Count(); ++i) // on a line, or fewer than three
+  std::sort(open.begin(), open.end());
+  std::for_each(open.begin(), open.end(), [&](const Edge& edge) { place(edge.first); });
+  const std::vector<char> isOnBorder = FindBorder(piece.Count(), mesh.Triangles, progress);
+  for (const Edge& edge : FindEdgesOfSeam(open, isOnBorder, mesh, progress))
+  {
+    const Index first = place(edge.first);
+    seam.Edges.insert(seam.Edges.end(), { first, place(edge.second) });
+  }
+  for (Index i = 0; mesh.States.empty() && i < piece.Count(); ++i) // on a line, or fewer than three
   {
     if (!std::binary_search(mesh.Unused.begin(), mesh.Unused.end(), i))
     {
@@ -218,20 +311,23 @@ Piece Settle(const Piece& piece, const Cell& cell, const DelaunayOptions& option
   std::vector<GlobalTriangle>& settled, const SharedLattice* lattice)
 {
   SettledMesh mesh = Triangulated(piece, options, lattice);
-  MarkCovered(mesh);
+  MarkCovered(piece.Count(), mesh);
+  const auto at = [&piece](Index vertex) {
+    const double* const xyz = piece.Coordinates.data() + 3 * static_cast<std::size_t>(vertex);
+    return Point2{ xyz[0], xyz[1] };
+  };
   for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
-    const Index* const corners = mesh.Surface.Triangles.data() + 3 * t;
-    const Point2 a = mesh.Surface.Points[corners[0]];
-    const Point2 b = mesh.Surface.Points[corners[1]];
-    const Point2 c = mesh.Surface.Points[corners[2]];
-    if (mesh.States[t] == SettledMesh::Open && HoldsCircleOf(cell, a, b, c, lattice))
+    CheckAbort(options.Monitor, t);
+    const Index* const c = mesh.Triangles.data() + 3 * t;
+    if (mesh.States[t] == SettledMesh::Open &&
+      HoldsCircleOf(cell, at(c[0]), at(c[1]), at(c[2]), lattice))
     {
       mesh.States[t] = SettledMesh::Settled;
-      settled.push_back({ piece.Ids[corners[0]], piece.Ids[corners[1]], piece.Ids[corners[2]] });
+      settled.push_back({ piece.Ids[c[0]], piece.Ids[c[1]], piece.Ids[c[2]] });
     }
   }
-  return SeamOf(piece, mesh);
+  return SeamOf(piece, mesh, options.Monitor);
 }
 
 } // namespace elevation

@@ -61,6 +61,10 @@ struct Cell
    * against it, so that a circle near the border may be refused, but never one taken by mistake.
    */
   bool HoldsCircle(Point2 a, Point2 b, Point2 c) const;
+
+private:
+  /** Whether the corner a is so far from the border that a rough bound of the radius will do. */
+  bool HoldsByFar(Point2 a, Point2 b, Point2 c) const;
 };
 
 /** A number of a point in the whole cloud, which may have more points than an Index counts. */
