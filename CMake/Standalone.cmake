@@ -143,6 +143,10 @@ es_build_module()
 
 # ---- the CMake package -------------------------------------------------------------------------
 include(CMakePackageConfigHelpers)
+set(es_vtk_components_used "") # besides those that are always used
+if (TARGET VTK::ParallelMPI)
+  set(es_vtk_components_used "ParallelMPI")
+endif ()
 configure_package_config_file(
   "${CMAKE_CURRENT_LIST_DIR}/vtkElevationSurfaceConfig.cmake.in"
   "${CMAKE_BINARY_DIR}/${es_cmake_destination}/vtkElevationSurfaceConfig.cmake"
