@@ -138,6 +138,8 @@ def check_union(parts, whole, claim):
                 for i, number in enumerate(whole["ids"])}
     check(owned == expected, claim + ": points and their values are those of one rank")
     for part in parts:
+        own = [number for number, flag in zip(part["ids"], part["ghosts"]) if not flag]
+        check(own == sorted(own), claim + ": points are in the order of their ids")
         ghosts = [i for i, flag in enumerate(part["ghosts"]) if flag]
         check(ghosts == list(range(len(part["ids"]) - len(ghosts), len(part["ids"]))),
               claim + ": points of other ranks come last")
@@ -302,6 +304,27 @@ def check_aborts(random, count, size):
     return max(WORLD.allgather(max(late, default=0.0)))
 
 
+def check_refused(data, part, claim):
+    """One error of all ranks, by rank 0, and nothing on any."""
+    delaunay, messages = triangulate(data, False)
+    check(len(messages) == (RANK == 0) and (RANK > 0 or part in messages[0][1]),
+          "rank %d, %s: one error with %r, not %s" % (RANK, claim, part, messages))
+    check(delaunay.GetOutput().GetNumberOfPoints() == 0, "rank %d, %s: no point" % (RANK, claim))
+
+
+def check_errors(random):
+    """What is wrong on one rank, or between them, is an error on all."""
+    if COUNT == 1:
+        return
+    for culprit in range(min(COUNT, 3)):
+        data = cloud(random.random((COUNT, 50, 3))[RANK], None, [("short", numpy.zeros(50 if RANK != culprit else 49))])
+        check_refused(data, 'On rank %d: Point array "short" has 49 tuples' % culprit, "a short array")
+    # Two points of one part of the plane have the same id.
+    corner = numpy.array([[0.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.001, 0.0]])
+    check_refused(cloud(corner + [1e-5 * RANK, 0.0, 0.0], numpy.array([7, 7 + COUNT, 8 + COUNT + RANK, 9 + 3 * COUNT + RANK])),
+                  "have the same global id, 7", "ids of several points")
+
+
 def check_kinds():
     """One cloud of each kind, with its own name."""
     random = numpy.random.default_rng(21)
@@ -309,6 +332,16 @@ def check_kinds():
         coordinates = make(random, 1500)
         compare(make.__name__, coordinates, random.integers(COUNT, size=len(coordinates)))
     coordinates = random.random((1500, 3))
+    twice = numpy.vstack((coordinates, coordinates[:400], coordinates[:90])) + [0.0, 0.0, 1.0]
+    twice[:, 2] = random.integers(3, size=len(twice))
+    names = numpy.array(["t" * (i % 4) + str(i) for i in range(len(twice))], dtype="U")
+    arrays = (("whole", random.integers(-9, 9, len(twice)).astype(numpy.int16)),
+              ("single", random.random((len(twice), 2)).astype(numpy.float32)), ("text", names))
+    for policy in range(POLICIES):
+        owners = random.integers(COUNT, size=len(twice))
+        compare("duplicates, policy %d" % policy, twice, owners, None, arrays, DuplicatePolicy=policy)
+        compare("duplicates with ids, policy %d" % policy, twice, owners, random.permutation(len(twice)), arrays,
+                DuplicatePolicy=policy)
     compare("points on every other rank", coordinates, 2 * random.integers((COUNT + 1) // 2, size=1500))
     compare("a point on each rank", coordinates[:COUNT], numpy.arange(COUNT))
     compare("two points", coordinates[:2], numpy.arange(2) % COUNT)
@@ -317,13 +350,14 @@ def check_kinds():
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--clouds", type=int, default=40)
+    parser.add_argument("--clouds", type=int, default=30)
     parser.add_argument("--aborts", type=int, default=4)
     parser.add_argument("--size", type=int, default=20000, help="points of a cloud that is aborted")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     check_kinds()
     random = numpy.random.default_rng(options.seed)
+    check_errors(random)
     for i in range(options.clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     latest = check_aborts(random, options.aborts, options.size)
