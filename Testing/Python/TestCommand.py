@@ -164,9 +164,11 @@ class Interrupts(InFolder):
         stopped = 0
         for run in range(25):
             number = moments.choice((signal.SIGINT, signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
-            moment = moments.uniform(0.15, 1.0) * whole
+            moment = moments.uniform(0.0, 0.9) * whole
             with self.subTest(run=run, signal=number, moment=moment):
                 program = self.start("a.xyz", "-o", "a.ply")
+                while not os.listdir(self.temporary) and program.poll() is None:
+                    time.sleep(0.001)  # before its folder is there, Python itself starts
                 time.sleep(moment)
                 program.send_signal(number)
                 asked = time.monotonic()
