@@ -35,11 +35,12 @@ from .accounts import (
 )
 from .blocks import is_empty, number_of_points, parts_of, put_parts
 from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
+from .gathering import gathered
 from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, counted, of_reason
 from .progress import share
 from .properties import PROPERTIES
-from .ranks import check_ranks, controller_of, shared, together
+from .ranks import controller_of, is_to_speak, shared, together
 from .reading import read, read_boundary, read_faults
 from .reconstruction import STEPS, reconstruct
 from .report import crs_name
@@ -297,7 +298,8 @@ class ReconstructElevationSurface(TellingAlgorithm):
         controller = controller_of(outputs)
         parts, is_here = parts_of(data), True
         if controller:
-            is_here = check_ranks(controller, [p for p in parts if number_of_points(p.data) > 0])
+            parts = gathered(controller, parts, self.warn)
+            is_here = is_to_speak(controller, [p for p in parts if number_of_points(p.data) > 0])
         lines = {}
         for name, given in (("boundary", inputs[1]), ("faults", inputs[2])):
             if given.GetNumberOfInformationObjects():

@@ -12,7 +12,7 @@ import json
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdTypeArray
-from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkTable
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from .messages import ElevationSurfaceError
@@ -87,30 +87,13 @@ def number_of(place):
     return int.from_bytes(hashlib.blake2b(repr(place).encode(), digest_size=7).digest(), "big")
 
 
-def check_ranks(controller, parts):
-    """Raises ElevationSurfaceError on all ranks where the points of one surface are on several.
+def is_to_speak(controller, parts):
+    """Whether this rank is to speak of the result: it has points, or is the first if none has.
 
     parts  those of the input (Part) that hold points here
-
-    Returns whether this rank is to speak of the result: it has points, or is the first of those
-    where none has.
     """
-    own = {number_of(part.surface): part for part in parts}
-    ranks = [row.tolist() for row in collected(controller, list(own))]
-    for number in sorted(set().union(*ranks)):
-        count = sum(number in here for here in ranks)
-        if count > 1:
-            part = own.get(number)
-            name = part.block if part and part.block else "the input"
-            what, first = "points", ""
-            if part and isinstance(part.data, vtkTable):
-                what, first = "rows", "Table To Points and then "
-            raise ElevationSurfaceError(
-                f"the {what} of {name} are on {count} ranks (processes), but a surface can only be "
-                f"made on one. Bring them to one rank first, in ParaView with the filter {first}"
-                "Aggregate Dataset (1 target process), or run on one rank."
-            )
-    return bool(parts) or not any(ranks) and controller.GetLocalProcessId() == 0
+    counts = together(controller, lambda: [len(parts)])
+    return bool(parts) or not any(counts) and controller.GetLocalProcessId() == 0
 
 
 def shared(controller, work):

@@ -96,8 +96,6 @@ for name, make, data in FILTERS:
     is_first = name in ("reconstruct", "delaunay")  # the others come after a filter that has told
     check_equal(len(messages), 1 if RANK == 0 and is_first else 0,
                 "rank %d, %s, warnings of no points at all" % (RANK, name))
-    if name == "reconstruct":
-        check_refused(make(Input=given(data)), "Aggregate Dataset", name + ", points on all ranks", None)
 
 # Results are those of all ranks, on all ranks.
 twice = simple.GridDelaunay2D(Input=given(cloud(numpy.vstack((CLOUD, CLOUD[:5]))) if RANK == LAST else EMPTY))

@@ -10,7 +10,8 @@ from paraview import simple
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
-    vtkCellArray, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData, vtkUnstructuredGrid)
+    vtkCellArray, vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData,
+    vtkRectilinearGrid, vtkTable, vtkUnstructuredGrid)
 
 from on_ranks import COUNT, LAST, RANK, alone, everywhere, given, update
 from plugin_testing import check, check_equal, finish, start
@@ -210,6 +211,55 @@ expected = simple.FillElevationHoles(
 messages, outputs = update(chain)
 check_told(messages, "", "filters in a row")
 check_same(outputs[0], alone(expected)[0], "filters in a row")
+
+# The whole chain, of points, tables and grids: one surface, and one report, on the first rank.
+def table(rows):
+    data = vtkTable()
+    for i, name in enumerate(("easting", "northing", "z")):
+        data.AddColumn(named(numpy_to_vtk(XYZ[rows, i], deep=True), name))
+    return data
+
+
+def grid(kind, first, last):
+    """Some rows of a grid, with a gap; neighbours have a row in common."""
+    data = kind()
+    data.SetExtent(3, 40, int(first), int(last), 0, 0)
+    x, y = numpy.arange(3, 41.0), numpy.arange(first, last + 1.0)
+    if kind is vtkRectilinearGrid:
+        data.SetXCoordinates(numpy_to_vtk(x ** 1.1, deep=True))
+        data.SetYCoordinates(numpy_to_vtk(y * 2.0, deep=True))
+        data.SetZCoordinates(numpy_to_vtk(numpy.zeros(1), deep=True))
+    z = numpy.hypot(x, y[:, None])
+    z[(z > 20) & (z < 24)] = -9999
+    data.GetPointData().SetScalars(named(numpy_to_vtk(z.ravel(), deep=True), "Depth"))
+    return data
+
+
+cuts = numpy.linspace(0, 30, COUNT + 1).round()
+slice_of_mine, order = spreads["slices"][RANK], spreads["in no order"][RANK]
+for claim, mine, whole in (
+        ("points", cloud(order), cloud(ALL)),
+        ("points without ids", cloud(slice_of_mine, False), cloud(ALL, False)),
+        ("table", table(slice_of_mine), table(ALL)),
+        ("image", grid(vtkImageData, cuts[RANK], cuts[RANK + 1]), grid(vtkImageData, 0, 30)),
+        ("grid", grid(vtkRectilinearGrid, cuts[RANK], cuts[RANK + 1]), grid(vtkRectilinearGrid, 0, 30))):
+    source = simple.ReconstructElevationSurface(Input=given(mine))
+    alike = simple.ReconstructElevationSurface(Input=given(whole))
+    messages, outputs = update(source)
+    expected = alone(alike)
+    check_told(messages, "", "chain, " + claim)
+    check_same(outputs[0], expected[0], "chain, " + claim)
+    check_equal([outputs[0].GetPointData().HasArray(expected[0].GetPointData().GetArrayName(i))
+                 for i in range(expected[0].GetPointData().GetNumberOfArrays())
+                 if outputs[0].GetNumberOfPoints()].count(0), 0, "rank %d, arrays, chain, %s" % (RANK, claim))
+    check_equal(value(source, "Report"), value(alike, "Report"), "rank %d, report, %s" % (RANK, claim))
+    check_equal(outputs[3].GetNumberOfRows(), expected[3].GetNumberOfRows() if RANK == 0 else 0,
+                "rank %d, rows of the report, %s" % (RANK, claim))
+messages, outputs = update(simple.ReconstructElevationSurface(
+    Input=given(table(slice_of_mine) if RANK == LAST else cloud(slice_of_mine))))
+check(len(messages) == 1 and "different kinds of it: points and tables" in messages[0][1],
+      "rank %d, kinds: %s" % (RANK, messages))
+check_equal(outputs[0].GetNumberOfPoints(), 0, "rank %d, points of different kinds" % RANK)
 
 # Blocks and partitions.
 whole = cloud(ALL) if RANK == LAST else EMPTY
