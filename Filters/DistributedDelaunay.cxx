@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedDelaunay.h"
 
+#include "ConstraintsOfRanks.h"
 #include "Kernel/Base/Base.h"
 #include "LatticeOfRanks.h"
 #include "PointOwners.h"
@@ -85,6 +86,7 @@ public:
   void Settle();
   void SendTriangles();
   void FetchOthers();
+  void Recover(const LinesOfRanks& lines);
   void PlaceCorners();
 
   Index NumberOfSeamPoints = 0;
@@ -101,6 +103,8 @@ private:
     const SharedLattice* lattice, std::vector<GlobalTriangle>& triangles);
   bool IsOffAnywhere(const SharedLattice* lattice) const;
   PointView OwnPoints() const;
+  Point2 PlaceOf(GlobalId number) const;
+  void ListOthers();
   void ListUnused(const Progress& progress);
   int RankOf(int cell) const { return this->Owners.RankOfCell[cell]; }
   bool IsOwn(GlobalId number) const { return number >= this->First && number < this->Last; }
@@ -322,17 +326,46 @@ void Work::SendTriangles()
       const char* from = bytes.data();
       TakeFrom(from, bytes.size() / sizeof(GlobalTriangle), triangles);
       this->Triangles.insert(this->Triangles.end(), triangles.begin(), triangles.end());
-      for (const GlobalTriangle& triangle : triangles)
-      {
-        std::copy_if(triangle.begin(), triangle.end(), std::back_inserter(this->Part.OtherNumbers),
-          [this](GlobalId id) { return !this->IsOwn(id); });
-      }
     }
-    std::sort(this->Part.OtherNumbers.begin(), this->Part.OtherNumbers.end());
-    this->Part.OtherNumbers.erase(
-      std::unique(this->Part.OtherNumbers.begin(), this->Part.OtherNumbers.end()),
-      this->Part.OtherNumbers.end());
+    this->ListOthers();
   });
+}
+
+/** The numbers of corners that other ranks own. */
+void Work::ListOthers()
+{
+  std::vector<GlobalId>& others = this->Part.OtherNumbers;
+  others.clear();
+  for (const GlobalTriangle& triangle : this->Triangles)
+  {
+    std::copy_if(triangle.begin(), triangle.end(), std::back_inserter(others),
+      [this](GlobalId id) { return !this->IsOwn(id); });
+  }
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+}
+
+/** The place of a corner of this rank's triangles. */
+Point2 Work::PlaceOf(GlobalId number) const
+{
+  const std::vector<GlobalId>& others = this->Part.OtherNumbers;
+  const double* const p = this->IsOwn(number)
+    ? this->Part.Own.At(static_cast<std::size_t>(number - this->First))
+    : this->Part.Others.At(std::lower_bound(others.begin(), others.end(), number) - others.begin());
+  return { p[0], p[1] };
+}
+
+/** Makes the pieces of lines edges. */
+void Work::Recover(const LinesOfRanks& lines)
+{
+  RecoverLines(
+    this->All, lines, this->RankOf(0), [this](GlobalId number) { return this->PlaceOf(number); },
+    elevation::Part(this->Options.Monitor, 0.9, 0.92), this->Triangles);
+  this->All.Agree([&]() {
+    this->ListOthers();
+    this->Part.Others = PointRows(this->Part.Kinds);
+  });
+  this->FetchOthers();
 }
 
 void Work::FetchOthers()
@@ -399,20 +432,34 @@ void Work::PlaceCorners()
 }
 } // namespace
 
-DistributedSurface TriangulateOnRanks(
-  const Ranks& ranks, const PointsOfRank& points, const DelaunayOptions& options)
+DistributedSurface TriangulateOnRanks(const Ranks& ranks, const PointsOfRank& points,
+  vtkPolyData* constraints, DelaunayOptions options, std::vector<std::string>& warnings)
 {
   DistributedSurface surface;
   SurfacePart& part = surface.Part;
   const Progress first = Part(options.Monitor, 0.0, 0.15), last = Part(options.Monitor, 0.95, 1.0);
   PointOwners owners = BringToOwners(ranks, points, first, part);
+  LinesOfRanks lines;
+  if (constraints)
+  {
+    const Progress cutting = Part(options.Monitor, 0.14, 0.15);
+    lines = AddLines(ranks, constraints, owners, options, cutting, part, warnings);
+    options.UseLattice = LatticeMode::Off;
+    surface.NumberOfCrossings = lines.NumberOfCrossings;
+    surface.NumberOfAddedPoints = lines.NumberOfOwnPoints;
+  }
   Work work(ranks, options, std::move(owners), part);
   work.Settle();
   surface.NumberOfSeamPoints = work.NumberOfSeamPoints;
   work.SendTriangles();
   work.FetchOthers();
+  if (constraints)
+  {
+    work.Recover(lines);
+  }
   work.PlaceCorners();
-  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(part.Own.Count()),
+  std::vector<vtkIdType> sums = {
+    static_cast<vtkIdType>(part.Own.Count()) - surface.NumberOfAddedPoints,
     static_cast<vtkIdType>(part.Result.Triangles.size() / 3) };
   ranks.Sum(sums);
   surface.NumberOfPoints = sums[0];

@@ -13,6 +13,7 @@
  *      larger cell can, level by level up to the whole plane.
  *   5. These triangles go to the ranks of their lowest corners, which ask the owners of the other
  *      corners for these points and their values.
+ * Constraints are cut before the third pass, and recovered after the last (ConstraintsOfRanks.h).
  *
  * A rank sends 32 bytes for a point, and the values of arrays, once, and the same for the points of
  * some multiple of sqrt(m) of its m points: those of seams, and those at which its triangles meet
@@ -26,26 +27,36 @@
 #include "Ranks.h"
 #include "SurfacePart.h"
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+
 namespace elevation
 {
 
 struct DistributedSurface
 {
   SurfacePart Part;
-  vtkIdType NumberOfPoints = 0;    ///< of all ranks
-  vtkIdType NumberOfTriangles = 0; ///< of all ranks, without a limit of edges
-  EffectOfLimit Effect;            ///< if there is a limit
-  Index NumberOfSeamPoints = 0;    ///< of the cell of this rank
+  vtkIdType NumberOfPoints = 0;       ///< of all ranks, without those that constraints add
+  vtkIdType NumberOfTriangles = 0;    ///< of all ranks, without a limit of edges
+  EffectOfLimit Effect;               ///< if there is a limit
+  Index NumberOfSeamPoints = 0;       ///< of the cell of this rank
+  std::int64_t NumberOfCrossings = 0; ///< of the constraints; the same on all ranks
+  Index NumberOfAddedPoints = 0;      ///< points that these add to the cell of this rank
 };
 
 /**
  * Triangulates the points of all ranks.
  * @param[in] points  those of this rank. Their global ids are taken if all ranks with points have
  *                    them, else the points are numbered rank by rank.
+ * @param[in] constraints  lines, the same on all ranks; or nullptr
+ * @param[out] warnings  on the constraints
  * @throws Error, Aborted on all ranks when any of them fails
  */
-DistributedSurface TriangulateOnRanks(
-  const Ranks& ranks, const PointsOfRank& points, const DelaunayOptions& options);
+DistributedSurface TriangulateOnRanks(const Ranks& ranks, const PointsOfRank& points,
+  vtkPolyData* constraints, DelaunayOptions options, std::vector<std::string>& warnings);
 
 } // namespace elevation
 

@@ -3,6 +3,7 @@
 #include "vtkGridDelaunay2D.h"
 
 #include "Blocks.h"
+#include "Constraints.h"
 #include "DelaunayReport.h"
 #include "DistributedDelaunay.h"
 #include "Joining.h"
@@ -36,72 +37,11 @@ vtkStandardNewMacro(vtkGridDelaunay2D);
 
 namespace
 {
-using elevation::AddedPoint;
 using elevation::ConstraintLines;
 using elevation::Index;
 using elevation::Part;
 using elevation::Progress;
 using elevation::ReportStep;
-
-/** The lines and polygons of the constraints; @a points must outlive them. */
-ConstraintLines ToLines(
-  vtkPolyData* source, const elevation::PointsOfDataSet& points, const Progress& progress)
-{
-  ConstraintLines lines;
-  lines.Points = points.View;
-  elevation::ForEachLine(
-    source, "constraints", progress, [&](const elevation::LineOfDataSet& line) {
-      lines.Vertices.insert(lines.Vertices.end(), line.Ids, line.Ids + line.Size);
-      lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
-      lines.IsClosed.push_back(line.IsPolygon);
-      lines.Cells.push_back(static_cast<Index>(line.Cell));
-    });
-  return lines;
-}
-
-/**
- * Checks that lines and points are in the same place.
- * @param[out] warnings  one is added when most of the lines lie outside
- * @throws Error if there is no line, or all are elsewhere
- */
-void CheckLines(const ConstraintLines& lines, const elevation::PointView& points, int threads,
-  const Progress& progress, std::vector<std::string>& warnings)
-{
-  if (lines.Vertices.empty())
-  {
-    throw elevation::Error("The constraints have no line and no polygon.");
-  }
-  const elevation::Box box = elevation::FindExtent(points,
-    elevation::ResolveNumberOfThreads(threads), progress, [](Index, const elevation::Point2&) {});
-  // Outlines may lie a little outside.
-  const double dx = 0.1 * box.Width(), dy = 0.1 * box.Height();
-  const elevation::Box wide{ { box.Low.X - dx, box.Low.Y - dy },
-    { box.High.X + dx, box.High.Y + dy } };
-  elevation::Box ofLines;
-  std::size_t outside = 0;
-  for (const Index vertex : lines.Vertices)
-  {
-    const elevation::Point2 p = lines.Points.At(vertex);
-    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || box.Low.X > box.High.X)
-    {
-      return; // an error of its own, or there is no point
-    }
-    ofLines.Add(p);
-    outside += wide.Contains(p) ? 0 : 1;
-  }
-  if (!ofLines.Intersects(box))
-  {
-    throw elevation::Error("No constraint meets the points. The constraints are at " +
-      NameOf(ofLines) + ", the points at " + NameOf(box) + ": are both in the same coordinates?");
-  }
-  if (2 * outside > lines.Vertices.size())
-  {
-    warnings.push_back(std::to_string(outside) + " of the " +
-      std::to_string(lines.Vertices.size()) + " points along the constraints' lines lie far " +
-      "outside the points, and become vertices there. The constraints are at " + NameOf(ofLines) +
-      ", the points at " + NameOf(box) + ": are both in the same coordinates?");
-  }
-}
 
 /** Triangulates points, with the lines of a source if there is one. */
 elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
@@ -117,15 +57,18 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   }
   elevation::CheckPointArrays(source, "The constraints'");
   const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
-  const ConstraintLines lines = ToLines(source, own, Part(progress, 0.0, 0.01));
-  CheckLines(lines, points, options.NumberOfThreads, Part(progress, 0.01, 0.02), warnings);
+  const ConstraintLines lines = elevation::ToLines(source, own, Part(progress, 0.0, 0.01));
+  const elevation::Box box =
+    elevation::FindExtent(points, elevation::ResolveNumberOfThreads(options.NumberOfThreads),
+      Part(progress, 0.01, 0.02), [](Index, const elevation::Point2&) {});
+  elevation::CheckLines(lines, box, warnings);
   options.Monitor = Part(progress, 0.02, 1.0);
   return elevation::TriangulateConstrained(points, lines, options);
 }
 
 /** Of the vertices of a triangulation, how many have a triangle. */
-Index CountInTriangles(const elevation::Buffer<Index>& triangles, std::size_t numberOfIds,
-  const Progress& progress)
+Index CountInTriangles(
+  const elevation::Buffer<Index>& triangles, std::size_t numberOfIds, const Progress& progress)
 {
   std::vector<char> has(numberOfIds, 0);
   for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -143,21 +86,6 @@ double Quantile(std::vector<double>& values, double part)
     values.begin() + elevation::PlaceOfQuantile(part, static_cast<vtkIdType>(values.size()));
   std::nth_element(values.begin(), at, values.end());
   return *at;
-}
-
-/** The type of the output's points: float if the added ones are exact in it. */
-int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
-{
-  bool isFloat = !input || input->GetDataType() == VTK_FLOAT;
-  for (const AddedPoint& point : added)
-  {
-    for (const double value : { point.Position.X, point.Position.Y, point.Elevation })
-    {
-      isFloat = isFloat && std::fabs(value) <= std::numeric_limits<float>::max() &&
-        static_cast<double>(static_cast<float>(value)) == value;
-    }
-  }
-  return isFloat ? VTK_FLOAT : VTK_DOUBLE;
 }
 
 /** Tells why most points are without a triangle, and advises a limit. */
@@ -202,9 +130,8 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
 
 /** Tells why there is no triangle, or why most points are without one. */
 void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
-  const elevation::DelaunayOptions& options,
-  const elevation::ConstrainedTriangulation& constrained, const Progress& progress,
-  std::vector<std::string>& warnings)
+  const elevation::DelaunayOptions& options, const elevation::ConstrainedTriangulation& constrained,
+  const Progress& progress, std::vector<std::string>& warnings)
 {
   if (constrained.Result.NumberOfHullPoints == 0)
   {
@@ -221,82 +148,18 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
   }
 }
 
-/** The array of the constraints that matches one of the input, or nullptr. */
-vtkAbstractArray* FindGiven(vtkPointData* source, vtkAbstractArray* array)
-{
-  vtkAbstractArray* given = array->GetName() ? source->GetAbstractArray(array->GetName()) : nullptr;
-  if (!given || given->GetNumberOfComponents() != array->GetNumberOfComponents())
-  {
-    return nullptr;
-  }
-  const bool canConvert =
-    elevation::IsFloatingPoint(array) && vtkArrayDownCast<vtkDataArray>(given);
-  return given->GetDataType() == array->GetDataType() || canConvert ? given : nullptr;
-}
-
-/** Copies the values of points of the constraints. @return the number of these points */
-vtkIdType CopyGiven(vtkAbstractArray* given, const std::vector<AddedPoint>& added,
-  const Progress& progress, vtkAbstractArray* values)
-{
-  const vtkIdType count = static_cast<vtkIdType>(added.size());
-  const vtkIdType first = values->GetNumberOfTuples() - count;
-  const bool isSameType = given && given->GetDataType() == values->GetDataType();
-  auto* const from = isSameType ? nullptr : vtkArrayDownCast<vtkDataArray>(given);
-  auto* const to = vtkArrayDownCast<vtkDataArray>(values);
-  vtkIdType i = 0; // points of the constraints come first, then crossings
-  for (; i < count && added[i].Source != elevation::None; ++i)
-  {
-    ReportStep(progress, static_cast<std::size_t>(i), added.size());
-    if (isSameType)
-    {
-      values->SetTuple(first + i, added[i].Source, given);
-    }
-    for (int c = 0; from && c < from->GetNumberOfComponents(); ++c)
-    {
-      to->SetComponent(first + i, c, from->GetComponent(added[i].Source, c));
-    }
-  }
-  return i;
-}
-
-/** The input's points and arrays, followed by the added points with their values. */
-void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<AddedPoint>& added,
-  const Progress& progress, vtkPolyData* output)
-{
-  const vtkIdType count = static_cast<vtkIdType>(added.size());
-  output->SetPoints(
-    elevation::AppendPoints(input->GetPoints(), count, TypeOfPoints(input->GetPoints(), added),
-      Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
-        xyz[0] = added[i].Position.X;
-        xyz[1] = added[i].Position.Y;
-        xyz[2] = added[i].Elevation;
-      }));
-  elevation::PassExtended(input->GetPointData(), count, output->GetPointData(),
-    Part(progress, 0.4, 1.0),
-    [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
-      elevation::NewValues values;
-      values.First = CopyGiven(FindGiven(source->GetPointData(), before), added, ofArray, after);
-      values.Interpolated = [&added, numbers = vtkArrayDownCast<vtkDataArray>(after)](
-                              vtkIdType i, int c) {
-        const double from = numbers->GetComponent(added[i].From, c);
-        const double to = numbers->GetComponent(added[i].To, c);
-        return from + added[i].Fraction * (to - from);
-      };
-      return values;
-    });
-}
-
 /**
  * Triangulates a block whose points are on several ranks.
- * @return the part of this rank, without triangles
+ * @return the counts of this rank; crossings of all ranks on the first one
  */
-elevation::Triangulation TriangulateSpread(
+elevation::ConstrainedTriangulation TriangulateSpread(
   const elevation::Ranks& ranks, elevation::DelaunayOptions options, elevation::Block& block)
 {
   elevation::CheckMaximumEdgeLength(options.MaximumEdgeLength);
   options.Monitor = block.Progress;
   const elevation::PointsOfRank points{ block.Input, !block.Outputs.empty() };
-  elevation::DistributedSurface surface = elevation::TriangulateOnRanks(ranks, points, options);
+  elevation::DistributedSurface surface =
+    elevation::TriangulateOnRanks(ranks, points, block.Second, options, block.Warnings);
   elevation::WarnOfLeft("point", surface.Part.LeftOut, block.Warnings);
   if (surface.NumberOfTriangles == 0)
   {
@@ -307,6 +170,8 @@ elevation::Triangulation TriangulateSpread(
     block.Warnings.push_back(elevation::TextOfLimit(options.MaximumEdgeLength, surface.Effect));
   }
   elevation::ConstrainedTriangulation counts;
+  counts.NumberOfCrossings = surface.NumberOfCrossings;
+  counts.Added.resize(surface.NumberOfAddedPoints);
   if (!block.Outputs.empty())
   {
     vtkPolyData* const output = block.Outputs.front();
@@ -320,7 +185,8 @@ elevation::Triangulation TriangulateSpread(
     elevation::AddReport(counts, Part(options.Monitor, 1.0, 1.0), output->GetFieldData());
     elevation::AddWork(ranks.GetTraffic(), surface, output->GetFieldData());
   }
-  return std::move(counts.Result);
+  counts.NumberOfCrossings = ranks.Own() == 0 ? surface.NumberOfCrossings : 0; // once
+  return counts;
 }
 } // namespace
 
@@ -366,8 +232,8 @@ vtkPolyData* vtkGridDelaunay2D::GetSource()
     : nullptr;
 }
 
-int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector** inputVector,
-  vtkInformationVector* outputVector)
+int vtkGridDelaunay2D::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   elevation::KernelCall call(this, request, inputVector, outputVector);
   call.Second = "constraints";
@@ -384,14 +250,16 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
   options.LatticeTolerance = this->LatticeTolerance;
   options.NumberOfThreads = this->NumberOfThreads;
   call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
-    if (block.Second || options.GivenLattice.IsSet())
+    if (options.GivenLattice.IsSet())
     {
       return false;
     }
-    const elevation::Triangulation part = TriangulateSpread(ranks, options, block);
-    this->NumberOfDuplicatePoints += part.NumberOfDuplicates;
-    this->NumberOfNonFinitePoints += part.NumberOfNotFinite;
-    this->NumberOfLattices += part.LatticeFound ? 1 : 0;
+    const elevation::ConstrainedTriangulation part = TriangulateSpread(ranks, options, block);
+    this->NumberOfDuplicatePoints += part.Result.NumberOfDuplicates;
+    this->NumberOfNonFinitePoints += part.Result.NumberOfNotFinite;
+    this->NumberOfLattices += part.Result.LatticeFound ? 1 : 0;
+    this->NumberOfConstraintCrossings += static_cast<vtkIdType>(part.NumberOfCrossings);
+    this->NumberOfAddedPoints += static_cast<vtkIdType>(part.Added.size());
     return true;
   };
   return call.Run([this, options](elevation::Block& block) {
@@ -409,7 +277,8 @@ int vtkGridDelaunay2D::RequestData(vtkInformation* request, vtkInformationVector
     elevation::Triangulation& triangulation = constrained.Result;
     WarnOfMissing(block.Second, points.View, options, constrained,
       Part(progress, triangulated, told), block.Warnings);
-    PassPoints(block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
+    elevation::PassPoints(
+      block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
     elevation::AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),

@@ -74,10 +74,12 @@
  * them, else the points are numbered rank after rank; DuplicatePolicy goes by them. Points that are
  * marked as another rank's, or have the same global id, count once. Points that are not finite stay
  * on their rank. Field data are those of the rank's part. Arrays that not all ranks have are left
- * out, with a warning. With constraints or a given lattice, the points are gathered on the rank with
- * most of them; the others have empty output. Partitions of one vtkPartitionedDataSet are one block in this.
+ * out, with a warning. With a given lattice, the points are gathered on the rank with most of them;
+ * the others have empty output. Partitions of one vtkPartitionedDataSet are one block in this.
  * Constraints may be on other ranks than the points, or spread over them: each rank gets them all;
- * those that are the same on several ranks count once. Getters tell the counts of all ranks; rank
+ * those that are the same on several ranks count once. The points that they add have global ids
+ * after the largest, and are in the parts of the plane where they lie; the triangles that meet a
+ * line which is no edge yet go to one rank, which makes it one. Getters tell the counts of all ranks; rank
  * 0 reports errors and warnings of all. An error or abort in a block ends it on all ranks. This
  * holds where data are asked for in several pieces and vtkMultiProcessController's global
  * controller has several processes. All ranks have to update then, as in ParaView: where a source

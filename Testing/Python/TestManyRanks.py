@@ -120,6 +120,7 @@ def part_of(delaunay, ids=None):
                       if data.GetArrayName(i) not in ("vtkGhostType", "GlobalPointIds")}
     found = output.GetFieldData().GetArray("Lattice")
     part["counts"] = (delaunay.GetNumberOfDuplicatePoints(), delaunay.GetNumberOfNonFinitePoints(),
+                      delaunay.GetNumberOfConstraintCrossings(), delaunay.GetNumberOfAddedPoints(),
                       delaunay.GetLatticeFound())
     part["lattice"] = found and found.GetTuple(0)
     return part
@@ -275,8 +276,8 @@ def compare_random(random, claim):
             LatticeMode=int(random.random() < 0.3))
 
 
-def check_aborts(random, count, size):
-    """An abort on one rank, at any moment, ends all of them."""
+def check_aborts(random, count, size, **properties):
+    """An abort on one rank, at any moment, ends all of them. @return how late the latest was"""
     late, reached = [], 0
     for i in range(count):
         at, culprit = 0.9 * random.random(), random.integers(COUNT)  # the last tenth is one rank's own
@@ -284,6 +285,8 @@ def check_aborts(random, count, size):
         delaunay = vtkGridDelaunay2D()
         delaunay.SetNumberOfThreads(1)
         delaunay.SetInputData(cloud(coordinates[RANK::COUNT]))
+        for name, value in properties.items():
+            getattr(delaunay, "Set" + name)(value)
         begun = []
 
         def stop(caller, _event):
@@ -304,9 +307,9 @@ def check_aborts(random, count, size):
     return max(WORLD.allgather(max(late, default=0.0)))
 
 
-def check_refused(data, part, claim):
+def check_refused(data, part, claim, **properties):
     """One error of all ranks, by rank 0, and nothing on any."""
-    delaunay, messages = triangulate(data, False)
+    delaunay, messages = triangulate(data, False, **properties)
     check(len(messages) == (RANK == 0) and (RANK > 0 or part in messages[0][1]),
           "rank %d, %s: one error with %r, not %s" % (RANK, claim, part, messages))
     check(delaunay.GetOutput().GetNumberOfPoints() == 0, "rank %d, %s: no point" % (RANK, claim))
@@ -348,6 +351,14 @@ def check_kinds():
     compare("no point", coordinates[:0], numpy.zeros(0, int))
 
 
+def end(done):
+    """Ends the test of all ranks."""
+    failures = sum(WORLD.allgather(len(FAILURES)))
+    if RANK == 0:
+        print("%d ranks, %s: %d failures" % (COUNT, done, failures))
+    sys.exit(1 if failures else 0)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--clouds", type=int, default=30)
@@ -361,11 +372,8 @@ def main():
     for i in range(options.clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     latest = check_aborts(random, options.aborts, options.size)
-    failures = sum(WORLD.allgather(len(FAILURES)))
-    if RANK == 0:
-        print("%d ranks, %d clouds, %d aborts (the latest took %.2f s): %d failures" % (
-            COUNT, options.clouds, options.aborts, latest, failures))
-    sys.exit(1 if failures else 0)
+    end("%d clouds, %d aborts (the latest took %.2f s)" % (options.clouds, options.aborts, latest))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -38,6 +38,23 @@ inline bool IsInside(const Ends& s, const Point2& p)
     Orientation(s[0], s[1], p) == Zero;
 }
 
+/** Whether a triangle, counter-clockwise, and a segment have a point in common. */
+inline bool Meet(const std::array<Point2, 3>& triangle, const Ends& s)
+{
+  int sides[3] = { 0, 0, 0 }; // corners to the right of the segment, on it, to the left
+  for (int i = 0; i < 3; ++i)
+  {
+    const Point2 &a = triangle[i], &b = triangle[(i + 1) % 3];
+    if (Orientation(a, b, s[0]) == Negative && Orientation(a, b, s[1]) == Negative)
+    {
+      return false; // all of it is outside this edge
+    }
+    const Sign side = Orientation(s[0], s[1], a);
+    ++sides[side == Zero ? 1 : (side == Positive ? 2 : 0)];
+  }
+  return sides[0] < 3 && sides[2] < 3;
+}
+
 /**
  * Calls visit(i, j) for segments i < j that cross, by increasing i, then in the order of the grid
  * of all segments; perhaps repeatedly.

@@ -32,6 +32,22 @@ struct Vertex
 /** Two pieces that cross, in increasing order. */
 using Crossing = std::pair<Index, Index>;
 
+/** The id of vertex k of the lines, checked. */
+Index PointOfLine(const ConstraintLines& lines, Index line, Index k)
+{
+  const PointView& points = lines.Points;
+  const Index id = lines.Vertices[k];
+  const bool exists = id >= 0 && id < points.Count;
+  if (!exists || !std::isfinite(points.At(id).X) || !std::isfinite(points.At(id).Y) ||
+    !std::isfinite(points.Elevation(id)))
+  {
+    throw Error("Point " + std::to_string(id) + " of the constraints' cell " +
+      std::to_string(lines.Cells[line]) +
+      (exists ? " has a coordinate that is not finite." : " does not exist."));
+  }
+  return id;
+}
+
 /** Passes 1 to 3: from lines to pieces that do not cross, and the points that they add. */
 class Splitting
 {
@@ -171,16 +187,7 @@ private:
       for (Index k = this->Lines.Offsets[line]; k < this->Lines.Offsets[line + 1]; ++k)
       {
         ReportStep(progress, k, 2 * this->Lines.Vertices.size());
-        const Index id = this->Lines.Vertices[k];
-        const bool exists = id >= 0 && id < own.Count;
-        if (!exists || !std::isfinite(own.At(id).X) || !std::isfinite(own.At(id).Y) ||
-          !std::isfinite(own.Elevation(id)))
-        {
-          throw Error("Point " + std::to_string(id) + " of the constraints' cell " +
-            std::to_string(this->Lines.Cells[line]) +
-            (exists ? " has a coordinate that is not finite." : " does not exist."));
-        }
-        used.push_back(id);
+        used.push_back(PointOfLine(this->Lines, line, k));
       }
     }
     // By position, so that equal points are adjacent; the lowest id is the source of the vertex.
@@ -796,6 +803,21 @@ void SortInChanged(const Mesh& mesh, Buffer<Index>& triangles, const Progress& p
   });
 }
 
+/** Whether a point is at most so far from a segment, or little more. */
+bool IsWithin(const Ends& segment, const Point2& p, double distance)
+{
+  const Point2 &a = segment[0], &b = segment[1];
+  const double far = 2.0 * distance;
+  if (p.X < std::min(a.X, b.X) - far || p.X > std::max(a.X, b.X) + far ||
+    p.Y < std::min(a.Y, b.Y) - far || p.Y > std::max(a.Y, b.Y) + far)
+  {
+    return false;
+  }
+  const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+  const double across = (b.X - a.X) * (p.Y - a.Y) - (b.Y - a.Y) * (p.X - a.X);
+  return !(std::fabs(across) > far * length); // also where products over- or underflow
+}
+
 void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
   Buffer<Index>& triangles, const Progress& progress)
 {
@@ -811,21 +833,77 @@ void LeaveOutLong(const std::vector<Point2>& points, const EdgeLimit& limit,
 
 } // namespace
 
+LinePieces CutLines(const PointView& points, const ConstraintLines& lines,
+  DuplicatePolicy duplicates, const Progress& progress)
+{
+  const Splitting splitting(points, lines, duplicates, Part(progress, 0.0, 0.9));
+  LinePieces pieces;
+  pieces.AreNone = splitting.IsEmpty();
+  pieces.NumberOfCrossings = splitting.NumberOfCrossings();
+  splitting.GetResult(pieces.Added, pieces.Pieces, Part(progress, 0.9, 1.0));
+  return pieces;
+}
+
+std::vector<Index> ListNearLines(
+  const PointView& points, const ConstraintLines& lines, const Progress& progress)
+{
+  // Pieces and crossings stay within some hundred units in the last place of their lines.
+  constexpr double reach = 1e-9;
+  std::vector<Ends> segments;
+  for (Index line = 0; line < lines.Count(); ++line)
+  {
+    const Index begin = lines.Offsets[line], end = lines.Offsets[line + 1];
+    for (Index k = begin; k < end; ++k)
+    {
+      const Index next = k + 1 < end ? k + 1 : (lines.IsClosed[line] ? begin : k);
+      segments.push_back({ lines.Points.At(PointOfLine(lines, line, k)),
+        lines.Points.At(PointOfLine(lines, line, next)) });
+    }
+  }
+  double largest = 0.0; // of the coordinates
+  for (const Ends& ends : segments)
+  {
+    for (const Point2& p : ends)
+    {
+      largest = std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+    }
+  }
+  const CellGrid grid = GridOf(segments, Part(progress, 0.0, 0.2));
+  const Progress looking = Part(progress, 0.2, 1.0);
+  std::vector<Index> near;
+  for (Index id = 0; id < points.Count; ++id)
+  {
+    ReportStep(looking, id, points.Count);
+    const Point2 p = points.At(id);
+    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(id)))
+    {
+      continue;
+    }
+    const double size = reach * std::max({ largest, std::fabs(p.X), std::fabs(p.Y) });
+    const std::array<Point2, 3> around{ { { p.X - 2.0 * size, p.Y - size },
+      { p.X + 2.0 * size, p.Y - size }, { p.X, p.Y + 3.0 * size } } };
+    bool isNear = false;
+    grid.Visit(around, [&](Index i) { isNear = isNear || IsWithin(segments[i], p, size); });
+    if (isNear)
+    {
+      near.push_back(id);
+    }
+  }
+  return near;
+}
+
 ConstrainedTriangulation TriangulateConstrained(
   const PointView& points, const ConstraintLines& lines, const DelaunayOptions& asked)
 {
   ConstrainedTriangulation constrained;
   Triangulation& result = constrained.Result;
   const Progress& progress = asked.Monitor;
+  static_cast<LinePieces&>(constrained) =
+    CutLines(points, lines, asked.Duplicates, Part(progress, 0.0, 0.17));
+  if (constrained.AreNone)
   {
-    const Splitting splitting(points, lines, asked.Duplicates, Part(progress, 0.0, 0.15));
-    if (splitting.IsEmpty())
-    {
-      result = Triangulate(points, asked);
-      return constrained;
-    }
-    constrained.NumberOfCrossings = splitting.NumberOfCrossings();
-    splitting.GetResult(constrained.Added, constrained.Pieces, Part(progress, 0.15, 0.17));
+    result = Triangulate(points, asked);
+    return constrained;
   }
   const Buffer<double> joined = JoinPoints(points, constrained.Added, Part(progress, 0.17, 0.2));
   PointView all = points;

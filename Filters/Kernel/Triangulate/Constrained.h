@@ -73,13 +73,31 @@ struct AddedPoint
   double Fraction; ///< at this fraction of the distance
 };
 
-struct ConstrainedTriangulation
+/** Lines in pieces that neither cross nor run through a vertex, and the points they add. */
+struct LinePieces
 {
-  Triangulation Result;               ///< ids of Added follow those of the input points
   std::vector<AddedPoint> Added;      ///< points of the lines by their ids, then crossings
   std::vector<Segment> Pieces;        ///< of the segments, between vertices; each a chain of edges
   std::int64_t NumberOfCrossings = 0; ///< see TriangulateConstrained()
+  bool AreNone = false;               ///< the lines have no points
 };
+
+struct ConstrainedTriangulation : LinePieces
+{
+  Triangulation Result; ///< ids of Added follow those of the input points
+};
+
+/**
+ * Passes 1 to 3: cuts lines at each other and at points.
+ * @param[in] points  all points, or at least those that ListNearLines() lists
+ * @param[in] duplicates  which of several points with the same x,y is a vertex
+ */
+LinePieces CutLines(const PointView& points, const ConstraintLines& lines,
+  DuplicatePolicy duplicates, const Progress& progress);
+
+/** The finite points that CutLines() may need, increasing: those on lines or nearly so. */
+std::vector<Index> ListNearLines(
+  const PointView& points, const ConstraintLines& lines, const Progress& progress);
 
 /**
  * Triangulates points with lines.

@@ -586,6 +586,97 @@ TEST(ConstrainedDelaunay, OfRandomLinesKeepsAllRulesAndIsUnique)
   }
 }
 
+TEST(ConstrainedDelaunay, LinesAreCutAlikeByThePointsNearThem)
+{
+  Random random(21);
+  std::mt19937_64 engine(22);
+  for (int round = 0; round < 200; ++round)
+  {
+    const int size = 12 + random.Below(20);
+    Cloud cloud = testing_points::LatticeCloud(engine, size, 0.7);
+    for (double& value : cloud.Coordinates)
+    {
+      value = round % 2 == 0 ? value : value * 0.1 - 1.0; // with rounding, around the origin
+    }
+    Lines lines = RandomLines(random, cloud, size, 5 + random.Below(40), 2 + random.Below(size));
+    for (double& value : lines.Own.Coordinates)
+    {
+      value = round % 2 == 0 ? value : value * 0.1 - 1.0;
+    }
+    Cloud near;
+    for (const Index id : ListNearLines(cloud.View(), lines.Get(), Progress()))
+    {
+      const double* const p = &cloud.Coordinates[3 * static_cast<std::size_t>(id)];
+      near.Add(p[0], p[1], p[2]);
+    }
+    ASSERT_LT(near.Count(), cloud.Count());
+    ConstrainedTriangulation all, few;
+    static_cast<LinePieces&>(all) =
+      CutLines(cloud.View(), lines.Get(), DuplicatePolicy::KeepFirst, Progress());
+    static_cast<LinePieces&>(few) =
+      CutLines(near.View(), lines.Get(), DuplicatePolicy::KeepFirst, Progress());
+    EXPECT_EQ(few.NumberOfCrossings, all.NumberOfCrossings);
+    EXPECT_EQ(PiecePositions(near, few), PiecePositions(cloud, all));
+    ASSERT_EQ(few.Added.size(), all.Added.size());
+    for (std::size_t i = 0; i < all.Added.size(); ++i)
+    {
+      ASSERT_EQ(few.Added[i].Position, all.Added[i].Position);
+      ASSERT_EQ(few.Added[i].Elevation, all.Added[i].Elevation);
+    }
+  }
+}
+
+TEST(ConstrainedDelaunay, IsRecoveredInTheTrianglesThatMeetMissingPieces)
+{
+  Random random(23);
+  std::mt19937_64 engine(24);
+  int recovered = 0;
+  for (int round = 0; round < 100; ++round)
+  {
+    const int size = 12 + random.Below(20);
+    const Cloud cloud = testing_points::LatticeCloud(engine, size, 0.7);
+    Lines lines = RandomLines(random, cloud, size, 1 + random.Below(20), 2 + random.Below(size));
+    const ConstrainedTriangulation expected = Triangulate(cloud, lines);
+    const Cloud all = AllPoints(cloud, expected);
+    ConstrainedTriangulation cut;
+    cut.Result = elevation::Triangulate(all.View(), DelaunayOptions());
+    std::vector<Ends> pieces;
+    for (const Segment& piece : expected.Pieces)
+    {
+      pieces.push_back({ all.View().At(piece.A), all.View().At(piece.B) });
+    }
+    const CellGrid grid = GridOf(pieces);
+    Mesh near;
+    std::vector<Index> slots;
+    for (Index i = 0; i < all.Count(); ++i)
+    {
+      near.Points.push_back(all.View().At(i));
+    }
+    Buffer<Index>& triangles = cut.Result.Triangles;
+    for (std::size_t t = 0; t < triangles.size(); t += 3)
+    {
+      const std::array<Point2, 3> corners{ { near.Points[triangles[t]],
+        near.Points[triangles[t + 1]], near.Points[triangles[t + 2]] } };
+      bool meets = false;
+      grid.Visit(corners, [&](Index i) { meets = meets || Meet(corners, pieces[i]); });
+      if (meets)
+      {
+        slots.push_back(static_cast<Index>(t));
+        near.Triangles.insert(near.Triangles.end(), triangles.data() + t, triangles.data() + t + 3);
+      }
+    }
+    near.ConnectTwins();
+    std::vector<char> flags;
+    recovered += RecoverSegments(near, expected.Pieces, flags);
+    for (std::size_t i = 0; i < slots.size(); ++i)
+    {
+      std::copy_n(near.Triangles.begin() + 3 * i, 3, triangles.data() + slots[i]);
+    }
+    ASSERT_EQ(TriangleSet(all, cut.Result), TriangleSet(all, expected.Result)) << round;
+  }
+  EXPECT_GT(recovered, 500);
+}
+
 TEST(ConstrainedDelaunay, FarFromLinesIsTheTriangulationOfTheCoordinates)
 {
   // Squares of an exact lattice, and of a turned one with decimals, of which the lattice's own

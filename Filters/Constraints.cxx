@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Constraints.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <cmath>
+#include <limits>
+
+namespace elevation
+{
+
+ConstraintLines ToLines(
+  vtkPolyData* source, const PointsOfDataSet& points, const Progress& progress)
+{
+  ConstraintLines lines;
+  lines.Points = points.View;
+  ForEachLine(source, "constraints", progress, [&](const LineOfDataSet& line) {
+    lines.Vertices.insert(lines.Vertices.end(), line.Ids, line.Ids + line.Size);
+    lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
+    lines.IsClosed.push_back(line.IsPolygon);
+    lines.Cells.push_back(static_cast<Index>(line.Cell));
+  });
+  return lines;
+}
+
+void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<std::string>& warnings)
+{
+  if (lines.Vertices.empty())
+  {
+    throw Error("The constraints have no line and no polygon.");
+  }
+  // Outlines may lie a little outside.
+  const double dx = 0.1 * box.Width(), dy = 0.1 * box.Height();
+  const Box wide{ { box.Low.X - dx, box.Low.Y - dy }, { box.High.X + dx, box.High.Y + dy } };
+  Box ofLines;
+  std::size_t outside = 0;
+  for (const Index vertex : lines.Vertices)
+  {
+    const Point2 p = lines.Points.At(vertex);
+    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || box.Low.X > box.High.X)
+    {
+      return; // an error of its own, or there is no point
+    }
+    ofLines.Add(p);
+    outside += wide.Contains(p) ? 0 : 1;
+  }
+  if (!ofLines.Intersects(box))
+  {
+    throw Error("No constraint meets the points. The constraints are at " + NameOf(ofLines) +
+      ", the points at " + NameOf(box) + ": are both in the same coordinates?");
+  }
+  if (2 * outside > lines.Vertices.size())
+  {
+    warnings.push_back(std::to_string(outside) + " of the " +
+      std::to_string(lines.Vertices.size()) + " points along the constraints' lines lie far " +
+      "outside the points, and become vertices there. The constraints are at " + NameOf(ofLines) +
+      ", the points at " + NameOf(box) + ": are both in the same coordinates?");
+  }
+}
+
+namespace
+{
+/** The type of the output's points: float if the added ones are exact in it. */
+int TypeOfPoints(vtkPoints* input, const std::vector<AddedPoint>& added)
+{
+  bool isFloat = !input || input->GetDataType() == VTK_FLOAT;
+  for (const AddedPoint& point : added)
+  {
+    for (const double value : { point.Position.X, point.Position.Y, point.Elevation })
+    {
+      isFloat = isFloat && std::fabs(value) <= std::numeric_limits<float>::max() &&
+        static_cast<double>(static_cast<float>(value)) == value;
+    }
+  }
+  return isFloat ? VTK_FLOAT : VTK_DOUBLE;
+}
+
+/** The array of the constraints that matches one of the input, or nullptr. */
+vtkAbstractArray* FindGiven(vtkPointData* source, vtkAbstractArray* array)
+{
+  vtkAbstractArray* given = array->GetName() ? source->GetAbstractArray(array->GetName()) : nullptr;
+  if (!given || given->GetNumberOfComponents() != array->GetNumberOfComponents())
+  {
+    return nullptr;
+  }
+  const bool canConvert = IsFloatingPoint(array) && vtkArrayDownCast<vtkDataArray>(given);
+  return given->GetDataType() == array->GetDataType() || canConvert ? given : nullptr;
+}
+
+/** Copies the values of points of the constraints. @return the number of these points */
+vtkIdType CopyGiven(vtkAbstractArray* given, const std::vector<AddedPoint>& added,
+  const Progress& progress, vtkAbstractArray* values)
+{
+  const vtkIdType count = static_cast<vtkIdType>(added.size());
+  const vtkIdType first = values->GetNumberOfTuples() - count;
+  const bool isSameType = given && given->GetDataType() == values->GetDataType();
+  auto* const from = isSameType ? nullptr : vtkArrayDownCast<vtkDataArray>(given);
+  auto* const to = vtkArrayDownCast<vtkDataArray>(values);
+  vtkIdType i = 0; // points of the constraints come first, then crossings
+  for (; i < count && added[i].Source != None; ++i)
+  {
+    ReportStep(progress, static_cast<std::size_t>(i), added.size());
+    if (isSameType)
+    {
+      values->SetTuple(first + i, added[i].Source, given);
+    }
+    for (int c = 0; from && c < from->GetNumberOfComponents(); ++c)
+    {
+      to->SetComponent(first + i, c, from->GetComponent(added[i].Source, c));
+    }
+  }
+  return i;
+}
+} // namespace
+
+void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<AddedPoint>& added,
+  const Progress& progress, vtkPolyData* output)
+{
+  const vtkIdType count = static_cast<vtkIdType>(added.size());
+  output->SetPoints(AppendPoints(input->GetPoints(), count, TypeOfPoints(input->GetPoints(), added),
+    Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+      xyz[0] = added[i].Position.X;
+      xyz[1] = added[i].Position.Y;
+      xyz[2] = added[i].Elevation;
+    }));
+  PassExtended(input->GetPointData(), count, output->GetPointData(), Part(progress, 0.4, 1.0),
+    [&](vtkAbstractArray* before, vtkAbstractArray* after, const Progress& ofArray) {
+      NewValues values;
+      values.First = CopyGiven(FindGiven(source->GetPointData(), before), added, ofArray, after);
+      values.Interpolated = [&added, numbers = vtkArrayDownCast<vtkDataArray>(after)](
+                              vtkIdType i, int c) {
+        const double from = numbers->GetComponent(added[i].From, c);
+        const double to = numbers->GetComponent(added[i].To, c);
+        return from + added[i].Fraction * (to - from);
+      };
+      return values;
+    });
+}
+
+} // namespace elevation

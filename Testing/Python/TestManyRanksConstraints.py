@@ -1,0 +1,209 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Points and constraints that are spread over ranks give the triangles of one rank.
+
+Run by mpirun, as TestManyRanks.py. With --clouds more random clouds are compared than the suite has time
+for.
+"""
+import argparse
+
+import numpy
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+from TestManyRanks import (
+    CLOUDS, COUNT, POLICIES, RANK, WORLD, check, check_aborts, check_refused, check_union, cloud, end, owners_of,
+    part_of, triangulate)
+
+
+def lines_of(coordinates, cells, arrays=()):
+    """A data set of lines; of cells (ids of points, whether it is a polygon)."""
+    data, lines, polygons = cloud(coordinates, None, arrays), vtkCellArray(), vtkCellArray()
+    for ids, is_polygon in cells:
+        cell = polygons if is_polygon else lines
+        cell.InsertNextCell(len(ids))
+        for number in ids:
+            cell.InsertCellPoint(int(number))
+    data.SetLines(lines)
+    data.SetPolys(polygons)
+    return data
+
+
+def kept(coordinates, cells, arrays, chosen):
+    """The chosen cells, with the points that these have."""
+    cells = [cell for cell, is_chosen in zip(cells, chosen) if is_chosen]
+    used = sorted({number for ids, _ in cells for number in ids})
+    place = {number: i for i, number in enumerate(used)}
+    return (coordinates[used], [([place[number] for number in ids], closed) for ids, closed in cells],
+            [(name, values[used]) for name, values in arrays])
+
+
+def joined(parts):
+    """The lines of all ranks, one after another; None if there are none."""
+    first, cells = 0, []
+    parts = [part for part in parts if len(part[0])]
+    for coordinates, own, _ in parts:
+        cells += [([first + number for number in ids], closed) for ids, closed in own]
+        first += len(coordinates)
+    # Lines of all ranks come before the polygons of all.
+    cells.sort(key=lambda cell: cell[1])
+    return (numpy.vstack([part[0] for part in parts]), cells,
+            [(name, numpy.concatenate([dict(part[2])[name] for part in parts]))
+             for name, _ in parts[0][2]])
+
+
+def compare(claim, coordinates, owners, lines, holders, ids=None, arrays=(), **properties):
+    """Triangulates a cloud with lines on all ranks, and on rank 0 alone.
+
+    A rank has the lines whose holder it is; holder -1: all ranks have all lines.
+    """
+    mine = numpy.flatnonzero(owners == RANK)
+    if ids is not None and len(set(owners)) == 1:
+        mine = mine[numpy.argsort(ids[mine])]  # on one rank, places decide, not ids
+    order = numpy.argsort(owners, kind="stable") if ids is None else numpy.argsort(ids, kind="stable")
+    parts = [kept(*lines, [holder in (-1, rank) for holder in holders]) for rank in range(COUNT)]
+    own = parts[RANK]
+    part, messages = triangulate(
+        cloud(coordinates[mine], None if ids is None else ids[mine], [(n, a[mine]) for n, a in arrays]), False,
+        SourceData=lines_of(*own) if len(own[0]) else vtkPolyData(), **properties)
+    check(RANK == 0 or not messages, "%s: rank %d is silent: %s" % (claim, RANK, messages))
+    made = part_of(part)
+    made["arrays"].pop("numbers", None)  # the ids of added points are others
+    made = WORLD.gather(made)
+    if RANK == 0:
+        whole, expected = triangulate(
+            cloud(coordinates[order], None, [(n, a[order]) for n, a in arrays]), True,
+            SourceData=lines_of(*(joined(parts) if holders[0] >= 0 else parts[0])), **properties)
+        check(messages == expected, "%s: messages %s, not %s" % (claim, messages, expected))
+        added = whole.GetOutput().GetNumberOfPoints() - len(order)
+        numbers = numpy.arange(len(order)) if ids is None else ids[order]
+        first = numbers.max(initial=-1) + 1
+        numbers = numpy.concatenate((numbers, numpy.arange(first, first + added)))[:max(0, added + len(order))]
+        check_union(made, part_of(whole, numbers), claim)
+
+
+def draw_lines(random, coordinates):
+    """Lines of one kind, or of several: across, in a star, through data points, out of the points, small."""
+    finite = coordinates[numpy.isfinite(coordinates).all(axis=1)]
+    low, high = finite[:, :2].min(axis=0), finite[:, :2].max(axis=0)
+    size = high - low + 1e-3
+    places, cells = [], []
+
+    def add(places_of_line, is_polygon=False):
+        cells.append((list(range(len(places), len(places) + len(places_of_line))), is_polygon))
+        places.extend(numpy.asarray(place, float) for place in places_of_line)
+
+    def anywhere(reach=0.0):
+        return numpy.append(random.uniform(low - reach * size, high + reach * size), random.random())
+
+    for _ in range(1 + random.integers(4)):
+        kind = random.integers(6)
+        if kind == 0:
+            add([anywhere() for _ in range(2 + random.integers(4))])
+        elif kind == 1:  # a star, whose lines share a point of the data set
+            add([anywhere(), anywhere()])
+            for _ in range(3):
+                cells.append(([cells[-1][0][0], len(places)], False))
+                places.append(anywhere())
+        elif kind == 2:  # along data points
+            add(finite[random.integers(len(finite), size=2 + random.integers(3))])
+        elif kind == 3:
+            add([anywhere(0.3) for _ in range(2)])
+        elif kind == 4:
+            add([anywhere() for _ in range(3)], True)
+        else:
+            at = anywhere()
+            add([at, at + [0.01 * size[0], 0.013 * size[1], 1.0]])
+    return numpy.array(places), cells
+
+
+def compare_random(random, claim):
+    """Compares one cloud, drawn with what else can be drawn."""
+    count = int(random.choice([2, 3, COUNT + 1, 30, 300, 1500]))
+    coordinates = CLOUDS[random.integers(len(CLOUDS))](random, count)
+    coordinates = coordinates if len(coordinates) else random.random((count, 3))
+    if random.random() < 0.3:
+        again = coordinates[random.integers(len(coordinates), size=1 + len(coordinates) // 3)]
+        again[:, 2] = random.integers(3, size=len(again))
+        coordinates = numpy.vstack((coordinates, again))
+    if random.random() < 0.3:
+        coordinates = coordinates.astype(numpy.float32)
+    places, cells = draw_lines(random, coordinates.astype(float))
+    if random.random() < 0.2:
+        coordinates[random.integers(len(coordinates)), random.integers(3)] = numpy.nan
+    count = len(coordinates)
+    arrays, arrays_of_lines = (), ()
+    if random.random() < 0.5:
+        arrays = (("whole", random.integers(-9, 9, count).astype(numpy.int16)),
+                  ("vector", random.random((count, 3))),
+                  ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
+        arrays_of_lines = (("vector", random.random((len(places), 3)).astype(numpy.float32)),
+                           ("whole", random.integers(-9, 9, len(places)).astype(numpy.int16)))
+    kind = random.integers(3)  # the same on all ranks, all on one, or spread
+    holders = (numpy.full(len(cells), -1) if kind == 0 else numpy.full(len(cells), random.integers(COUNT))
+               if kind == 1 else random.integers(COUNT, size=len(cells)))
+    compare(claim, coordinates, owners_of(random, count), (places, cells, arrays_of_lines), holders,
+            random.permutation(3 * count)[:count] if random.random() < 0.3 and COUNT > 1 else None, arrays,
+            DuplicatePolicy=int(random.integers(POLICIES)),
+            MaximumEdgeLength=float(random.choice([0.0, 0.0, 0.05, 30.0])))
+
+
+def check_kinds():
+    """What is said of constraints, one claim at a time."""
+    random = numpy.random.default_rng(22)
+    coordinates = random.random((1000, 3))
+    owners = random.integers(COUNT, size=1000)
+    diagonals = (numpy.array([[0, 0, 0], [1, 1, 1], [0, 1, 2], [1, 0, 3], [0.5, -0.1, 0], [0.5, 1.2, 0.0]]),
+                 [([0, 1], False), ([2, 3], False), ([4, 5], False)], ())
+    for holders in ([-1, -1, -1], [0, 0, 0], [COUNT - 1, 0, COUNT // 2]):
+        compare("lines that cross all cells, on ranks %s" % holders, coordinates, owners, diagonals, holders)
+    i, j = numpy.meshgrid(numpy.arange(30.0), numpy.arange(30.0))
+    nodes = numpy.stack((i.ravel(), j.ravel(), (i * j).ravel()), axis=1)
+    along = (numpy.array([[0, 3, 0], [29, 3, 0], [2, 0, 0], [2, 29, 9], [0, 0, 0], [29.0, 29, 0], [1.5, 20, 0],
+                          [20.5, 3.5, 0]]),
+             [([0, 1], False), ([2, 3], False), ([4, 5], False), ([6, 7], False), ([1, 3, 6], True)], ())
+    compare("lines through nodes of a lattice", nodes, random.integers(COUNT, size=900), along, [-1] * 5)
+    compare("lines on the edges of triangles", nodes, random.integers(COUNT, size=900),
+            (along[0][:4], along[1][:2], ()), [0, 0])
+    compare("lines around few points", coordinates[:3], numpy.arange(3) % COUNT,
+            (diagonals[0], [([0, 3, 1, 2], True)], ()), [0])
+    compare("points on a line, and a line across", numpy.array([[0.1 * k, 0.2 * k, k] for k in range(20)]),
+            numpy.arange(20) % COUNT, diagonals, [-1] * 3)
+
+
+def check_errors(random):
+    """One message for all ranks, that of one rank."""
+    points = random.random((COUNT, 50, 3))[RANK]
+    across = numpy.array([[0.1, 0.2, 0.0], [0.9, 0.7, 0.0]])
+    cell = [([0, 1], False)]
+    for holder in range(min(COUNT, 3)):
+        is_mine = RANK == holder
+        for claim, places, cells, arrays, text in (
+                ("far away", across + 50.0, cell, (), "No constraint meets the points"),
+                ("no line", across, [], (), "The constraints have no line"),
+                ("not finite", across + [numpy.nan, 0.0, 0.0], cell, (), "not finite"),
+                ("z not finite", across + [0.0, 0.0, numpy.inf], cell, (), "not finite"),
+                ("a short array", across, cell, [("short", numpy.zeros(1))], '"short" has 1 tuple')):
+            source = lines_of(places, cells, arrays) if is_mine else vtkPolyData()
+            check_refused(cloud(points), text, "%s on rank %d" % (claim, holder), SourceData=source)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--clouds", type=int, default=15)
+    parser.add_argument("--aborts", type=int, default=3)
+    parser.add_argument("--size", type=int, default=20000, help="points of a cloud that is aborted")
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    check_kinds()
+    random = numpy.random.default_rng(options.seed)
+    check_errors(random)
+    for i in range(options.clouds):
+        compare_random(random, "cloud %d of seed %d" % (i, options.seed))
+    places, cells = draw_lines(random, random.random((9, 3)))
+    latest = check_aborts(random, options.aborts, options.size, SourceData=lines_of(places, cells))
+    end("%d clouds with constraints, %d aborts (the latest took %.2f s)" % (
+        options.clouds, options.aborts, latest))
+
+
+if __name__ == "__main__":
+    main()
