@@ -214,9 +214,10 @@ class Supervised(InFolder):
             with self.subTest(signal=name):
                 done = self.supervise(body.format(name))
                 self.assertEqual(done.returncode, 1)
-                self.assertTrue(done.stderr.startswith("reconstruct: error: the run "), done.stderr)
-                self.assertIn(words, done.stderr)
-                self.assertEqual(len(done.stderr.splitlines()), 1)
+                # Before it, libraries may tell of the crash in their way.
+                line = done.stderr.splitlines()[-1]
+                self.assertTrue(line.startswith("reconstruct: error: the run "), done.stderr)
+                self.assertIn(words, line)
                 self.assertEqual(os.listdir(self.folder), [])
 
     def test_a_child_that_does_not_listen_is_ended(self):
