@@ -3,6 +3,7 @@
 #include "DelaunayReport.h"
 
 #include "KernelCall.h"
+#include "vtkGridDelaunay2D.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -12,6 +13,21 @@
 
 namespace elevation
 {
+
+DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
+{
+  DelaunayOptions options;
+  options.Strategy = static_cast<SearchStrategy>(filter->GetSearchStrategy());
+  options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
+  options.Duplicates = static_cast<DuplicatePolicy>(filter->GetDuplicatePolicy());
+  options.UseLattice = static_cast<LatticeMode>(filter->GetLatticeMode());
+  const double* const lattice = filter->GetLattice();
+  options.GivenLattice = { { lattice[0], lattice[1] }, { lattice[2], lattice[3] },
+    { lattice[4], lattice[5] } };
+  options.LatticeTolerance = filter->GetLatticeTolerance();
+  options.NumberOfThreads = filter->GetNumberOfThreads();
+  return options;
+}
 
 namespace
 {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * What vtkGridDelaunay2D tells in the field data of its output. Private to the module.
+ * What vtkGridDelaunay2D is told by its properties, and tells in the field data of its output.
+ * Private to the module.
  */
 #ifndef DelaunayReport_h
 #define DelaunayReport_h
@@ -12,9 +13,13 @@
 #include "Ranks.h"
 
 class vtkFieldData;
+class vtkGridDelaunay2D;
 
 namespace elevation
 {
+
+/** The kernel's options for the properties of the filter. */
+DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter);
 
 /** Adds the field data on points, lines and lattice. */
 void AddReport(

@@ -6,9 +6,9 @@
 #include "Kernel/Base/Base.h"
 #include "LatticeOfRanks.h"
 #include "PointOwners.h"
+#include "SettledCell.h"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -79,7 +79,6 @@ public:
     , Cell(this->Owners.CellOfRank(ranks.Own()))
     , Part(part)
     , First(part.Bases[ranks.Own()])
-    , Last(part.Bases[ranks.Own() + 1])
   {
   }
 
@@ -104,17 +103,15 @@ private:
   bool IsOffAnywhere(const SharedLattice* lattice) const;
   PointView OwnPoints() const;
   Point2 PlaceOf(GlobalId number) const;
-  void ListOthers();
   void ListUnused(const Progress& progress);
   int RankOf(int cell) const { return this->Owners.RankOfCell[cell]; }
-  bool IsOwn(GlobalId number) const { return number >= this->First && number < this->Last; }
 
   const Ranks& All;
   const DelaunayOptions& Options;
   const PointOwners Owners;
   const int Cell; // that this rank owns, or -1
   SurfacePart& Part;
-  const GlobalId First, Last; // numbers of own points
+  const GlobalId First; // number of own points
   Piece Seam;
   bool IsOffLattice = false; // this rank's points are
   std::vector<GlobalTriangle> Triangles;
@@ -141,11 +138,12 @@ void Work::Settle()
   SharedLattice lattice;
   const Progress searching = elevation::Part(this->Options.Monitor, 0.15, 0.2);
   if (this->Options.UseLattice == LatticeMode::Automatic &&
-    FindLatticeOnRanks(this->All, this->OwnPoints(), this->Options, searching, lattice) &&
+    FindLatticeOnRanks(
+      this->All, InOneSlice(this->OwnPoints()), this->Options, searching, lattice) &&
     this->SettleOn(&lattice))
   {
     this->Part.Result.LatticeFound = true;
-    this->Part.Result.Steps = FromLowestNode(this->All, this->OwnPoints(), lattice);
+    this->Part.Result.Steps = FromLowestNode(this->All, InOneSlice(this->OwnPoints()), lattice);
     return;
   }
   this->SettleOn(nullptr);
@@ -194,14 +192,10 @@ bool Work::IsOffAnywhere(const SharedLattice* lattice) const
 Piece Work::SettlePiece(const Piece& piece, const Node& node, const Progress& progress,
   const SharedLattice* lattice, std::vector<GlobalTriangle>& triangles)
 {
-  DelaunayOptions options = this->Options;
-  options.MaximumEdgeLength = 0.0;
-  options.UseLattice = LatticeMode::Off;
-  options.Monitor = progress;
   try
   {
     const elevation::Cell cell = this->Owners.Plane.CellOf(node.Begin, node.End);
-    return elevation::Settle(piece, cell, options, triangles, lattice);
+    return SettleCell(piece, cell, this->Options, progress, triangles, lattice);
   }
   catch (const NotOnLattice&)
   {
@@ -213,18 +207,7 @@ Piece Work::SettlePiece(const Piece& piece, const Node& node, const Progress& pr
 void Work::SettleOwn(const SharedLattice* lattice)
 {
   this->All.Agree([&]() {
-    const PointRows& own = this->Part.Own;
-    Piece piece;
-    piece.Coordinates.reserve(own.Coordinates.size());
-    piece.Ids.reserve(own.Count());
-    for (std::size_t i = 0; i < own.Count(); ++i)
-    {
-      if (own.IsFinite(i))
-      {
-        piece.Coordinates.insert(piece.Coordinates.end(), own.At(i), own.At(i) + 3);
-        piece.Ids.push_back(this->First + static_cast<GlobalId>(i));
-      }
-    }
+    const Piece piece = PieceOf(this->Part.Own, this->First);
     this->Triangles.reserve(2 * piece.Ids.size());
     if (this->Cell >= 0)
     {
@@ -239,29 +222,19 @@ void Work::SettleOwn(const SharedLattice* lattice)
 /** What is neither settled nor on the seam is a duplicate. */
 void Work::ListUnused(const Progress& progress)
 {
-  const PointRows& own = this->Part.Own;
-  std::vector<char> isUsed(own.Count(), 0);
+  std::vector<char> areUsed(this->Part.Own.Count(), 0);
   for (const GlobalTriangle& triangle : this->Triangles)
   {
     for (const GlobalId id : triangle)
     {
-      isUsed[id - this->First] = 1;
+      areUsed[id - this->First] = 1;
     }
   }
   for (const GlobalId id : this->Seam.Ids)
   {
-    isUsed[id - this->First] = 1;
+    areUsed[id - this->First] = 1;
   }
-  std::vector<Index> duplicates, notFinite;
-  for (std::size_t i = 0; i < own.Count(); ++i)
-  {
-    ReportStep(progress, i, own.Count(), 1 << 18);
-    if (!isUsed[i])
-    {
-      (own.IsFinite(i) ? duplicates : notFinite).push_back(static_cast<Index>(i));
-    }
-  }
-  SetUnusedPoints(std::move(duplicates), notFinite, progress, this->Part.Result);
+  elevation::ListUnused(areUsed, progress, this->Part);
 }
 
 bool Work::JoinSeams(const SharedLattice* lattice)
@@ -327,32 +300,14 @@ void Work::SendTriangles()
       TakeFrom(from, bytes.size() / sizeof(GlobalTriangle), triangles);
       this->Triangles.insert(this->Triangles.end(), triangles.begin(), triangles.end());
     }
-    this->ListOthers();
+    ListOthers(this->Triangles, this->First, this->Part);
   });
-}
-
-/** The numbers of corners that other ranks own. */
-void Work::ListOthers()
-{
-  std::vector<GlobalId>& others = this->Part.OtherNumbers;
-  others.clear();
-  for (const GlobalTriangle& triangle : this->Triangles)
-  {
-    std::copy_if(triangle.begin(), triangle.end(), std::back_inserter(others),
-      [this](GlobalId id) { return !this->IsOwn(id); });
-  }
-  std::sort(others.begin(), others.end());
-  others.erase(std::unique(others.begin(), others.end()), others.end());
 }
 
 /** The place of a corner of this rank's triangles. */
 Point2 Work::PlaceOf(GlobalId number) const
 {
-  const std::vector<GlobalId>& others = this->Part.OtherNumbers;
-  const double* const p = this->IsOwn(number)
-    ? this->Part.Own.At(static_cast<std::size_t>(number - this->First))
-    : this->Part.Others.At(std::lower_bound(others.begin(), others.end(), number) - others.begin());
-  return { p[0], p[1] };
+  return this->Part.PointAt(this->Part.PlaceOf(number, this->First));
 }
 
 /** Makes the pieces of lines edges. */
@@ -362,7 +317,7 @@ void Work::Recover(const LinesOfRanks& lines)
     this->All, lines, this->RankOf(0), [this](GlobalId number) { return this->PlaceOf(number); },
     elevation::Part(this->Options.Monitor, 0.9, 0.92), this->Triangles);
   this->All.Agree([&]() {
-    this->ListOthers();
+    ListOthers(this->Triangles, this->First, this->Part);
     this->Part.Others = PointRows(this->Part.Kinds);
   });
   this->FetchOthers();
@@ -408,25 +363,7 @@ void Work::FetchOthers()
 void Work::PlaceCorners()
 {
   this->All.Agree([&]() {
-    const Progress progress = this->Watched(0.92, 0.95);
-    const std::vector<GlobalId>& others = this->Part.OtherNumbers;
-    const GlobalId ownCount = this->Last - this->First;
-    const auto placeOf = [&](GlobalId id) {
-      return this->IsOwn(id)
-        ? id - this->First
-        : ownCount + (std::lower_bound(others.begin(), others.end(), id) - others.begin());
-    };
-    Buffer<Index>& corners = this->Part.Result.Triangles;
-    corners.Resize(3 * this->Triangles.size());
-    Index* corner = corners.data();
-    for (std::size_t t = 0; t < this->Triangles.size(); ++t)
-    {
-      ReportStep(progress, t, this->Triangles.size(), 1 << 16);
-      for (const GlobalId id : this->Triangles[t])
-      {
-        *corner++ = static_cast<Index>(placeOf(id));
-      }
-    }
+    AppendTriangles(this->Triangles, this->First, this->Watched(0.92, 0.95), this->Part);
     this->Triangles = std::vector<GlobalTriangle>();
   });
 }
@@ -458,8 +395,8 @@ DistributedSurface TriangulateOnRanks(const Ranks& ranks, const PointsOfRank& po
     work.Recover(lines);
   }
   work.PlaceCorners();
-  std::vector<vtkIdType> sums = {
-    static_cast<vtkIdType>(part.Own.Count()) - surface.NumberOfAddedPoints,
+  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(part.Own.Count()) -
+      surface.NumberOfAddedPoints,
     static_cast<vtkIdType>(part.Result.Triangles.size() / 3) };
   ranks.Sum(sums);
   surface.NumberOfPoints = sums[0];

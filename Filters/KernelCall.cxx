@@ -28,13 +28,6 @@
 namespace elevation
 {
 
-namespace
-{
-/**
- * The kernel's Progress for a filter: its progress and abort flag. The kernel reports as often as
- * suits its loops; observers, which may be slow, are called at each thousandth of the work, and at
- * least every 50 ms.
- */
 Progress ProgressOf(vtkAlgorithm* filter)
 {
   using Clock = std::chrono::steady_clock;
@@ -52,6 +45,8 @@ Progress ProgressOf(vtkAlgorithm* filter)
   };
 }
 
+namespace
+{
 /** Whether it can have no points: it is an image, say, and an error. */
 bool IsOtherType(const Place& place)
 {

@@ -112,6 +112,13 @@ private:
 };
 
 /**
+ * The kernel's Progress for a filter: its progress and abort flag. The kernel reports as often as
+ * suits its loops; observers, which may be slow, are called at each thousandth of the work, and at
+ * least every 50 ms.
+ */
+Progress ProgressOf(vtkAlgorithm* filter);
+
+/**
  * Whether a mesh without triangles needs a warning. It needs none where the filter before has told
  * why: a mesh without points comes of an error, and vtkGridDelaunay2D leaves its counts.
  */

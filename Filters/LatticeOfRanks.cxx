@@ -3,6 +3,7 @@
 #include "LatticeOfRanks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -72,34 +73,58 @@ NodeBox Joined(const Ranks& ranks, const NodeBox& own)
   return box;
 }
 
+/** Visits each slice with its part of the progress. */
 template <typename Visit>
-void ForEachFinite(const PointView& points, const Progress& progress, const Visit& visit)
+void ForEachSlice(const PointSlices& points, const Progress& progress, const Visit& visit)
 {
-  for (Index i = 0; i < points.Count; ++i)
-  {
-    ReportStep(progress, i, points.Count, 1 << 16);
-    const Point2 p = points.At(i);
-    if (std::isfinite(p.X) && std::isfinite(p.Y) && std::isfinite(points.Elevation(i)))
+  double done = 0.0;
+  points.ForEach([&](const PointView& slice) {
+    const double begin = done / points.Count;
+    done += slice.Count;
+    visit(slice, Part(progress, begin, done / points.Count));
+  });
+}
+
+template <typename Visit>
+void ForEachFinite(const PointSlices& points, const Progress& progress, const Visit& visit)
+{
+  ForEachSlice(points, progress, [&visit](const PointView& slice, const Progress& ofSlice) {
+    for (Index i = 0; i < slice.Count; ++i)
     {
-      visit(p);
+      ReportStep(ofSlice, i, slice.Count, 1 << 16);
+      const Point2 p = slice.At(i);
+      if (std::isfinite(p.X) && std::isfinite(p.Y) && std::isfinite(slice.Elevation(i)))
+      {
+        visit(p);
+      }
     }
-  }
+  });
 }
 } // namespace
 
-bool FindLatticeOnRanks(const Ranks& ranks, const PointView& points, const DelaunayOptions& options,
-  const Progress& progress, SharedLattice& lattice)
+PointSlices InOneSlice(const PointView& points)
+{
+  return { static_cast<double>(points.Count), [points](const auto& visit) { visit(points); } };
+}
+
+bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
+  const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
 {
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
-  std::vector<vtkIdType> count = { points.Count };
+  std::vector<vtkIdType> count = { static_cast<vtkIdType>(points.Count) };
   ranks.Sum(count);
   LatticeSample all;
   all.CountOfAll = static_cast<double>(count[0]);
-  std::vector<Index> notFinite;
+  std::vector<std::vector<Index>> notFinite; // of each slice
   std::vector<double> reals;
   ranks.Agree([&]() {
-    reals = ToReals(SampleForLattice(
-      points, all.CountOfAll, threads, ranks.Watched(Part(progress, 0.0, 0.4)), notFinite));
+    LatticeSample own;
+    const Progress sampling = ranks.Watched(Part(progress, 0.0, 0.4));
+    ForEachSlice(points, sampling, [&](const PointView& slice, const Progress& ofSlice) {
+      notFinite.emplace_back();
+      own.Add(SampleForLattice(slice, all.CountOfAll, threads, ofSlice, notFinite.back()));
+    });
+    reals = ToReals(own);
   });
   reals = ranks.CollectReals(reals);
   for (const double* at = reals.data(); at != reals.data() + reals.size();)
@@ -112,8 +137,13 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointView& points, const Delau
   }
   std::vector<Point2> there;
   ranks.Agree([&]() {
-    there = DistinctPointsIn(
-      FullestPlace(all), points, notFinite, threads, ranks.Watched(Part(progress, 0.4, 0.7)));
+    const Box place = FullestPlace(all);
+    auto ofSlice = notFinite.begin();
+    const Progress looking = ranks.Watched(Part(progress, 0.4, 0.7));
+    ForEachSlice(points, looking, [&](const PointView& slice, const Progress& part) {
+      const std::vector<Point2> some = DistinctPointsIn(place, slice, *ofSlice++, threads, part);
+      there.insert(there.end(), some.begin(), some.end());
+    });
   });
   there = CollectPoints(ranks, there);
   Lattice steps;
@@ -138,25 +168,20 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointView& points, const Delau
   return lattice.Set(steps, all, nodes, tolerance) && nodes.IsFilledEnough(all.Count);
 }
 
-Lattice FromLowestNode(const Ranks& ranks, const PointView& points, const SharedLattice& lattice)
+Lattice FromLowestNode(const Ranks& ranks, const PointSlices& points, const SharedLattice& lattice)
 {
   // Numbers of rows and columns are below 2^53. The lowest node is first by row, then by column.
   constexpr double least = std::numeric_limits<double>::lowest();
-  std::vector<double> row = { least }, column = { least };
-  const auto forEachNode = [&](const auto& visit) {
-    ranks.Agree([&]() {
-      ForEachFinite(points, Progress(), [&](const Point2& p) { visit(lattice.NodeOf(p)); });
+  std::array<double, 2> own = { least, least }; // row and column, both negative
+  ranks.Agree([&]() {
+    ForEachFinite(points, Progress(), [&](const Point2& p) {
+      const LatticeNode node = lattice.NodeOf(p);
+      own = std::max(own, { -static_cast<double>(node.J), -static_cast<double>(node.I) });
     });
-  };
-  forEachNode(
-    [&](const LatticeNode& node) { row[0] = std::max(row[0], -static_cast<double>(node.J)); });
-  ranks.Maximum(row);
-  forEachNode([&](const LatticeNode& node) {
-    if (-static_cast<double>(node.J) == row[0])
-    {
-      column[0] = std::max(column[0], -static_cast<double>(node.I));
-    }
   });
+  std::vector<double> row = { own[0] };
+  ranks.Maximum(row);
+  std::vector<double> column = { own[0] == row[0] ? own[1] : least };
   ranks.Maximum(column);
   Lattice steps = lattice.Steps();
   steps.Origin = steps.Node(-column[0], -row[0]);

@@ -11,21 +11,33 @@
 #include "Kernel/Triangulate/Triangulate.h"
 #include "Ranks.h"
 
+#include <functional>
+
 namespace elevation
 {
+
+/** The points of a rank, of which not all may be in memory at a time. */
+struct PointSlices
+{
+  double Count; ///< of all
+  /** Hands over the same slices, in the same order, whenever it is called. */
+  std::function<void(const std::function<void(const PointView&)>&)> ForEach;
+};
+
+PointSlices InOneSlice(const PointView& points);
 
 /**
  * Looks for the lattice of the points of all ranks; each rank samples its own. The same lattice is
  * found as on one rank.
- * @param[in] points  of this rank
+ * @param[in] points  of this rank; they are looked at three or four times
  * @param[in] options  with LatticeMode::Automatic
  * @param[out] lattice  the same on all ranks, if there is one
  */
-bool FindLatticeOnRanks(const Ranks& ranks, const PointView& points, const DelaunayOptions& options,
-  const Progress& progress, SharedLattice& lattice);
+bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
+  const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice);
 
 /** The lattice with the lowest node that a point of any rank is on as its origin. */
-Lattice FromLowestNode(const Ranks& ranks, const PointView& points, const SharedLattice& lattice);
+Lattice FromLowestNode(const Ranks& ranks, const PointSlices& points, const SharedLattice& lattice);
 
 } // namespace elevation
 

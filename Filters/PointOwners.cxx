@@ -149,34 +149,25 @@ void Redistribution::ReadPoints(bool areIdsGiven, vtkIdType first)
   {
     return;
   }
-  const Progress progress = this->Watched(0.0, 0.3);
-  const PointView view = ViewPoints(this->Input).View;
-  const std::size_t count = static_cast<std::size_t>(view.Count);
+  this->Rows.Read(this->Input, first, this->Watched(0.0, 0.3));
   vtkPointData* const data = this->Input->GetPointData();
   vtkDataArray* const ids = areIdsGiven ? data->GetArray(this->Part.NameOfIds.c_str()) : nullptr;
   auto* const plainIds = vtkIdTypeArray::FastDownCast(ids);
   auto* const ghosts =
     vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
-  this->Rows.Coordinates.Resize(3 * count);
-  this->Rows.Ids.Resize(count);
-  for (std::size_t i = 0; i < count; ++i)
+  for (vtkIdType at = 0; at < static_cast<vtkIdType>(this->Rows.Count()); ++at)
   {
-    ReportStep(progress, i, count, 1 << 16);
-    const Index at = static_cast<Index>(i);
-    const Point2 p = view.At(at);
-    double* const xyz = this->Rows.Coordinates.data() + 3 * i;
-    xyz[0] = p.X;
-    xyz[1] = p.Y;
-    xyz[2] = view.Elevation(at);
-    this->Rows.Ids[i] = plainIds ? plainIds->GetValue(at)
-      : ids                      ? static_cast<vtkIdType>(ids->GetVariantValue(at).ToTypeInt64())
-                                 : first + at;
+    if (ids)
+    {
+      this->Rows.Ids[at] = plainIds
+        ? plainIds->GetValue(at)
+        : static_cast<vtkIdType>(ids->GetVariantValue(at).ToTypeInt64());
+    }
     if (!ghosts || !(ghosts->GetValue(at) & vtkDataSetAttributes::DUPLICATEPOINT))
     {
       this->Kept.push_back(at);
     }
   }
-  this->Rows.View(data);
 }
 
 PointOwners Redistribution::CutPlane()

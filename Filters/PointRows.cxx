@@ -11,6 +11,7 @@
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
@@ -170,6 +171,26 @@ bool PointRows::IsFinite(std::size_t place) const
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
+void PointRows::Read(vtkPointSet* points, vtkIdType first, const Progress& progress)
+{
+  const PointView view = ViewPoints(points).View;
+  const std::size_t count = static_cast<std::size_t>(view.Count);
+  this->Coordinates.Resize(3 * count);
+  this->Ids.Resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    ReportStep(progress, i, count, 1 << 16);
+    const Index at = static_cast<Index>(i);
+    const Point2 p = view.At(at);
+    double* const xyz = this->Coordinates.data() + 3 * i;
+    xyz[0] = p.X;
+    xyz[1] = p.Y;
+    xyz[2] = view.Elevation(at);
+    this->Ids[i] = first + at;
+  }
+  this->View(points->GetPointData());
+}
+
 void PointRows::View(vtkPointData* data)
 {
   const vtkIdType count = static_cast<vtkIdType>(this->Count());
@@ -302,6 +323,7 @@ void PointRows::Unpack(const std::vector<Bytes>& packed)
   this->Ids.Resize(static_cast<std::size_t>(all));
   for (const auto& array : this->Arrays)
   {
+    array->Resize(all); // keeps the values, unlike the next
     array->SetNumberOfTuples(all);
     if (array->GetNumberOfTuples() != all)
     {

@@ -18,6 +18,7 @@
 
 class vtkAbstractArray;
 class vtkPointData;
+class vtkPointSet;
 
 namespace elevation
 {
@@ -53,8 +54,8 @@ public:
 
   bool IsFinite(std::size_t place) const;
 
-  /** Takes the arrays of a rank's own points; they are not copied. */
-  void View(vtkPointData* data);
+  /** Takes points, numbered from @a first; their arrays are not copied. */
+  void Read(vtkPointSet* points, vtkIdType first, const Progress& progress);
 
   /** The chosen points as bytes: 32 a point, and the values of the arrays. */
   Bytes Pack(const std::vector<vtkIdType>& places) const;
@@ -69,6 +70,9 @@ public:
   Buffer<vtkIdType> Ids;
   std::vector<ArrayKind> Kinds;
   std::vector<vtkSmartPointer<vtkAbstractArray>> Arrays; ///< one of each kind
+
+private:
+  void View(vtkPointData* data);
 };
 
 } // namespace elevation

@@ -40,6 +40,8 @@ constexpr const char* NotEnoughMemory = "There is not enough memory for this inp
 class Ranks
 {
 public:
+  /** One alone. */
+  Ranks() = default;
   Ranks(vtkInformation* request, vtkInformationVector* outputs);
 
   int Own() const;

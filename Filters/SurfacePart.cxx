@@ -18,16 +18,29 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 namespace elevation
 {
 
-int SurfacePart::OwnerOf(GlobalId number) const
+int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases)
 {
-  const auto next = std::upper_bound(this->Bases.begin() + 1, this->Bases.end() - 1, number);
-  return static_cast<int>(next - this->Bases.begin()) - 1;
+  const auto next = std::upper_bound(bases.begin() + 1, bases.end() - 1, number);
+  return static_cast<int>(next - bases.begin()) - 1;
+}
+
+std::size_t SurfacePart::PlaceOf(GlobalId number, GlobalId first) const
+{
+  const std::size_t ownCount = this->Own.Count();
+  const GlobalId place = number - first;
+  if (place >= 0 && place < static_cast<GlobalId>(ownCount))
+  {
+    return static_cast<std::size_t>(place);
+  }
+  const std::vector<GlobalId>& others = this->OtherNumbers;
+  return ownCount + (std::lower_bound(others.begin(), others.end(), number) - others.begin());
 }
 
 Point2 SurfacePart::PointAt(std::size_t place) const
@@ -35,6 +48,51 @@ Point2 SurfacePart::PointAt(std::size_t place) const
   const std::size_t own = this->Own.Count();
   const double* const p = place < own ? this->Own.At(place) : this->Others.At(place - own);
   return { p[0], p[1] };
+}
+
+void ListOthers(const std::vector<GlobalTriangle>& triangles, GlobalId first, SurfacePart& part)
+{
+  const GlobalId last = first + static_cast<GlobalId>(part.Own.Count());
+  std::vector<GlobalId>& others = part.OtherNumbers;
+  others.clear();
+  for (const GlobalTriangle& triangle : triangles)
+  {
+    std::copy_if(triangle.begin(), triangle.end(), std::back_inserter(others),
+      [first, last](GlobalId id) { return id < first || id >= last; });
+  }
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+}
+
+void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
+  const Progress& progress, SurfacePart& part)
+{
+  Buffer<Index>& corners = part.Result.Triangles;
+  const std::size_t before = corners.size();
+  corners.Resize(before + 3 * triangles.size());
+  Index* corner = corners.data() + before;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+  {
+    ReportStep(progress, t, triangles.size(), 1 << 16);
+    for (const GlobalId id : triangles[t])
+    {
+      *corner++ = static_cast<Index>(part.PlaceOf(id, first));
+    }
+  }
+}
+
+void ListUnused(const std::vector<char>& areUsed, const Progress& progress, SurfacePart& part)
+{
+  std::vector<Index> duplicates, notFinite;
+  for (std::size_t i = 0; i < areUsed.size(); ++i)
+  {
+    ReportStep(progress, i, areUsed.size(), 1 << 18);
+    if (!areUsed[i])
+    {
+      (part.Own.IsFinite(i) ? duplicates : notFinite).push_back(static_cast<Index>(i));
+    }
+  }
+  SetUnusedPoints(std::move(duplicates), notFinite, progress, part.Result);
 }
 
 namespace

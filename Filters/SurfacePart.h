@@ -21,6 +21,9 @@ class vtkPolyData;
 namespace elevation
 {
 
+/** Whose number it is, where owner r has [bases[r], bases[r + 1]). */
+int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases);
+
 struct SurfacePart
 {
   PointRows Own;                 ///< points that this rank owns, in the order of their ids
@@ -40,9 +43,21 @@ struct SurfacePart
   /** Corners are places in Own, followed by Others. Unused points are places in Own. */
   Triangulation Result;
 
-  int OwnerOf(GlobalId number) const;
+  int OwnerOf(GlobalId number) const { return elevation::OwnerOf(number, this->Bases); }
+  /** The place of a corner among Own, whose numbers begin with @a first, followed by Others. */
+  std::size_t PlaceOf(GlobalId number, GlobalId first) const;
   Point2 PointAt(std::size_t place) const;
 };
+
+/** Sets the numbers of corners that are not own points, which are numbered from @a first. */
+void ListOthers(const std::vector<GlobalTriangle>& triangles, GlobalId first, SurfacePart& part);
+
+/** Appends triangles to the result, with the places of their corners. */
+void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
+  const Progress& progress, SurfacePart& part);
+
+/** Sets the unused points of the result: those that are not finite, and duplicates. */
+void ListUnused(const std::vector<char>& areUsed, const Progress& progress, SurfacePart& part);
 
 /**
  * Leaves out triangles with a longer edge. With such a limit, each rank calls it.

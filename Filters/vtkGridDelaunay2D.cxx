@@ -240,15 +240,7 @@ int vtkGridDelaunay2D::RequestData(
   call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
     &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints, &this->NumberOfLattices };
-  elevation::DelaunayOptions options;
-  options.Strategy = static_cast<elevation::SearchStrategy>(this->SearchStrategy);
-  options.MaximumEdgeLength = this->MaximumEdgeLength;
-  options.Duplicates = static_cast<elevation::DuplicatePolicy>(this->DuplicatePolicy);
-  options.UseLattice = static_cast<elevation::LatticeMode>(this->LatticeMode);
-  options.GivenLattice = { { this->Lattice[0], this->Lattice[1] },
-    { this->Lattice[2], this->Lattice[3] }, { this->Lattice[4], this->Lattice[5] } };
-  options.LatticeTolerance = this->LatticeTolerance;
-  options.NumberOfThreads = this->NumberOfThreads;
+  const elevation::DelaunayOptions options = elevation::OptionsOf(this);
   call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
     if (options.GivenLattice.IsSet())
     {

@@ -258,6 +258,16 @@ def antimeridian_note(points):
     )
 
 
+def with_data(rows, no_data, cloud, reason):
+    """Rows of x, y, z but those of this elevation, which the cloud counts as left out."""
+    keep = rows[:, 2] != no_data
+    if keep.all():
+        return rows
+    gone = len(keep) - int(numpy.count_nonzero(keep))
+    cloud.left_out[reason] = cloud.left_out.get(reason, 0) + gone
+    return rows[keep]
+
+
 def keep_points(cloud, keep):
     """Leaves only the points with the given ids (a numpy array) in a Cloud."""
     cloud.points = some_points(cloud.points, keep)

@@ -23,6 +23,7 @@ from .clouds import (
 from .gdal_common import name_of, reference_of
 from .writing.grids import write_prj
 from .messages import ElevationSurfaceError, FileError, PictureError, did_you_mean
+from .pieces import MEMORY, SUFFIX as OF_PIECES, Pieces, check_files, check_given, memory_size
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name, write_output
 from .paths import check_suffix, check_writable
 from .properties import (
@@ -68,6 +69,8 @@ TAKES = {
     "--exaggeration": PROPERTIES["gap_tolerance"].takes,
     "--colours": "one of " + ", ".join(COLOURS),
     "--report": "a file, or nothing",
+    "--pieces": "a whole number from 1",
+    "--memory": MEMORY,
 }
 
 
@@ -149,6 +152,8 @@ def make_parser():
             add("--no-" + name.replace("_", "-"), dest=name, action="store_false", default=None)
         else:
             add(option_of(name), type=one.convert)
+    add("--pieces", type=whole_number)
+    add("--memory", type=memory_size)
     add("--no-trim", dest="trim", action="store_false")
     add("--no-fill", dest="fill", action="store_false")
     add("--crs")
@@ -180,6 +185,9 @@ def parse_arguments(arguments):
     options.given = {
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
+    options.in_pieces = options.pieces is not None or options.memory is not None
+    if options.in_pieces:
+        check_given(options, parser.error)
     of_trim, of_fill = (
         [name for name in options.given if PROPERTIES[name].step == step] for step in ("trim", "fill")
     )
@@ -212,7 +220,7 @@ def options_of(options, files):
     name = os.path.basename(files[0])
     name = "points" if name == "-" else name[:-3] if name.lower().endswith(".gz") else name
     if options.output is None:
-        options.output = os.path.splitext(name)[0] + "_surface.vtp"
+        options.output = os.path.splitext(name)[0] + "_surface.vtp" + "d" * options.in_pieces
     for one in OUTPUTS:
         wanted = getattr(options, one.step) if one.step else getattr(options, one.name) is not None
         if wanted and not getattr(options, one.name):
@@ -258,7 +266,8 @@ def check_options(options):
     """Refuses what could not be read or written, before any work is done."""
     try:
         for path, one in files_of(options):
-            check_suffix(path, one.suffixes, "written")
+            suffixes = (OF_PIECES,) if options.in_pieces else one.suffixes
+            check_suffix(path, suffixes, "written in pieces" if options.in_pieces else "written")
             if one.name != "output":
                 check_gdal(path)
         if options.crs:
@@ -268,6 +277,8 @@ def check_options(options):
             check_suffix(options.picture, (".png",), "written as a picture")
         for path in options.files:
             reading.check_options(path, **read_options(options))
+        if options.in_pieces:
+            check_files(options)
     except FileError as error:
         raise WrongOption(str(error)) from None
     except ValueError as error:
@@ -301,10 +312,17 @@ class Run:
         self.times[name] = time.perf_counter() - began
         return result
 
-    def read(self):
-        options = self.options
-        wanted = read_options(options)
+    def read_options(self):
+        """The options that concern reading, with progress, by name."""
+        wanted = read_options(self.options)
         wanted["progress"] = lambda fraction: self.progress("reading", fraction)
+        return wanted
+
+    def about(self):
+        return about(self.options)
+
+    def read(self):
+        options, wanted = self.options, self.read_options()
         cloud = self.timed(
             "read",
             "reading",
@@ -441,7 +459,7 @@ def run_one(options):
     run = Run(options, results)
     try:
         check_options(options)
-        report = run()
+        report = Pieces(run)() if options.in_pieces else run()
         run.progress.clear()
         if not options.quiet:
             print_report(report)

@@ -163,7 +163,10 @@ def report_lines(report):
     if "holes" in report:
         hole_lines(report["holes"], line)
     line("surface", counted(list(report["triangles"].values())[-1], "triangle"))
-    distance_lines(report, line)
+    if "pieces" in report:
+        line("", f"in {counted(report['pieces'], 'piece')}")
+    if "distance" in report:
+        distance_lines(report, line)
     if "written" in report and report["unused_listed"] < report["points_unused"]:
         line("", f"--report lists the first {MOST_LISTED:,} unused points for each reason")
     if "times" in report:

@@ -50,8 +50,9 @@ class Results:
     def __init__(self):
         self.pending = []
 
-    def add(self, path, write):
-        partial = partial_path(path)
+    def add(self, path, write, partial=None):
+        """Lets write(partial) write a result, whose folder may have to be made when it appears."""
+        partial = partial or partial_path(path)
         self.pending.append((partial, path))
         note_partial_file(partial)
         try:
@@ -69,6 +70,7 @@ class Results:
         hold_stops()
         for partial, path in self.pending:
             try:
+                os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
                 os.replace(partial, path)
             except OSError as error:
                 raise Failure(f"{path}: cannot be written: {error.strerror}") from None

@@ -39,7 +39,8 @@ def end_with_parent():
 
 
 def note_partial_file(path):
-    """Tells the parent of a file that is not finished, for it to remove if this process cannot."""
+    """Tells the parent of a file or folder that is not finished, for it to remove if this process
+    cannot."""
     note(PARTIAL_FILES, os.path.abspath(path))
 
 
@@ -99,7 +100,9 @@ def stop(*_):
 
 def remove_leftovers(folder):
     for path in noted(folder, PARTIAL_FILES):
-        if os.path.isfile(path):
+        if os.path.isdir(path):
+            shutil.rmtree(path, ignore_errors=True)
+        elif os.path.isfile(path):
             os.remove(path)
     shutil.rmtree(folder, ignore_errors=True)
 

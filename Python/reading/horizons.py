@@ -8,7 +8,7 @@ import warnings
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_lines, make_points
+from ..clouds import Cloud, add_array, make_lines, make_points, slices
 from .columns import meaning
 from ..messages import FileError, counted
 from ..progress import no_progress, told_lines
@@ -236,20 +236,22 @@ def read_lines(path, singular, progress):
     return make_lines(parts)
 
 
-def read_array(path, options):
-    """An array of numpy: rows of x, y, z and more, or fields of these names."""
+def columns_of_array(path):
+    """{name: column} of an array of numpy in a file, which is not read yet, and notes."""
     try:
         rows = numpy.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, OSError, EOFError, SyntaxError) as error:
         raise FileError(f"{path}: cannot be read: {' '.join(str(error).split())}") from None
+    notes, shape = [], " x ".join(map(str, rows.shape)) or "one"
     if rows.dtype.names:
         names = [name for name in rows.dtype.names if rows.dtype[name].kind in "fiu"]
         columns = {name: rows[name].ravel() for name in names}
     elif rows.ndim == 2 and 3 <= rows.shape[1] <= MOST_COLUMNS and rows.dtype.kind in "fiu":
         names = ["x", "y", "z"] + [f"column {i}" for i in range(4, rows.shape[1] + 1)]
         columns = {name: rows[:, i] for i, name in enumerate(names)}
+        if len(columns) > 3:
+            notes = [f"the array is {shape}: its first three columns are taken as x, y, z"]
     else:
-        shape = " x ".join(map(str, rows.shape)) or "one"
         raise FileError(
             f"{path}: holds {shape} of {rows.dtype}; n x 3 are needed, rows of x, y and z (at most "
             f"{MOST_COLUMNS} columns)"
@@ -258,11 +260,29 @@ def read_array(path, options):
         raise FileError(f"{path}: has no fields x, y and z, but {', '.join(rows.dtype.names)}")
     if not len(columns["x"]):
         raise FileError(f"{path}: holds no points")
+    return columns, notes
+
+
+def read_array(path, options):
+    """An array of numpy: rows of x, y, z and more, or fields of these names."""
+    columns, notes = columns_of_array(path)
     xyz = numpy.column_stack([columns.pop(axis).astype("f8") for axis in "xyz"])
-    cloud = Cloud(make_points(xyz, copy=False))
-    if columns and not rows.dtype.names:
-        shape = " x ".join(map(str, rows.shape))
-        cloud.notes.append(f"the array is {shape}: its first three columns are taken as x, y, z")
+    cloud = Cloud(make_points(xyz, copy=False), notes)
     for name, values in columns.items():
         add_array(cloud.points, name, values.astype(values.dtype.newbyteorder("=")))
     return cloud
+
+
+def array_slices(path, options, cloud):
+    """Yields x, y and z of an array of numpy, slice by slice. The cloud gets what is told."""
+    columns, notes = columns_of_array(path)
+    cloud.notes += notes
+    others = [name for name in columns if name not in "xyz"]
+    if others:
+        cloud.notes.append(f"left out: {', '.join(others)}")
+    count = len(columns["x"])
+    for part in slices(count):
+        # Opened anew, as what has been read through a mapped file counts as memory in use.
+        columns = columns_of_array(path)[0]
+        yield numpy.column_stack([columns[axis][part].astype("f8") for axis in "xyz"])
+        options.progress(part.stop / count)

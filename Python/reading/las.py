@@ -7,7 +7,7 @@ import struct
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_points
+from ..clouds import Cloud, add_array, make_points, slices
 from ..messages import FileError
 
 # Bytes of a record, GPS time and colours in it, by point format.
@@ -114,9 +114,10 @@ def records(path, header):
     """Yields the points as arrays of header.record(), about a million at a time."""
     kind = header.record()
     if not header.is_packed:
-        rows = numpy.memmap(path, kind, "r", header.start, (header.count,))
-        for first in range(0, header.count, AT_ONCE):
-            yield rows[first : first + AT_ONCE]
+        for part in slices(header.count, AT_ONCE):
+            # Opened anew, as what has been read through a mapped file counts as memory in use.
+            start = header.start + part.start * header.length
+            yield numpy.memmap(path, kind, "r", start, (part.stop - part.start,))
         return
     try:
         import laspy
@@ -133,6 +134,72 @@ def records(path, header):
         raise FileError(f"{path}: laspy cannot read it: {' '.join(str(error).split())}") from None
 
 
+class Chosen:
+    """The points that are not withheld, and of the classes that options name: iterate to get
+    (rows, their classes, x y z), some at a time. Raises FileError where there are none."""
+
+    def __init__(self, path, header, options):
+        self.path, self.header, self.options = path, header, options
+        self.count = self.withheld = 0
+        self.of_class = numpy.zeros(256, "i8")
+
+    def __iter__(self):
+        header, total = self.header, 0
+        for rows in records(self.path, header):
+            classes, gone = rows["Classification"], rows["flags"] & 4 > 0
+            if header.kind < 6:
+                classes, gone = classes & 31, classes & 128 > 0
+            keep = ~gone
+            self.withheld += int(numpy.count_nonzero(gone))
+            self.of_class += numpy.bincount(classes[keep], minlength=256)
+            if self.options.classes:
+                keep &= numpy.isin(classes, self.options.classes)
+            rows = rows[keep]
+            self.count, total = self.count + len(rows), total + len(keep)
+            yield rows, classes[keep], rows["XYZ"] * header.scale + header.offset
+            self.options.progress(total / header.count)
+        if total < header.count:
+            raise FileError(
+                f"{self.path}: is cut off: {header.count:,} points are announced, {total:,} are there"
+            )
+        if self.count == 0:
+            wanted = ", ".join(map(str, self.options.classes or ()))
+            raise FileError(
+                f"{self.path}: holds no point of class {wanted}; classes: {self.shown() or 'none'}"
+            )
+
+    def shown(self):
+        """The classes and how many points each has, in words."""
+        return ", ".join(
+            f"{number} {CLASSES.get(number, '')}".strip() + f": {self.of_class[number]:,}"
+            for number in numpy.flatnonzero(self.of_class)
+        )
+
+    def tell(self, cloud):
+        """Adds to a Cloud what is told once all points are read."""
+        header = self.header
+        several = numpy.count_nonzero(self.of_class) > 1 and not self.options.classes
+        cloud.crs = header.crs
+        cloud.notes.append(
+            f"LAS {header.version[0]}.{header.version[1]}, point format {header.kind}; classes "
+            + self.shown() + " (see --classes)" * bool(several)
+        )
+        if self.withheld:
+            cloud.left_out["points marked as withheld"] = self.withheld
+        if header.count - self.withheld > self.count:
+            others = header.count - self.withheld - self.count
+            cloud.left_out["points of other classes"] = others
+
+
+def las_slices(path, options, cloud):
+    """Yields x, y and z of the chosen points, slice by slice. The cloud gets what is told."""
+    chosen = Chosen(path, Header(path), options)
+    for _, _, points in chosen:
+        yield points
+    chosen.tell(cloud)
+    cloud.notes.append("left out: point arrays, as intensity")
+
+
 def read_points(path, options):
     """All points that are not withheld, or those of the classes that options name.
 
@@ -141,7 +208,6 @@ def read_points(path, options):
     """
     header = Header(path)
     names = header.record().names
-    count, total = 0, 0
     points = numpy.empty((header.count, 3))
     arrays = {
         "Intensity": numpy.empty(header.count, "u2"),
@@ -152,48 +218,19 @@ def read_points(path, options):
         arrays["GpsTime"] = numpy.empty(header.count)
     if "RGB" in names:
         arrays["RGB"] = numpy.empty((header.count, 3), "u2")
-    withheld, of_class = 0, numpy.zeros(256, "i8")
-    for rows in records(path, header):
-        classes, gone = rows["Classification"], rows["flags"] & 4 > 0
-        if header.kind < 6:
-            classes, gone = classes & 31, classes & 128 > 0
-        keep = ~gone
-        withheld += int(numpy.count_nonzero(gone))
-        of_class += numpy.bincount(classes[keep], minlength=256)
-        if options.classes:
-            keep &= numpy.isin(classes, options.classes)
-        rows = rows[keep]
-        here = slice(count, count + len(rows))
-        points[here] = rows["XYZ"] * header.scale + header.offset
+    chosen = Chosen(path, header, options)
+    for rows, classes, xyz in chosen:
+        here = slice(chosen.count - len(rows), chosen.count)
+        points[here] = xyz
         arrays["ReturnNumber"][here] = rows["returns"] & (15 if header.kind >= 6 else 7)
-        arrays["Classification"][here] = classes[keep]
+        arrays["Classification"][here] = classes
         for name in ("Intensity", "GpsTime", "RGB"):
             if name in arrays:
                 arrays[name][here] = rows[name]
-        count, total = here.stop, total + len(keep)
-        options.progress(total / header.count)
-    if total < header.count:
-        raise FileError(
-            f"{path}: is cut off: {header.count:,} points are announced, {total:,} are there"
-        )
-    shown = ", ".join(
-        f"{number} {CLASSES.get(number, '')}".strip() + f": {of_class[number]:,}"
-        for number in numpy.flatnonzero(of_class)
-    )
-    if count == 0:
-        wanted = ", ".join(map(str, options.classes or ()))
-        raise FileError(f"{path}: holds no point of class {wanted}; classes: {shown or 'none'}")
-    cloud = Cloud(make_points(points[:count], copy=False), crs=header.crs)
-    cloud.notes.append(
-        f"LAS {header.version[0]}.{header.version[1]}, point format {header.kind}; classes {shown}"
-        + ("" if options.classes else " (see --classes)" * bool(numpy.count_nonzero(of_class) > 1))
-    )
-    if withheld:
-        cloud.left_out["points marked as withheld"] = withheld
-    if header.count - withheld > count:
-        cloud.left_out["points of other classes"] = header.count - withheld - count
+    cloud = Cloud(make_points(points[: chosen.count], copy=False))
+    chosen.tell(cloud)
     for name, values in arrays.items():
-        values = values[:count]
+        values = values[: chosen.count]
         if name == "RGB":
             # Colours of 16 bits, or as many programs write them, of 8.
             values = (values >> (8 if values.max() > 255 else 0)).astype("u1")

@@ -14,7 +14,7 @@ import re
 
 import numpy
 
-from ..clouds import Cloud, add_array, make_points
+from ..clouds import Cloud, add_array, make_points, with_data
 from .columns import choose_columns
 from .layouts import (
     COMMENT_MARKS,
@@ -35,6 +35,7 @@ END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
+ADVICE = "--columns chooses other columns"
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 
 
@@ -397,8 +398,17 @@ class Parser:
                     "or write nan for what is missing"
                 )
 
-    def finish(self):
-        """(rows, line numbers, starts, notes)"""
+    def take(self):
+        """(rows, line numbers) since the last call. There must be some."""
+        taken = [
+            parts[0] if len(parts) == 1 else numpy.concatenate(parts)
+            for parts in (self.parts, self.numbers)
+        ]
+        self.parts, self.numbers = [], []
+        return taken
+
+    def told(self):
+        """Notes, once all lines are read."""
         table = self.table
         notes, comments = table.notes, self.comments + table.comments
         seen = [f"separated by {table.layout}"]
@@ -424,13 +434,11 @@ class Parser:
             words = counted(count, "word is no number", "words are no numbers")
             where = f"line {line:,}" if count == 1 else f"first in line {line:,}"
             notes.append(f"column {table.extras[index]}: {words} ({where}: {word[:40]})")
-        rows = self.parts[0] if len(self.parts) == 1 else numpy.concatenate(self.parts)
-        self.parts = []
-        return rows, numpy.concatenate(self.numbers), self.starts, notes
+        return notes
 
 
-def parse(path, columns, needed, advice, progress):
-    """(table, rows, line numbers, starts, notes) of a text file."""
+def parsed(path, columns, needed, advice, progress):
+    """Yields the Parser of a text file after each block of lines."""
     parser, done = None, 0.0
 
     with open(path, "rb") as stream:
@@ -442,9 +450,16 @@ def parse(path, columns, needed, advice, progress):
             parser.add(block, lines, skip)
             done = read
             progress(done)
+            yield parser
     if parser is None:
         raise FileError(f"{path}: is empty")
-    return (parser.table, *parser.finish())
+
+
+def parse(path, columns, needed, advice, progress):
+    """(table, rows, line numbers, starts, notes) of a text file."""
+    for parser in parsed(path, columns, needed, advice, progress):
+        pass
+    return (parser.table, *parser.take(), parser.starts, parser.told())
 
 
 def read_table(path, needed=3, progress=no_progress):
@@ -463,21 +478,38 @@ def read_text(path, options):
 
     Returns a Cloud. Ten million lines of x, y and z take some five seconds of one core and 0.8 GB.
     """
-    advice = "--columns chooses other columns"
-    table, rows, numbers, _, notes = parse(path, options.columns, 3, advice, options.progress)
+    table, rows, numbers, _, notes = parse(path, options.columns, 3, ADVICE, options.progress)
     if table.downwards and not options.depth:
         notes.append(table.downwards)
     cloud = Cloud(None, notes, lines=numbers)
     if options.no_data is not None:
-        keep = rows[:, 2] != options.no_data
-        if not keep.all():
-            cloud.left_out["rows without data"] = int(len(keep) - numpy.count_nonzero(keep))
-            cloud.lines, rows = numbers[keep], rows[keep]
+        cloud.lines = numbers[rows[:, 2] != options.no_data]
+        rows = with_data(rows, options.no_data, cloud, "rows without data")
         if not len(rows):
             raise FileError(f"{path}: all rows are without data")
     cloud.points = make_points(rows[:, :3])
     add_arrays(cloud.points, table.extras, rows[:, 3:])
     return cloud
+
+
+def text_slices(path, options, cloud):
+    """Yields x, y and z of the rows of a text file, block by block. The cloud gets what is told."""
+    count = 0
+    for parser in parsed(path, options.columns, 3, ADVICE, options.progress):
+        if not parser.parts:
+            continue
+        rows = parser.take()[0][:, :3]
+        if options.no_data is not None:
+            rows = with_data(rows, options.no_data, cloud, "rows without data")
+        count += len(rows)
+        yield rows
+    if not count:
+        raise FileError(f"{path}: all rows are without data")
+    cloud.notes += parser.told()
+    if parser.table.downwards and not options.depth:
+        cloud.notes.append(parser.table.downwards)
+    if parser.table.extras:
+        cloud.notes.append(f"left out: {', '.join(parser.table.extras.values())}")
 
 
 def add_arrays(points, extras, values):

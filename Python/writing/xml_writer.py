@@ -136,11 +136,13 @@ class Writer:
 
     def points_and_arrays(self, data):
         for tag, attributes in (("PointData", data.GetPointData()), ("CellData", data.GetCellData())):
-            self.group(tag, named_arrays(attributes))
+            ids = attributes.GetGlobalIds()
+            active = f" GlobalIds={quoteattr(ids.GetName())}" if ids and ids.GetName() else ""
+            self.group(tag, named_arrays(attributes), active)
         self.group("Points", [("Points", vtk_to_numpy(data.GetPoints().GetData()), "")])
 
-    def group(self, tag, arrays):
-        self(f"<{tag}>\n")
+    def group(self, tag, arrays, active=""):
+        self(f"<{tag}{active}>\n")
         for name, array, more in arrays:
             self.array(name, array, more)
         self(f"</{tag}>\n")

@@ -6,6 +6,7 @@
 #include <vtkFillElevationHoles.h>
 #include <vtkGridDelaunay2D.h>
 #include <vtkNew.h>
+#include <vtkTriangulatePieces.h>
 #include <vtkTrimOutwardTriangles.h>
 
 #include <iostream>
@@ -13,9 +14,10 @@
 int main()
 {
   vtkNew<vtkGridDelaunay2D> delaunay;
+  vtkNew<vtkTriangulatePieces> pieces;
   vtkNew<vtkTrimOutwardTriangles> trim;
   vtkNew<vtkFillElevationHoles> fill;
   std::cout << delaunay->GetClassName() << ' ' << trim->GetClassName() << ' '
-            << fill->GetClassName() << '\n';
+            << fill->GetClassName() << ' ' << pieces->GetClassName() << '\n';
   return 0;
 }

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SpoolFile.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+struct Closer
+{
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OpenFile = std::unique_ptr<std::FILE, Closer>;
+
+Error Failed(const char* what, const std::string& path)
+{
+  const std::string reason = errno != 0 ? std::strerror(errno) : "the file is cut off";
+  return Error(std::string("The temporary file ") + path + " cannot be " + what + ": " + reason);
+}
+
+OpenFile Open(const std::string& path, const char* mode, const char* what)
+{
+  errno = 0;
+  OpenFile file(std::fopen(path.c_str(), mode));
+  if (!file)
+  {
+    throw Failed(what, path);
+  }
+  return file;
+}
+} // namespace
+
+SpoolFile::SpoolFile(const std::string& path)
+  : Path(path)
+{
+}
+
+void SpoolFile::Append(const void* stretch, std::size_t size)
+{
+  OpenFile file = Open(this->Path, this->Count > 0 ? "ab" : "wb", "written");
+  const bool isWritten = std::fwrite(&size, sizeof(size), 1, file.get()) == 1 &&
+    std::fwrite(stretch, 1, size, file.get()) == size;
+  if (!isWritten || std::fclose(file.release()) != 0)
+  {
+    throw Failed("written", this->Path);
+  }
+  ++this->Count;
+}
+
+void SpoolFile::ForEach(const std::function<void(Bytes&&)>& visit) const
+{
+  if (this->Count == 0)
+  {
+    return;
+  }
+  const OpenFile file = Open(this->Path, "rb", "read");
+  for (std::size_t i = 0; i < this->Count; ++i)
+  {
+    std::size_t size = 0;
+    Bytes stretch;
+    if (std::fread(&size, sizeof(size), 1, file.get()) == 1)
+    {
+      stretch.Resize(size);
+    }
+    if (stretch.empty() || std::fread(stretch.data(), 1, size, file.get()) != size)
+    {
+      throw Failed("read", this->Path);
+    }
+    visit(std::move(stretch));
+  }
+}
+
+void SpoolFile::Remove()
+{
+  std::remove(this->Path.c_str());
+  this->Count = 0;
+}
+
+} // namespace elevation

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Bytes that do not fit into memory. Private to the module.
+ */
+#ifndef SpoolFile_h
+#define SpoolFile_h
+
+#include "Bytes.h"
+
+#include <functional>
+#include <string>
+
+namespace elevation
+{
+
+/** A file that is written stretch by stretch, and read like that. */
+class SpoolFile
+{
+public:
+  /** Takes the place of a file of this name. */
+  explicit SpoolFile(const std::string& path);
+
+  /** @throws Error, as where the disk is full */
+  void Append(const void* stretch, std::size_t size);
+
+  /** @throws Error if the file is not as it was written */
+  void ForEach(const std::function<void(Bytes&&)>& visit) const;
+
+  /** From here on there are no stretches. */
+  void Remove();
+
+private:
+  std::string Path;
+  std::size_t Count = 0; // of stretches
+};
+
+} // namespace elevation
+
+#endif

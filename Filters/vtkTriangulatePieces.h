@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkTriangulatePieces
+ * @brief   exact Delaunay triangulation of more points than memory holds, piece by piece
+ *
+ * A source that is given points by AddPoints(), part by part, and whose output is the piece of the
+ * surface that is asked for, as by UpdatePiece(piece, numberOfPieces, 0) or by a writer of pieces.
+ * Together the pieces have exactly the triangles that vtkGridDelaunay2D makes of all points at
+ * once, whatever the number of pieces and the order of parts: also the lattice, and which of
+ * duplicates is kept, are those of all.
+ *
+ * The plane is cut into a cell for each piece, with about as many points each. A piece has the
+ * points of its cell, also unused ones, then the corners of its triangles that are points of other
+ * pieces: these are marked in vtkGhostType as DUPLICATEPOINT, and GlobalPointIds tell the place of
+ * each point in the order of AddPoints(). Each triangle is in one piece, that of its lowest corner
+ * if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
+ * piece.
+ *
+ * All properties of the triangulation are those of GetDelaunay(), except MaximumEdgeLength, Lattice
+ * and constraints, which are for points in memory: the first two are errors.
+ *
+ * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
+ * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
+ * asked for again until the files are removed: by Reset(), and with this object. The first piece
+ * that is asked for decides on the number of pieces; it takes the time of the whole triangulation,
+ * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
+ * seams of pieces, which it holds too, have some multiple of the square root of so many points.
+ *
+ * Errors, as of a full disk, and an abort leave empty output; then only Reset() is possible.
+ *
+ * @sa vtkGridDelaunay2D
+ */
+#ifndef vtkTriangulatePieces_h
+#define vtkTriangulatePieces_h
+
+#include "vtkElevationSurfaceModule.h" // For export macro
+#include "vtkNew.h"
+#include "vtkPolyDataAlgorithm.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace elevation
+{
+class CellByCell;
+}
+class vtkGridDelaunay2D;
+class vtkPointSet;
+
+class VTKELEVATIONSURFACE_EXPORT vtkTriangulatePieces : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkTriangulatePieces* New();
+  vtkTypeMacro(vtkTriangulatePieces, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * The folder of the temporary files, which exists, and in which nothing else is. Default: empty,
+   * which is an error. It is read with the first points.
+   */
+  virtual void SetFolder(const std::string& folder);
+  virtual std::string GetFolder() { return this->Folder; }
+  ///@}
+
+  /** The filter whose properties tell how to triangulate. Its input is not used. */
+  vtkGridDelaunay2D* GetDelaunay();
+
+  /**
+   * Adds points, with their point arrays; all parts need the same arrays, without global ids.
+   * @return whether it could be done; else there is an error
+   */
+  bool AddPoints(vtkPointSet* points);
+
+  /** Forgets all points, and removes the files. */
+  void Reset();
+
+  ///@{
+  /** Counts of all pieces; points can be counted before the first piece, the others after it. */
+  vtkIdType GetNumberOfPoints();
+  vtkIdType GetNumberOfTriangles();
+  vtkIdType GetNumberOfDuplicatePoints();
+  vtkIdType GetNumberOfNonFinitePoints();
+  bool GetLatticeFound();
+  ///@}
+
+protected:
+  vtkTriangulatePieces();
+  ~vtkTriangulatePieces() override;
+  int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+  int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
+    vtkInformationVector* outputVector) override;
+
+private:
+  vtkTriangulatePieces(const vtkTriangulatePieces&) = delete;
+  void operator=(const vtkTriangulatePieces&) = delete;
+  bool Try(const std::function<void()>& work);
+
+  std::string Folder;
+  vtkNew<vtkGridDelaunay2D> Delaunay;
+  std::unique_ptr<elevation::CellByCell> Work;
+  bool HasFailed = false;
+};
+
+#endif

@@ -1,0 +1,235 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces larger than memory: points are read slice by slice, and the surface is made and written
+piece by piece. Together the pieces have the triangles of a surface that is made at once."""
+
+import contextlib
+import math
+import os
+import re
+import shutil
+import tempfile
+from xml.sax.saxutils import quoteattr
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .clouds import Cloud, corner_flags, make_points, set_crs, slices
+from .messages import FileError, Messages
+from .properties import LATTICE_MODES, PROPERTIES
+from .reading.formats import recognise
+from .reading.slicing import check_sliced, read_files
+from .reading.unpacking import is_plain
+from .reconstruction import STEPS, lattice_of
+from .report import MOST_LISTED, REASONS
+from .results import Failure, write_report
+from .supervisor import note_partial_file
+from .vtkElevationSurface import vtkTriangulatePieces
+from .writing.xml_writer import write_vtp
+
+AT_ONCE = 1_000_000  # points given to the filter at a time
+SUFFIX = ".vtpd"
+BYTES_A_POINT = 250  # of memory, where a piece is triangulated
+BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
+UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
+# Options of what is made of the whole surface in memory.
+OF_THE_WHOLE = ("faults", "maximum_edge_length", "grid", "contours", "outlines", "picture")
+
+
+def memory_size(text):
+    """2G, 1.5G, 800M -> bytes"""
+    found = re.fullmatch(r"([0-9]*\.?[0-9]+)([KMGT]?)B?", text.strip().upper())
+    size = float(found.group(1)) * UNITS[found.group(2)] if found else 0.0
+    if not 1.5 * BYTES_BESIDES <= size < math.inf:
+        raise ValueError
+    return size
+
+
+MEMORY = f"a size of at least {1.5 * BYTES_BESIDES / 1e6:g}M, as 2G"
+
+
+def pieces_within(memory, points):
+    """How many pieces take no more memory than that."""
+    return max(1, math.ceil(BYTES_A_POINT * points / (memory - BYTES_BESIDES)))
+
+
+def check_given(options, error):
+    """Calls error(words) where options of the command line do not go with pieces."""
+    if options.pieces is not None and options.memory is not None:
+        error("--pieces and --memory both tell the number of pieces: leave one out")
+    name = "--pieces" if options.pieces is not None else "--memory"
+    for other in OF_THE_WHOLE:
+        if getattr(options, other) not in (None, False):
+            other = "--" + other.replace("_", "-")
+            error(f"{other} needs the whole surface in memory; it cannot be used with {name}")
+    if options.trim or options.fill:
+        error(f"{name} triangulates, but cannot trim or fill yet: add --no-trim --no-fill")
+    options.no_picture = True
+
+
+def check_files(options):
+    """Refuses files that cannot be read or written in pieces, before any work is done."""
+    for path in options.files:
+        if is_plain(path):
+            check_sliced(path, recognise(path)[0])
+    folder = folder_of(options.output)
+    if os.path.exists(folder) and not os.path.isdir(folder):
+        raise FileError(f"{folder}: is a file, but the folder of the pieces has this name")
+
+
+def folder_of(output):
+    """Where the pieces are: survey_surface of survey_surface.vtpd."""
+    return os.path.splitext(output)[0]
+
+
+@contextlib.contextmanager
+def temporary_folder(output):
+    """A folder beside a result, which goes away, also where this process cannot see to it."""
+    place, name = os.path.split(os.path.abspath(output))
+    try:
+        folder = tempfile.mkdtemp(".partial", f".{os.path.splitext(name)[0]}.", place)
+    except OSError as error:
+        raise Failure(f"{output}: cannot be written: {error.strerror}") from None
+    note_partial_file(folder)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+class Pieces:
+    """A run in pieces: reads, triangulates and writes. Call it to get the report.
+
+    run  the Run of the command line, with its options, results, progress and times
+    """
+
+    def __init__(self, run):
+        self.run, self.options = run, run.options
+        self.cloud = Cloud(None)
+        self.source = vtkTriangulatePieces()
+        self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
+        self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
+        self.lattice = None
+
+    def __call__(self):
+        options, source, run = self.options, self.source, self.run
+        for name, value in options.given.items():
+            if PROPERTIES[name].step in ("delaunay", ""):
+                getattr(source.GetDelaunay(), PROPERTIES[name].setter)(value)
+        source.AddObserver(
+            "ProgressEvent",
+            lambda caller, _: run.progress(STEPS["delaunay"], caller.GetProgress()),
+        )
+        with temporary_folder(options.output) as folder:
+            source.SetFolder(folder)
+            with Messages(source, source.GetExecutive()) as self.messages:
+                run.timed("read", "reading", self.read)
+                count = options.pieces or pieces_within(
+                    options.memory, source.GetNumberOfPoints()
+                )
+                run.timed("triangulate", STEPS["delaunay"], lambda: self.update(0, count))
+                names = run.timed("write", "writing", lambda: self.write(folder, count))
+            run.results.add(options.output, lambda path: write_vtpd(names, path))
+            report = self.report(len(names))
+            if options.report:
+                run.results.add(options.report, lambda path: write_report(path, report))
+            run.results.publish()
+        return report
+
+    def check(self):
+        """Raises what the filter has told as error, or with --strict as warning."""
+        told = self.messages.errors + (self.messages.warnings if self.options.strict else [])
+        if told:
+            raise Failure(f"{self.options.file}: {STEPS['delaunay']}: {told[0]}")
+
+    def read(self):
+        """Gives all points to the filter, slice by slice."""
+        wanted = self.run.read_options()
+        for points in read_files(self.options.files, self.cloud, **wanted):
+            for part in slices(len(points), AT_ONCE):
+                self.source.AddPoints(make_points(points[part], copy=False))
+                self.check()
+        self.run.set_crs(self.cloud)
+
+    def update(self, piece, count):
+        """The output for a piece. The first one takes the time of the triangulation."""
+        self.source.UpdatePiece(piece, count, 0)
+        self.check()
+        if self.source.GetNumberOfTriangles() == 0:
+            raise Failure(f"{self.options.file}: no surface: {self.messages.warnings[0]}")
+        return self.source.GetOutput()
+
+    def write(self, folder, count):
+        """Writes all pieces with points. Returns their names beside the output."""
+        names, final = [], folder_of(self.options.output)
+        for piece in range(count):
+            data = self.update(piece, count)
+            if data.GetNumberOfPoints():
+                self.look_at(data)
+                if self.cloud.crs:
+                    set_crs(data, self.cloud.crs)
+                name = f"{os.path.basename(final)}_{piece}.vtp"
+                self.run.results.add(
+                    os.path.join(final, name),
+                    lambda path: write_vtp(data, path),  # pylint: disable=cell-var-from-loop
+                    os.path.join(folder, name),
+                )
+                names.append(f"{os.path.basename(final)}/{name}")
+            self.run.progress("writing", (piece + 1) / count)
+        return names
+
+    def look_at(self, data):
+        """Takes from a piece what the report tells."""
+        points, ids = data.GetPoints(), vtk_to_numpy(data.GetPointData().GetGlobalIds())
+        corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
+        used = vtk_to_numpy(points.GetData())[corner_flags(corners, len(ids))]
+        self.low = numpy.minimum(self.low, used.min(axis=0, initial=numpy.inf))
+        self.high = numpy.maximum(self.high, used.max(axis=0, initial=-numpy.inf))
+        fields = data.GetFieldData()
+        self.lattice = lattice_of(fields)
+        gone = ids[vtk_to_numpy(fields.GetArray("UnusedPointIds"))]
+        reasons = vtk_to_numpy(fields.GetArray("UnusedPointReasons"))
+        for number, known in self.unused.items():
+            all_known = numpy.concatenate((known, gone[reasons == number]))
+            self.unused[number] = numpy.sort(all_known)[:MOST_LISTED]
+
+    def report(self, pieces):
+        """As that of a surface in memory, without what needs all of it at once."""
+        source, options = self.source, self.options
+        counts = (source.GetNumberOfDuplicatePoints(), source.GetNumberOfNonFinitePoints())
+        listed = [
+            {"point": point, "reason": REASONS[number]}
+            for number, points in self.unused.items()
+            for point in points.tolist()
+        ]
+        limits = zip("xyz", self.low.tolist(), self.high.tolist())
+        return {
+            "file": options.file,
+            **self.run.about(),
+            "notes": self.cloud.notes + self.messages.warnings,
+            "left_out": self.cloud.left_out,
+            "bounds": {axis: pair for axis, *pair in limits},
+            "crs": self.cloud.crs,
+            "points": source.GetNumberOfPoints(),
+            "points_unused": sum(counts),
+            "unused_reasons": {REASONS[i + 1]: n for i, n in enumerate(counts) if n},
+            "unused": sorted(listed, key=lambda one: one["point"]),
+            "unused_listed": len(listed),
+            "lattice": self.lattice,
+            "lattice_mode": LATTICE_MODES[source.GetDelaunay().GetLatticeMode()],
+            "triangles": {"delaunay": source.GetNumberOfTriangles()},
+            "pieces": pieces,
+            "times": self.run.times,
+            "written": [path for path in (options.output, options.report) if path],
+        }
+
+
+def write_vtpd(names, path):
+    """Writes the file that names the pieces: a vtkPartitionedDataSet. Raises OSError."""
+    with open(path, "w", encoding="utf-8") as stream:
+        stream.write('<?xml version="1.0"?>\n')
+        stream.write('<VTKFile type="vtkPartitionedDataSet" version="1.0">\n')
+        stream.write("<vtkPartitionedDataSet>\n")
+        for i, name in enumerate(names):
+            stream.write(f"<DataSet index=\"{i}\" file={quoteattr(name)}/>\n")
+        stream.write("</vtkPartitionedDataSet>\n</VTKFile>\n")

@@ -1,0 +1,88 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads points slice by slice, where a file holds more than memory does."""
+
+import os
+
+import numpy
+
+from ..clouds import Cloud, ReadOptions, system_of, with_data
+from ..messages import FileError, counted
+from ..progress import share
+from . import check_use
+from .formats import FORMATS, recognise
+from .nulls import usual_nulls, zero_rows
+from .unpacking import unpacked
+
+
+def check_sliced(path, kind):
+    """Refuses a kind of file that is only read as a whole."""
+    if not kind.slices:
+        names = sorted({other.name for other in FORMATS if other.slices})
+        raise FileError(
+            f"{path}: {kind.name} is read as a whole, not in pieces: that can be {', '.join(names)}"
+        )
+
+
+def read_slices(path, cloud, **options):
+    """Yields the points of a file as arrays of x, y and z, in the order of read() and without point
+    arrays. The cloud gets notes, what is left out and the reference system.
+
+    Options as of read(). Usual null values that stand apart are an error, as whether they are null
+    shows in all points together. Raises FileError.
+    """
+    options = ReadOptions(**options)
+    whole = options.progress
+    with unpacked(os.fspath(path), whole) as (local, begun):
+        options.progress = share(whole, begun, 1.0)
+        kind, notes = recognise(local)
+        check_use(local, kind, options)
+        check_sliced(local, kind)
+        cloud.notes += notes
+        count = 0
+        for points in kind.slice_reader()(local, options, cloud):
+            if options.no_data is not None:
+                points = with_data(points, options.no_data, cloud, "points without data")
+            if len(points) and not options.keep_nulls:
+                check_nulls(local, points)
+            if options.depth:
+                points = points * (1.0, 1.0, -1.0)
+            count += len(points)
+            yield points
+        if not count:
+            raise FileError(f"{local}: all points have the elevation that marks missing data")
+        if options.depth:
+            cloud.notes.append("z is turned over, as --depth says")
+
+
+@numpy.errstate(all="ignore")
+def check_nulls(path, points):
+    """Refuses points of which some have a usual null value that stands apart from the others."""
+    axes = [numpy.ascontiguousarray(points[:, i]) for i in range(3)]
+    for axis, name in ((2, "z"), (0, "x"), (1, "y")):
+        for value, found in usual_nulls(axes[axis], is_place=axis < 2):
+            advice = f"--no-data {value:.9g} leaves such points out, " if axis == 2 else ""
+            raise FileError(
+                f"{path}: {name} = {value:.9g} of {counted(numpy.count_nonzero(found), 'point')} "
+                f"looks like a null value: {advice}--keep-nulls keeps them"
+            )
+    if zero_rows(*axes).any():
+        raise FileError(
+            f"{path}: points 0 0 0 apart from all others look like null values: --keep-nulls keeps "
+            "them"
+        )
+
+
+def read_files(paths, cloud, **options):
+    """read_slices() of several files, one after another. Raises FileError where their coordinate
+    reference systems differ."""
+    clouds = [Cloud(None) for _ in paths]
+    progress = options["progress"]
+    for i, (path, own) in enumerate(zip(paths, clouds)):
+        options["progress"] = share(progress, i / len(paths), (i + 1) / len(paths))
+        yield from read_slices(path, own, **options)
+        cloud.notes += [f"{path}: {note}" for note in own.notes] if len(paths) > 1 else own.notes
+        for reason, count in own.left_out.items():
+            cloud.left_out[reason] = cloud.left_out.get(reason, 0) + count
+    cloud.crs, notes = system_of(paths, clouds)
+    cloud.notes += notes

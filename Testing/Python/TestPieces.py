@@ -1,0 +1,459 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces in pieces: together they have the triangles of all points at once."""
+
+import gzip
+import json
+import os
+import resource
+import signal
+import struct
+import subprocess
+import sys
+import unittest
+from unittest import mock
+
+import numpy
+from in_folder import InFolder, Program
+from vtkelevationsurface import pieces, reading, vtkGridDelaunay2D, vtkTriangulatePieces
+from vtkelevationsurface.clouds import Cloud, add_array, make_points
+from vtkelevationsurface.messages import FileError, Messages
+from vtkelevationsurface.reading import text
+from vtkelevationsurface.reading.slicing import read_slices
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.vtkIOXML import vtkXMLPartitionedDataSetReader, vtkXMLPolyDataReader
+
+TRIANGULATION_ONLY = ("--no-trim", "--no-fill")
+COUNTS = ("DuplicatePoints", "NonFinitePoints")
+
+
+def sorted_triangles(triangles):
+    """Each with its least corner first, in one order."""
+    first = triangles.argmin(axis=1)
+    turned = [triangles[numpy.arange(len(triangles)), (first + i) % 3] for i in range(3)]
+    turned = numpy.column_stack(turned)
+    return turned[numpy.lexsort(turned.T[::-1])]
+
+
+def triangles_of(data):
+    return vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype("i8")
+
+
+def ids_of(data):
+    return vtk_to_numpy(data.GetPointData().GetGlobalIds())
+
+
+def ghosts_of(data):
+    return vtk_to_numpy(data.GetPointData().GetArray("vtkGhostType"))
+
+
+def all_triangles(parts):
+    """The triangles of pieces, by global ids."""
+    return sorted_triangles(numpy.concatenate([ids_of(part)[triangles_of(part)] for part in parts]))
+
+
+def clouds():
+    """{name: (n, 3)} of every kind, in no order, with duplicates and what is not finite."""
+    rng = numpy.random.default_rng(7)
+    node = numpy.stack(numpy.meshgrid(numpy.arange(60.0), numpy.arange(50.0)), -1).reshape(-1, 2)
+    node = node[rng.permutation(len(node))[:2400]]
+    along = rng.random(2000) * 900.0
+    tracks = numpy.column_stack((numpy.repeat(numpy.arange(20) * 50.0, 100), along))
+    found = {
+        "random": rng.random((3000, 2)) * 1000.0 + 4e5,
+        "lattice": node @ numpy.array([[3.0, 0.5], [-0.25, 2.0]]) + (4e5, 5e6),
+        "clustered": rng.normal(size=(3000, 2)) ** 5,
+        "tracks": tracks,
+        "few": rng.random((5, 2)),
+        "almost a lattice": numpy.vstack((node, node + (0.3, 0.2))) * 25.0,
+    }
+    for name, xy in found.items():
+        if len(xy) > 5:
+            xy[-40:] = xy[:40]
+        found[name] = numpy.column_stack((xy, rng.integers(0, 100, len(xy)) * 0.5))
+        if len(xy) > 5:
+            found[name][rng.integers(0, len(xy), 30), rng.integers(0, 3, 30)] = numpy.nan
+    return found
+
+
+class InPieces(InFolder):
+    """The filter by itself."""
+
+    def source(self, points, at_once=700, **properties):
+        folder = self.path("files")
+        os.makedirs(folder, exist_ok=True)
+        source = vtkTriangulatePieces()
+        source.SetFolder(folder)
+        for name, value in properties.items():
+            getattr(source.GetDelaunay(), "Set" + name)(value)
+        for first in range(0, len(points), at_once):
+            self.assertTrue(source.AddPoints(make_points(points[first : first + at_once])))
+        return source
+
+    def parts(self, source, count):
+        result = []
+        for i in range(count):
+            source.UpdatePiece(i, count, 0)
+            part = source.GetOutput().NewInstance()
+            part.ShallowCopy(source.GetOutput())
+            if part.GetNumberOfPoints():
+                result.append(part)
+        return result
+
+    def errors_of(self, source, work):
+        with Messages(source, source.GetExecutive()) as messages:
+            work()
+        return messages.errors
+
+    def assert_as_one(self, points, count, **properties):
+        one = vtkGridDelaunay2D()
+        for name, value in properties.items():
+            getattr(one, "Set" + name)(value)
+        one.SetInputData(make_points(points))
+        one.Update()
+        source = self.source(points, **properties)
+        parts = self.parts(source, count)
+        numpy.testing.assert_array_equal(
+            all_triangles(parts), sorted_triangles(triangles_of(one.GetOutput()))
+        )
+        self.assertEqual(source.GetNumberOfTriangles(), one.GetOutput().GetNumberOfPolys())
+        self.assertEqual(source.GetLatticeFound(), one.GetLatticeFound())
+        for name in COUNTS:
+            counts = [getattr(f, "GetNumberOf" + name)() for f in (source, one)]
+            self.assertEqual(*counts)
+        return one.GetOutput(), parts
+
+    def test_the_triangles_are_those_of_all_points_at_once(self):
+        for name, points in clouds().items():
+            for count in (1, 2, 3, 7, 16):
+                with self.subTest(cloud=name, pieces=count):
+                    self.assert_as_one(points, count)
+
+    def test_each_point_has_one_piece_and_others_are_ghosts(self):
+        points = clouds()["random"]
+        _, parts = self.assert_as_one(points, 7)
+        self.assertEqual(len(parts), 7)
+        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
+        numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(len(points)))
+        for part in parts:
+            here = vtk_to_numpy(part.GetPoints().GetData())
+            numpy.testing.assert_array_equal(here, points[ids_of(part)])
+            used = numpy.zeros(len(here), dtype=bool)
+            used[triangles_of(part)] = True
+            self.assertTrue(used[ghosts_of(part) == 1].all())
+            self.assertTrue((numpy.diff(ids_of(part)[ghosts_of(part) == 0]) > 0).all())
+            y = here[:, 1][triangles_of(part)]
+            lowest = triangles_of(part)[numpy.arange(len(y)), y.argmin(axis=1)]
+            self.assertTrue((ghosts_of(part)[lowest] == 0).all())
+
+    def test_duplicates_and_points_that_are_not_finite_are_those_of_one(self):
+        points = clouds()["random"]
+        for policy in range(4):
+            one, parts = self.assert_as_one(points, 5, DuplicatePolicy=policy)
+            fields = [data.GetFieldData() for data in (one, *parts)]
+            ids, reasons = (
+                [vtk_to_numpy(field.GetArray("UnusedPoint" + name)) for field in fields]
+                for name in ("Ids", "Reasons")
+            )
+            own = numpy.concatenate([ids_of(part)[some] for part, some in zip(parts, ids[1:])])
+            order = numpy.argsort(own)
+            numpy.testing.assert_array_equal(own[order], ids[0])
+            numpy.testing.assert_array_equal(numpy.concatenate(reasons[1:])[order], reasons[0])
+
+    def test_the_lattice_is_that_of_all_points(self):
+        points = clouds()["lattice"]
+        one, parts = self.assert_as_one(points, 6)
+        for part in parts:
+            lattices = [data.GetFieldData().GetArray("Lattice") for data in (one, part)]
+            self.assertEqual(*(lattice.GetTuple(0) for lattice in lattices))
+        self.assert_as_one(points, 6, LatticeMode=1)
+
+    def test_slices_of_any_size_give_the_same(self):
+        points = clouds()["tracks"]
+        first, *others = (
+            all_triangles(self.parts(self.source(points, at_once), 4))
+            for at_once in (1, 333, 10**6)
+        )
+        for other in others:
+            numpy.testing.assert_array_equal(first, other)
+
+    def test_point_arrays_go_with_the_points(self):
+        points = clouds()["random"]
+        source = self.source(points[:0])
+        for part in numpy.array_split(numpy.arange(len(points)), 3):
+            data = make_points(points[part])
+            add_array(data, "RGB", numpy.column_stack((part % 256,) * 3).astype("u1"))
+            add_array(data, "Depth", part * 0.25)
+            words = vtkStringArray()
+            words.SetName("Name")
+            for number in part.tolist():
+                words.InsertNextValue(f"point {number}")
+            data.GetPointData().AddArray(words)
+            self.assertTrue(source.AddPoints(data))
+        for part in self.parts(source, 4):
+            ids, data = ids_of(part), part.GetPointData()
+            numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("Depth")), ids * 0.25)
+            numpy.testing.assert_array_equal(vtk_to_numpy(data.GetArray("RGB"))[:, 1], ids % 256)
+            names = data.GetAbstractArray("Name")
+            words = [names.GetValue(i) for i in range(len(ids))]
+            self.assertEqual(words, [f"point {i}" for i in ids])
+
+    def test_pieces_can_be_asked_for_again_but_not_in_another_number(self):
+        points = clouds()["random"]
+        source = self.source(points)
+        first = [all_triangles([part]) for part in self.parts(source, 3)]
+        for one, other in zip(first, self.parts(source, 3)):
+            numpy.testing.assert_array_equal(one, all_triangles([other]))
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 4, 0))
+        self.assertIn("There are 3 pieces", errors[0])
+        extra = make_points(points)
+        errors = self.errors_of(source, lambda: self.assertFalse(source.AddPoints(extra)))
+        self.assertIn("Points cannot be added", errors[0])
+
+    def test_reset_removes_the_files_and_begins_again(self):
+        source = self.source(clouds()["random"])
+        self.parts(source, 3)
+        self.assertNotEqual(os.listdir(self.path("files")), [])
+        source.Reset()
+        self.assertEqual(os.listdir(self.path("files")), [])
+        self.assertEqual(source.GetNumberOfPoints(), 0)
+        few = clouds()["few"]
+        self.assertTrue(source.AddPoints(make_points(few)))
+        self.assertEqual(sum(part.GetNumberOfPolys() for part in self.parts(source, 2)),
+                         source.GetNumberOfTriangles())
+
+    def test_what_cannot_be_done_is_one_error(self):
+        points = clouds()["random"]
+        ids = make_points(points)
+        add_array(ids, "GlobalPointIds", numpy.arange(len(points)))
+        other = make_points(points)
+        add_array(other, "Depth", points[:, 2])
+        cases = (
+            (None, make_points(points), "Folder is not set"),
+            (self.path("nowhere"), make_points(points), "No such file or directory"),
+            (self.folder, None, "no data set"),
+            (self.folder, ids, "global ids"),
+        )
+        for folder, data, words in cases:
+            source = vtkTriangulatePieces()
+            source.SetFolder(folder or "")
+            errors = self.errors_of(source, lambda: source.AddPoints(data))
+            self.assertEqual(len(errors), 1)
+            self.assertIn(words, errors[0])
+        source = self.source(points)
+        errors = self.errors_of(source, lambda: source.AddPoints(other))
+        self.assertIn("same point arrays", errors[0])
+        self.assertIn("Reset()", self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))[0])
+        for name, value in (("MaximumEdgeLength", 3.0), ("Lattice", (0, 0, 1, 0, 0, 1))):
+            source = self.source(points, **{name: value})
+            errors = self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))
+            self.assertIn("in memory, not for pieces", errors[0])
+            self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_a_stop_leaves_empty_output(self):
+        source = self.source(clouds()["random"])
+        source.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+        with Messages(source, source.GetExecutive()) as messages:
+            source.UpdatePiece(0, 3, 0)
+        self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
+        self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+
+
+class Slices(InFolder):
+    """Files that are read slice by slice have the points of those read as a whole."""
+
+    def assert_as_whole(self, path, **options):
+        whole, cloud = reading.read(path, **options), Cloud(None)
+        found = numpy.concatenate(list(read_slices(path, cloud, **options)))
+        expected = vtk_to_numpy(whole.points.GetPoints().GetData())
+        numpy.testing.assert_array_equal(found, expected)
+        self.assertEqual(cloud.left_out, whole.left_out)
+        self.assertEqual(cloud.crs, whole.crs)
+        self.assertLessEqual(set(whole.notes), set(cloud.notes))
+        return cloud
+
+    def test_text(self):
+        rows = [f"{i % 70},{i // 70},{i % 11 or 'nan'},{i}" for i in range(5000)]
+        path = self.file("a.csv", "\n".join(["# made", "X,Y,Z,Depth", *rows, "", "Total,,5,"]))
+        with mock.patch.object(text, "BLOCK", 3000):
+            cloud = self.assert_as_whole(path)
+            self.assertIn("left out: Depth", cloud.notes)
+            self.assert_as_whole(path, no_data=5.0, depth=True)
+            self.assert_as_whole(path, columns=("1", "2", "4"))
+        packed = self.path("b.csv.gz")
+        with gzip.open(packed, "wb") as stream:
+            stream.write(b"1 2 3\n4 5 6\n7 7 7\n")
+        self.assert_as_whole(packed)
+
+    def test_arrays_of_numpy(self):
+        rng = numpy.random.default_rng(3)
+        rows = rng.integers(0, 50, (900, 4))
+        kinds = [("y", "f4"), ("x", "f8"), ("name", "i4"), ("z", ">f8")]
+        fields = numpy.zeros(500, dtype=kinds)
+        for name in "xyz":
+            fields[name] = rng.random(500)
+        for i, array in enumerate((rows, numpy.asfortranarray(rows * 0.5), fields)):
+            path = self.path(f"{i}.npy")
+            numpy.save(path, array)
+            with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 70):
+                self.assert_as_whole(path)
+                self.assert_as_whole(path, no_data=7.0)
+
+    def test_las(self):
+        rng = numpy.random.default_rng(4)
+        xyz, classes = rng.integers(-9999, 9999, (500, 3)), rng.integers(0, 4, 500)
+        head = b"LASF" + bytes(20) + bytes((1, 2)) + bytes(68)
+        head += struct.pack("<HIIBH", 227, 227, 0, 0, 20) + struct.pack("<I5I", len(xyz), *[0] * 5)
+        head += struct.pack("<6d", 0.01, 0.01, 0.001, 5e5, 6e6, 0.0) + bytes(48)
+        body = b"".join(
+            struct.pack("<iiiHBBbBH", *map(int, p), 7, 1, int(c) | 128 * (c == 3), 0, 0, 0)
+            for p, c in zip(xyz, classes)
+        )
+        path = self.file("a.las", head + body)
+        with mock.patch("vtkelevationsurface.reading.las.AT_ONCE", 60):
+            self.assert_as_whole(path)
+            self.assert_as_whole(path, classes=(1, 2))
+            with self.assertRaisesRegex(FileError, "holds no point of class 9"):
+                list(read_slices(path, Cloud(None), classes=(9,)))
+
+    def test_null_values_are_an_error_that_names_the_options(self):
+        rows = "".join(f"{i % 40} {i // 40} {-9999 if i == 700 else i % 7}\n" for i in range(1000))
+        path = self.file("a.xyz", rows)
+        with self.assertRaisesRegex(FileError, "z = -9999 of 1 point .*--no-data -9999.*--keep"):
+            list(read_slices(path, Cloud(None)))
+        self.assert_as_whole(path, no_data=-9999.0)
+        found = numpy.concatenate(list(read_slices(path, Cloud(None), keep_nulls=True)))
+        self.assertEqual(len(found), 1000)
+
+
+class Command(Program):
+    """The program with --pieces and --memory."""
+
+    def npy(self, name, points):
+        numpy.save(self.path(name), points)
+        return name
+
+    def parts(self, name):
+        """The pieces of a .vtpd file, each read by itself as its global ids are known then."""
+        reader = vtkXMLPartitionedDataSetReader()
+        reader.SetFileName(self.path(name))
+        reader.Update()
+        found = [reader.GetOutput().GetPartition(i)
+                 for i in range(reader.GetOutput().GetNumberOfPartitions())]
+        self.assertTrue(all(part.GetPointData().GetGlobalIds() for part in found))
+        return found
+
+    def json(self, name):
+        with open(self.path(name), encoding="utf-8") as stream:
+            return json.load(stream)
+
+    def test_the_pieces_have_the_surface_and_the_report_of_one_run(self):
+        for kind in ("random", "lattice"):
+            name = self.npy(f"{kind}.npy", clouds()[kind])
+            options = (*TRIANGULATION_ONLY, "--report", "--duplicates", "keep-highest")
+            self.assertEqual(self.call(name, "--no-picture", *options).returncode, 0)
+            whole = self.json(f"{kind}_surface.json")
+            reader = vtkXMLPolyDataReader()
+            reader.SetFileName(self.path(f"{kind}_surface.vtp"))
+            reader.Update()
+            done = self.call(name, "--pieces", "5", *options)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("in 5 pieces", done.stdout)
+            numpy.testing.assert_array_equal(
+                all_triangles(self.parts(f"{kind}_surface.vtpd")),
+                sorted_triangles(triangles_of(reader.GetOutput())),
+            )
+            report = self.json(f"{kind}_surface.json")
+            for key in ("points", "unused_reasons", "unused", "lattice", "triangles", "left_out",
+                        "bounds", "crs", "lattice_mode", "points_unused"):
+                self.assertEqual(report[key], whole[key], key)
+
+    def test_several_files_are_one_cloud(self):
+        points = clouds()["random"]
+        names = [self.npy("a.npy", points[:1000]), self.npy("b.npy", points[1000:])]
+        for extra in (("--memory", "2G"), ("--pieces", "3", "-o", "c.vtpd")):
+            done = self.call(*names, *extra, *TRIANGULATION_ONLY, "--crs", "EPSG:25832")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+        one, several = self.parts("a_surface.vtpd"), self.parts("c.vtpd")
+        self.assertEqual((len(one), len(several)), (1, 3))
+        numpy.testing.assert_array_equal(all_triangles(one), all_triangles(several))
+        crs = several[0].GetFieldData().GetAbstractArray("CRS").GetValue(0)
+        self.assertEqual(crs, "EPSG:25832")
+
+    def test_memory_tells_the_number_of_pieces(self):
+        self.assertEqual(pieces.memory_size("1.5g"), 1.5e9)
+        self.assertEqual(pieces.memory_size("800MB"), 8e8)
+        self.assertEqual(pieces.pieces_within(2e9, 1000), 1)
+        self.assertEqual(pieces.pieces_within(2e9, 200_000_000), 30)
+        for wrong in ("", "2X", "10", "-2G", "100M", "nan", "1e9"):
+            done = self.call("a.npy", f"--memory={wrong}", *TRIANGULATION_ONLY)
+            words = f"--memory takes a size of at least 450M, as 2G, not '{wrong}'"
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
+
+    def test_what_does_not_go_with_pieces_is_told_before_any_work(self):
+        name = self.npy("a.npy", clouds()["few"])
+        self.file("b.stl", "solid a\n facet normal 0 0 1\n")
+        self.file("taken", "a file")
+        for options, words in (
+            (("--pieces", "2"), "add --no-trim --no-fill"),
+            (("--pieces", "0"), "--pieces takes a whole number from 1, not '0'"),
+            (("--pieces", "2", "--memory", "2G", *TRIANGULATION_ONLY), "leave one out"),
+            (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),
+            (("--memory", "2G", "--faults", "f", *TRIANGULATION_ONLY), "--faults needs the whole"),
+            (("--pieces", "2", "-o", "a.vtp", *TRIANGULATION_ONLY), ".vtp cannot be written in"),
+            (("b.stl", "--pieces", "2", *TRIANGULATION_ONLY), "an STL file is read as a whole"),
+            (("--pieces", "2", "-o", "taken.vtpd", *TRIANGULATION_ONLY), "has this name"),
+            (("-o", "a.vtpd"), ".vtpd cannot be written; use one of .vtp"),
+        ):
+            done = self.call(name, *options)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+            self.assertIn(words, done.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.npy", "b.stl", "taken"])
+
+    def test_no_triangle_is_an_error_that_leaves_nothing(self):
+        name = self.npy("a.npy", numpy.arange(30.0).reshape(10, 3))
+        done = self.call(name, "--pieces", "3", *TRIANGULATION_ONLY)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no surface", done.stderr)
+        self.assertEqual(os.listdir(self.folder), ["a.npy"])
+
+    def test_a_full_disk_is_one_message_and_leaves_nothing(self):
+        name = self.npy("a.npy", clouds()["random"])
+        for most in (20_000, 100_000):  # bytes of a file: of all points, of a piece
+            done = self.call(
+                name, "--pieces", "1", *TRIANGULATION_ONLY,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)),
+            )
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
+            self.assertIn("cannot be written: File too large", done.stderr)
+            self.assertEqual(os.listdir(self.folder), ["a.npy"])
+
+    def test_a_stop_leaves_nothing(self):
+        name = self.npy("a.npy", clouds()["random"])
+        for when in ("read", "update", "write_vtpd"):
+            script = (
+                "import os, signal, sys, time\n"
+                "from vtkelevationsurface import command, pieces, supervisor\n"
+                "def stopped(*_):\n"
+                "    os.kill(os.getppid(), signal.SIGTERM)\n"
+                "    time.sleep(20)\n"
+                f"home = pieces if hasattr(pieces, {when!r}) else pieces.Pieces\n"
+                f"setattr(home, {when!r}, stopped)\n"
+                f"options = [{name!r}, '--pieces', '3', '--no-trim', '--no-fill']\n"
+                "work = lambda: command.main(options)\n"
+                "sys.exit(supervisor.supervised(work))\n"
+            )
+            done = subprocess.run(
+                [sys.executable, "-c", script], cwd=self.folder, text=True, capture_output=True,
+                timeout=60, check=False,
+            )
+            words = "reconstruct: stopped; nothing is written\n"
+            self.assertEqual((done.returncode, done.stderr), (130, words))
+            self.assertEqual(os.listdir(self.folder), ["a.npy"])
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    unittest.main(argv=sys.argv[:1])
