@@ -57,7 +57,7 @@ vtkSmartPointer<vtkAbstractArray> MakeArray(const ArrayKind& kind, vtkIdType cou
 }
 
 /** The fields of an array's kind; names have no zeros in them. */
-void PutKind(vtkPointData* data, int i, std::string& text)
+void PutKind(vtkDataSetAttributes* data, int i, std::string& text)
 {
   vtkAbstractArray* const array = data->GetAbstractArray(i);
   const auto put = [&text](const std::string& field) {
@@ -107,7 +107,7 @@ bool IsSame(const ArrayKind& kind, const ArrayKind& other)
 } // namespace
 
 std::vector<ArrayKind> CommonArrays(
-  const Ranks& ranks, vtkPointData* own, std::set<std::string>& leftOut)
+  const Ranks& ranks, vtkDataSetAttributes* own, std::set<std::string>& leftOut)
 {
   std::vector<std::string> texts;
   if (own)

@@ -17,6 +17,7 @@
 #include <vector>
 
 class vtkAbstractArray;
+class vtkDataSetAttributes;
 class vtkPointData;
 class vtkPointSet;
 
@@ -34,12 +35,12 @@ struct ArrayKind
 };
 
 /**
- * The point arrays that all ranks with points have, the same on all ranks.
+ * The arrays of points (or cells) that all ranks with points have, the same on all ranks.
  * @param[in] own  of this rank; nullptr: it has no points
  * @param[out] leftOut  names of the others, the same on all ranks
  */
 std::vector<ArrayKind> CommonArrays(
-  const Ranks& ranks, vtkPointData* own, std::set<std::string>& leftOut);
+  const Ranks& ranks, vtkDataSetAttributes* own, std::set<std::string>& leftOut);
 
 /** Points: positions, global ids and the values of arrays, those of each kind. */
 class PointRows

@@ -81,18 +81,28 @@
  * one with an error is empty, the others stay. Several blocks of a composite input 1 are one
  * boundary.
  *
- * On several ranks (processes), a block may be spread over them. Its triangles are gathered on the
- * rank with most of them, which gets the result; the others have empty output with the same
- * arrays. Points with the same global id are one, and are in the order of these ids; where not all
- * ranks have global ids, points with the same x,y,z are one. Cells marked as another rank's
- * (vtkGhostType) are left out, and arrays that not all ranks have, with a warning. Partitions of
- * one vtkPartitionedDataSet are one block in this. A boundary may be on other ranks than the
- * triangles, or in pieces on several: each rank gets all of it; one that is the same on several
- * ranks counts once. Getters tell the counts of all ranks; rank 0 reports errors and warnings of
- * all. An error or abort in a block ends it on all ranks. This holds where data are asked for in
- * several pieces and vtkMultiProcessController's global controller has several processes. All
- * ranks have to update then, as in ParaView: where a source before the filter fails on one rank,
- * VTK does not run the filter there, and the others wait for it for ever.
+ * On several ranks (processes), a block may be spread over them. With a boundary, each rank trims
+ * its own triangles; only those near the boundary, and the border of each rank's part, are brought
+ * together on one rank. The triangles of all ranks are those of one, each where it was, with the
+ * order and cell data that one rank would give to them rank after rank. A rank has its points in
+ * their places, then those that its triangles have got. Points that are corners on several ranks
+ * are marked on all but one of them (vtkGhostType); those with the same global id are one, or,
+ * where not all ranks have global ids, those with the same x,y,z. Field data are those of the
+ * rank. Output 2 is on one rank. Cells marked as another rank's are left out.
+ *
+ * Without a boundary, with INWARD_NORMAL, where not all ranks have the same arrays, where
+ * triangles are not counter-clockwise, and for messages of what is wrong, the triangles are
+ * gathered on the rank with most of them, which gets the result; the others have empty output with the
+ * same arrays. Points are in the order of their global ids then, else rank after rank, as cells are;
+ * messages name both by these numbers. Arrays that not all ranks have are left out, with a warning.
+ *
+ * Partitions of one vtkPartitionedDataSet are one block in this. A boundary may be on other ranks
+ * than the triangles, or in pieces on several: each rank gets all of it; one that is the same on
+ * several ranks counts once. Getters tell the counts of all ranks; rank 0 reports errors and
+ * warnings of all. An error or abort in a block ends it on all ranks. This holds where data are
+ * asked for in several pieces and vtkMultiProcessController's global controller has several
+ * processes. All ranks have to update then, as in ParaView: where a source before the filter fails
+ * on one rank, VTK does not run the filter there, and the others wait for it for ever.
  *
  * Guarantee (OutwardTest EXACT): all decisions are exact. The triangles of output 0 cover exactly
  * what is inside the boundary and covered by the mesh (apart from the rounding of crossings);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace elevation
 {
@@ -27,7 +28,7 @@ public:
     Near = 2 ///< perhaps touched by a ring
   };
 
-  RingRaster(const std::vector<Point2>& points, const Rings& rings, Index numberOfTriangles)
+  RingRaster(const std::vector<Point2>& points, const Rings& rings, double numberOfTriangles)
   {
     Box box;
     for (const Index id : rings.Vertices)
@@ -253,36 +254,47 @@ struct Classifier
 
 } // namespace
 
-std::optional<std::vector<Index>> FindNearTriangles(const TriangleList& list,
-  const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress,
-  std::vector<char>& isOutward)
+std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
+  const std::vector<Point2>& points, const Rings& rings, double numberOfTriangles, int threads,
+  const Progress& progress)
 {
-  const RingRaster raster(points, rings, list.Count);
+  const RingRaster raster(points, rings, numberOfTriangles);
   if (!raster.IsUsable())
   {
     return std::nullopt;
   }
-  isOutward.resize(list.Count);
+  SweptAlongRings swept;
+  if (list.Count == 0)
+  {
+    return swept;
+  }
+  swept.IsOutward.resize(list.Count);
   TriangleSweep<Classifier> sweep(list, threads);
-  if (!sweep.Run(Classifier{ raster, isOutward.data(), {}, raster.Reach(), 0.0, RingRaster::Near },
-        Part(progress, 0.0, 0.8)))
+  const Classifier classifier{ raster, swept.IsOutward.data(), {}, raster.Reach(), 0.0,
+    RingRaster::Near };
+  if (!sweep.Run(classifier, Part(progress, 0.0, 0.9)))
   {
     return std::nullopt;
   }
-  const std::vector<BorderEdge> border = sweep.Border(
-    list.Points.Count, Part(progress, 0.8, 0.9), [](Index id) { return id; },
+  swept.Border = sweep.Border(
+    list.Points.Count, Part(progress, 0.9, 1.0), [](Index id) { return id; },
     [](Index, const SweptVertex*) {});
-  if (!CoversOnce(border, list.Points, Part(progress, 0.9, 1.0)))
+  for (const Classifier* visitor : sweep.Visitors())
   {
-    return std::nullopt;
+    swept.Near.insert(swept.Near.end(), visitor->Near.begin(), visitor->Near.end());
   }
-  std::vector<Index> near;
-  for (const Classifier* classifier : sweep.Visitors())
-  {
-    near.insert(near.end(), classifier->Near.begin(), classifier->Near.end());
-  }
-  std::sort(near.begin(), near.end());
-  return near;
+  std::sort(swept.Near.begin(), swept.Near.end());
+  return swept;
+}
+
+std::optional<SweptAlongRings> FindNearTriangles(const TriangleList& list,
+  const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress)
+{
+  std::optional<SweptAlongRings> swept =
+    SweepAlongRings(list, points, rings, list.Count, threads, Part(progress, 0.0, 0.9));
+  return swept && CoversOnce(swept->Border, list.Points, Part(progress, 0.9, 1.0))
+    ? std::move(swept)
+    : std::nullopt;
 }
 
 } // namespace elevation

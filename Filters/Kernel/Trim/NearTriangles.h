@@ -24,16 +24,34 @@
 namespace elevation
 {
 
+/** What the sweep tells of the triangles of a list. */
+struct SweptAlongRings
+{
+  std::vector<Index> Near;        ///< the triangles near the rings; increasing
+  std::vector<char> IsOutward;    ///< one flag per triangle; without meaning for the near ones
+  std::vector<BorderEdge> Border; ///< of the list, in no order
+};
+
 /**
- * @param[in]  points     of the rings; finite
- * @param[out] isOutward  one flag per triangle; without meaning for the near ones
- * @return the near triangles, increasing; nothing if the sweep does not prove the triangles to be a
- *         mesh, or if the extent of the rings is zero, too small or too large for a raster
+ * Passes 1 and 2, for a mesh or a part of one: then the triangles of all parts may be near or not
+ * together.
+ * @param[in] points             of the rings; finite
+ * @param[in] numberOfTriangles  of the whole mesh; the parts of one mesh get the same raster by it
+ * @return nothing if the sweep fails, or if the extent of the rings is zero, too small or too large
+ *         for a raster
  * @throws Aborted; std::bad_alloc
  */
-std::optional<std::vector<Index>> FindNearTriangles(const TriangleList& list,
-  const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress,
-  std::vector<char>& isOutward);
+std::optional<SweptAlongRings> SweepAlongRings(const TriangleList& list,
+  const std::vector<Point2>& points, const Rings& rings, double numberOfTriangles, int threads,
+  const Progress& progress);
+
+/**
+ * All passes, for a whole mesh.
+ * @return nothing if SweepAlongRings() returns nothing, or the triangles are not proven to be a mesh
+ * @throws Aborted; std::bad_alloc
+ */
+std::optional<SweptAlongRings> FindNearTriangles(const TriangleList& list,
+  const std::vector<Point2>& points, const Rings& rings, int threads, const Progress& progress);
 
 } // namespace elevation
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Trim.h"
 
-#include "NearTriangles.h"
 #include "Outline.h"
 #include "OutwardTriangles.h"
 
@@ -136,10 +135,19 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   const int threads = options.NumberOfThreads;
   result.Boundary = JoinLines(lines);
   NearTriangles near;
-  if (options.Test == OutwardTest::Exact)
+  if (options.AreNear)
   {
-    near = FindNearTriangles(list, lines.Points.Places, result.Boundary, threads,
-      Part(progress, 0.0, 0.3), changes.IsOutward);
+    near = AllTriangles(list);
+  }
+  else if (options.Test == OutwardTest::Exact)
+  {
+    std::optional<SweptAlongRings> swept = FindNearTriangles(
+      list, lines.Points.Places, result.Boundary, threads, Part(progress, 0.0, 0.3));
+    if (swept)
+    {
+      near = std::move(swept->Near);
+      changes.IsOutward = std::move(swept->IsOutward);
+    }
   }
   changes.IsOutward.resize(list.Count);
   const Progress making = Part(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
@@ -161,7 +169,10 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   PutBack(list, near, mesh, Part(progress, 0.97, 1.0), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
   PutBackInserted(near, mesh, rings, changes, result);
-  CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
+  if (!options.AreNear)
+  {
+    CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
+  }
   for (Index& vertex : result.Boundary.Vertices)
   {
     vertex = lines.Points.IdOf(vertex);
@@ -339,7 +350,7 @@ Trimmed Trim(
   const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options)
 {
   Trimmed result;
-  if (triangles.Count == 0)
+  if (triangles.Count == 0 && !options.AreNear)
   {
     return result;
   }

@@ -24,6 +24,7 @@
 
 #include "Insertion.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "NearTriangles.h"
 #include "Rings.h"
 
 #include <string>
@@ -43,6 +44,11 @@ struct TrimOptions
   OutwardTest Test = OutwardTest::Exact;
   /** Insert missing points and recover missing edges; off: one that is missing is an Error. */
   bool RecoverBoundary = true;
+  /**
+   * Whether the triangles are those of a mesh that SweepAlongRings() has found near the boundary,
+   * which is given, of all its parts; all are proven, and the boundary may enclose none of these.
+   */
+  bool AreNear = false;
   /** For a boundary that is extracted; 0: from the data. See ExtractOptions. */
   double GapTolerance = 0.0;
   /** Whether to return the parents of triangles. */

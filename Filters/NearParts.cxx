@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NearParts.h"
+
+#include "Joining.h"
+#include "Kernel/Mesh/Mesh.h"
+#include "TrimmedSurface.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCharArray.h"
+#include "vtkCommunicator.h"
+#include "vtkIdList.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace elevation
+{
+
+Bytes PackData(vtkPolyData* data)
+{
+  vtkNew<vtkCharArray> buffer;
+  if (!vtkCommunicator::MarshalDataObject(data, buffer))
+  {
+    throw Error("A part of the mesh cannot be sent to another rank (process).");
+  }
+  Bytes bytes;
+  AppendTo(bytes, buffer->GetPointer(0), static_cast<std::size_t>(buffer->GetNumberOfValues()));
+  return bytes;
+}
+
+vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
+{
+  vtkNew<vtkCharArray> buffer;
+  buffer->SetArray(
+    const_cast<char*>(from), static_cast<vtkIdType>(size), 1); // it stays the caller's
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  if (!vtkCommunicator::UnMarshalDataObject(buffer, data))
+  {
+    throw Error("A part of the mesh has not come from another rank (process).");
+  }
+  return data;
+}
+
+namespace
+{
+template <typename Value>
+void Put(Bytes& bytes, const std::vector<Value>& values)
+{
+  const std::size_t size = values.size();
+  AppendTo(bytes, &size, 1);
+  AppendTo(bytes, values);
+}
+
+template <typename Value>
+void Get(const char*& from, std::vector<Value>& values)
+{
+  std::size_t size = 0;
+  TakeFrom(from, &size, 1);
+  TakeFrom(from, size, values);
+}
+} // namespace
+
+Bytes TrimmedPart::Pack() const
+{
+  Bytes bytes;
+  for (const int side : { 0, 1 })
+  {
+    Put(bytes, this->Parents[side]);
+    Put(bytes, this->Corners[side]);
+  }
+  Put(bytes, this->IsInserted);
+  Put(bytes, this->IsOwned);
+  Put(bytes, this->OfOthers);
+  if (!this->IsInserted.empty())
+  {
+    const Bytes points = PackData(this->NewPoints);
+    AppendTo(bytes, points.data(), points.size());
+  }
+  return bytes;
+}
+
+TrimmedPart::TrimmedPart(const Bytes& bytes)
+{
+  const char* from = bytes.data();
+  for (const int side : { 0, 1 })
+  {
+    Get(from, this->Parents[side]);
+    Get(from, this->Corners[side]);
+  }
+  Get(from, this->IsInserted);
+  Get(from, this->IsOwned);
+  Get(from, this->OfOthers);
+  if (!this->IsInserted.empty())
+  {
+    this->NewPoints =
+      UnpackData(from, bytes.size() - static_cast<std::size_t>(from - bytes.data()));
+  }
+}
+
+bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
+{
+  std::vector<std::string> warnings; // none: all have the same arrays
+  this->Common =
+    std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, Part(options.Monitor, 0.0, 0.1));
+  this->Whole = Join(this->Given, PartKind::Mesh, Part(options.Monitor, 0.1, 0.3), warnings);
+  this->FirstTriangles = { 0 };
+  for (const auto& part : this->Given)
+  {
+    this->FirstTriangles.push_back(
+      this->FirstTriangles.back() + static_cast<Index>(part->GetNumberOfPolys()));
+  }
+  this->Triangles = ViewTriangles(this->Whole);
+  const TriangleList& list = this->Triangles.View;
+  if (!this->IsProven(list, boundary, Part(options.Monitor, 0.3, 0.4)))
+  {
+    return false;
+  }
+  TrimOptions ofNear = options;
+  ofNear.AreNear = true;
+  ofNear.TellParents = true;
+  ofNear.Monitor = Part(options.Monitor, 0.4, 0.9);
+  this->Sides = elevation::Trim(list, &boundary, ofNear);
+  PassPoints(this->Whole, this->Sides, Part(options.Monitor, 0.9, 1.0), this->Points);
+  return true;
+}
+
+bool NearParts::IsProven(
+  const TriangleList& list, const BoundaryLines& boundary, const Progress& progress)
+{
+  // Joined points may have other places than the points had.
+  return this->AreSamePlaces() &&
+    SweepAlongRings(
+      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, Part(progress, 0.0, 0.5)) &&
+    this->IsBorderProven(list.Points, Part(progress, 0.5, 1.0));
+}
+
+bool NearParts::AreSamePlaces() const
+{
+  for (std::size_t part = 0; part < this->Given.size(); ++part)
+  {
+    for (vtkIdType i = 0; i < this->Given[part]->GetNumberOfPoints(); ++i)
+    {
+      double p[3], q[3];
+      this->Given[part]->GetPoint(i, p);
+      this->Whole->GetPoint(this->Common->Place(part, i), q);
+      if (!std::equal(p, p + 3, q))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/** The borders of all parts are that of the mesh and those between parts, which cancel out. */
+bool NearParts::IsBorderProven(const PointView& points, const Progress& progress) const
+{
+  std::vector<BorderEdge> all, border;
+  auto each = vtk::TakeSmartPointer(this->Whole->GetLines()->NewIterator());
+  for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
+  {
+    const vtkIdType* ids = nullptr;
+    vtkIdType size = 0;
+    each->GetCurrentCell(size, ids);
+    all.push_back({ static_cast<Index>(ids[0]), static_cast<Index>(ids[1]) });
+  }
+  Sort(all.begin(), all.end(), std::less<BorderEdge>(), Part(progress, 0.0, 0.4));
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    ReportStep(progress, i, 2 * all.size());
+    const BorderEdge twin{ all[i].Destination, all[i].Origin };
+    if (twin.Origin == twin.Destination || (i > 0 && !(all[i - 1] < all[i])))
+    {
+      return false; // two triangles on one side of an edge
+    }
+    if (!std::binary_search(all.begin(), all.end(), twin))
+    {
+      border.push_back(all[i]);
+    }
+  }
+  return CoversOnce(border, points, Part(progress, 0.6, 1.0));
+}
+
+std::vector<TrimmedPart> NearParts::Split(const Progress& progress) const
+{
+  std::vector<TrimmedPart> splits(this->Given.size());
+  std::vector<char> areOwned(this->Sides.Inserted.size(), 0);
+  for (const int side : { 0, 1 })
+  {
+    const TrimmedSide& all = side == 0 ? this->Sides.Kept : this->Sides.Outward;
+    const Index* const corners =
+      all.IsWholeList ? this->Triangles.View.Corners : all.Corners.data();
+    for (std::size_t i = 0; i < all.Parents.size(); ++i)
+    {
+      ReportStep(progress, i, all.Parents.size());
+      const Index parent = all.Parents[i];
+      const auto next =
+        std::upper_bound(this->FirstTriangles.begin(), this->FirstTriangles.end(), parent);
+      const std::size_t part = static_cast<std::size_t>(next - this->FirstTriangles.begin()) - 1;
+      splits[part].Parents[side].push_back(parent - this->FirstTriangles[part]);
+      std::vector<Index>& ofPart = splits[part].Corners[side];
+      ofPart.insert(ofPart.end(), corners + 3 * i, corners + 3 * i + 3);
+    }
+  }
+  this->FindOwners(splits);
+  std::vector<Index> places(static_cast<std::size_t>(this->Points->GetNumberOfPoints()), None);
+  for (std::size_t part = 0; part < splits.size(); ++part)
+  {
+    Report(progress, 1.0);
+    this->PlaceCorners(part, places, areOwned, splits[part]);
+  }
+  return splits;
+}
+
+/** Of points that several parts have, the first that does not call it another rank's is the owner. */
+void NearParts::FindOwners(std::vector<TrimmedPart>& splits) const
+{
+  constexpr std::size_t nobody = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> owners(static_cast<std::size_t>(this->Common->Count()), nobody);
+  for (const bool isLooking : { true, false })
+  {
+    for (std::size_t part = 0; part < splits.size(); ++part)
+    {
+      vtkUnsignedCharArray* const marks = GhostsOf(this->Given[part]->GetPointData());
+      for (vtkIdType i = 0; i < this->Given[part]->GetNumberOfPoints(); ++i)
+      {
+        std::size_t& owner = owners[this->Common->Place(part, i)];
+        const bool isMarked = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+        if (isLooking)
+        {
+          owner = owner == nobody && !isMarked ? part : owner;
+        }
+        else if (owner != nobody && owner != part)
+        {
+          splits[part].OfOthers.push_back(static_cast<Index>(i));
+        }
+      }
+    }
+  }
+}
+
+/** @param[in,out] places  of the points in a part; None for all */
+void NearParts::PlaceCorners(std::size_t part, std::vector<Index>& places,
+  std::vector<char>& areOwned, TrimmedPart& split) const
+{
+  const vtkIdType count = this->Given[part]->GetNumberOfPoints();
+  for (vtkIdType i = count - 1; i >= 0; --i)
+  {
+    places[this->Common->Place(part, i)] = static_cast<Index>(i);
+  }
+  std::vector<Index> added;
+  const vtkIdType inserted = this->Whole->GetNumberOfPoints();
+  for (std::vector<Index>& corners : split.Corners)
+  {
+    for (Index& corner : corners)
+    {
+      Index& place = places[corner];
+      if (place == None)
+      {
+        place = static_cast<Index>(count) + static_cast<Index>(added.size());
+        added.push_back(corner);
+        const bool isInserted = corner >= inserted;
+        split.IsInserted.push_back(isInserted);
+        split.IsOwned.push_back(isInserted && !areOwned[corner - inserted]);
+        if (isInserted)
+        {
+          areOwned[corner - inserted] = 1;
+        }
+      }
+      corner = place;
+    }
+  }
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    places[this->Common->Place(part, i)] = None;
+  }
+  for (const Index point : added)
+  {
+    places[point] = None;
+  }
+  split.NewPoints = ChosenPoints(this->Points, added);
+}
+
+vtkSmartPointer<vtkPolyData> ChosenPoints(vtkPolyData* source, const std::vector<Index>& chosen)
+{
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataType(source->GetPoints()->GetDataType());
+  vtkNew<vtkIdList> ids;
+  ids->SetNumberOfIds(static_cast<vtkIdType>(chosen.size()));
+  std::copy(chosen.begin(), chosen.end(), ids->begin());
+  SetTuples(ids->GetNumberOfIds(), points->GetData());
+  source->GetPoints()->GetPoints(ids, points);
+  data->SetPoints(points);
+  CopyTuples(
+    source->GetPointData(), ids->GetNumberOfIds(), [&](vtkIdType i) { return chosen[i]; },
+    Progress(), data->GetPointData());
+  return data;
+}
+
+} // namespace elevation

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The triangles of several ranks near a boundary, trimmed on one of them. Private to the module.
+ */
+#ifndef NearParts_h
+#define NearParts_h
+
+#include "Bytes.h"
+#include "CommonPoints.h"
+#include "Kernel/Trim/Trim.h"
+#include "MeshConversion.h"
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** Some points with their data. */
+vtkSmartPointer<vtkPolyData> ChosenPoints(vtkPolyData* source, const std::vector<Index>& chosen);
+
+/** A data set as bytes, and back. @throws Error */
+Bytes PackData(vtkPolyData* data);
+vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size);
+
+/** What of the near triangles goes back to the rank that had them. */
+struct TrimmedPart
+{
+  /** The sides, kept and outward: near triangles of the rank (by number) that they are parts of. */
+  std::vector<Index> Parents[2];
+  /** Three a triangle: points of the rank's near part, followed by the new points. */
+  std::vector<Index> Corners[2];
+  std::vector<char> IsInserted; ///< one a new point; else it is another rank's
+  std::vector<char> IsOwned;    ///< one a new point
+  std::vector<Index> OfOthers;  ///< points of the rank's near part that another rank owns
+  vtkSmartPointer<vtkPolyData> NewPoints;
+
+  Bytes Pack() const;
+  explicit TrimmedPart(const Bytes& bytes);
+  TrimmedPart() = default;
+};
+
+/**
+ * The near parts of ranks, in their order. Each has points, near triangles as polygons, and the
+ * border of all triangles of the rank as lines.
+ */
+class NearParts
+{
+public:
+  explicit NearParts(Parts&& parts)
+    : Given(std::move(parts))
+  {
+  }
+
+  /**
+   * Joins and trims the parts.
+   * @return false if the parts are not proven to be those of one mesh that covers nothing twice
+   * @throws Error, Aborted
+   */
+  bool Trim(const BoundaryLines& boundary, const TrimOptions& options);
+
+  /** What goes back to each part. */
+  std::vector<TrimmedPart> Split(const Progress& progress) const;
+
+  const Trimmed& Result() const { return this->Sides; }
+
+private:
+  bool IsProven(const TriangleList& list, const BoundaryLines& boundary, const Progress& progress);
+  bool AreSamePlaces() const;
+  void FindOwners(std::vector<TrimmedPart>& splits) const;
+  bool IsBorderProven(const PointView& points, const Progress& progress) const;
+  void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,
+    TrimmedPart& split) const;
+
+  const Parts Given;
+  std::vector<Index> FirstTriangles; // of each part, and the number of all
+  std::unique_ptr<CommonPoints> Common;
+  vtkSmartPointer<vtkPolyData> Whole;
+  TrianglesOfDataSet Triangles; // of the whole
+  vtkNew<vtkPolyData> Points;   // of the whole, and those inserted
+  Trimmed Sides;
+};
+
+} // namespace elevation
+
+#endif

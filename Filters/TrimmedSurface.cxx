@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TrimmedSurface.h"
+
+#include "CommonPoints.h"
+#include "KernelCall.h"
+#include "MeshConversion.h"
+
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace elevation
+{
+
+BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress)
+{
+  const PointsOfDataSet points = ViewPoints(boundary);
+  BoundaryLines lines;
+  ForEachLine(boundary, "boundary", progress, [&](const LineOfDataSet& line) {
+    for (vtkIdType i = 0; i < line.Size; ++i)
+    {
+      const Index id = static_cast<Index>(line.Ids[i]);
+      if (!std::isfinite(points.View.Elevation(id)))
+      {
+        throw Error("Point " + std::to_string(id) + " of the boundary's cell " +
+          std::to_string(line.Cell) + " is not finite.");
+      }
+      lines.Lines.Vertices.push_back(id);
+    }
+    lines.Lines.Offsets.push_back(static_cast<Index>(lines.Lines.Vertices.size()));
+    lines.IsPolygon.push_back(line.IsPolygon);
+    lines.Cells.push_back(static_cast<Index>(line.Cell));
+  });
+  TakePoints(points.View, lines);
+  return lines;
+}
+
+void PassPoints(
+  vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output)
+{
+  const std::vector<InsertedVertex>& inserted = trimmed.Inserted;
+  const vtkIdType count = static_cast<vtkIdType>(inserted.size());
+  // In double precision; otherwise rounding would move new points off the boundary.
+  output->SetPoints(AppendPoints(
+    input->GetPoints(), count, VTK_DOUBLE, Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+      xyz[0] = trimmed.Places[i].X;
+      xyz[1] = trimmed.Places[i].Y;
+      xyz[2] = 0.0;
+      for (int k = 0; k < 3; ++k)
+      {
+        xyz[2] += inserted[i].Weights[k] * input->GetPoint(inserted[i].Corners[k])[2];
+      }
+    }));
+  PassExtended(input->GetPointData(), count, output->GetPointData(), Part(progress, 0.4, 1.0),
+    [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
+      NewValues values;
+      values.Interpolated = [&inserted, numbers = vtkArrayDownCast<vtkDataArray>(array)](
+                              vtkIdType i, int c) {
+        double value = 0.0;
+        for (int k = 0; k < 3; ++k)
+        {
+          // For a point on an edge, the value at the opposite corner may be NaN.
+          const double weight = inserted[i].Weights[k];
+          value += weight > 0.0 ? weight * numbers->GetComponent(inserted[i].Corners[k], c) : 0.0;
+        }
+        return value;
+      };
+      values.Nearest = [&inserted](vtkIdType i) {
+        const double* const weights = inserted[i].Weights;
+        return inserted[i].Corners[std::max_element(weights, weights + 3) - weights];
+      };
+      return values;
+    });
+}
+
+namespace
+{
+/** An array followed by the values of added points. */
+vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const PointsOfRank& points)
+{
+  const vtkIdType own = array->GetNumberOfTuples();
+  const vtkIdType added = static_cast<vtkIdType>(points.Added.size());
+  const vtkSmartPointer<vtkAbstractArray> extended = NewLike(array);
+  SetTuples(own + added, extended);
+  extended->InsertTuples(0, own, 0, array);
+  vtkNew<vtkIdList> from, to;
+  for (vtkIdType i = 0; i < added; ++i)
+  {
+    from->InsertNextId(points.Added[i]);
+    to->InsertNextId(own + i);
+  }
+  extended->InsertTuples(to, from, points.New->GetPointData()->GetAbstractArray(array->GetName()));
+  return extended;
+}
+
+/** The flags of ghosts of the input, and of the points that another rank owns. */
+vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const PointsOfRank& points)
+{
+  const vtkIdType own = input->GetNumberOfPoints();
+  auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  marks->SetName(vtkDataSetAttributes::GhostArrayName());
+  SetTuples(own + static_cast<vtkIdType>(points.Added.size()), marks);
+  marks->FillValue(0);
+  if (vtkUnsignedCharArray* const before = GhostsOf(input->GetPointData()))
+  {
+    marks->InsertTuples(0, own, 0, before);
+  }
+  for (const Index i : points.OfOthers)
+  {
+    marks->SetValue(i, marks->GetValue(i) | vtkDataSetAttributes::DUPLICATEPOINT);
+  }
+  return marks;
+}
+} // namespace
+
+void PassPointsOfRank(
+  vtkPolyData* input, const PointsOfRank& points, const Progress& progress, vtkPolyData* output)
+{
+  vtkPoints* const given = input->GetPoints();
+  const vtkIdType added = static_cast<vtkIdType>(points.Added.size());
+  vtkSmartPointer<vtkPoints> passed = AppendPoints(given, added, points.Type, progress,
+    [&points](vtkIdType i, double* xyz) { points.New->GetPoint(points.Added[i], xyz); });
+  if (passed->GetDataType() != points.Type)
+  {
+    passed = vtkSmartPointer<vtkPoints>::New();
+    passed->SetDataType(points.Type);
+    passed->DeepCopy(given);
+  }
+  output->SetPoints(passed);
+  vtkPointData* const before = input->GetPointData();
+  vtkPointData* const after = output->GetPointData();
+  after->PassData(before);
+  for (int i = 0; i < before->GetNumberOfArrays() && added > 0; ++i)
+  {
+    vtkAbstractArray* const array = before->GetAbstractArray(i);
+    if (!IsGhostArray(array))
+    {
+      after->AddArray(Extended(array, points)); // in place of the input's
+    }
+  }
+  if (points.AreMarked || (added > 0 && GhostsOf(before)))
+  {
+    after->AddArray(MarksOf(input, points));
+  }
+}
+
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
+  const Progress& progress, vtkPolyData* output)
+{
+  const vtkIdType count = firstCells + static_cast<vtkIdType>(side.Parents.size());
+  const vtkIdType firstTriangle = FirstPolygon(input);
+  const auto sourceOf = [&](vtkIdType cell) -> vtkIdType {
+    return cell < firstCells ? cell : firstTriangle + side.Parents[cell - firstCells];
+  };
+  CopyTuples(input->GetCellData(), count, sourceOf, progress, output->GetCellData());
+  if (arePieces)
+  {
+    // Parts of a triangle have its values, which are no longer global ids then.
+    output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
+  }
+}
+
+TrimCounts::TrimCounts(const Trimmed& trimmed)
+  : OutwardTriangles(trimmed.NumberOfOutwardTriangles)
+  , RecoveredEdges(trimmed.NumberOfRecoveredEdges)
+  , PointsLeftOut(trimmed.NumberOfPointsLeftOut)
+  , InsertedPoints(static_cast<vtkIdType>(trimmed.Inserted.size()))
+  , GapTolerance(trimmed.GapTolerance)
+{
+}
+
+void AddCounts(const TrimCounts& counts, const std::vector<vtkPolyData*>& outputs)
+{
+  for (vtkPolyData* output : outputs)
+  {
+    vtkFieldData* fieldData = output->GetFieldData();
+    AddCount(fieldData, "NumberOfOutwardTriangles", counts.OutwardTriangles);
+    AddCount(fieldData, "NumberOfRecoveredEdges", counts.RecoveredEdges);
+    AddCount(fieldData, "NumberOfPointsLeftOut", counts.PointsLeftOut);
+    AddCount(fieldData, "NumberOfInsertedPoints", counts.InsertedPoints);
+    vtkNew<vtkDoubleArray> tolerance;
+    tolerance->SetName("EffectiveGapTolerance");
+    tolerance->InsertNextValue(counts.GapTolerance);
+    fieldData->AddArray(tolerance);
+  }
+}
+
+} // namespace elevation

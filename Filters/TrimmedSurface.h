@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What vtkTrimOutwardTriangles hands to the kernel and makes of its result, on one rank or several.
+ * Private to the module.
+ */
+#ifndef TrimmedSurface_h
+#define TrimmedSurface_h
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Trim/Trim.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <vector>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** The boundary's lines, and the points that they use. @throws Error naming the cell */
+BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress);
+
+/** The points of outputs 0 and 1 with their data: those of the input, then new ones. */
+void PassPoints(
+  vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output);
+
+/** What a rank has of the points of outputs 0 and 1: all of its input, then others. */
+struct PointsOfRank
+{
+  vtkSmartPointer<vtkPolyData> New; ///< with the arrays of the input
+  std::vector<vtkIdType> Added;     ///< the new points that it gets
+  std::vector<Index> OfOthers;      ///< of the output: points that another rank owns
+  bool AreMarked = false;           ///< points on any rank: all have the flags of ghosts then
+  int Type = 0;                     ///< VTK_FLOAT or VTK_DOUBLE, the same on all ranks with points
+};
+
+void PassPointsOfRank(
+  vtkPolyData* input, const PointsOfRank& points, const Progress& progress, vtkPolyData* output);
+
+/**
+ * The cell data of the input's first cells, and of the triangles of one side.
+ * @param[in] firstCells  the number of first cells
+ * @param[in] arePieces   whether triangles may be parts of the input's
+ */
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
+  const Progress& progress, vtkPolyData* output);
+
+/** What the filter tells of its work. */
+struct TrimCounts
+{
+  TrimCounts() = default;
+  explicit TrimCounts(const Trimmed& trimmed);
+
+  vtkIdType OutwardTriangles = 0;
+  vtkIdType RecoveredEdges = 0;
+  vtkIdType PointsLeftOut = 0;
+  vtkIdType InsertedPoints = 0;
+  double GapTolerance = 0.0;
+};
+
+/** Adds the counts to the field data of all outputs. */
+void AddCounts(const TrimCounts& counts, const std::vector<vtkPolyData*>& outputs);
+
+} // namespace elevation
+
+#endif
