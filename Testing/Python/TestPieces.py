@@ -80,7 +80,7 @@ def clouds():
 class InPieces(InFolder):
     """The filter by itself."""
 
-    def source(self, points, at_once=700, **properties):
+    def source(self, points, at_once=900, **properties):
         folder = self.path("files")
         os.makedirs(folder, exist_ok=True)
         source = vtkTriangulatePieces()
@@ -168,6 +168,13 @@ class InPieces(InFolder):
             lattices = [data.GetFieldData().GetArray("Lattice") for data in (one, part)]
             self.assertEqual(*(lattice.GetTuple(0) for lattice in lattices))
         self.assert_as_one(points, 6, LatticeMode=1)
+
+    def test_a_point_off_the_lattice_is_found_in_the_end(self):
+        node = numpy.stack(numpy.meshgrid(numpy.arange(150.0), numpy.arange(140.0)), -1)
+        points = numpy.column_stack((node.reshape(-1, 2) * 12.5, numpy.zeros(21000)))
+        points[15000, 0] += 3.14159
+        one, _ = self.assert_as_one(points, 5)
+        self.assertIsNone(one.GetFieldData().GetArray("Lattice"))
 
     def test_slices_of_any_size_give_the_same(self):
         points = clouds()["tracks"]
