@@ -1,0 +1,273 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TrimOfPart.h"
+
+#include "Kernel/Mesh/Mesh.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+constexpr char IsNear = 2; // neither kept nor outward: what comes back tells
+}
+
+void TrimOfPart::Read()
+{
+  CheckArrays(this->Input);
+  this->Triangles = ViewTriangles(this->Input);
+  this->LeaveOutCopies();
+}
+
+/** Leaves out triangles that are marked as another part's. */
+void TrimOfPart::LeaveOutCopies()
+{
+  this->List = this->Triangles.View;
+  vtkUnsignedCharArray* const marks = GhostsOf(this->Input->GetCellData());
+  const vtkIdType first = FirstPolygon(this->Input);
+  const auto isOwn = [&](Index t) {
+    return !(marks->GetValue(first + t) & vtkDataSetAttributes::DUPLICATECELL);
+  };
+  for (Index t = 0; marks && t < this->List.Count; ++t)
+  {
+    if (isOwn(t))
+    {
+      this->Sources.push_back(t);
+    }
+  }
+  if (!marks || this->Sources.size() == static_cast<std::size_t>(this->List.Count))
+  {
+    this->Sources.clear();
+    return;
+  }
+  Buffer<Index> corners;
+  corners.Reserve(3 * this->Sources.size());
+  for (const Index t : this->Sources)
+  {
+    std::for_each(this->List.CornersOf(t), this->List.CornersOf(t + 1),
+      [&corners](Index corner) { corners.Append(corner); });
+  }
+  this->Triangles.Converted = std::move(corners);
+  this->List.Corners = this->Triangles.Converted.data();
+  this->List.Count = static_cast<Index>(this->Sources.size());
+}
+
+bool TrimOfPart::Sweep(
+  const BoundaryLines& lines, double numberOfAll, int threads, const Progress& progress)
+{
+  std::optional<SweptAlongRings> swept = SweepAlongRings(
+    this->List, lines.Points.Places, JoinLines(lines), numberOfAll, threads, progress);
+  if (swept)
+  {
+    this->Swept = std::move(*swept);
+  }
+  return swept.has_value();
+}
+
+/** Of the near triangles and the border; its points are those of Sent. */
+vtkSmartPointer<vtkPolyData> TrimOfPart::NearPart()
+{
+  IdSet used(static_cast<Index>(this->Input->GetNumberOfPoints()));
+  for (const Index t : this->Swept.Near)
+  {
+    used.AddAll(this->List.CornersOf(t));
+  }
+  for (const BorderEdge& edge : this->Swept.Border)
+  {
+    used.Add(edge.Origin);
+    used.Add(edge.Destination);
+  }
+  if (vtkDataArray* const ids = this->Input->GetPointData()->GetGlobalIds())
+  {
+    // Those of inserted points follow the largest of all.
+    Index largest = 0;
+    for (Index i = 1; i < static_cast<Index>(ids->GetNumberOfTuples()); ++i)
+    {
+      largest = ids->GetVariantValue(largest).ToTypeInt64() < ids->GetVariantValue(i).ToTypeInt64()
+        ? i
+        : largest;
+    }
+    used.Add(largest);
+  }
+  this->Sent = used.ListAndRank();
+  const vtkSmartPointer<vtkPolyData> part = ChosenPoints(this->Input, this->Sent);
+  vtkNew<vtkCellArray> border, near;
+  for (const BorderEdge& edge : this->Swept.Border)
+  {
+    const vtkIdType ends[] = { used.RankOf(edge.Origin), used.RankOf(edge.Destination) };
+    border->InsertNextCell(2, ends);
+  }
+  for (const Index t : this->Swept.Near)
+  {
+    const Index* const c = this->List.CornersOf(t);
+    const vtkIdType corners[] = { used.RankOf(c[0]), used.RankOf(c[1]), used.RankOf(c[2]) };
+    near->InsertNextCell(3, corners);
+  }
+  part->SetLines(border);
+  part->SetPolys(near);
+  return part;
+}
+
+void TrimOfPart::Take(TrimmedPart&& back, const Progress& progress)
+{
+  this->Back = std::move(back);
+  for (const Index t : this->Swept.Near)
+  {
+    this->Swept.IsOutward[t] = IsNear;
+  }
+  this->FindOwn(progress);
+}
+
+vtkIdType TrimOfPart::CountOfSide(int side) const
+{
+  const std::vector<char>& flags = this->Swept.IsOutward;
+  return static_cast<vtkIdType>(std::count(flags.begin(), flags.end(), static_cast<char>(side)) +
+    static_cast<std::ptrdiff_t>(this->Back.Parents[side].size()));
+}
+
+vtkIdType TrimOfPart::CountOfInserted() const
+{
+  const std::vector<char>& inserted = this->Back.IsInserted;
+  return static_cast<vtkIdType>(std::count(inserted.begin(), inserted.end(), char(1)));
+}
+
+vtkIdType TrimOfPart::CountOfOwnInserted() const
+{
+  const std::vector<char>& owned = this->Back.IsOwned;
+  return static_cast<vtkIdType>(std::count(owned.begin(), owned.end(), char(1)));
+}
+
+vtkIdType TrimOfPart::CountOfOthers() const
+{
+  return static_cast<vtkIdType>(this->Points.OfOthers.size());
+}
+
+/** Finds which of the new points this part has, though not in its near part, and adds the others. */
+void TrimOfPart::FindOwn(const Progress& progress)
+{
+  const std::size_t count = this->Back.IsInserted.size();
+  for (const Index point : this->Back.OfOthers)
+  {
+    this->Points.OfOthers.push_back(this->Sent[point]);
+  }
+  this->Points.New = this->Back.NewPoints;
+  this->Places.assign(count, None);
+  using Key = std::tuple<vtkTypeInt64, double, double, double>;
+  const auto keyOf = [](vtkPolyData* data, vtkIdType i) {
+    if (vtkDataArray* const ids = data->GetPointData()->GetGlobalIds())
+    {
+      return Key(ids->GetVariantValue(i).ToTypeInt64(), 0.0, 0.0, 0.0);
+    }
+    double p[3];
+    data->GetPoint(i, p);
+    return Key(0, p[0], p[1], p[2]);
+  };
+  std::map<Key, std::size_t> ofOthers;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (!this->Back.IsInserted[i])
+    {
+      ofOthers.emplace(keyOf(this->Back.NewPoints, static_cast<vtkIdType>(i)), i);
+    }
+  }
+  const vtkIdType own = this->Input->GetNumberOfPoints();
+  for (vtkIdType i = 0; i < own && !ofOthers.empty(); ++i)
+  {
+    ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(own));
+    const auto found = ofOthers.find(keyOf(this->Input, i));
+    if (found != ofOthers.end())
+    {
+      this->Places[found->second] = static_cast<Index>(i);
+      ofOthers.erase(found);
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (this->Places[i] == None)
+    {
+      this->Places[i] = static_cast<Index>(own) + static_cast<Index>(this->Points.Added.size());
+      this->Points.Added.push_back(static_cast<vtkIdType>(i));
+      if (!this->Back.IsOwned[i])
+      {
+        this->Points.OfOthers.push_back(this->Places[i]);
+      }
+    }
+  }
+}
+
+TrimmedSide TrimOfPart::SideOf(int side, const Progress& progress) const
+{
+  TrimmedSide written;
+  const auto add = [this, &written](const auto& cornerOf, Index triangle) {
+    for (int k = 0; k < 3; ++k)
+    {
+      written.Corners.Append(cornerOf(k));
+    }
+    written.Parents.Append(this->Sources.empty() ? triangle : this->Sources[triangle]);
+  };
+  for (Index t = 0; t < this->List.Count; ++t)
+  {
+    ReportStep(progress, t, this->List.Count);
+    if (this->Swept.IsOutward[t] == side)
+    {
+      add([&](int k) { return this->List.CornersOf(t)[k]; }, t);
+    }
+  }
+  const std::vector<Index>& parents = this->Back.Parents[side];
+  const Index sent = static_cast<Index>(this->Sent.size());
+  for (std::size_t i = 0; i < parents.size(); ++i)
+  {
+    const Index* const corners = this->Back.Corners[side].data() + 3 * i;
+    add(
+      [&](int k) {
+        return corners[k] < sent ? this->Sent[corners[k]] : this->Places[corners[k] - sent];
+      },
+      this->Swept.Near[parents[i]]);
+  }
+  return written;
+}
+
+void TrimOfPart::Write(bool areInserted, bool areMarked, int threads, const Progress& progress,
+  vtkPolyData* kept, vtkPolyData* outward)
+{
+  this->Points.AreMarked = areMarked;
+  this->Points.Type = areInserted ? VTK_DOUBLE : this->Input->GetPoints()->GetDataType();
+  PassPointsOfRank(this->Input, this->Points, Part(progress, 0.0, 0.2), kept);
+  kept->SetVerts(this->Input->GetVerts());
+  kept->SetLines(this->Input->GetLines());
+  if (outward)
+  {
+    outward->SetPoints(kept->GetPoints());
+    outward->GetPointData()->PassData(kept->GetPointData());
+  }
+  for (const int side : { 0, 1 })
+  {
+    if (vtkPolyData* const output = side == 0 ? kept : outward)
+    {
+      TrimmedSide written = this->SideOf(side, Part(progress, 0.2, 0.6));
+      PassCellData(this->Input, side == 0 ? FirstPolygon(this->Input) : 0, written, areInserted,
+        Part(progress, 0.6, 1.0), output);
+      output->SetPolys(ToCellArray(std::move(written.Corners), threads));
+      output->GetFieldData()->PassData(this->Input->GetFieldData());
+    }
+  }
+}
+
+} // namespace elevation
