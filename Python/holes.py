@@ -17,12 +17,12 @@ def holes_of(result):
     found, filled  counts of holes, and of voids that triangles bridged and that were filled
     bridged_left   count of voids whose triangles are left as they are
     """
-    cells = result.fill.GetOutput(1).GetCellData()
+    cells = result.holes.GetCellData()
     names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
              "Interpolation")
     columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
-    places = hole_places(result.fill.GetOutput(1))
-    rows = zip(*columns, are_bridged(result.fill).tolist(), *places)
+    places = hole_places(result.holes)
+    rows = zip(*columns, are_bridged(result).tolist(), *places)
     holes = [
         {
             "hole": hole,
@@ -42,7 +42,7 @@ def holes_of(result):
     by_status = {}
     for hole in holes:
         by_status[hole["status"]] = by_status.get(hole["status"], 0) + 1
-    found, filled = hole_counts(result.fill)
+    found, filled = hole_counts(result)
     return {
         "open_edge_length": result.fill.GetMaximumEdgeLength(),
         "open_edge_length_is": result.why_opened,
@@ -55,19 +55,19 @@ def holes_of(result):
     }
 
 
-def hole_counts(fill):
+def hole_counts(result):
     """(found, filled) of holes. A void that triangles bridge, and that stays so, is no hole."""
-    status = vtk_to_numpy(fill.GetOutput(1).GetCellData().GetArray("Status"))
-    left = numpy.count_nonzero(are_bridged(fill) & (status != 4))
-    return fill.GetNumberOfHoles() - int(left), fill.GetNumberOfFilledHoles()
+    status = vtk_to_numpy(result.holes.GetCellData().GetArray("Status"))
+    left = int(numpy.count_nonzero(are_bridged(result) & (status != 4)))
+    return result.fill.GetNumberOfHoles() - left, result.fill.GetNumberOfFilledHoles()
 
 
-def are_bridged(fill):
+def are_bridged(result):
     """Which outlines are of voids that triangles bridge, or did until they were filled: (n,) bool.
 
     A hole is on the left of its outline. Where a triangle is there, it bridges a void.
     """
-    surface, outlines = fill.GetOutput(), fill.GetOutput(1)
+    surface, outlines = result.surface, result.holes
     status = vtk_to_numpy(outlines.GetCellData().GetArray("Status"))
     bridged = status == 4
     left = numpy.flatnonzero((status != 0) & ~bridged)

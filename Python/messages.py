@@ -14,9 +14,15 @@ class ElevationSurfaceError(RuntimeError):
     about tells what it is about: "points", "boundary" or "faults".
     """
 
+    code = 1  # the program's exit code
+
     def __init__(self, message, about="points"):
         super().__init__(message)
         self.about = about
+
+
+class Aborted(Exception):
+    """The user wants no result any more."""
 
 
 class ElevationSurfaceWarning(UserWarning):

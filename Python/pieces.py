@@ -16,11 +16,12 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import Cloud, corner_flags, make_points, set_crs, slices
 from .messages import FileError, Messages
+from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
-from .reconstruction import STEPS, lattice_of
+from .reconstruction import STEPS
 from .report import MOST_LISTED, REASONS
 from .results import Failure, write_report
 from .supervisor import note_partial_file
@@ -186,7 +187,7 @@ class Pieces:
         self.low = numpy.minimum(self.low, used.min(axis=0, initial=numpy.inf))
         self.high = numpy.maximum(self.high, used.max(axis=0, initial=-numpy.inf))
         fields = data.GetFieldData()
-        self.lattice = lattice_of(fields)
+        self.lattice = lattice_of(None, data)
         gone = ids[vtk_to_numpy(fields.GetArray("UnusedPointIds"))]
         reasons = vtk_to_numpy(fields.GetArray("UnusedPointReasons"))
         for number, known in self.unused.items():

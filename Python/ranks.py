@@ -6,8 +6,10 @@ They are several where the global controller has several processes and several p
 All of them have to call the same functions in the same order.
 """
 
+import ctypes
 import hashlib
 import json
+import time
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -15,10 +17,43 @@ from vtkmodules.vtkCommonCore import vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
-from .messages import ElevationSurfaceError
-from .telling import Aborted
+from .messages import Aborted, ElevationSurfaceError
+from .supervisor import rank_and_size
 
+MPI_MISSING = (
+    "mpirun has started several processes, but VTK's Python has no MPI (vtkParallelMPI), so that they "
+    "cannot work together; run the program without mpirun"
+)
+MPI_OTHER = (
+    "mpirun has started several processes that do not find each other: it is of another MPI than "
+    "VTK's"
+)
+WORK_IS_DONE = 21  # tag of a message
 ELSEWHERE = "the message of another rank tells why"
+
+
+def start_ranks():
+    """The controller of the processes that mpirun has started. Keep it until its Finalize().
+
+    Raises ElevationSurfaceError where VTK has no MPI.
+    """
+    try:
+        from vtkmodules import vtkParallelMPI
+        from vtkmodules.vtkParallelCore import vtkMultiProcessController
+    except ImportError:
+        raise ElevationSurfaceError(MPI_MISSING) from None
+    # VTK starts MPI itself in programs in C++ only.
+    mpi = ctypes.CDLL(vtkParallelMPI.__file__)
+    is_started = ctypes.c_int()
+    mpi.MPI_Initialized(ctypes.byref(is_started))
+    if not is_started.value:
+        mpi.MPI_Init(None, None)
+    controller = vtkParallelMPI.vtkMPIController()
+    controller.Initialize()
+    if controller.GetNumberOfProcesses() != rank_and_size()[1]:
+        raise ElevationSurfaceError(MPI_OTHER)
+    vtkMultiProcessController.SetGlobalController(controller)
+    return controller
 
 
 def controller_of(outputs):
@@ -39,8 +74,11 @@ def controller_of(outputs):
     return controller if controller and controller.GetNumberOfProcesses() > 1 else None
 
 
-def collected(controller, values):
-    """The whole numbers of all ranks, a numpy array for each."""
+def collected(controller, values, kind="i8"):
+    """The numbers of all ranks, a numpy array for each. kind: i8 or f8, the same on all ranks."""
+    values = numpy.asarray(values, dtype=kind)
+    if controller is None:
+        return [values]
 
     def all_of(numbers):
         own = numpy_to_vtk(numbers, deep=True)
@@ -49,9 +87,8 @@ def collected(controller, values):
         controller.AllGather(own, everywhere)
         return vtk_to_numpy(everywhere).copy()
 
-    values = numpy.asarray(values, dtype="i8")
     lengths = all_of(numpy.array([len(values)]))
-    padded = numpy.zeros(max(lengths.max(), 1), dtype="i8")
+    padded = numpy.zeros(max(lengths.max(), 1), dtype=kind)
     padded[: len(values)] = values
     rows = all_of(padded).reshape(len(lengths), -1)
     return [row[:length] for row, length in zip(rows, lengths)]
@@ -80,6 +117,62 @@ def together(controller, work):
     if "stopped" in states:
         raise Aborted
     return [value for _, values in found for value in values]
+
+
+def agreed(controller, work):
+    """What work() gives on this rank. Where it raises an ElevationSurfaceError or a MemoryError on a
+    rank, all ranks raise that of the first of these."""
+    made = []
+
+    def attempt():
+        try:
+            made.append(work())
+            return []
+        except ElevationSurfaceError as error:
+            return [[str(error), error.about, error.code]]
+        except MemoryError:
+            return [[]]
+
+    if controller is None:
+        return work()
+    failures = together(controller, attempt)
+    if failures and not failures[0]:
+        raise MemoryError
+    if failures:
+        words, about, code = failures[0]
+        error = ElevationSurfaceError(words, about)
+        error.code = code
+        raise error
+    return made[0]
+
+
+def by_first(controller, work, other=None):
+    """What work() gives on the first rank, other on the others, who sleep meanwhile. As agreed()."""
+    if controller is None:
+        return work()
+    ranks = range(1, controller.GetNumberOfProcesses())
+
+    def of_first():
+        try:
+            return work()
+        finally:
+            for rank in ranks:
+                controller.Send(numpy_to_vtk(numpy.zeros(1)), rank, WORK_IS_DONE)
+
+    def of_others():
+        is_there, source = [0], [0]
+        while not is_there[0]:
+            time.sleep(0.01)
+            controller.Iprobe(0, WORK_IS_DONE, is_there, source)
+        controller.Receive(numpy_to_vtk(numpy.zeros(1)), 0, WORK_IS_DONE)
+        return other
+
+    return agreed(controller, of_others if controller.GetLocalProcessId() else of_first)
+
+
+def total(controller, count):
+    """The sum of the counts of all ranks."""
+    return sum(together(controller, lambda: [int(count)]))
 
 
 def number_of(place):

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import functools
-import math
 import os
 import re
 import time
@@ -18,8 +17,11 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
 
 from .clouds import Cloud, make_lines, make_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Messages
+from .opening import lattice_of, length_to_open
 from .paths import check_suffix
 from .properties import COLOURS, PROPERTIES, checked, number_above_zero, view_angles
+from .ranks import agreed, total
+from .spreading import dealt, reasons_of, update, whole_lines, whole_surface
 from .vtkElevationSurface import (
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
@@ -99,6 +101,10 @@ class Reconstruction:
     holes     vtkPolyData, the outline of each hole, filled or not; None without filling
     delaunay, trim, fill   the filters that have run; None for those left out
     cloud     the points and what their reader found out
+    triangles {"delaunay": count, "trimmed": count, "filled": count} after each step
+    reasons   (n,) numbers: 0 for points in triangles of the triangulation, or why they are in none,
+              as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
+    lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
     notes     what filters warned of, one line each
     """
@@ -108,27 +114,17 @@ class Reconstruction:
         self.times = {}
         self.notes = []
         self.delaunay = self.trim = self.fill = None
+        self.surface = self.boundary = self.holes = None
+        self.triangles, self.reasons, self.lattice = {}, None, None
         self.progress = None  # what run_chain() was given
         self.boundary_name = None  # where a given boundary is from
         self.faults_name = None
         self.why_opened = None
 
     @property
-    def surface(self) -> vtkPolyData:
-        return (self.fill or self.trim or self.delaunay).GetOutput()
-
-    @property
     def crs(self) -> Optional[str]:
         """The coordinate reference system as WKT or AUTHORITY:CODE; None where it is not known."""
         return self.cloud.crs
-
-    @property
-    def boundary(self) -> Optional[vtkPolyData]:
-        return self.trim.GetOutput(2) if self.trim else None
-
-    @property
-    def holes(self) -> Optional[vtkPolyData]:
-        return self.fill.GetOutput(1) if self.fill else None
 
     @functools.cached_property
     def report(self) -> dict:
@@ -226,12 +222,16 @@ class Reconstruction:
 
 
 class _Step:
-    """Runs a filter with progress. Its errors are raised, its warnings become notes."""
+    """Runs a filter with progress. Its errors are raised, its warnings become notes.
 
-    def __init__(self, result, progress, strict):
+    ranks  the controller of those that run it together, or None
+    """
+
+    def __init__(self, result, progress, strict, ranks):
         self.result = result
         self.progress = progress
         self.strict = strict
+        self.ranks = ranks
 
     def __call__(self, name, algorithm):
         raised = []
@@ -250,13 +250,17 @@ class _Step:
         tag = algorithm.AddObserver("ProgressEvent", show)
         began = time.perf_counter()
         with Messages(algorithm, algorithm.GetExecutive()) as messages:
-            algorithm.Update()
+            update(algorithm, self.ranks)
         self.result.times["triangulate" if name == "delaunay" else name] = (
             time.perf_counter() - began
         )
         algorithm.RemoveObserver(tag)
         if raised:
             raise raised[0]
+        agreed(self.ranks, lambda: self.tell(name, messages))
+        return algorithm
+
+    def tell(self, name, messages):
         problems = messages.errors + (messages.warnings if self.strict else [])
         if problems:
             about = "points"
@@ -269,18 +273,21 @@ class _Step:
             # A filter may tell of several holes in one message.
             for sentence in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n"):
                 self.result.notes.append(f"{STEPS[name]}: {sentence}")
-        return algorithm
 
 
 def run_chain(
-    cloud, boundary, faults, given, *, trim=True, fill=True, progress=None, strict=False
+    cloud, boundary, faults, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None
 ):
-    """reconstruct() on what has been checked: a Cloud, vtkPolyData or None, and checked()."""
+    """reconstruct() on what has been checked: a Cloud, vtkPolyData or None, and checked().
+
+    ranks  the controller of those that run it together, or None. The first has the points, boundary
+           and faults, and gets the result; the others have none, and get its counts
+    """
     result = Reconstruction(cloud)
     result.progress = progress
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
-    run = _Step(result, progress, strict)
+    run = _Step(result, progress, strict, ranks)
 
     def made(step, algorithm):
         for name, value in given.items():
@@ -289,38 +296,43 @@ def run_chain(
         return algorithm
 
     delaunay = made("delaunay", vtkGridDelaunay2D())
-    delaunay.SetInputData(cloud.points)
+    delaunay.SetInputData(dealt(ranks, cloud.points))
     if faults is not None:
         delaunay.SetSourceData(faults)
     result.delaunay = last = run("delaunay", delaunay)
-    if delaunay.GetOutput().GetNumberOfPolys() == 0:
+    result.triangles["delaunay"] = total(ranks, last.GetOutput().GetNumberOfPolys())
+    result.lattice = lattice_of(ranks, last.GetOutput())
+    result.reasons = reasons_of(ranks, last.GetOutput(), cloud.points.GetNumberOfPoints())
+    if result.triangles["delaunay"] == 0:
         limit = given.get("maximum_edge_length", 0.0)
-        raise ElevationSurfaceError(why_no_triangle(cloud.points, limit, result.notes))
+        agreed(ranks, lambda: refuse(cloud.points, limit, result.notes))
     if trim:
         trimming = made("trim", vtkTrimOutwardTriangles())
         trimming.SetInputData(0, last.GetOutput())
         if boundary is not None:
             trimming.SetBoundaryData(boundary)
         result.trim = last = run("trim", trimming)
-        if trimming.GetOutput().GetNumberOfPolys() == 0:
+        result.triangles["trimmed"] = total(ranks, last.GetOutput().GetNumberOfPolys())
+        if result.triangles["trimmed"] == 0:
             raise ElevationSurfaceError(
                 "no triangle lies inside the boundary; are boundary and points in the same "
                 "coordinates?",
                 "boundary" if boundary is not None else "points",
             )
+        result.boundary = whole_lines(ranks, trimming.GetOutput(2))
     if fill:
         filling = made("fill", vtkFillElevationHoles())
         filling.SetInputData(last.GetOutput())
         if "open_edge_length" in given:
             result.why_opened = "as given"
         else:
-            length, result.why_opened = length_to_open(last.GetOutput(), boundary is not None)
-            of_cell = CELL_DIAGONALS * cloud.largest_cell
-            if 0 < length < of_cell:
-                length = of_cell
-                result.why_opened = f"{CELL_DIAGONALS:g} diagonals of the grid's largest cell"
+            length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
             filling.SetMaximumEdgeLength(length)
-        result.fill = run("fill", filling)
+        result.fill = last = run("fill", filling)
+        result.triangles["filled"] = total(ranks, last.GetOutput().GetNumberOfPolys())
+        result.holes = whole_lines(ranks, filling.GetOutput(1))
+    filters = (result.delaunay, result.trim, result.fill)
+    result.surface = whole_surface(ranks, last.GetOutput(), result.reasons, filters)
     return result
 
 
@@ -373,64 +385,6 @@ def reconstruct(
     return result
 
 
-# Above this multiple, edges bridge missing nodes of a grid, or the space between survey lines.
-CELL_DIAGONALS = 1.5
-SPACINGS_ALONG = 2.0
-# Triangles of lines: the longest edge is this multiple of the shortest. They cover more than half of
-# a survey of lines at least 10 spacings apart, also with jitter of half a spacing, and at most a
-# tenth of anything else.
-LEAST_RATIO_OF_LINES = 3.0
-# A full grid has triangles of half a cell; a thinned one, whose nodes are not missing, larger ones.
-MOST_CELLS_OF_FULL_GRID = 0.75
-MOST_SAMPLES = 1_000_000  # triangles: of more, every k-th stands for k
-
-
-def lattice_of(fields):
-    """The lattice that was found, or None: a node, two steps, their lengths and their directions.
-
-    Directions are in degrees from x to y.
-    """
-    array = fields.GetArray("Lattice")
-    if array is None:
-        return None
-    origin, *steps = numpy.reshape(array.GetTuple(0), (3, 2)).tolist()
-    return {
-        "origin": origin,
-        "steps": steps,
-        "lengths": [math.hypot(*step) for step in steps],
-        "directions": [math.degrees(math.atan2(step[1], step[0])) for step in steps],
-    }
-
-
-def length_to_open(surface, has_boundary):
-    """The length above which edges are opened, to be filled like holes, and why; (0, None): none."""
-    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    if has_boundary or len(triangles) == 0:
-        # The edges of a boundary may be long where nothing is missing.
-        return 0.0, None
-    triangles = triangles[:: 1 + len(triangles) // MOST_SAMPLES]
-    xy = vtk_to_numpy(surface.GetPoints().GetData())[:, :2]
-    a, b, c = (xy[triangles[:, i]].astype("f8") for i in range(3))
-    area = 0.5 * numpy.abs(
-        (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    )
-    lattice = lattice_of(surface.GetFieldData())
-    if lattice:
-        u, v = (numpy.array(step) for step in lattice["steps"])
-        cell = abs(u[0] * v[1] - u[1] * v[0])
-        if numpy.median(area) <= MOST_CELLS_OF_FULL_GRID * cell:
-            diagonal = float(max(numpy.hypot(*(u + v)), numpy.hypot(*(u - v))))
-            return CELL_DIAGONALS * diagonal, f"{CELL_DIAGONALS:g} diagonals of the grid's cells"
-    lengths = numpy.sort(
-        numpy.column_stack([numpy.hypot(*(q - p).T) for p, q in ((a, b), (b, c), (c, a))]), axis=1
-    )
-    is_between = lengths[:, 2] > LEAST_RATIO_OF_LINES * lengths[:, 0]
-    if area[is_between].sum() > 0.5 * area.sum():
-        along = float(numpy.median(lengths[:, 0]))
-        return SPACINGS_ALONG * along, f"{SPACINGS_ALONG:g} spacings of {along:.4g} along lines"
-    return 0.0, None
-
-
 def check_spacing(points, spacing):
     """Refuses a spacing that no hole could be filled at, before any work is done."""
     xy = vtk_to_numpy(points.GetPoints().GetData())[:, :2]
@@ -443,6 +397,12 @@ def check_spacing(points, spacing):
                 f"spacing: {spacing:g} is less than x and y of the points can tell apart, which are in "
                 f"steps of {step:.3g}"
             )
+
+
+def refuse(points, limit, notes):
+    """Raises ElevationSurfaceError, where there are points, with the reason why no triangle is."""
+    if points.GetNumberOfPoints():
+        raise ElevationSurfaceError(why_no_triangle(points, limit, notes))
 
 
 def why_no_triangle(points, limit, notes):

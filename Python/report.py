@@ -13,14 +13,14 @@ from .distance import distance_to
 from .holes import hole_counts, hole_lines, holes_of
 from .messages import counted, of_reason
 from .properties import LATTICE_MODES
-from .reconstruction import lattice_of
+from .spreading import IN_NO_TRIANGLE
 
 OUTSIDE = "outside the boundary"
 # Why a point is not used, by number: the first two are those of vtkGridDelaunay2D.
 REASONS = {
     1: "same x,y as another point",
     2: "not finite",
-    3: "in no triangle below the edge limit",
+    IN_NO_TRIANGLE: "in no triangle below the edge limit",
     4: OUTSIDE,
 }
 MOST_LISTED = 25_000  # unused points for each reason
@@ -32,7 +32,7 @@ def make_report(result):
     cloud, delaunay, trim = result.cloud, result.delaunay, result.trim
     coordinates = vtk_to_numpy(cloud.points.GetPoints().GetData())
     surface = result.surface
-    reasons = reasons_unused(len(coordinates), delaunay.GetOutput(), surface)
+    reasons = reasons_unused(result)
     counts, listed = list_unused(reasons, cloud.lines)
     report = {
         "notes": cloud.notes + result.notes,
@@ -44,9 +44,9 @@ def make_report(result):
         "unused_reasons": counts,
         "unused": listed,
         "unused_listed": len(listed),
-        "lattice": lattice_of(delaunay.GetOutput().GetFieldData()),
+        "lattice": result.lattice,
         "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
-        "triangles": {"delaunay": delaunay.GetOutput().GetNumberOfPolys()},
+        "triangles": result.triangles,
     }
     if result.faults_name:
         report["faults"] = {
@@ -56,10 +56,8 @@ def make_report(result):
         }
     if trim:
         report["trim"] = trimming_of(result)
-        report["triangles"]["trimmed"] = trim.GetOutput().GetNumberOfPolys()
     if result.fill:
         report["holes"] = holes_of(result)
-        report["triangles"]["filled"] = surface.GetNumberOfPolys()
     report["distance"] = distance_of(result, coordinates, reasons)
     return report
 
@@ -72,7 +70,7 @@ def trimming_of(result):
         "recovered_edges": trim.GetNumberOfRecoveredEdges(),
         "inserted_points": trim.GetNumberOfInsertedPoints(),
         "boundary": result.boundary_name or FOUND,
-        "boundary_rings": trim.GetOutput(2).GetNumberOfLines(),
+        "boundary_rings": result.boundary.GetNumberOfLines(),
     }
     if not result.boundary_name:
         report["effective_gap_tolerance"] = trim.GetEffectiveGapTolerance()
@@ -91,19 +89,11 @@ def distance_of(result, coordinates, reasons):
     return distance
 
 
-def reasons_unused(count, delaunay, surface):
-    """(count,) numbers of REASONS, or 0, for the points of the cloud."""
-    def in_triangles(mesh):
-        corners = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray())
-        return corner_flags(corners, mesh.GetNumberOfPoints())[:count]
-
-    reasons = numpy.zeros(count, dtype="u1")
-    reasons[~in_triangles(surface)] = 4
-    reasons[~in_triangles(delaunay)] = 3
-    fields = delaunay.GetFieldData()
-    ids = vtk_to_numpy(fields.GetArray("UnusedPointIds"))
-    reasons[ids] = vtk_to_numpy(fields.GetArray("UnusedPointReasons"))
-    return reasons
+def reasons_unused(result):
+    """(n,) numbers of REASONS, or 0, for the points of the cloud."""
+    corners = vtk_to_numpy(result.surface.GetPolys().GetConnectivityArray())
+    used = corner_flags(corners, result.surface.GetNumberOfPoints())[: len(result.reasons)]
+    return numpy.where((result.reasons == 0) & ~used, 4, result.reasons)
 
 
 def list_unused(reasons, lines):
@@ -264,7 +254,7 @@ def main_counts(result):
         counted(result.cloud.points.GetNumberOfPoints(), "point"),
         counted(result.surface.GetNumberOfPolys(), "triangle"),
     ]
-    found, filled = hole_counts(result.fill) if result.fill else (0, 0)
+    found, filled = hole_counts(result) if result.fill else (0, 0)
     if filled < found:
         parts.append(f"{filled:,} of {found:,} holes filled")
     elif found:

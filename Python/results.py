@@ -16,7 +16,9 @@ class Failure(ElevationSurfaceError):
 
 
 class WrongOption(Failure):
-    """A Failure of the command line: the exit code is 2."""
+    """A Failure of the command line."""
+
+    code = 2
 
 
 class Progress:

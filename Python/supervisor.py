@@ -28,8 +28,19 @@ NOTHING = "nothing is written"
 MOST_NAMED = 10
 RUN = "ELEVATION_SURFACE_RUN"  # the environment variable that tells the child the folder
 PARTIAL_FILES, FINISHED_FILES, HELD = "partial-files", "finished-files", "held"
+# What Open MPI, and MPICH and its relatives, tell of a process that mpirun has started.
+RANKS = (("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), ("PMI_RANK", "PMI_SIZE"))
 held_back = []  # stops that were asked for since hold_stops()
+listening = []  # what answered to stops before
 PR_SET_PDEATHSIG = 1  # <sys/prctl.h>
+
+
+def rank_and_size():
+    """(number, count) of this process among those that mpirun has started; (0, 1): it is alone."""
+    for rank, size in RANKS:
+        if rank in os.environ and size in os.environ:
+            return int(os.environ[rank]), int(os.environ[size])
+    return 0, 1
 
 
 def end_with_parent():
@@ -75,14 +86,14 @@ def hold_stops():
         # The parent asks, waits, looks for this file, and only then ends this process by force. So
         # where the file comes too late, what was asked is heard in the next line.
         note(HELD, "")
-        signal.signal(signal.SIGTERM, lambda *_: held_back.append(True))
+        listening.append(signal.signal(signal.SIGTERM, lambda *_: held_back.append(True)))
 
 
 def allow_stops():
     """The end of hold_stops(). Raises KeyboardInterrupt where a stop was asked for meanwhile."""
     folder = os.environ.get(RUN)
     if folder and is_held(folder):
-        signal.signal(signal.SIGTERM, stop)
+        signal.signal(signal.SIGTERM, listening[0])
         os.remove(os.path.join(folder, HELD))
         if held_back:
             stop()
@@ -94,7 +105,7 @@ def is_held(folder):
 
 def stop(*_):
     """Whatever comes of being interrupted somewhere, nobody needs to hear of it."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     raise KeyboardInterrupt
 
 
@@ -118,7 +129,16 @@ def what_is_written(folder):
 
 def supervised(work):
     """Calls work() in a child process. Returns the exit code: work's, 130 if stopped, 1 after a
-    crash."""
+    crash.
+
+    Of several processes that mpirun has started, the first alone writes files and is stopped so. The
+    others have to outlive it: when one is gone, mpirun ends all by force.
+    """
+    rank, size = rank_and_size()
+    if rank > 0:
+        for number in STOPPING:
+            signal.signal(number, signal.SIG_IGN)
+        return work()
     if not hasattr(os, "fork"):
         try:
             return work()
@@ -132,7 +152,9 @@ def supervised(work):
     child = os.fork()
     if child == 0:
         be_child(work, folder)
-    status = wait_for(child, stops, folder)
+    status = wait_for(child, stops, folder, is_alone=size == 1)
+    if status is None:
+        return 130
     for number in STOPPING:
         signal.signal(number, signal.SIG_IGN)  # too late; Python's own end would reset handlers
     is_done, written = is_held(folder), what_is_written(folder)
@@ -161,7 +183,8 @@ def be_child(work, folder):
     try:
         for number in STOPPING:
             signal.signal(number, signal.SIG_IGN)
-        signal.signal(signal.SIGTERM, stop)
+        if rank_and_size()[1] == 1:
+            signal.signal(signal.SIGTERM, stop)
         end_with_parent()
         os.environ[RUN] = folder
         tempfile.tempdir = folder
@@ -181,9 +204,26 @@ def be_child(work, folder):
             os._exit(code or 0)
 
 
-def wait_for(child, stops, folder):
+def end_first(child, folder, must_end=False):
+    """Ends the child of the first of several processes, unless its results appear. Returns whether.
+
+    As soon as it is gone, mpirun ends this process too. So all is removed and told before.
+    """
+    os.kill(child, signal.SIGSTOP)
+    if is_held(folder) and not must_end:
+        os.kill(child, signal.SIGCONT)
+        return False
+    written = what_is_written(folder)
+    remove_leftovers(folder)
+    print(f"{STOPPED}; {written}", file=sys.stderr, flush=True)
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+    return True
+
+
+def wait_for(child, stops, folder, is_alone):
     """The child's status. A child that does not stop when asked is ended by force, but not while
-    its results appear."""
+    its results appear. None: all is done, as by end_first()."""
     asked = None
     while True:
         done, status = os.waitpid(child, os.WNOHANG)
@@ -191,8 +231,16 @@ def wait_for(child, stops, folder):
             return status
         if stops and asked is None:
             asked = time.monotonic()
-            os.kill(child, signal.SIGTERM)
-        elif asked is not None and time.monotonic() - asked > PATIENCE and not is_held(folder):
+            if is_alone:
+                os.kill(child, signal.SIGTERM)
+            elif end_first(child, folder):
+                return None
+        elif asked is None or time.monotonic() - asked <= PATIENCE:
+            pass
+        elif not is_alone:
+            end_first(child, folder, must_end=True)  # it cannot say goodbye to processes that are gone
+            return None
+        elif not is_held(folder):
             os.kill(child, signal.SIGKILL)
             return os.waitpid(child, 0)[1]
         time.sleep(0.01)

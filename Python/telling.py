@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArr
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from .clouds import ReadOptions
-from .messages import ElevationSurfaceError
+from .messages import Aborted, ElevationSurfaceError
 from .properties import PROPERTIES
 
 ELEVATION = "Elevation"
@@ -20,10 +20,6 @@ STOPPED = (
     "stopped, so the output is empty. To make it, change a property and press Apply; in scripts, "
     "call Modified()."
 )
-
-
-class Aborted(Exception):
-    """The user wants no result any more."""
 
 
 def in_panel(words):

@@ -438,14 +438,14 @@ class Results(Program):
         self.assertIn("survey_surface.vtp", done.stdout)
 
     def test_help_names_every_option(self):
-        from vtkelevationsurface import command
+        from vtkelevationsurface import options
 
         shown = self.call("--help").stdout
-        for action in command.make_parser()._actions:
+        for action in options.make_parser()._actions:
             for option in action.option_strings:
                 self.assertIn(f"  {option}", shown.replace(", -", "  -"))
                 if action.nargs is None:
-                    self.assertIn(option, [*command.TAKES, "-o"])
+                    self.assertIn(option, [*options.TAKES, "-o"])
 
     def test_a_reader_that_goes_away_is_no_error(self):
         name = self.file("sheet.xyz", text_of(SHEET))

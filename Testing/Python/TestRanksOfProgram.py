@@ -1,0 +1,180 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program does on several ranks what it does on one: the same surface and report, written once.
+
+The last option is --mpirun, with what starts a program on several ranks, up to their number.
+"""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import numpy
+from in_folder import Program
+from vtkelevationsurface.reading import vtk_files
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+HERE = sys.argv.index("--mpirun")
+MPIRUN = sys.argv[HERE + 1 :]
+DATA = sys.argv[sys.argv.index("-D") + 1]
+VARY = ("times", "written", "command", "options")  # what two runs differ in
+
+
+def cloud(count):
+    """Rows of x, y, z and a value, with a hole, duplicates, a comment and what is no point."""
+    numbers = numpy.random.RandomState(3)
+    rows = numbers.rand(count, 4) * (100, 80, 5, 9)
+    rows = numpy.vstack((rows, rows[:50] + (0, 0, 1, 1)))
+    rows = rows[numpy.hypot(rows[:, 0] - 50, rows[:, 1] - 40) > 9]
+    numbers.shuffle(rows)
+    lines = ["%.3f %.3f %.3f %.1f" % tuple(row) for row in rows]
+    lines[100], lines[200], lines[300] = "nan 3 4 1", "5 6 -9999 2", "# comment"
+    return "x y z v\n" + "\n".join(lines) + "\n"
+
+
+def grid():
+    """A turned grid with nodes that are missing, one by one and together."""
+    x, y = numpy.meshgrid(numpy.arange(60) * 10.0, numpy.arange(50) * 10.0)
+    z = numpy.sin(x / 100) * 9 + y / 50
+    known = numpy.random.RandomState(4).rand(*x.shape) > 0.05
+    known[20:26, 20:30] = False
+    rows = numpy.column_stack([a[known] for a in (0.96 * x - 0.28 * y, 0.28 * x + 0.96 * y, z)])
+    return "\n".join("%.4f %.4f %.4f" % tuple(row) for row in rows)
+
+
+def triangles(surface):
+    """The triangles as rows of coordinates, in an order that does not depend on that of the mesh."""
+    places = vtk_to_numpy(surface.GetPoints().GetData())
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    first = numpy.lexsort(places[corners].transpose(2, 0, 1)[::-1], axis=1)[:, :1]
+    rows = numpy.arange(len(corners))[:, None]
+    rows = places[corners[rows, (first + numpy.arange(3)) % 3]].reshape(-1, 9)
+    return rows[numpy.lexsort(rows.T)]
+
+
+def arrays(data):
+    """{name: values in the order of their size} of arrays of numbers."""
+    return {data.GetArrayName(i): numpy.sort(vtk_to_numpy(data.GetArray(i)), axis=0).tolist()
+            for i in range(data.GetNumberOfArrays())}
+
+
+class OnRanks(Program):
+    def on(self, ranks, *arguments):
+        program = type(self).PROGRAM
+        self.PROGRAM = (*MPIRUN, str(ranks), *program) if ranks else program
+        try:
+            return self.call(*arguments)
+        finally:
+            self.PROGRAM = program
+
+    def results(self, ranks, arguments):
+        """(the report's lines, the JSON, the surface)"""
+        done = self.on(ranks, *arguments, "--no-picture", "-o", "s.vtp", "--report", "s.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = [line for line in done.stdout.splitlines() if not line.startswith("  time")]
+        with open(self.path("s.json"), encoding="utf-8") as stream:
+            report = json.load(stream)
+        report = {name: value for name, value in report.items() if name not in VARY}
+        for hole in report.get("holes", {}).get("list", ()):
+            del hole["hole"]  # numbers depend on the order of triangles
+        if "holes" in report:
+            report["holes"]["list"].sort(key=json.dumps)
+        surface = vtk_files.run_vtk_reader(self.path("s.vtp"))
+        for name in ("s.vtp", "s.json"):
+            os.remove(self.path(name))
+        return lines, report, surface
+
+    def check_same(self, ranks, *arguments):
+        lines, report, surface = self.results(0, arguments)
+        lines_of_ranks, report_of_ranks, of_ranks = self.results(ranks, arguments)
+        self.assertEqual(lines_of_ranks, lines)
+        self.assertEqual(report_of_ranks, report)
+        numpy.testing.assert_array_equal(triangles(of_ranks), triangles(surface))
+        self.assertEqual(of_ranks.GetPoints().GetDataType(), surface.GetPoints().GetDataType())
+        for name in ("GetPointData", "GetCellData", "GetFieldData"):
+            mine, expected = (arrays(getattr(data, name)()) for data in (of_ranks, surface))
+            mine.pop("HoleId", None), expected.pop("HoleId", None)
+            self.assertEqual(mine.keys(), expected.keys(), name)
+            for array, values in expected.items():
+                numpy.testing.assert_array_equal(mine[array], values, array)
+        first = report["points"]  # the input's points come first, in their order
+        mine, expected = (vtk_to_numpy(d.GetPoints().GetData())[:first] for d in (of_ranks, surface))
+        numpy.testing.assert_array_equal(mine, expected)
+
+    def test_a_table_with_duplicates_and_nulls(self):
+        self.file("a.txt", cloud(1500))
+        self.check_same(3, "a.txt", "--duplicates", "keep-highest")
+
+    def test_a_grid_with_missing_nodes(self):
+        self.file("a.txt", grid())
+        self.check_same(2, "a.txt")
+
+    def test_mpirun_with_one_rank(self):
+        self.file("a.txt", cloud(300))
+        self.check_same(1, "a.txt")
+
+    def test_what_stays_spread_until_the_end(self):
+        self.check_same(3, os.path.join(DATA, "b9_ground.vtp"), "--no-trim", "--no-fill")
+
+    def test_faults_and_a_boundary(self):
+        horizon, faults, boundary = (
+            os.path.join(DATA, f"horizon_synthetic{part}.vtp") for part in ("", "_faults", "_boundary"))
+        self.check_same(2, horizon, "--faults", faults, "--boundary", boundary, "--depth")
+
+    def test_a_surface_for_each_file_with_its_picture(self):
+        self.file("a.txt", cloud(1200))
+        self.file("b.txt", grid())
+        done = self.on(2, "a.txt", "b.txt", "--each")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.count("triangulation"), 2)
+        made = sorted(set(os.listdir(self.folder)) - {"a.txt", "b.txt"})
+        self.assertEqual(made, ["a_surface.png", "a_surface.vtp", "b_surface.png", "b_surface.vtp"])
+
+    def test_errors_are_told_once_and_leave_nothing(self):
+        self.file("a.txt", cloud(1200))
+        self.file("two.txt", "1 2 3\n4 5 6\n")
+        for arguments in (
+            ["two.txt"],
+            ["nowhere.txt"],
+            ["a.txt", "--foo"],
+            ["a.txt", "--boundary", os.path.join(DATA, "aegean_sea_boundary.vtp")],
+        ):
+            with self.subTest(arguments=arguments):
+                alone, together = self.on(0, *arguments), self.on(2, *arguments)
+                self.assertEqual(together.returncode, alone.returncode)
+                mine = [line for line in together.stderr.splitlines() if "reconstruct:" in line]
+                self.assertEqual(mine, alone.stderr.splitlines())
+                self.assertEqual(together.stdout, "")
+                self.assertEqual(sorted(os.listdir(self.folder)), ["a.txt", "two.txt"])
+
+    def test_a_stop_ends_all_ranks_and_leaves_nothing(self):
+        self.file("a.txt", cloud(30000))
+        moments = random.Random(7)
+        began = time.monotonic()
+        self.assertEqual(self.on(3, "a.txt", "--report").returncode, 0)
+        whole = time.monotonic() - began
+        results = {"a_surface.json", "a_surface.png", "a_surface.vtp"}
+        for run in range(3):
+            for name in results & set(os.listdir(self.folder)):
+                os.remove(self.path(name))
+            program = subprocess.Popen(
+                [*MPIRUN, "3", *self.PROGRAM, "a.txt", "--report"], cwd=self.folder, text=True,
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            time.sleep(moments.uniform(0.3, 0.9) * whole)
+            program.send_signal(signal.SIGINT)
+            _, errors = program.communicate(timeout=50)
+            made = set(os.listdir(self.folder)) - {"a.txt"}
+            with self.subTest(run=run):
+                self.assertIn(made, (set(), results))
+                self.assertLessEqual(errors.count("reconstruct:"), 1)
+                if not made:
+                    self.assertNotEqual(program.returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
