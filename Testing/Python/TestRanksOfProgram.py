@@ -176,5 +176,20 @@ class OnRanks(Program):
                     self.assertNotEqual(program.returncode, 0)
 
 
+class Example(Program):
+    def test_all_ranks_have_the_triangles_of_one(self):
+        alone = (sys.executable, os.path.join(DATA, "..", "Examples", "Python", "many_ranks.py"))
+        self.PROGRAM = alone
+        expected = self.call().stdout.splitlines()
+        self.assertRegex(expected[0], "^[0-9,]+ triangles, 211.885 square kilometres$")
+        self.PROGRAM = (*MPIRUN, "3", *alone)
+        lines = self.call("s.pvtp").stdout.splitlines()
+        self.assertEqual(lines[:2], expected[:2])
+        self.assertEqual(lines[2].count(", "), 2)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["s.pvtp", "s_0.vtp", "s_1.vtp", "s_2.vtp"])
+        parts = [vtk_files.run_vtk_reader(self.path(f"s_{i}.vtp")).GetNumberOfPolys() for i in range(3)]
+        self.assertEqual(f"{sum(parts):,} triangles", expected[0].split(", ")[0])
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])
