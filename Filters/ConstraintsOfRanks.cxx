@@ -30,7 +30,7 @@ PointView ViewOf(const PointRows& rows)
 }
 
 /** The box of the finite points of all ranks. */
-Box BoxOfAll(const Ranks& ranks, const PointRows& own)
+Box BoxOfPoints(const Ranks& ranks, const PointRows& own)
 {
   Box box;
   for (std::size_t i = 0; i < own.Count(); ++i)
@@ -40,9 +40,7 @@ Box BoxOfAll(const Ranks& ranks, const PointRows& own)
       box.Add({ own.At(i)[0], own.At(i)[1] });
     }
   }
-  std::vector<double> sides = { -box.Low.X, -box.Low.Y, box.High.X, box.High.Y };
-  ranks.Maximum(sides);
-  return { { -sides[0], -sides[1] }, { sides[2], sides[3] } };
+  return BoxOfAll(ranks, box);
 }
 
 /** A point of some rank. */
@@ -96,7 +94,7 @@ private:
 
 void Lines::Read(std::vector<std::string>& warnings)
 {
-  const Box box = BoxOfAll(this->All, this->Part.Own);
+  const Box box = BoxOfPoints(this->All, this->Part.Own);
   this->All.Agree([&]() {
     CheckPointArrays(this->Source, "The constraints'");
     this->SourcePoints = ViewPoints(this->Source);

@@ -95,7 +95,9 @@ private:
   {
     return this->All.Watched(elevation::Part(this->Options.Monitor, begin, end));
   }
+  void SettleOnGiven(const Progress& progress);
   bool SettleOn(const SharedLattice* lattice);
+  bool IsByChance(const SharedLattice& lattice) const;
   void SettleOwn(const SharedLattice* lattice);
   bool JoinSeams(const SharedLattice* lattice);
   Piece SettlePiece(const Piece& piece, const Node& node, const Progress& progress,
@@ -137,19 +139,53 @@ void Work::Settle()
   });
   SharedLattice lattice;
   const Progress searching = elevation::Part(this->Options.Monitor, 0.15, 0.2);
-  if (this->Options.UseLattice == LatticeMode::Automatic &&
+  const bool isAsked = this->Options.UseLattice == LatticeMode::Automatic;
+  if (isAsked && this->Options.GivenLattice.IsSet())
+  {
+    this->SettleOnGiven(searching);
+  }
+  else if (isAsked &&
     FindLatticeOnRanks(
       this->All, InOneSlice(this->OwnPoints()), this->Options, searching, lattice) &&
-    this->SettleOn(&lattice))
+    this->SettleOn(&lattice) && !this->IsByChance(lattice))
   {
     this->Part.Result.LatticeFound = true;
     this->Part.Result.Steps = FromLowestNode(this->All, InOneSlice(this->OwnPoints()), lattice);
-    return;
   }
-  this->SettleOn(nullptr);
+  else
+  {
+    this->SettleOn(nullptr);
+  }
 }
 
-/** @return false if not all points are on the lattice, or by chance, or on one line of it */
+/** The same on the lattice that is given. */
+void Work::SettleOnGiven(const Progress& progress)
+{
+  SharedLattice lattice;
+  const bool hasPoints = TakeGivenLattice(
+    this->All, this->OwnPoints(), this->Part.Own.Ids, this->Options, progress, lattice);
+  if (!this->SettleOn(hasPoints ? &lattice : nullptr))
+  {
+    throw GivenLatticeUnfit();
+  }
+  this->Part.Result.LatticeFound = true;
+  this->Part.Result.Steps = hasPoints
+    ? FromLowestNode(this->All, InOneSlice(this->OwnPoints()), lattice)
+    : lattice.Steps();
+}
+
+/** Whether so few points may fit a lattice by chance, or are all on one line of it. */
+bool Work::IsByChance(const SharedLattice& lattice) const
+{
+  std::vector<vtkIdType> sums = {
+    static_cast<vtkIdType>(this->Part.Own.Count() - this->Part.Result.UnusedPoints.size()),
+    static_cast<vtkIdType>(this->Triangles.size() + this->OfSeams.size())
+  };
+  this->All.Sum(sums);
+  return sums[1] == 0 || IsLatticeByChance(static_cast<double>(sums[0]), lattice.Tolerance());
+}
+
+/** @return false if not all points are on the lattice */
 bool Work::SettleOn(const SharedLattice* lattice)
 {
   this->Seam = Piece();
@@ -158,24 +194,7 @@ bool Work::SettleOn(const SharedLattice* lattice)
   this->OfSeams.clear();
   this->Part.Result = Triangulation();
   this->SettleOwn(lattice);
-  if (this->IsOffAnywhere(lattice))
-  {
-    return false;
-  }
-  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(
-    this->Part.Own.Count() - this->Part.Result.UnusedPoints.size()) };
-  this->All.Sum(sums);
-  if (lattice && IsLatticeByChance(static_cast<double>(sums[0]), lattice->Tolerance()))
-  {
-    return false;
-  }
-  if (!this->JoinSeams(lattice))
-  {
-    return false;
-  }
-  sums[0] = static_cast<vtkIdType>(this->Triangles.size() + this->OfSeams.size());
-  this->All.Sum(sums);
-  return sums[0] > 0;
+  return !this->IsOffAnywhere(lattice) && this->JoinSeams(lattice);
 }
 
 bool Work::IsOffAnywhere(const SharedLattice* lattice) const

@@ -62,14 +62,11 @@ std::vector<Point2> CollectPoints(const Ranks& ranks, const std::vector<Point2>&
   return all;
 }
 
-/** The box of all ranks. */
+/** The box of nodes of all ranks. */
 NodeBox Joined(const Ranks& ranks, const NodeBox& own)
 {
-  std::vector<double> sides = { -own.Low.X, -own.Low.Y, own.High.X, own.High.Y };
-  ranks.Maximum(sides);
   NodeBox box;
-  box.Low = { -sides[0], -sides[1] };
-  box.High = { sides[2], sides[3] };
+  static_cast<Box&>(box) = BoxOfAll(ranks, own);
   return box;
 }
 
@@ -98,6 +95,21 @@ void ForEachFinite(const PointSlices& points, const Progress& progress, const Vi
         visit(p);
       }
     }
+  });
+}
+
+/** The box of the nodes of all ranks' points. */
+NodeBox NodesOfAll(const Ranks& ranks, const PointSlices& points, const Box& all,
+  const Lattice& steps, const Progress& progress)
+{
+  const NodeOfPoint nodeOf(steps);
+  return FindNodeBox(nodeOf, all, steps, [&]() {
+    NodeBox own;
+    ranks.Agree([&]() {
+      ForEachFinite(
+        points, ranks.Watched(progress), [&](const Point2& p) { nodeOf.Extend(own, p); });
+    });
+    return Joined(ranks, own);
   });
 }
 } // namespace
@@ -156,16 +168,51 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   {
     return false;
   }
-  const NodeOfPoint nodeOf(steps);
-  const NodeBox nodes = FindNodeBox(nodeOf, all, steps, [&]() {
-    NodeBox own;
-    ranks.Agree([&]() {
-      ForEachFinite(points, ranks.Watched(Part(progress, 0.7, 1.0)),
-        [&](const Point2& p) { nodeOf.Extend(own, p); });
-    });
-    return Joined(ranks, own);
-  });
+  const NodeBox nodes = NodesOfAll(ranks, points, all, steps, Part(progress, 0.7, 1.0));
   return lattice.Set(steps, all, nodes, tolerance) && nodes.IsFilledEnough(all.Count);
+}
+
+bool TakeGivenLattice(const Ranks& ranks, const PointView& points, const Buffer<vtkIdType>& ids,
+  const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
+{
+  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  Lattice steps;
+  Extent own;
+  std::vector<vtkIdType> beside; // the first of each rank
+  ranks.Agree([&]() {
+    steps = StepsOfGiven(options.GivenLattice);
+    own = FindExtent(points, ThreadsAtOnce(options.NumberOfThreads),
+      ranks.Watched(Part(progress, 0.0, 0.3)), [](Index, const Point2&) {});
+    const Index first =
+      FirstBeside(points, own.NotFinite, steps, tolerance, ranks.Watched(Part(progress, 0.3, 0.7)));
+    if (first != None)
+    {
+      beside = { ids[first], first };
+    }
+  });
+  const std::vector<vtkIdType> all = ranks.Collect(beside);
+  ranks.Agree([&]() {
+    for (std::size_t i = 0; i < all.size() && !beside.empty(); i += 2)
+    {
+      beside = all[i] < beside[0] ? std::vector<vtkIdType>() : beside;
+    }
+    if (!beside.empty())
+    {
+      const Point2 p = points.At(static_cast<Index>(beside[1]));
+      throw BesideGivenLattice(beside[0], p, steps, tolerance);
+    }
+  });
+  const Box box = BoxOfAll(ranks, own);
+  if (box.Low.X > box.High.X)
+  {
+    return false;
+  }
+  const NodeBox nodes = NodesOfAll(ranks, InOneSlice(points), box, steps, Part(progress, 0.7, 1.0));
+  if (!lattice.Set(steps, box, nodes, tolerance))
+  {
+    throw GivenLatticeTooLarge();
+  }
+  return true;
 }
 
 Lattice FromLowestNode(const Ranks& ranks, const PointSlices& points, const SharedLattice& lattice)

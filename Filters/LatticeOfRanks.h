@@ -36,6 +36,16 @@ PointSlices InOneSlice(const PointView& points);
 bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
   const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice);
 
+/**
+ * Takes the lattice that options give.
+ * @param[in] points, ids  of this rank, and their global ids, increasing
+ * @param[out] lattice  the same on all ranks
+ * @return false if no rank has a finite point
+ * @throws Error on all ranks, as on one; of several points that do not fit, that with the lowest id
+ */
+bool TakeGivenLattice(const Ranks& ranks, const PointView& points, const Buffer<vtkIdType>& ids,
+  const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice);
+
 /** The lattice with the lowest node that a point of any rank is on as its origin. */
 Lattice FromLowestNode(const Ranks& ranks, const PointSlices& points, const SharedLattice& lattice);
 

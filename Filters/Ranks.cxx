@@ -319,4 +319,11 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
   return parts.empty() ? vtkSmartPointer<vtkPolyData>(local) : Append(parts);
 }
 
+Box BoxOfAll(const Ranks& ranks, const Box& own)
+{
+  std::vector<double> sides = { -own.Low.X, -own.Low.Y, own.High.X, own.High.Y };
+  ranks.Maximum(sides);
+  return { { -sides[0], -sides[1] }, { sides[2], sides[3] } };
+}
+
 } // namespace elevation

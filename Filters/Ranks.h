@@ -106,6 +106,9 @@ private:
   mutable Traffic Sent;
 };
 
+/** The box of the boxes of all ranks. */
+Box BoxOfAll(const Ranks& ranks, const Box& own);
+
 } // namespace elevation
 
 #endif

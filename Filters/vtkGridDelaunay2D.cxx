@@ -242,10 +242,6 @@ int vtkGridDelaunay2D::RequestData(
     &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints, &this->NumberOfLattices };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
   call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
-    if (options.GivenLattice.IsSet())
-    {
-      return false;
-    }
     const elevation::ConstrainedTriangulation part = TriangulateSpread(ranks, options, block);
     this->NumberOfDuplicatePoints += part.Result.NumberOfDuplicates;
     this->NumberOfNonFinitePoints += part.Result.NumberOfNotFinite;

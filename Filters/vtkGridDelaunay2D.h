@@ -74,8 +74,7 @@
  * them, else the points are numbered rank after rank; DuplicatePolicy goes by them. Points that are
  * marked as another rank's, or have the same global id, count once. Points that are not finite stay
  * on their rank. Field data are those of the rank's part. Arrays that not all ranks have are left
- * out, with a warning. With a given lattice, the points are gathered on the rank with most of them;
- * the others have empty output. Partitions of one vtkPartitionedDataSet are one block in this.
+ * out, with a warning. Partitions of one vtkPartitionedDataSet are one block in this.
  * Constraints may be on other ranks than the points, or spread over them: each rank gets them all;
  * those that are the same on several ranks count once. The points that they add have global ids
  * after the largest, and are in the parts of the plane where they lie; the triangles that meet a

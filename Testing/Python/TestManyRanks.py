@@ -181,7 +181,33 @@ def compare(claim, coordinates, owners, ids=None, arrays=(), **properties):
         whole, expected = triangulate(
             cloud(coordinates[order], None, [(n, a[order]) for n, a in given]), True, **properties)
         check(messages == expected, "%s: messages %s, not %s" % (claim, messages, expected))
-        check_union(parts, part_of(whole, numbers), claim)
+        check_union(parts, part_of(whole, numbers[:whole.GetOutput().GetNumberOfPoints()]), claim)
+
+
+def check_given_lattice(random):
+    """A given lattice is that of all ranks; of the points beside it, the first is told."""
+    i, j = numpy.meshgrid(numpy.arange(40.0), numpy.arange(30.0))
+    turned_nodes = numpy.stack((612000 + 20.0 * i.ravel() - 9.0 * j.ravel(),
+                                6073000 + 15.0 * i.ravel() + 12.0 * j.ravel(), (i * j).ravel()), axis=1)
+    given = (612000.0, 6073000.0, 20.0, 15.0, 11.0, 27.0)  # of the same nodes
+    for part in (1.0, 0.3, 0.01):  # few points are on many lattices: one has to be given
+        nodes = turned_nodes[random.random(len(turned_nodes)) < part]
+        nodes = numpy.vstack((nodes, nodes[:9] + [0.0, 0.0, 1.0]))
+        owners = random.integers(COUNT, size=len(nodes))
+        for ids in (None, random.permutation(len(nodes))):
+            compare("given lattice, part %g" % part, nodes, owners, ids, Lattice=given)
+        unfit = [("beside the lattice", nodes + [5.0, 0.0, 0.0], given),
+                 ("two on a node", numpy.vstack((nodes, nodes[-1:] + [0.01, 0.0, 0.0])), given),
+                 ("too unequal steps", nodes, (612000.0, 6073000.0, 20.0, 15.0, -9e-9, 12e-9)),
+                 ("steps on a line", nodes, given[:4] + (40.0, 30.0))]
+        beside = nodes.copy()
+        beside[random.integers(len(nodes), size=3), :2] += [3.0, 1.0]
+        unfit.append(("some beside the lattice", beside, given))
+        for claim, points, lattice in unfit:
+            compare(claim, points, random.integers(COUNT, size=len(points)), None, Lattice=lattice)
+    nodes = turned_nodes[:40]
+    compare("a line of the given lattice", nodes, numpy.arange(40) % COUNT, None, Lattice=given)
+    compare("no finite point", nodes * numpy.nan, numpy.arange(40) % COUNT, None, Lattice=given)
 
 
 def owners_of(random, count):
@@ -369,6 +395,7 @@ def main():
     check_kinds()
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
+    check_given_lattice(random)
     for i in range(options.clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     latest = check_aborts(random, options.aborts, options.size)

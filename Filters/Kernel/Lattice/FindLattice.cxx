@@ -718,6 +718,13 @@ std::vector<Point2> SortedOutwards(
   });
   return sample;
 }
+
+/** How far a point is from its node, along the step where it is farther, in steps. */
+double StepsBeside(const NodeOfPoint& nodeOf, const Point2& p)
+{
+  const double i = nodeOf.I(p), j = nodeOf.J(p);
+  return std::max(std::fabs(i - std::round(i)), std::fabs(j - std::round(j)));
+}
 } // namespace
 
 bool LatticeSample::MayBeOfLattice() const
@@ -838,39 +845,74 @@ LatticeSearch FindLattice(
   return search;
 }
 
-LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double tolerance,
-  int threads, const Progress& progress)
+Lattice StepsOfGiven(const Lattice& given)
 {
   const Point2 &u = given.StepU, &v = given.StepV;
-  std::ostringstream text;
-  text << std::setprecision(10);
   const double sine = std::fabs(given.Area()) / std::sqrt(Dot(u, u) * Dot(v, v));
   if (!std::isfinite(given.Origin.X + given.Origin.Y) || !(sine > 1e-6))
   {
+    std::ostringstream text;
+    text << std::setprecision(10);
     text << "The given lattice has no nodes: its origin is (" << given.Origin.X << ", "
          << given.Origin.Y << "), its steps are (" << u.X << ", " << u.Y << ") and (" << v.X << ", "
          << v.Y << "). Steps must be finite and not parallel.";
     throw Error(text.str());
   }
-  LatticeSearch search;
-  search.Found = true;
-  search.Steps = Reduced(given);
-  static_cast<Extent&>(search) =
-    FindExtent(points, threads, Part(progress, 0.0, 0.4), [](Index, const Point2&) {});
-  const NodeOfPoint nodeOf(search.Steps);
-  const Progress checking = Part(progress, 0.4, 1.0);
-  ForEachPoint(points, 0, points.Count, search.NotFinite, [&](Index id, const Point2& p) {
-    ReportStep(checking, id, points.Count);
-    const double i = nodeOf.I(p), j = nodeOf.J(p);
-    const double off = std::max(std::fabs(i - std::round(i)), std::fabs(j - std::round(j)));
-    if (!(off <= tolerance + NodeRoundoff))
+  return Reduced(given);
+}
+
+Index FirstBeside(const PointView& points, const std::vector<Index>& notFinite,
+  const Lattice& steps, double tolerance, const Progress& progress)
+{
+  const NodeOfPoint nodeOf(steps);
+  Index first = None;
+  ForEachPoint(points, 0, points.Count, notFinite, [&](Index id, const Point2& p) {
+    ReportStep(progress, id, points.Count);
+    if (first == None && !(StepsBeside(nodeOf, p) <= tolerance + NodeRoundoff))
     {
-      text << "Point " << id << " at (" << p.X << ", " << p.Y << ") is " << std::setprecision(3)
-           << off << " steps away from the nearest node of the given lattice; LatticeTolerance is "
-           << tolerance << ".";
-      throw Error(text.str());
+      first = id;
     }
   });
+  return first;
+}
+
+Error BesideGivenLattice(std::int64_t id, const Point2& p, const Lattice& steps, double tolerance)
+{
+  std::ostringstream text;
+  text << std::setprecision(10) << "Point " << id << " at (" << p.X << ", " << p.Y << ") is "
+       << std::setprecision(3) << StepsBeside(NodeOfPoint(steps), p)
+       << " steps away from the nearest node of the given lattice; LatticeTolerance is "
+       << tolerance << ".";
+  return Error(text.str());
+}
+
+Error GivenLatticeTooLarge()
+{
+  return Error("The points cannot be triangulated on the given lattice: its steps are too unequal, "
+               "or it has more than " +
+    std::to_string(NodeBox::MaximumSide) + " rows or columns.");
+}
+
+Error GivenLatticeUnfit()
+{
+  return Error("The points cannot be triangulated on the given lattice: two that are not equal "
+               "share a node, or a triangle would be flat. Is it the lattice of these points?");
+}
+
+LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double tolerance,
+  int threads, const Progress& progress)
+{
+  LatticeSearch search;
+  search.Found = true;
+  search.Steps = StepsOfGiven(given);
+  static_cast<Extent&>(search) =
+    FindExtent(points, threads, Part(progress, 0.0, 0.4), [](Index, const Point2&) {});
+  const Index beside =
+    FirstBeside(points, search.NotFinite, search.Steps, tolerance, Part(progress, 0.4, 1.0));
+  if (beside != None)
+  {
+    throw BesideGivenLattice(beside, points.At(beside), search.Steps, tolerance);
+  }
   return search;
 }
 

@@ -88,6 +88,17 @@ LatticeSearch FindLattice(
 LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double tolerance,
   int threads, const Progress& progress);
 
+/** @name The same for a cloud in parts, which share the steps, and the errors. @{ */
+/** @throws Error if the steps are parallel or not finite */
+Lattice StepsOfGiven(const Lattice& given);
+/** The first point that is too far from its node, or None. */
+Index FirstBeside(const PointView& points, const std::vector<Index>& notFinite,
+  const Lattice& steps, double tolerance, const Progress& progress);
+Error BesideGivenLattice(std::int64_t id, const Point2& p, const Lattice& steps, double tolerance);
+Error GivenLatticeTooLarge();
+Error GivenLatticeUnfit();
+/** @} */
+
 /**
  * @name The steps of the search, for a cloud in parts.
  * Each part is sampled; the samples are added up; each part tells its points in the fullest place

@@ -184,10 +184,7 @@ Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayO
   const bool hasPoints = static_cast<std::size_t>(points.Count) > search.NotFinite.size();
   if (hasPoints && !lattice.Set(search.Steps, search, nodes, tolerance))
   {
-    throw Error(
-      "The points cannot be triangulated on the given lattice: its steps are too unequal, "
-      "or it has more than " +
-      std::to_string(NodeBox::MaximumSide) + " rows or columns.");
+    throw GivenLatticeTooLarge();
   }
   try
   {
@@ -199,8 +196,7 @@ Triangulation TriangulateOnGivenLattice(const PointView& points, const DelaunayO
   }
   catch (const NotOnLattice&)
   {
-    throw Error("The points cannot be triangulated on the given lattice: two that are not equal "
-                "share a node, or a triangle would be flat. Is it the lattice of these points?");
+    throw GivenLatticeUnfit();
   }
 }
 
