@@ -17,6 +17,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -151,7 +152,10 @@ bool NearParts::AreSamePlaces() const
       double p[3], q[3];
       this->Given[part]->GetPoint(i, p);
       this->Whole->GetPoint(this->Common->Place(part, i), q);
-      if (!std::equal(p, p + 3, q))
+      const auto isSame = [](double a, double b) {
+        return a == b || (std::isnan(a) && std::isnan(b)); // of an unused point
+      };
+      if (!std::equal(p, p + 3, q, isSame))
       {
         return false;
       }

@@ -77,6 +77,10 @@ bool TrimOfPart::Sweep(
   if (swept)
   {
     this->Swept = std::move(*swept);
+    for (const Index t : this->Swept.Near)
+    {
+      this->Swept.IsOutward[t] = IsNear;
+    }
   }
   return swept.has_value();
 }
@@ -128,10 +132,6 @@ vtkSmartPointer<vtkPolyData> TrimOfPart::NearPart()
 void TrimOfPart::Take(TrimmedPart&& back, const Progress& progress)
 {
   this->Back = std::move(back);
-  for (const Index t : this->Swept.Near)
-  {
-    this->Swept.IsOutward[t] = IsNear;
-  }
   this->FindOwn(progress);
 }
 
@@ -159,7 +159,7 @@ vtkIdType TrimOfPart::CountOfOthers() const
   return static_cast<vtkIdType>(this->Points.OfOthers.size());
 }
 
-/** Finds which of the new points this part has, though not in its near part, and adds the others. */
+/** Finds which of the new points this part has, if not in its near part, and adds the others. */
 void TrimOfPart::FindOwn(const Progress& progress)
 {
   const std::size_t count = this->Back.IsInserted.size();
@@ -249,7 +249,7 @@ void TrimOfPart::Write(bool areInserted, bool areMarked, int threads, const Prog
 {
   this->Points.AreMarked = areMarked;
   this->Points.Type = areInserted ? VTK_DOUBLE : this->Input->GetPoints()->GetDataType();
-  PassPointsOfRank(this->Input, this->Points, Part(progress, 0.0, 0.2), kept);
+  PassTrimmedPoints(this->Input, this->Points, Part(progress, 0.0, 0.2), kept);
   kept->SetVerts(this->Input->GetVerts());
   kept->SetLines(this->Input->GetLines());
   if (outward)

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Trims one part of a mesh along a given boundary, whose near triangles are trimmed with those of all
- * parts: on ranks (DistributedTrim.h), and piece by piece (TrimmedPieces.h). Private to the module.
+ * Trims one part of a mesh along a given boundary, whose near triangles are trimmed with those of
+ * all parts: on ranks (DistributedTrim.h), and piece by piece (TrimmedPieces.h). Private to the
+ * module.
  */
 #ifndef TrimOfPart_h
 #define TrimOfPart_h
@@ -48,7 +49,7 @@ public:
 
   /** Takes what has become of the near triangles. */
   void Take(TrimmedPart&& back, const Progress& progress);
-  vtkIdType CountOfSide(int side) const; ///< triangles: 0 kept, 1 outward
+  vtkIdType CountOfSide(int side) const; ///< triangles: 0 kept, 1 outward; before, without the near
   vtkIdType CountOfInserted() const;     ///< points, also those that another part owns
   vtkIdType CountOfOwnInserted() const;
   vtkIdType CountOfOthers() const; ///< points that another part owns
@@ -73,7 +74,7 @@ private:
   std::vector<Index> Sent; // points of the near part
   TrimmedPart Back;
   std::vector<Index> Places; // of the new points, among those of the output
-  PointsOfRank Points;
+  TrimmedPoints Points;
 };
 
 } // namespace elevation

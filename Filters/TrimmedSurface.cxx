@@ -5,6 +5,7 @@
 #include "CommonPoints.h"
 #include "KernelCall.h"
 #include "MeshConversion.h"
+#include "vtkTrimOutwardTriangles.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -22,6 +23,16 @@
 
 namespace elevation
 {
+
+TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter)
+{
+  TrimOptions options;
+  options.Test = static_cast<OutwardTest>(filter->GetOutwardTest());
+  options.RecoverBoundary = filter->GetRecoverBoundary();
+  options.GapTolerance = filter->GetGapTolerance();
+  options.NumberOfThreads = filter->GetNumberOfThreads();
+  return options;
+}
 
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress)
 {
@@ -87,7 +98,7 @@ void PassPoints(
 namespace
 {
 /** An array followed by the values of added points. */
-vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const PointsOfRank& points)
+vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const TrimmedPoints& points)
 {
   const vtkIdType own = array->GetNumberOfTuples();
   const vtkIdType added = static_cast<vtkIdType>(points.Added.size());
@@ -105,7 +116,7 @@ vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const Points
 }
 
 /** The flags of ghosts of the input, and of the points that another rank owns. */
-vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const PointsOfRank& points)
+vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const TrimmedPoints& points)
 {
   const vtkIdType own = input->GetNumberOfPoints();
   auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
@@ -124,8 +135,8 @@ vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const PointsOf
 }
 } // namespace
 
-void PassPointsOfRank(
-  vtkPolyData* input, const PointsOfRank& points, const Progress& progress, vtkPolyData* output)
+void PassTrimmedPoints(
+  vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output)
 {
   vtkPoints* const given = input->GetPoints();
   const vtkIdType added = static_cast<vtkIdType>(points.Added.size());

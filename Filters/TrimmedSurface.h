@@ -17,9 +17,13 @@
 #include <vector>
 
 class vtkPolyData;
+class vtkTrimOutwardTriangles;
 
 namespace elevation
 {
+
+/** The kernel's options for the properties of the filter. */
+TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter);
 
 /** The boundary's lines, and the points that they use. @throws Error naming the cell */
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress);
@@ -28,18 +32,18 @@ BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress);
 void PassPoints(
   vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output);
 
-/** What a rank has of the points of outputs 0 and 1: all of its input, then others. */
-struct PointsOfRank
+/** What a part has of the points of outputs 0 and 1: all of its input, then others. */
+struct TrimmedPoints
 {
   vtkSmartPointer<vtkPolyData> New; ///< with the arrays of the input
   std::vector<vtkIdType> Added;     ///< the new points that it gets
-  std::vector<Index> OfOthers;      ///< of the output: points that another rank owns
-  bool AreMarked = false;           ///< points on any rank: all have the flags of ghosts then
-  int Type = 0;                     ///< VTK_FLOAT or VTK_DOUBLE, the same on all ranks with points
+  std::vector<Index> OfOthers;      ///< of the output: points that another part owns
+  bool AreMarked = false;           ///< points of any part: all have the flags of ghosts then
+  int Type = 0;                     ///< VTK_FLOAT or VTK_DOUBLE, the same for all parts with points
 };
 
-void PassPointsOfRank(
-  vtkPolyData* input, const PointsOfRank& points, const Progress& progress, vtkPolyData* output);
+void PassTrimmedPoints(
+  vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output);
 
 /**
  * The cell data of the input's first cells, and of the triangles of one side.

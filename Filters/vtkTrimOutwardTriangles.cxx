@@ -123,11 +123,7 @@ int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
   call.Maxima = { &this->EffectiveGapTolerance };
-  elevation::TrimOptions options;
-  options.Test = static_cast<elevation::OutwardTest>(this->OutwardTest);
-  options.RecoverBoundary = this->RecoverBoundary;
-  options.GapTolerance = this->GapTolerance;
-  options.NumberOfThreads = this->NumberOfThreads;
+  elevation::TrimOptions options = elevation::OptionsOf(this);
   // Added last, as an abort or an error leaves no counts.
   const auto addCounts = [this](const elevation::TrimCounts& counts) {
     this->EffectiveGapTolerance = std::max(this->EffectiveGapTolerance, counts.GapTolerance);

@@ -14,7 +14,16 @@ from xml.sax.saxutils import quoteattr
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import Cloud, corner_flags, make_points, set_crs, slices
+from . import reading
+from .clouds import (
+    Cloud,
+    check_system,
+    corner_flags,
+    crs_of,
+    make_points,
+    set_crs,
+    slices,
+)
 from .messages import FileError, Messages
 from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
@@ -25,7 +34,7 @@ from .reconstruction import STEPS
 from .report import MOST_LISTED, REASONS
 from .results import Failure, write_report
 from .supervisor import note_partial_file
-from .vtkElevationSurface import vtkTriangulatePieces
+from .vtkElevationSurface import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
 
 AT_ONCE = 1_000_000  # points given to the filter at a time
@@ -63,8 +72,10 @@ def check_given(options, error):
         if getattr(options, other) not in (None, False):
             other = "--" + other.replace("_", "-")
             error(f"{other} needs the whole surface in memory; it cannot be used with {name}")
-    if options.trim or options.fill:
-        error(f"{name} triangulates, but cannot trim or fill yet: add --no-trim --no-fill")
+    if options.fill:
+        error(f"{name} cannot fill holes yet: add --no-fill")
+    if options.trim and not options.boundary:
+        error(f"{name} can only trim along a boundary that is given: add --boundary or --no-trim")
     options.no_picture = True
 
 
@@ -98,8 +109,34 @@ def temporary_folder(output):
         shutil.rmtree(folder, ignore_errors=True)
 
 
+class Points:
+    """A set of numbers of points, with a bit for each that there is."""
+
+    def __init__(self, count):
+        self.count = count
+        self.bits = numpy.zeros((count + 7) // 8, dtype="u1")
+
+    def add(self, ids):
+        """Adds those numbers that there are; others are of inserted points."""
+        ids = numpy.unique(ids[ids < self.count])
+        if len(ids):
+            byte, bit = ids >> 3, numpy.left_shift(1, ids & 7).astype("u1")
+            first = numpy.flatnonzero(numpy.diff(byte, prepend=-1))
+            self.bits[byte[first]] |= numpy.bitwise_or.reduceat(bit, first)
+
+    def others(self, most):
+        """(how many are not in it, the first of these)"""
+        count, listed = 0, [numpy.empty(0, "i8")]
+        for part in slices(len(self.bits)):
+            there = numpy.unpackbits(self.bits[part], bitorder="little")
+            there = there[: self.count - 8 * part.start]
+            listed.append(8 * part.start + numpy.flatnonzero(there == 0)[: max(0, most - count)])
+            count += len(there) - numpy.count_nonzero(there)
+        return int(count), numpy.concatenate(listed)
+
+
 class Pieces:
-    """A run in pieces: reads, triangulates and writes. Call it to get the report.
+    """A run in pieces: reads, triangulates, trims and writes. Call it to get the report.
 
     run  the Run of the command line, with its options, results, progress and times
     """
@@ -107,16 +144,17 @@ class Pieces:
     def __init__(self, run):
         self.run, self.options = run, run.options
         self.cloud = Cloud(None)
-        self.source = vtkTriangulatePieces()
+        self.source = vtkReconstructPieces()
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
-        self.lattice = None
+        self.lattice = self.told_of = None
 
     def __call__(self):
         options, source, run = self.options, self.source, self.run
-        for name, value in options.given.items():
-            if PROPERTIES[name].step in ("delaunay", ""):
-                getattr(source.GetDelaunay(), PROPERTIES[name].setter)(value)
+        for step, algorithm in (("delaunay", source.GetDelaunay()), ("trim", source.GetTrim())):
+            for name, value in options.given.items():
+                if PROPERTIES[name].step in (step, ""):
+                    getattr(algorithm, PROPERTIES[name].setter)(value)
         source.AddObserver(
             "ProgressEvent",
             lambda caller, _: run.progress(STEPS["delaunay"], caller.GetProgress()),
@@ -141,7 +179,9 @@ class Pieces:
         """Raises what the filter has told as error, or with --strict as warning."""
         told = self.messages.errors + (self.messages.warnings if self.options.strict else [])
         if told:
-            raise Failure(f"{self.options.file}: {STEPS['delaunay']}: {told[0]}")
+            is_of_boundary = self.options.boundary and re.search("(?i)boundary", told[0])
+            file = self.options.boundary if is_of_boundary else self.options.file
+            raise Failure(f"{file}: {STEPS['trim' if is_of_boundary else 'delaunay']}: {told[0]}")
 
     def read(self):
         """Gives all points to the filter, slice by slice."""
@@ -151,6 +191,13 @@ class Pieces:
                 self.source.AddPoints(make_points(points[part], copy=False))
                 self.check()
         self.run.set_crs(self.cloud)
+        path = self.options.boundary
+        if path:
+            boundary = reading.read_boundary(path)
+            self.cloud.notes += check_system(
+                path, crs_of(boundary), self.options.files[0], self.cloud.crs
+            )
+            self.source.GetTrim().SetBoundaryData(boundary)
 
     def update(self, piece, count):
         """The output for a piece. The first one takes the time of the triangulation."""
@@ -163,6 +210,7 @@ class Pieces:
     def write(self, folder, count):
         """Writes all pieces with points. Returns their names beside the output."""
         names, final = [], folder_of(self.options.output)
+        self.told_of = Points(self.source.GetNumberOfPoints())
         for piece in range(count):
             data = self.update(piece, count)
             if data.GetNumberOfPoints():
@@ -183,13 +231,16 @@ class Pieces:
         """Takes from a piece what the report tells."""
         points, ids = data.GetPoints(), vtk_to_numpy(data.GetPointData().GetGlobalIds())
         corners = vtk_to_numpy(data.GetPolys().GetConnectivityArray())
-        used = vtk_to_numpy(points.GetData())[corner_flags(corners, len(ids))]
+        flags = corner_flags(corners, len(ids))
+        used = vtk_to_numpy(points.GetData())[flags]
+        self.told_of.add(ids[flags])
         self.low = numpy.minimum(self.low, used.min(axis=0, initial=numpy.inf))
         self.high = numpy.maximum(self.high, used.max(axis=0, initial=-numpy.inf))
         fields = data.GetFieldData()
         self.lattice = lattice_of(None, data)
         gone = ids[vtk_to_numpy(fields.GetArray("UnusedPointIds"))]
         reasons = vtk_to_numpy(fields.GetArray("UnusedPointReasons"))
+        self.told_of.add(gone)
         for number, known in self.unused.items():
             all_known = numpy.concatenate((known, gone[reasons == number]))
             self.unused[number] = numpy.sort(all_known)[:MOST_LISTED]
@@ -197,14 +248,15 @@ class Pieces:
     def report(self, pieces):
         """As that of a surface in memory, without what needs all of it at once."""
         source, options = self.source, self.options
-        counts = (source.GetNumberOfDuplicatePoints(), source.GetNumberOfNonFinitePoints())
+        counts = {1: source.GetNumberOfDuplicatePoints(), 2: source.GetNumberOfNonFinitePoints()}
+        counts[4], self.unused[4] = self.told_of.others(MOST_LISTED)
         listed = [
             {"point": point, "reason": REASONS[number]}
             for number, points in self.unused.items()
             for point in points.tolist()
         ]
         limits = zip("xyz", self.low.tolist(), self.high.tolist())
-        return {
+        report = {
             "file": options.file,
             **self.run.about(),
             "notes": self.cloud.notes + self.messages.warnings,
@@ -212,8 +264,8 @@ class Pieces:
             "bounds": {axis: pair for axis, *pair in limits},
             "crs": self.cloud.crs,
             "points": source.GetNumberOfPoints(),
-            "points_unused": sum(counts),
-            "unused_reasons": {REASONS[i + 1]: n for i, n in enumerate(counts) if n},
+            "points_unused": sum(counts.values()),
+            "unused_reasons": {REASONS[number]: n for number, n in counts.items() if n},
             "unused": sorted(listed, key=lambda one: one["point"]),
             "unused_listed": len(listed),
             "lattice": self.lattice,
@@ -223,6 +275,16 @@ class Pieces:
             "times": self.run.times,
             "written": [path for path in (options.output, options.report) if path],
         }
+        if options.trim:
+            report["trim"] = {
+                "outward_triangles": source.GetNumberOfOutwardTriangles(),
+                "recovered_edges": source.GetNumberOfRecoveredEdges(),
+                "inserted_points": source.GetNumberOfInsertedPoints(),
+                "boundary": options.boundary,
+                "boundary_rings": source.GetNumberOfBoundaryRings(),
+            }
+            report["triangles"]["trimmed"] = source.GetNumberOfTrimmedTriangles()
+        return report
 
 
 def write_vtpd(names, path):

@@ -10,13 +10,20 @@ import signal
 import struct
 import subprocess
 import sys
+import tempfile
 import unittest
 from unittest import mock
 
 import numpy
 from in_folder import InFolder, Program
-from vtkelevationsurface import pieces, reading, vtkGridDelaunay2D, vtkTriangulatePieces
-from vtkelevationsurface.clouds import Cloud, add_array, make_points
+from vtkelevationsurface import (
+    pieces,
+    reading,
+    vtkGridDelaunay2D,
+    vtkReconstructPieces,
+    vtkTrimOutwardTriangles,
+)
+from vtkelevationsurface.clouds import Cloud, add_array, make_lines, make_points
 from vtkelevationsurface.messages import FileError, Messages
 from vtkelevationsurface.reading import text
 from vtkelevationsurface.reading.slicing import read_slices
@@ -77,13 +84,12 @@ def clouds():
     return found
 
 
-class InPieces(InFolder):
-    """The filter by itself."""
+class WithFilter(InFolder):
+    """What tests of the filter share."""
 
     def source(self, points, at_once=900, **properties):
-        folder = self.path("files")
-        os.makedirs(folder, exist_ok=True)
-        source = vtkTriangulatePieces()
+        folder = tempfile.mkdtemp(dir=self.folder)
+        source = vtkReconstructPieces()
         source.SetFolder(folder)
         for name, value in properties.items():
             getattr(source.GetDelaunay(), "Set" + name)(value)
@@ -105,6 +111,10 @@ class InPieces(InFolder):
         with Messages(source, source.GetExecutive()) as messages:
             work()
         return messages.errors
+
+
+class InPieces(WithFilter):
+    """The filter by itself."""
 
     def assert_as_one(self, points, count, **properties):
         one = vtkGridDelaunay2D()
@@ -221,9 +231,9 @@ class InPieces(InFolder):
     def test_reset_removes_the_files_and_begins_again(self):
         source = self.source(clouds()["random"])
         self.parts(source, 3)
-        self.assertNotEqual(os.listdir(self.path("files")), [])
+        self.assertNotEqual(os.listdir(source.GetFolder()), [])
         source.Reset()
-        self.assertEqual(os.listdir(self.path("files")), [])
+        self.assertEqual(os.listdir(source.GetFolder()), [])
         self.assertEqual(source.GetNumberOfPoints(), 0)
         few = clouds()["few"]
         self.assertTrue(source.AddPoints(make_points(few)))
@@ -243,7 +253,7 @@ class InPieces(InFolder):
             (self.folder, ids, "global ids"),
         )
         for folder, data, words in cases:
-            source = vtkTriangulatePieces()
+            source = vtkReconstructPieces()
             source.SetFolder(folder or "")
             errors = self.errors_of(source, lambda: source.AddPoints(data))
             self.assertEqual(len(errors), 1)
@@ -265,6 +275,96 @@ class InPieces(InFolder):
             source.UpdatePiece(0, 3, 0)
         self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
         self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+
+
+def star(centre, radius, points=240):
+    """A closed ring with waves, as (n, 3) array."""
+    turn = numpy.linspace(0.0, 2 * numpy.pi, points + 1)
+    reach = radius * (1.0 + 0.2 * numpy.sin(7 * turn))
+    ring = numpy.column_stack((reach * numpy.cos(turn), reach * numpy.sin(turn), 0 * turn))
+    ring[-1] = ring[0]
+    return ring + (*centre, 0.0)
+
+
+def by_places(data):
+    """The triangles of a mesh by the places of their corners, in one order."""
+    corners = vtk_to_numpy(data.GetPoints().GetData())[triangles_of(data)]
+    first = numpy.lexsort((corners[:, :, 1], corners[:, :, 0]), axis=1)[:, 0]
+    turned = [corners[numpy.arange(len(corners)), (first + i) % 3] for i in range(3)]
+    turned = numpy.column_stack(turned)
+    return turned[numpy.lexsort(turned.T[::-1])]
+
+
+class Trimmed(WithFilter):
+    """Pieces that are trimmed along a boundary."""
+
+    def rings(self, points):
+        """A coast and a lake that cross the cells of pieces."""
+        points = points[numpy.isfinite(points).all(axis=1)]
+        middle, extent = points.mean(axis=0), numpy.ptp(points[:, :2], axis=0).min()
+        coast = star(middle[:2], 0.38 * extent)
+        return [coast, star(middle[:2] + 0.06 * extent, 0.08 * extent, 40)]
+
+    def assert_trimmed_as_one(self, points, rings, count, **properties):
+        whole, one = vtkGridDelaunay2D(), vtkTrimOutwardTriangles()
+        whole.SetInputData(make_points(points))
+        one.SetInputConnection(whole.GetOutputPort())
+        one.SetBoundaryData(make_lines(rings))
+        source = self.source(points)
+        source.GetTrim().SetBoundaryData(make_lines(rings))
+        for name, value in properties.items():
+            getattr(one, "Set" + name)(value)
+            getattr(source.GetTrim(), "Set" + name)(value)
+        one.Update()
+        parts = self.parts(source, count)
+        found = numpy.concatenate([by_places(part) for part in parts])
+        found = found[numpy.lexsort(found.T[::-1])]
+        numpy.testing.assert_array_equal(found, by_places(one.GetOutput()))
+        for name in ("OutwardTriangles", "RecoveredEdges", "InsertedPoints"):
+            counts = [getattr(f, "GetNumberOf" + name)() for f in (source, one)]
+            self.assertEqual(*counts)
+        self.assertEqual(source.GetNumberOfBoundaryRings(), one.GetOutput(2).GetNumberOfLines())
+        self.assertEqual(source.GetNumberOfTrimmedTriangles(), len(found))
+        return source, parts
+
+    def test_the_triangles_are_those_of_one_surface_that_is_trimmed(self):
+        for name in ("random", "lattice", "tracks"):
+            points = clouds()[name]
+            for count in (1, 2, 7, 16):
+                with self.subTest(cloud=name, pieces=count):
+                    source, _ = self.assert_trimmed_as_one(points, self.rings(points), count)
+                    self.assertGreater(source.GetNumberOfInsertedPoints(), 0)
+
+    def test_inserted_points_have_ids_and_one_owner(self):
+        points = clouds()["random"]
+        source, parts = self.assert_trimmed_as_one(points, self.rings(points), 6)
+        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
+        inserted = source.GetNumberOfInsertedPoints()
+        numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(len(points) + inserted))
+        places = {}
+        for part in parts:
+            here = vtk_to_numpy(part.GetPoints().GetData())
+            for number, place in zip(ids_of(part).tolist(), here.tolist()):
+                if number >= len(points):
+                    self.assertEqual(places.setdefault(number, place), place)
+
+    def test_what_a_boundary_cannot_do_is_one_error(self):
+        points = clouds()["random"]
+        rings = self.rings(points)
+        for ring, values, words in (
+            (rings[0][:-7], {}, "closed"),
+            (rings[0] + (1e6, 0.0, 0.0), {}, "encloses no triangle"),
+            (rings[0], {"OutwardTest": 1}, "InwardNormal is for a surface in memory"),
+            (rings[0], {"RecoverBoundary": False}, "RecoverBoundary"),
+        ):
+            source = self.source(points)
+            source.GetTrim().SetBoundaryData(make_lines([ring]))
+            for name, value in values.items():
+                getattr(source.GetTrim(), "Set" + name)(value)
+            errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
+            self.assertEqual(len(errors), 1)
+            self.assertIn(words, errors[0])
+            self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
 
 
 class Slices(InFolder):
@@ -376,6 +476,27 @@ class Command(Program):
                         "bounds", "crs", "lattice_mode", "points_unused"):
                 self.assertEqual(report[key], whole[key], key)
 
+    def test_the_report_of_trimmed_pieces_is_that_of_one_run(self):
+        name = self.npy("a.npy", clouds()["random"])
+        ring = star((400500.0, 400500.0), 380.0)
+        self.file("coast.txt", "".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()))
+        options = ("--boundary", "coast.txt", "--no-fill", "--report", "--no-picture")
+        self.assertEqual(self.call(name, *options).returncode, 0)
+        whole = self.json("a_surface.json")
+        done = self.call(name, "--pieces", "4", *options)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        report = self.json("a_surface.json")
+        for key in ("points", "unused_reasons", "unused", "points_unused", "triangles", "trim",
+                    "bounds"):
+            self.assertEqual(report[key], whole[key], key)
+        self.assertGreater(report["unused_reasons"]["outside the boundary"], 100)
+        self.file("open.txt", "1 1\n2 2\n3 1\n4 4\n")
+        done = self.call(name, "--pieces", "4", "--boundary", "open.txt", "--no-fill")
+        self.assertIn("open.txt: the boundary from line 1 to line 4 is not closed", done.stderr)
+        self.file("far.txt", "1 1\n2 2\n3 1\n1 1\n")
+        done = self.call(name, "--pieces", "4", "--boundary", "far.txt", "--no-fill")
+        self.assertIn("far.txt: trimming: The boundary", done.stderr)
+
     def test_several_files_are_one_cloud(self):
         points = clouds()["random"]
         names = [self.npy("a.npy", points[:1000]), self.npy("b.npy", points[1000:])]
@@ -404,7 +525,8 @@ class Command(Program):
         self.file("b.stl", "solid a\n facet normal 0 0 1\n")
         self.file("taken", "a file")
         for options, words in (
-            (("--pieces", "2"), "add --no-trim --no-fill"),
+            (("--pieces", "2", "--no-trim"), "cannot fill holes yet: add --no-fill"),
+            (("--pieces", "2", "--no-fill"), "add --boundary or --no-trim"),
             (("--pieces", "0"), "--pieces takes a whole number from 1, not '0'"),
             (("--pieces", "2", "--memory", "2G", *TRIANGULATION_ONLY), "leave one out"),
             (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),

@@ -231,8 +231,7 @@ public:
 
   /**
    * @return whether all triangles are counter-clockwise, with corners that exist and are finite,
-   *         all elevations are finite, also of unused points, and edges could be matched. If not,
-   *         no other result is valid.
+   *         also in their elevations, and edges could be matched. If not, no other result is valid.
    * @throws Aborted, std::bad_alloc
    */
   bool Run(const Visitor& visitor, const Progress& progress)
@@ -339,7 +338,7 @@ private:
   static constexpr Index FewestInRange = 1 << 12; ///< triangles
   static constexpr Index AtOnce = 1 << 14;        ///< triangles
 
-  /** Initialises the vertices. @return whether all elevations are finite */
+  /** Initialises the vertices. @return whether all elevations of corners are finite */
   bool Read(const Progress& progress)
   {
     std::atomic<bool> areFinite{ true };
@@ -361,7 +360,30 @@ private:
         });
     };
     this->List.Points.Double ? read(this->List.Points.Double) : read(this->List.Points.Float);
-    return areFinite;
+    return areFinite || this->HasFiniteCorners(progress);
+  }
+
+  /** Where the elevations of some points are not finite: whether corners exist, and theirs are. */
+  bool HasFiniteCorners(const Progress& progress) const
+  {
+    for (Index begin = 0; begin < this->List.Count;)
+    {
+      Report(progress, 1.0);
+      const Index end = begin + std::min(AtOnce, this->List.Count - begin);
+      if (!this->Exist(3 * static_cast<std::size_t>(begin), 3 * static_cast<std::size_t>(end)))
+      {
+        return false;
+      }
+      const auto isFinite = [this](Index corner) {
+        return std::isfinite(this->List.Points.Elevation(corner));
+      };
+      if (!std::all_of(this->List.CornersOf(begin), this->List.CornersOf(end), isFinite))
+      {
+        return false;
+      }
+      begin = end;
+    }
+    return true;
   }
 
   /** Calls goOn(range) until all ranges are done. @return whether all calls returned true */

@@ -6,7 +6,7 @@
 
 #include <vtkFillElevationHoles.h>
 #include <vtkGridDelaunay2D.h>
-#include <vtkTriangulatePieces.h>
+#include <vtkReconstructPieces.h>
 #include <vtkTrimOutwardTriangles.h>
 
 #include <vtkNew.h>
@@ -42,7 +42,7 @@ int main()
   fill->SetInputConnection(trim->GetOutputPort());
   fill->Update();
 
-  vtkNew<vtkTriangulatePieces> pieces;
+  vtkNew<vtkReconstructPieces> pieces;
   const bool hasPoints = pieces->GetNumberOfPoints() > 0;
   const vtkIdType holes = fill->GetNumberOfFilledHoles();
   const vtkIdType triangles = fill->GetOutput()->GetNumberOfPolys();

@@ -6,7 +6,7 @@
 #include <vtkFillElevationHoles.h>
 #include <vtkGridDelaunay2D.h>
 #include <vtkNew.h>
-#include <vtkTriangulatePieces.h>
+#include <vtkReconstructPieces.h>
 #include <vtkTrimOutwardTriangles.h>
 
 #include <iostream>
@@ -14,7 +14,7 @@
 int main()
 {
   vtkNew<vtkGridDelaunay2D> delaunay;
-  vtkNew<vtkTriangulatePieces> pieces;
+  vtkNew<vtkReconstructPieces> pieces;
   vtkNew<vtkTrimOutwardTriangles> trim;
   vtkNew<vtkFillElevationHoles> fill;
   std::cout << delaunay->GetClassName() << ' ' << trim->GetClassName() << ' '

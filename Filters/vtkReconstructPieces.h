@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @class   vtkTriangulatePieces
- * @brief   exact Delaunay triangulation of more points than memory holds, piece by piece
+ * @class   vtkReconstructPieces
+ * @brief   the surface of more points than memory holds, piece by piece
  *
  * A source that is given points by AddPoints(), part by part, and whose output is the piece of the
  * surface that is asked for, as by UpdatePiece(piece, numberOfPieces, 0) or by a writer of pieces.
@@ -18,7 +18,9 @@
  * piece.
  *
  * All properties of the triangulation are those of GetDelaunay(), except MaximumEdgeLength, Lattice
- * and constraints, which are for points in memory: the first two are errors.
+ * and constraints, which are for points in memory: the first two are errors. Where GetTrim() has a
+ * boundary, all pieces are trimmed along it, as that filter would trim the whole surface; points
+ * that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
  *
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
  * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
@@ -31,12 +33,13 @@
  *
  * @sa vtkGridDelaunay2D
  */
-#ifndef vtkTriangulatePieces_h
-#define vtkTriangulatePieces_h
+#ifndef vtkReconstructPieces_h
+#define vtkReconstructPieces_h
 
 #include "vtkElevationSurfaceModule.h" // For export macro
 #include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
+#include "vtkSmartPointer.h"
 
 #include <functional>
 #include <memory>
@@ -45,15 +48,18 @@
 namespace elevation
 {
 class CellByCell;
+class TrimmedPieces;
+using Progress = std::function<bool(double)>;
 }
 class vtkGridDelaunay2D;
 class vtkPointSet;
+class vtkTrimOutwardTriangles;
 
-class VTKELEVATIONSURFACE_EXPORT vtkTriangulatePieces : public vtkPolyDataAlgorithm
+class VTKELEVATIONSURFACE_EXPORT vtkReconstructPieces : public vtkPolyDataAlgorithm
 {
 public:
-  static vtkTriangulatePieces* New();
-  vtkTypeMacro(vtkTriangulatePieces, vtkPolyDataAlgorithm);
+  static vtkReconstructPieces* New();
+  vtkTypeMacro(vtkReconstructPieces, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -65,8 +71,14 @@ public:
   virtual std::string GetFolder() { return this->Folder; }
   ///@}
 
-  /** The filter whose properties tell how to triangulate. Its input is not used. */
+  ///@{
+  /**
+   * The filters whose properties tell how to triangulate and trim, and the boundary. Their input 0 is
+   * not used.
+   */
   vtkGridDelaunay2D* GetDelaunay();
+  vtkTrimOutwardTriangles* GetTrim();
+  ///@}
 
   /**
    * Adds points, with their point arrays; all parts need the same arrays, without global ids.
@@ -86,22 +98,35 @@ public:
   bool GetLatticeFound();
   ///@}
 
+  ///@{
+  /** As those of vtkTrimOutwardTriangles, of all pieces; 0 without a boundary. */
+  vtkIdType GetNumberOfTrimmedTriangles(); ///< what is left
+  vtkIdType GetNumberOfOutwardTriangles();
+  vtkIdType GetNumberOfRecoveredEdges();
+  vtkIdType GetNumberOfInsertedPoints();
+  vtkIdType GetNumberOfBoundaryRings();
+  ///@}
+
 protected:
-  vtkTriangulatePieces();
-  ~vtkTriangulatePieces() override;
+  vtkReconstructPieces();
+  ~vtkReconstructPieces() override;
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
 
 private:
-  vtkTriangulatePieces(const vtkTriangulatePieces&) = delete;
-  void operator=(const vtkTriangulatePieces&) = delete;
+  vtkReconstructPieces(const vtkReconstructPieces&) = delete;
+  void operator=(const vtkReconstructPieces&) = delete;
   bool Try(const std::function<void()>& work);
+  void WorkOnAll(int count, const elevation::Progress& progress);
+  vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
 
   std::string Folder;
   vtkNew<vtkGridDelaunay2D> Delaunay;
+  vtkNew<vtkTrimOutwardTriangles> Trim;
   std::unique_ptr<elevation::CellByCell> Work;
+  std::unique_ptr<elevation::TrimmedPieces> Trimmed;
   bool HasFailed = false;
 };
 
