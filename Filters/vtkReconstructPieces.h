@@ -17,10 +17,12 @@
  * if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
  * piece.
  *
- * All properties of the triangulation are those of GetDelaunay(), except MaximumEdgeLength, Lattice
- * and constraints, which are for points in memory: the first two are errors. Where GetTrim() has a
- * boundary, all pieces are trimmed along it, as that filter would trim the whole surface; points
- * that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
+ * All properties of the triangulation are those of GetDelaunay(), except MaximumEdgeLength,
+ * Lattice and constraints, which are for points in memory: the first two are errors. Where
+ * GetTrim() has a boundary, all pieces are trimmed along it, as that filter would trim the whole
+ * surface; points that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
+ * Where four points on a circle are among those inserted, either diagonal may be taken, as it is
+ * by that filter for triangles in another order.
  *
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
  * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
@@ -50,7 +52,7 @@ namespace elevation
 class CellByCell;
 class TrimmedPieces;
 using Progress = std::function<bool(double)>;
-}
+} // namespace elevation
 class vtkGridDelaunay2D;
 class vtkPointSet;
 class vtkTrimOutwardTriangles;
@@ -73,8 +75,8 @@ public:
 
   ///@{
   /**
-   * The filters whose properties tell how to triangulate and trim, and the boundary. Their input 0 is
-   * not used.
+   * The filters whose properties tell how to triangulate and trim, and the boundary. Their input 0
+   * is not used.
    */
   vtkGridDelaunay2D* GetDelaunay();
   vtkTrimOutwardTriangles* GetTrim();
