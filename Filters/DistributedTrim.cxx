@@ -4,6 +4,7 @@
 
 #include "MeshConversion.h"
 #include "NearParts.h"
+#include "PackedData.h"
 #include "PointRows.h"
 #include "TrimOfPart.h"
 

@@ -4,12 +4,11 @@
 
 #include "Joining.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "PackedData.h"
 #include "TrimmedSurface.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
-#include "vtkCharArray.h"
-#include "vtkCommunicator.h"
 #include "vtkIdList.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -24,31 +23,6 @@
 
 namespace elevation
 {
-
-Bytes PackData(vtkPolyData* data)
-{
-  vtkNew<vtkCharArray> buffer;
-  if (!vtkCommunicator::MarshalDataObject(data, buffer))
-  {
-    throw Error("A part of the mesh cannot be sent to another rank (process).");
-  }
-  Bytes bytes;
-  AppendTo(bytes, buffer->GetPointer(0), static_cast<std::size_t>(buffer->GetNumberOfValues()));
-  return bytes;
-}
-
-vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size)
-{
-  vtkNew<vtkCharArray> buffer;
-  buffer->SetArray(
-    const_cast<char*>(from), static_cast<vtkIdType>(size), 1); // it stays the caller's
-  auto data = vtkSmartPointer<vtkPolyData>::New();
-  if (!vtkCommunicator::UnMarshalDataObject(buffer, data))
-  {
-    throw Error("A part of the mesh has not come from another rank (process).");
-  }
-  return data;
-}
 
 namespace
 {

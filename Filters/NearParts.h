@@ -28,10 +28,6 @@ namespace elevation
 /** Some points with their data. */
 vtkSmartPointer<vtkPolyData> ChosenPoints(vtkPolyData* source, const std::vector<Index>& chosen);
 
-/** A data set as bytes, and back. @throws Error */
-Bytes PackData(vtkPolyData* data);
-vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size);
-
 /** What of the near triangles goes back to the rank that had them. */
 struct TrimmedPart
 {

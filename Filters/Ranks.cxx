@@ -3,6 +3,7 @@
 #include "Ranks.h"
 
 #include "MeshConversion.h"
+#include "PackedData.h"
 
 #include "vtkCellArray.h"
 #include "vtkCommunicator.h"
@@ -295,27 +296,38 @@ void Ranks::Receive(void* bytes, std::size_t size, int rank) const
 
 vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
 {
-  const vtkIdType count = local ? local->GetNumberOfPoints() : 0;
-  const std::vector<vtkIdType> counts = this->Collect(std::vector<vtkIdType>{ count });
-  std::vector<vtkSmartPointer<vtkPolyData>> parts;
-  for (int rank = 0; rank < static_cast<int>(counts.size()); ++rank)
-  {
-    const bool isOwn = rank == this->Own();
-    if (counts[rank] > 0)
+  const bool hasPoints = local && local->GetNumberOfPoints() > 0;
+  std::vector<Bytes> packed(this->Count());
+  this->Agree([&]() {
+    if (hasPoints && this->Controller)
     {
-      parts.push_back(
-        isOwn ? vtkSmartPointer<vtkPolyData>(local) : vtkSmartPointer<vtkPolyData>::New());
-      if (this->Controller)
+      const Bytes bytes = PackData(local);
+      for (Bytes& copy : packed)
       {
-        this->Controller->Broadcast(parts.back(), rank);
-      }
-      const auto isAsLast = [&](vtkPolyData* part) { return AreEqual(part, parts.back()); };
-      if (std::any_of(parts.begin(), parts.end() - 1, isAsLast))
-      {
-        parts.pop_back();
+        AppendTo(copy, bytes.data(), bytes.size());
       }
     }
-  }
+  });
+  packed = this->Exchange(std::move(packed));
+  std::vector<vtkSmartPointer<vtkPolyData>> parts;
+  this->Agree([&]() {
+    for (int rank = 0; rank < this->Count(); ++rank)
+    {
+      const Bytes& bytes = packed[rank];
+      const bool isOwn = rank == this->Own();
+      if (isOwn ? !hasPoints : bytes.empty())
+      {
+        continue;
+      }
+      const auto part =
+        isOwn ? vtkSmartPointer<vtkPolyData>(local) : UnpackData(bytes.data(), bytes.size());
+      const auto isPart = [&](vtkPolyData* other) { return AreEqual(part, other); };
+      if (std::none_of(parts.begin(), parts.end(), isPart))
+      {
+        parts.push_back(part);
+      }
+    }
+  });
   return parts.empty() ? vtkSmartPointer<vtkPolyData>(local) : Append(parts);
 }
 

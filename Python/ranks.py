@@ -13,7 +13,7 @@ import time
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkStringArray, vtkTypeInt64Array
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
@@ -29,6 +29,8 @@ MPI_OTHER = (
     "VTK's"
 )
 WORK_IS_DONE = 21  # tag of a message
+ID_ARRAYS = "ArraysOfIds"  # field data of packed()
+IN_FIELD_DATA = 2  # place in fields_of()
 ELSEWHERE = "the message of another rank tells why"
 
 
@@ -206,12 +208,62 @@ def shared(controller, work):
     everywhere, parts = [], []
     for rank, count in enumerate(together(controller, size)):
         if count:
-            everywhere.append(own[0] if rank == controller.GetLocalProcessId() else vtkPolyData())
-            controller.Broadcast(everywhere[-1], rank)
+            is_own = rank == controller.GetLocalProcessId()
+            part = packed(own[0]) if is_own else vtkPolyData()
+            controller.Broadcast(part, rank)
+            everywhere.append(own[0] if is_own else unpacked(part))
     for part in everywhere:
         if not any(are_equal(part, other) for other in parts):
             parts.append(part)
     return parts or own
+
+
+def packed(data):
+    """A copy of a data set for another rank: on the way VTK cuts vtkIdType to 32 bits, and loses all
+    field data where one array is empty."""
+    copy = data.NewInstance()
+    copy.ShallowCopy(data)
+    known = vtkStringArray()
+    known.SetName(ID_ARRAYS)
+    for place, fields in enumerate(fields_of(copy)):
+        for i in reversed(range(fields.GetNumberOfArrays())):
+            array = fields.GetAbstractArray(i)
+            if place == IN_FIELD_DATA and array.GetNumberOfTuples() == 0:
+                fields.RemoveArray(i)
+            elif array.IsA("vtkIdTypeArray") and array.GetName():
+                attribute = -1 if place == IN_FIELD_DATA else fields.IsArrayAnAttribute(i)
+                known.InsertNextValue(f"{place} {attribute} {array.GetName()}")
+                if attribute >= 0:
+                    fields.SetActiveAttribute(-1, attribute)
+                replace(fields, array, vtkTypeInt64Array())
+    if known.GetNumberOfValues():
+        copy.GetFieldData().AddArray(known)
+    return copy
+
+
+def unpacked(data):
+    """The data set itself that packed() had been given on another rank."""
+    known = data.GetFieldData().GetAbstractArray(ID_ARRAYS)
+    if known:
+        data.GetFieldData().RemoveArray(ID_ARRAYS)
+        for i in range(known.GetNumberOfValues()):
+            place, attribute, name = known.GetValue(i).split(" ", 2)
+            fields = fields_of(data)[int(place)]
+            replace(fields, fields.GetArray(name), vtkIdTypeArray())
+            if int(attribute) >= 0:
+                fields.SetActiveAttribute(name, int(attribute))
+    return data
+
+
+def fields_of(data):
+    return data.GetPointData(), data.GetCellData(), data.GetFieldData()
+
+
+def replace(fields, array, other):
+    """Puts an array of another type in the place of one."""
+    other.DeepCopy(array)
+    other.SetName(array.GetName())
+    fields.AddArray(other)
 
 
 def are_equal(one, other):

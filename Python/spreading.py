@@ -17,7 +17,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .clouds import cells_of, corner_flags, some_points
 from .inputs import joined
-from .ranks import collected, shared, together
+from .ranks import collected, packed, shared, together, unpacked
 
 IDS = "PlaceInInput"  # the global ids that points have on the way
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
@@ -51,10 +51,10 @@ def dealt(ranks, points):
     if own:
         mine = vtkPolyData()
         ranks.Receive(mine, 0, TAG)
-        return mine
+        return unpacked(mine)
     ends = points.GetNumberOfPoints() * numpy.arange(count + 1) // count
     for rank in range(1, count):
-        ranks.Send(slice_of(points, ends[rank], ends[rank + 1]), rank, TAG)
+        ranks.Send(packed(slice_of(points, ends[rank], ends[rank + 1])), rank, TAG)
     mine = slice_of(points, 0, ends[1])
     mine.GetFieldData().ShallowCopy(points.GetFieldData())
     return mine
@@ -125,13 +125,14 @@ def whole_surface(ranks, output, reasons, filters):
     having = together(ranks, lambda: [own] if output.GetNumberOfPoints() else [])
     if own:
         if own in having:
-            ranks.Send(without_empty_fields(output), 0, TAG)
+            ranks.Send(packed(output), 0, TAG)
         return vtkPolyData()
     parts = []
     for rank in having:
         parts.append(vtkPolyData())
         if rank:
             ranks.Receive(parts[-1], rank, TAG)
+            parts[-1] = unpacked(parts[-1])
         else:
             parts[-1].ShallowCopy(output)
     surface = parts[0] if len(parts) == 1 else joined_by_ids(parts)
@@ -141,17 +142,6 @@ def whole_surface(ranks, output, reasons, filters):
         surface.GetPointData().RemoveArray(name)
     surface.GetFieldData().RemoveArray(WORK)
     return surface
-
-
-def without_empty_fields(output):
-    """VTK loses all field data on the way where one array is empty."""
-    copy = output.NewInstance()
-    copy.ShallowCopy(output)
-    fields = copy.GetFieldData()
-    for i in reversed(range(fields.GetNumberOfArrays())):
-        if fields.GetAbstractArray(i).GetNumberOfTuples() == 0:
-            fields.RemoveArray(i)
-    return copy
 
 
 def joined_by_ids(parts):

@@ -8,6 +8,7 @@ for.
 import argparse
 
 import numpy
+from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from TestManyRanks import (
@@ -170,6 +171,25 @@ def check_kinds():
             numpy.arange(20) % COUNT, diagonals, [-1] * 3)
 
 
+def with_wide_ids(data, first):
+    """With an array of ids that 32 bits cannot hold."""
+    ids = numpy.arange(first, first + data.GetNumberOfPoints(), dtype=numpy.int64)
+    array = numpy_to_vtkIdTypeArray(ids, deep=True)
+    array.SetName("wide")
+    data.GetPointData().AddArray(array)
+    return data
+
+
+def check_wide_ids(random):
+    """Values of constraints keep their 64 bits on the way to other ranks."""
+    first = 2**35
+    points = with_wide_ids(cloud(random.random((100, 3))), first)
+    ends = with_wide_ids(lines_of(numpy.array([[0.1, 0.2, 0.0], [0.9, 0.7, 0.0]]), [([0, 1], False)]), first)
+    part, _ = triangulate(points, False, SourceData=ends if RANK == 0 else vtkPolyData())
+    values = vtk_to_numpy(part.GetOutput().GetPointData().GetArray("wide"))
+    check(bool((values >= first).all()), "ids of 64 bits: %s" % values[values < first])
+
+
 def check_errors(random):
     """One message for all ranks, that of one rank."""
     points = random.random((COUNT, 50, 3))[RANK]
@@ -197,6 +217,7 @@ def main():
     check_kinds()
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
+    check_wide_ids(random)
     for i in range(options.clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     places, cells = draw_lines(random, random.random((9, 3)))

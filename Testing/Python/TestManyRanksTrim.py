@@ -69,7 +69,7 @@ def with_arrays(mesh, points, cells, number_of_points, are_global):
     add(mesh.GetPointData(), "whole", (points % 97).astype(numpy.int32))
     add(mesh.GetCellData(), "cell", cells.astype(numpy.int64))
     if are_global:
-        ids = numpy_to_vtkIdTypeArray(3 * points.astype(numpy.int64), deep=True)
+        ids = numpy_to_vtkIdTypeArray(2**33 + 3 * points.astype(numpy.int64), deep=True)  # 64 bits
         ids.SetName("numbers")
         mesh.GetPointData().SetGlobalIds(ids)
     return mesh

@@ -17,7 +17,8 @@ import unittest
 import numpy
 from in_folder import Program
 from vtkelevationsurface.reading import vtk_files
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 HERE = sys.argv.index("--mpirun")
 MPIRUN = sys.argv[HERE + 1 :]
@@ -113,6 +114,17 @@ class OnRanks(Program):
     def test_a_grid_with_missing_nodes(self):
         self.file("a.txt", grid())
         self.check_same(2, "a.txt")
+
+    def test_ids_of_64_bits(self):
+        points = vtk_files.run_vtk_reader(os.path.join(DATA, "b9_ground.vtp"))
+        ids = numpy_to_vtkIdTypeArray(2**35 + numpy.arange(points.GetNumberOfPoints()), deep=True)
+        ids.SetName("well")
+        points.GetPointData().AddArray(ids)
+        writer = vtkXMLPolyDataWriter()
+        writer.SetFileName(self.path("a.vtp"))
+        writer.SetInputData(points)
+        writer.Write()
+        self.check_same(2, "a.vtp")
 
     def test_mpirun_with_one_rank(self):
         self.file("a.txt", cloud(300))

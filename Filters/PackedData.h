@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Data sets on their way to another rank. Private to the module.
+ */
+#ifndef PackedData_h
+#define PackedData_h
+
+#include "Bytes.h"
+
+#include "vtkSmartPointer.h"
+
+#include <cstddef>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+/**
+ * A data set as bytes, and back. Values of type vtkIdType keep their 64 bits, which VTK's own
+ * communicators cut to 32.
+ * @throws Error
+ */
+Bytes PackData(vtkPolyData* data);
+vtkSmartPointer<vtkPolyData> UnpackData(const char* from, std::size_t size);
+
+} // namespace elevation
+
+#endif
