@@ -12,8 +12,10 @@
 #include "vtkPointSet.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 #include <set>
+#include <system_error>
 #include <utility>
 
 namespace elevation
@@ -53,6 +55,16 @@ CellByCell::CellByCell(const std::string& folder)
   : Folder(folder)
   , Rows(folder + "/points")
 {
+  std::error_code problem;
+  const bool isEmpty = std::filesystem::is_empty(folder, problem);
+  if (problem)
+  {
+    throw Error("Folder '" + folder + "': " + problem.message() + ".");
+  }
+  if (!isEmpty || !std::filesystem::is_directory(folder))
+  {
+    throw Error("Folder '" + folder + "' is not an empty folder, which temporary files need.");
+  }
 }
 
 CellByCell::~CellByCell()
@@ -162,10 +174,6 @@ PointSlices CellByCell::SlicesOfCells() const
 void CellByCell::Triangulate(int cells, const DelaunayOptions& options)
 {
   this->Options = options;
-  if (options.MaximumEdgeLength > 0.0 || options.GivenLattice.IsSet())
-  {
-    throw Error("MaximumEdgeLength and a given Lattice are for points in memory, not for pieces.");
-  }
   std::vector<Point2> sample(this->Sample.size());
   std::transform(this->Sample.begin(), this->Sample.end(), sample.begin(),
     [](const SampledPoint& point) { return point.At; });

@@ -16,6 +16,7 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -191,6 +192,12 @@ void TrimOfPart::FindOwn(const Progress& progress)
   for (vtkIdType i = 0; i < own && !ofOthers.empty(); ++i)
   {
     ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(own));
+    double p[3];
+    this->Input->GetPoint(i, p);
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+    {
+      continue; // no corner; and as a key, NaN would be equal to all
+    }
     const auto found = ofOthers.find(keyOf(this->Input, i));
     if (found != ofOthers.end())
     {

@@ -35,11 +35,20 @@ vtkReconstructPieces::~vtkReconstructPieces() = default;
 
 void vtkReconstructPieces::SetFolder(const std::string& folder)
 {
-  if (this->Folder != folder)
+  if (this->Work)
+  {
+    vtkErrorMacro("Folder cannot be changed after the first points; that needs Reset().");
+  }
+  else if (this->Folder != folder)
   {
     this->Folder = folder;
     this->Modified();
   }
+}
+
+vtkMTimeType vtkReconstructPieces::GetMTime()
+{
+  return std::max(this->Superclass::GetMTime(), this->TimeOfProperties());
 }
 
 vtkGridDelaunay2D* vtkReconstructPieces::GetDelaunay()
@@ -83,18 +92,21 @@ bool vtkReconstructPieces::Try(const std::function<void()>& work)
 
 bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
 {
+  // What can be put right loses no points that are there.
+  if (!points || this->Folder.empty())
+  {
+    vtkErrorMacro(<< (points ? "Folder is not set." : "There is no data set of points."));
+    return false;
+  }
+  if (this->Work && this->Work->CountOfCells() > 0)
+  {
+    vtkErrorMacro("Points cannot be added after the first piece; that needs Reset().");
+    return false;
+  }
   return this->Try([this, points]() {
-    if (!points || this->Folder.empty())
-    {
-      throw elevation::Error(points ? "Folder is not set." : "There is no data set of points.");
-    }
     if (!this->Work)
     {
       this->Work = std::make_unique<elevation::CellByCell>(this->Folder);
-    }
-    if (this->Work->CountOfCells() > 0)
-    {
-      throw elevation::Error("Points cannot be added after the first piece; Reset() begins again.");
     }
     this->Work->Add(points, elevation::ProgressOf(this));
     this->Modified();
@@ -157,6 +169,34 @@ vtkIdType vtkReconstructPieces::GetNumberOfNonFinitePoints()
 bool vtkReconstructPieces::GetLatticeFound()
 {
   return this->Work && this->Work->All().LatticeFound;
+}
+
+/** What is wrong with the properties; empty: nothing. They can still be put right. */
+std::string vtkReconstructPieces::WrongProperty()
+{
+  try
+  {
+    elevation::CheckMaximumEdgeLength(this->Delaunay->GetMaximumEdgeLength());
+  }
+  catch (const elevation::Error& error)
+  {
+    return error.what();
+  }
+  const elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
+  if (options.MaximumEdgeLength > 0.0 || options.GivenLattice.IsSet())
+  {
+    return "MaximumEdgeLength and a given Lattice are for points in memory, not for pieces.";
+  }
+  if (this->Delaunay->GetNumberOfInputConnections(1) > 0)
+  {
+    return "Constraints are for points in memory, not for pieces.";
+  }
+  return std::string();
+}
+
+vtkMTimeType vtkReconstructPieces::TimeOfProperties()
+{
+  return std::max(this->Delaunay->GetMTime(), this->Trim->GetMTime());
 }
 
 /** Triangulates all points, and trims what is near a boundary. */
@@ -226,10 +266,26 @@ int vtkReconstructPieces::RequestData(
     vtkErrorMacro("There are " << cells << " pieces; another number of pieces needs Reset().");
     return 1;
   }
+  if (piece < 0 || piece >= count)
+  {
+    return 1; // empty, as VTK's sources
+  }
+  const std::string wrong = this->WrongProperty();
+  if (cells == 0 && !wrong.empty())
+  {
+    vtkErrorMacro(<< wrong);
+    return 1;
+  }
+  if (cells > 0 && this->TimeOfProperties() > this->TimeOfWork)
+  {
+    vtkErrorMacro("Properties were changed after the first piece; that needs Reset().");
+    return 1;
+  }
   this->Try([this, piece, count, output]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
     if (this->Work->CountOfCells() != count)
     {
+      this->TimeOfWork = this->TimeOfProperties();
       this->WorkOnAll(count, elevation::Part(progress, 0.0, 0.9));
     }
     const elevation::Progress last = elevation::Part(progress, 0.9, 1.0);

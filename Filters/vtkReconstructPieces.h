@@ -18,7 +18,7 @@
  * piece.
  *
  * All properties of the triangulation are those of GetDelaunay(), except MaximumEdgeLength,
- * Lattice and constraints, which are for points in memory: the first two are errors. Where
+ * Lattice and constraints, which are for points in memory, and are errors. Where
  * GetTrim() has a boundary, all pieces are trimmed along it, as that filter would trim the whole
  * surface; points that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
  * Where four points on a circle are among those inserted, either diagonal may be taken, as it is
@@ -31,7 +31,8 @@
  * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
  * seams of pieces, which it holds too, have some multiple of the square root of so many points.
  *
- * Errors, as of a full disk, and an abort leave empty output; then only Reset() is possible.
+ * A wrong property or call is an error that loses nothing. After an error of the work, such as a
+ * full disk, or an abort, the output is empty, and only Reset() helps.
  *
  * @sa vtkGridDelaunay2D
  */
@@ -63,11 +64,12 @@ public:
   static vtkReconstructPieces* New();
   vtkTypeMacro(vtkReconstructPieces, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  vtkMTimeType GetMTime() override; ///< also of the filters
 
   ///@{
   /**
-   * The folder of the temporary files, which exists, and in which nothing else is. Default: empty,
-   * which is an error. It is read with the first points.
+   * The folder of the temporary files: one that exists and is empty. There is no default. It is
+   * taken with the first points.
    */
   virtual void SetFolder(const std::string& folder);
   virtual std::string GetFolder() { return this->Folder; }
@@ -121,6 +123,8 @@ private:
   vtkReconstructPieces(const vtkReconstructPieces&) = delete;
   void operator=(const vtkReconstructPieces&) = delete;
   bool Try(const std::function<void()>& work);
+  std::string WrongProperty();
+  vtkMTimeType TimeOfProperties();
   void WorkOnAll(int count, const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
 
@@ -129,6 +133,7 @@ private:
   vtkNew<vtkTrimOutwardTriangles> Trim;
   std::unique_ptr<elevation::CellByCell> Work;
   std::unique_ptr<elevation::TrimmedPieces> Trimmed;
+  vtkMTimeType TimeOfWork = 0;
   bool HasFailed = false;
 };
 

@@ -87,10 +87,12 @@ def clouds():
 class WithFilter(InFolder):
     """What tests of the filter share."""
 
+    def empty_folder(self):
+        return tempfile.mkdtemp(dir=self.folder)
+
     def source(self, points, at_once=900, **properties):
-        folder = tempfile.mkdtemp(dir=self.folder)
         source = vtkReconstructPieces()
-        source.SetFolder(folder)
+        source.SetFolder(self.empty_folder())
         for name, value in properties.items():
             getattr(source.GetDelaunay(), "Set" + name)(value)
         for first in range(0, len(points), at_once):
@@ -250,7 +252,8 @@ class InPieces(WithFilter):
             (None, make_points(points), "Folder is not set"),
             (self.path("nowhere"), make_points(points), "No such file or directory"),
             (self.folder, None, "no data set"),
-            (self.folder, ids, "global ids"),
+            (self.empty_folder(), ids, "global ids"),
+            (self.folder, make_points(points), "is not an empty folder"),
         )
         for folder, data, words in cases:
             source = vtkReconstructPieces()
@@ -262,11 +265,35 @@ class InPieces(WithFilter):
         errors = self.errors_of(source, lambda: source.AddPoints(other))
         self.assertIn("same point arrays", errors[0])
         self.assertIn("Reset()", self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))[0])
-        for name, value in (("MaximumEdgeLength", 3.0), ("Lattice", (0, 0, 1, 0, 0, 1))):
+        for name, value, words in (
+            ("MaximumEdgeLength", 3.0, "in memory, not for pieces"),
+            ("MaximumEdgeLength", numpy.nan, "MaximumEdgeLength is nan"),
+            ("Lattice", (0, 0, 1, 0, 0, 1), "in memory, not for pieces"),
+            ("SourceData", make_points(points), "Constraints are for points in memory"),
+        ):
             source = self.source(points, **{name: value})
             errors = self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))
-            self.assertIn("in memory, not for pieces", errors[0])
+            self.assertIn(words, errors[0])
             self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_what_can_be_put_right_loses_no_points(self):
+        source = self.source(clouds()["random"])
+        whole = self.source(clouds()["random"])
+        self.parts(whole, 2)
+        self.assertIn("no data set", self.errors_of(source, lambda: source.AddPoints(None))[0])
+        errors = self.errors_of(source, lambda: source.SetFolder("elsewhere"))
+        self.assertIn("Folder cannot be changed", errors[0])
+        source.GetDelaunay().SetMaximumEdgeLength(1.0)
+        self.assertEqual(len(self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))), 1)
+        source.GetDelaunay().SetMaximumEdgeLength(0.0)
+        self.assertEqual(sum(part.GetNumberOfPolys() for part in self.parts(source, 2)),
+                         whole.GetNumberOfTriangles())
+        for piece in (2, -1):
+            self.assertEqual(self.errors_of(source, lambda: source.UpdatePiece(piece, 2, 0)), [])
+            self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+        source.GetDelaunay().SetLatticeTolerance(0.1)
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))
+        self.assertIn("Properties were changed after the first piece", errors[0])
 
     def test_a_stop_leaves_empty_output(self):
         source = self.source(clouds()["random"])
