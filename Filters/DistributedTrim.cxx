@@ -9,10 +9,14 @@
 #include "TrimOfPart.h"
 
 #include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <set>
 #include <utility>
@@ -38,7 +42,7 @@ public:
 
   bool Read();
   bool HaveSameArrays();
-  bool Sweep();
+  bool FindNear(int margin);
   bool TrimNear();
   bool SendBack();
   TrimCounts Write();
@@ -49,6 +53,7 @@ private:
     return this->All.Watched(elevation::Part(this->Of.Progress, begin, end));
   }
   bool CanAll(const std::function<bool()>& step) const;
+  void AddWork() const;
   bool HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kinds) const;
 
   const Ranks& All;
@@ -58,6 +63,7 @@ private:
   TrimOfPart Own;
   double NumberOfAll = 0.0;
   BoundaryLines Lines;
+  vtkIdType InnerPoints = 0; // of all ranks
   int Home = 0;
   std::unique_ptr<NearParts> Gathered;         // on that rank
   bool AreInserted = false, AreMarked = false; // points on any rank
@@ -91,8 +97,11 @@ bool Work::Read()
   const bool can = this->CanAll([this]() {
     Report(this->Watched(0.0, 1.0), 0.0);
     this->Own.Read();
-    CheckArrays(this->Of.Second, "The boundary's");
-    this->Lines = ToLines(this->Of.Second, this->Watched(0.0, 0.02));
+    if (this->Of.Second)
+    {
+      CheckArrays(this->Of.Second, "The boundary's");
+      this->Lines = ToLines(this->Of.Second, this->Watched(0.0, 0.02));
+    }
     return true;
   });
   std::vector<vtkIdType> count = { this->Own.CountOfTriangles() };
@@ -129,16 +138,24 @@ bool Work::HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kin
   });
 }
 
-/** Finds the near triangles, and the rank with most of them. */
-bool Work::Sweep()
+/** Finds the near triangles, and the rank with most of them. @param[in] margin  of an outline */
+bool Work::FindNear(int margin)
 {
-  const bool can = this->CanAll([this]() {
+  this->Gathered.reset();
+  const bool can = this->CanAll([this, margin]() {
+    if (!this->Of.Second)
+    {
+      return this->Own.SweepForOutline(margin, this->Options, this->Watched(0.02, 0.3));
+    }
     return this->Own.Sweep(
       this->Lines, this->NumberOfAll, this->Options.NumberOfThreads, this->Watched(0.02, 0.3));
   });
   const std::vector<vtkIdType> near = this->All.Collect(std::vector<vtkIdType>{
     static_cast<vtkIdType>(this->Own.CountOfNear()) + (this->Own.CountOfTriangles() > 0 ? 1 : 0) });
   this->Home = static_cast<int>(std::max_element(near.begin(), near.end()) - near.begin());
+  std::vector<vtkIdType> inner = { static_cast<vtkIdType>(this->Own.CountOfInnerPoints()) };
+  this->All.Sum(inner);
+  this->InnerPoints = inner[0];
   return can;
 }
 
@@ -174,7 +191,9 @@ bool Work::TrimNear()
     TrimOptions options = this->Options;
     options.Monitor = this->Watched(0.35, 0.8);
     this->Gathered = std::make_unique<NearParts>(std::move(parts));
-    return this->Gathered->Trim(this->Lines, options);
+    return this->Of.Second ? this->Gathered->Trim(this->Lines, options)
+                           : this->Gathered->TrimOutline(this->InnerPoints,
+                               static_cast<std::int64_t>(this->NumberOfAll), options);
   });
 }
 
@@ -216,9 +235,33 @@ bool Work::SendBack()
   return sums[0] > 0;
 }
 
+/** What the work took, for output 0. */
+void Work::AddWork() const
+{
+  vtkNew<vtkIdTypeArray> work;
+  work->SetName("WorkOfTrim");
+  work->SetNumberOfComponents(4);
+  const Ranks::Traffic& traffic = this->All.GetTraffic();
+  const char* const names[] = { "Triangles", "NearTriangles", "BytesSent", "Exchanges" };
+  const vtkIdType values[] = { this->Own.CountOfTriangles(),
+    static_cast<vtkIdType>(this->Own.CountOfNear()), traffic.BytesSent, traffic.Rounds };
+  for (int i = 0; i < 4; ++i)
+  {
+    work->SetComponentName(i, names[i]);
+    work->InsertNextValue(values[i]);
+  }
+  if (!this->Of.Outputs.empty())
+  {
+    this->Of.Outputs[0]->GetFieldData()->AddArray(work);
+  }
+}
+
 TrimCounts Work::Write()
 {
   TrimCounts counts;
+  std::vector<double> tolerance = { this->Gathered ? this->Gathered->Result().GapTolerance : 0.0 };
+  this->All.Maximum(tolerance);
+  counts.GapTolerance = tolerance[0];
   this->All.Agree([&]() {
     if (this->Input->GetNumberOfPoints() > 0)
     {
@@ -233,9 +276,16 @@ TrimCounts Work::Write()
       const Trimmed& result = this->Gathered->Result();
       counts.RecoveredEdges = result.NumberOfRecoveredEdges;
       this->Of.Outputs[2]->GetPointData()->CopyAllOn();
-      PassRings(result.Boundary, this->Of.Second, this->Watched(0.97, 1.0), this->Of.Outputs[2]);
+      counts.PointsLeftOut = result.NumberOfPointsLeftOut;
+      if (!result.Loss.empty())
+      {
+        this->Of.Warnings.push_back(result.Loss);
+      }
+      PassRings(result.Boundary, this->Of.Second ? this->Of.Second : this->Gathered->Joined(),
+        this->Watched(0.97, 1.0), this->Of.Outputs[2]);
     }
     AddCounts(counts, this->Of.Outputs);
+    this->AddWork();
     Report(this->Watched(0.0, 1.0), 1.0);
   });
   return counts;
@@ -244,13 +294,20 @@ TrimCounts Work::Write()
 
 bool TrimOnRanks(const Ranks& ranks, const TrimOptions& options, Block& block, TrimCounts& counts)
 {
-  if (!block.Second || options.Test != OutwardTest::Exact || !(options.GapTolerance >= 0.0))
+  if (options.Test != OutwardTest::Exact || !(options.GapTolerance >= 0.0))
   {
     return false; // on all ranks
   }
   Work work(ranks, options, block);
-  if (!work.Read() || !work.HaveSameArrays() || !work.Sweep() || !work.TrimNear() ||
-    !work.SendBack())
+  if (!work.Read() || !work.HaveSameArrays())
+  {
+    return false;
+  }
+  // A boundary needs no margin, and most outlines a small one.
+  constexpr int small = 4, large = 10;
+  const bool isTrimmed = (work.FindNear(small) && work.TrimNear()) ||
+    (!block.Second && work.FindNear(large) && work.TrimNear());
+  if (!isTrimmed || !work.SendBack())
   {
     return false;
   }

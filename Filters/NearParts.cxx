@@ -9,6 +9,8 @@
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -18,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -80,12 +83,12 @@ TrimmedPart::TrimmedPart(const Bytes& bytes)
   }
 }
 
-bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
+void NearParts::JoinAll(const Progress& progress)
 {
   std::vector<std::string> warnings; // none: all have the same arrays
   this->Common =
-    std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, Part(options.Monitor, 0.0, 0.1));
-  this->Whole = Join(this->Given, PartKind::Mesh, Part(options.Monitor, 0.1, 0.3), warnings);
+    std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, Part(progress, 0.0, 0.3));
+  this->Whole = Join(this->Given, PartKind::Mesh, Part(progress, 0.3, 1.0), warnings);
   this->FirstTriangles = { 0 };
   for (const auto& part : this->Given)
   {
@@ -93,6 +96,11 @@ bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
       this->FirstTriangles.back() + static_cast<Index>(part->GetNumberOfPolys()));
   }
   this->Triangles = ViewTriangles(this->Whole);
+}
+
+bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
+{
+  this->JoinAll(Part(options.Monitor, 0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
   if (!this->IsProven(list, boundary, Part(options.Monitor, 0.3, 0.4)))
   {
@@ -107,6 +115,75 @@ bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
   return true;
 }
 
+namespace
+{
+constexpr const char* NameOfStates = "States";
+constexpr const char* NameOfSpacings = "Spacings";
+} // namespace
+
+void NearParts::AddKnown(
+  const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part)
+{
+  vtkNew<vtkUnsignedCharArray> ofTriangles;
+  ofTriangles->SetName(NameOfStates);
+  SetTuples(static_cast<vtkIdType>(states.size()), ofTriangles);
+  std::transform(states.begin(), states.end(), ofTriangles->GetPointer(0),
+    [](Known state) { return static_cast<unsigned char>(state); });
+  part->GetFieldData()->AddArray(ofTriangles);
+  vtkNew<vtkDoubleArray> ofPoints;
+  ofPoints->SetName(NameOfSpacings);
+  SetTuples(static_cast<vtkIdType>(spacings.size()), ofPoints);
+  std::copy(spacings.begin(), spacings.end(), ofPoints->GetPointer(0));
+  part->GetFieldData()->AddArray(ofPoints);
+}
+
+bool NearParts::TrimOutline(
+  std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options)
+{
+  this->JoinAll(Part(options.Monitor, 0.0, 0.3));
+  const TriangleList& list = this->Triangles.View;
+  std::vector<Known> states;
+  std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t part = 0; part < this->Given.size(); ++part)
+  {
+    vtkFieldData* const known = this->Given[part]->GetFieldData();
+    vtkDataArray* const ofTriangles = known->GetArray(NameOfStates);
+    for (vtkIdType i = 0; ofTriangles && i < ofTriangles->GetNumberOfTuples(); ++i)
+    {
+      states.push_back(static_cast<Known>(static_cast<int>(ofTriangles->GetComponent(i, 0))));
+    }
+    vtkDataArray* const ofPoints = known->GetArray(NameOfSpacings);
+    for (vtkIdType i = 0; ofPoints && i < ofPoints->GetNumberOfTuples(); ++i)
+    {
+      const double spacing = ofPoints->GetComponent(i, 0);
+      double& joined = spacings[this->Common->Place(part, i)];
+      joined = std::isnan(spacing) ? joined : spacing;
+    }
+  }
+  std::optional<std::vector<BorderEdge>> border =
+    this->ProvenBorder(list.Points, Part(options.Monitor, 0.3, 0.4));
+  if (!border || !this->AreSamePlaces())
+  {
+    return false;
+  }
+  IdSet atBorders(list.Points.Count);
+  for (const BorderEdge& edge : this->BordersOfParts())
+  {
+    atBorders.Add(edge.Origin);
+  }
+  TrimOptions ofParts = options;
+  ofParts.TellParents = true;
+  ofParts.Monitor = Part(options.Monitor, 0.4, 0.95);
+  std::optional<Trimmed> trimmed = TrimParts(list,
+    { states, spacings, std::move(*border), innerPoints + atBorders.Count(), triangles }, ofParts);
+  if (trimmed)
+  {
+    this->Sides = std::move(*trimmed);
+    PassPoints(this->Whole, this->Sides, Part(options.Monitor, 0.95, 1.0), this->Points);
+  }
+  return trimmed.has_value();
+}
+
 bool NearParts::IsProven(
   const TriangleList& list, const BoundaryLines& boundary, const Progress& progress)
 {
@@ -114,7 +191,7 @@ bool NearParts::IsProven(
   return this->AreSamePlaces() &&
     SweepAlongRings(
       list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, Part(progress, 0.0, 0.5)) &&
-    this->IsBorderProven(list.Points, Part(progress, 0.5, 1.0));
+    this->ProvenBorder(list.Points, Part(progress, 0.5, 1.0));
 }
 
 bool NearParts::AreSamePlaces() const
@@ -138,10 +215,9 @@ bool NearParts::AreSamePlaces() const
   return true;
 }
 
-/** The borders of all parts are that of the mesh and those between parts, which cancel out. */
-bool NearParts::IsBorderProven(const PointView& points, const Progress& progress) const
+std::vector<BorderEdge> NearParts::BordersOfParts() const
 {
-  std::vector<BorderEdge> all, border;
+  std::vector<BorderEdge> all;
   auto each = vtk::TakeSmartPointer(this->Whole->GetLines()->NewIterator());
   for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
   {
@@ -150,6 +226,17 @@ bool NearParts::IsBorderProven(const PointView& points, const Progress& progress
     each->GetCurrentCell(size, ids);
     all.push_back({ static_cast<Index>(ids[0]), static_cast<Index>(ids[1]) });
   }
+  return all;
+}
+
+/**
+ * The borders of all parts are that of the mesh and those between parts, which cancel out.
+ * @return nothing if it does not prove that the mesh covers nothing twice
+ */
+std::optional<std::vector<BorderEdge>> NearParts::ProvenBorder(
+  const PointView& points, const Progress& progress) const
+{
+  std::vector<BorderEdge> all = this->BordersOfParts(), border;
   Sort(all.begin(), all.end(), std::less<BorderEdge>(), Part(progress, 0.0, 0.4));
   for (std::size_t i = 0; i < all.size(); ++i)
   {
@@ -157,14 +244,16 @@ bool NearParts::IsBorderProven(const PointView& points, const Progress& progress
     const BorderEdge twin{ all[i].Destination, all[i].Origin };
     if (twin.Origin == twin.Destination || (i > 0 && !(all[i - 1] < all[i])))
     {
-      return false; // two triangles on one side of an edge
+      return std::nullopt; // two triangles on one side of an edge
     }
     if (!std::binary_search(all.begin(), all.end(), twin))
     {
       border.push_back(all[i]);
     }
   }
-  return CoversOnce(border, points, Part(progress, 0.6, 1.0));
+  return CoversOnce(border, points, Part(progress, 0.6, 1.0))
+    ? std::make_optional(std::move(border))
+    : std::nullopt;
 }
 
 std::vector<TrimmedPart> NearParts::Split(const Progress& progress) const

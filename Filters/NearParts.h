@@ -16,7 +16,9 @@
 #include "vtkSmartPointer.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -64,16 +66,30 @@ public:
    */
   bool Trim(const BoundaryLines& boundary, const TrimOptions& options);
 
+  /**
+   * The same along the outline, for the triangles of FindPartOfOutline(). Their states and the
+   * spacings at the points are in the field data of each part: see AddKnown().
+   * @param[in] innerPoints  the sum of all parts
+   * @param[in] triangles    of the mesh
+   */
+  bool TrimOutline(std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options);
+  static void AddKnown(
+    const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part);
+
   /** What goes back to each part. */
   std::vector<TrimmedPart> Split(const Progress& progress) const;
 
   const Trimmed& Result() const { return this->Sides; }
+  vtkPolyData* Joined() const { return this->Whole; }
 
 private:
   bool IsProven(const TriangleList& list, const BoundaryLines& boundary, const Progress& progress);
+  void JoinAll(const Progress& progress);
   bool AreSamePlaces() const;
+  std::optional<std::vector<BorderEdge>> ProvenBorder(
+    const PointView& points, const Progress& progress) const;
+  std::vector<BorderEdge> BordersOfParts() const;
   void FindOwners(std::vector<TrimmedPart>& splits) const;
-  bool IsBorderProven(const PointView& points, const Progress& progress) const;
   void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,
     TrimmedPart& split) const;
 

@@ -86,6 +86,23 @@ bool TrimOfPart::Sweep(
   return swept.has_value();
 }
 
+bool TrimOfPart::SweepForOutline(int margin, const TrimOptions& options, const Progress& progress)
+{
+  ExtractOptions extraction;
+  extraction.GapTolerance = options.GapTolerance;
+  extraction.NumberOfThreads = options.NumberOfThreads;
+  extraction.Monitor = progress;
+  const bool isProven = FindPartOfOutline(this->List, margin, extraction, this->Outline);
+  this->Swept.Near = std::move(this->Outline.Triangles);
+  this->Swept.Border = std::move(this->Outline.Border);
+  this->Swept.IsOutward.assign(static_cast<std::size_t>(this->List.Count), 0);
+  for (const Index t : this->Swept.Near)
+  {
+    this->Swept.IsOutward[t] = IsNear;
+  }
+  return isProven;
+}
+
 /** Of the near triangles and the border; its points are those of Sent. */
 vtkSmartPointer<vtkPolyData> TrimOfPart::NearPart()
 {
@@ -127,6 +144,15 @@ vtkSmartPointer<vtkPolyData> TrimOfPart::NearPart()
   }
   part->SetLines(border);
   part->SetPolys(near);
+  if (!this->Outline.Spacings.empty())
+  {
+    std::vector<double> spacings;
+    for (const Index point : this->Sent)
+    {
+      spacings.push_back(this->Outline.Spacings[point]);
+    }
+    NearParts::AddKnown(this->Outline.States, spacings, part);
+  }
   return part;
 }
 

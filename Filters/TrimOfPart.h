@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Trims one part of a mesh along a given boundary, whose near triangles are trimmed with those of
- * all parts: on ranks (DistributedTrim.h), and piece by piece (TrimmedPieces.h). Private to the
- * module.
+ * Trims one part of a mesh along a boundary or its outline, whose near triangles are trimmed with
+ * those of all parts: on ranks (DistributedTrim.h), and piece by piece (TrimmedPieces.h). Private to
+ * the module.
  */
 #ifndef TrimOfPart_h
 #define TrimOfPart_h
@@ -16,6 +16,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
 #include <vector>
 
 class vtkPolyData;
@@ -42,6 +43,9 @@ public:
    * @return false if the sweep cannot
    */
   bool Sweep(const BoundaryLines& lines, double numberOfAll, int threads, const Progress& progress);
+  /** The same without a boundary: the near triangles tell the outline. See FindPartOfOutline() */
+  bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
+  std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
   std::size_t CountOfNear() const { return this->Swept.Near.size(); }
 
   /** The near triangles and, as lines, the border of all: for NearParts. */
@@ -71,6 +75,7 @@ private:
   std::vector<Index> Sources; // of the triangles, if some were left out
   TriangleList List;
   SweptAlongRings Swept;
+  PartOfOutline Outline;   // without a boundary; its triangles and border are those of Swept
   std::vector<Index> Sent; // points of the near part
   TrimmedPart Back;
   std::vector<Index> Places; // of the new points, among those of the output

@@ -81,19 +81,20 @@
  * one with an error is empty, the others stay. Several blocks of a composite input 1 are one
  * boundary.
  *
- * On several ranks (processes), a block may be spread over them. With a boundary, each rank trims
- * its own triangles; only those near the boundary, and the border of each rank's part, are brought
- * together on one rank. The triangles of all ranks are those of one, each where it was, with the
+ * On several ranks (processes), a block may be spread over them. Each rank trims its own triangles;
+ * only those near the boundary, and the border of each rank's part, are brought together on one rank.
+ * Without a boundary, these are triangles that may not be surface, and some rows along the border
+ * of each part; the tolerance is one for all ranks. The triangles of all ranks are those of one, each where it was, with the
  * order and cell data that one rank would give to them rank after rank. A rank has its points in
  * their places, then those that its triangles have got. Points that are corners on several ranks
  * are marked on all but one of them (vtkGhostType); those with the same global id are one, or,
  * where not all ranks have global ids, those with the same x,y,z. Field data are those of the
  * rank. Output 2 is on one rank. Cells marked as another rank's are left out.
  *
- * Without a boundary, with INWARD_NORMAL, where not all ranks have the same arrays, where
- * triangles are not counter-clockwise, and for messages of what is wrong, the triangles are
- * gathered on the rank with most of them, which gets the result; the others have empty output with the
- * same arrays. Points are in the order of their global ids then, else rank after rank, as cells are;
+ * With INWARD_NORMAL, where not all ranks have the same arrays, where triangles are not
+ * counter-clockwise, for messages of what is wrong, and mostly where lines of points give a tolerance
+ * above 4.5, the triangles are gathered on the rank with most of them, which gets the result; the
+ * others have empty output with the same arrays. Points are in the order of their global ids then, else rank after rank, as cells are;
  * messages name both by these numbers. Arrays that not all ranks have are left out, with a warning.
  *
  * Partitions of one vtkPartitionedDataSet are one block in this. A boundary may be on other ranks
@@ -110,7 +111,10 @@
  *
  * Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
  * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance
- * (vtkDoubleArray, one value).
+ * (vtkDoubleArray, one value). Of output 0, where a block stays spread over ranks: WorkOfTrim
+ * (vtkIdTypeArray, one tuple of 4), the triangles of this rank's part, those of them that count as
+ * near the boundary, the bytes it has sent, apart from the boundary, and in how many exchanges of
+ * all ranks.
  *
  * When an extracted boundary leaves out more than 5 % of the points or half of the area, a warning
  * tells how much, and which GapTolerance would keep it. One that leaves out every point is an error.

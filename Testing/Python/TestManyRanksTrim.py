@@ -28,6 +28,7 @@ CONTROLLER = vtkMPIController()
 CONTROLLER.Initialize()
 vtkMultiProcessController.SetGlobalController(CONTROLLER)
 FAILURES = []
+SPREAD = []  # whether surfaces without a given boundary have stayed where they were
 DUPLICATE = 1
 GHOSTS = "vtkGhostType"
 # Names of what a case draws, for messages.
@@ -146,7 +147,8 @@ def side_of(output):
 
 def counts_of(trimming):
     return (trimming.GetNumberOfOutwardTriangles(), trimming.GetNumberOfRecoveredEdges(),
-            trimming.GetNumberOfInsertedPoints(), trimming.GetNumberOfPointsLeftOut())
+            trimming.GetNumberOfInsertedPoints(), trimming.GetNumberOfPointsLeftOut(),
+            trimming.GetEffectiveGapTolerance())
 
 
 def rings_of(output):
@@ -220,15 +222,18 @@ def check_values(case, parts, whole, are_global):
 
 def compare(case, are_global=False, are_marked=False, boundary_on=None, **properties):
     """Trims a mesh on all ranks, and on rank 0 alone. All ranks have the same arguments."""
-    boundary = boundary_of(case.rings)
-    mine = boundary if boundary_on in (None, RANK) else vtkPolyData()
+    boundary = boundary_of(case.rings) if case.rings else None
+    mine = boundary if boundary_on in (None, RANK) or not boundary else vtkPolyData()
     part = part_of(case, RANK, are_global, are_marked)
     trimming, messages = trim(part, mine, False, **properties)
     check(RANK == 0 or not messages, "%s: rank %d is silent: %s" % (case.claim, RANK, messages))
     outputs = [side_of(trimming.GetOutput(side)) for side in (0, 1)]
     if not WORLD.bcast(messages):
-        check(bool(outputs[0]["triangles"] or outputs[1]["triangles"]) == (part.GetNumberOfCells() > 0),
-              case.claim + ": a rank that has triangles keeps its own")
+        stays = bool(outputs[0]["triangles"] or outputs[1]["triangles"]) == (part.GetNumberOfCells() > 0)
+        if not case.rings:  # or is gathered
+            SPREAD.append(WORLD.allreduce(stays, MPI.LAND))
+        else:
+            check(stays, case.claim + ": a rank that has triangles keeps its own")
         check(all(i in outputs[0]["used"] | outputs[1]["used"]
                   for i in range(part.GetNumberOfPoints(), len(outputs[0]["points"]))),
               case.claim + ": added points are corners")
@@ -363,6 +368,41 @@ def compare_random(random, claim):
             RecoverBoundary=bool(random.random() < 0.8))
 
 
+def torn(random, points):
+    """Points with lakes, bays and a gap all across, so that there is an outline to find."""
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    size = (high - low).max()
+    kept = numpy.ones(len(points), bool)
+    for _ in range(random.integers(4)):
+        centre = low + (high - low) * random.random(2)
+        kept &= numpy.hypot(*(points[:, :2] - centre).T) > size * random.uniform(0.05, 0.3)
+    if random.random() < 0.3:
+        x = low[0] + (high[0] - low[0]) * random.random()
+        kept &= abs(points[:, 0] - x) > 0.1 * size
+    if random.random() < 0.3:  # a few points beside
+        beside = points[random.integers(len(points), size=random.integers(1, 9))] + [2.0 * size, 0.0, 0.0]
+        points, kept = numpy.vstack((points, beside)), numpy.append(kept, numpy.ones(len(beside), bool))
+    return points[kept] if kept.sum() > 3 else points
+
+
+def tracks(random, count):
+    """Dense along lines that are far apart."""
+    lines = max(2, int((count / 10) ** 0.5))
+    line = random.integers(lines, size=count)
+    return numpy.column_stack((random.random(count), line / lines + 1e-4 * random.random(count), random.random(count)))
+
+
+def compare_outline(random, claim):
+    """No boundary is given: the ranks find the outline of one."""
+    make = (uniform, uniform, lattice, lattice, clusters, tracks)[random.integers(6)]
+    points, triangles = triangulated(torn(random, make(random, int(random.choice([30, 300, 3000, 12000])))))
+    if len(triangles) < 2:
+        return
+    case = Case("%s, outline of %s" % (claim, make.__name__), points, triangles, owners_of(random, points, triangles), None)
+    compare(case, random.random() < 0.5, random.random() < 0.5,
+            GapTolerance=float(random.choice([0.0, 0.0, 0.0, 2.0, 10.0])))
+
+
 def check_chain(random, claim):
     """The triangulation of all ranks is trimmed on all of them."""
     coordinates = CLOUDS[random.integers(2)](random, 900)
@@ -474,7 +514,7 @@ def check_errors(random):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--clouds", type=int, default=15)
+    parser.add_argument("--clouds", type=int, default=8)
     parser.add_argument("--aborts", type=int, default=4)
     parser.add_argument("--side", type=int, default=150, help="points along a grid that is aborted")
     parser.add_argument("--seed", type=int, default=1)
@@ -483,6 +523,9 @@ def main():
     check_errors(random)
     for i in range(options.clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
+    for i in range(options.clouds):
+        compare_outline(random, "cloud %d of seed %d" % (i, options.seed))
+    check(sum(SPREAD) >= 0.5 * len(SPREAD), "%d of %d stay where they are" % (sum(SPREAD), len(SPREAD)))
     for i in range(max(1, options.clouds // 6)):
         check_chain(random, "chain %d of seed %d" % (i, options.seed))
     latest = check_aborts(random, options.aborts, options.side)

@@ -33,16 +33,16 @@ struct Measurer
   };
   static_assert(sizeof(Vertex) == 64, "the size of a cache line");
 
-  static constexpr Index AtOnce = 1024; ///< numbers reserved for a visitor at a time
-  const Vertex* Vertices; ///< of the list
+  static constexpr Index AtOnce = VerticesAtOnce; ///< numbers reserved for a visitor at a time
+  const Vertex* Vertices;                         ///< of the list
   MeasuredTriangles* Measured;
-  double* Longest;                ///< of Measured
-  std::atomic<Index>* Count;      ///< of numbers reserved by all visitors
-  Index Next = 0, End = 0;        ///< reserved and not yet used
-  Index First = None;             ///< number of the first corner
-  Index Last = None;              ///< number of the last corner
-  double Largest = 0.0;           ///< absolute value of a coordinate
-  double ToLast = 0.0;            ///< squared length of the edge from the first corner to the last
+  double* Longest;           ///< of Measured
+  std::atomic<Index>* Count; ///< of numbers reserved by all visitors
+  Index Next = 0, End = 0;   ///< reserved and not yet used
+  Index First = None;        ///< number of the first corner
+  Index Last = None;         ///< number of the last corner
+  double Largest = 0.0;      ///< absolute value of a coordinate
+  double ToLast = 0.0;       ///< squared length of the edge from the first corner to the last
 
   Index NumberOf(Vertex& vertex)
   {
@@ -135,8 +135,7 @@ bool MeasureBySweep(
   measured.Ids.Resize(static_cast<std::size_t>(list.Points.Count) +
     static_cast<std::size_t>(sweep.NumberOfRanges()) * Measurer::AtOnce);
   std::atomic<Index> numbers{ 0 };
-  if (!sweep.Run(
-        Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers },
+  if (!sweep.Run(Measurer{ &sweep.At(0), &measured, measured.Longest.data(), &numbers },
         Part(progress, 0.0, 0.85)))
   {
     return false;

@@ -73,14 +73,17 @@ struct MeasuredTriangles
   }
 
   TriangleList List;
-  Buffer<Index> Corners;          ///< owns List's corners, if renumbered
-  Buffer<double> Coordinates;     ///< owns List's points
-  Buffer<Index> Ids;              ///< one per vertex: its id in the input; empty if not renumbered
-  Buffer<double> Longest;         ///< one per triangle: the square of its longest edge
-  Buffer<std::uint32_t> Degrees;  ///< one per vertex: its number of edges, perhaps none
-  Buffer<float> ShortSpacings;    ///< one per vertex
+  Buffer<Index> Corners;         ///< owns List's corners, if renumbered
+  Buffer<double> Coordinates;    ///< owns List's points
+  Buffer<Index> Ids;             ///< one per vertex: its id in the input; empty if not renumbered
+  Buffer<double> Longest;        ///< one per triangle: the square of its longest edge
+  Buffer<std::uint32_t> Degrees; ///< one per vertex: its number of edges, perhaps none
+  Buffer<float> ShortSpacings;   ///< one per vertex
   std::vector<BorderEdge> Border;
 };
+
+/** A sweep numbers the vertices in blocks: their number is a multiple of this one. */
+constexpr Index VerticesAtOnce = 1024;
 
 /** Measures the triangles of a mesh (with Twins), at least one. @throws Aborted, std::bad_alloc */
 MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress = Progress());

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace elevation
@@ -74,16 +75,15 @@ template <typename IsOpen, typename Look>
 void VisitOpenings(const Components& parts, std::vector<Opening>& openings, IsOpen&& isOpen,
   const Progress& progress, Look&& look)
 {
-  ForEachStretch(
-    static_cast<Index>(parts.Labels.size()), progress, [&](Index begin, Index end) {
-      for (Index t = begin; t < end; ++t)
+  ForEachStretch(static_cast<Index>(parts.Labels.size()), progress, [&](Index begin, Index end) {
+    for (Index t = begin; t < end; ++t)
+    {
+      if (isOpen(t))
       {
-        if (isOpen(t))
-        {
-          look(t, openings[parts.ComponentOf(t)]);
-        }
+        look(t, openings[parts.ComponentOf(t)]);
       }
-    });
+    }
+  });
 }
 
 /**
@@ -119,8 +119,8 @@ template <typename ShareOf>
 void CloseSmallBays(
   const Mesh& mesh, ShareOf&& shareOf, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts =
-    PartsOfFlags(mesh, [&](Index t) { return keep[t]; }, Part(progress, 0.0, 0.5));
+  const Components parts = PartsOfFlags(
+    mesh, [&](Index t) { return keep[t]; }, Part(progress, 0.0, 0.5));
   std::vector<Opening> openings(parts.Count());
   const auto isOpen = [&](Index t) { return keep[t] == Bay; };
   VisitOpenings(parts, openings, isOpen, Part(progress, 0.5, 0.7), [&](Index t, Opening& opening) {
@@ -231,8 +231,8 @@ void DropSlivers(
 std::vector<Index> DropSmallPieces(
   const Mesh& mesh, std::vector<char>& keep, const Progress& progress)
 {
-  const Components parts =
-    PartsOfFlags(mesh, [&](Index t) { return keep[t]; }, Part(progress, 0.0, 0.5));
+  const Components parts = PartsOfFlags(
+    mesh, [&](Index t) { return keep[t]; }, Part(progress, 0.0, 0.5));
   // More triangles than so few vertices can form.
   constexpr Index many = 3 * NeighborOfSpacing + 1;
   std::vector<Index> sizes(parts.Count(), 0);
@@ -480,15 +480,24 @@ std::vector<Index> DropSmallGroups(const TriangleList& list, const IdSet& atBord
   return others;
 }
 
+/** The border of a mesh that the measured triangles are, or are a part of. */
+struct BorderOfMesh
+{
+  std::vector<BorderEdge> Edges; ///< sorted
+  IdSet Vertices;
+  bool IsPart; ///< whether the triangles are only a part
+};
+
 /**
  * The last steps: drops slivers, closes small bays and lakes, drops small pieces, and traces the
  * border of the rest.
  * @param[in]     spacingOf  spacingOf(t): of triangles that are not yet surface
  * @param[in]     near       the corners at the border of the surface found so far
  * @param[in,out] result     in: a Flag for each triangle; out: Outside or Surface, and the rings
+ * @return false if the triangles are a part of a mesh that does not tell which pieces are small
  */
 template <typename SpacingOfTriangle>
-void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
+bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
   SpacingOfTriangle&& spacingOf, IdSet near, const Progress& progress, ExtractedBoundary& result)
 {
   const TriangleList& list = measured.List;
@@ -516,13 +525,13 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
     const Progress round = Part(progress, begin, end);
     begin = end;
     std::vector<Index> triangles = TrianglesAt(list, near, Part(round, 0.0, 0.1));
-    if (static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
+    if (border.IsPart || static_cast<Index>(triangles.size()) > list.Count / 3 * 2)
     {
       // Take all of them; this is then the last round.
       triangles = AllTriangles(list);
     }
-    const PartialMesh mesh(
-      list, measured.Border, atBorder, std::move(triangles), Part(round, 0.1, 0.3));
+    const PartialMesh mesh(list, border.Edges, border.Vertices, std::move(triangles),
+      Part(round, 0.1, 0.3), border.IsPart);
     std::vector<char> keepHere = mesh.FlagsOf(keep);
     // As a fraction of the least lake. Slivers, which were surface before, have hardly any area,
     // and their spacings are not known.
@@ -538,7 +547,7 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
     };
     DropSlivers(mesh.Surface, isSliver, keepHere, Part(round, 0.3, 0.4));
     if (std::find(keepHere.begin(), keepHere.end(), char(Surface)) == keepHere.end() &&
-      static_cast<Index>(mesh.Triangles.size()) == list.Count)
+      !border.IsPart && static_cast<Index>(mesh.Triangles.size()) == list.Count)
     {
       keepHere = mesh.FlagsOf(keep); // the surface is nothing but slivers
     }
@@ -551,7 +560,11 @@ void TraceSurface(const MeasuredTriangles& measured, const IdSet& atBorder,
       mesh.PutFlags(keepHere, keep);
       result.Vertices = BorderOf(mesh.Surface, keepHere, Part(round, 0.8, 1.0));
       ToIds(result.Vertices.Vertices, mesh.Surface.Ids.data(), Part(round, 1.0, 1.0));
-      return;
+      return true;
+    }
+    if (border.IsPart)
+    {
+      return false;
     }
     // In the next round, include more of these pieces.
     for (const Index vertex : unknown)
@@ -569,17 +582,44 @@ public:
     , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
     , IsAutomatic(!(options.GapTolerance > 0.0))
     , Tolerance(this->IsAutomatic ? DefaultTolerance : options.GapTolerance)
-    , AtBorder(this->Measured.List.Points.Count)
+    , Border{ this->Measured.Border, IdSet(this->Measured.List.Points.Count), false }
   {
     this->Result.GapTolerance = this->Tolerance;
   }
 
-  ExtractedBoundary Run(const Progress& progress)
+  /** For a part of a mesh. @param[in] numbers  of the ids of points, in the measured triangles */
+  OutlineSearch(MeasuredTriangles measured, const ExtractOptions& options, MeshOfParts&& mesh,
+    const std::vector<Index>& numbers)
+    : OutlineSearch(std::move(measured), options)
+  {
+    this->Border.IsPart = true;
+    this->Border.Edges = std::move(mesh.Border);
+    for (BorderEdge& edge : this->Border.Edges)
+    {
+      edge = { numbers[edge.Origin], numbers[edge.Destination] };
+    }
+    this->States = mesh.States.data();
+    this->NumberOfPoints = mesh.NumberOfPoints;
+    this->Spacings.Resize(this->Measured.List.Points.Count);
+    for (std::size_t id = 0; id < numbers.size(); ++id)
+    {
+      if (numbers[id] != None)
+      {
+        this->Spacings[numbers[id]] = mesh.Spacings[id];
+      }
+    }
+  }
+
+  /** @return nothing only if the triangles are a part of a mesh that does not tell the outline */
+  std::optional<ExtractedBoundary> Run(const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
     this->SortBorder(Part(progress, 0.0, 0.02));
     const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.15));
-    this->Spacings.Resize(list.Points.Count);
+    if (!this->Border.IsPart)
+    {
+      this->Spacings.Resize(list.Points.Count);
+    }
     this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
     const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.2, 0.32));
     Report(progress, 0.32);
@@ -589,18 +629,36 @@ public:
       std::clamp(20.0 * static_cast<double>(doubtful.size()) / list.Count, 0.6, 1.0);
     const double scaled = 0.32 + (this->IsAutomatic ? 0.25 * share : 0.0);
     const double decided = scaled + 0.25 * share + 0.03;
-    if (this->IsAutomatic)
+    if (this->IsAutomatic && this->Border.IsPart)
     {
-      this->Scales = FindScales(this->Measured, neighbors, this->AtBorder, this->CornersNear(doubtful),
-        this->Threads, Part(progress, 0.32, scaled), this->Spacings.data());
+      const IdSet lonely = this->LonelyWithin(neighbors, this->CornersNear(doubtful));
+      if (!AreFew(neighbors, lonely, list.Points.Count, this->PointsInBlocks()))
+      {
+        return std::nullopt;
+      }
+    }
+    else if (this->IsAutomatic)
+    {
+      this->Scales =
+        FindScales(this->Measured, neighbors, this->Border.Vertices, this->CornersNear(doubtful),
+          this->Threads, Part(progress, 0.32, scaled), this->Spacings.data());
       this->Result.GapTolerance *= this->TypicalScale();
     }
-    this->FindSpacingsOf(doubtful, neighbors, Part(progress, scaled, decided - 0.03));
+    if (!this->FindSpacingsOf(doubtful, neighbors, Part(progress, scaled, decided - 0.03)))
+    {
+      return std::nullopt;
+    }
     this->Decide(doubtful, Part(progress, decided - 0.03, decided));
-    TraceSurface(
-      this->Measured, this->AtBorder, [&](Index t) { return this->ToleranceOf(t); },
-      this->CornersNear(doubtful), Part(progress, decided, 0.97), this->Result);
-    this->MeasureLoss(neighbors, Part(progress, 0.97, 1.0));
+    if (!TraceSurface(
+          this->Measured, this->Border, [&](Index t) { return this->ToleranceOf(t); },
+          this->CornersNear(doubtful), Part(progress, decided, 0.97), this->Result))
+    {
+      return std::nullopt;
+    }
+    if (!this->MeasureLoss(neighbors, Part(progress, 0.97, 1.0)))
+    {
+      return std::nullopt;
+    }
     if (this->Measured.Ids.size() > 0)
     {
       ToIds(this->Result.Vertices.Vertices, this->Measured.Ids.data(), Part(progress, 1.0, 1.0));
@@ -609,28 +667,189 @@ public:
     return std::move(this->Result);
   }
 
+  /** FindPartOfOutline() */
+  PartOfOutline FindPart(int margin, const Progress& progress)
+  {
+    const TriangleList& list = this->Measured.List;
+    const IdSet& border = this->Border.Vertices;
+    this->SortBorder(Part(progress, 0.0, 0.02));
+    const Neighbors neighbors(this->Measured, Part(progress, 0.02, 0.15));
+    this->Spacings.Resize(list.Points.Count);
+    this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
+    for (const Index t : TrianglesAt(list, border, Part(progress, 0.2, 0.25)))
+    {
+      this->Result.IsSurface[t] = Outside; // not all edges are known there
+    }
+    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.25, 0.4));
+    const IdSet lonely = this->IsAutomatic
+      ? LonelyVertices(neighbors, this->CornersNear(doubtful), list.Points.Count)
+      : IdSet(0);
+    IdSet near(list.Points.Count);
+    for (const Index v : lonely.List())
+    {
+      near.Add(v);
+    }
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    std::fill(this->Spacings.begin(), this->Spacings.end(), unknown);
+    FindSpacings(list, neighbors, CornersOf(list, doubtful, Part(progress, 0.4, 0.45)),
+      this->Threads, Part(progress, 0.45, 0.6), this->Spacings.data(), &border);
+    // Of groups that reach the border, other parts may have more.
+    std::vector<char> isInside(list.Count, 0);
+    const auto nothing = [](Index) { return 0.0; };
+    DropSmallGroups(list, border, doubtful, nothing, isInside, Part(progress, 0.6, 0.65));
+    std::vector<Known> states(list.Count, Known::Surface);
+    for (const Index t : doubtful)
+    {
+      states[t] = !isInside[t]        ? Known::Nothing
+        : this->IsSurfaceBySpacing(t) ? Known::SurfaceBySpacing
+                                      : Known::Doubtful;
+      // What is at the border is taken in any case.
+      if (states[t] > Known::SurfaceBySpacing && !border.HasAny(list.CornersOf(t)))
+      {
+        near.AddAll(list.CornersOf(t));
+      }
+    }
+    return this->PartNear(near, margin, states, Part(progress, 0.65, 1.0));
+  }
+
 private:
   void SortBorder(const Progress& progress)
   {
-    std::vector<BorderEdge>& border = this->Measured.Border;
+    std::vector<BorderEdge>& border = this->Border.Edges;
     Sort(border.begin(), border.end(), std::less<BorderEdge>(), progress);
     for (const BorderEdge& edge : border)
     {
-      this->AtBorder.Add(edge.Origin);
-      this->AtBorder.Add(edge.Destination);
+      this->Border.Vertices.Add(edge.Origin);
+      this->Border.Vertices.Add(edge.Destination);
+    }
+    if (!this->Border.IsPart)
+    {
+      this->Measured.Border = border;
+      return;
+    }
+    this->Ends = IdSet(this->Measured.List.Points.Count);
+    for (const BorderEdge& edge : this->Measured.Border)
+    {
+      if (!std::binary_search(border.begin(), border.end(), edge))
+      {
+        this->Ends.Add(edge.Origin);
+        this->Ends.Add(edge.Destination);
+      }
     }
   }
 
-  /** Finds the spacings at the corners of triangles. */
-  void FindSpacingsOf(
+  /** Of a triangle of a part; false if a corner's spacing depends on other parts. */
+  bool IsSurfaceBySpacing(Index t) const
+  {
+    const Index* const corners = this->Measured.List.CornersOf(t);
+    const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
+    return std::all_of(corners, corners + 3, isKnown) && !this->Border.Vertices.HasAny(corners) &&
+      std::sqrt(this->Measured.Longest[t]) <= this->ToleranceOf(t);
+  }
+
+  /** Adds the vertices that are up to some edges away. */
+  void Widen(int edges, const Progress& progress, IdSet& vertices) const
+  {
+    const TriangleList& list = this->Measured.List;
+    for (int step = 0; step < edges; ++step)
+    {
+      for (const Index t : TrianglesAt(list, vertices, progress))
+      {
+        vertices.AddAll(list.CornersOf(t));
+      }
+    }
+  }
+
+  /** What is around the border and some vertices, for FindPart(). */
+  PartOfOutline PartNear(
+    const IdSet& vertices, int margin, const std::vector<Known>& states, const Progress& progress)
+  {
+    const TriangleList& list = this->Measured.List;
+    constexpr int around = 3;
+    IdSet near = this->Border.Vertices, both(list.Points.Count);
+    this->Widen(margin - around, Progress(), near);
+    Report(progress, 0.4);
+    near.Add(vertices, both);
+    this->Widen(around, Progress(), near);
+    PartOfOutline part;
+    part.Triangles = TrianglesAt(list, near, Part(progress, 0.7, 0.9));
+    for (const Index t : part.Triangles)
+    {
+      part.States.push_back(states[t]);
+    }
+    part.NumberOfInnerPoints = this->NumberOfCorners() - this->Border.Vertices.Count();
+    part.Border = std::move(this->Border.Edges);
+    const Buffer<Index>& ids = this->Measured.Ids;
+    for (BorderEdge& edge : part.Border)
+    {
+      edge = { ids[edge.Origin], ids[edge.Destination] };
+    }
+    part.Spacings.assign(ids.size(), std::numeric_limits<double>::quiet_NaN());
+    for (Index v = 0; v < list.Points.Count; ++v)
+    {
+      if (ids[v] != None)
+      {
+        part.Spacings[ids[v]] = this->Spacings[v];
+      }
+    }
+    return part;
+  }
+
+  /** The lonely vertices of a mesh; not where the triangles taken of it end. */
+  IdSet LonelyWithin(const Neighbors& neighbors, IdSet near) const
+  {
+    const TriangleList& list = this->Measured.List;
+    for (Index t = 0; t < list.Count; ++t)
+    {
+      if (this->States[t] == Known::SurfaceBySpacing)
+      {
+        near.AddAll(list.CornersOf(t));
+      }
+    }
+    IdSet within(list.Points.Count);
+    for (const Index v : LonelyVertices(neighbors, near, list.Points.Count).List())
+    {
+      if (!this->Ends.Has(v))
+      {
+        within.Add(v);
+      }
+    }
+    return within;
+  }
+
+  std::int64_t NumberOfCorners() const
+  {
+    return std::count_if(this->Measured.Degrees.begin(), this->Measured.Degrees.end(),
+      [](std::uint32_t degree) { return degree > 0; });
+  }
+
+  /** The number of points of the mesh as a sweep over all triangles counts them. */
+  Index PointsInBlocks() const
+  {
+    const std::int64_t blocks = (this->NumberOfPoints + VerticesAtOnce - 1) / VerticesAtOnce;
+    return static_cast<Index>(
+      std::min<std::int64_t>(blocks * VerticesAtOnce, std::numeric_limits<Index>::max()));
+  }
+
+  /**
+   * Finds the spacings at the corners of triangles.
+   * @return false if the triangles are a part of a mesh that does not tell one
+   */
+  bool FindSpacingsOf(
     const std::vector<Index>& triangles, const Neighbors& neighbors, const Progress& progress)
   {
     Report(progress, 0.0);
     const TriangleList& list = this->Measured.List;
-    const std::vector<Index> corners = CornersOf(list, triangles, Part(progress, 0.0, 0.1));
-    FindSpacings(
-      list, neighbors, corners, this->Threads, Part(progress, 0.1, 1.0), this->Spacings.data());
+    std::vector<Index> corners = CornersOf(list, triangles, Part(progress, 0.0, 0.1));
+    const auto isKnown = [this](Index v) { return !std::isnan(this->Spacings[v]); };
+    if (this->Border.IsPart)
+    {
+      corners.erase(std::remove_if(corners.begin(), corners.end(), isKnown), corners.end());
+    }
+    FindSpacings(list, neighbors, corners, this->Threads, Part(progress, 0.1, 1.0),
+      this->Spacings.data(), this->Border.IsPart ? &this->Ends : nullptr);
     Report(progress, 1.0);
+    return !this->Border.IsPart || std::all_of(corners.begin(), corners.end(), isKnown);
   }
 
   /** The scale of the median vertex. */
@@ -651,8 +870,7 @@ private:
     {
       // Not at once, as the largest spacing replaces the median.
       const double scale = this->Scales[corners[k]];
-      spacing =
-        std::max(spacing, std::min(1.0, scale - 1.0) * scale * this->Spacings[corners[k]]);
+      spacing = std::max(spacing, std::min(1.0, scale - 1.0) * scale * this->Spacings[corners[k]]);
     }
     return this->Tolerance * spacing;
   }
@@ -686,7 +904,8 @@ private:
         Prefetch(&shortSpacings[ahead[1]]);
         Prefetch(&shortSpacings[ahead[2]]);
         const double length = limit * SpacingOf(shortSpacings, list.CornersOf(t));
-        keep[t] = longest[t] <= length * length;
+        keep[t] = longest[t] <= length * length ||
+          (this->States && this->States[t] <= Known::SurfaceBySpacing);
       }
     };
     constexpr Index atOnce = 1 << 13;
@@ -698,13 +917,14 @@ private:
   {
     const TriangleList& list = this->Measured.List;
     std::vector<char>& keep = this->Result.IsSurface;
-    std::vector<Index> doubtful;
+    std::vector<Index> doubtful, inGroups; // the groups of the others are known
     ForEachStretch(list.Count, Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
       for (Index t = begin; t < end; ++t)
       {
         if (!keep[t])
         {
-          doubtful.push_back(t);
+          const bool isKnown = this->States && this->States[t] == Known::Doubtful;
+          (isKnown ? doubtful : inGroups).push_back(t);
         }
       }
     });
@@ -712,13 +932,17 @@ private:
       const double spacing = SpacingOf(this->Measured.ShortSpacings, list.CornersOf(t));
       return list.ShareOfSquare(t, SmallGroup * this->Tolerance * spacing);
     };
-    return DropSmallGroups(list, this->AtBorder, doubtful, shareOf, keep, Part(progress, 0.2, 1.0));
+    const std::vector<Index> others = DropSmallGroups(
+      list, this->Border.Vertices, inGroups, shareOf, keep, Part(progress, 0.2, 1.0));
+    const auto middle = doubtful.insert(doubtful.end(), others.begin(), others.end());
+    std::inplace_merge(doubtful.begin(), middle, doubtful.end());
+    return doubtful;
   }
 
   /** The corners of triangles that are not surface, and those at the border. */
   IdSet CornersNear(const std::vector<Index>& triangles) const
   {
-    IdSet near = this->AtBorder;
+    IdSet near = this->Border.Vertices;
     for (const Index t : triangles)
     {
       if (this->Result.IsSurface[t] != Surface)
@@ -744,8 +968,11 @@ private:
     });
   }
 
-  /** Finds what is left out, and if it is much, the tolerance that would keep it. */
-  void MeasureLoss(const Neighbors& neighbors, const Progress& progress)
+  /**
+   * Finds what is left out, and if it is much, the tolerance that would keep it.
+   * @return false as FindSpacingsOf()
+   */
+  bool MeasureLoss(const Neighbors& neighbors, const Progress& progress)
   {
     const TriangleList& list = this->Measured.List;
     const std::vector<char>& keep = this->Result.IsSurface;
@@ -758,21 +985,25 @@ private:
     }
     const IdSet leftOut = CornersLeftOut(list, outward, keep, Part(progress, 0.0, 0.6));
     this->Result.NumberOfPointsLeftOut = leftOut.Count();
-    const double all = AreaOf(list, this->Measured.Border);
+    const double all = AreaOf(list, this->Border.Edges);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
-    const double points = static_cast<double>(std::count_if(this->Measured.Degrees.begin(),
-      this->Measured.Degrees.end(), [](std::uint32_t degree) { return degree > 0; }));
+    const double points =
+      static_cast<double>(this->Border.IsPart ? this->NumberOfPoints : this->NumberOfCorners());
     this->Result.PointsLeftOut = this->Result.NumberOfPointsLeftOut / points;
-    if (this->Result.LeavesOutMuch())
+    if (!this->Result.LeavesOutMuch())
     {
-      this->FindSpacingsOf(outward, neighbors, Part(progress, 0.6, 1.0));
-      this->Result.KeepingTolerance = this->ToleranceToKeep(outward, leftOut, all);
+      return true;
     }
+    if (!this->FindSpacingsOf(outward, neighbors, Part(progress, 0.6, 1.0)))
+    {
+      return false;
+    }
+    this->Result.KeepingTolerance = this->ToleranceToKeep(outward, leftOut, all);
+    return true;
   }
 
   /** The tolerance at which all points belong to triangles within it, and half of the area does. */
-  double ToleranceToKeep(
-    const std::vector<Index>& outward, const IdSet& leftOut, double all) const
+  double ToleranceToKeep(const std::vector<Index>& outward, const IdSet& leftOut, double all) const
   {
     const TriangleList& list = this->Measured.List;
     std::vector<std::pair<double, Index>> ratios;
@@ -802,9 +1033,12 @@ private:
   const int Threads;
   const bool IsAutomatic;
   const double Tolerance; ///< at scale 1
-  IdSet AtBorder;
-  Buffer<double> Spacings;   ///< one per vertex, set where it was needed
-  std::vector<float> Scales; ///< one per vertex, or none
+  BorderOfMesh Border;
+  const Known* States = nullptr;   ///< one per triangle, if they are a part of a mesh
+  std::int64_t NumberOfPoints = 0; ///< of that mesh
+  IdSet Ends{ 0 };                 ///< vertices that have more triangles in it
+  Buffer<double> Spacings;         ///< one per vertex, set where it was needed
+  std::vector<float> Scales;       ///< one per vertex, or none
   ExtractedBoundary Result;
 };
 
@@ -812,7 +1046,51 @@ private:
 
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options)
 {
-  return OutlineSearch(std::move(measured), options).Run(options.Monitor);
+  return *OutlineSearch(std::move(measured), options).Run(options.Monitor);
+}
+
+bool FindPartOfOutline(
+  const TriangleList& list, int margin, const ExtractOptions& options, PartOfOutline& part)
+{
+  part = PartOfOutline();
+  part.Spacings.assign(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
+  MeasuredTriangles measured;
+  if (list.Count == 0)
+  {
+    return true;
+  }
+  if (!MeasureBySweep(list, options.NumberOfThreads, Part(options.Monitor, 0.0, 0.5), measured))
+  {
+    return false;
+  }
+  part =
+    OutlineSearch(std::move(measured), options).FindPart(margin, Part(options.Monitor, 0.5, 1.0));
+  return true;
+}
+
+std::optional<ExtractedBoundary> FindOutlineOfParts(
+  const TriangleList& list, MeshOfParts&& mesh, const ExtractOptions& options)
+{
+  MeasuredTriangles measured;
+  if (list.Count == 0 ||
+    !MeasureBySweep(list, options.NumberOfThreads, Part(options.Monitor, 0.0, 0.3), measured))
+  {
+    return std::nullopt;
+  }
+  const Progress finding = Part(options.Monitor, 0.3, 1.0);
+  if (list.Count == mesh.NumberOfTriangles)
+  {
+    return OutlineSearch(std::move(measured), options).Run(finding);
+  }
+  std::vector<Index> numbers(list.Points.Count, None);
+  for (std::size_t i = 0; i < measured.Ids.size(); ++i)
+  {
+    if (static_cast<Index>(i) < measured.List.Points.Count && measured.Ids[i] != None)
+    {
+      numbers[measured.Ids[i]] = static_cast<Index>(i);
+    }
+  }
+  return OutlineSearch(std::move(measured), options, std::move(mesh), numbers).Run(finding);
 }
 
 ExtractedBoundary ExtractBoundary(const Mesh& mesh, const ExtractOptions& options)

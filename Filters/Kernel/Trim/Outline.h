@@ -10,9 +10,11 @@
 #ifndef elevation_Trim_Outline_h
 #define elevation_Trim_Outline_h
 
-#include "MeasuredTriangles.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "MeasuredTriangles.h"
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace elevation
@@ -43,6 +45,59 @@ struct ExtractedBoundary
   /** Probably more than the user meant. */
   bool LeavesOutMuch() const { return this->PointsLeftOut > 0.05 || this->AreaLeftOut > 0.5; }
 };
+
+/** What is known of a triangle of a part of a mesh. */
+enum class Known : char
+{
+  Surface,          ///< by the cheaper test
+  SurfaceBySpacing, ///< as the cheaper test has left it in doubt
+  Doubtful,         ///< if it is surface, then by spacings
+  Nothing
+};
+
+/** The triangles of a part of a mesh that tell, with those of the other parts, the outline of all. */
+struct PartOfOutline
+{
+  std::vector<Index> Triangles;         ///< increasing; all others are surface
+  std::vector<Known> States;            ///< one per triangle
+  std::vector<double> Spacings;         ///< one per point of the part; NaN: not known
+  std::vector<BorderEdge> Border;       ///< of the part
+  std::int64_t NumberOfInnerPoints = 0; ///< corners that are not at the border of the part
+};
+
+/** What FindOutlineOfParts() needs to know of the mesh. */
+struct MeshOfParts
+{
+  const std::vector<Known>& States;    ///< one per triangle of the list
+  const std::vector<double>& Spacings; ///< one per point of the list; NaN: not known
+  std::vector<BorderEdge> Border;      ///< of the mesh
+  std::int64_t NumberOfPoints;         ///< corners of all triangles of the mesh
+  std::int64_t NumberOfTriangles;      ///< of the mesh
+};
+
+/**
+ * For parts of a mesh that are in different places: what ExtractBoundary() needs to see of each.
+ *   1. Triangles are tested, and spacings found, where all is known: away from the border.
+ *   2. All triangles are taken at vertices up to three edges away from triangles that are not
+ *      surface: so far slivers reach, and what is beside them. The same at lonely vertices (Scales.h).
+ *   3. All triangles are taken some edges around the border of the part.
+ * If the tolerance is chosen from the data, all scales are taken for 1.
+ * @param[in] margin  how many edges: three and more. The search for the 6th nearest vertex seldom
+ *                    goes farther than four; at the end of a line of points as far as seven.
+ * @return false if the sweep fails: the triangles are not proven to be part of a mesh
+ * @throws Aborted, std::bad_alloc
+ */
+bool FindPartOfOutline(
+  const TriangleList& list, int margin, const ExtractOptions& options, PartOfOutline& part);
+
+/**
+ * ExtractBoundary() for the triangles that FindPartOfOutline() has taken of all parts of a mesh.
+ * @return nothing if the sweep fails, or these triangles do not tell the outline: the margin is too
+ *         small, there are points whose scale is not 1, or pieces that look too small
+ * @throws Aborted, std::bad_alloc
+ */
+std::optional<ExtractedBoundary> FindOutlineOfParts(
+  const TriangleList& list, MeshOfParts&& mesh, const ExtractOptions& options);
 
 /** ExtractBoundary() for measured triangles, at least one. */
 ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& options);

@@ -43,12 +43,12 @@ std::vector<Index> CornersOf(
 }
 
 PartialMesh::PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
-  const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress)
+  const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress, bool isPart)
   : Surface(SubMesh(list, triangles, Part(progress, 0.0, 0.5)))
   , Triangles(std::move(triangles))
 {
   this->Surface.ConnectTwins(0, Part(progress, 0.5, 0.8));
-  if (static_cast<Index>(this->Triangles.size()) == list.Count)
+  if (!isPart && static_cast<Index>(this->Triangles.size()) == list.Count)
   {
     return; // nothing is left out
   }

@@ -29,13 +29,15 @@ std::vector<Index> CornersOf(
 struct PartialMesh
 {
   /**
-   * @param[in] border     of the list; sorted
+   * @param[in] border     of the list, or of the mesh that it is a part of; sorted
    * @param[in] atBorder   its vertices
    * @param[in] triangles  to take; increasing
+   * @param[in] isPart     whether the list is only a part of a mesh
    * @throws Aborted, std::bad_alloc
    */
   PartialMesh(const TriangleList& list, const std::vector<BorderEdge>& border,
-    const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress);
+    const IdSet& atBorder, std::vector<Index> triangles, const Progress& progress,
+    bool isPart = false);
 
   Mesh Surface;
   const std::vector<Index> Triangles; ///< their ids in the list

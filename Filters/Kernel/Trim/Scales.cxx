@@ -36,25 +36,6 @@ double Reached(double value, double asked)
   return std::max(0.0, std::min(1.0, 2.0 * value / asked - 1.0));
 }
 
-/** The vertices near the border of the surface whose neighbours are all near it. */
-IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count)
-{
-  IdSet lonely(count);
-  for (Index v = 0; v < count; ++v)
-  {
-    if (near.Has(v))
-    {
-      const Index* const begin = neighbors.Ids.data() + neighbors.Offsets[v];
-      const Index* const end = neighbors.Ids.data() + neighbors.Offsets[v + 1];
-      if (begin != end && std::all_of(begin, end, [&](Index w) { return near.Has(w); }))
-      {
-        lonely.Add(v);
-      }
-    }
-  }
-  return lonely;
-}
-
 /** Whether enough vertices of a set are connected by edges. */
 bool HasGroup(const Neighbors& neighbors, const IdSet& vertices, Index count, std::size_t enough)
 {
@@ -531,13 +512,36 @@ private:
 
 } // namespace
 
+IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count)
+{
+  IdSet lonely(count);
+  for (Index v = 0; v < count; ++v)
+  {
+    if (near.Has(v))
+    {
+      const Index* const begin = neighbors.Ids.data() + neighbors.Offsets[v];
+      const Index* const end = neighbors.Ids.data() + neighbors.Offsets[v + 1];
+      if (begin != end && std::all_of(begin, end, [&](Index w) { return near.Has(w); }))
+      {
+        lonely.Add(v);
+      }
+    }
+  }
+  return lonely;
+}
+
+bool AreFew(const Neighbors& neighbors, const IdSet& lonely, Index count, Index numberOfPoints)
+{
+  return lonely.Count() <= numberOfPoints / ManyLonely &&
+    !HasGroup(neighbors, lonely, count, LonelyGroup);
+}
+
 std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors& neighbors,
   const IdSet& atBorder, const IdSet& near, int threads, const Progress& progress, double* spacings)
 {
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
-  const IdSet lonely = LonelyVertices(neighbors, near, count);
-  if (lonely.Count() <= count / ManyLonely && !HasGroup(neighbors, lonely, count, LonelyGroup))
+  if (AreFew(neighbors, LonelyVertices(neighbors, near, count), count, count))
   {
     return {};
   }

@@ -42,13 +42,23 @@
 #ifndef elevation_Trim_Scales_h
 #define elevation_Trim_Scales_h
 
-#include "Spacings.h"
 #include "Kernel/Base/Base.h"
+#include "Spacings.h"
 
 #include <vector>
 
 namespace elevation
 {
+
+/** The vertices near the border of the surface whose neighbours are all near it. */
+IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count);
+
+/**
+ * Whether there are too few lonely vertices for any scale but 1.
+ * @param[in] count           of the vertices with neighbours
+ * @param[in] numberOfPoints  of the mesh, which may be more
+ */
+bool AreFew(const Neighbors& neighbors, const IdSet& lonely, Index count, Index numberOfPoints);
 
 /**
  * Finds the scales.

@@ -60,9 +60,10 @@ namespace
 class NearestVertices
 {
 public:
-  NearestVertices(const TriangleList& list, const Neighbors& neighbors)
+  NearestVertices(const TriangleList& list, const Neighbors& neighbors, const IdSet* incomplete)
     : List(list)
     , Around(neighbors)
+    , Incomplete(incomplete)
     , Known(Places, ~std::uint64_t(0))
   {
   }
@@ -92,6 +93,7 @@ public:
   {
     this->Vertex = v;
     this->Place = this->List.Points.At(v);
+    this->IsCut = false;
     std::fill_n(this->Nearest, NeighborOfSpacing,
       Candidate{ std::numeric_limits<double>::infinity(), None, false });
     this->Known[static_cast<std::uint32_t>(v) % Places] = KeyOf(v, v);
@@ -102,7 +104,8 @@ public:
     {
       --k; // fewer than six were reached
     }
-    return SpacingPerNeighborDistance * std::sqrt(this->Nearest[k].Squared);
+    return this->IsCut ? std::numeric_limits<double>::quiet_NaN()
+                       : SpacingPerNeighborDistance * std::sqrt(this->Nearest[k].Squared);
   }
 
 private:
@@ -120,6 +123,7 @@ private:
   /** Expands a vertex: adds its neighbours that are near enough. */
   void Expand(Index expanded)
   {
+    this->IsCut = this->IsCut || (this->Incomplete && this->Incomplete->Has(expanded));
     const std::uint32_t first = this->Around.Offsets[expanded];
     const std::uint32_t size = this->Around.Offsets[expanded + 1] - first;
     if (expanded != this->Vertex && size > NeighborsOfHub)
@@ -209,6 +213,8 @@ private:
 
   const TriangleList& List;
   const Neighbors& Around;
+  const IdSet* const Incomplete;
+  bool IsCut = false; ///< an incomplete vertex has been expanded
   Index Vertex = None;
   Point2 Place{ 0.0, 0.0 };
   Candidate Nearest[NeighborOfSpacing];
@@ -221,11 +227,12 @@ private:
 } // namespace
 
 void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
-  const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings)
+  const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings,
+  const IdSet* incomplete)
 {
   constexpr Index atOnce = 1 << 11;
   const auto find = [&](Index, Index begin, Index end) {
-    NearestVertices search(list, neighbors);
+    NearestVertices search(list, neighbors, incomplete);
     for (Index place = begin; place < end; ++place)
     {
       search.Prepare([&](Index steps) { return wanted[std::min(place + steps, end - 1)]; });

@@ -15,6 +15,7 @@
 #ifndef elevation_Trim_Spacings_h
 #define elevation_Trim_Spacings_h
 
+#include "Kernel/Base/Base.h"
 #include "MeasuredTriangles.h"
 
 #include <vector>
@@ -45,10 +46,13 @@ struct Neighbors
  * Finds the spacing at some vertices.
  * @param[in]  wanted    the vertices; faster if near ones come close together
  * @param[out] spacings  one per vertex; only those of the wanted ones are set
+ * @param[in]  incomplete  vertices of which not all neighbours are known, if any: a spacing for
+ *                         which one of them has to be expanded is NaN
  * @throws Aborted; std::bad_alloc
  */
 void FindSpacings(const TriangleList& list, const Neighbors& neighbors,
-  const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings);
+  const std::vector<Index>& wanted, int threads, const Progress& progress, double* spacings,
+  const IdSet* incomplete = nullptr);
 
 } // namespace elevation
 

@@ -122,10 +122,9 @@ void CheckEnclosed(const TriangleList& list, const std::vector<char>& isOutward,
   }
   const Box ofMesh = FindExtent(list.Points, 1, Progress(), [](Index, const Point2&) {});
   throw Error("The boundary encloses no triangle of the mesh. " +
-    (box.Intersects(ofMesh)
-        ? "Its first ring begins at " + NameOf(points[rings.Vertices.front()]) +
+    (box.Intersects(ofMesh) ? "Its first ring begins at " + NameOf(points[rings.Vertices.front()]) +
           (rings.Count() > 1 ? "; of rings in each other, what lies between two is enclosed." : ".")
-        : "It is at " + NameOf(box) + ", the mesh at " + NameOf(ofMesh) +
+                            : "It is at " + NameOf(box) + ", the mesh at " + NameOf(ofMesh) +
           ": are both in the same coordinates?"));
 }
 
@@ -207,22 +206,45 @@ std::string LossOf(const ExtractedBoundary& found, bool all)
   return text.str();
 }
 
+ExtractOptions ExtractionOf(const TrimOptions& options, const Progress& progress)
+{
+  ExtractOptions extraction;
+  extraction.GapTolerance = options.GapTolerance;
+  extraction.NumberOfThreads = options.NumberOfThreads;
+  extraction.Monitor = progress;
+  return extraction;
+}
+
+std::vector<char> OutwardOf(std::vector<char>&& isSurface)
+{
+  std::vector<char> isOutward = std::move(isSurface);
+  for (char& flag : isOutward)
+  {
+    flag = !flag;
+  }
+  return isOutward;
+}
+
+/** What is told of an outline, which has a ring; all but the flags of triangles. */
+void TakeOutline(ExtractedBoundary&& found, Trimmed& result)
+{
+  result.Boundary = std::move(found.Vertices);
+  result.GapTolerance = found.GapTolerance;
+  result.NumberOfPointsLeftOut = found.NumberOfPointsLeftOut;
+  result.Loss = found.LeavesOutMuch() ? LossOf(found, false) : std::string();
+}
+
 /** Trims along the extracted outline. */
 void TrimExtracted(const TriangleList& list, const TrimOptions& options, const Progress& progress,
   Changes& changes, Trimmed& result)
 {
   const bool isExact = options.Test == OutwardTest::Exact;
-  ExtractOptions extraction;
-  extraction.GapTolerance = options.GapTolerance;
-  extraction.NumberOfThreads = options.NumberOfThreads;
   MeasuredTriangles measured;
   ExtractedBoundary found;
   Mesh mesh; // of all triangles, if the sweep fails
   if (isExact && MeasureBySweep(list, options.NumberOfThreads, Part(progress, 0.0, 0.6), measured))
   {
-    const Progress finding = Part(progress, 0.6, 1.0);
-    extraction.Monitor = finding;
-    found = FindOutline(std::move(measured), extraction);
+    found = FindOutline(std::move(measured), ExtractionOf(options, Part(progress, 0.6, 1.0)));
   }
   else
   {
@@ -230,25 +252,17 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
     // After a sweep that failed, or from the start.
     const double begin = isExact ? 0.6 : 0.0, proven = isExact ? 0.7 : 0.45;
     mesh = ProvenMesh(list, options.NumberOfThreads, Part(progress, begin, proven));
-    const Progress finding = Part(progress, proven, 0.9);
-    extraction.Monitor = finding;
-    found = ExtractBoundary(mesh, extraction);
+    found = ExtractBoundary(mesh, ExtractionOf(options, Part(progress, proven, 0.9)));
   }
-  result.Boundary = std::move(found.Vertices);
-  result.GapTolerance = found.GapTolerance;
-  result.NumberOfPointsLeftOut = found.NumberOfPointsLeftOut;
-  if (result.Boundary.Count() == 0)
+  if (found.Vertices.Count() == 0)
   {
     throw Error(LossOf(found, true));
   }
-  result.Loss = isExact && found.LeavesOutMuch() ? LossOf(found, false) : std::string();
-  std::vector<char> isOutward = std::move(found.IsSurface);
-  for (char& flag : isOutward)
-  {
-    flag = !flag;
-  }
+  TakeOutline(std::move(found), result);
+  std::vector<char> isOutward = OutwardOf(std::move(found.IsSurface));
   if (!isExact)
   {
+    result.Loss.clear();
     OutwardTriangles outward =
       FindOutward(mesh, result.Boundary, options.RecoverBoundary, Part(progress, 0.9, 0.95));
     isOutward = std::move(outward.IsOutward);
@@ -364,6 +378,24 @@ Trimmed Trim(
   {
     TrimExtracted(triangles, options, finding, changes, result);
   }
+  WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
+  Report(options.Monitor, 1.0);
+  return result;
+}
+
+std::optional<Trimmed> TrimParts(
+  const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options)
+{
+  std::optional<ExtractedBoundary> found = FindOutlineOfParts(
+    triangles, std::move(mesh), ExtractionOf(options, Part(options.Monitor, 0.0, 0.95)));
+  if (!found || found->Vertices.Count() == 0)
+  {
+    return std::nullopt;
+  }
+  Trimmed result;
+  TakeOutline(std::move(*found), result);
+  Changes changes;
+  changes.IsOutward = OutwardOf(std::move(found->IsSurface));
   WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
   Report(options.Monitor, 1.0);
   return result;

@@ -25,8 +25,10 @@
 #include "Insertion.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "NearTriangles.h"
+#include "Outline.h"
 #include "Rings.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -92,6 +94,15 @@ struct Trimmed
  */
 Trimmed Trim(
   const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options);
+
+/**
+ * Trim() along the extracted outline of a mesh, for the triangles that FindPartOfOutline() has taken
+ * of all its parts. The other triangles are inside.
+ * @return nothing where FindOutlineOfParts() returns nothing, or no triangle is surface
+ * @throws Aborted; std::bad_alloc
+ */
+std::optional<Trimmed> TrimParts(
+  const TriangleList& triangles, MeshOfParts&& mesh, const TrimOptions& options);
 
 } // namespace elevation
 
