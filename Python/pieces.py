@@ -48,14 +48,14 @@ OF_THE_WHOLE = ("faults", "maximum_edge_length", "grid", "contours", "outlines",
 
 def memory_size(text):
     """2G, 1.5G, 800M -> bytes"""
-    found = re.fullmatch(r"([0-9]*\.?[0-9]+)([KMGT]?)B?", text.strip().upper())
+    found = re.fullmatch(r"([0-9]*\.?[0-9]+)([KMGT]?)(I?B)?", text.strip().upper())
     size = float(found.group(1)) * UNITS[found.group(2)] if found else 0.0
     if not 1.5 * BYTES_BESIDES <= size < math.inf:
         raise ValueError
     return size
 
 
-MEMORY = f"a size of at least {1.5 * BYTES_BESIDES / 1e6:g}M, as 2G"
+MEMORY = f"a size of at least {1.5 * BYTES_BESIDES / 1e6:g}M, such as 2G"
 
 
 def pieces_within(memory, points):
@@ -92,6 +92,14 @@ def check_files(options):
 def folder_of(output):
     """Where the pieces are: survey_surface of survey_surface.vtpd."""
     return os.path.splitext(output)[0]
+
+
+def remove_older(folder, names):
+    """Removes the pieces of an earlier run with this output, which may have had more of them."""
+    base = os.path.basename(folder)
+    for name in os.listdir(folder):
+        if re.fullmatch(re.escape(base) + r"_[0-9]+\.vtp", name) and f"{base}/{name}" not in names:
+            os.remove(os.path.join(folder, name))
 
 
 @contextlib.contextmanager
@@ -173,6 +181,7 @@ class Pieces:
             if options.report:
                 run.results.add(options.report, lambda path: write_report(path, report))
             run.results.publish()
+            remove_older(folder_of(options.output), names)
         return report
 
     def check(self):

@@ -14,13 +14,15 @@ from .formats import FORMATS, recognise
 from .nulls import usual_nulls, zero_rows
 from .unpacking import unpacked
 
+MOST_SEEN = 20_000  # points of earlier slices that are kept, to tell nulls in later ones
+
 
 def check_sliced(path, kind):
     """Refuses a kind of file that is only read as a whole."""
     if not kind.slices:
         names = sorted({other.name for other in FORMATS if other.slices})
         raise FileError(
-            f"{path}: {kind.name} is read as a whole, not in pieces: that can be {', '.join(names)}"
+            f"{path}: {kind.name} cannot be read in pieces; {', '.join(names)} can"
         )
 
 
@@ -39,12 +41,14 @@ def read_slices(path, cloud, **options):
         check_use(local, kind, options)
         check_sliced(local, kind)
         cloud.notes += notes
-        count = 0
+        count, seen = 0, numpy.empty((0, 3))
         for points in kind.slice_reader()(local, options, cloud):
             if options.no_data is not None:
                 points = with_data(points, options.no_data, cloud, "points without data")
             if len(points) and not options.keep_nulls:
-                check_nulls(local, points)
+                check_nulls(local, numpy.concatenate((seen, points)))
+                seen = numpy.concatenate((seen, points[:: max(1, len(points) // 100)]))
+                seen = seen[:: 1 + len(seen) // MOST_SEEN]
             if options.depth:
                 points = points * (1.0, 1.0, -1.0)
             count += len(points)
@@ -57,14 +61,17 @@ def read_slices(path, cloud, **options):
 
 @numpy.errstate(all="ignore")
 def check_nulls(path, points):
-    """Refuses points of which some have a usual null value that stands apart from the others."""
+    """Refuses points of which some have a usual null value that stands apart from the others.
+
+    points  of a slice, with some of those before it: a slice may have nothing but nulls
+    """
     axes = [numpy.ascontiguousarray(points[:, i]) for i in range(3)]
     for axis, name in ((2, "z"), (0, "x"), (1, "y")):
         for value, found in usual_nulls(axes[axis], is_place=axis < 2):
             advice = f"--no-data {value:.9g} leaves such points out, " if axis == 2 else ""
             raise FileError(
-                f"{path}: {name} = {value:.9g} of {counted(numpy.count_nonzero(found), 'point')} "
-                f"looks like a null value: {advice}--keep-nulls keeps them"
+                f"{path}: {name} = {value:.9g}, of {counted(numpy.count_nonzero(found), 'point')} or "
+                f"more, looks like a null value: {advice}--keep-nulls keeps them"
             )
     if zero_rows(*axes).any():
         raise FileError(

@@ -454,11 +454,22 @@ class Slices(InFolder):
     def test_null_values_are_an_error_that_names_the_options(self):
         rows = "".join(f"{i % 40} {i // 40} {-9999 if i == 700 else i % 7}\n" for i in range(1000))
         path = self.file("a.xyz", rows)
-        with self.assertRaisesRegex(FileError, "z = -9999 of 1 point .*--no-data -9999.*--keep"):
+        with self.assertRaisesRegex(FileError, "z = -9999, of 1 point or more, .*--no-data -9999.*--keep"):
             list(read_slices(path, Cloud(None)))
         self.assert_as_whole(path, no_data=-9999.0)
         found = numpy.concatenate(list(read_slices(path, Cloud(None), keep_nulls=True)))
         self.assertEqual(len(found), 1000)
+
+    def test_nulls_that_fill_a_slice_are_found(self):
+        numbers = numpy.random.default_rng(5).random((3000, 3))
+        for first in (0, 1300, 2500):
+            numbers[:, 2] = 100.0 + numbers[:, 0]
+            numbers[first : first + 500, 2] = -9999.0
+            path = self.path("nulls.npy")
+            numpy.save(path, numbers)
+            with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 250):
+                with self.assertRaisesRegex(FileError, "z = -9999"):
+                    list(read_slices(path, Cloud(None)))
 
 
 class Command(Program):
@@ -536,14 +547,23 @@ class Command(Program):
         crs = several[0].GetFieldData().GetAbstractArray("CRS").GetValue(0)
         self.assertEqual(crs, "EPSG:25832")
 
+    def test_pieces_of_an_earlier_run_go(self):
+        name = self.npy("a.npy", clouds()["random"])
+        for count in ("5", "2"):
+            done = self.call(name, "--pieces", count, *TRIANGULATION_ONLY, "-o", "c.vtpd")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.file("c/c_note.vtp", "not a piece")
+        self.assertEqual(sorted(os.listdir(self.path("c"))), ["c_0.vtp", "c_1.vtp", "c_note.vtp"])
+
     def test_memory_tells_the_number_of_pieces(self):
         self.assertEqual(pieces.memory_size("1.5g"), 1.5e9)
         self.assertEqual(pieces.memory_size("800MB"), 8e8)
+        self.assertEqual(pieces.memory_size("2GiB"), 2e9)
         self.assertEqual(pieces.pieces_within(2e9, 1000), 1)
         self.assertEqual(pieces.pieces_within(2e9, 200_000_000), 30)
         for wrong in ("", "2X", "10", "-2G", "100M", "nan", "1e9"):
             done = self.call("a.npy", f"--memory={wrong}", *TRIANGULATION_ONLY)
-            words = f"--memory takes a size of at least 450M, as 2G, not '{wrong}'"
+            words = f"--memory takes a size of at least 450M, such as 2G, not '{wrong}'"
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr)
 
@@ -559,7 +579,7 @@ class Command(Program):
             (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),
             (("--memory", "2G", "--faults", "f", *TRIANGULATION_ONLY), "--faults needs the whole"),
             (("--pieces", "2", "-o", "a.vtp", *TRIANGULATION_ONLY), ".vtp cannot be written in"),
-            (("b.stl", "--pieces", "2", *TRIANGULATION_ONLY), "an STL file is read as a whole"),
+            (("b.stl", "--pieces", "2", *TRIANGULATION_ONLY), "an STL file cannot be read in pieces"),
             (("--pieces", "2", "-o", "taken.vtpd", *TRIANGULATION_ONLY), "has this name"),
             (("-o", "a.vtpd"), ".vtpd cannot be written; use one of .vtp"),
         ):
