@@ -21,8 +21,8 @@
  * Lattice and constraints, which are for points in memory, and are errors. Where
  * GetTrim() has a boundary, all pieces are trimmed along it, as that filter would trim the whole
  * surface; points that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
- * Where four points on a circle are among those inserted, either diagonal may be taken, as it is
- * by that filter for triangles in another order.
+ * Beside points that are inserted, diagonals may differ from those of that filter, as they do with
+ * that filter for triangles in another order.
  *
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
  * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
