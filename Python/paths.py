@@ -45,7 +45,8 @@ def check_readable(path):
 def check_suffix(path, suffixes, verb):
     if suffix_of(path) not in suffixes:
         ending = suffix_of(path) or "no suffix"
-        raise FileError(f"{path}: {ending} cannot be {verb}; use one of {' '.join(suffixes)}")
+        one_of = "one of " if len(suffixes) > 1 else ""
+        raise FileError(f"{path}: {ending} cannot be {verb}; use {one_of}{' '.join(suffixes)}")
 
 
 def check_writable(path):

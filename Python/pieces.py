@@ -44,6 +44,7 @@ BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
 OF_THE_WHOLE = ("faults", "maximum_edge_length", "grid", "contours", "outlines", "picture")
+OF_THE_WHOLE += ("view", "exaggeration", "colours")
 
 
 def memory_size(text):
@@ -69,7 +70,7 @@ def check_given(options, error):
         error("--pieces and --memory both tell the number of pieces: leave one out")
     name = "--pieces" if options.pieces is not None else "--memory"
     for other in OF_THE_WHOLE:
-        if getattr(options, other) not in (None, False):
+        if getattr(options, other) not in (None, False, 0.0):
             other = "--" + other.replace("_", "-")
             error(f"{other} needs the whole surface in memory; it cannot be used with {name}")
     if options.fill:

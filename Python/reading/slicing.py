@@ -91,5 +91,5 @@ def read_files(paths, cloud, **options):
         cloud.notes += [f"{path}: {note}" for note in own.notes] if len(paths) > 1 else own.notes
         for reason, count in own.left_out.items():
             cloud.left_out[reason] = cloud.left_out.get(reason, 0) + count
-    cloud.crs, notes = system_of(paths, clouds)
+        cloud.crs, notes = system_of(paths[: i + 1], clouds[: i + 1])
     cloud.notes += notes

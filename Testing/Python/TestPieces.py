@@ -577,6 +577,7 @@ class Command(Program):
             (("--pieces", "0"), "--pieces takes a whole number from 1, not '0'"),
             (("--pieces", "2", "--memory", "2G", *TRIANGULATION_ONLY), "leave one out"),
             (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),
+            (("--pieces", "2", "--view", "top", *TRIANGULATION_ONLY), "--view needs the whole"),
             (("--memory", "2G", "--faults", "f", *TRIANGULATION_ONLY), "--faults needs the whole"),
             (("--pieces", "2", "-o", "a.vtp", *TRIANGULATION_ONLY), ".vtp cannot be written in"),
             (("b.stl", "--pieces", "2", *TRIANGULATION_ONLY), "an STL file cannot be read in pieces"),
