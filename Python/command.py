@@ -48,6 +48,9 @@ class Run:
         self.is_first = ranks is None or ranks.GetLocalProcessId() == 0
         self.progress = Progress(self.is_first and sys.stderr.isatty() and not options.quiet)
         self.times = {}
+        if ranks and hasattr(os, "sched_getaffinity"):
+            # mpirun may give each of them a core.
+            options.given.setdefault("threads", len(os.sched_getaffinity(0)))
 
     def timed(self, name, text, work):
         self.progress(text, 0.0)
@@ -125,15 +128,12 @@ class Run:
         ranks = self.ranks if total(self.ranks, not can_be_dealt(cloud.points)) == 0 else None
         if not self.is_first and not ranks:
             return None  # the first does it alone
-        given = options.given
-        if ranks and hasattr(os, "sched_getaffinity"):
-            given = {"threads": len(os.sched_getaffinity(0)), **given}  # mpirun may give each a core
         try:
             result = run_chain(
                 cloud,
                 boundary,
                 faults,
-                given,
+                options.given,
                 trim=options.trim,
                 fill=options.fill,
                 progress=self.progress,

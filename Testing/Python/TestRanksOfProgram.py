@@ -126,6 +126,10 @@ class OnRanks(Program):
         writer.Write()
         self.check_same(2, "a.vtp")
 
+    def test_points_all_of_whose_triangles_are_on_other_ranks(self):
+        self.file("a.txt", "0 0 1\n9 0 2\n4 7 3\n5 2 4\n3 3 5\n")
+        self.check_same(3, "a.txt", "--no-trim", "--no-fill")
+
     def test_mpirun_with_one_rank(self):
         self.file("a.txt", cloud(300))
         self.check_same(1, "a.txt")
