@@ -118,8 +118,7 @@ def main(path=None):
     delaunay.SetInputData(soundings(range(rank, TRACKS, count)))
     delaunay.SetNumberOfThreads(1)  # each rank has a core
 
-    # A boundary may be on one rank; all get it. Without one, the surface would be gathered on one rank
-    # to find its outline.
+    # A boundary may be on one rank: all get it.
     trim = vtkTrimOutwardTriangles()
     trim.SetInputConnection(delaunay.GetOutputPort())
     trim.SetBoundaryData(area_of_interest() if rank == 0 else vtkPolyData())
