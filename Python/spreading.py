@@ -21,7 +21,7 @@ from .ranks import collected, packed, shared, together, unpacked
 
 IDS = "PlaceInInput"  # the global ids that points have on the way
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
-WORK = "WorkOfRank"  # field data of one rank
+OF_A_RANK = ("WorkOfRank", "WorkOfTrim")  # field data
 TAG = 20
 IN_NO_TRIANGLE = 3
 
@@ -140,7 +140,8 @@ def whole_surface(ranks, output, reasons, filters):
     set_counts(surface, filters)
     for name in (IDS, GHOSTS):
         surface.GetPointData().RemoveArray(name)
-    surface.GetFieldData().RemoveArray(WORK)
+    for name in OF_A_RANK:
+        surface.GetFieldData().RemoveArray(name)
     return surface
 
 
