@@ -34,13 +34,13 @@ step("Installing"
 # The kernel is private.
 file(GLOB_RECURSE headers RELATIVE "${prefix}" "${prefix}/*.h")
 foreach (header IN LISTS headers)
-  if (NOT header MATCHES "/vtk(GridDelaunay2D|TrimOutwardTriangles|FillElevationHoles|ElevationSurfaceModule)\\.h$")
+  if (NOT header MATCHES "/vtk(GridDelaunay2D|TrimOutwardTriangles|FillElevationHoles|ReconstructPieces|ElevationSurfaceModule)\\.h$")
     message(FATAL_ERROR "A private header is installed: ${header}")
   endif ()
 endforeach ()
 list(LENGTH headers count)
-if (NOT count EQUAL 4)
-  message(FATAL_ERROR "Four headers were expected, there are ${count}: ${headers}")
+if (NOT count EQUAL 5)
+  message(FATAL_ERROR "Five headers were expected, there are ${count}: ${headers}")
 endif ()
 
 # Configures and builds the project in a folder, and sets program to its executable.
