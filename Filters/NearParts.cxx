@@ -140,6 +140,7 @@ void NearParts::AddKnown(
 bool NearParts::TrimOutline(
   std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options)
 {
+  this->IsOutline = true;
   this->JoinAll(Part(options.Monitor, 0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
   std::vector<Known> states;
@@ -273,8 +274,11 @@ std::vector<TrimmedPart> NearParts::Split(const Progress& progress) const
         std::upper_bound(this->FirstTriangles.begin(), this->FirstTriangles.end(), parent);
       const std::size_t part = static_cast<std::size_t>(next - this->FirstTriangles.begin()) - 1;
       splits[part].Parents[side].push_back(parent - this->FirstTriangles[part]);
-      std::vector<Index>& ofPart = splits[part].Corners[side];
-      ofPart.insert(ofPart.end(), corners + 3 * i, corners + 3 * i + 3);
+      if (!this->IsOutline)
+      {
+        std::vector<Index>& ofPart = splits[part].Corners[side];
+        ofPart.insert(ofPart.end(), corners + 3 * i, corners + 3 * i + 3);
+      }
     }
   }
   this->FindOwners(splits);

@@ -35,7 +35,10 @@ struct TrimmedPart
 {
   /** The sides, kept and outward: near triangles of the rank (by number) that they are parts of. */
   std::vector<Index> Parents[2];
-  /** Three a triangle: points of the rank's near part, followed by the new points. */
+  /**
+   * Three a triangle: points of the rank's near part, followed by the new points. None where a mesh
+   * is trimmed along its outline: triangles stay as they are.
+   */
   std::vector<Index> Corners[2];
   std::vector<char> IsInserted; ///< one a new point; else it is another rank's
   std::vector<char> IsOwned;    ///< one a new point
@@ -100,6 +103,7 @@ private:
   TrianglesOfDataSet Triangles; // of the whole
   vtkNew<vtkPolyData> Points;   // of the whole, and those inserted
   Trimmed Sides;
+  bool IsOutline = false;
 };
 
 } // namespace elevation

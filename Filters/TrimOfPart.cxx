@@ -267,12 +267,18 @@ TrimmedSide TrimOfPart::SideOf(int side, const Progress& progress) const
   const Index sent = static_cast<Index>(this->Sent.size());
   for (std::size_t i = 0; i < parents.size(); ++i)
   {
+    const Index triangle = this->Swept.Near[parents[i]];
+    if (this->Back.Corners[side].empty())
+    {
+      add([&](int k) { return this->List.CornersOf(triangle)[k]; }, triangle);
+      continue;
+    }
     const Index* const corners = this->Back.Corners[side].data() + 3 * i;
     add(
       [&](int k) {
         return corners[k] < sent ? this->Sent[corners[k]] : this->Places[corners[k] - sent];
       },
-      this->Swept.Near[parents[i]]);
+      triangle);
   }
   return written;
 }

@@ -113,8 +113,7 @@
  * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance
  * (vtkDoubleArray, one value). Of output 0, where a block stays spread over ranks: WorkOfTrim
  * (vtkIdTypeArray, one tuple of 4), the triangles of this rank's part, those of them that count as
- * near the boundary, the bytes it has sent, apart from the boundary, and in how many exchanges of
- * all ranks.
+ * near the boundary, the bytes it has sent, and in how many exchanges of all ranks.
  *
  * When an extracted boundary leaves out more than 5 % of the points or half of the area, a warning
  * tells how much, and which GapTolerance would keep it. One that leaves out every point is an error.

@@ -366,6 +366,8 @@ def compare_random(random, claim):
     boundary_on = None if random.random() < 0.5 else int(random.integers(COUNT))
     compare(case, random.random() < 0.5, random.random() < 0.5, boundary_on,
             RecoverBoundary=bool(random.random() < 0.8))
+    if claim.startswith("cloud 0 "):
+        compare(case._replace(claim=claim + ", InwardNormal", rings=None), True, True, OutwardTest=1)
 
 
 def torn(random, points):
@@ -453,7 +455,7 @@ def check_aborts(random, count, side):
         trimming = vtkTrimOutwardTriangles()
         trimming.SetNumberOfThreads(1)
         trimming.SetInputData(part_of(case, RANK, False, False))
-        trimming.SetBoundaryData(boundary_of(case.rings))
+        trimming.SetBoundaryData(boundary_of(case.rings) if i % 2 else None)
         begun = []
 
         def stop(caller, _event):
@@ -478,9 +480,9 @@ def check_aborts(random, count, side):
     return max(WORLD.allgather(max(late, default=0.0)))
 
 
-def check_refused(mesh, boundary, part, claim):
+def check_refused(mesh, boundary, part, claim, **properties):
     """One error of all ranks, by rank 0, and nothing on any."""
-    trimming, messages = trim(mesh, boundary, False)
+    trimming, messages = trim(mesh, boundary, False, **properties)
     check(len(messages) == (RANK == 0) and (RANK > 0 or part in messages[0][1]),
           "rank %d, %s: one error with %r, not %s" % (RANK, claim, part, messages))
     for side in (0, 1, 2):
@@ -508,6 +510,10 @@ def check_errors(random):
     twice = Case("twice", points, numpy.vstack((triangles, triangles[:1])),
                  numpy.append(owners, (owners[0] + 1) % COUNT), rings)
     check_refused(part_of(twice, RANK, False, False), boundary, "shares the edge", "a triangle on two ranks")
+    check_refused(part_of(case, RANK, False, False), None, "GapTolerance is -1", "a negative tolerance",
+                  GapTolerance=-1.0)
+    check_refused(part_of(case, RANK, False, False), None, "leaves out every point", "a tolerance of nearly nothing",
+                  GapTolerance=1e-9)
     case = Case("crossed", points, triangles, owners, [[(10.0, 10.0), (90.0, 90.0), (90.0, 10.0), (10.0, 80.0)]])
     check_refused(part_of(case, RANK, True, True), boundary_of(case.rings), "cross", "a ring that crosses itself")
 
@@ -525,7 +531,7 @@ def main():
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     for i in range(options.clouds):
         compare_outline(random, "cloud %d of seed %d" % (i, options.seed))
-    check(sum(SPREAD) >= 0.5 * len(SPREAD), "%d of %d stay where they are" % (sum(SPREAD), len(SPREAD)))
+    check(sum(SPREAD) >= 0.5 * len(SPREAD) - 1, "%d of %d stay where they are" % (sum(SPREAD), len(SPREAD)))
     for i in range(max(1, options.clouds // 6)):
         check_chain(random, "chain %d of seed %d" % (i, options.seed))
     latest = check_aborts(random, options.aborts, options.side)
