@@ -8,7 +8,6 @@
 #include "PointRows.h"
 #include "TrimOfPart.h"
 
-#include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
@@ -18,7 +17,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -41,7 +39,6 @@ public:
   }
 
   bool Read();
-  bool HaveSameArrays();
   bool FindNear(int margin);
   bool TrimNear();
   bool SendBack();
@@ -52,9 +49,7 @@ private:
   {
     return this->All.Watched(elevation::Part(this->Of.Progress, begin, end));
   }
-  bool CanAll(const std::function<bool()>& step) const;
   void AddWork() const;
-  bool HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kinds) const;
 
   const Ranks& All;
   const TrimOptions& Options;
@@ -69,32 +64,10 @@ private:
   bool AreInserted = false, AreMarked = false; // points on any rank
 };
 
-/**
- * Does a step on all ranks. Where any of them cannot, or there is an error in its input, the mesh is
- * gathered; an error is told there as on one rank.
- */
-bool Work::CanAll(const std::function<bool()>& step) const
-{
-  bool can = false;
-  this->All.Agree([&]() {
-    try
-    {
-      can = step();
-    }
-    catch (const Error&)
-    {
-      can = false;
-    }
-  });
-  std::vector<vtkIdType> cannot = { can ? 0 : 1 };
-  this->All.Sum(cannot);
-  return cannot[0] == 0;
-}
-
 /** Triangles and boundary. */
 bool Work::Read()
 {
-  const bool can = this->CanAll([this]() {
+  const bool can = CanAll(this->All, [this]() {
     Report(this->Watched(0.0, 1.0), 0.0);
     this->Own.Read();
     if (this->Of.Second)
@@ -110,39 +83,11 @@ bool Work::Read()
   return can && count[0] > 0;
 }
 
-/** Else some are left out with a warning. */
-bool Work::HaveSameArrays()
-{
-  std::set<std::string> others;
-  const bool hasPoints = this->Input->GetNumberOfPoints() > 0;
-  const bool hasCells = this->Input->GetNumberOfCells() > 0;
-  vtkDataSetAttributes* const ofPoints = this->Input->GetPointData();
-  vtkDataSetAttributes* const ofCells = this->Input->GetCellData();
-  const std::vector<ArrayKind> kinds =
-    CommonArrays(this->All, hasPoints ? ofPoints : nullptr, others);
-  const std::vector<ArrayKind> kindsOfCells =
-    CommonArrays(this->All, hasCells ? ofCells : nullptr, others);
-  return this->CanAll([&]() {
-    return others.empty() && (!hasPoints || this->HasSame(ofPoints, kinds)) &&
-      (!hasCells || this->HasSame(ofCells, kindsOfCells));
-  });
-}
-
-/** Whether arrays are scalars, global ids and so on where they are on other ranks. */
-bool Work::HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kinds) const
-{
-  return std::all_of(kinds.begin(), kinds.end(), [data](const ArrayKind& kind) {
-    int index = -1;
-    return !data->GetAbstractArray(kind.Name.c_str(), index) ||
-      data->IsArrayAnAttribute(index) == kind.Attribute;
-  });
-}
-
 /** Finds the near triangles, and the rank with most of them. @param[in] margin  of an outline */
 bool Work::FindNear(int margin)
 {
   this->Gathered.reset();
-  const bool can = this->CanAll([this, margin]() {
+  const bool can = CanAll(this->All, [this, margin]() {
     if (!this->Of.Second)
     {
       return this->Own.SweepForOutline(margin, this->Options, this->Watched(0.02, 0.3));
@@ -163,7 +108,7 @@ bool Work::FindNear(int margin)
 bool Work::TrimNear()
 {
   std::vector<Bytes> packed(this->All.Count());
-  if (!this->CanAll([&]() {
+  if (!CanAll(this->All, [&]() {
         if (this->Input->GetNumberOfPoints() > 0)
         {
           packed[this->Home] = PackData(this->Own.NearPart());
@@ -174,7 +119,7 @@ bool Work::TrimNear()
     return false;
   }
   packed = this->All.Exchange(std::move(packed));
-  return this->CanAll([&]() {
+  return CanAll(this->All, [&]() {
     Parts parts;
     for (Bytes& bytes : packed)
     {
@@ -203,7 +148,7 @@ bool Work::SendBack()
   const std::vector<vtkIdType> havePoints =
     this->All.Collect(std::vector<vtkIdType>{ this->Input->GetNumberOfPoints() > 0 ? 1 : 0 });
   std::vector<Bytes> packed(this->All.Count());
-  if (!this->CanAll([&]() {
+  if (!CanAll(this->All, [&]() {
         const std::vector<TrimmedPart> parts = this->Gathered
           ? this->Gathered->Split(this->Watched(0.8, 0.85))
           : std::vector<TrimmedPart>();
@@ -219,7 +164,7 @@ bool Work::SendBack()
   }
   packed = this->All.Exchange(std::move(packed));
   std::vector<vtkIdType> sums;
-  if (!this->CanAll([&]() {
+  if (!CanAll(this->All, [&]() {
         const Bytes& bytes = packed[this->Home];
         this->Own.Take(
           bytes.empty() ? TrimmedPart() : TrimmedPart(bytes), this->Watched(0.85, 0.88));
@@ -299,7 +244,7 @@ bool TrimOnRanks(const Ranks& ranks, const TrimOptions& options, Block& block, T
     return false; // on all ranks
   }
   Work work(ranks, options, block);
-  if (!work.Read() || !work.HaveSameArrays())
+  if (!work.Read() || !HaveSameArrays(ranks, block.Input))
   {
     return false;
   }

@@ -119,13 +119,11 @@ PointSlices InOneSlice(const PointView& points)
   return { static_cast<double>(points.Count), [points](const auto& visit) { visit(points); } };
 }
 
-bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
-  const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
+bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tolerance, int threads,
+  const Progress& progress, LatticeSample& all, Lattice& steps)
 {
-  const int threads = ThreadsAtOnce(options.NumberOfThreads);
   std::vector<vtkIdType> count = { static_cast<vtkIdType>(points.Count) };
   ranks.Sum(count);
-  LatticeSample all;
   all.CountOfAll = static_cast<double>(count[0]);
   std::vector<std::vector<Index>> notFinite; // of each slice
   std::vector<double> reals;
@@ -158,13 +156,21 @@ bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
     });
   });
   there = CollectPoints(ranks, there);
-  Lattice steps;
   bool isFound = false;
-  const double tolerance = options.LatticeTolerance;
   ranks.Agree([&]() {
     isFound = FitLattice(all, std::move(there), tolerance, ranks.Watched(progress), steps);
   });
-  if (!isFound)
+  return isFound;
+}
+
+bool FindLatticeOnRanks(const Ranks& ranks, const PointSlices& points,
+  const DelaunayOptions& options, const Progress& progress, SharedLattice& lattice)
+{
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
+  const double tolerance = options.LatticeTolerance;
+  LatticeSample all;
+  Lattice steps;
+  if (!FitLatticeOnRanks(ranks, points, tolerance, threads, progress, all, steps))
   {
     return false;
   }

@@ -27,6 +27,13 @@ struct PointSlices
 PointSlices InOneSlice(const PointView& points);
 
 /**
+ * The first part of it: the lattice that fits a sample of the points of all ranks.
+ * @param[out] all  the sample
+ */
+bool FitLatticeOnRanks(const Ranks& ranks, const PointSlices& points, double tolerance, int threads,
+  const Progress& progress, LatticeSample& all, Lattice& steps);
+
+/**
  * Looks for the lattice of the points of all ranks; each rank samples its own. The same lattice is
  * found as on one rank.
  * @param[in] points  of this rank; they are looked at three or four times

@@ -6,6 +6,7 @@
 
 #include "vtkAbstractArray.h"
 #include "vtkBitArray.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
@@ -154,6 +155,34 @@ std::vector<ArrayKind> CommonArrays(
     }
   }
   return common;
+}
+
+namespace
+{
+/** Whether arrays are scalars, global ids and so on where they are on other ranks. */
+bool HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kinds)
+{
+  return std::all_of(kinds.begin(), kinds.end(), [data](const ArrayKind& kind) {
+    int index = -1;
+    return !data->GetAbstractArray(kind.Name.c_str(), index) ||
+      data->IsArrayAnAttribute(index) == kind.Attribute;
+  });
+}
+} // namespace
+
+bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own)
+{
+  std::set<std::string> others;
+  const bool hasPoints = own->GetNumberOfPoints() > 0, hasCells = own->GetNumberOfCells() > 0;
+  vtkDataSetAttributes* const ofPoints = own->GetPointData();
+  vtkDataSetAttributes* const ofCells = own->GetCellData();
+  const std::vector<ArrayKind> kinds = CommonArrays(ranks, hasPoints ? ofPoints : nullptr, others);
+  const std::vector<ArrayKind> kindsOfCells =
+    CommonArrays(ranks, hasCells ? ofCells : nullptr, others);
+  return CanAll(ranks, [&]() {
+    return others.empty() && (!hasPoints || HasSame(ofPoints, kinds)) &&
+      (!hasCells || HasSame(ofCells, kindsOfCells));
+  });
 }
 
 PointRows::PointRows(const std::vector<ArrayKind>& kinds)

@@ -20,6 +20,7 @@ class vtkAbstractArray;
 class vtkDataSetAttributes;
 class vtkPointData;
 class vtkPointSet;
+class vtkPointSet;
 
 namespace elevation
 {
@@ -41,6 +42,9 @@ struct ArrayKind
  */
 std::vector<ArrayKind> CommonArrays(
   const Ranks& ranks, vtkDataSetAttributes* own, std::set<std::string>& leftOut);
+
+/** Whether all ranks have the same point and cell arrays, with the same attributes. */
+bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own);
 
 /** Points: positions, global ids and the values of arrays, those of each kind. */
 class PointRows

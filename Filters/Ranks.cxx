@@ -331,6 +331,24 @@ vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
   return parts.empty() ? vtkSmartPointer<vtkPolyData>(local) : Append(parts);
 }
 
+bool CanAll(const Ranks& ranks, const std::function<bool()>& step)
+{
+  bool can = false;
+  ranks.Agree([&]() {
+    try
+    {
+      can = step();
+    }
+    catch (const Error&)
+    {
+      can = false;
+    }
+  });
+  std::vector<vtkIdType> cannot = { can ? 0 : 1 };
+  ranks.Sum(cannot);
+  return cannot[0] == 0;
+}
+
 Box BoxOfAll(const Ranks& ranks, const Box& own)
 {
   std::vector<double> sides = { -own.Low.X, -own.Low.Y, own.High.X, own.High.Y };

@@ -106,6 +106,12 @@ private:
   mutable Traffic Sent;
 };
 
+/**
+ * Does a step on all ranks, in which errors are as false.
+ * @return whether all ranks can
+ */
+bool CanAll(const Ranks& ranks, const std::function<bool()>& step);
+
 /** The box of the boxes of all ranks. */
 Box BoxOfAll(const Ranks& ranks, const Box& own);
 

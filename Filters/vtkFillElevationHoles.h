@@ -93,14 +93,25 @@
  * and field data. Counts of getters are sums. Messages name the block; one with an error is empty,
  * the others stay.
  *
- * On several ranks (processes), a block may be spread over them. Its triangles are gathered on the
- * rank with most of them, which gets the result; the others have empty output with the same
- * arrays. Points with the same global id are one, and are in the order of these ids; where not all
- * ranks have global ids, points with the same x,y,z are one. Cells marked as another rank's
- * (vtkGhostType) are left out, and arrays that not all ranks have, with a warning. Partitions of
- * one vtkPartitionedDataSet are one block in this. Getters tell the counts of all ranks; rank 0
- * reports errors and warnings of all. An error or abort in a block ends it on all ranks. This
- * holds where data are asked for in several pieces and vtkMultiProcessController's global
+ * On several ranks (processes), a block may be spread over them. Each hole is filled on one of them,
+ * the largest first, on the one with least work; only the triangles around it are sent there. The
+ * triangles and new points of all ranks are those of one, to the last bit; holes are numbered with
+ * the triangles rank after rank. A rank has its points and triangles in their places, then other
+ * ranks' points that its new triangles have, marked as such (vtkGhostType), and new points, whose
+ * global ids, if there are any, follow the largest of all ranks in the order of the holes. Points
+ * with the same global id are one, or, where not all ranks have global ids, those with the same
+ * x,y,z. Field data are those of the rank, with the counts of all. Output 1 is on one rank.
+ *
+ * With a MaximumEdgeLength, vertices, lines or cells marked as another rank's, where borders touch
+ * without sharing a point, where not all ranks have the same arrays and type of points, and for
+ * messages of what is wrong, the triangles are gathered on the rank with most of them, which gets
+ * the result; the others have empty output with the same arrays. Points are in the order of their
+ * global ids then. Cells marked as another rank's are left out, and arrays that not all ranks have,
+ * with a warning.
+ *
+ * Partitions of one vtkPartitionedDataSet are one block in this. Getters tell the counts of all
+ * ranks; rank 0 reports errors and warnings of all. An error or abort in a block ends it on all
+ * ranks. This holds where data are asked for in several pieces and vtkMultiProcessController's global
  * controller has several processes. All ranks have to update then, as in ParaView: where a source
  * before the filter fails on one rank, VTK does not run the filter there, and the others wait for
  * it for ever.

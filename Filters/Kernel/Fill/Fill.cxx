@@ -225,6 +225,7 @@ public:
     const bool needsStars = this->Options.Method != Interpolation::NeighborMean;
     this->Least = needsStars ? PointsPerTrial : PointsPerPatch;
     this->PlanAll();
+    this->GrantPoints();
     if (this->AllWork > 0.0 && needsStars && !this->Stars)
     {
       this->Stars = std::make_unique<VertexStars>(this->Surface, Part(monitor, 0.02, 0.06));
@@ -248,7 +249,28 @@ public:
     return std::move(this->Result);
   }
 
+  /** See NeedsOfHoles(). */
+  std::vector<double> PlanAndTellNeeds()
+  {
+    this->PlanAll();
+    return this->Needs();
+  }
+
 private:
+  std::vector<double> Needs() const
+  {
+    std::vector<double> needs;
+    for (Index hole = 0; hole < this->Given.Count(); ++hole)
+    {
+      // Rows of points count as points: a long thin hole has many rows, though few points.
+      const PatchPlan& plan = this->Plans[hole];
+      const bool isPlanned = this->Result.Reports[hole].Status == FillStatus::Filled;
+      needs.push_back(isPlanned ? std::max(plan.MostRows, plan.MostPoints)
+                                : std::numeric_limits<double>::quiet_NaN());
+    }
+    return needs;
+  }
+
   /**
    * Checks all holes before the first is filled, so that whether one is filled does not depend on
    * the outcome of others.
@@ -261,8 +283,10 @@ private:
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
       this->Given.Count() > 0)
     {
-      lattice = FindLattice(
-        this->Points, LatticeTolerance, this->Threads, Part(options.Monitor, 0.0, 0.02));
+      lattice = options.KnownLattice
+        ? *options.KnownLattice
+        : FindLattice(
+            this->Points, LatticeTolerance, this->Threads, Part(options.Monitor, 0.0, 0.02));
     }
     if (lattice.Found)
     {
@@ -287,33 +311,27 @@ private:
       plan.SinglePrecision = options.SinglePrecision;
       CheckLimits(report, this->Given.Touched[hole] != 0, options);
     }
-    this->GrantPoints();
   }
 
   /** Grants each hole the most points that it may take, from the smallest on; others fail. */
   void GrantPoints()
   {
-    std::vector<std::pair<double, Index>> order;
-    for (Index hole = 0; hole < this->Given.Count(); ++hole)
-    {
-      const HoleReport& report = this->Result.Reports[hole];
-      if (report.Status == FillStatus::Filled)
-      {
-        // Rows of points count as points: a long thin hole has many rows, though few points.
-        const PatchPlan& plan = this->Plans[hole];
-        order.emplace_back(std::max(plan.MostRows, plan.MostPoints), hole);
-      }
-    }
-    std::sort(order.begin(), order.end());
     const Index limit = this->Options.MaximumInsertedPoints;
     const Index ofIds = MaximumNumberOfPoints - this->Surface.NumberOfPoints();
-    double left = std::min(limit, ofIds);
-    for (const auto& [points, hole] : order)
+    const std::vector<double> needs = this->Needs();
+    const std::vector<double> rooms = this->Options.Rooms.empty()
+      ? RoomsOfNeeds(needs, std::min(limit, ofIds))
+      : this->Options.Rooms;
+    for (Index hole = 0; hole < this->Given.Count(); ++hole)
     {
+      const double points = needs[hole], left = rooms[hole];
       HoleReport& report = this->Result.Reports[hole];
+      if (std::isnan(points))
+      {
+        continue;
+      }
       if (points <= left)
       {
-        left -= points;
         this->AllWork += this->WorkOf(hole);
         continue;
       }
@@ -430,6 +448,7 @@ private:
     {
       filled.Triangles = CollectBoundary(this->Surface, this->Given, hole);
       Patch& patch = filled.Triangles;
+      patch.Known = this->Options.Known.empty() ? patch.Known : this->Options.Known[hole];
       MakePatch(this->Plans[hole], Part(progress, 0.0, 0.4), patch);
       if (this->Given.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
@@ -444,6 +463,11 @@ private:
     catch (const Error& error)
     {
       Fail(report, error.what());
+    }
+    catch (const BeyondKnown&)
+    {
+      Fail(report, "");
+      report.IsBeyondKnown = true;
     }
   }
 
@@ -480,6 +504,33 @@ private:
   FillResult Result;
 };
 } // namespace
+
+std::vector<double> NeedsOfHoles(
+  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options)
+{
+  return HoleFilling(mesh, points, holes, options).PlanAndTellNeeds();
+}
+
+std::vector<double> RoomsOfNeeds(const std::vector<double>& needs, Index limit)
+{
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t hole = 0; hole < needs.size(); ++hole)
+  {
+    if (!std::isnan(needs[hole]))
+    {
+      order.emplace_back(needs[hole], hole);
+    }
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<double> rooms(needs.size(), 0.0);
+  double left = limit;
+  for (const auto& [points, hole] : order)
+  {
+    rooms[hole] = left;
+    left -= points <= left ? points : 0.0;
+  }
+  return rooms;
+}
 
 FillResult FillHoles(
   const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options)

@@ -71,6 +71,13 @@ struct FillOptions
   /** Threads to use; 0: one per core. The result is the same, byte for byte. */
   int NumberOfThreads = 1;
   Progress Monitor;
+
+  /** @name For a part of a surface; of the whole, if they are not set. @{ */
+  const LatticeSearch* KnownLattice = nullptr; ///< that of the whole, found or not
+  /** One a hole, in which all triangles that meet it are there. It contains the rim. */
+  std::vector<Box> Known;
+  std::vector<double> Rooms; ///< one a hole: RoomsOfNeeds() of all holes of the whole
+  /** @} */
 };
 
 struct HoleReport
@@ -84,6 +91,7 @@ struct HoleReport
   double Spacing = 0.0; ///< as given, or the mean length of the edges (Patch.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
+  bool IsBeyondKnown = false; ///< not filled, as triangles were needed outside of Known
   std::string Reason; ///< if Failed: a sentence without the hole's name
 };
 
@@ -120,6 +128,16 @@ struct FillResult
  */
 FillResult FillHoles(
   const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options);
+
+/**
+ * What each hole of a part may take of MaximumInsertedPoints; NaN for those that the limits refuse.
+ * Options as for FillHoles(), without Rooms.
+ */
+std::vector<double> NeedsOfHoles(
+  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options);
+
+/** How many points smaller holes leave for each hole. */
+std::vector<double> RoomsOfNeeds(const std::vector<double>& needs, Index limit);
 
 } // namespace elevation
 

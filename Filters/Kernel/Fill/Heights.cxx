@@ -170,7 +170,7 @@ void Heights::CollectRing(const VertexStars& stars)
   std::vector<Index> ring;
   for (const Index vertex : this->Patch.BoundaryIds)
   {
-    stars.Visit(this->Surface, vertex, [&](Index h) {
+    this->VisitStar(stars, vertex, [&](Index h) {
       ring.push_back(this->Surface.Destination(h));
       ring.push_back(this->Surface.Apex(h));
       return true;
@@ -202,7 +202,7 @@ void Heights::CollectSlopes(const VertexStars& stars)
     std::vector<Pair> found;
     for (const Pair& pair : last)
     {
-      stars.Visit(this->Surface, pair.Away, [&](Index h) {
+      this->VisitStar(stars, pair.Away, [&](Index h) {
         found.push_back({ pair.Boundary, this->Surface.Destination(h) });
         found.push_back({ pair.Boundary, this->Surface.Apex(h) });
         return true;
@@ -252,7 +252,7 @@ std::vector<char> Heights::FindStrays(const VertexStars& stars, const Values& va
   {
     const Index id = this->Known[i];
     const Point2& p = this->Surface.PointOf(id);
-    stars.Visit(this->Surface, id, [&](Index h) {
+    this->VisitStar(stars, id, [&](Index h) {
       // An edge with two triangles is met from both ends, one with one triangle from one.
       const Index other = this->Surface.Destination(h);
       const Index place = placeOf(other);

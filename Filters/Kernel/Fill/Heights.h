@@ -107,7 +107,7 @@ public:
    * @param[in] stars   of the surface; may be null for NeighborMean
    * @param[in] patch   with everything that Neighbours.h finds
    * @param[in] values  by which Adaptive chooses: the elevations
-   * @throws Aborted, std::bad_alloc
+   * @throws Aborted, std::bad_alloc, BeyondKnown
    */
   Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch,
     Interpolation wanted, const Values& values, const Progress& progress = Progress());
@@ -132,6 +132,17 @@ private:
   Point2 Normalized(const Point2& p) const
   {
     return { (p.X - this->Center.X) * this->Scale, (p.Y - this->Center.Y) * this->Scale };
+  }
+
+  /** Visits a star, all of whose triangles are there. @throws BeyondKnown */
+  template <typename Visitor>
+  void VisitStar(const VertexStars& stars, Index vertex, Visitor&& visit) const
+  {
+    if (!this->Patch.Known.Contains(this->Surface.PointOf(vertex)))
+    {
+      throw BeyondKnown();
+    }
+    stars.Visit(this->Surface, vertex, visit);
   }
 
   void CollectRing(const VertexStars& stars);

@@ -19,6 +19,11 @@
 namespace elevation
 {
 
+/** Thrown where triangles are asked for that a part of a surface may not have. */
+struct BeyondKnown
+{
+};
+
 /** Gives the value at a point of the surface by its id. */
 using Values = std::function<double(Index)>;
 
@@ -29,14 +34,16 @@ using Values = std::function<double(Index)>;
 class Walk
 {
 public:
-  Walk(const Mesh& mesh, Index start)
+  /** @param[in] known  where triangles may be missing outside of it */
+  Walk(const Mesh& mesh, Index start, const Box& known)
     : Surface(mesh)
+    , Known(known)
     , Triangle(start)
     , First(this->Lowest(start))
   {
   }
 
-  /** @return false if the walk comes to the border of the surface */
+  /** @return false if the walk comes to the border of the surface. @throws BeyondKnown */
   bool To(const Point2& p)
   {
     constexpr int mostSteps = 1 << 16;
@@ -74,6 +81,12 @@ public:
       const Index twin = this->Surface.Twin(HalfEdge(first, across));
       if (twin == Mesh::Border)
       {
+        const Index edge = HalfEdge(first, across);
+        if (!this->IsKnown(this->Surface.Origin(edge)) &&
+          !this->IsKnown(this->Surface.Destination(edge)))
+        {
+          throw BeyondKnown();
+        }
         return false;
       }
       t = Mesh::Triangle(twin);
@@ -108,6 +121,8 @@ public:
   }
 
 private:
+  bool IsKnown(Index vertex) const { return this->Known.Contains(this->Surface.PointOf(vertex)); }
+
   static Index HalfEdge(Index first, int steps)
   {
     return steps == 0 ? first : steps == 1 ? Mesh::Next(first) : Mesh::Previous(first);
@@ -130,6 +145,7 @@ private:
   Index CornerOf(int k) const { return this->Surface.Origin(HalfEdge(this->First, k)); }
 
   const Mesh& Surface;
+  const Box& Known;
   Index Triangle;
   Index First; ///< the half-edge of the triangle that leaves its lowest corner
   double Shares[3] = { 1.0, 0.0, 0.0 };

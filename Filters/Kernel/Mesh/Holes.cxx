@@ -466,9 +466,12 @@ private:
   std::string Message;        ///< of the error
 };
 
-/** A mesh in which half-edge 3i is border edge i, and nothing else is meaningful. */
-Mesh MeshOfBorder(
-  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
+/**
+ * A mesh in which half-edge 3i is border edge i, and nothing else is meaningful.
+ * @param[out] ids  of its points
+ */
+Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points,
+  const Progress& progress, std::vector<Index>& ids)
 {
   Mesh mesh;
   IdSet used(points.Count);
@@ -478,7 +481,7 @@ Mesh MeshOfBorder(
     used.Add(border[i].Origin);
     used.Add(border[i].Destination);
   }
-  const std::vector<Index> ids = used.ListAndRank();
+  ids = used.ListAndRank();
   mesh.Points.reserve(ids.size());
   for (const Index id : ids)
   {
@@ -516,10 +519,24 @@ Holes FindHoles(const Mesh& mesh, Index firstCell, const Progress& progress)
   return holes;
 }
 
+Holes FindHolesOfBorder(
+  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
+{
+  std::vector<Index> ids;
+  const Mesh mesh = MeshOfBorder(border, points, Part(progress, 0.0, 0.2), ids);
+  Holes holes = FindHoles(mesh, 0, Part(progress, 0.2, 1.0));
+  for (Index& vertex : holes.Walks.Vertices)
+  {
+    vertex = ids[vertex];
+  }
+  return holes;
+}
+
 bool CoversOnce(
   const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress)
 {
-  const Mesh mesh = MeshOfBorder(border, points, Part(progress, 0.0, 0.5));
+  std::vector<Index> ids;
+  const Mesh mesh = MeshOfBorder(border, points, Part(progress, 0.0, 0.5), ids);
   Holes holes;
   holes.Walks = TraceBorder(mesh, Part(progress, 0.5, 0.75));
   StartAtLowest(mesh, holes.Walks);

@@ -116,6 +116,14 @@ struct Holes
 Holes FindHoles(const Mesh& mesh, Index firstCell = 0, const Progress& progress = Progress());
 
 /**
+ * The same by the border alone, which may be that of parts: edges in the order of their triangles.
+ * Contacts do not name vertices.
+ * @throws Error if the border does not prove that no place is covered twice; Aborted; std::bad_alloc
+ */
+Holes FindHolesOfBorder(
+  const std::vector<BorderEdge>& border, const PointView& points, const Progress& progress);
+
+/**
  * Whether the border proves that counter-clockwise triangles cover no place twice. If not,
  * FindHoles() names the cell.
  * @throws Aborted; std::bad_alloc

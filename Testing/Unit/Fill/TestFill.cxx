@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 using namespace elevation;
 using testing_surfaces::Draw;
@@ -603,4 +604,10 @@ TEST(Fill, ReportsProgressFromZeroToOne)
     Fill(Draw({ "#######", "#   # #", "#   # #", "#   ###", "#######" }), options);
   EXPECT_GT(run.Patches.NumberOfPoints(), 20000);
   EXPECT_EQ(last, 1.0);
+}
+
+TEST(Fill, LeavesRoomFromTheSmallestHoleOn)
+{
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(RoomsOfNeeds({ 5.0, none, 3.0, 9.0 }, 9), (std::vector<double>{ 6.0, 0.0, 9.0, 1.0 }));
 }

@@ -284,3 +284,44 @@ TEST(Trials, HaveNoErrorsWhereNothingWasTried)
   EXPECT_TRUE(allNaN(Fill(Sheet(20, Disc(10, 10, 9.4)), Noise, Interpolation::Adaptive)));
   EXPECT_FALSE(allNaN(Fill(Sheet(60, Disc(30, 30, 8)), Noise, Interpolation::Adaptive)));
 }
+
+TEST(Trials, OfAPartOfTheSurfaceAreThoseOfTheWholeOrTellThatTheyNeedMore)
+{
+  const auto elevation = [](const Point2& p) { return std::sin(0.2 * p.X) + 0.05 * Noise(p); };
+  const Mesh mesh = Sheet(60, Disc(30, 30, 5));
+  const Outcome whole = Fill(mesh, elevation, Interpolation::Adaptive);
+  PointView points;
+  points.Double = whole.Coordinates.data();
+  points.Count = mesh.NumberOfPoints();
+  int wentBeyond = 0, wereAlike = 0;
+  for (double reach = 6.0; reach < 30.0; reach += 1.5)
+  {
+    const Box box{ { 30 - reach, 30 - reach }, { 30 + reach, 30 + reach } };
+    std::vector<char> keep;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      Box ofTriangle;
+      for (Index k = 0; k < 3; ++k)
+      {
+        ofTriangle.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
+      }
+      keep.push_back(box.Intersects(ofTriangle));
+    }
+    Mesh part = mesh;
+    KeepTriangles(keep, part);
+    FillOptions options;
+    options.Known = { box };
+    const FillResult patches = FillHoles(part, points, FindHoles(mesh), options);
+    if (patches.Reports[0].IsBeyondKnown)
+    {
+      ++wentBeyond;
+      EXPECT_EQ(patches.NumberOfPoints(), 0);
+      continue;
+    }
+    ++wereAlike;
+    EXPECT_EQ(patches.Points, whole.Patches.Points) << reach;
+    EXPECT_EQ(patches.StandardErrors, whole.Patches.StandardErrors) << reach;
+  }
+  EXPECT_GT(wentBeyond, 2);
+  EXPECT_GT(wereAlike, 2);
+}

@@ -441,3 +441,31 @@ TEST(Holes, StopWhenAskedTo)
   const Mesh mesh = Draw({ "####", "# ##", "####" });
   EXPECT_THROW(FindHoles(mesh, 0, [](double) { return false; }), Aborted);
 }
+
+TEST(Holes, AreFoundByTheBorderAlone)
+{
+  const Mesh mesh = Draw({ "##########", "#    /   #", "# ##   # #", "# ##  #  #", "#     '  #",
+    "#  #######", "## #     #", "##########" });
+  const Holes whole = FindHoles(mesh);
+  std::vector<BorderEdge> border;
+  std::vector<double> coordinates;
+  for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
+  {
+    if (mesh.Twin(h) == Mesh::Border)
+    {
+      border.push_back({ mesh.Origin(h), mesh.Destination(h) });
+    }
+  }
+  for (const Point2& p : mesh.Points)
+  {
+    coordinates.insert(coordinates.end(), { p.X, p.Y, 0.0 });
+  }
+  PointView points;
+  points.Double = coordinates.data();
+  points.Count = mesh.NumberOfPoints();
+  const Holes found = FindHolesOfBorder(border, points, Progress());
+  EXPECT_GT(found.Count(), 1);
+  EXPECT_EQ(found.Offsets, whole.Offsets);
+  EXPECT_EQ(found.Loops, whole.Loops);
+  EXPECT_EQ(found.Walks.Vertices, whole.Walks.Vertices);
+}

@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BorderOfRanks.h"
+
+#include "CommonPoints.h"
+
+#include "vtkDataSetAttributes.h"
+#include "vtkIdTypeArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+namespace elevation
+{
+
+std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen)
+{
+  vtkDataArray* const ids = byIds ? data->GetPointData()->GetGlobalIds() : nullptr;
+  auto* const plain = vtkIdTypeArray::FastDownCast(ids);
+  const std::size_t count =
+    chosen ? chosen->size() : static_cast<std::size_t>(data->GetNumberOfPoints());
+  std::vector<PointKey> keys(count, PointKey{ { 0, 0, 0 } });
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const vtkIdType at = chosen ? (*chosen)[i] : static_cast<vtkIdType>(i);
+    if (ids)
+    {
+      keys[i][0] = plain ? plain->GetValue(at) : ids->GetVariantValue(at).ToTypeInt64();
+      continue;
+    }
+    double xyz[3];
+    data->GetPoint(at, xyz);
+    for (double& value : xyz)
+    {
+      value += 0.0; // -0 is 0
+    }
+    std::memcpy(keys[i].data(), xyz, sizeof(xyz));
+  }
+  return keys;
+}
+
+namespace
+{
+/** The rank where all ranks' points or edges with some numbers meet. */
+int RankOf(std::uint64_t bits, const Ranks& ranks)
+{
+  bits = (bits ^ (bits >> 31)) * 0x9E3779B97F4A7C15ull;
+  return static_cast<int>((bits >> 33) % static_cast<std::uint64_t>(ranks.Count()));
+}
+
+std::uint64_t BitsOf(const PointKey& key)
+{
+  std::uint64_t bits = 0;
+  for (const std::int64_t part : key)
+  {
+    bits = (bits ^ (bits >> 29)) * 0xD6E8FEB86659FD93ull + static_cast<std::uint64_t>(part);
+  }
+  return bits;
+}
+
+/** A point, where all ranks' points with its key meet. */
+struct MetPoint
+{
+  PointKey Key;
+  vtkIdType IsMarked; // as another rank's
+  vtkIdType Rank, Place;
+};
+
+/** A border edge of a rank's triangles. */
+struct MetEdge
+{
+  PointKey Ends[2];
+  double Places[4];
+  vtkIdType Rank, HalfEdge;
+};
+
+template <typename Value>
+std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
+{
+  std::vector<Value> all;
+  for (const Bytes& bytes : packed)
+  {
+    const char* from = bytes.data();
+    std::vector<Value> some;
+    TakeFrom(from, bytes.size() / sizeof(Value), some);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+/** Whether each edge is there once, or once in each direction. @param[out] single  the former */
+bool MatchEdges(std::vector<MetEdge>& edges, std::vector<MetEdge>& single)
+{
+  const auto keyOf = [](const MetEdge& edge) {
+    return std::make_tuple(
+      std::min(edge.Ends[0], edge.Ends[1]), std::max(edge.Ends[0], edge.Ends[1]), edge.Ends[0]);
+  };
+  std::sort(edges.begin(), edges.end(),
+    [&](const MetEdge& a, const MetEdge& b) { return keyOf(a) < keyOf(b); });
+  for (std::size_t i = 0; i < edges.size(); ++i)
+  {
+    const bool isPair = i + 1 < edges.size() && edges[i].Ends[0] == edges[i + 1].Ends[1] &&
+      edges[i].Ends[1] == edges[i + 1].Ends[0];
+    const std::size_t next = i + (isPair ? 2 : 1);
+    if (next < edges.size() &&
+      std::minmax(edges[i].Ends[0], edges[i].Ends[1]) ==
+        std::minmax(edges[next].Ends[0], edges[next].Ends[1]))
+    {
+      return false;
+    }
+    if (!isPair)
+    {
+      single.push_back(edges[i]);
+    }
+    i = next - 1;
+  }
+  return true;
+}
+} // namespace
+
+Index SharedPoints::Find(const PointKey& key) const
+{
+  const auto found =
+    std::lower_bound(this->Sorted.begin(), this->Sorted.end(), std::make_pair(key, Index(0)));
+  return found != this->Sorted.end() && found->first == key ? found->second : None;
+}
+
+bool SharedPoints::Sort(const std::vector<char>& areUsed)
+{
+  this->Sorted.clear();
+  for (std::size_t i = 0; i < this->Places.size(); ++i)
+  {
+    this->Sorted.emplace_back(this->Keys[i], this->Places[i]);
+  }
+  // Points with a triangle come first.
+  std::sort(this->Sorted.begin(), this->Sorted.end(), [&](const auto& a, const auto& b) {
+    return std::make_tuple(a.first, !areUsed[a.second], a.second) <
+      std::make_tuple(b.first, !areUsed[b.second], b.second);
+  });
+  const auto isTwice = [&](const auto& a, const auto& b) {
+    return a.first == b.first && areUsed[a.second] && areUsed[b.second];
+  };
+  const bool isUnique =
+    std::adjacent_find(this->Sorted.begin(), this->Sorted.end(), isTwice) == this->Sorted.end();
+  const auto isSame = [](const auto& a, const auto& b) { return a.first == b.first; };
+  this->Sorted.erase(
+    std::unique(this->Sorted.begin(), this->Sorted.end(), isSame), this->Sorted.end());
+  return isUnique;
+}
+
+void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& points)
+{
+  std::vector<Bytes> packed(ranks.Count());
+  ranks.Agree([&]() {
+    vtkUnsignedCharArray* const marks = GhostsOf(own->GetPointData());
+    for (std::size_t i = 0; i < points.Places.size(); ++i)
+    {
+      const bool isMarked =
+        marks && (marks->GetValue(points.Places[i]) & vtkDataSetAttributes::DUPLICATEPOINT);
+      const MetPoint met{ points.Keys[i], isMarked ? 1 : 0, ranks.Own(),
+        static_cast<vtkIdType>(i) };
+      AppendTo(packed[RankOf(BitsOf(met.Key), ranks)], &met, 1);
+    }
+  });
+  packed = ranks.Exchange(std::move(packed));
+  ranks.Agree([&]() {
+    std::vector<MetPoint> met = Unpacked<MetPoint>(packed);
+    packed = std::vector<Bytes>(ranks.Count());
+    const auto keyOf = [](const MetPoint& p) {
+      return std::make_tuple(p.Key, p.IsMarked, p.Rank, p.Place);
+    };
+    std::sort(met.begin(), met.end(),
+      [&](const MetPoint& a, const MetPoint& b) { return keyOf(a) < keyOf(b); });
+    std::vector<vtkIdType> found(ranks.Count(), 0); // of the key so far, on each rank
+    vtkIdType different = 0;
+    for (std::size_t i = 0; i < met.size(); ++i)
+    {
+      if (i == 0 || met[i].Key != met[i - 1].Key)
+      {
+        std::fill(found.begin(), found.end(), 0);
+        different = 0;
+      }
+      // Without ids, the first of one rank is the first of any other, and so on.
+      if (different == (byIds ? 0 : found[met[i].Rank]++))
+      {
+        ++different;
+        continue;
+      }
+      AppendTo(packed[met[i].Rank], &met[i].Place, 1);
+    }
+  });
+  packed = ranks.Exchange(std::move(packed));
+  points.AreCopies.assign(points.Places.size(), 0);
+  for (const vtkIdType place : Unpacked<vtkIdType>(packed))
+  {
+    points.AreCopies[place] = 1;
+  }
+}
+
+Index BorderOfAll::Find(const PointKey& key) const
+{
+  const auto found = std::lower_bound(this->Keys.begin(), this->Keys.end(), key);
+  return found != this->Keys.end() && *found == key ? static_cast<Index>(found - this->Keys.begin())
+                                                    : None;
+}
+
+PointView BorderOfAll::View() const
+{
+  PointView view;
+  view.Double = this->Coordinates.data();
+  view.Count = static_cast<Index>(this->Keys.size());
+  return view;
+}
+
+bool CollectBorder(
+  const Ranks& ranks, const Mesh& mesh, const SharedPoints& points, BorderOfAll& border)
+{
+  std::vector<Bytes> packed(ranks.Count());
+  ranks.Agree([&]() {
+    const auto keyOf = [&](Index point) {
+      const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
+      return points.Keys[at - points.Places.begin()];
+    };
+    for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
+    {
+      if (mesh.Twin(h) == Mesh::Border)
+      {
+        const Index a = mesh.Origin(h), b = mesh.Destination(h);
+        const Point2 p = mesh.PointOf(a), q = mesh.PointOf(b);
+        const MetEdge edge{ { keyOf(a), keyOf(b) }, { p.X, p.Y, q.X, q.Y }, ranks.Own(), h };
+        AppendTo(packed[RankOf(BitsOf(edge.Ends[0]) + BitsOf(edge.Ends[1]), ranks)], &edge, 1);
+      }
+    }
+  });
+  packed = ranks.Exchange(std::move(packed));
+  if (!CanAll(ranks, [&]() {
+        std::vector<MetEdge> met = Unpacked<MetEdge>(packed), single;
+        const bool isManifold = MatchEdges(met, single);
+        packed = std::vector<Bytes>(ranks.Count());
+        for (Bytes& bytes : packed) // to all
+        {
+          AppendTo(bytes, single);
+        }
+        return isManifold;
+      }))
+  {
+    return false;
+  }
+  packed = ranks.Exchange(std::move(packed));
+  ranks.Agree([&]() {
+    std::vector<MetEdge> edges = Unpacked<MetEdge>(packed);
+    std::sort(edges.begin(), edges.end(), [](const MetEdge& a, const MetEdge& b) {
+      return std::tie(a.Rank, a.HalfEdge) < std::tie(b.Rank, b.HalfEdge);
+    });
+    for (const MetEdge& edge : edges)
+    {
+      border.Keys.insert(border.Keys.end(), { edge.Ends[0], edge.Ends[1] });
+    }
+    std::sort(border.Keys.begin(), border.Keys.end());
+    border.Keys.erase(std::unique(border.Keys.begin(), border.Keys.end()), border.Keys.end());
+    border.Coordinates.resize(3 * border.Keys.size(), 0.0);
+    for (const MetEdge& edge : edges)
+    {
+      const Index ends[2] = { border.Find(edge.Ends[0]), border.Find(edge.Ends[1]) };
+      border.Edges.push_back({ ends[0], ends[1] });
+      for (std::size_t k = 0; k < 2; ++k)
+      {
+        std::copy_n(edge.Places + 2 * k, 2, border.Coordinates.begin() + 3 * ends[k]);
+      }
+    }
+  });
+  return true;
+}
+
+} // namespace elevation

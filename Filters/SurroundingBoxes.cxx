@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurroundingBoxes.h"
+
+#include "NearParts.h"
+
+#include "vtkCellArray.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <utility>
+
+namespace elevation
+{
+
+std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points)
+{
+  std::vector<HoleExtent> extents;
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    HoleExtent extent{ Box(), 0.0, holes.NumberOfEdges(hole) };
+    holes.VisitEdges(hole, [&](Index a, Index b) {
+      const Point2 p = points.At(a), q = points.At(b);
+      extent.OfRim.Add(p);
+      extent.MeanEdge += std::hypot(q.X - p.X, q.Y - p.Y) / extent.NumberOfEdges;
+    });
+    extents.push_back(extent);
+  }
+  return extents;
+}
+
+std::vector<int> BalancedRanks(
+  const std::vector<HoleExtent>& holes, const std::vector<vtkIdType>& can)
+{
+  constexpr double leastWork = 150.0;                // of the trials, in points
+  std::vector<std::pair<double, std::size_t>> order; // negative work, hole
+  for (std::size_t hole = 0; hole < holes.size(); ++hole)
+  {
+    const HoleExtent& one = holes[hole];
+    const double points = one.OfRim.Width() / one.MeanEdge * (one.OfRim.Height() / one.MeanEdge);
+    order.emplace_back(-(points + one.NumberOfEdges + leastWork), hole);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<double> work(can.size(), DBL_MAX);
+  for (std::size_t rank = 0; rank < can.size(); ++rank)
+  {
+    work[rank] = can[rank] ? 0.0 : DBL_MAX;
+  }
+  std::vector<int> rankOf(holes.size(), 0);
+  for (const auto& [negative, hole] : order)
+  {
+    const auto least = std::min_element(work.begin(), work.end());
+    rankOf[hole] = static_cast<int>(least - work.begin());
+    *least -= negative;
+  }
+  return rankOf;
+}
+
+Box BoxAround(const HoleExtent& hole, int round)
+{
+  const Box& rim = hole.OfRim;
+  if (round > 1)
+  {
+    return { { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
+  }
+  const double size = std::hypot(rim.Width(), rim.Height());
+  const double by = (round == 0 ? 1.0 : 4.0) * (1.5 * size + 6.0 * hole.MeanEdge);
+  return { { rim.Low.X - by, rim.Low.Y - by }, { rim.High.X + by, rim.High.Y + by } };
+}
+
+namespace
+{
+/** Places of a grid over a mesh, and how many marked cells lie below and left of each. */
+class MarkedCells
+{
+public:
+  MarkedCells(const std::vector<Box>& boxes, const Box& all)
+    : All(all)
+    , Counts(static_cast<std::size_t>(Side + 1) * (Side + 1), 0)
+  {
+    std::vector<Index> marks(this->Counts.size(), 0); // differences
+    for (const Box& box : boxes)
+    {
+      if (box.Intersects(all))
+      {
+        const Range range = this->RangeOf(box);
+        ++marks[Place(range.I0, range.J0)];
+        --marks[Place(range.I1 + 1, range.J0)];
+        --marks[Place(range.I0, range.J1 + 1)];
+        ++marks[Place(range.I1 + 1, range.J1 + 1)];
+      }
+    }
+    for (int j = 0; j <= Side; ++j)
+    {
+      for (int i = 0; i <= Side; ++i)
+      {
+        const auto at = [&](std::vector<Index>& from, int di, int dj) {
+          return i >= di && j >= dj ? from[Place(i - di, j - dj)] : 0;
+        };
+        marks[Place(i, j)] += at(marks, 1, 0) + at(marks, 0, 1) - at(marks, 1, 1);
+      }
+    }
+    for (int j = 0; j < Side; ++j)
+    {
+      for (int i = 0; i < Side; ++i)
+      {
+        this->Counts[Place(i + 1, j + 1)] = (marks[Place(i, j)] > 0 ? 1 : 0) +
+          this->Counts[Place(i, j + 1)] + this->Counts[Place(i + 1, j)] - this->Counts[Place(i, j)];
+      }
+    }
+  }
+
+  bool Meet(const Box& box) const
+  {
+    const Range r = this->RangeOf(box);
+    return this->Counts[Place(r.I1 + 1, r.J1 + 1)] - this->Counts[Place(r.I0, r.J1 + 1)] -
+      this->Counts[Place(r.I1 + 1, r.J0)] + this->Counts[Place(r.I0, r.J0)] >
+      0;
+  }
+
+private:
+  static constexpr int Side = 256;
+  struct Range
+  {
+    int I0, I1, J0, J1;
+  };
+
+  static std::size_t Place(int i, int j)
+  {
+    return static_cast<std::size_t>(j) * (Side + 1) + static_cast<std::size_t>(i);
+  }
+  static int CellOf(double x, double low, double width)
+  {
+    const double cell = width > 0.0 ? std::floor((x - low) / width * Side) : 0.0;
+    return static_cast<int>(std::min(std::max(cell, 0.0), Side - 1.0));
+  }
+  Range RangeOf(const Box& box) const
+  {
+    const double width = this->All.Width(), height = this->All.Height();
+    return { CellOf(box.Low.X, this->All.Low.X, width), CellOf(box.High.X, this->All.Low.X, width),
+      CellOf(box.Low.Y, this->All.Low.Y, height), CellOf(box.High.Y, this->All.Low.Y, height) };
+  }
+
+  const Box All;
+  std::vector<Index> Counts;
+};
+} // namespace
+
+std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh)
+{
+  std::vector<Index> near;
+  Box all;
+  for (const Index corner : mesh.Triangles)
+  {
+    all.Add(mesh.PointOf(corner));
+  }
+  if (boxes.empty() || mesh.Triangles.empty())
+  {
+    return near;
+  }
+  const MarkedCells marked(boxes, all);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    Box box;
+    for (Index k = 0; k < 3; ++k)
+    {
+      box.Add(mesh.PointOf(mesh.Origin(3 * t + k)));
+    }
+    if (marked.Meet(box))
+    {
+      near.push_back(t);
+    }
+  }
+  return near;
+}
+
+vtkSmartPointer<vtkPolyData> ChosenTriangles(
+  vtkPolyData* source, const Mesh& mesh, const std::vector<Index>& chosen)
+{
+  IdSet used(static_cast<Index>(source->GetNumberOfPoints()));
+  for (const Index t : chosen)
+  {
+    used.AddAll(mesh.Triangles.data() + 3 * static_cast<std::size_t>(t));
+  }
+  const vtkSmartPointer<vtkPolyData> part = ChosenPoints(source, used.ListAndRank());
+  vtkNew<vtkCellArray> polygons;
+  for (const Index t : chosen)
+  {
+    const Index* const c = mesh.Triangles.data() + 3 * static_cast<std::size_t>(t);
+    const vtkIdType corners[] = { used.RankOf(c[0]), used.RankOf(c[1]), used.RankOf(c[2]) };
+    polygons->InsertNextCell(3, corners);
+  }
+  part->SetPolys(polygons);
+  return part;
+}
+
+} // namespace elevation

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Which triangles of a surface a hole needs to be filled, and on which rank. Private to the module.
+ */
+#ifndef SurroundingBoxes_h
+#define SurroundingBoxes_h
+
+#include "Kernel/Mesh/Mesh.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <vector>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+struct HoleExtent
+{
+  Box OfRim;
+  double MeanEdge; ///< length, of rim and islands
+  Index NumberOfEdges;
+};
+
+std::vector<HoleExtent> ExtentsOf(const Holes& holes, const PointView& points);
+
+/** The rank of each hole: the largest first, to the one with least work. @param[in] can  have some */
+std::vector<int> BalancedRanks(
+  const std::vector<HoleExtent>& holes, const std::vector<vtkIdType>& can);
+
+/**
+ * Where a hole knows all triangles: those that its trials beside it need nearly always; in the
+ * second round more, in the third everywhere.
+ */
+Box BoxAround(const HoleExtent& hole, int round);
+
+/** The triangles, increasing, that meet one of the boxes, and some nearby. Linear. */
+std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh);
+
+/** The chosen triangles with their points and the data of these. */
+vtkSmartPointer<vtkPolyData> ChosenTriangles(
+  vtkPolyData* source, const Mesh& mesh, const std::vector<Index>& chosen);
+
+} // namespace elevation
+
+#endif
