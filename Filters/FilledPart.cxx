@@ -90,7 +90,7 @@ std::vector<Index> FilledWriting::PlaceCorners(std::vector<Index>& added) const
   return placeOf;
 }
 
-/** The input and, as ghosts, the corners that are other ranks' points. */
+/** The input and the corners of other ranks; of points that ranks have in common, one is no ghost. */
 vtkSmartPointer<vtkPolyData> FilledWriting::WithCorners(
   const std::vector<Index>& added, bool areMarked) const
 {
@@ -101,6 +101,13 @@ vtkSmartPointer<vtkPolyData> FilledWriting::WithCorners(
   points.AreMarked = areMarked;
   points.Type = this->Part.Input->GetPoints()->GetDataType();
   const Index own = static_cast<Index>(this->Part.Input->GetNumberOfPoints());
+  for (std::size_t i = 0; i < this->Part.Shared.Places.size(); ++i)
+  {
+    if (this->Part.Shared.AreCopies[i])
+    {
+      points.OfOthers.push_back(this->Part.Shared.Places[i]);
+    }
+  }
   for (std::size_t i = 0; i < added.size(); ++i)
   {
     points.OfOthers.push_back(own + static_cast<Index>(i));
@@ -243,7 +250,9 @@ void FilledWriting::WriteSurface()
   this->All.Agree([&]() { placeOf = this->PlaceCorners(added); });
   const std::vector<vtkIdType> largest =
     this->All.Collect(std::vector<vtkIdType>{ this->LargestId() });
-  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(added.size()) };
+  const std::vector<char>& copies = this->Part.Shared.AreCopies;
+  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(added.size()) +
+    std::count(copies.begin(), copies.end(), 1) };
   this->All.Sum(sums);
   this->All.Agree([&]() {
     if (this->Part.HasPoints())

@@ -97,8 +97,9 @@
  * the largest first, on the one with least work; only the triangles around it are sent there. The
  * triangles and new points of all ranks are those of one, to the last bit; holes are numbered with
  * the triangles rank after rank. A rank has its points and triangles in their places, then other
- * ranks' points that its new triangles have, marked as such (vtkGhostType), and new points, whose
- * global ids, if there are any, follow the largest of all ranks in the order of the holes. Points
+ * ranks' points that its new triangles have, and new points, whose global ids, if there are any,
+ * follow the largest of all ranks in the order of the holes. Points that several ranks have are
+ * marked on all but one of them (vtkGhostType). Points
  * with the same global id are one, or, where not all ranks have global ids, those with the same
  * x,y,z. Field data are those of the rank, with the counts of all. Output 1 is on one rank.
  *

@@ -113,7 +113,7 @@ def check_union(parts, whole, claim):
         return (part["points"][i],) + tuple(part["arrays"][name][i] for name in sorted(part["arrays"]))
 
     expected = sorted(row(whole, i) for i in range(len(whole["ghosts"])))
-    owned, copies = {}, {}
+    owned, copies, count = {}, {}, 0
     for part in parts:
         for i, is_ghost in enumerate(part["ghosts"]):
             one = row(part, i)
@@ -121,7 +121,9 @@ def check_union(parts, whole, claim):
             copies.setdefault(key, set()).add(one)
             if not is_ghost:
                 owned[key] = one
+                count += 1
     check(sorted(owned.values()) == expected, claim + ": points and their values are those of one rank")
+    check(count == len(expected), "%s: %d points of %d have an owner" % (claim, count, len(expected)))
     check(all(len(each) == 1 for each in copies.values()), claim + ": copies of points are alike")
     triangles = [triangle for part in parts for triangle in part["triangles"]]
     check(sorted(triangles) == sorted(whole["triangles"]),
