@@ -33,8 +33,8 @@ struct Measurer
   };
   static_assert(sizeof(Vertex) == 64, "the size of a cache line");
 
-  static constexpr Index AtOnce = VerticesAtOnce; ///< numbers reserved for a visitor at a time
-  const Vertex* Vertices;                         ///< of the list
+  static constexpr Index AtOnce = 1024; ///< numbers reserved for a visitor at a time
+  const Vertex* Vertices;               ///< of the list
   MeasuredTriangles* Measured;
   double* Longest;           ///< of Measured
   std::atomic<Index>* Count; ///< of numbers reserved by all visitors

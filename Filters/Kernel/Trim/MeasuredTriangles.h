@@ -72,6 +72,13 @@ struct MeasuredTriangles
     this->ShortSpacings[vertex] = edges.ShortSpacing();
   }
 
+  /** The vertices with edges, whatever numbers a sweep on several threads has left out. */
+  Index NumberOfCorners() const
+  {
+    return static_cast<Index>(std::count_if(this->Degrees.begin(), this->Degrees.end(),
+      [](std::uint32_t degree) { return degree > 0; }));
+  }
+
   TriangleList List;
   Buffer<Index> Corners;         ///< owns List's corners, if renumbered
   Buffer<double> Coordinates;    ///< owns List's points
@@ -81,9 +88,6 @@ struct MeasuredTriangles
   Buffer<float> ShortSpacings;   ///< one per vertex
   std::vector<BorderEdge> Border;
 };
-
-/** A sweep numbers the vertices in blocks: their number is a multiple of this one. */
-constexpr Index VerticesAtOnce = 1024;
 
 /** Measures the triangles of a mesh (with Twins), at least one. @throws Aborted, std::bad_alloc */
 MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress = Progress());

@@ -632,7 +632,7 @@ public:
     if (this->IsAutomatic && this->Border.IsPart)
     {
       const IdSet lonely = this->LonelyWithin(neighbors, this->CornersNear(doubtful));
-      if (!AreFew(neighbors, lonely, list.Points.Count, this->PointsInBlocks()))
+      if (!AreFew(neighbors, lonely, list.Points.Count, this->NumberOfPoints))
       {
         return std::nullopt;
       }
@@ -777,7 +777,7 @@ private:
     {
       part.States.push_back(states[t]);
     }
-    part.NumberOfInnerPoints = this->NumberOfCorners() - this->Border.Vertices.Count();
+    part.NumberOfInnerPoints = this->Measured.NumberOfCorners() - this->Border.Vertices.Count();
     part.Border = std::move(this->Border.Edges);
     const Buffer<Index>& ids = this->Measured.Ids;
     for (BorderEdge& edge : part.Border)
@@ -815,20 +815,6 @@ private:
       }
     }
     return within;
-  }
-
-  std::int64_t NumberOfCorners() const
-  {
-    return std::count_if(this->Measured.Degrees.begin(), this->Measured.Degrees.end(),
-      [](std::uint32_t degree) { return degree > 0; });
-  }
-
-  /** The number of points of the mesh as a sweep over all triangles counts them. */
-  Index PointsInBlocks() const
-  {
-    const std::int64_t blocks = (this->NumberOfPoints + VerticesAtOnce - 1) / VerticesAtOnce;
-    return static_cast<Index>(
-      std::min<std::int64_t>(blocks * VerticesAtOnce, std::numeric_limits<Index>::max()));
   }
 
   /**
@@ -988,7 +974,7 @@ private:
     const double all = AreaOf(list, this->Border.Edges);
     this->Result.AreaLeftOut = all > 0.0 ? std::min(1.0, area / all) : 0.0;
     const double points =
-      static_cast<double>(this->Border.IsPart ? this->NumberOfPoints : this->NumberOfCorners());
+      static_cast<double>(this->Border.IsPart ? this->NumberOfPoints : this->Measured.NumberOfCorners());
     this->Result.PointsLeftOut = this->Result.NumberOfPointsLeftOut / points;
     if (!this->Result.LeavesOutMuch())
     {

@@ -530,9 +530,10 @@ IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count)
   return lonely;
 }
 
-bool AreFew(const Neighbors& neighbors, const IdSet& lonely, Index count, Index numberOfPoints)
+bool AreFew(
+  const Neighbors& neighbors, const IdSet& lonely, Index count, std::int64_t numberOfCorners)
 {
-  return lonely.Count() <= numberOfPoints / ManyLonely &&
+  return lonely.Count() <= numberOfCorners / ManyLonely &&
     !HasGroup(neighbors, lonely, count, LonelyGroup);
 }
 
@@ -541,7 +542,8 @@ std::vector<float> FindScales(const MeasuredTriangles& measured, const Neighbors
 {
   const TriangleList& list = measured.List;
   const Index count = list.Points.Count;
-  if (AreFew(neighbors, LonelyVertices(neighbors, near, count), count, count))
+  const IdSet lonely = LonelyVertices(neighbors, near, count);
+  if (AreFew(neighbors, lonely, count, measured.NumberOfCorners()))
   {
     return {};
   }

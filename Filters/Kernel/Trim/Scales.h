@@ -45,6 +45,7 @@
 #include "Kernel/Base/Base.h"
 #include "Spacings.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace elevation
@@ -55,10 +56,11 @@ IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count)
 
 /**
  * Whether there are too few lonely vertices for any scale but 1.
- * @param[in] count           of the vertices with neighbours
- * @param[in] numberOfPoints  of the mesh, which may be more
+ * @param[in] count            of vertices, some perhaps without neighbours
+ * @param[in] numberOfCorners  of all triangles of the mesh
  */
-bool AreFew(const Neighbors& neighbors, const IdSet& lonely, Index count, Index numberOfPoints);
+bool AreFew(
+  const Neighbors& neighbors, const IdSet& lonely, Index count, std::int64_t numberOfCorners);
 
 /**
  * Finds the scales.
