@@ -59,23 +59,26 @@ def cloud(coordinates, ids=None, arrays=()):
     return data
 
 
-def triangulate(data, alone, **properties):
-    """The filter after its update, and its messages."""
-    delaunay = vtkGridDelaunay2D()
-    delaunay.SetNumberOfThreads(1)
-    delaunay.SetInputData(data)
+def updated(algorithm, data, alone, **properties):
+    """A filter after its update, and its messages."""
+    algorithm.SetNumberOfThreads(1)
+    algorithm.SetInputData(data)
     messages = []
 
     def note(_caller, event, text):
         messages.append((event, text.split("): ", 1)[1].strip()))  # without the address
 
     note.CallDataType = "string0"
-    delaunay.AddObserver("ErrorEvent", note)
-    delaunay.AddObserver("WarningEvent", note)
+    algorithm.AddObserver("ErrorEvent", note)
+    algorithm.AddObserver("WarningEvent", note)
     for name, value in properties.items():
-        getattr(delaunay, "Set" + name)(value)
-    delaunay.UpdatePiece(*(0, 1, 0) if alone else (RANK, COUNT, 0))
-    return delaunay, messages
+        getattr(algorithm, "Set" + name)(value)
+    algorithm.UpdatePiece(*(0, 1, 0) if alone else (RANK, COUNT, 0))
+    return algorithm, messages
+
+
+def triangulate(data, alone, **properties):
+    return updated(vtkGridDelaunay2D(), data, alone, **properties)
 
 
 def values_of(array):
@@ -385,13 +388,18 @@ def end(done):
     sys.exit(1 if failures else 0)
 
 
-def main():
+def options_of(clouds, aborts):
+    """The options of the command line, with these defaults."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("--clouds", type=int, default=30)
-    parser.add_argument("--aborts", type=int, default=4)
+    parser.add_argument("--clouds", type=int, default=clouds)
+    parser.add_argument("--aborts", type=int, default=aborts)
     parser.add_argument("--size", type=int, default=20000, help="points of a cloud that is aborted")
     parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    options = options_of(30, 4)
     check_kinds()
     random = numpy.random.default_rng(options.seed)
     check_errors(random)

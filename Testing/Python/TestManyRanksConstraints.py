@@ -5,15 +5,13 @@
 Run by mpirun, as TestManyRanks.py. With --clouds more random clouds are compared than the suite has time
 for.
 """
-import argparse
-
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 from TestManyRanks import (
-    CLOUDS, COUNT, POLICIES, RANK, WORLD, check, check_aborts, check_refused, check_union, cloud, end, owners_of,
-    part_of, triangulate)
+    CLOUDS, COUNT, POLICIES, RANK, WORLD, check, check_aborts, check_refused, check_union, cloud, end, options_of,
+    owners_of, part_of, triangulate)
 
 
 def lines_of(coordinates, cells, arrays=()):
@@ -208,12 +206,7 @@ def check_errors(random):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--clouds", type=int, default=15)
-    parser.add_argument("--aborts", type=int, default=3)
-    parser.add_argument("--size", type=int, default=20000, help="points of a cloud that is aborted")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
+    options = options_of(15, 3)
     check_kinds()
     random = numpy.random.default_rng(options.seed)
     check_errors(random)

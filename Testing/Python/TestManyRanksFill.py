@@ -3,10 +3,9 @@
 """A surface that is spread over ranks is filled as on one rank, to the last bit.
 
 Run by mpirun, as TestManyRanks.py: each surface is also filled by rank 0 alone, and compared with what
-all ranks have made: points and arrays, triangles, holes and reports, messages. With --surfaces more random
+all ranks have made: points and arrays, triangles, holes and reports, messages. With --clouds more random
 ones are compared than the suite has time for.
 """
-import argparse
 import time
 
 import numpy
@@ -14,7 +13,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes
 
-from TestManyRanks import COUNT, RANK, WORLD, check, cloud, end, values_of
+from TestManyRanks import COUNT, RANK, WORLD, check, cloud, end, options_of, updated, values_of
 from vtkelevationsurface import vtkFillElevationHoles, vtkGridDelaunay2D
 
 
@@ -54,22 +53,7 @@ def part_of_rank(rank, coordinates, triangles, owners, ids, arrays, are_marked):
 
 
 def fill(data, alone, **properties):
-    """The filter after its update, and its messages."""
-    filler = vtkFillElevationHoles()
-    filler.SetNumberOfThreads(1)
-    filler.SetInputData(data)
-    messages = []
-
-    def note(_caller, event, text):
-        messages.append((event, text.split("): ", 1)[1].strip()))  # without the address
-
-    note.CallDataType = "string0"
-    filler.AddObserver("ErrorEvent", note)
-    filler.AddObserver("WarningEvent", note)
-    for name, value in properties.items():
-        getattr(filler, "Set" + name)(value)
-    filler.UpdatePiece(*(0, 1, 0) if alone else (RANK, COUNT, 0))
-    return filler, messages
+    return updated(vtkFillElevationHoles(), data, alone, **properties)
 
 
 def part_of(filler):
@@ -309,17 +293,13 @@ def check_aborts(random, count):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--surfaces", type=int, default=8)
-    parser.add_argument("--aborts", type=int, default=3)
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
+    options = options_of(8, 3)
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
-    for i in range(options.surfaces):
+    for i in range(options.clouds):
         compare_random(random, "surface %d of seed %d" % (i, options.seed))
     latest = check_aborts(random, options.aborts)
-    end("%d surfaces, %d aborts (the latest took %.2f s)" % (options.surfaces, options.aborts, latest))
+    end("%d surfaces, %d aborts (the latest took %.2f s)" % (options.clouds, options.aborts, latest))
 
 
 if __name__ == "__main__":

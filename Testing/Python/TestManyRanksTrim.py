@@ -6,39 +6,23 @@ Run by mpirun: all ranks run this script. Each mesh is also trimmed by rank 0 al
 all ranks are compared with that, by coordinates. With --clouds more are compared than the suite has time
 for, with --aborts more are stopped.
 """
-import argparse
 import collections
 import re
-import sys
 import time
 
-from mpi4py import MPI  # before VTK: it starts MPI
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
-from vtkmodules.vtkParallelMPI import vtkMPIController
 
+from TestManyRanks import COUNT, RANK, WORLD, check, end, options_of, updated
 from vtkelevationsurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
-WORLD = MPI.COMM_WORLD
-RANK, COUNT = WORLD.rank, WORLD.size
-CONTROLLER = vtkMPIController()
-CONTROLLER.Initialize()
-vtkMultiProcessController.SetGlobalController(CONTROLLER)
-FAILURES = []
 SPREAD = []  # whether surfaces without a given boundary have stayed where they were
 DUPLICATE = 1
 GHOSTS = "vtkGhostType"
 # Names of what a case draws, for messages.
 Case = collections.namedtuple("Case", "claim points triangles owners rings")
-
-
-def check(is_true, claim):
-    if not is_true:
-        FAILURES.append(claim)
-        print("rank %d: FAILED: %s" % (RANK, claim), flush=True)
 
 
 def mesh_of(points, triangles):
@@ -106,23 +90,7 @@ def boundary_of(rings):
 
 
 def trim(mesh, boundary, alone, **properties):
-    """The filter after its update, and its messages."""
-    trimming = vtkTrimOutwardTriangles()
-    trimming.SetNumberOfThreads(1)
-    trimming.SetInputData(mesh)
-    trimming.SetBoundaryData(boundary)
-    messages = []
-
-    def note(_caller, event, text):
-        messages.append((event, text.split("): ", 1)[1].strip()))  # without the address
-
-    note.CallDataType = "string0"
-    trimming.AddObserver("ErrorEvent", note)
-    trimming.AddObserver("WarningEvent", note)
-    for name, value in properties.items():
-        getattr(trimming, "Set" + name)(value)
-    trimming.UpdatePiece(*(0, 1, 0) if alone else (RANK, COUNT, 0))
-    return trimming, messages
+    return updated(vtkTrimOutwardTriangles(), mesh, alone, BoundaryData=boundary, **properties)
 
 
 def side_of(output):
@@ -231,7 +199,7 @@ def compare(case, are_global=False, are_marked=False, boundary_on=None, **proper
     if not WORLD.bcast(messages):
         stays = bool(outputs[0]["triangles"] or outputs[1]["triangles"]) == (part.GetNumberOfCells() > 0)
         if not case.rings:  # or is gathered
-            SPREAD.append(WORLD.allreduce(stays, MPI.LAND))
+            SPREAD.append(all(WORLD.allgather(stays)))
         else:
             check(stays, case.claim + ": a rank that has triangles keeps its own")
         check(all(i in outputs[0]["used"] | outputs[1]["used"]
@@ -519,12 +487,7 @@ def check_errors(random):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--clouds", type=int, default=8)
-    parser.add_argument("--aborts", type=int, default=4)
-    parser.add_argument("--side", type=int, default=150, help="points along a grid that is aborted")
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
+    options = options_of(8, 4)
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
     for i in range(options.clouds):
@@ -534,12 +497,8 @@ def main():
     check(sum(SPREAD) >= 0.5 * len(SPREAD) - 1, "%d of %d stay where they are" % (sum(SPREAD), len(SPREAD)))
     for i in range(max(1, options.clouds // 6)):
         check_chain(random, "chain %d of seed %d" % (i, options.seed))
-    latest = check_aborts(random, options.aborts, options.side)
-    failures = sum(WORLD.allgather(len(FAILURES)))
-    if RANK == 0:
-        print("%d ranks, %d clouds, %d aborts (the latest took %.2f s): %d failures" % (
-            COUNT, options.clouds, options.aborts, latest, failures))
-    sys.exit(1 if failures else 0)
+    latest = check_aborts(random, options.aborts, int(options.size**0.5))
+    end("%d clouds, %d aborts (the latest took %.2f s)" % (options.clouds, options.aborts, latest))
 
 
 main()
