@@ -20,6 +20,7 @@ namespace
 // their points, even and uneven, with and without cross lines, jittered by up to half a spacing;
 // tracks that cross at random; roads of 3 to 15 rows of points; swaths beside and across lines.
 constexpr Index ManyLonely = 50;
+constexpr std::int64_t Block = 1024;
 constexpr std::size_t LonelyGroup = 30;
 constexpr Index LeastInner = 50;
 constexpr Index InnerPerOther = 2;
@@ -533,7 +534,9 @@ IdSet LonelyVertices(const Neighbors& neighbors, const IdSet& near, Index count)
 bool AreFew(
   const Neighbors& neighbors, const IdSet& lonely, Index count, std::int64_t numberOfCorners)
 {
-  return lonely.Count() <= numberOfCorners / ManyLonely &&
+  // Of few points, as many as of a whole block may be lonely.
+  const std::int64_t inBlocks = (numberOfCorners + Block - 1) / Block * Block;
+  return lonely.Count() <= inBlocks / ManyLonely &&
     !HasGroup(neighbors, lonely, count, LonelyGroup);
 }
 
