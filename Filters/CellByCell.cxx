@@ -33,14 +33,6 @@ std::uint64_t HashOf(vtkIdType id)
   return ((bits ^ (bits >> 31)) * 0xD6E8FEB86659FD93ull) >> 20;
 }
 
-PointView ViewOf(const PointRows& rows)
-{
-  PointView view;
-  view.Double = rows.Coordinates.data();
-  view.Count = static_cast<Index>(rows.Count());
-  return view;
-}
-
 bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& others)
 {
   return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),

@@ -21,14 +21,6 @@ namespace elevation
 
 namespace
 {
-PointView ViewOf(const PointRows& rows)
-{
-  PointView view;
-  view.Double = rows.Coordinates.data();
-  view.Count = static_cast<Index>(rows.Count());
-  return view;
-}
-
 /** The box of the finite points of all ranks. */
 Box BoxOfPoints(const Ranks& ranks, const PointRows& own)
 {

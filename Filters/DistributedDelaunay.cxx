@@ -103,7 +103,6 @@ private:
   Piece SettlePiece(const Piece& piece, const Node& node, const Progress& progress,
     const SharedLattice* lattice, std::vector<GlobalTriangle>& triangles);
   bool IsOffAnywhere(const SharedLattice* lattice) const;
-  PointView OwnPoints() const;
   Point2 PlaceOf(GlobalId number) const;
   void ListUnused(const Progress& progress);
   int RankOf(int cell) const { return this->Owners.RankOfCell[cell]; }
@@ -119,14 +118,6 @@ private:
   std::vector<GlobalTriangle> Triangles;
   std::vector<GlobalTriangle> OfSeams; // settled by this rank for all
 };
-
-PointView Work::OwnPoints() const
-{
-  PointView view;
-  view.Double = this->Part.Own.Coordinates.data();
-  view.Count = static_cast<Index>(this->Part.Own.Count());
-  return view;
-}
 
 /** All triangles, on the lattice of all points if there is one. */
 void Work::Settle()
@@ -146,11 +137,12 @@ void Work::Settle()
   }
   else if (isAsked &&
     FindLatticeOnRanks(
-      this->All, InOneSlice(this->OwnPoints()), this->Options, searching, lattice) &&
+      this->All, InOneSlice(ViewOf(this->Part.Own)), this->Options, searching, lattice) &&
     this->SettleOn(&lattice) && !this->IsByChance(lattice))
   {
     this->Part.Result.LatticeFound = true;
-    this->Part.Result.Steps = FromLowestNode(this->All, InOneSlice(this->OwnPoints()), lattice);
+    this->Part.Result.Steps =
+      FromLowestNode(this->All, InOneSlice(ViewOf(this->Part.Own)), lattice);
   }
   else
   {
@@ -163,14 +155,14 @@ void Work::SettleOnGiven(const Progress& progress)
 {
   SharedLattice lattice;
   const bool hasPoints = TakeGivenLattice(
-    this->All, this->OwnPoints(), this->Part.Own.Ids, this->Options, progress, lattice);
+    this->All, ViewOf(this->Part.Own), this->Part.Own.Ids, this->Options, progress, lattice);
   if (!this->SettleOn(hasPoints ? &lattice : nullptr))
   {
     throw GivenLatticeUnfit();
   }
   this->Part.Result.LatticeFound = true;
   this->Part.Result.Steps = hasPoints
-    ? FromLowestNode(this->All, InOneSlice(this->OwnPoints()), lattice)
+    ? FromLowestNode(this->All, InOneSlice(ViewOf(this->Part.Own)), lattice)
     : lattice.Steps();
 }
 

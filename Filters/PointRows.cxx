@@ -399,4 +399,12 @@ void PointRows::Choose(const std::vector<vtkIdType>& places)
   *this = std::move(chosen);
 }
 
+PointView ViewOf(const PointRows& rows)
+{
+  PointView view;
+  view.Double = rows.Coordinates.data();
+  view.Count = static_cast<Index>(rows.Count());
+  return view;
+}
+
 } // namespace elevation

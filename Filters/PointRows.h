@@ -8,6 +8,7 @@
 #define PointRows_h
 
 #include "Bytes.h"
+#include "Kernel/Base/Base.h"
 #include "Ranks.h"
 
 #include "vtkSmartPointer.h"
@@ -79,6 +80,9 @@ public:
 private:
   void View(vtkPointData* data);
 };
+
+/** The positions, in place. */
+PointView ViewOf(const PointRows& rows);
 
 } // namespace elevation
 
