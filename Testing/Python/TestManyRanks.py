@@ -305,35 +305,50 @@ def compare_random(random, claim):
             LatticeMode=int(random.random() < 0.3))
 
 
-def check_aborts(random, count, size, **properties):
-    """An abort on one rank, at any moment, ends all of them. @return how late the latest was"""
+def check_stops(random, count, share, make):
+    """An abort on one rank, at any moment, ends all of them, and one rank tells of it.
+
+    share  the part of the progress in which it comes
+    make   make(i) -> a filter with its input
+    Returns how late the latest was.
+    """
     late, reached = [], 0
     for i in range(count):
-        at, culprit = 0.9 * random.random(), random.integers(COUNT)  # the last tenth is one rank's own
-        coordinates = random.random((size, 3))
-        delaunay = vtkGridDelaunay2D()
-        delaunay.SetNumberOfThreads(1)
-        delaunay.SetInputData(cloud(coordinates[RANK::COUNT]))
-        for name, value in properties.items():
-            getattr(delaunay, "Set" + name)(value)
-        begun = []
+        at, culprit = share * random.random(), random.integers(COUNT)
+        algorithm = make(i)
+        algorithm.SetNumberOfThreads(1)
+        begun, told_of = [], []
 
         def stop(caller, _event):
             if RANK == culprit and caller.GetProgress() >= at and not begun:
                 begun.append(time.monotonic())
                 caller.SetAbortExecute(1)
 
-        delaunay.AddObserver("ProgressEvent", stop)
-        delaunay.AddObserver("WarningEvent", lambda *_: None)  # that it was stopped
-        delaunay.UpdatePiece(RANK, COUNT, 0)
+        algorithm.AddObserver("ProgressEvent", stop)
+        algorithm.AddObserver("WarningEvent", lambda *_: told_of.append("warning"))
+        algorithm.AddObserver("ErrorEvent", lambda *_: told_of.append("error"))
+        WORLD.barrier()
+        algorithm.UpdatePiece(RANK, COUNT, 0)
         ended = time.monotonic()
         begun = WORLD.bcast(begun, int(culprit))
         if begun:
             reached += 1
             late.append(ended - begun[0])
-            check(delaunay.GetOutput().GetNumberOfPoints() == 0, "rank %d is empty after abort %d" % (RANK, i))
+            check(algorithm.GetOutput().GetNumberOfPoints() == 0, "rank %d is empty after abort %d" % (RANK, i))
+            check(told_of == ["warning"] * (RANK == 0), "rank %d: %s of abort %d" % (RANK, told_of, i))
     check(reached > count // 2, "%d of %d aborts have come to pass" % (reached, count))
     return max(WORLD.allgather(max(late, default=0.0)))
+
+
+def check_aborts(random, count, size, **properties):
+    def make(_):
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(random.random((size, 3))[RANK::COUNT]))
+        for name, value in properties.items():
+            getattr(delaunay, "Set" + name)(value)
+        return delaunay
+
+    return check_stops(random, count, 0.9, make)  # the last tenth is one rank's own
 
 
 def check_refused(data, part, claim, **properties):

@@ -6,14 +6,13 @@ Run by mpirun, as TestManyRanks.py: each surface is also filled by rank 0 alone,
 all ranks have made: points and arrays, triangles, holes and reports, messages. With --clouds more random
 ones are compared than the suite has time for.
 """
-import time
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes
 
-from TestManyRanks import COUNT, RANK, WORLD, check, cloud, end, options_of, updated, values_of
+from TestManyRanks import COUNT, RANK, WORLD, check, check_stops, cloud, end, options_of, updated, values_of
 from vtkelevationsurface import vtkFillElevationHoles, vtkGridDelaunay2D
 
 
@@ -266,30 +265,13 @@ def check_aborts(random, count):
     coordinates = clouds(random, 2500)
     triangles = with_holes(random, coordinates, triangles_of(coordinates), 12)
     owners = numpy.sort(random.integers(COUNT, size=len(triangles)))
-    late, reached = [], 0
-    for i in range(count):
-        at, culprit = 0.8 * random.random(), random.integers(COUNT)
+
+    def make(_):
         filler = vtkFillElevationHoles()
-        filler.SetNumberOfThreads(1)
         filler.SetInputData(part_of_rank(RANK, coordinates, triangles, owners, None, (), False))
-        begun = []
+        return filler
 
-        def stop(caller, _event):
-            if RANK == culprit and caller.GetProgress() >= at and not begun:
-                begun.append(time.monotonic())
-                caller.SetAbortExecute(1)
-
-        filler.AddObserver("ProgressEvent", stop)
-        filler.AddObserver("WarningEvent", lambda *_: None)  # that it was stopped
-        filler.UpdatePiece(RANK, COUNT, 0)
-        ended = time.monotonic()
-        begun = WORLD.bcast(begun, int(culprit))
-        if begun:
-            reached += 1
-            late.append(ended - begun[0])
-            check(filler.GetOutput().GetNumberOfPoints() == 0, "rank %d is empty after abort %d" % (RANK, i))
-    check(reached > count // 2, "%d of %d aborts have come to pass" % (reached, count))
-    return max(WORLD.allgather(max(late, default=0.0)))
+    return check_stops(random, count, 0.8, make)
 
 
 def main():

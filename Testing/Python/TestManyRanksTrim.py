@@ -8,14 +8,13 @@ for, with --aborts more are stopped.
 """
 import collections
 import re
-import time
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-from TestManyRanks import COUNT, RANK, WORLD, check, end, options_of, updated
+from TestManyRanks import COUNT, RANK, WORLD, check, check_stops, end, options_of, updated
 from vtkelevationsurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
 SPREAD = []  # whether surfaces without a given boundary have stayed where they were
@@ -413,39 +412,17 @@ def grid(side):
 
 
 def check_aborts(random, count, side):
-    """An abort on one rank, at any moment, ends all of them."""
-    late, reached = [], 0
     points, triangles = grid(side)
     owners = numpy.argsort(numpy.argsort(points[triangles].mean(axis=1)[:, 0])) * COUNT // len(triangles)
-    for i in range(count):
-        at, culprit = 0.9 * random.random(), random.integers(COUNT)  # the last tenth is one rank's own
+
+    def make(i):
         case = Case("abort %d" % i, points, triangles, owners, [star(random, (side / 2, side / 2), side / 2, 500)])
         trimming = vtkTrimOutwardTriangles()
-        trimming.SetNumberOfThreads(1)
         trimming.SetInputData(part_of(case, RANK, False, False))
         trimming.SetBoundaryData(boundary_of(case.rings) if i % 2 else None)
-        begun = []
+        return trimming
 
-        def stop(caller, _event):
-            if RANK == culprit and caller.GetProgress() >= at and not begun:
-                begun.append(time.monotonic())
-                caller.SetAbortExecute(1)
-
-        told_of = []
-        trimming.AddObserver("ProgressEvent", stop)
-        trimming.AddObserver("WarningEvent", lambda *_: told_of.append("warning"))
-        trimming.AddObserver("ErrorEvent", lambda *_: told_of.append("error"))
-        WORLD.barrier()
-        trimming.UpdatePiece(RANK, COUNT, 0)
-        ended = time.monotonic()
-        begun = WORLD.bcast(begun, int(culprit))
-        if begun:
-            reached += 1
-            late.append(ended - begun[0])
-            check(trimming.GetOutput().GetNumberOfPoints() == 0, "rank %d is empty after abort %d" % (RANK, i))
-            check(told_of == ["warning"] * (RANK == 0), "rank %d: %s of abort %d" % (RANK, told_of, i))
-    check(reached > count // 2, "%d of %d aborts have come to pass" % (reached, count))
-    return max(WORLD.allgather(max(late, default=0.0)))
+    return check_stops(random, count, 0.9, make)  # the last tenth is one rank's own
 
 
 def check_refused(mesh, boundary, part, claim, **properties):
