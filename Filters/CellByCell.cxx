@@ -186,9 +186,13 @@ void CellByCell::Triangulate(int cells, const DelaunayOptions& options)
   {
     this->Total.LatticeFound = true;
     this->Total.Steps = FromLowestNode(Ranks(), this->SlicesOfCells(), lattice);
-    return;
   }
-  this->SettleOn(nullptr);
+  else
+  {
+    this->SettleOn(nullptr);
+  }
+  this->Total.Missing +=
+    std::count(this->AreSeamsMissing.begin(), this->AreSeamsMissing.end(), char(1));
 }
 
 /** Brings all points to the files of their cells. What is not finite is spread evenly. */
@@ -229,6 +233,7 @@ bool CellByCell::SettleOn(const SharedLattice* lattice)
   this->Total = none;
   this->SeamRows = PointRows(this->Kinds);
   this->SeamNumbers.clear();
+  this->AreSeamsMissing.clear();
   this->OfSeams.assign(cells, {});
   this->CellsDone = 0;
   for (CellFiles& files : this->Cells)
@@ -244,7 +249,7 @@ bool CellByCell::SettleOn(const SharedLattice* lattice)
     return false;
   }
   const vtkIdType used = this->Total.Points - this->Total.Duplicates - this->Total.NotFinite;
-  return this->Total.Triangles > 0 &&
+  return this->Total.Settled > 0 &&
     !(lattice && IsLatticeByChance(static_cast<double>(used), lattice->Tolerance()));
 }
 
@@ -266,7 +271,8 @@ Piece CellByCell::SettleNode(int begin, int end, const SharedLattice* lattice)
   {
     this->OfSeams[OwnerOf(triangle[0], this->Bases)].push_back(triangle);
   }
-  this->Total.Triangles += static_cast<vtkIdType>(triangles.size());
+  this->CountShort(triangles);
+  this->Total.Settled += static_cast<vtkIdType>(triangles.size());
   return seam;
 }
 
@@ -341,12 +347,91 @@ Piece CellByCell::SettleLeaf(int cell, const SharedLattice* lattice)
     this->Cells[cell].Triangles.Append(corners.data(), corners.size() * sizeof(Index));
   }
   ListUnused(corners, seam.Ids.begin(), seam.Ids.end(), first, progress, part);
-  this->Total.Triangles += static_cast<vtkIdType>(corners.size() / 3);
+  this->Total.Settled += static_cast<vtkIdType>(corners.size() / 3);
   this->Total.Duplicates += part.Result.NumberOfDuplicates;
   this->Total.NotFinite += part.Result.NumberOfNotFinite;
   this->KeepSeam(part, first, seam);
+  this->CountShort(part, first, corners);
   return seam;
 }
+
+/** Counts the triangles of a cell within the limit, and the vertices that have none for good. */
+void CellByCell::CountShort(const SurfacePart& part, GlobalId first, const Buffer<Index>& corners)
+{
+  const EdgeLimit limit(this->Options.MaximumEdgeLength);
+  const auto pointOf = [&part](Index place) { return part.PointAt(place); };
+  std::vector<char> areMissing(part.Own.Count(), 1);
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+  {
+    if (limit.Admits(pointOf, corners[i], corners[i + 1], corners[i + 2]))
+    {
+      ++this->Total.Triangles;
+      areMissing[corners[i]] = areMissing[corners[i + 1]] = areMissing[corners[i + 2]] = 0;
+    }
+  }
+  for (const Index unused : part.Result.UnusedPoints)
+  {
+    areMissing[unused] = 0;
+  }
+  for (std::size_t i = this->AreSeamsMissing.size(); i < this->SeamNumbers.size(); ++i)
+  {
+    char& isMissing = areMissing[this->SeamNumbers[i] - first];
+    this->AreSeamsMissing.push_back(isMissing);
+    isMissing = 0; // it may still get one
+  }
+  this->Total.Missing += std::count(areMissing.begin(), areMissing.end(), char(1));
+}
+
+/** The same for triangles that seams have settled. */
+void CellByCell::CountShort(const std::vector<GlobalTriangle>& triangles)
+{
+  const EdgeLimit limit(this->Options.MaximumEdgeLength);
+  const auto pointOf = [this](std::size_t place) {
+    const double* const p = this->SeamRows.At(place);
+    return Point2{ p[0], p[1] };
+  };
+  for (const GlobalTriangle& triangle : triangles)
+  {
+    const std::size_t p = this->PlaceOnSeam(triangle[0]), q = this->PlaceOnSeam(triangle[1]),
+                      r = this->PlaceOnSeam(triangle[2]);
+    if (limit.Admits(pointOf, static_cast<Index>(p), static_cast<Index>(q), static_cast<Index>(r)))
+    {
+      ++this->Total.Triangles;
+      this->AreSeamsMissing[p] = this->AreSeamsMissing[q] = this->AreSeamsMissing[r] = 0;
+    }
+  }
+}
+
+std::size_t CellByCell::PlaceOnSeam(GlobalId number) const
+{
+  const auto at = std::lower_bound(this->SeamNumbers.begin(), this->SeamNumbers.end(), number);
+  return static_cast<std::size_t>(at - this->SeamNumbers.begin());
+}
+
+namespace
+{
+/** Takes away the triangles with a longer edge. */
+void KeepShort(const EdgeLimit& limit, const Progress& progress, SurfacePart& part)
+{
+  if (!limit.IsSet())
+  {
+    return;
+  }
+  const auto pointOf = [&part](Index place) { return part.PointAt(place); };
+  Buffer<Index>& corners = part.Result.Triangles;
+  Buffer<Index> kept;
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+  {
+    ReportStep(progress, i / 3, corners.size() / 3, 1 << 16);
+    if (limit.Admits(pointOf, corners[i], corners[i + 1], corners[i + 2]))
+    {
+      std::for_each(corners.data() + i, corners.data() + i + 3,
+        [&kept](Index corner) { kept.Append(corner); });
+    }
+  }
+  corners = std::move(kept);
+}
+} // namespace
 
 void CellByCell::KeepSeam(const SurfacePart& part, GlobalId first, const Piece& seam)
 {
@@ -371,20 +456,21 @@ SurfacePart CellByCell::PieceAt(int cell, const Progress& progress) const
     TakeFrom(from, corners.data(), corners.size());
   });
   const auto numberAt = [this](GlobalId number) {
-    return std::lower_bound(this->SeamNumbers.begin(), this->SeamNumbers.end(), number);
+    return this->SeamNumbers.begin() + static_cast<std::ptrdiff_t>(this->PlaceOnSeam(number));
   };
   ListUnused(corners, numberAt(first), numberAt(this->Bases[cell + 1]), first, progress, part);
   ListOthers(this->OfSeams[cell], first, part);
   std::vector<vtkIdType> others;
   for (const GlobalId number : part.OtherNumbers)
   {
-    others.push_back(numberAt(number) - this->SeamNumbers.begin());
+    others.push_back(static_cast<vtkIdType>(this->PlaceOnSeam(number)));
   }
   std::vector<Bytes> packed;
   packed.push_back(this->SeamRows.Pack(others));
   part.Others = PointRows(this->Kinds);
   part.Others.Unpack(packed);
   AppendTriangles(this->OfSeams[cell], first, progress, part);
+  KeepShort(EdgeLimit(this->Options.MaximumEdgeLength), progress, part);
   KeepCorners(part);
   part.Result.LatticeFound = this->Total.LatticeFound;
   part.Result.Steps = this->Total.Steps;

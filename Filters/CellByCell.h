@@ -57,7 +57,10 @@ public:
   /** Sums over the whole cloud. */
   struct Totals
   {
-    vtkIdType Points = 0, Triangles = 0, Duplicates = 0, NotFinite = 0;
+    vtkIdType Points = 0, Duplicates = 0, NotFinite = 0;
+    vtkIdType Settled = 0;   ///< triangles, also those with an edge above MaximumEdgeLength
+    vtkIdType Triangles = 0; ///< without these
+    vtkIdType Missing = 0;   ///< vertices without a triangle; known after Triangulate()
     bool LatticeFound = false;
     Lattice Steps; ///< if found
   };
@@ -89,6 +92,9 @@ private:
   Piece SettleLeaf(int cell, const SharedLattice* lattice);
   SurfacePart OwnPart(int cell) const;
   void KeepSeam(const SurfacePart& part, GlobalId first, const Piece& seam);
+  void CountShort(const SurfacePart& part, GlobalId first, const Buffer<Index>& corners);
+  void CountShort(const std::vector<GlobalTriangle>& triangles);
+  std::size_t PlaceOnSeam(GlobalId number) const;
   double PartDone() const;
 
   const std::string Folder;
@@ -102,6 +108,7 @@ private:
   std::vector<vtkIdType> Bases;                     // cell c has numbers [Bases[c], Bases[c + 1])
   PointRows SeamRows;                               // the points of the seams of cells
   std::vector<GlobalId> SeamNumbers;                // of these, increasing
+  std::vector<char> AreSeamsMissing;                // one each: without a triangle within the limit
   std::vector<std::vector<GlobalTriangle>> OfSeams; // of the cells that own them
   int CellsDone = 0;
   Totals Total;

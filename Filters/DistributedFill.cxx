@@ -2,25 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedFill.h"
 
-#include "BorderOfRanks.h"
 #include "FilledPart.h"
+#include "HolesOfParts.h"
 #include "Joining.h"
-#include "LatticeOfRanks.h"
 #include "MeshConversion.h"
-#include "NearParts.h"
 #include "PackedData.h"
 #include "PatchedSurface.h"
 #include "PointRows.h"
-#include "SurroundingBoxes.h"
 
 #include "vtkCellData.h"
-#include "vtkIdList.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,11 +32,11 @@ class Work
 public:
   Work(const Ranks& ranks, const FillOptions& options, bool interpolate, Block& block)
     : All(ranks)
-    , Options(options)
-    , Interpolate(interpolate)
     , Of(block)
   {
     this->Part.Input = vtkPolyData::SafeDownCast(block.Input);
+    this->Whole.Options = options;
+    this->Whole.Interpolate = interpolate;
   }
 
   bool Read();
@@ -50,7 +46,9 @@ public:
   void AssignHoles();
   bool FillAll();
   void ShareReports();
-  void Write(FillResult& patches);
+  void WriteSurface();
+  void WriteReport();
+  FillResult&& Result() { return std::move(this->Whole.OfAll); }
 
 private:
   Progress Watched(double begin, double end) const
@@ -59,24 +57,15 @@ private:
   }
   bool IsPlain() const;
   bool HavePoints() const { return this->Part.HasPoints(); }
-  void ListShared();
   bool Surround(int round, const std::vector<char>& areWaiting);
-  bool TakeSurroundings(std::vector<Bytes>&& packed);
-  Holes OwnHoles() const;
-  FillOptions OwnOptions(int round) const;
+  void TakeSurroundings(std::vector<Bytes>&& packed);
   void ShareRooms();
 
   const Ranks& All;
-  const FillOptions& Options;
-  const bool Interpolate;
   Block& Of;
   FilledPart Part;
-  Holes Found; // of all, by points of the border
-  LatticeSearch Lattice;
-  std::vector<HoleExtent> Extents; // of each hole
+  HolesOfParts Whole;
   std::vector<int> RankOfHole;
-  std::vector<double> Rooms;
-  Mesh Near; // the triangles around the holes of this rank
 };
 
 /** Whether the part has nothing but triangles of its own. */
@@ -93,9 +82,7 @@ bool Work::Read()
   std::vector<vtkIdType> sums(4, 0);
   if (!CanAll(this->All, [&]() {
         Report(this->Watched(0.0, 1.0), 0.0);
-        CheckArrays(this->Part.Input);
-        ToMesh(this->Part.Input, this->Part.Own, this->Watched(0.0, 0.08));
-        this->Part.Own.ConnectTwins(0, this->Watched(0.08, 0.2));
+        this->Part.Read(this->Watched(0.0, 0.2));
         sums = { this->Part.Own.NumberOfTriangles(), type == VTK_FLOAT ? 1 : 0,
           type == VTK_DOUBLE ? 1 : 0,
           points && !this->Part.Input->GetPointData()->GetGlobalIds() ? 1 : 0 };
@@ -105,101 +92,42 @@ bool Work::Read()
     return false;
   }
   this->All.Sum(sums);
-  this->Part.ByIds = sums[3] == 0;
+  this->Whole.ByIds = sums[3] == 0;
   return sums[0] > 0 && (sums[1] == 0 || sums[2] == 0);
-}
-
-/** The points on the border of the part, and those without a triangle. */
-void Work::ListShared()
-{
-  std::vector<char> mayBeShared(static_cast<std::size_t>(this->Part.Input->GetNumberOfPoints()), 1);
-  this->Part.AreUsed.assign(mayBeShared.size(), 0);
-  for (const Index corner : this->Part.Own.Triangles)
-  {
-    mayBeShared[corner] = 0;
-    this->Part.AreUsed[corner] = 1;
-  }
-  for (Index h = 0; h < static_cast<Index>(this->Part.Own.Twins.size()); ++h)
-  {
-    if (this->Part.Own.Twin(h) == Mesh::Border)
-    {
-      mayBeShared[this->Part.Own.Origin(h)] = mayBeShared[this->Part.Own.Destination(h)] = 1;
-    }
-  }
-  for (std::size_t i = 0; i < mayBeShared.size(); ++i)
-  {
-    if (mayBeShared[i])
-    {
-      this->Part.Shared.Places.push_back(static_cast<Index>(i));
-    }
-  }
-  this->Part.Shared.Keys = KeysOf(this->Part.Input, this->Part.ByIds, &this->Part.Shared.Places);
 }
 
 bool Work::FindBorder()
 {
-  if (!CanAll(this->All, [this]() {
-        this->ListShared();
-        return this->Part.Shared.Sort(this->Part.AreUsed);
-      }))
+  if (!CanAll(this->All, [this]() { return this->Part.ListShared(this->Whole.ByIds); }))
   {
     return false;
   }
-  FindCopies(this->All, this->Part.Input, this->Part.ByIds, this->Part.Shared);
-  return CollectBorder(this->All, this->Part.Own, this->Part.Shared, this->Part.Border);
+  FindCopies(this->All, this->Part.Input, this->Whole.ByIds, this->Part.Shared);
+  return CollectBorder(this->All, this->Part.Own, this->Part.Shared, this->Whole.Border);
 }
 
 bool Work::FindHoles()
 {
-  return CanAll(this->All, [this]() {
-    this->Found =
-      FindHolesOfBorder(this->Part.Border.Edges, this->Part.Border.View(), this->Watched(0.2, 0.3));
-    this->Extents = ExtentsOf(this->Found, this->Part.Border.View());
-    return this->Found.NumberOfContacts == 0;
-  });
+  return CanAll(this->All, [this]() { return this->Whole.Find(this->Watched(0.2, 0.3)); });
 }
 
 /** That of all points, each counted once. */
 void Work::FindLattice()
 {
-  if (this->Found.Count() == 0 || this->Options.Spacing > 0.0)
+  if (!this->Whole.NeedLattice())
   {
-    return; // as on one rank
+    return;
   }
   Buffer<double> kept;
   PointSlices points{ 0.0, [](const auto&) {} };
-  PointsOfDataSet view;
   this->All.Agree([&]() {
     if (!this->HavePoints())
     {
       return;
     }
-    view = ViewPoints(this->Part.Input);
-    std::vector<char> areCopies(static_cast<std::size_t>(view.View.Count), 0);
-    for (std::size_t i = 0; i < this->Part.Shared.Places.size(); ++i)
-    {
-      areCopies[this->Part.Shared.Places[i]] = this->Part.Shared.AreCopies[i];
-    }
-    for (Index i = 0; i < view.View.Count; ++i)
-    {
-      const Point2 p = view.View.At(i);
-      for (const double value : { p.X, p.Y, view.View.Elevation(i) })
-      {
-        if (!areCopies[i])
-        {
-          kept.Append(value);
-        }
-      }
-    }
-    PointView some;
-    some.Double = kept.data();
-    some.Count = static_cast<Index>(kept.size() / 3);
-    points = InOneSlice(some);
+    points = InOneSlice(this->Part.OwnPoints(kept));
   });
-  LatticeSample sample;
-  this->Lattice.Found = FitLatticeOnRanks(this->All, points, LatticeTolerance,
-    ThreadsAtOnce(this->Options.NumberOfThreads), elevation::Part(this->Of.Progress, 0.3, 0.32),
-    sample, this->Lattice.Steps);
+  this->Whole.FindLattice(this->All, points, elevation::Part(this->Of.Progress, 0.3, 0.32));
 }
 
 /** To the ranks that have points. */
@@ -207,12 +135,16 @@ void Work::AssignHoles()
 {
   const std::vector<vtkIdType> have =
     this->All.Collect(std::vector<vtkIdType>{ this->HavePoints() ? 1 : 0 });
-  this->RankOfHole = BalancedRanks(this->Extents, have);
+  this->RankOfHole = BalancedRanks(this->Whole.Extents, have);
   for (std::size_t hole = 0; hole < this->RankOfHole.size(); ++hole)
   {
-    if (this->RankOfHole[hole] == this->All.Own())
+    if (!this->Whole.IsToBeFilled(hole))
     {
-      this->Part.Mine.push_back(static_cast<Index>(hole));
+      this->RankOfHole[hole] = -1;
+    }
+    else if (this->RankOfHole[hole] == this->All.Own())
+    {
+      this->Part.Filled.Numbers.push_back(static_cast<Index>(hole));
     }
   }
 }
@@ -225,11 +157,11 @@ bool Work::Surround(int round, const std::vector<char>& areWaiting)
         for (int rank = 0; rank < this->All.Count() && this->HavePoints(); ++rank)
         {
           std::vector<Box> boxes;
-          for (std::size_t hole = 0; hole < this->Extents.size() && areWaiting[rank]; ++hole)
+          for (std::size_t hole = 0; hole < this->RankOfHole.size() && areWaiting[rank]; ++hole)
           {
             if (this->RankOfHole[hole] == rank)
             {
-              boxes.push_back(BoxAround(this->Extents[hole], round));
+              boxes.push_back(BoxAround(this->Whole.Extents[hole], round));
             }
           }
           const std::vector<Index> near = TrianglesIn(boxes, this->Part.Own);
@@ -244,11 +176,16 @@ bool Work::Surround(int round, const std::vector<char>& areWaiting)
     return false;
   }
   packed = this->All.Exchange(std::move(packed));
-  return CanAll(this->All,
-    [&]() { return !areWaiting[this->All.Own()] || this->TakeSurroundings(std::move(packed)); });
+  return CanAll(this->All, [&]() {
+    if (areWaiting[this->All.Own()])
+    {
+      this->TakeSurroundings(std::move(packed));
+    }
+    return true;
+  });
 }
 
-bool Work::TakeSurroundings(std::vector<Bytes>&& packed)
+void Work::TakeSurroundings(std::vector<Bytes>&& packed)
 {
   Parts parts;
   for (Bytes& bytes : packed)
@@ -259,67 +196,7 @@ bool Work::TakeSurroundings(std::vector<Bytes>&& packed)
       bytes = Bytes();
     }
   }
-  std::vector<std::string> warnings; // none: all have the same arrays
-  this->Near = Mesh();
-  this->Part.Whole = Join(parts, PartKind::Mesh, this->Watched(0.35, 0.36), warnings);
-  this->Part.Keys = KeysOf(this->Part.Whole, this->Part.ByIds, nullptr);
-  ToMesh(this->Part.Whole, this->Near, this->Watched(0.36, 0.37));
-  this->Near.ConnectTwins(0, this->Watched(0.37, 0.38));
-  return true;
-}
-
-/** By the points of the surroundings. */
-Holes Work::OwnHoles() const
-{
-  std::vector<Index> placeOf(this->Part.Border.Keys.size(), None);
-  for (std::size_t i = 0; i < this->Part.Keys.size(); ++i)
-  {
-    const Index at = this->Part.Border.Find(this->Part.Keys[i]);
-    if (at != None)
-    {
-      placeOf[at] = static_cast<Index>(i);
-    }
-  }
-  Holes holes;
-  for (const Index hole : this->Part.Mine)
-  {
-    for (Index i = this->Found.Offsets[hole]; i < this->Found.Offsets[hole + 1]; ++i)
-    {
-      const Index walk = this->Found.Loops[i];
-      holes.Loops.push_back(static_cast<Index>(holes.Walks.Count()));
-      std::transform(this->Found.Walks.Begin(walk), this->Found.Walks.End(walk),
-        std::back_inserter(holes.Walks.Vertices), [&](Index v) { return placeOf[v]; });
-      holes.Walks.Offsets.push_back(static_cast<Index>(holes.Walks.Vertices.size()));
-    }
-    holes.Offsets.push_back(static_cast<Index>(holes.Loops.size()));
-    holes.Touched.push_back(0);
-  }
-  if (std::count(holes.Walks.Vertices.begin(), holes.Walks.Vertices.end(), None) > 0)
-  {
-    throw Error("A point of a hole has not come from another rank (process).");
-  }
-  return holes;
-}
-
-FillOptions Work::OwnOptions(int round) const
-{
-  FillOptions options = this->Options;
-  options.SinglePrecision = HasFloatPoints(this->Part.Whole);
-  options.KnownLattice = &this->Lattice;
-  options.Monitor = this->Watched(0.4, 0.8);
-  if (this->Interpolate)
-  {
-    options.Attributes = AttributesOf(this->Part.Whole->GetPointData());
-  }
-  for (const Index hole : this->Part.Mine)
-  {
-    options.Known.push_back(BoxAround(this->Extents[hole], round));
-    if (!this->Rooms.empty())
-    {
-      options.Rooms.push_back(this->Rooms[hole]);
-    }
-  }
-  return options;
+  this->Part.Filled.Surround(parts, this->Whole.ByIds, this->Watched(0.35, 0.38));
 }
 
 /** What each hole may take is known where all needs are. */
@@ -327,26 +204,24 @@ void Work::ShareRooms()
 {
   std::vector<double> rows; // hole, need
   this->All.Agree([&]() {
-    if (this->Part.Mine.empty())
+    const std::vector<Index>& own = this->Part.Filled.Numbers;
+    if (own.empty())
     {
       return;
     }
-    FillOptions options = this->OwnOptions(0);
-    options.Monitor = this->Watched(0.38, 0.4);
-    const std::vector<double> needs =
-      NeedsOfHoles(this->Near, ViewPoints(this->Part.Whole).View, this->OwnHoles(), options);
-    for (std::size_t i = 0; i < this->Part.Mine.size(); ++i)
+    const std::vector<double> needs = this->Part.Filled.Needs(this->Whole, this->Watched(0.38, 0.4));
+    for (std::size_t i = 0; i < own.size(); ++i)
     {
-      rows.insert(rows.end(), { static_cast<double>(this->Part.Mine[i]), needs[i] });
+      rows.insert(rows.end(), { static_cast<double>(own[i]), needs[i] });
     }
   });
   rows = this->All.CollectReals(rows);
-  std::vector<double> needs(this->Extents.size());
+  std::vector<double> needs(this->Whole.Extents.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < rows.size(); i += 2)
   {
     needs[static_cast<std::size_t>(rows[i])] = rows[i + 1];
   }
-  this->Rooms = RoomsOfNeeds(needs, this->Options.MaximumInsertedPoints);
+  this->Whole.Rooms = RoomsOfNeeds(needs, this->Whole.Options.MaximumInsertedPoints);
 }
 
 bool Work::FillAll()
@@ -354,7 +229,10 @@ bool Work::FillAll()
   std::vector<char> areWaiting(this->All.Count(), 0);
   for (const int rank : this->RankOfHole)
   {
-    areWaiting[rank] = 1;
+    if (rank >= 0)
+    {
+      areWaiting[rank] = 1;
+    }
   }
   for (int round = 0; std::count(areWaiting.begin(), areWaiting.end(), 1) > 0; ++round)
   {
@@ -368,15 +246,10 @@ bool Work::FillAll()
     }
     vtkIdType isWaiting = 0;
     this->All.Agree([&]() {
-      if (!areWaiting[this->All.Own()])
-      {
-        return;
-      }
-      this->Part.Patches = FillHoles(
-        this->Near, ViewPoints(this->Part.Whole).View, this->OwnHoles(), this->OwnOptions(round));
-      const std::vector<HoleReport>& reports = this->Part.Patches.Reports;
-      isWaiting = std::any_of(reports.begin(), reports.end(),
-        [](const HoleReport& report) { return report.IsBeyondKnown; });
+      isWaiting = areWaiting[this->All.Own()] &&
+          !this->Part.Filled.Fill(this->Whole, round, this->Watched(0.4, 0.8))
+        ? 1
+        : 0;
     });
     const std::vector<vtkIdType> all = this->All.Collect(std::vector<vtkIdType>{ isWaiting });
     std::copy(all.begin(), all.end(), areWaiting.begin());
@@ -389,25 +262,25 @@ void Work::ShareReports()
   constexpr std::size_t width = 8;
   std::vector<double> rows;
   std::vector<std::string> reasons; // of each hole that has failed: its number, a space, the text
-  for (std::size_t i = 0; i < this->Part.Mine.size(); ++i)
+  for (std::size_t i = 0; i < this->Part.Filled.Numbers.size(); ++i)
   {
-    const HoleReport& one = this->Part.Patches.Reports[i];
+    const HoleReport& one = this->Part.Filled.Patches.Reports[i];
     rows.insert(rows.end(),
-      { static_cast<double>(this->Part.Mine[i]), static_cast<double>(one.Status),
+      { static_cast<double>(this->Part.Filled.Numbers[i]), static_cast<double>(one.Status),
         static_cast<double>(one.NumberOfEdges), one.Perimeter, one.Area, one.Size,
         static_cast<double>(one.NumberOfInsertedPoints), static_cast<double>(one.Method) });
     if (!one.Reason.empty())
     {
-      reasons.push_back(std::to_string(this->Part.Mine[i]) + " " + one.Reason);
+      reasons.push_back(std::to_string(this->Part.Filled.Numbers[i]) + " " + one.Reason);
     }
   }
   rows = this->All.CollectReals(rows);
   reasons = this->All.Collect(reasons);
-  this->Part.Reports.resize(this->Extents.size());
+  std::vector<HoleReport>& reports = this->Whole.OfAll.Reports;
   for (std::size_t i = 0; i < rows.size(); i += width)
   {
     const double* const row = rows.data() + i;
-    HoleReport& one = this->Part.Reports[static_cast<std::size_t>(row[0])];
+    HoleReport& one = reports[static_cast<std::size_t>(row[0])];
     one.Status = static_cast<FillStatus>(static_cast<int>(row[1]));
     one.NumberOfEdges = static_cast<Index>(row[2]);
     one.Perimeter = row[3];
@@ -418,21 +291,57 @@ void Work::ShareReports()
   }
   for (const std::string& reason : reasons)
   {
-    this->Part.Reports[std::stoul(reason)].Reason = reason.substr(reason.find(' ') + 1);
+    reports[std::stoul(reason)].Reason = reason.substr(reason.find(' ') + 1);
   }
-  this->Part.FirstNewPoints.assign(1, 0);
-  for (const HoleReport& one : this->Part.Reports)
-  {
-    this->Part.FirstNewPoints.push_back(
-      this->Part.FirstNewPoints.back() + one.NumberOfInsertedPoints);
-  }
+  this->Whole.NumberNewPoints();
 }
 
-void Work::Write(FillResult& patches)
+void Work::WriteSurface()
 {
-  patches.Found = std::move(this->Found);
-  patches.Reports = this->Part.Reports;
-  WriteFilled(this->All, this->Part, this->Interpolate, patches, this->Of);
+  this->All.Agree([this]() { this->Part.FindCorners(); });
+  const std::vector<vtkIdType> largest =
+    this->All.Collect(std::vector<vtkIdType>{ this->Part.LargestId() });
+  std::vector<vtkIdType> others = { this->Part.CountOfOthers() };
+  this->All.Sum(others);
+  this->All.Agree([&]() {
+    if (this->HavePoints())
+    {
+      this->Part.Write(this->Whole, others[0] > 0,
+        *std::max_element(largest.begin(), largest.end()), this->Watched(0.82, 0.97),
+        this->Of.Outputs[0]);
+    }
+  });
+}
+
+/** The rims with their points, on the first rank with outputs. */
+void Work::WriteReport()
+{
+  const std::vector<vtkIdType> have =
+    this->All.Collect(std::vector<vtkIdType>{ this->Of.Outputs.empty() ? 0 : 1 });
+  const int first = static_cast<int>(std::find(have.begin(), have.end(), 1) - have.begin());
+  std::vector<Bytes> packed(this->All.Count());
+  this->All.Agree([&]() {
+    if (const vtkSmartPointer<vtkPolyData> points = this->Part.PointsOnBorder(this->Whole.Border))
+    {
+      packed[first] = PackData(points);
+    }
+  });
+  packed = this->All.Exchange(std::move(packed));
+  this->All.Agree([&]() {
+    if (this->All.Own() != first)
+    {
+      return;
+    }
+    Parts points;
+    for (const Bytes& bytes : packed)
+    {
+      if (!bytes.empty())
+      {
+        points.push_back(UnpackData(bytes.data(), bytes.size()));
+      }
+    }
+    WriteRims(this->Whole, points, this->Watched(0.97, 1.0), this->Of.Outputs[1]);
+  });
 }
 } // namespace
 
@@ -452,7 +361,9 @@ bool FillOnRanks(const Ranks& ranks, const FillOptions& options, bool interpolat
     return false;
   }
   work.ShareReports();
-  work.Write(patches);
+  work.WriteSurface();
+  work.WriteReport();
+  patches = work.Result();
   return true;
 }
 

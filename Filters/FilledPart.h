@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The part that a rank has of a surface whose holes are filled. Private to the module.
+ * A part of a surface whose holes are filled, on a rank or as a piece. Private to the module.
  */
 #ifndef FilledPart_h
 #define FilledPart_h
 
-#include "BorderOfRanks.h"
-#include "Kernel/Fill/Fill.h"
+#include "HolesOfParts.h"
 #include "Kernel/Mesh/Mesh.h"
-#include "KernelCall.h"
-#include "Ranks.h"
 
 #include "vtkSmartPointer.h"
 
@@ -25,30 +22,50 @@ namespace elevation
 struct FilledPart
 {
   vtkPolyData* Input = nullptr;
-  bool ByIds = false;        ///< whether points of ranks are one by their global ids, or by x,y,z
   Mesh Own;                  ///< of the input
   std::vector<char> AreUsed; ///< points that a triangle has
   SharedPoints Shared;
-  BorderOfAll Border;
-
-  std::vector<Index> Mine;            ///< holes that this rank fills, increasing
-  vtkSmartPointer<vtkPolyData> Whole; ///< the triangles of all ranks around these
-  std::vector<PointKey> Keys;         ///< of its points
-  FillResult Patches;                 ///< of these holes, by the points of Whole
-
-  std::vector<HoleReport> Reports;       ///< of all holes
-  std::vector<vtkIdType> FirstNewPoints; ///< of each hole, and the number of all
+  SurroundedHoles Filled; ///< holes whose patches this part gets
 
   bool HasPoints() const;
+  /** Reads the triangles. @throws Error, Aborted */
+  void Read(const Progress& progress);
+  /** Lists the points on the border, and those without a triangle. @return as SharedPoints::Sort() */
+  bool ListShared(bool byIds);
+
+  /** The points that no other part counts. @param[out] kept  holds them */
+  PointView OwnPoints(Buffer<double>& kept) const;
+
+  /** Corners of the patches that the part does not have; then PlaceOf is known. */
+  void FindCorners();
+  std::vector<Index> Added;   ///< corners, points of the surrounding of the holes
+  std::vector<Index> PlaceOf; ///< of points of the surrounding, after the input's points
+  /** How many points are other parts' in the output, as far as it is not marked in the input. */
+  vtkIdType CountOfOthers() const;
+  /** The largest global id, or -1. */
+  vtkIdType LargestId() const;
+
+  /**
+   * Writes the triangles and the patches.
+   * @param[in] areMarked  whether any part has others' points
+   * @param[in] largestId  of all parts; ids of new points follow it
+   */
+  void Write(const HolesOfParts& all, bool areMarked, vtkIdType largestId, const Progress& progress,
+    vtkPolyData* output) const;
+
+  /** The points that are on the border of all parts, with their data; nullptr: none. */
+  vtkSmartPointer<vtkPolyData> PointsOnBorder(const BorderOfAll& border) const;
+
+private:
+  vtkSmartPointer<vtkPolyData> WithCorners(bool areMarked, const Progress& progress) const;
+  FillResult PlacedPatches(const HolesOfParts& all, vtkPolyData* input) const;
+  void PlaceAttributes(vtkPolyData* input, FillResult& placed) const;
+  void NumberNewPoints(const HolesOfParts& all, vtkIdType largest, vtkPolyData* output) const;
 };
 
-/**
- * Writes the triangles of each rank with its patches, and the report of all on the first rank that
- * has outputs.
- * @param[in] patches  holes and reports of all ranks
- */
-void WriteFilled(const Ranks& ranks, const FilledPart& part, bool interpolate,
-  const FillResult& patches, Block& block);
+/** Output 1 of the filter. @param[in] points  PointsOnBorder() of all parts */
+void WriteRims(
+  const HolesOfParts& all, const Parts& points, const Progress& progress, vtkPolyData* output);
 
 } // namespace elevation
 

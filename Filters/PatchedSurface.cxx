@@ -4,6 +4,7 @@
 
 #include "KernelCall.h"
 #include "MeshConversion.h"
+#include "vtkFillElevationHoles.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
@@ -21,6 +22,22 @@
 
 namespace elevation
 {
+
+FillOptions OptionsOf(vtkFillElevationHoles* filter)
+{
+  FillOptions options;
+  options.MaximumHoleSize = filter->GetMaximumHoleSize();
+  options.MaximumHoleEdges =
+    static_cast<Index>(std::min<vtkIdType>(filter->GetMaximumHoleEdges(), VTK_INT_MAX));
+  options.Spacing = filter->GetSpacing();
+  options.Method = static_cast<Interpolation>(filter->GetInterpolation());
+  const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
+  options.MaximumInsertedPoints =
+    static_cast<Index>(most > 0 ? std::min<vtkIdType>(most, MaximumNumberOfPoints)
+                                : MaximumNumberOfPoints);
+  options.NumberOfThreads = filter->GetNumberOfThreads();
+  return options;
+}
 
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
 {

@@ -17,11 +17,15 @@
 #include <vector>
 
 class vtkAbstractArray;
+class vtkFillElevationHoles;
 class vtkPointData;
 class vtkPolyData;
 
 namespace elevation
 {
+
+/** The kernel's options for the properties of the filter, but for what the input tells. */
+FillOptions OptionsOf(vtkFillElevationHoles* filter);
 
 /** Whether the values of an array at new points are interpolated as z is. */
 bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array);

@@ -152,14 +152,14 @@ private:
 std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh)
 {
   std::vector<Index> near;
+  if (boxes.empty() || mesh.Triangles.empty())
+  {
+    return near;
+  }
   Box all;
   for (const Index corner : mesh.Triangles)
   {
     all.Add(mesh.PointOf(corner));
-  }
-  if (boxes.empty() || mesh.Triangles.empty())
-  {
-    return near;
   }
   const MarkedCells marked(boxes, all);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)

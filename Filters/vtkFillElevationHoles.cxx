@@ -40,23 +40,6 @@ using elevation::Index;
 using elevation::Mesh;
 using elevation::Part;
 using elevation::Report;
-
-/** The kernel's options, but for what the input tells. */
-FillOptions OptionsOf(vtkFillElevationHoles* filter)
-{
-  FillOptions options;
-  options.MaximumHoleSize = filter->GetMaximumHoleSize();
-  options.MaximumHoleEdges =
-    static_cast<Index>(std::min<vtkIdType>(filter->GetMaximumHoleEdges(), VTK_INT_MAX));
-  options.Spacing = filter->GetSpacing();
-  options.Method = static_cast<elevation::Interpolation>(filter->GetInterpolation());
-  const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
-  options.MaximumInsertedPoints =
-    static_cast<Index>(most > 0 ? std::min<vtkIdType>(most, elevation::MaximumNumberOfPoints)
-                                : elevation::MaximumNumberOfPoints);
-  options.NumberOfThreads = filter->GetNumberOfThreads();
-  return options;
-}
 } // namespace
 
 vtkFillElevationHoles::vtkFillElevationHoles()
@@ -93,7 +76,7 @@ int vtkFillElevationHoles::RequestData(
     FillResult patches;
     if (this->MaximumEdgeLength != 0.0 ||
       !elevation::FillOnRanks(
-        ranks, OptionsOf(this), this->InterpolatePointData != 0, block, patches))
+        ranks, elevation::OptionsOf(this), this->InterpolatePointData != 0, block, patches))
     {
       return false;
     }
@@ -128,7 +111,7 @@ int vtkFillElevationHoles::RequestData(
         mesh, this->MaximumEdgeLength, found, opened, Part(progress, 0.5, 0.55));
     const bool isToBeFilled = found.Count() > 0;
 
-    FillOptions options = OptionsOf(this);
+    FillOptions options = elevation::OptionsOf(this);
     if (this->InterpolatePointData)
     {
       options.Attributes = elevation::AttributesOf(input->GetPointData());

@@ -4,14 +4,18 @@
 
 #include "CellByCell.h"
 #include "DelaunayReport.h"
+#include "FilledPieces.h"
 #include "Kernel/Base/Base.h"
 #include "KernelCall.h"
 #include "LimitAdvice.h"
+#include "PatchedSurface.h"
 #include "Ranks.h"
 #include "TrimmedPieces.h"
+#include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
 #include "vtkTrimOutwardTriangles.h"
 
+#include "vtkExecutive.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
@@ -29,6 +33,7 @@ vtkStandardNewMacro(vtkReconstructPieces);
 vtkReconstructPieces::vtkReconstructPieces()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetNumberOfOutputPorts(2);
 }
 
 vtkReconstructPieces::~vtkReconstructPieces() = default;
@@ -59,6 +64,20 @@ vtkGridDelaunay2D* vtkReconstructPieces::GetDelaunay()
 vtkTrimOutwardTriangles* vtkReconstructPieces::GetTrim()
 {
   return this->Trim;
+}
+
+vtkFillElevationHoles* vtkReconstructPieces::GetFill()
+{
+  return this->Fill;
+}
+
+void vtkReconstructPieces::SetFillHoles(bool fill)
+{
+  if (this->FillHoles != fill)
+  {
+    this->FillHoles = fill;
+    this->Fill->Modified(); // as its properties: see TimeOfProperties()
+  }
 }
 
 /** Reports what the work throws. */
@@ -115,6 +134,7 @@ bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
 
 void vtkReconstructPieces::Reset()
 {
+  this->Filled.reset();
   this->Trimmed.reset();
   this->Work.reset();
   this->HasFailed = false;
@@ -156,6 +176,23 @@ vtkIdType vtkReconstructPieces::GetNumberOfBoundaryRings()
   return this->Trimmed ? this->Trimmed->CountOfRings() : 0;
 }
 
+vtkIdType vtkReconstructPieces::GetNumberOfHoles()
+{
+  return this->Filled ? this->Filled->Result().Found.Count() : 0;
+}
+
+vtkIdType vtkReconstructPieces::GetNumberOfFilledHoles()
+{
+  return this->Filled ? elevation::CountOfFilled(this->Filled->Result()) : 0;
+}
+
+vtkIdType vtkReconstructPieces::GetNumberOfFilledTriangles()
+{
+  return !this->Filled ? 0
+                       : this->Filled->CountOfNewTriangles() +
+      (this->Trimmed ? this->Trimmed->CountOfTriangles() : this->Work->All().Triangles);
+}
+
 vtkIdType vtkReconstructPieces::GetNumberOfDuplicatePoints()
 {
   return this->Work ? this->Work->All().Duplicates : 0;
@@ -183,41 +220,93 @@ std::string vtkReconstructPieces::WrongProperty()
     return error.what();
   }
   const elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
-  if (options.MaximumEdgeLength > 0.0 || options.GivenLattice.IsSet())
+  if (options.GivenLattice.IsSet())
   {
-    return "MaximumEdgeLength and a given Lattice are for points in memory, not for pieces.";
+    return "A given Lattice is for points in memory, not for pieces.";
   }
   if (this->Delaunay->GetNumberOfInputConnections(1) > 0)
   {
     return "Constraints are for points in memory, not for pieces.";
+  }
+  if (this->FillHoles && this->Fill->GetMaximumEdgeLength() != 0.0)
+  {
+    return "MaximumEdgeLength of the filter that fills holes is for a surface in memory, not for "
+           "pieces.";
   }
   return std::string();
 }
 
 vtkMTimeType vtkReconstructPieces::TimeOfProperties()
 {
-  return std::max(this->Delaunay->GetMTime(), this->Trim->GetMTime());
+  return std::max(
+    { this->Delaunay->GetMTime(), this->Trim->GetMTime(), this->Fill->GetMTime() });
 }
 
-/** Triangulates all points, and trims what is near a boundary. */
+/** Does all work but writing pieces. */
 void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progress)
 {
   const bool isTrimmed = this->Trim->GetNumberOfInputConnections(1) > 0;
+  const double filling = this->FillHoles ? 0.7 : 1.0; // where it begins
+  const double trimming = isTrimmed ? 0.6 * filling : filling;
   elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
-  options.Monitor = elevation::Part(progress, 0.0, isTrimmed ? 0.6 : 1.0);
+  options.Monitor = elevation::Part(progress, 0.0, trimming);
   this->Work->Triangulate(count, options);
+  this->WarnOfMissing();
   if (this->Work->All().Triangles == 0)
   {
-    vtkWarningMacro(<< elevation::TextOfNoTriangle(this->Work->All().Points));
+    return;
   }
-  else if (isTrimmed)
+  if (isTrimmed)
   {
-    this->Trim->GetInputAlgorithm(1, 0)->Update();
-    elevation::TrimOptions trimming = elevation::OptionsOf(this->Trim);
-    trimming.Monitor = elevation::Part(progress, 0.6, 1.0);
-    const auto make = [this](int piece) { return this->MakePiece(piece, elevation::Progress()); };
-    this->Trimmed = std::make_unique<elevation::TrimmedPieces>(
-      count, this->Work->All().Triangles, make, this->Trim->GetBoundary(), trimming);
+    this->TrimAll(count, elevation::Part(progress, trimming, filling));
+  }
+  if (this->FillHoles)
+  {
+    this->FillAll(count, elevation::Part(progress, filling, 1.0));
+  }
+}
+
+/** Tells why there is no triangle, or why most points are without one. */
+void vtkReconstructPieces::WarnOfMissing()
+{
+  const elevation::CellByCell::Totals& all = this->Work->All();
+  elevation::EffectOfLimit effect;
+  effect.Vertices = all.Points - all.Duplicates - all.NotFinite;
+  effect.Missing = all.Missing;
+  if (all.Settled == 0)
+  {
+    vtkWarningMacro(<< elevation::TextOfNoTriangle(all.Points));
+  }
+  else if (effect.AreMostMissing())
+  {
+    vtkWarningMacro(<< elevation::TextOfLimit(this->Delaunay->GetMaximumEdgeLength(), effect));
+  }
+}
+
+void vtkReconstructPieces::TrimAll(int count, const elevation::Progress& progress)
+{
+  this->Trim->GetInputAlgorithm(1, 0)->Update();
+  elevation::TrimOptions options = elevation::OptionsOf(this->Trim);
+  options.Monitor = progress;
+  const auto make = [this](int piece) { return this->MakePiece(piece, elevation::Progress()); };
+  this->Trimmed = std::make_unique<elevation::TrimmedPieces>(
+    count, this->Work->All().Triangles, make, this->Trim->GetBoundary(), options);
+}
+
+void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progress)
+{
+  elevation::FillOptions options = elevation::OptionsOf(this->Fill);
+  options.Monitor = progress;
+  const auto make = [this](int piece, const elevation::Progress& ofPiece) {
+    return this->MakeTrimmed(piece, ofPiece);
+  };
+  this->Filled = std::make_unique<elevation::FilledPieces>(count, this->Folder,
+    this->Work->All().Points + this->GetNumberOfInsertedPoints(), make, options,
+    this->Fill->GetInterpolatePointData() != 0);
+  const std::string complaint = elevation::Complaint(this->Filled->Result());
+  if (!complaint.empty())
+  {
+    vtkWarningMacro(<< complaint);
   }
 }
 
@@ -239,23 +328,41 @@ vtkSmartPointer<vtkPolyData> vtkReconstructPieces::MakePiece(
   return made;
 }
 
+/** The same, trimmed if there is a boundary. */
+vtkSmartPointer<vtkPolyData> vtkReconstructPieces::MakeTrimmed(
+  int piece, const elevation::Progress& progress)
+{
+  if (!this->Trimmed)
+  {
+    return this->MakePiece(piece, progress);
+  }
+  auto trimmed = vtkSmartPointer<vtkPolyData>::New();
+  this->Trimmed->Pass(piece, progress, trimmed);
+  return trimmed->GetNumberOfPoints() > 0 ? trimmed : nullptr;
+}
+
 int vtkReconstructPieces::RequestInformation(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  outputVector->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  for (int port = 0; port < 2; ++port)
+  {
+    outputVector->GetInformationObject(port)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  }
   return 1;
 }
 
 int vtkReconstructPieces::RequestData(
-  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+  vtkInformation* request, vtkInformationVector**, vtkInformationVector* outputVector)
 {
-  vtkInformation* const info = outputVector->GetInformationObject(0);
+  const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+  vtkInformation* const info = outputVector->GetInformationObject(port);
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   const auto get = [info](
                      vtkInformationIntegerKey* key) { return info->Has(key) ? info->Get(key) : 0; };
   const int piece = get(Pipeline::UPDATE_PIECE_NUMBER());
   const int count = std::max(1, get(Pipeline::UPDATE_NUMBER_OF_PIECES()));
-  vtkPolyData* const output = vtkPolyData::GetData(outputVector);
+  vtkPolyData* const output = vtkPolyData::GetData(outputVector, 0);
+  vtkPolyData* const rims = vtkPolyData::GetData(outputVector, 1);
   if (!this->Work && !this->HasFailed)
   {
     return 1; // no points
@@ -281,7 +388,7 @@ int vtkReconstructPieces::RequestData(
     vtkErrorMacro("Properties were changed after the first piece; that needs Reset().");
     return 1;
   }
-  this->Try([this, piece, count, output]() {
+  this->Try([this, piece, count, output, rims]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
     if (this->Work->CountOfCells() != count)
     {
@@ -289,18 +396,24 @@ int vtkReconstructPieces::RequestData(
       this->WorkOnAll(count, elevation::Part(progress, 0.0, 0.9));
     }
     const elevation::Progress last = elevation::Part(progress, 0.9, 1.0);
-    if (this->Trimmed)
+    if (this->Filled)
     {
-      this->Trimmed->Pass(piece, last, output);
+      this->Filled->Pass(piece, last, output);
     }
-    else if (const vtkSmartPointer<vtkPolyData> made = this->MakePiece(piece, last))
+    else if (const vtkSmartPointer<vtkPolyData> made = this->MakeTrimmed(piece, last))
     {
       output->ShallowCopy(made);
+    }
+    if (this->Filled && piece == 0)
+    {
+      this->Filled->PassRims(rims);
+      elevation::AddHoleCounts(this->Filled->Result(), { rims });
     }
   });
   if (this->HasFailed)
   {
     output->Initialize();
+    rims->Initialize();
   }
   return 1;
 }
@@ -319,8 +432,14 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfRecoveredEdges: " << this->GetNumberOfRecoveredEdges() << "\n";
   os << indent << "NumberOfInsertedPoints: " << this->GetNumberOfInsertedPoints() << "\n";
   os << indent << "NumberOfBoundaryRings: " << this->GetNumberOfBoundaryRings() << "\n";
+  os << indent << "FillHoles: " << (this->FillHoles ? "On" : "Off") << "\n";
+  os << indent << "NumberOfHoles: " << this->GetNumberOfHoles() << "\n";
+  os << indent << "NumberOfFilledHoles: " << this->GetNumberOfFilledHoles() << "\n";
+  os << indent << "NumberOfFilledTriangles: " << this->GetNumberOfFilledTriangles() << "\n";
   os << indent << "Delaunay:\n";
   this->Delaunay->PrintSelf(os, indent.GetNextIndent());
   os << indent << "Trim:\n";
   this->Trim->PrintSelf(os, indent.GetNextIndent());
+  os << indent << "Fill:\n";
+  this->Fill->PrintSelf(os, indent.GetNextIndent());
 }

@@ -17,24 +17,30 @@
  * if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
  * piece.
  *
- * All properties of the triangulation are those of GetDelaunay(), except MaximumEdgeLength,
- * Lattice and constraints, which are for points in memory, and are errors. Where
+ * All properties of the triangulation are those of GetDelaunay(), except Lattice and constraints,
+ * which are for points in memory, and are errors. Where
  * GetTrim() has a boundary, all pieces are trimmed along it, as that filter would trim the whole
  * surface; points that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
  * Beside points that are inserted, diagonals may differ from those of that filter, as they do with
  * that filter for triangles in another order.
+ *
+ * With FillHoles on, holes are filled as GetFill() would fill them in the whole surface: their
+ * patches are the same to the last bit, and go to the piece with the first point of the rim.
+ * MaximumEdgeLength of that filter is for a surface in memory, and is an error. Output 1, of piece 0,
+ * has the outline and the report of each hole, as output 1 of that filter.
  *
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
  * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
  * asked for again until the files are removed: by Reset(), and with this object. The first piece
  * that is asked for decides on the number of pieces; it takes the time of the whole triangulation,
  * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
- * seams of pieces, which it holds too, have some multiple of the square root of so many points.
+ * seams of pieces, which it holds too, have some multiple of the square root of so many points. To
+ * fill a hole takes the surface in a box around it, four times as wide and high; seldom more.
  *
  * A wrong property or call is an error that loses nothing. After an error of the work, such as a
  * full disk, or an abort, the output is empty, and only Reset() helps.
  *
- * @sa vtkGridDelaunay2D
+ * @sa vtkGridDelaunay2D vtkTrimOutwardTriangles vtkFillElevationHoles
  */
 #ifndef vtkReconstructPieces_h
 #define vtkReconstructPieces_h
@@ -51,9 +57,11 @@
 namespace elevation
 {
 class CellByCell;
+class FilledPieces;
 class TrimmedPieces;
 using Progress = std::function<bool(double)>;
 } // namespace elevation
+class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
 class vtkPointSet;
 class vtkTrimOutwardTriangles;
@@ -77,11 +85,19 @@ public:
 
   ///@{
   /**
-   * The filters whose properties tell how to triangulate and trim, and the boundary. Their input 0
-   * is not used.
+   * The filters whose properties tell how to triangulate, trim and fill, and the boundary. Their
+   * input 0 is not used.
    */
   vtkGridDelaunay2D* GetDelaunay();
   vtkTrimOutwardTriangles* GetTrim();
+  vtkFillElevationHoles* GetFill();
+  ///@}
+
+  ///@{
+  /** Whether holes are filled. Off by default. */
+  virtual void SetFillHoles(bool fill);
+  virtual bool GetFillHoles() { return this->FillHoles; }
+  vtkBooleanMacro(FillHoles, bool);
   ///@}
 
   /**
@@ -111,6 +127,13 @@ public:
   vtkIdType GetNumberOfBoundaryRings();
   ///@}
 
+  ///@{
+  /** As those of vtkFillElevationHoles, of all pieces; 0 where holes are not filled. */
+  vtkIdType GetNumberOfHoles();
+  vtkIdType GetNumberOfFilledHoles();
+  vtkIdType GetNumberOfFilledTriangles(); ///< what there is with the patches
+  ///@}
+
 protected:
   vtkReconstructPieces();
   ~vtkReconstructPieces() override;
@@ -126,13 +149,20 @@ private:
   std::string WrongProperty();
   vtkMTimeType TimeOfProperties();
   void WorkOnAll(int count, const elevation::Progress& progress);
+  void WarnOfMissing();
+  void TrimAll(int count, const elevation::Progress& progress);
+  void FillAll(int count, const elevation::Progress& progress);
   vtkSmartPointer<vtkPolyData> MakePiece(int piece, const elevation::Progress& progress);
+  vtkSmartPointer<vtkPolyData> MakeTrimmed(int piece, const elevation::Progress& progress);
 
   std::string Folder;
   vtkNew<vtkGridDelaunay2D> Delaunay;
   vtkNew<vtkTrimOutwardTriangles> Trim;
+  vtkNew<vtkFillElevationHoles> Fill;
+  bool FillHoles = false;
   std::unique_ptr<elevation::CellByCell> Work;
   std::unique_ptr<elevation::TrimmedPieces> Trimmed;
+  std::unique_ptr<elevation::FilledPieces> Filled;
   vtkMTimeType TimeOfWork = 0;
   bool HasFailed = false;
 };

@@ -12,17 +12,27 @@ STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "rep
 
 
 def holes_of(result):
+    """The part of the report on holes."""
+    return report_of_holes(result.holes, are_bridged(result), result.fill, result.why_opened)
+
+
+def report_of_holes(outlines, bridged, fill, why_opened=None):
     """The part of the report on holes.
+
+    outlines    vtkPolyData, with the report of the filter as cell data
+    bridged     see are_bridged()
+    fill        the filter
+    why_opened  where the length from that of the filter is from
 
     found, filled  counts of holes, and of voids that triangles bridged and that were filled
     bridged_left   count of voids whose triangles are left as they are
     """
-    cells = result.holes.GetCellData()
+    cells = outlines.GetCellData()
     names = ("HoleId", "Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints",
              "Interpolation")
     columns = [vtk_to_numpy(cells.GetArray(name)).tolist() for name in names]
-    places = hole_places(result.holes)
-    rows = zip(*columns, are_bridged(result).tolist(), *places)
+    places = hole_places(outlines)
+    rows = zip(*columns, bridged.tolist(), *places)
     holes = [
         {
             "hole": hole,
@@ -42,12 +52,12 @@ def holes_of(result):
     by_status = {}
     for hole in holes:
         by_status[hole["status"]] = by_status.get(hole["status"], 0) + 1
-    found, filled = hole_counts(result)
+    found = sum(not hole["bridged"] or hole["status"] == "replaced" for hole in holes)
     return {
-        "open_edge_length": result.fill.GetMaximumEdgeLength(),
-        "open_edge_length_is": result.why_opened,
+        "open_edge_length": fill.GetMaximumEdgeLength(),
+        "open_edge_length_is": why_opened,
         "found": found,
-        "filled": filled,
+        "filled": by_status.get("filled", 0) + by_status.get("replaced", 0),
         "bridged_left": len(holes) - found,
         "by_status": by_status,
         "inserted_points": sum(hole["inserted_points"] for hole in holes),

@@ -24,6 +24,7 @@ from .clouds import (
     set_crs,
     slices,
 )
+from .holes import report_of_holes
 from .messages import FileError, Messages
 from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
@@ -31,8 +32,9 @@ from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
 from .reconstruction import STEPS
-from .report import MOST_LISTED, REASONS
+from .report import MOST_LISTED, OUTSIDE, REASONS
 from .results import Failure, write_report
+from .spreading import IN_NO_TRIANGLE
 from .supervisor import note_partial_file
 from .vtkElevationSurface import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
@@ -43,8 +45,8 @@ BYTES_A_POINT = 250  # of memory, where a piece is triangulated
 BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
-OF_THE_WHOLE = ("faults", "maximum_edge_length", "grid", "contours", "outlines", "picture")
-OF_THE_WHOLE += ("view", "exaggeration", "colours")
+OF_THE_WHOLE = ("faults", "open_edge_length", "grid", "contours", "outlines", "picture", "view")
+OF_THE_WHOLE += ("exaggeration", "colours")
 
 
 def memory_size(text):
@@ -73,10 +75,13 @@ def check_given(options, error):
         if getattr(options, other) not in (None, False, 0.0):
             other = "--" + other.replace("_", "-")
             error(f"{other} needs the whole surface in memory; it cannot be used with {name}")
-    if options.fill:
-        error(f"{name} cannot fill holes yet: add --no-fill")
     if options.trim and not options.boundary:
         error(f"{name} can only trim along a boundary that is given: add --boundary or --no-trim")
+    if options.fill and not options.boundary and options.open_edge_length is None:
+        error(
+            f"{name} cannot tell which triangles bridge what is missing: add --open-edge-length 0 "
+            "for none of them, --no-fill or --boundary"
+        )
     options.no_picture = True
 
 
@@ -145,7 +150,7 @@ class Points:
 
 
 class Pieces:
-    """A run in pieces: reads, triangulates, trims and writes. Call it to get the report.
+    """A run in pieces: reads, triangulates, trims, fills and writes. Call it to get the report.
 
     run  the Run of the command line, with its options, results, progress and times
     """
@@ -156,11 +161,16 @@ class Pieces:
         self.source = vtkReconstructPieces()
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
-        self.lattice = self.told_of = None
+        self.lattice = self.told_of = self.holes = None
 
     def __call__(self):
         options, source, run = self.options, self.source, self.run
-        for step, algorithm in (("delaunay", source.GetDelaunay()), ("trim", source.GetTrim())):
+        source.SetFillHoles(options.fill)
+        for step, algorithm in (
+            ("delaunay", source.GetDelaunay()),
+            ("trim", source.GetTrim()),
+            ("fill", source.GetFill()),
+        ):
             for name, value in options.given.items():
                 if PROPERTIES[name].step in (step, ""):
                     getattr(algorithm, PROPERTIES[name].setter)(value)
@@ -223,6 +233,8 @@ class Pieces:
         self.told_of = Points(self.source.GetNumberOfPoints())
         for piece in range(count):
             data = self.update(piece, count)
+            if piece == 0 and self.options.fill:
+                self.holes = self.holes_of(self.source.GetOutput(1))
             if data.GetNumberOfPoints():
                 self.look_at(data)
                 if self.cloud.crs:
@@ -255,13 +267,26 @@ class Pieces:
             all_known = numpy.concatenate((known, gone[reasons == number]))
             self.unused[number] = numpy.sort(all_known)[:MOST_LISTED]
 
+    def holes_of(self, outlines):
+        """What became of the holes. No triangles of pieces bridge any."""
+        bridged = numpy.zeros(outlines.GetNumberOfLines(), dtype=bool)
+        return report_of_holes(outlines, bridged, self.source.GetFill())
+
+    def why_in_no_triangle(self):
+        """The reason of points that have been left out by trimming, or by the limit of edges."""
+        is_limited = self.source.GetDelaunay().GetMaximumEdgeLength() > 0.0
+        if is_limited and self.options.trim:
+            return f"{OUTSIDE}, or {REASONS[IN_NO_TRIANGLE]}"
+        return REASONS[IN_NO_TRIANGLE] if is_limited else OUTSIDE
+
     def report(self, pieces):
         """As that of a surface in memory, without what needs all of it at once."""
         source, options = self.source, self.options
         counts = {1: source.GetNumberOfDuplicatePoints(), 2: source.GetNumberOfNonFinitePoints()}
         counts[4], self.unused[4] = self.told_of.others(MOST_LISTED)
+        reasons = {**REASONS, 4: self.why_in_no_triangle()}
         listed = [
-            {"point": point, "reason": REASONS[number]}
+            {"point": point, "reason": reasons[number]}
             for number, points in self.unused.items()
             for point in points.tolist()
         ]
@@ -275,7 +300,7 @@ class Pieces:
             "crs": self.cloud.crs,
             "points": source.GetNumberOfPoints(),
             "points_unused": sum(counts.values()),
-            "unused_reasons": {REASONS[number]: n for number, n in counts.items() if n},
+            "unused_reasons": {reasons[number]: n for number, n in counts.items() if n},
             "unused": sorted(listed, key=lambda one: one["point"]),
             "unused_listed": len(listed),
             "lattice": self.lattice,
@@ -294,6 +319,9 @@ class Pieces:
                 "boundary_rings": source.GetNumberOfBoundaryRings(),
             }
             report["triangles"]["trimmed"] = source.GetNumberOfTrimmedTriangles()
+        if options.fill:
+            report["triangles"]["filled"] = source.GetNumberOfFilledTriangles()
+            report["holes"] = self.holes
         return report
 
 

@@ -19,6 +19,7 @@ from in_folder import InFolder, Program
 from vtkelevationsurface import (
     pieces,
     reading,
+    vtkFillElevationHoles,
     vtkGridDelaunay2D,
     vtkReconstructPieces,
     vtkTrimOutwardTriangles,
@@ -181,6 +182,31 @@ class InPieces(WithFilter):
             self.assertEqual(*(lattice.GetTuple(0) for lattice in lattices))
         self.assert_as_one(points, 6, LatticeMode=1)
 
+    def test_triangles_with_long_edges_are_left_out_as_of_all_points(self):
+        for name, lengths in (("random", (40.0, 20.0)), ("lattice", (4.5, 3.6)), ("tracks", (60.0,))):
+            points = clouds()[name]
+            for length in lengths:
+                for count in (1, 3, 7):
+                    with self.subTest(cloud=name, limit=length, pieces=count):
+                        one, _ = self.assert_as_one(points, count, MaximumEdgeLength=length)
+                        self.assertLess(one.GetNumberOfPolys(), 1.9 * len(points))
+
+    def test_a_limit_that_leaves_most_points_out_is_told(self):
+        points = clouds()["random"]
+        whole = vtkGridDelaunay2D()
+        whole.SetInputData(make_points(points))
+        for length in (8.0, 0.001):
+            told = []
+            source = self.source(points, MaximumEdgeLength=length)
+            whole.SetMaximumEdgeLength(length)
+            for filter_, update in ((source, lambda: source.UpdatePiece(0, 4, 0)), (whole, whole.Update)):
+                with Messages(filter_, filter_.GetExecutive()) as messages:
+                    update()
+                self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
+                told.append(messages.warnings[0])
+            self.assertIn("are left without a triangle", told[0])
+            self.assertTrue(told[1].startswith(told[0]), told)  # with a better length
+
     def test_a_point_off_the_lattice_is_found_in_the_end(self):
         node = numpy.stack(numpy.meshgrid(numpy.arange(150.0), numpy.arange(140.0)), -1)
         points = numpy.column_stack((node.reshape(-1, 2) * 12.5, numpy.zeros(21000)))
@@ -266,7 +292,6 @@ class InPieces(WithFilter):
         self.assertIn("same point arrays", errors[0])
         self.assertIn("Reset()", self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))[0])
         for name, value, words in (
-            ("MaximumEdgeLength", 3.0, "in memory, not for pieces"),
             ("MaximumEdgeLength", numpy.nan, "MaximumEdgeLength is nan"),
             ("Lattice", (0, 0, 1, 0, 0, 1), "in memory, not for pieces"),
             ("SourceData", make_points(points), "Constraints are for points in memory"),
@@ -283,7 +308,7 @@ class InPieces(WithFilter):
         self.assertIn("no data set", self.errors_of(source, lambda: source.AddPoints(None))[0])
         errors = self.errors_of(source, lambda: source.SetFolder("elsewhere"))
         self.assertIn("Folder cannot be changed", errors[0])
-        source.GetDelaunay().SetMaximumEdgeLength(1.0)
+        source.GetDelaunay().SetMaximumEdgeLength(-1.0)
         self.assertEqual(len(self.errors_of(source, lambda: source.UpdatePiece(0, 2, 0))), 1)
         source.GetDelaunay().SetMaximumEdgeLength(0.0)
         self.assertEqual(sum(part.GetNumberOfPolys() for part in self.parts(source, 2)),
@@ -392,6 +417,188 @@ class Trimmed(WithFilter):
             self.assertEqual(len(errors), 1)
             self.assertIn(words, errors[0])
             self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+
+
+class Filled(WithFilter):
+    """Pieces whose holes are filled."""
+
+    def rings(self, points):
+        """A coast, and lakes of many sizes that cross the cells of pieces."""
+        points = points[numpy.isfinite(points).all(axis=1)]
+        middle, extent = points.mean(axis=0)[:2], numpy.ptp(points[:, :2], axis=0).min()
+        lakes = ((0.0, 0.0, 0.1), (0.2, 0.05, 0.04), (-0.2, 0.1, 0.06), (0.05, -0.2, 0.02), (0.0, 0.2, 0.05))
+        return [star(middle, 0.38 * extent)] + [
+            star(middle + (x * extent, y * extent), radius * extent, int(20 + 200 * radius))
+            for x, y, radius in lakes]
+
+    def points_of(self, points):
+        """With arrays of which one is interpolated."""
+        data = make_points(points)
+        add_array(data, "Depth", numpy.sin(points[:, 0] / 30.0))
+        add_array(data, "RGB", numpy.column_stack((numpy.arange(len(points)) % 251,) * 3).astype("u1"))
+        return data
+
+    def source_of(self, points, rings, count, warnings=0, limit=0.0, **properties):
+        source = vtkReconstructPieces()
+        source.SetFolder(self.empty_folder())
+        source.SetFillHoles(True)
+        source.GetDelaunay().SetMaximumEdgeLength(limit)
+        self.assertTrue(source.AddPoints(self.points_of(points)))
+        if rings:
+            source.GetTrim().SetBoundaryData(make_lines(rings))
+        for name, value in properties.items():
+            getattr(source.GetFill(), "Set" + name)(value)
+        with Messages(source, source.GetExecutive()) as told:
+            parts = self.parts(source, count)
+        self.assertEqual((told.errors, len(told.warnings)), ([], warnings))
+        return source, parts
+
+    def assert_filled_as_one(self, points, rings, count, limit=0.0, **properties):
+        whole, trim, one = vtkGridDelaunay2D(), vtkTrimOutwardTriangles(), vtkFillElevationHoles()
+        whole.SetInputData(self.points_of(points))
+        whole.SetMaximumEdgeLength(limit)
+        trim.SetInputConnection(whole.GetOutputPort())
+        trim.SetBoundaryData(make_lines(rings))
+        one.SetInputConnection(trim.GetOutputPort())
+        for name, value in properties.items():
+            getattr(one, "Set" + name)(value)
+        with Messages(one, one.GetExecutive()) as told:
+            one.Update()
+        source, parts = self.source_of(
+            points, rings, count, len(told.warnings), limit, **properties)
+        found = numpy.concatenate([by_places(part) for part in parts])
+        found = found[numpy.lexsort(found.T[::-1])]
+        numpy.testing.assert_array_equal(found, by_places(one.GetOutput()))
+        self.assertEqual(source.GetNumberOfFilledTriangles(), len(found))
+        for name in ("Holes", "FilledHoles"):
+            counts = [getattr(f, "GetNumberOf" + name)() for f in (source, one)]
+            self.assertEqual(*counts)
+        numpy.testing.assert_array_equal(point_rows(parts), point_rows([one.GetOutput()]))
+        source.UpdatePiece(0, count, 0)
+        self.assertEqual(*(sorted(hole_rows(f.GetOutput(1))) for f in (source, one)))
+        self.assertEqual(
+            *(sorted(vtk_to_numpy(d.GetPointData().GetArray("Depth")).tolist())
+              for d in (source.GetOutput(1), one.GetOutput(1))))
+        return source, parts
+
+    def test_the_surface_is_that_of_one_run_to_the_last_bit(self):
+        for name in ("random", "lattice", "tracks"):
+            points = clouds()[name]
+            for count in (1, 2, 7, 16):
+                with self.subTest(cloud=name, pieces=count):
+                    source, _ = self.assert_filled_as_one(points, self.rings(points), count)
+                    self.assertGreaterEqual(source.GetNumberOfFilledHoles(), 3)
+
+    def test_voids_that_a_limit_of_edges_leaves_are_filled(self):
+        points = clouds()["random"]
+        middle = points[numpy.isfinite(points).all(axis=1)].mean(axis=0)[:2]
+        for x, y, radius in ((0.0, 0.0, 80.0), (150.0, 100.0, 50.0), (-120.0, 120.0, 60.0)):
+            away = numpy.hypot(*(points[:, :2] - middle - (x, y)).T) > radius
+            points = points[away | ~numpy.isfinite(points).all(axis=1)]
+        coast = [star(middle, 350.0)]
+        for count in (1, 4, 9):
+            source, _ = self.assert_filled_as_one(points, coast, count, 65.0)
+            self.assertGreaterEqual(source.GetNumberOfFilledHoles(), 3)
+        source, _ = self.assert_filled_as_one(points, coast, 9, 45.0)
+        self.assertGreater(source.GetNumberOfFilledHoles(), 10)
+
+    def test_all_properties_of_the_filter_are_minded(self):
+        points = clouds()["random"]
+        rings = self.rings(points)
+        for name, value, filled in (
+            ("MaximumHoleSize", 150.0, 2),
+            ("MaximumHoleEdges", 30, 3),
+            ("Spacing", 40.0, 5),
+            ("Interpolation", 1, 5),
+            ("InterpolatePointData", False, 5),
+            ("MaximumNumberOfInsertedPoints", 150, 3),
+            ("NumberOfThreads", 2, 5),
+        ):
+            with self.subTest(property=name):
+                source, _ = self.assert_filled_as_one(points, rings, 5, **{name: value})
+                self.assertEqual(source.GetNumberOfFilledHoles(), filled)
+
+    def test_new_points_have_ids_and_one_owner(self):
+        points = clouds()["random"]
+        source, parts = self.assert_filled_as_one(points, self.rings(points), 6)
+        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
+        new = sum(
+            int(vtk_to_numpy(part.GetPointData().GetArray("FilledPoint")).sum()) for part in parts)
+        self.assertGreater(new, 50)
+        count = len(points) + source.GetNumberOfInsertedPoints() + new
+        numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(count))
+        places = {}
+        for part in parts:
+            here = vtk_to_numpy(part.GetPoints().GetData())
+            for number, place in zip(ids_of(part).tolist(), here.tolist()):
+                if number >= len(points):
+                    self.assertEqual(places.setdefault(number, place), place)
+
+    def test_files_go_and_pieces_can_be_asked_for_again(self):
+        points = clouds()["random"]
+        source, parts = self.source_of(points, self.rings(points), 4)
+        again = self.parts(source, 4)
+        for one, other in zip(parts, again):
+            numpy.testing.assert_array_equal(by_places(one), by_places(other))
+        self.assertFalse([name for name in os.listdir(source.GetFolder()) if "surrounding" in name])
+        source.Reset()
+        self.assertEqual(os.listdir(source.GetFolder()), [])
+
+    def test_a_surface_without_holes_is_as_it_was(self):
+        points = clouds()["lattice"]
+        source, parts = self.source_of(points, None, 3)
+        self.assertEqual(source.GetNumberOfHoles(), 0)
+        numpy.testing.assert_array_equal(
+            all_triangles(parts), all_triangles(self.parts(self.source(points), 3)))
+
+    def test_what_cannot_be_done_is_one_error_and_can_be_put_right(self):
+        points = clouds()["random"]
+        source = self.source(points)
+        source.SetFillHoles(True)
+        source.GetFill().SetMaximumEdgeLength(30.0)
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
+        self.assertEqual(len(errors), 1)
+        self.assertIn("fills holes is for a surface in memory", errors[0])
+        source.GetFill().SetMaximumEdgeLength(0.0)
+        self.assertEqual(self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0)), [])
+        source.SetFillHoles(False)
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
+        self.assertIn("Properties were changed after the first piece", errors[0])
+
+    def test_a_stop_at_any_time_leaves_empty_output(self):
+        points = clouds()["random"]
+        for when in (0.5, 0.6, 0.7, 0.8, 0.9):
+            source = self.source(points)
+            source.SetFillHoles(True)
+            source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
+            source.AddObserver(
+                "ProgressEvent",
+                lambda caller, _, when=when: caller.SetAbortExecute(caller.GetProgress() >= when),
+            )
+            with Messages(source, source.GetExecutive()) as messages:
+                source.UpdatePiece(0, 4, 0)
+            self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
+            self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+
+
+def point_rows(parts):
+    """The owned points of pieces with their values, in one order; a single surface has no ghosts."""
+    rows = []
+    for part in parts:
+        data = part.GetPointData()
+        columns = [vtk_to_numpy(part.GetPoints().GetData())]
+        columns += [vtk_to_numpy(data.GetArray(n)) for n in ("Depth", "RGB", "FilledPoint", "FilledError")]
+        row = numpy.column_stack(columns)
+        rows.append(row[ghosts_of(part) == 0] if data.GetArray("vtkGhostType") else row)
+    rows = numpy.nan_to_num(numpy.concatenate(rows), nan=-1e99)
+    return rows[numpy.lexsort(rows.T[::-1])]
+
+
+def hole_rows(rims):
+    """What is told of each hole, but its number, which follows the order of triangles."""
+    cells = rims.GetCellData()
+    names = ("Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints", "Interpolation")
+    return list(zip(*(vtk_to_numpy(cells.GetArray(name)).tolist() for name in names)))
 
 
 class Slices(InFolder):
@@ -535,6 +742,49 @@ class Command(Program):
         done = self.call(name, "--pieces", "4", "--boundary", "far.txt", "--no-fill")
         self.assertIn("far.txt: trimming: The boundary", done.stderr)
 
+    def test_the_report_of_filled_pieces_is_that_of_one_run(self):
+        points = clouds()["random"]
+        name = self.npy("a.npy", points)
+        rings = Filled.rings(None, points)
+        text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
+        self.file("lakes.txt", "\n".join(text_of))
+        options = ("--boundary", "lakes.txt", "--maximum-hole-size", "150", "--report")
+        done = self.call(name, *options, "--no-picture")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        whole = self.json("a_surface.json")
+        done = self.call(name, "--pieces", "4", *options)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("5 found, 2 filled with", done.stdout)
+        report = self.json("a_surface.json")
+        for one in (report, whole):
+            for hole in one["holes"]["list"]:
+                del hole["hole"]  # in the order of triangles
+            one["holes"]["list"].sort(key=lambda hole: hole["centre"])
+        for key in ("points", "unused_reasons", "unused", "points_unused", "triangles", "trim",
+                    "bounds", "holes"):
+            self.assertEqual(report[key], whole[key], key)
+
+    def test_points_in_no_triangle_below_the_limit_are_told(self):
+        points = clouds()["random"]
+        name = self.npy("a.npy", points)
+        ring = star((400500.0, 400500.0), 380.0)
+        self.file("coast.txt", "".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()))
+        limit = ("--maximum-edge-length", "25", "--report")
+        for options, words in (
+            (("--no-trim", "--no-fill"), "in no triangle below the edge limit"),
+            (("--boundary", "coast.txt"), "outside the boundary, or in no triangle below the edge limit"),
+        ):
+            self.assertEqual(self.call(name, *limit, *options, "--no-picture").returncode, 0)
+            whole = self.json("a_surface.json")
+            done = self.call(name, "--pieces", "4", *limit, *options)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            report = self.json("a_surface.json")
+            for key in ("points_unused", "triangles", "bounds"):
+                self.assertEqual(report[key], whole[key], key)
+            self.assertGreater(report["unused_reasons"][words], 50)
+            self.assertEqual([u["point"] for u in report["unused"]],
+                             [u["point"] for u in whole["unused"]])
+
     def test_several_files_are_one_cloud(self):
         points = clouds()["random"]
         names = [self.npy("a.npy", points[:1000]), self.npy("b.npy", points[1000:])]
@@ -572,7 +822,8 @@ class Command(Program):
         self.file("b.stl", "solid a\n facet normal 0 0 1\n")
         self.file("taken", "a file")
         for options, words in (
-            (("--pieces", "2", "--no-trim"), "cannot fill holes yet: add --no-fill"),
+            (("--pieces", "2", "--no-trim"), "add --open-edge-length 0"),
+            (("--pieces", "2", "--no-trim", "--open-edge-length", "9"), "--open-edge-length needs"),
             (("--pieces", "2", "--no-fill"), "add --boundary or --no-trim"),
             (("--pieces", "0"), "--pieces takes a whole number from 1, not '0'"),
             (("--pieces", "2", "--memory", "2G", *TRIANGULATION_ONLY), "leave one out"),

@@ -53,36 +53,6 @@ bool IsMeasurable(double length)
   return length >= LeastLength && length <= LargestLength;
 }
 
-HoleReport Measure(const Mesh& mesh, const Holes& holes, Index hole)
-{
-  HoleReport report;
-  report.NumberOfEdges = holes.NumberOfEdges(hole);
-  const auto visitEdges = [&](auto&& visit) {
-    holes.VisitEdges(
-      hole, [&](Index a, Index b) { visit(mesh.PointOf(a), mesh.PointOf(b)); });
-  };
-  const Point2 origin = mesh.PointOf(*holes.Walks.Begin(holes.Rim(hole)));
-  Point2 low = origin;
-  Point2 high = origin;
-  visitEdges([&](const Point2& a, const Point2& b) {
-    report.Perimeter += std::hypot(b.X - a.X, b.Y - a.Y);
-    low = { std::min(low.X, a.X), std::min(low.Y, a.Y) };
-    high = { std::max(high.X, a.X), std::max(high.Y, a.Y) };
-  });
-  report.Size = std::hypot(high.X - low.X, high.Y - low.Y);
-  if (!IsMeasurable(report.Size))
-  {
-    report.Area = std::numeric_limits<double>::quiet_NaN();
-    return report;
-  }
-  double twiceArea = 0.0;
-  visitEdges([&](const Point2& a, const Point2& b) {
-    twiceArea += (a.Y - origin.Y) * (b.X - origin.X) - (a.X - origin.X) * (b.Y - origin.Y);
-  });
-  report.Area = 0.5 * twiceArea;
-  return report;
-}
-
 std::string ToText(double value)
 {
   std::ostringstream text;
@@ -96,19 +66,9 @@ void Fail(HoleReport& report, const std::string& reason)
   report.Reason = reason;
 }
 
-/** Refuses holes beyond the user's limits, and holes that cannot be filled. */
-void CheckLimits(HoleReport& report, bool isTouched, const FillOptions& options)
+/** Refuses holes that cannot be filled. */
+void CheckNumbers(bool isTouched, HoleReport& report)
 {
-  if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
-  {
-    report.Status = FillStatus::TooLarge;
-    return;
-  }
-  if (options.MaximumHoleEdges > 0 && report.NumberOfEdges > options.MaximumHoleEdges)
-  {
-    report.Status = FillStatus::TooManyEdges;
-    return;
-  }
   if (isTouched)
   {
     Fail(report, BordersTouch().what());
@@ -299,7 +259,8 @@ private:
       {
         Report(options.Monitor, 0.02);
       }
-      this->Result.Reports.push_back(Measure(this->Surface, this->Given, hole));
+      this->Result.Reports.push_back(
+        MeasureHole(this->Surface, this->Given, hole, options));
       HoleReport& report = this->Result.Reports.back();
       PatchPlan& plan = this->Plans[hole];
       plan = PlanPatch(this->Surface, this->Stars.get(), this->Given, hole, report.Area,
@@ -309,7 +270,10 @@ private:
       plan.Precision = StepAt(
         std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
       plan.SinglePrecision = options.SinglePrecision;
-      CheckLimits(report, this->Given.Touched[hole] != 0, options);
+      if (report.Status == FillStatus::Filled)
+      {
+        CheckNumbers(this->Given.Touched[hole] != 0, report);
+      }
     }
   }
 
@@ -504,6 +468,45 @@ private:
   FillResult Result;
 };
 } // namespace
+
+HoleReport MeasureHole(
+  const Mesh& mesh, const Holes& holes, Index hole, const FillOptions& options)
+{
+  HoleReport report;
+  report.NumberOfEdges = holes.NumberOfEdges(hole);
+  const auto visitEdges = [&](auto&& visit) {
+    holes.VisitEdges(
+      hole, [&](Index a, Index b) { visit(mesh.PointOf(a), mesh.PointOf(b)); });
+  };
+  const Point2 origin = mesh.PointOf(*holes.Walks.Begin(holes.Rim(hole)));
+  Point2 low = origin;
+  Point2 high = origin;
+  visitEdges([&](const Point2& a, const Point2& b) {
+    report.Perimeter += std::hypot(b.X - a.X, b.Y - a.Y);
+    low = { std::min(low.X, a.X), std::min(low.Y, a.Y) };
+    high = { std::max(high.X, a.X), std::max(high.Y, a.Y) };
+  });
+  report.Size = std::hypot(high.X - low.X, high.Y - low.Y);
+  if (options.MaximumHoleSize > 0.0 && report.Size > options.MaximumHoleSize)
+  {
+    report.Status = FillStatus::TooLarge;
+  }
+  else if (options.MaximumHoleEdges > 0 && report.NumberOfEdges > options.MaximumHoleEdges)
+  {
+    report.Status = FillStatus::TooManyEdges;
+  }
+  if (!IsMeasurable(report.Size))
+  {
+    report.Area = std::numeric_limits<double>::quiet_NaN();
+    return report;
+  }
+  double twiceArea = 0.0;
+  visitEdges([&](const Point2& a, const Point2& b) {
+    twiceArea += (a.Y - origin.Y) * (b.X - origin.X) - (a.X - origin.X) * (b.Y - origin.Y);
+  });
+  report.Area = 0.5 * twiceArea;
+  return report;
+}
 
 std::vector<double> NeedsOfHoles(
   const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options)

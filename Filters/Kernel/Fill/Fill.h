@@ -130,6 +130,14 @@ FillResult FillHoles(
   const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options);
 
 /**
+ * The report of a hole by its edges alone: filled, unless MaximumHoleSize or MaximumHoleEdges refuse
+ * it.
+ * @param[in] mesh  has the points of the holes
+ */
+HoleReport MeasureHole(
+  const Mesh& mesh, const Holes& holes, Index hole, const FillOptions& options);
+
+/**
  * What each hole of a part may take of MaximumInsertedPoints; NaN for those that the limits refuse.
  * Options as for FillHoles(), without Rooms.
  */

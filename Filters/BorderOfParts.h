@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The border of a mesh that is spread over ranks: which edges have one triangle on all of them.
- * Private to the module.
+ * The border of a mesh in parts, on ranks or in pieces: which edges have one triangle in all of
+ * them. Private to the module.
  */
-#ifndef BorderOfRanks_h
-#define BorderOfRanks_h
+#ifndef BorderOfParts_h
+#define BorderOfParts_h
 
 #include "Kernel/Mesh/Mesh.h"
 #include "Ranks.h"
@@ -21,21 +21,23 @@ class vtkPolyData;
 namespace elevation
 {
 
-/** What two points of different ranks have in common if they are one: the global id, or x,y,z. */
+/** What two points of different parts have in common if they are one: the global id, or x,y,z. */
 using PointKey = std::array<std::int64_t, 3>;
 
 /** The keys of chosen points, or of all (nullptr). */
 std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen);
 
-/** The points of a rank that others may have, too. */
+/** The points of a part that others may have, too. */
 struct SharedPoints
 {
   std::vector<Index> Places;   ///< increasing: on the border of its triangles, or without any
   std::vector<PointKey> Keys;  ///< of them
-  std::vector<char> AreCopies; ///< one each: another rank's counts
+  std::vector<char> AreCopies; ///< one each: another part's counts
 
   /** The place of the point with a key, or None. */
   Index Find(const PointKey& key) const;
+  /** Takes for copies what is marked so. */
+  void TakeMarks(vtkPolyData* data);
   /** Sorts the keys for Find(). @return false if two points with a triangle have one key */
   bool Sort(const std::vector<char>& areUsed);
 
@@ -46,20 +48,42 @@ private:
 /** Finds the copies, at a rank for each key. All ranks call it. */
 void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& points);
 
-/** The border of all ranks, the same on all of them. */
+/** A border edge of a part's triangles. */
+struct EdgeOfPart
+{
+  PointKey Ends[2];
+  double Places[4]; ///< x,y of both
+  vtkIdType Part, HalfEdge;
+};
+
+/** The border of all parts. */
 struct BorderOfAll
 {
-  std::vector<BorderEdge> Edges;   ///< by rank and triangle
+  std::vector<BorderEdge> Edges;   ///< by part and triangle
+  std::vector<int> PartOfEdge;     ///< one each
   std::vector<PointKey> Keys;      ///< of its points, increasing
   std::vector<double> Coordinates; ///< x, y and 0 of each
 
+  BorderOfAll() = default;
+  explicit BorderOfAll(std::vector<EdgeOfPart>&& edges);
   Index Find(const PointKey& key) const;
   PointView View() const;
 };
 
+/** Appends the border of a part. @param[in] mesh  with Twins */
+void AppendBorder(
+  const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges);
+
 /**
+ * Takes away the edges that two parts have in common.
+ * @return false if an edge has more than two triangles, or two on one side
+ */
+bool KeepSingleEdges(std::vector<EdgeOfPart>& edges);
+
+/**
+ * The border of the parts of all ranks, the same on all of them.
  * @param[in] mesh  of this rank, with Twins
- * @return false on all ranks if an edge has more than two triangles, or two on one side
+ * @return false on all ranks as KeepSingleEdges()
  */
 bool CollectBorder(
   const Ranks& ranks, const Mesh& mesh, const SharedPoints& points, BorderOfAll& border);

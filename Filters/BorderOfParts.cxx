@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BorderOfRanks.h"
+#include "BorderOfParts.h"
 
 #include "CommonPoints.h"
 
@@ -72,14 +72,6 @@ struct MetPoint
   vtkIdType Rank, Place;
 };
 
-/** A border edge of a rank's triangles. */
-struct MetEdge
-{
-  PointKey Ends[2];
-  double Places[4];
-  vtkIdType Rank, HalfEdge;
-};
-
 template <typename Value>
 std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
 {
@@ -94,34 +86,6 @@ std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
   return all;
 }
 
-/** Whether each edge is there once, or once in each direction. @param[out] single  the former */
-bool MatchEdges(std::vector<MetEdge>& edges, std::vector<MetEdge>& single)
-{
-  const auto keyOf = [](const MetEdge& edge) {
-    return std::make_tuple(
-      std::min(edge.Ends[0], edge.Ends[1]), std::max(edge.Ends[0], edge.Ends[1]), edge.Ends[0]);
-  };
-  std::sort(edges.begin(), edges.end(),
-    [&](const MetEdge& a, const MetEdge& b) { return keyOf(a) < keyOf(b); });
-  for (std::size_t i = 0; i < edges.size(); ++i)
-  {
-    const bool isPair = i + 1 < edges.size() && edges[i].Ends[0] == edges[i + 1].Ends[1] &&
-      edges[i].Ends[1] == edges[i + 1].Ends[0];
-    const std::size_t next = i + (isPair ? 2 : 1);
-    if (next < edges.size() &&
-      std::minmax(edges[i].Ends[0], edges[i].Ends[1]) ==
-        std::minmax(edges[next].Ends[0], edges[next].Ends[1]))
-    {
-      return false;
-    }
-    if (!isPair)
-    {
-      single.push_back(edges[i]);
-    }
-    i = next - 1;
-  }
-  return true;
-}
 } // namespace
 
 Index SharedPoints::Find(const PointKey& key) const
@@ -154,6 +118,24 @@ bool SharedPoints::Sort(const std::vector<char>& areUsed)
   return isUnique;
 }
 
+namespace
+{
+bool IsMarked(vtkUnsignedCharArray* marks, Index point)
+{
+  return marks && (marks->GetValue(point) & vtkDataSetAttributes::DUPLICATEPOINT);
+}
+} // namespace
+
+void SharedPoints::TakeMarks(vtkPolyData* data)
+{
+  vtkUnsignedCharArray* const marks = GhostsOf(data->GetPointData());
+  this->AreCopies.clear();
+  for (const Index place : this->Places)
+  {
+    this->AreCopies.push_back(IsMarked(marks, place) ? 1 : 0);
+  }
+}
+
 void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& points)
 {
   std::vector<Bytes> packed(ranks.Count());
@@ -161,9 +143,7 @@ void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& 
     vtkUnsignedCharArray* const marks = GhostsOf(own->GetPointData());
     for (std::size_t i = 0; i < points.Places.size(); ++i)
     {
-      const bool isMarked =
-        marks && (marks->GetValue(points.Places[i]) & vtkDataSetAttributes::DUPLICATEPOINT);
-      const MetPoint met{ points.Keys[i], isMarked ? 1 : 0, ranks.Own(),
+      const MetPoint met{ points.Keys[i], IsMarked(marks, points.Places[i]) ? 1 : 0, ranks.Own(),
         static_cast<vtkIdType>(i) };
       AppendTo(packed[RankOf(BitsOf(met.Key), ranks)], &met, 1);
     }
@@ -203,6 +183,78 @@ void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& 
   }
 }
 
+void AppendBorder(
+  const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges)
+{
+  const auto keyOf = [&](Index point) {
+    const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
+    return points.Keys[at - points.Places.begin()];
+  };
+  for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
+  {
+    if (mesh.Twin(h) == Mesh::Border)
+    {
+      const Index a = mesh.Origin(h), b = mesh.Destination(h);
+      const Point2 p = mesh.PointOf(a), q = mesh.PointOf(b);
+      edges.push_back({ { keyOf(a), keyOf(b) }, { p.X, p.Y, q.X, q.Y }, part, h });
+    }
+  }
+}
+
+bool KeepSingleEdges(std::vector<EdgeOfPart>& edges)
+{
+  const auto keyOf = [](const EdgeOfPart& edge) {
+    return std::make_tuple(
+      std::min(edge.Ends[0], edge.Ends[1]), std::max(edge.Ends[0], edge.Ends[1]), edge.Ends[0]);
+  };
+  std::sort(edges.begin(), edges.end(),
+    [&](const EdgeOfPart& a, const EdgeOfPart& b) { return keyOf(a) < keyOf(b); });
+  std::vector<EdgeOfPart> single;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+  {
+    const bool isPair = i + 1 < edges.size() && edges[i].Ends[0] == edges[i + 1].Ends[1] &&
+      edges[i].Ends[1] == edges[i + 1].Ends[0];
+    const std::size_t next = i + (isPair ? 2 : 1);
+    if (next < edges.size() &&
+      std::minmax(edges[i].Ends[0], edges[i].Ends[1]) ==
+        std::minmax(edges[next].Ends[0], edges[next].Ends[1]))
+    {
+      return false;
+    }
+    if (!isPair)
+    {
+      single.push_back(edges[i]);
+    }
+    i = next - 1;
+  }
+  edges = std::move(single);
+  return true;
+}
+
+BorderOfAll::BorderOfAll(std::vector<EdgeOfPart>&& edges)
+{
+  std::sort(edges.begin(), edges.end(), [](const EdgeOfPart& a, const EdgeOfPart& b) {
+    return std::tie(a.Part, a.HalfEdge) < std::tie(b.Part, b.HalfEdge);
+  });
+  for (const EdgeOfPart& edge : edges)
+  {
+    this->Keys.insert(this->Keys.end(), { edge.Ends[0], edge.Ends[1] });
+  }
+  std::sort(this->Keys.begin(), this->Keys.end());
+  this->Keys.erase(std::unique(this->Keys.begin(), this->Keys.end()), this->Keys.end());
+  this->Coordinates.resize(3 * this->Keys.size(), 0.0);
+  for (const EdgeOfPart& edge : edges)
+  {
+    const Index ends[2] = { this->Find(edge.Ends[0]), this->Find(edge.Ends[1]) };
+    this->Edges.push_back({ ends[0], ends[1] });
+    this->PartOfEdge.push_back(static_cast<int>(edge.Part));
+    for (std::size_t k = 0; k < 2; ++k)
+    {
+      std::copy_n(edge.Places + 2 * k, 2, this->Coordinates.begin() + 3 * ends[k]);
+    }
+  }
+}
+
 Index BorderOfAll::Find(const PointKey& key) const
 {
   const auto found = std::lower_bound(this->Keys.begin(), this->Keys.end(), key);
@@ -223,29 +275,21 @@ bool CollectBorder(
 {
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
-    const auto keyOf = [&](Index point) {
-      const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
-      return points.Keys[at - points.Places.begin()];
-    };
-    for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
+    std::vector<EdgeOfPart> edges;
+    AppendBorder(mesh, points, ranks.Own(), edges);
+    for (const EdgeOfPart& edge : edges)
     {
-      if (mesh.Twin(h) == Mesh::Border)
-      {
-        const Index a = mesh.Origin(h), b = mesh.Destination(h);
-        const Point2 p = mesh.PointOf(a), q = mesh.PointOf(b);
-        const MetEdge edge{ { keyOf(a), keyOf(b) }, { p.X, p.Y, q.X, q.Y }, ranks.Own(), h };
-        AppendTo(packed[RankOf(BitsOf(edge.Ends[0]) + BitsOf(edge.Ends[1]), ranks)], &edge, 1);
-      }
+      AppendTo(packed[RankOf(BitsOf(edge.Ends[0]) + BitsOf(edge.Ends[1]), ranks)], &edge, 1);
     }
   });
   packed = ranks.Exchange(std::move(packed));
   if (!CanAll(ranks, [&]() {
-        std::vector<MetEdge> met = Unpacked<MetEdge>(packed), single;
-        const bool isManifold = MatchEdges(met, single);
+        std::vector<EdgeOfPart> edges = Unpacked<EdgeOfPart>(packed);
+        const bool isManifold = KeepSingleEdges(edges);
         packed = std::vector<Bytes>(ranks.Count());
         for (Bytes& bytes : packed) // to all
         {
-          AppendTo(bytes, single);
+          AppendTo(bytes, edges);
         }
         return isManifold;
       }))
@@ -253,28 +297,7 @@ bool CollectBorder(
     return false;
   }
   packed = ranks.Exchange(std::move(packed));
-  ranks.Agree([&]() {
-    std::vector<MetEdge> edges = Unpacked<MetEdge>(packed);
-    std::sort(edges.begin(), edges.end(), [](const MetEdge& a, const MetEdge& b) {
-      return std::tie(a.Rank, a.HalfEdge) < std::tie(b.Rank, b.HalfEdge);
-    });
-    for (const MetEdge& edge : edges)
-    {
-      border.Keys.insert(border.Keys.end(), { edge.Ends[0], edge.Ends[1] });
-    }
-    std::sort(border.Keys.begin(), border.Keys.end());
-    border.Keys.erase(std::unique(border.Keys.begin(), border.Keys.end()), border.Keys.end());
-    border.Coordinates.resize(3 * border.Keys.size(), 0.0);
-    for (const MetEdge& edge : edges)
-    {
-      const Index ends[2] = { border.Find(edge.Ends[0]), border.Find(edge.Ends[1]) };
-      border.Edges.push_back({ ends[0], ends[1] });
-      for (std::size_t k = 0; k < 2; ++k)
-      {
-        std::copy_n(edge.Places + 2 * k, 2, border.Coordinates.begin() + 3 * ends[k]);
-      }
-    }
-  });
+  ranks.Agree([&]() { border = BorderOfAll(Unpacked<EdgeOfPart>(packed)); });
   return true;
 }
 

@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HolesOfParts.h"
+
+#include "Joining.h"
+#include "MeshConversion.h"
+#include "NearParts.h"
+#include "PackedData.h"
+#include "PatchedSurface.h"
+
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <utility>
+
+namespace elevation
+{
+
+bool HolesOfParts::Find(const Progress& progress)
+{
+  const PointView points = this->Border.View();
+  this->OfAll = FillResult();
+  this->OfAll.Found = FindHolesOfBorder(this->Border.Edges, points, progress);
+  this->Extents = ExtentsOf(this->OfAll.Found, points);
+  Mesh places;
+  for (Index i = 0; i < points.Count; ++i)
+  {
+    places.Points.push_back(points.At(i));
+  }
+  for (Index hole = 0; hole < this->OfAll.Found.Count(); ++hole)
+  {
+    this->OfAll.Reports.push_back(MeasureHole(places, this->OfAll.Found, hole, this->Options));
+  }
+  return this->OfAll.Found.NumberOfContacts == 0;
+}
+
+/** As on one rank: only for holes to be filled, without a spacing. */
+bool HolesOfParts::NeedLattice() const
+{
+  bool areToBeFilled = false;
+  for (std::size_t hole = 0; hole < this->OfAll.Reports.size(); ++hole)
+  {
+    areToBeFilled = areToBeFilled || this->IsToBeFilled(hole);
+  }
+  return areToBeFilled && !(this->Options.Spacing > 0.0);
+}
+
+void HolesOfParts::FindLattice(
+  const Ranks& ranks, const PointSlices& points, const Progress& progress)
+{
+  LatticeSample sample;
+  this->Lattice.Found = FitLatticeOnRanks(ranks, points, LatticeTolerance,
+    ThreadsAtOnce(this->Options.NumberOfThreads), progress, sample, this->Lattice.Steps);
+}
+
+void HolesOfParts::NumberNewPoints()
+{
+  this->FirstNewPoints.assign(1, 0);
+  for (const HoleReport& report : this->OfAll.Reports)
+  {
+    this->FirstNewPoints.push_back(this->FirstNewPoints.back() + report.NumberOfInsertedPoints);
+  }
+}
+
+void SurroundedHoles::Surround(const Parts& parts, bool byIds, const Progress& progress)
+{
+  std::vector<std::string> warnings; // none: all have the same arrays
+  this->Near = Mesh();
+  this->Surrounding = elevation::Join(parts, PartKind::Mesh, Part(progress, 0.0, 0.4), warnings);
+  this->Keys = KeysOf(this->Surrounding, byIds, nullptr);
+  ToMesh(this->Surrounding, this->Near, Part(progress, 0.4, 0.7));
+  this->Near.ConnectTwins(0, Part(progress, 0.7, 1.0));
+}
+
+/** The holes by the points of the surrounding. */
+Holes SurroundedHoles::Listed(const HolesOfParts& all) const
+{
+  std::vector<Index> placeOf(all.Border.Keys.size(), None);
+  for (std::size_t i = 0; i < this->Keys.size(); ++i)
+  {
+    const Index at = all.Border.Find(this->Keys[i]);
+    if (at != None)
+    {
+      placeOf[at] = static_cast<Index>(i);
+    }
+  }
+  const Holes& found = all.OfAll.Found;
+  Holes holes;
+  for (const Index hole : this->Numbers)
+  {
+    for (Index i = found.Offsets[hole]; i < found.Offsets[hole + 1]; ++i)
+    {
+      const Index walk = found.Loops[i];
+      holes.Loops.push_back(static_cast<Index>(holes.Walks.Count()));
+      std::transform(found.Walks.Begin(walk), found.Walks.End(walk),
+        std::back_inserter(holes.Walks.Vertices), [&](Index v) { return placeOf[v]; });
+      holes.Walks.Offsets.push_back(static_cast<Index>(holes.Walks.Vertices.size()));
+    }
+    holes.Offsets.push_back(static_cast<Index>(holes.Loops.size()));
+    holes.Touched.push_back(0);
+  }
+  if (std::count(holes.Walks.Vertices.begin(), holes.Walks.Vertices.end(), None) > 0)
+  {
+    throw Error("A point of a hole has not come from another part of the surface.");
+  }
+  return holes;
+}
+
+FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all, int round) const
+{
+  FillOptions options = all.Options;
+  options.SinglePrecision = HasFloatPoints(this->Surrounding);
+  options.KnownLattice = &all.Lattice;
+  if (all.Interpolate)
+  {
+    options.Attributes = AttributesOf(this->Surrounding->GetPointData());
+  }
+  for (const Index hole : this->Numbers)
+  {
+    options.Known.push_back(BoxAround(all.Extents[hole], round));
+    if (!all.Rooms.empty())
+    {
+      options.Rooms.push_back(all.Rooms[hole]);
+    }
+  }
+  return options;
+}
+
+std::vector<double> SurroundedHoles::Needs(const HolesOfParts& all, const Progress& progress) const
+{
+  FillOptions options = this->OptionsFor(all, 0);
+  options.Monitor = progress;
+  return NeedsOfHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
+}
+
+bool SurroundedHoles::Fill(const HolesOfParts& all, int round, const Progress& progress)
+{
+  FillOptions options = this->OptionsFor(all, round);
+  options.Monitor = progress;
+  this->Patches =
+    FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
+  const std::vector<HoleReport>& reports = this->Patches.Reports;
+  return std::none_of(reports.begin(), reports.end(),
+    [](const HoleReport& report) { return report.IsBeyondKnown; });
+}
+
+void SurroundedHoles::KeepCorners()
+{
+  const Index count = static_cast<Index>(this->Keys.size());
+  IdSet used(count);
+  const auto eachId = [this](const auto& visit) {
+    for (std::vector<Index>* ids : { &this->Patches.Triangles, &this->Patches.NearestBoundaryPoints })
+    {
+      std::for_each(ids->begin(), ids->end(), visit);
+    }
+  };
+  eachId([&](Index id) {
+    if (id < count)
+    {
+      used.Add(id);
+    }
+  });
+  const std::vector<Index> kept = used.ListAndRank();
+  const Index first = static_cast<Index>(kept.size());
+  eachId([&](Index& id) { id = id < count ? used.RankOf(id) : first + id - count; });
+  this->Surrounding = ChosenPoints(this->Surrounding, kept);
+  std::vector<PointKey> keys;
+  for (const Index id : kept)
+  {
+    keys.push_back(this->Keys[id]);
+  }
+  this->Keys = std::move(keys);
+  this->Near = Mesh();
+}
+
+namespace
+{
+template <typename Value>
+void PackList(const std::vector<Value>& values, Bytes& bytes)
+{
+  const std::size_t count = values.size();
+  AppendTo(bytes, &count, 1);
+  AppendTo(bytes, values);
+}
+
+template <typename Value>
+void TakeList(const char*& from, std::vector<Value>& values)
+{
+  std::size_t count = 0;
+  TakeFrom(from, &count, 1);
+  TakeFrom(from, count, values);
+}
+
+/** Calls visit for each list of a result, without holes and reports. */
+template <typename Result, typename Visit>
+void ForEachList(Result& patches, const Visit& visit)
+{
+  visit(patches.Points);
+  visit(patches.Triangles);
+  visit(patches.PointOffsets);
+  visit(patches.TriangleOffsets);
+  visit(patches.NearestBoundaryPoints);
+  visit(patches.StandardErrors);
+  for (auto& values : patches.Attributes)
+  {
+    visit(values);
+  }
+}
+} // namespace
+
+Bytes SurroundedHoles::Pack() const
+{
+  Bytes bytes;
+  const Bytes data = PackData(this->Surrounding);
+  const std::size_t sizes[] = { data.size(), this->Patches.Attributes.size() };
+  AppendTo(bytes, sizes, 2);
+  AppendTo(bytes, data.data(), data.size());
+  PackList(this->Numbers, bytes);
+  PackList(this->Keys, bytes);
+  ForEachList(this->Patches, [&bytes](const auto& values) { PackList(values, bytes); });
+  return bytes;
+}
+
+SurroundedHoles::SurroundedHoles(const Bytes& bytes)
+{
+  const char* from = bytes.data();
+  std::size_t sizes[2];
+  TakeFrom(from, sizes, 2);
+  this->Surrounding = UnpackData(from, sizes[0]);
+  from += sizes[0];
+  this->Patches.Attributes.resize(sizes[1]);
+  TakeList(from, this->Numbers);
+  TakeList(from, this->Keys);
+  ForEachList(this->Patches, [&from](auto& values) { TakeList(from, values); });
+}
+
+} // namespace elevation

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The holes of a surface in parts, on ranks or in pieces. Private to the module.
+ */
+#ifndef HolesOfParts_h
+#define HolesOfParts_h
+
+#include "BorderOfParts.h"
+#include "CommonPoints.h"
+#include "Kernel/Fill/Fill.h"
+#include "LatticeOfRanks.h"
+#include "SurroundingBoxes.h"
+
+#include "vtkSmartPointer.h"
+
+#include <vector>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** What is known of all holes, wherever they are filled. */
+struct HolesOfParts
+{
+  FillOptions Options; ///< without what is of a part
+  bool Interpolate = true;
+  bool ByIds = false; ///< whether points of parts are one by their global ids, or by x,y,z
+  BorderOfAll Border;
+  FillResult OfAll; ///< the holes, by points of the border, and reports; no patches
+  std::vector<HoleExtent> Extents;
+  LatticeSearch Lattice;
+  std::vector<double> Rooms;
+  std::vector<vtkIdType> FirstNewPoints; ///< of each hole, and the number of all
+
+  /** Finds and measures the holes of the border. @return false if borders touch */
+  bool Find(const Progress& progress);
+  /** Whether the limits of size and edges admit a hole. */
+  bool IsToBeFilled(std::size_t hole) const
+  {
+    return this->OfAll.Reports[hole].Status != FillStatus::TooLarge &&
+      this->OfAll.Reports[hole].Status != FillStatus::TooManyEdges;
+  }
+  bool NeedLattice() const;
+  /** @param[in] points  of all parts, each once */
+  void FindLattice(const Ranks& ranks, const PointSlices& points, const Progress& progress);
+  void NumberNewPoints();
+};
+
+/** Some of the holes, increasing, and the triangles of all parts around them. */
+struct SurroundedHoles
+{
+  std::vector<Index> Numbers;
+  vtkSmartPointer<vtkPolyData> Surrounding; ///< nullptr: none
+  std::vector<PointKey> Keys;               ///< of its points
+  FillResult Patches;                       ///< by its points
+
+  /** Joins what parts have around the holes. */
+  void Surround(const Parts& parts, bool byIds, const Progress& progress);
+  std::vector<double> Needs(const HolesOfParts& all, const Progress& progress) const;
+  /** @return false if triangles are needed outside of the boxes of this round */
+  bool Fill(const HolesOfParts& all, int round, const Progress& progress);
+  /** Keeps only those points of the surrounding that patches have. */
+  void KeepCorners();
+
+  Bytes Pack() const;
+  SurroundedHoles() = default;
+  explicit SurroundedHoles(const Bytes& bytes);
+
+private:
+  Holes Listed(const HolesOfParts& all) const;
+  FillOptions OptionsFor(const HolesOfParts& all, int round) const;
+
+  Mesh Near; // the triangles
+};
+
+} // namespace elevation
+
+#endif
