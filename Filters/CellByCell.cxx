@@ -425,8 +425,8 @@ void KeepShort(const EdgeLimit& limit, const Progress& progress, SurfacePart& pa
     ReportStep(progress, i / 3, corners.size() / 3, 1 << 16);
     if (limit.Admits(pointOf, corners[i], corners[i + 1], corners[i + 2]))
     {
-      std::for_each(corners.data() + i, corners.data() + i + 3,
-        [&kept](Index corner) { kept.Append(corner); });
+      std::for_each(
+        corners.data() + i, corners.data() + i + 3, [&kept](Index corner) { kept.Append(corner); });
     }
   }
   corners = std::move(kept);

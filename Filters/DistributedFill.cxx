@@ -209,7 +209,8 @@ void Work::ShareRooms()
     {
       return;
     }
-    const std::vector<double> needs = this->Part.Filled.Needs(this->Whole, this->Watched(0.38, 0.4));
+    const std::vector<double> needs =
+      this->Part.Filled.Needs(this->Whole, this->Watched(0.38, 0.4));
     for (std::size_t i = 0; i < own.size(); ++i)
     {
       rows.insert(rows.end(), { static_cast<double>(own[i]), needs[i] });

@@ -108,8 +108,7 @@ void FilledPart::FindCorners()
     if (corner < first && this->PlaceOf[corner] == None)
     {
       const Index here = this->Shared.Find(this->Filled.Keys[corner]);
-      this->PlaceOf[corner] =
-        here != None ? here : own + static_cast<Index>(this->Added.size());
+      this->PlaceOf[corner] = here != None ? here : own + static_cast<Index>(this->Added.size());
       if (here == None)
       {
         this->Added.push_back(corner);
@@ -139,8 +138,7 @@ vtkIdType FilledPart::LargestId() const
 }
 
 /** The input and the corners of others; of points that parts have in common, one is no ghost. */
-vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(
-  bool areMarked, const Progress& progress) const
+vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progress& progress) const
 {
   auto data = vtkSmartPointer<vtkPolyData>::New();
   TrimmedPoints points;
@@ -176,7 +174,7 @@ FillResult FilledPart::PlacedPatches(const HolesOfParts& all, vtkPolyData* input
   to.StandardErrors = from.StandardErrors;
   const Index first = static_cast<Index>(this->PlaceOf.size());
   const Index firstNew = static_cast<Index>(input->GetNumberOfPoints());
-  const auto placed = [&](Index id) { 
+  const auto placed = [&](Index id) {
     return id < first ? this->PlaceOf[id] : firstNew + id - first;
   };
   std::transform(
@@ -199,7 +197,7 @@ FillResult FilledPart::PlacedPatches(const HolesOfParts& all, vtkPolyData* input
 /** Attributes in the order of the input's arrays. */
 void FilledPart::PlaceAttributes(vtkPolyData* input, FillResult& placed) const
 {
-  vtkPointData* const given = 
+  vtkPointData* const given =
     this->Filled.Surrounding ? this->Filled.Surrounding->GetPointData() : nullptr;
   const bool areInterpolated = !this->Filled.Patches.Attributes.empty();
   std::map<std::string, std::size_t> firstOf;
@@ -216,7 +214,8 @@ void FilledPart::PlaceAttributes(vtkPolyData* input, FillResult& placed) const
     vtkAbstractArray* const array = data->GetAbstractArray(i);
     for (int c = 0; IsInterpolated(data, array) && c < array->GetNumberOfComponents(); ++c)
     {
-      placed.Attributes.push_back(this->Filled.Patches.Attributes[firstOf.at(array->GetName()) + c]);
+      placed.Attributes.push_back(
+        this->Filled.Patches.Attributes[firstOf.at(array->GetName()) + c]);
     }
   }
 }
@@ -229,8 +228,7 @@ void FilledPart::NumberNewPoints(
   vtkIdType next = output->GetNumberOfPoints() - this->Filled.Patches.NumberOfPoints();
   for (const Index hole : this->Filled.Numbers)
   {
-    for (vtkIdType i = all.FirstNewPoints[hole];
-         ids && i < all.FirstNewPoints[hole + 1]; ++i)
+    for (vtkIdType i = all.FirstNewPoints[hole]; ids && i < all.FirstNewPoints[hole + 1]; ++i)
     {
       ids->SetComponent(next++, 0, static_cast<double>(largest + 1 + i));
     }
@@ -240,8 +238,7 @@ void FilledPart::NumberNewPoints(
 void FilledPart::Write(const HolesOfParts& all, bool areMarked, vtkIdType largestId,
   const Progress& progress, vtkPolyData* output) const
 {
-  const vtkSmartPointer<vtkPolyData> input =
-    this->WithCorners(areMarked, Part(progress, 0.0, 0.2));
+  const vtkSmartPointer<vtkPolyData> input = this->WithCorners(areMarked, Part(progress, 0.0, 0.2));
   MakeSurface(input, this->Own, this->PlacedPatches(all, input), all.Interpolate,
     Part(progress, 0.2, 1.0), output);
   this->NumberNewPoints(all, largestId, output);

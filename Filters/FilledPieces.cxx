@@ -36,26 +36,7 @@ FilledPieces::FilledPieces(int count, const std::string& folder, vtkIdType numbe
   {
     this->FindLattice();
   }
-  std::vector<char> areWaiting(this->Pieces.size(), 0);
-  std::transform(this->Pieces.begin(), this->Pieces.end(), areWaiting.begin(),
-    [](const PieceFiles& files) { return files.Holes.empty() ? 0 : 1; });
-  for (int round = 0; std::count(areWaiting.begin(), areWaiting.end(), 1) > 0; ++round)
-  {
-    const double begin = round == 0 ? 0.5 : 0.9, end = round == 0 ? 0.6 : 0.9;
-    this->Surround(round, areWaiting, begin, end);
-    if (round == 0)
-    {
-      this->FindRooms();
-    }
-    for (int piece = 0; piece < count; ++piece)
-    {
-      const double width = (round == 0 ? 0.3 : 0.1) / count;
-      const Progress progress = Part(this->Whole.Options.Monitor, end + width * piece,
-        std::min(1.0, end + width * (piece + 1)));
-      areWaiting[piece] =
-        areWaiting[piece] && !this->FillHolesOf(piece, round, progress) ? 1 : 0;
-    }
-  }
+  this->FillAll();
   this->Whole.NumberNewPoints();
 }
 
@@ -75,8 +56,8 @@ void FilledPieces::ForEachPiece(double begin, double end, const Visit& visit) co
   for (int piece = 0; piece < count; ++piece)
   {
     const double width = (end - begin) / count;
-    const Progress progress = Part(
-      this->Whole.Options.Monitor, begin + width * piece, begin + width * (piece + 1));
+    const Progress progress =
+      Part(this->Whole.Options.Monitor, begin + width * piece, begin + width * (piece + 1));
     const vtkSmartPointer<vtkPolyData> made = this->Make(piece, Part(progress, 0.0, 0.5));
     if (made)
     {
@@ -210,8 +191,7 @@ SurroundedHoles FilledPieces::HolesOf(int piece, const Progress& progress) const
 /** What each hole may take is known where all needs are. */
 void FilledPieces::FindRooms()
 {
-  std::vector<double> needs(
-    this->Whole.Extents.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> needs(this->Whole.Extents.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
   {
     const std::vector<Index>& holes = this->Pieces[piece].Holes;
@@ -227,6 +207,32 @@ void FilledPieces::FindRooms()
     }
   }
   this->Whole.Rooms = RoomsOfNeeds(needs, this->Whole.Options.MaximumInsertedPoints);
+}
+
+void FilledPieces::FillAll()
+{
+  const int count = static_cast<int>(this->Pieces.size());
+  std::vector<char> areWaiting(this->Pieces.size(), 0);
+  std::transform(this->Pieces.begin(), this->Pieces.end(), areWaiting.begin(),
+    [](const PieceFiles& files) { return files.Holes.empty() ? 0 : 1; });
+  for (int round = 0; std::count(areWaiting.begin(), areWaiting.end(), 1) > 0; ++round)
+  {
+    // Few holes need a second round.
+    const double begin = round == 0 ? 0.5 : 0.9, end = round == 0 ? 0.6 : 0.9;
+    this->Surround(round, areWaiting, begin, end);
+    if (round == 0)
+    {
+      this->FindRooms();
+    }
+    const double width = (round == 0 ? 0.3 : 0.1) / count;
+    for (int piece = 0; piece < count; ++piece)
+    {
+      const double first = end + width * piece;
+      const Progress progress =
+        Part(this->Whole.Options.Monitor, first, std::min(1.0, first + width));
+      areWaiting[piece] = areWaiting[piece] && !this->FillHolesOf(piece, round, progress) ? 1 : 0;
+    }
+  }
 }
 
 /** @return false if they need more of the surface around them */

@@ -77,6 +77,7 @@ private:
   void Surround(int round, const std::vector<char>& areWaiting, double begin, double end);
   SurroundedHoles HolesOf(int piece, const Progress& progress) const;
   void FindRooms();
+  void FillAll();
   bool FillHolesOf(int piece, int round, const Progress& progress);
 
   const MakePiece Make;

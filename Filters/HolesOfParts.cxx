@@ -143,8 +143,8 @@ bool SurroundedHoles::Fill(const HolesOfParts& all, int round, const Progress& p
   this->Patches =
     FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
   const std::vector<HoleReport>& reports = this->Patches.Reports;
-  return std::none_of(reports.begin(), reports.end(),
-    [](const HoleReport& report) { return report.IsBeyondKnown; });
+  return std::none_of(
+    reports.begin(), reports.end(), [](const HoleReport& report) { return report.IsBeyondKnown; });
 }
 
 void SurroundedHoles::KeepCorners()
@@ -152,7 +152,8 @@ void SurroundedHoles::KeepCorners()
   const Index count = static_cast<Index>(this->Keys.size());
   IdSet used(count);
   const auto eachId = [this](const auto& visit) {
-    for (std::vector<Index>* ids : { &this->Patches.Triangles, &this->Patches.NearestBoundaryPoints })
+    for (std::vector<Index>* ids :
+      { &this->Patches.Triangles, &this->Patches.NearestBoundaryPoints })
     {
       std::for_each(ids->begin(), ids->end(), visit);
     }

@@ -32,9 +32,8 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   options.Spacing = filter->GetSpacing();
   options.Method = static_cast<Interpolation>(filter->GetInterpolation());
   const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
-  options.MaximumInsertedPoints =
-    static_cast<Index>(most > 0 ? std::min<vtkIdType>(most, MaximumNumberOfPoints)
-                                : MaximumNumberOfPoints);
+  options.MaximumInsertedPoints = static_cast<Index>(
+    most > 0 ? std::min<vtkIdType>(most, MaximumNumberOfPoints) : MaximumNumberOfPoints);
   options.NumberOfThreads = filter->GetNumberOfThreads();
   return options;
 }

@@ -99,7 +99,8 @@ bool vtkReconstructPieces::Try(const std::function<void()>& work)
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro(<< elevation::NotEnoughMemory << " More pieces take less.");
+    vtkErrorMacro(<< elevation::NotEnoughMemory << " More pieces take less"
+                  << (this->FillHoles ? ", and so does a MaximumHoleSize." : "."));
   }
   catch (const std::exception& error)
   {
@@ -238,8 +239,7 @@ std::string vtkReconstructPieces::WrongProperty()
 
 vtkMTimeType vtkReconstructPieces::TimeOfProperties()
 {
-  return std::max(
-    { this->Delaunay->GetMTime(), this->Trim->GetMTime(), this->Fill->GetMTime() });
+  return std::max({ this->Delaunay->GetMTime(), this->Trim->GetMTime(), this->Fill->GetMTime() });
 }
 
 /** Does all work but writing pieces. */

@@ -259,8 +259,7 @@ private:
       {
         Report(options.Monitor, 0.02);
       }
-      this->Result.Reports.push_back(
-        MeasureHole(this->Surface, this->Given, hole, options));
+      this->Result.Reports.push_back(MeasureHole(this->Surface, this->Given, hole, options));
       HoleReport& report = this->Result.Reports.back();
       PatchPlan& plan = this->Plans[hole];
       plan = PlanPatch(this->Surface, this->Stars.get(), this->Given, hole, report.Area,
