@@ -10,6 +10,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -59,16 +60,6 @@ CellByCell::CellByCell(const std::string& folder)
   }
 }
 
-CellByCell::~CellByCell()
-{
-  this->Rows.Remove();
-  for (CellFiles& files : this->Cells)
-  {
-    files.Points.Remove();
-    files.Triangles.Remove();
-  }
-}
-
 void CellByCell::TakeKinds(vtkPointSet* points)
 {
   CheckPointArrays(points);
@@ -91,6 +82,10 @@ void CellByCell::TakeKinds(vtkPointSet* points)
     throw Error("Points that are added need the same point arrays as those before.");
   }
   this->Kinds = std::move(kinds);
+  if (points->GetPoints()->GetDataType() != VTK_FLOAT)
+  {
+    this->TypeOfPoints = VTK_DOUBLE;
+  }
 }
 
 void CellByCell::Add(vtkPointSet* points, const Progress& progress)
@@ -287,7 +282,7 @@ SurfacePart CellByCell::OwnPart(int cell) const
   SurfacePart part;
   part.Kinds = this->Kinds;
   part.NameOfIds = NameOfIds;
-  part.TypeOfPoints = VTK_DOUBLE;
+  part.TypeOfPoints = this->TypeOfPoints;
   part.Own = PointRows(this->Kinds);
   std::vector<Bytes> stretches;
   this->Cells[cell].Points.ForEach(

@@ -43,7 +43,6 @@ class CellByCell
 public:
   /** @param[in] folder  of the files, in which nothing else is */
   explicit CellByCell(const std::string& folder);
-  ~CellByCell();
 
   /** Adds points, numbered on. @throws Error if their arrays are not as those before; Aborted */
   void Add(vtkPointSet* points, const Progress& progress);
@@ -99,7 +98,8 @@ private:
 
   const std::string Folder;
   std::vector<ArrayKind> Kinds;
-  SpoolFile Rows; // of all points, until they are in the files of cells
+  int TypeOfPoints = VTK_FLOAT; // where all are float
+  SpoolFile Rows;               // of all points, until they are in the files of cells
   std::vector<SampledPoint> Sample;
   std::uint64_t SampleMask = 0;
   DelaunayOptions Options;

@@ -268,7 +268,10 @@ void WriteRims(
   {
     places[all.Border.Find(keys[i])] = static_cast<Index>(i);
   }
-  MakeReport(ChosenPoints(joined, places), all.OfAll, progress, output);
+  const vtkSmartPointer<vtkPolyData> rims = ChosenPoints(joined, places);
+  // Each is there once.
+  rims->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  MakeReport(rims, all.OfAll, progress, output);
 }
 
 } // namespace elevation

@@ -40,15 +40,6 @@ FilledPieces::FilledPieces(int count, const std::string& folder, vtkIdType numbe
   this->Whole.NumberNewPoints();
 }
 
-FilledPieces::~FilledPieces()
-{
-  for (PieceFiles& files : this->Pieces)
-  {
-    files.Surrounding.Remove();
-    files.Patches.Remove();
-  }
-}
-
 template <typename Visit>
 void FilledPieces::ForEachPiece(double begin, double end, const Visit& visit) const
 {
@@ -83,9 +74,12 @@ void FilledPieces::FindHoles()
     {
       this->Pieces[piece].Place.Add(part.Own.PointOf(corner));
     }
-    if (!part.Shared.Places.empty())
+    std::vector<Index> ends;
+    std::copy_if(part.Shared.Places.begin(), part.Shared.Places.end(), std::back_inserter(ends),
+      [&part](Index place) { return part.AreUsed[place] != 0; });
+    if (!ends.empty())
     {
-      borders.push_back(ChosenPoints(part.Input, part.Shared.Places));
+      borders.push_back(ChosenPoints(part.Input, ends));
     }
   });
   if (!KeepSingleEdges(edges))

@@ -48,7 +48,6 @@ public:
    */
   FilledPieces(int count, const std::string& folder, vtkIdType numberOfPoints,
     const MakePiece& makePiece, const FillOptions& options, bool interpolate);
-  ~FilledPieces();
 
   /** Makes a piece with its patches. */
   void Pass(int piece, const Progress& progress, vtkPolyData* output) const;

@@ -42,9 +42,22 @@ SpoolFile::SpoolFile(const std::string& path)
 {
 }
 
+SpoolFile::SpoolFile(SpoolFile&& other) noexcept
+  : Path(std::move(other.Path))
+  , IsThere(std::exchange(other.IsThere, false))
+  , Count(std::exchange(other.Count, 0))
+{
+}
+
+SpoolFile::~SpoolFile()
+{
+  this->Remove();
+}
+
 void SpoolFile::Append(const void* stretch, std::size_t size)
 {
   OpenFile file = Open(this->Path, this->Count > 0 ? "ab" : "wb", "written");
+  this->IsThere = true;
   const bool isWritten = std::fwrite(&size, sizeof(size), 1, file.get()) == 1 &&
     std::fwrite(stretch, 1, size, file.get()) == size;
   if (!isWritten || std::fclose(file.release()) != 0)
@@ -79,7 +92,11 @@ void SpoolFile::ForEach(const std::function<void(Bytes&&)>& visit) const
 
 void SpoolFile::Remove()
 {
-  std::remove(this->Path.c_str());
+  if (this->IsThere)
+  {
+    std::remove(this->Path.c_str());
+  }
+  this->IsThere = false;
   this->Count = 0;
 }
 

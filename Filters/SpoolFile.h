@@ -15,12 +15,14 @@
 namespace elevation
 {
 
-/** A file that is written stretch by stretch, and read like that. */
+/** A file that is written stretch by stretch, and read like that. It goes with its object. */
 class SpoolFile
 {
 public:
   /** Takes the place of a file of this name. */
   explicit SpoolFile(const std::string& path);
+  SpoolFile(SpoolFile&& other) noexcept;
+  ~SpoolFile();
 
   /** @throws Error, as where the disk is full */
   void Append(const void* stretch, std::size_t size);
@@ -33,6 +35,7 @@ public:
 
 private:
   std::string Path;
+  bool IsThere = false;
   std::size_t Count = 0; // of stretches
 };
 

@@ -16,10 +16,6 @@ TrimmedPieces::TrimmedPieces(int count, vtkIdType numberOfTriangles, const MakeP
   , NumberOfAll(static_cast<double>(numberOfTriangles))
   , Backs(static_cast<std::size_t>(count))
 {
-  if (options.Test != OutwardTest::Exact)
-  {
-    throw Error("OutwardTest InwardNormal is for a surface in memory, not for pieces.");
-  }
   CheckArrays(boundary, "The boundary's");
   this->Lines = ToLines(boundary, Progress());
   Parts near;

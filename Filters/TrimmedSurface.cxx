@@ -88,8 +88,15 @@ void PassPoints(
         return value;
       };
       values.Nearest = [&inserted](vtkIdType i) {
-        const double* const weights = inserted[i].Weights;
-        return inserted[i].Corners[std::max_element(weights, weights + 3) - weights];
+        const InsertedVertex& vertex = inserted[i];
+        int best = 0;
+        for (int k = 1; k < 3; ++k) // of equally near ones, the first point
+        {
+          const double ahead = vertex.Weights[k] - vertex.Weights[best];
+          const bool isFirst = vertex.Corners[k] < vertex.Corners[best];
+          best = ahead > 0.0 || (ahead == 0.0 && isFirst) ? k : best;
+        }
+        return vertex.Corners[best];
       };
       return values;
     });

@@ -229,6 +229,11 @@ std::string vtkReconstructPieces::WrongProperty()
   {
     return "Constraints are for points in memory, not for pieces.";
   }
+  const bool isTrimmed = this->Trim->GetNumberOfInputConnections(1) > 0;
+  if (isTrimmed && elevation::OptionsOf(this->Trim).Test != elevation::OutwardTest::Exact)
+  {
+    return "OutwardTest InwardNormal is for a surface in memory, not for pieces.";
+  }
   if (this->FillHoles && this->Fill->GetMaximumEdgeLength() != 0.0)
   {
     return "MaximumEdgeLength of the filter that fills holes is for a surface in memory, not for "
@@ -250,6 +255,7 @@ void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progr
   const double trimming = isTrimmed ? 0.6 * filling : filling;
   elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
   options.Monitor = elevation::Part(progress, 0.0, trimming);
+  this->SetProgressText("triangulating");
   this->Work->Triangulate(count, options);
   this->WarnOfMissing();
   if (this->Work->All().Triangles == 0)
@@ -285,6 +291,7 @@ void vtkReconstructPieces::WarnOfMissing()
 
 void vtkReconstructPieces::TrimAll(int count, const elevation::Progress& progress)
 {
+  this->SetProgressText("trimming");
   this->Trim->GetInputAlgorithm(1, 0)->Update();
   elevation::TrimOptions options = elevation::OptionsOf(this->Trim);
   options.Monitor = progress;
@@ -295,6 +302,7 @@ void vtkReconstructPieces::TrimAll(int count, const elevation::Progress& progres
 
 void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progress)
 {
+  this->SetProgressText("filling holes");
   elevation::FillOptions options = elevation::OptionsOf(this->Fill);
   options.Monitor = progress;
   const auto make = [this](int piece, const elevation::Progress& ofPiece) {

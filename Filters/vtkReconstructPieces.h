@@ -37,6 +37,9 @@
  * seams of pieces, which it holds too, have some multiple of the square root of so many points. To
  * fill a hole takes the surface in a box around it, four times as wide and high; seldom more.
  *
+ * Points are float where all that are added are. While it works, the progress text names the step:
+ * triangulating, trimming or filling holes.
+ *
  * A wrong property or call is an error that loses nothing. After an error of the work, such as a
  * full disk, or an abort, the output is empty, and only Reset() helps.
  *

@@ -17,7 +17,6 @@ from .options import (
     about,
     check_options,
     files_of,
-    in_options,
     make_parser,
     options_of,
     parse_arguments,
@@ -25,7 +24,7 @@ from .options import (
 )
 from .pieces import Pieces
 from .ranks import by_first, total
-from .reconstruction import check_spacing, run_chain
+from .reconstruction import check_spacing, in_options, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, Progress, Results, WrongOption, write_report
 from .spreading import can_be_dealt

@@ -20,9 +20,9 @@ from .properties import (
     PROPERTIES,
     number_above_zero,
     number_at_least_zero,
+    option_of,
     view_angles,
 )
-from .reconstruction import STEPS
 from .results import WrongOption
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name
 
@@ -62,11 +62,6 @@ TAKES = {
 }
 
 
-def option_of(name):
-    """maximum_edge_length -> --maximum-edge-length"""
-    return "--" + name.replace("_", "-")
-
-
 def is_switch(name):
     """Whether a property is on or off: --no-NAME turns it off."""
     return PROPERTIES[name].takes == "True or False"
@@ -74,16 +69,6 @@ def is_switch(name):
 
 TAKES["--breaklines"] = TAKES["--faults"]
 TAKES.update({option_of(name): PROPERTIES[name].takes for name in PROPERTIES if not is_switch(name)})
-
-
-def in_options(words):
-    """A filter's message, with the names of options where it has names of properties."""
-    for name, one in PROPERTIES.items():
-        if not one.step or words.startswith(STEPS[one.step]):
-            words = re.sub(rf"\b{one.setter[3:]}\b", option_of(name), words)
-        if "_" in name:
-            words = words.replace(name, option_of(name))
-    return words
 
 
 class Parser(argparse.ArgumentParser):

@@ -25,13 +25,13 @@ from .clouds import (
     slices,
 )
 from .holes import report_of_holes
-from .messages import FileError, Messages
+from .messages import FileError, Messages, plain_message
 from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
-from .reconstruction import STEPS
+from .reconstruction import AS_GIVEN, STEPS, in_options, notes_of
 from .report import MOST_LISTED, OUTSIDE, REASONS
 from .results import Failure, write_report
 from .spreading import IN_NO_TRIANGLE
@@ -46,7 +46,7 @@ BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
 OF_THE_WHOLE = ("faults", "open_edge_length", "grid", "contours", "outlines", "picture", "view")
-OF_THE_WHOLE += ("exaggeration", "colours")
+OF_THE_WHOLE += ("exaggeration", "colours", "outward_test")
 
 
 def memory_size(text):
@@ -149,6 +149,18 @@ class Points:
         return int(count), numpy.concatenate(listed)
 
 
+def step_of(source):
+    return source.GetProgressText() or STEPS["delaunay"]
+
+
+class MessagesOfSteps(Messages):
+    """Those of a vtkReconstructPieces, after the step that it is at."""
+
+    def take(self, event, text):
+        words = plain_message(text)
+        super().take(event, words and f"{step_of(self.sources[0])}: {words}")
+
+
 class Pieces:
     """A run in pieces: reads, triangulates, trims, fills and writes. Call it to get the report.
 
@@ -175,12 +187,11 @@ class Pieces:
                 if PROPERTIES[name].step in (step, ""):
                     getattr(algorithm, PROPERTIES[name].setter)(value)
         source.AddObserver(
-            "ProgressEvent",
-            lambda caller, _: run.progress(STEPS["delaunay"], caller.GetProgress()),
+            "ProgressEvent", lambda caller, _: run.progress(step_of(caller), caller.GetProgress())
         )
         with temporary_folder(options.output) as folder:
             source.SetFolder(folder)
-            with Messages(source, source.GetExecutive()) as self.messages:
+            with MessagesOfSteps(source, source.GetExecutive()) as self.messages:
                 run.timed("read", "reading", self.read)
                 count = options.pieces or pieces_within(
                     options.memory, source.GetNumberOfPoints()
@@ -199,9 +210,9 @@ class Pieces:
         """Raises what the filter has told as error, or with --strict as warning."""
         told = self.messages.errors + (self.messages.warnings if self.options.strict else [])
         if told:
-            is_of_boundary = self.options.boundary and re.search("(?i)boundary", told[0])
+            is_of_boundary = told[0].startswith(STEPS["trim"])
             file = self.options.boundary if is_of_boundary else self.options.file
-            raise Failure(f"{file}: {STEPS['trim' if is_of_boundary else 'delaunay']}: {told[0]}")
+            raise Failure(f"{file}: {in_options(told[0])}")
 
     def read(self):
         """Gives all points to the filter, slice by slice."""
@@ -224,7 +235,8 @@ class Pieces:
         self.source.UpdatePiece(piece, count, 0)
         self.check()
         if self.source.GetNumberOfTriangles() == 0:
-            raise Failure(f"{self.options.file}: no surface: {self.messages.warnings[0]}")
+            why = in_options(self.messages.warnings[0]).split(": ", 1)[1]
+            raise Failure(f"{self.options.file}: no surface: {why}")
         return self.source.GetOutput()
 
     def write(self, folder, count):
@@ -270,7 +282,14 @@ class Pieces:
     def holes_of(self, outlines):
         """What became of the holes. No triangles of pieces bridge any."""
         bridged = numpy.zeros(outlines.GetNumberOfLines(), dtype=bool)
-        return report_of_holes(outlines, bridged, self.source.GetFill())
+        is_given = self.options.open_edge_length is not None
+        why = AS_GIVEN if is_given else None
+        return report_of_holes(outlines, bridged, self.source.GetFill(), why)
+
+    def notes(self):
+        """What the filter warns of."""
+        told = (warning.split(": ", 1) for warning in self.messages.warnings)
+        return [in_options(note) for step, words in told for note in notes_of(step, words)]
 
     def why_in_no_triangle(self):
         """The reason of points that have been left out by trimming, or by the limit of edges."""
@@ -294,7 +313,7 @@ class Pieces:
         report = {
             "file": options.file,
             **self.run.about(),
-            "notes": self.cloud.notes + self.messages.warnings,
+            "notes": self.cloud.notes + self.notes(),
             "left_out": self.cloud.left_out,
             "bounds": {axis: pair for axis, *pair in limits},
             "crs": self.cloud.crs,

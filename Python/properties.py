@@ -115,6 +115,11 @@ PROPERTIES = {
 }
 
 
+def option_of(name):
+    """maximum_edge_length -> --maximum-edge-length"""
+    return "--" + name.replace("_", "-")
+
+
 def checked(properties: dict[str, Any]) -> dict[str, Any]:
     """{name: value as the filters take it}. Raises TypeError and ValueError with one clear line."""
     result = {}

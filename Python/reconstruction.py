@@ -19,7 +19,14 @@ from .clouds import Cloud, make_lines, make_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Messages
 from .opening import lattice_of, length_to_open
 from .paths import check_suffix
-from .properties import COLOURS, PROPERTIES, checked, number_above_zero, view_angles
+from .properties import (
+    COLOURS,
+    PROPERTIES,
+    checked,
+    number_above_zero,
+    option_of,
+    view_angles,
+)
 from .ranks import agreed, total
 from .spreading import dealt, reasons_of, update, whole_lines, whole_surface
 from .vtkElevationSurface import (
@@ -91,6 +98,7 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
 # ---- the chain --------------------------------------------------------------------------------
 
 STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
+AS_GIVEN = "as given"  # the length of edges above which triangles are opened
 
 
 class Reconstruction:
@@ -270,9 +278,22 @@ class _Step:
                 about = "faults"
             raise ElevationSurfaceError(f"{STEPS[name]}: {problems[0]}", about)
         for warning in messages.warnings:
-            # A filter may tell of several holes in one message.
-            for sentence in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n"):
-                self.result.notes.append(f"{STEPS[name]}: {sentence}")
+            self.result.notes += notes_of(STEPS[name], warning)
+
+
+def in_options(words):
+    """A filter's message, with the names of options where it has names of properties."""
+    for name, one in PROPERTIES.items():
+        if not one.step or words.startswith(STEPS[one.step]):
+            words = re.sub(rf"\b{one.setter[3:]}\b", option_of(name), words)
+        if "_" in name:
+            words = words.replace(name, option_of(name))
+    return words
+
+
+def notes_of(step, warning):
+    """A filter's warning as notes. It may tell of several holes."""
+    return [f"{step}: {one}" for one in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n")]
 
 
 def run_chain(
@@ -324,7 +345,7 @@ def run_chain(
         filling = made("fill", vtkFillElevationHoles())
         filling.SetInputData(last.GetOutput())
         if "open_edge_length" in given:
-            result.why_opened = "as given"
+            result.why_opened = AS_GIVEN
         else:
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
             filling.SetMaximumEdgeLength(length)

@@ -5,6 +5,7 @@
 import gzip
 import json
 import os
+import re
 import resource
 import signal
 import struct
@@ -28,8 +29,8 @@ from vtkelevationsurface.clouds import Cloud, add_array, make_lines, make_points
 from vtkelevationsurface.messages import FileError, Messages
 from vtkelevationsurface.reading import text
 from vtkelevationsurface.reading.slicing import read_slices
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkIOXML import vtkXMLPartitionedDataSetReader, vtkXMLPolyDataReader
 
 TRIANGULATION_ONLY = ("--no-trim", "--no-fill")
@@ -400,13 +401,23 @@ class Trimmed(WithFilter):
                 if number >= len(points):
                     self.assertEqual(places.setdefault(number, place), place)
 
+    def test_a_test_of_triangles_for_memory_can_be_put_right(self):
+        points = clouds()["random"]
+        source = self.source(points)
+        source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
+        source.GetTrim().SetOutwardTest(1)
+        errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
+        self.assertIn("InwardNormal is for a surface in memory", errors[0])
+        source.GetTrim().SetOutwardTest(0)
+        self.assertEqual(self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0)), [])
+        self.assertGreater(source.GetOutput().GetNumberOfPolys(), 0)
+
     def test_what_a_boundary_cannot_do_is_one_error(self):
         points = clouds()["random"]
         rings = self.rings(points)
         for ring, values, words in (
             (rings[0][:-7], {}, "closed"),
             (rings[0] + (1e6, 0.0, 0.0), {}, "encloses no triangle"),
-            (rings[0], {"OutwardTest": 1}, "InwardNormal is for a surface in memory"),
             (rings[0], {"RecoverBoundary": False}, "RecoverBoundary"),
         ):
             source = self.source(points)
@@ -434,6 +445,10 @@ class Filled(WithFilter):
     def points_of(self, points):
         """With arrays of which one is interpolated."""
         data = make_points(points)
+        if points.dtype == numpy.float32:
+            places = vtkPoints()
+            places.SetData(numpy_to_vtk(points, deep=True))
+            data.SetPoints(places)
         add_array(data, "Depth", numpy.sin(points[:, 0] / 30.0))
         add_array(data, "RGB", numpy.column_stack((numpy.arange(len(points)) % 251,) * 3).astype("u1"))
         return data
@@ -458,8 +473,9 @@ class Filled(WithFilter):
         whole.SetInputData(self.points_of(points))
         whole.SetMaximumEdgeLength(limit)
         trim.SetInputConnection(whole.GetOutputPort())
-        trim.SetBoundaryData(make_lines(rings))
-        one.SetInputConnection(trim.GetOutputPort())
+        if rings:
+            trim.SetBoundaryData(make_lines(rings))
+        one.SetInputConnection((trim if rings else whole).GetOutputPort())
         for name, value in properties.items():
             getattr(one, "Set" + name)(value)
         with Messages(one, one.GetExecutive()) as told:
@@ -474,7 +490,10 @@ class Filled(WithFilter):
             counts = [getattr(f, "GetNumberOf" + name)() for f in (source, one)]
             self.assertEqual(*counts)
         numpy.testing.assert_array_equal(point_rows(parts), point_rows([one.GetOutput()]))
+        self.assertEqual({part.GetPoints().GetDataType() for part in parts},
+                         {one.GetOutput().GetPoints().GetDataType()})
         source.UpdatePiece(0, count, 0)
+        self.assertIsNone(source.GetOutput(1).GetPointData().GetArray("vtkGhostType"))
         self.assertEqual(*(sorted(hole_rows(f.GetOutput(1))) for f in (source, one)))
         self.assertEqual(
             *(sorted(vtk_to_numpy(d.GetPointData().GetArray("Depth")).tolist())
@@ -501,6 +520,26 @@ class Filled(WithFilter):
             self.assertGreaterEqual(source.GetNumberOfFilledHoles(), 3)
         source, _ = self.assert_filled_as_one(points, coast, 9, 45.0)
         self.assertGreater(source.GetNumberOfFilledHoles(), 10)
+
+    def test_points_of_float_stay_so(self):
+        points = clouds()["random"]
+        points[:, :2] -= 4e5
+        points = points.astype("f4")
+        for rings in (None, self.rings(points)):
+            source, _ = self.assert_filled_as_one(points, rings, 5, 45.0)
+            self.assertGreater(source.GetNumberOfFilledHoles(), 10)
+
+    def test_values_are_of_the_first_of_equally_near_points(self):
+        rng = numpy.random.default_rng(3)
+        points = rng.integers(0, 40, (1500, 3)).astype(float)
+        turn = numpy.arange(0.0, 360.0, 45.0) * numpy.pi / 180.0
+        lakes = [numpy.column_stack((x + 0.5 * numpy.round(4 * numpy.cos(turn)),
+                                     y + 0.5 * numpy.round(4 * numpy.sin(turn)), 0 * turn))
+                 for x in range(6, 36, 7) for y in range(6, 36, 7)]
+        edge = numpy.array([(-9, -9, 0), (49, -9, 0), (49, 49, 0), (-9, 49, 0)], float)
+        rings = [numpy.vstack((ring, ring[:1])) for ring in (edge, *lakes)]
+        for count in (2, 5, 9):
+            self.assert_filled_as_one(points, rings, count, 3.5)
 
     def test_all_properties_of_the_filter_are_minded(self):
         points = clouds()["random"]
@@ -567,7 +606,7 @@ class Filled(WithFilter):
 
     def test_a_stop_at_any_time_leaves_empty_output(self):
         points = clouds()["random"]
-        for when in (0.5, 0.6, 0.7, 0.8, 0.9):
+        for when in (0.5, 0.6, 0.7, 0.75, 0.78, 0.8, 0.82, 0.84, 0.86, 0.9):
             source = self.source(points)
             source.SetFillHoles(True)
             source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
@@ -578,7 +617,31 @@ class Filled(WithFilter):
             with Messages(source, source.GetExecutive()) as messages:
                 source.UpdatePiece(0, 4, 0)
             self.assertEqual((messages.errors, len(messages.warnings)), ([], 1))
-            self.assertEqual(source.GetOutput().GetNumberOfPoints(), 0)
+            self.assert_empty_until_reset(source)
+
+    def assert_empty_until_reset(self, source):
+        for port in (0, 1):
+            self.assertEqual(source.GetOutput(port).GetNumberOfPoints(), 0)
+        source.Reset()
+        self.assertEqual(os.listdir(source.GetFolder()), [])
+
+    def test_a_full_disk_is_one_error_that_leaves_no_file(self):
+        points = clouds()["random"]
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        files = set()
+        for most in (35_000, 70_000, 110_000):
+            source = self.source(points)
+            source.SetFillHoles(True)
+            source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
+            try:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (most, before[1]))
+                errors = self.errors_of(source, lambda: source.UpdatePiece(0, 4, 0))
+            finally:
+                resource.setrlimit(resource.RLIMIT_FSIZE, before)
+            self.assertEqual(len(errors), 1)
+            files.add(re.search("/([a-z]+)-[0-9]+ cannot be written: File too large", errors[0])[1])
+            self.assert_empty_until_reset(source)
+        self.assertIn("surrounding", files)
 
 
 def point_rows(parts):
@@ -764,6 +827,26 @@ class Command(Program):
                     "bounds", "holes"):
             self.assertEqual(report[key], whole[key], key)
 
+    def test_holes_that_fail_are_told_as_by_one_run(self):
+        points = clouds()["random"]
+        name = self.npy("a.npy", points)
+        rings = Filled.rings(None, points)[:3]
+        text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
+        self.file("lakes.txt", "\n".join(text_of))
+        options = ("--boundary", "lakes.txt", "--spacing", "0.001", "--open-edge-length", "0")
+        told = []
+        for way in ("--no-picture", "--pieces=4"):
+            done = self.call(name, *options, way, "--report")
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            report = self.json("a_surface.json")
+            told.append(sorted(re.sub("Hole [01]", "Hole", note) for note in report["notes"]))
+            told.append(report["holes"]["open_edge_length_is"])
+            strict = self.call(name, *options, way, "--strict")
+            self.assertEqual((strict.returncode, len(strict.stderr.splitlines())), (1, 1))
+            self.assertIn("a.npy: filling holes: Hole 0 (", strict.stderr)
+        self.assertEqual(told[:2], told[2:])
+        self.assertEqual(len(told[0]), 2)
+
     def test_points_in_no_triangle_below_the_limit_are_told(self):
         points = clouds()["random"]
         name = self.npy("a.npy", points)
@@ -828,6 +911,7 @@ class Command(Program):
             (("--pieces", "0"), "--pieces takes a whole number from 1, not '0'"),
             (("--pieces", "2", "--memory", "2G", *TRIANGULATION_ONLY), "leave one out"),
             (("--pieces", "2", "--grid", "5", *TRIANGULATION_ONLY), "--grid needs the whole"),
+            (("--pieces", "2", "--boundary", "a.npy", "--outward-test", "inward-normal"), "--outward-test needs"),
             (("--pieces", "2", "--view", "top", *TRIANGULATION_ONLY), "--view needs the whole"),
             (("--memory", "2G", "--faults", "f", *TRIANGULATION_ONLY), "--faults needs the whole"),
             (("--pieces", "2", "-o", "a.vtp", *TRIANGULATION_ONLY), ".vtp cannot be written in"),
