@@ -57,7 +57,7 @@ private:
   }
   bool IsPlain() const;
   bool HavePoints() const { return this->Part.HasPoints(); }
-  bool Surround(int round, const std::vector<char>& areWaiting);
+  bool Surround(const std::vector<char>& areWaiting);
   void TakeSurroundings(std::vector<Bytes>&& packed);
   void ShareRooms();
 
@@ -150,7 +150,7 @@ void Work::AssignHoles()
 }
 
 /** Sends the ranks that wait for them the triangles around their holes. */
-bool Work::Surround(int round, const std::vector<char>& areWaiting)
+bool Work::Surround(const std::vector<char>& areWaiting)
 {
   std::vector<Bytes> packed(this->All.Count());
   if (!CanAll(this->All, [&]() {
@@ -161,7 +161,7 @@ bool Work::Surround(int round, const std::vector<char>& areWaiting)
           {
             if (this->RankOfHole[hole] == rank)
             {
-              boxes.push_back(BoxAround(this->Whole.Extents[hole], round));
+              boxes.push_back(this->Whole.BoxOf(static_cast<Index>(hole)));
             }
           }
           const std::vector<Index> near = TrianglesIn(boxes, this->Part.Own);
@@ -235,25 +235,30 @@ bool Work::FillAll()
       areWaiting[rank] = 1;
     }
   }
-  for (int round = 0; std::count(areWaiting.begin(), areWaiting.end(), 1) > 0; ++round)
+  while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
   {
-    if (!this->Surround(round, areWaiting))
+    if (!this->Surround(areWaiting))
     {
       return false;
     }
-    if (round == 0)
+    if (this->Whole.Rooms.empty())
     {
       this->ShareRooms();
     }
-    vtkIdType isWaiting = 0;
+    std::vector<vtkIdType> beyond;
     this->All.Agree([&]() {
-      isWaiting = areWaiting[this->All.Own()] &&
-          !this->Part.Filled.Fill(this->Whole, round, this->Watched(0.4, 0.8))
-        ? 1
-        : 0;
+      if (areWaiting[this->All.Own()])
+      {
+        const std::vector<Index> own = this->Part.Filled.Fill(this->Whole, this->Watched(0.4, 0.8));
+        beyond.assign(own.begin(), own.end());
+      }
     });
-    const std::vector<vtkIdType> all = this->All.Collect(std::vector<vtkIdType>{ isWaiting });
-    std::copy(all.begin(), all.end(), areWaiting.begin());
+    std::fill(areWaiting.begin(), areWaiting.end(), char(0));
+    for (const vtkIdType hole : this->All.Collect(beyond))
+    {
+      ++this->Whole.TimesTooFew[hole];
+      areWaiting[this->RankOfHole[hole]] = 1;
+    }
   }
   return true;
 }

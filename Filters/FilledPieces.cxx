@@ -41,21 +41,26 @@ FilledPieces::FilledPieces(int count, const std::string& folder, vtkIdType numbe
 }
 
 template <typename Visit>
+void FilledPieces::VisitPiece(int piece, const Progress& progress, const Visit& visit) const
+{
+  const vtkSmartPointer<vtkPolyData> made = this->Make(piece, Part(progress, 0.0, 0.5));
+  if (made)
+  {
+    FilledPart part;
+    part.Input = made;
+    visit(piece, part, Part(progress, 0.5, 1.0));
+  }
+}
+
+template <typename Visit>
 void FilledPieces::ForEachPiece(double begin, double end, const Visit& visit) const
 {
   const int count = static_cast<int>(this->Pieces.size());
+  const double width = (end - begin) / count;
   for (int piece = 0; piece < count; ++piece)
   {
-    const double width = (end - begin) / count;
-    const Progress progress =
-      Part(this->Whole.Options.Monitor, begin + width * piece, begin + width * (piece + 1));
-    const vtkSmartPointer<vtkPolyData> made = this->Make(piece, Part(progress, 0.0, 0.5));
-    if (made)
-    {
-      FilledPart part;
-      part.Input = made;
-      visit(piece, part, Part(progress, 0.5, 1.0));
-    }
+    const double first = begin + width * piece;
+    this->VisitPiece(piece, Part(this->Whole.Options.Monitor, first, first + width), visit);
   }
 }
 
@@ -139,29 +144,50 @@ void FilledPieces::FindLattice()
 }
 
 /** Writes the triangles around the holes of pieces to their files. */
-void FilledPieces::Surround(
-  int round, const std::vector<char>& areWaiting, double begin, double end)
+void FilledPieces::Surround(const std::vector<char>& areWaiting, double begin, double end)
 {
   std::vector<std::vector<Box>> boxes(this->Pieces.size()); // around the holes of each piece
   for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
   {
-    this->Pieces[piece].Surrounding.Remove();
+    this->Pieces[piece].Surrounding.Remove(); // of boxes that were too small
     for (const Index hole : this->Pieces[piece].Holes)
     {
       if (areWaiting[piece])
       {
-        boxes[piece].push_back(BoxAround(this->Whole.Extents[hole], round));
+        boxes[piece].push_back(this->Whole.BoxOf(hole));
       }
     }
   }
-  this->ForEachPiece(begin, end, [&](int piece, FilledPart& part, const Progress& progress) {
-    ToMesh(part.Input, part.Own, progress);
-    for (std::size_t of = 0; of < this->Pieces.size(); ++of)
+  const double width = (end - begin) / static_cast<double>(this->Pieces.size());
+  for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
+  {
+    const double first = begin + width * static_cast<double>(piece);
+    this->AppendSurroundings(
+      static_cast<int>(piece), boxes, Part(this->Whole.Options.Monitor, first, first + width));
+  }
+}
+
+/** Writes what a piece has in the boxes of each, if any. */
+void FilledPieces::AppendSurroundings(
+  int piece, const std::vector<std::vector<Box>>& boxes, const Progress& progress)
+{
+  std::vector<std::vector<Box>> here(boxes.size());
+  bool isNear = false;
+  for (std::size_t of = 0; of < boxes.size(); ++of)
+  {
+    std::copy_if(boxes[of].begin(), boxes[of].end(), std::back_inserter(here[of]),
+      [&](const Box& box) { return box.Intersects(this->Pieces[piece].Place); });
+    isNear = isNear || !here[of].empty();
+  }
+  if (!isNear)
+  {
+    return;
+  }
+  this->VisitPiece(piece, progress, [&](int, FilledPart& part, const Progress& ofPiece) {
+    ToMesh(part.Input, part.Own, ofPiece);
+    for (std::size_t of = 0; of < here.size(); ++of)
     {
-      std::vector<Box> here;
-      std::copy_if(boxes[of].begin(), boxes[of].end(), std::back_inserter(here),
-        [&](const Box& box) { return box.Intersects(this->Pieces[piece].Place); });
-      const std::vector<Index> near = TrianglesIn(here, part.Own);
+      const std::vector<Index> near = TrianglesIn(here[of], part.Own);
       if (!near.empty())
       {
         const Bytes packed = PackData(ChosenTriangles(part.Input, part.Own, near));
@@ -209,32 +235,38 @@ void FilledPieces::FillAll()
   std::vector<char> areWaiting(this->Pieces.size(), 0);
   std::transform(this->Pieces.begin(), this->Pieces.end(), areWaiting.begin(),
     [](const PieceFiles& files) { return files.Holes.empty() ? 0 : 1; });
-  for (int round = 0; std::count(areWaiting.begin(), areWaiting.end(), 1) > 0; ++round)
+  while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
   {
-    // Few holes need a second round.
-    const double begin = round == 0 ? 0.5 : 0.9, end = round == 0 ? 0.6 : 0.9;
-    this->Surround(round, areWaiting, begin, end);
-    if (round == 0)
+    // Few holes need more than their first box.
+    const bool isFirst = this->Whole.Rooms.empty();
+    const double begin = isFirst ? 0.5 : 0.9, end = isFirst ? 0.6 : 0.9;
+    this->Surround(areWaiting, begin, end);
+    if (isFirst)
     {
       this->FindRooms();
     }
-    const double width = (round == 0 ? 0.3 : 0.1) / count;
+    const double width = (isFirst ? 0.3 : 0.1) / count;
     for (int piece = 0; piece < count; ++piece)
     {
       const double first = end + width * piece;
       const Progress progress =
         Part(this->Whole.Options.Monitor, first, std::min(1.0, first + width));
-      areWaiting[piece] = areWaiting[piece] && !this->FillHolesOf(piece, round, progress) ? 1 : 0;
+      areWaiting[piece] = areWaiting[piece] && !this->FillHolesOf(piece, progress) ? 1 : 0;
     }
   }
 }
 
 /** @return false if they need more of the surface around them */
-bool FilledPieces::FillHolesOf(int piece, int round, const Progress& progress)
+bool FilledPieces::FillHolesOf(int piece, const Progress& progress)
 {
   PieceFiles& files = this->Pieces[piece];
   SurroundedHoles holes = this->HolesOf(piece, Part(progress, 0.0, 0.1));
-  if (!holes.Fill(this->Whole, round, Part(progress, 0.1, 1.0)))
+  const std::vector<Index> beyond = holes.Fill(this->Whole, Part(progress, 0.1, 1.0));
+  for (const Index hole : beyond)
+  {
+    ++this->Whole.TimesTooFew[hole];
+  }
+  if (!beyond.empty())
   {
     return false;
   }

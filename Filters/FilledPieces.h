@@ -10,11 +10,11 @@
  *   2. Their points tell the lattice, in two more passes.
  *   3. The triangles around the holes of each piece go to a file. These holes are filled, and their
  *      patches go to another file. Where a hole turns out to need more triangles, those of a larger
- *      box are looked for, the third time all.
+ *      box are looked for.
  *   4. Each piece is written with its patches.
  *
- * Memory: what a piece takes, and the surrounding of its holes; that of a hole is a box four times
- * as wide and high, or larger if its kernel asks for it.
+ * Memory: what a piece takes, and the surrounding of its holes; that of a hole is a box that reaches
+ * 1.5 times its size beyond it, or further if its kernel asks for it. The border of all pieces.
  */
 #ifndef FilledPieces_h
 #define FilledPieces_h
@@ -70,14 +70,18 @@ private:
   /** Makes each piece with points; the monitor goes from begin to end. */
   template <typename Visit>
   void ForEachPiece(double begin, double end, const Visit& visit) const;
+  template <typename Visit>
+  void VisitPiece(int piece, const Progress& progress, const Visit& visit) const;
   void FindHoles();
   void AssignHoles();
   void FindLattice();
-  void Surround(int round, const std::vector<char>& areWaiting, double begin, double end);
+  void Surround(const std::vector<char>& areWaiting, double begin, double end);
+  void AppendSurroundings(
+    int piece, const std::vector<std::vector<Box>>& boxes, const Progress& progress);
   SurroundedHoles HolesOf(int piece, const Progress& progress) const;
   void FindRooms();
   void FillAll();
-  bool FillHolesOf(int piece, int round, const Progress& progress);
+  bool FillHolesOf(int piece, const Progress& progress);
 
   const MakePiece Make;
   const vtkIdType NumberOfPoints;

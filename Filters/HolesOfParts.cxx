@@ -25,6 +25,7 @@ bool HolesOfParts::Find(const Progress& progress)
   this->OfAll = FillResult();
   this->OfAll.Found = FindHolesOfBorder(this->Border.Edges, points, progress);
   this->Extents = ExtentsOf(this->OfAll.Found, points);
+  this->TimesTooFew.assign(this->Extents.size(), 0);
   Mesh places;
   for (Index i = 0; i < points.Count; ++i)
   {
@@ -109,7 +110,7 @@ Holes SurroundedHoles::Listed(const HolesOfParts& all) const
   return holes;
 }
 
-FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all, int round) const
+FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all) const
 {
   FillOptions options = all.Options;
   options.SinglePrecision = HasFloatPoints(this->Surrounding);
@@ -120,7 +121,7 @@ FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all, int round) cons
   }
   for (const Index hole : this->Numbers)
   {
-    options.Known.push_back(BoxAround(all.Extents[hole], round));
+    options.Known.push_back(all.BoxOf(hole));
     if (!all.Rooms.empty())
     {
       options.Rooms.push_back(all.Rooms[hole]);
@@ -131,20 +132,26 @@ FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all, int round) cons
 
 std::vector<double> SurroundedHoles::Needs(const HolesOfParts& all, const Progress& progress) const
 {
-  FillOptions options = this->OptionsFor(all, 0);
+  FillOptions options = this->OptionsFor(all);
   options.Monitor = progress;
   return NeedsOfHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
 }
 
-bool SurroundedHoles::Fill(const HolesOfParts& all, int round, const Progress& progress)
+std::vector<Index> SurroundedHoles::Fill(const HolesOfParts& all, const Progress& progress)
 {
-  FillOptions options = this->OptionsFor(all, round);
+  FillOptions options = this->OptionsFor(all);
   options.Monitor = progress;
   this->Patches =
     FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
-  const std::vector<HoleReport>& reports = this->Patches.Reports;
-  return std::none_of(
-    reports.begin(), reports.end(), [](const HoleReport& report) { return report.IsBeyondKnown; });
+  std::vector<Index> beyond;
+  for (std::size_t i = 0; i < this->Numbers.size(); ++i)
+  {
+    if (this->Patches.Reports[i].IsBeyondKnown)
+    {
+      beyond.push_back(this->Numbers[i]);
+    }
+  }
+  return beyond;
 }
 
 void SurroundedHoles::KeepCorners()

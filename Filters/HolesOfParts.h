@@ -31,6 +31,7 @@ struct HolesOfParts
   BorderOfAll Border;
   FillResult OfAll; ///< the holes, by points of the border, and reports; no patches
   std::vector<HoleExtent> Extents;
+  std::vector<int> TimesTooFew; ///< for each hole: how often it needed triangles beyond its box
   LatticeSearch Lattice;
   std::vector<double> Rooms;
   std::vector<vtkIdType> FirstNewPoints; ///< of each hole, and the number of all
@@ -43,6 +44,7 @@ struct HolesOfParts
     return this->OfAll.Reports[hole].Status != FillStatus::TooLarge &&
       this->OfAll.Reports[hole].Status != FillStatus::TooManyEdges;
   }
+  Box BoxOf(Index hole) const { return BoxAround(this->Extents[hole], this->TimesTooFew[hole]); }
   bool NeedLattice() const;
   /** @param[in] points  of all parts, each once */
   void FindLattice(const Ranks& ranks, const PointSlices& points, const Progress& progress);
@@ -60,8 +62,8 @@ struct SurroundedHoles
   /** Joins what parts have around the holes. */
   void Surround(const Parts& parts, bool byIds, const Progress& progress);
   std::vector<double> Needs(const HolesOfParts& all, const Progress& progress) const;
-  /** @return false if triangles are needed outside of the boxes of this round */
-  bool Fill(const HolesOfParts& all, int round, const Progress& progress);
+  /** @return the holes that need triangles beyond their boxes */
+  std::vector<Index> Fill(const HolesOfParts& all, const Progress& progress);
   /** Keeps only those points of the surrounding that patches have. */
   void KeepCorners();
 
@@ -71,7 +73,7 @@ struct SurroundedHoles
 
 private:
   Holes Listed(const HolesOfParts& all) const;
-  FillOptions OptionsFor(const HolesOfParts& all, int round) const;
+  FillOptions OptionsFor(const HolesOfParts& all) const;
 
   Mesh Near; // the triangles
 };

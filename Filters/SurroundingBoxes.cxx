@@ -59,15 +59,16 @@ std::vector<int> BalancedRanks(
   return rankOf;
 }
 
-Box BoxAround(const HoleExtent& hole, int round)
+Box BoxAround(const HoleExtent& hole, int timesTooFew)
 {
   const Box& rim = hole.OfRim;
-  if (round > 1)
+  constexpr int most = 24; // times: 3e14 as wide
+  if (timesTooFew > most)
   {
     return { { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
   }
   const double size = std::hypot(rim.Width(), rim.Height());
-  const double by = (round == 0 ? 1.0 : 4.0) * (1.5 * size + 6.0 * hole.MeanEdge);
+  const double by = std::pow(4.0, timesTooFew) * (1.5 * size + 6.0 * hole.MeanEdge);
   return { { rim.Low.X - by, rim.Low.Y - by }, { rim.High.X + by, rim.High.Y + by } };
 }
 

@@ -33,10 +33,10 @@ std::vector<int> BalancedRanks(
   const std::vector<HoleExtent>& holes, const std::vector<vtkIdType>& can);
 
 /**
- * Where a hole knows all triangles: those that its trials beside it need nearly always; in the
- * second round more, in the third everywhere.
+ * Where a hole knows all triangles: those that its trials beside it need nearly always. Each time
+ * that they were too few the box is wider by four times, and in the end everywhere.
  */
-Box BoxAround(const HoleExtent& hole, int round);
+Box BoxAround(const HoleExtent& hole, int timesTooFew);
 
 /** The triangles, increasing, that meet one of the boxes, and some nearby. Linear. */
 std::vector<Index> TrianglesIn(const std::vector<Box>& boxes, const Mesh& mesh);

@@ -35,7 +35,8 @@
  * that is asked for decides on the number of pieces; it takes the time of the whole triangulation,
  * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
  * seams of pieces, which it holds too, have some multiple of the square root of so many points. To
- * fill a hole takes the surface in a box around it, four times as wide and high; seldom more.
+ * fill the holes of a piece takes the surface around them, mostly up to 1.5 times the size of a hole
+ * away from it, and all outlines of the surface, some 400 bytes an edge.
  *
  * Points are float where all that are added are. While it works, the progress text names the step:
  * triangulating, trimming or filling holes.

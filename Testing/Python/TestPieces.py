@@ -521,6 +521,24 @@ class Filled(WithFilter):
         source, _ = self.assert_filled_as_one(points, coast, 9, 45.0)
         self.assertGreater(source.GetNumberOfFilledHoles(), 10)
 
+    def test_tiny_holes_take_little_of_the_surface(self):
+        points = numpy.random.default_rng(8).random((20000, 3)) * (1000.0, 1000.0, 9.0)
+        coast = [star((500.0, 500.0), 400.0)]
+        for radius in (1.0, 0.01):  # to be filled takes points that are about 7 apart
+            ponds = [star((x, y), radius, 40) for x in (310.0, 520.0) for y in (420.0, 660.0)]
+            self.assert_filled_as_one(points, coast + ponds, 5)
+            sizes = []
+            source = self.source(points)
+            source.SetFillHoles(True)
+            source.GetTrim().SetBoundaryData(make_lines(coast + ponds))
+            folder = source.GetFolder()
+            source.AddObserver("ProgressEvent", lambda *_, folder=folder, sizes=sizes: sizes.append(
+                sum(file.stat().st_size for file in os.scandir(folder) if "surrounding" in file.name)))
+            source.UpdatePiece(0, 5, 0)
+            self.assertEqual(source.GetNumberOfFilledHoles(), 4)
+            self.assertGreater(max(sizes), 0)
+            self.assertLess(max(sizes), 200_000)  # all triangles take 2 MB
+
     def test_points_of_float_stay_so(self):
         points = clouds()["random"]
         points[:, :2] -= 4e5
