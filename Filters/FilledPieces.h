@@ -13,8 +13,9 @@
  *      box are looked for.
  *   4. Each piece is written with its patches.
  *
- * Memory: what a piece takes, and the surrounding of its holes; that of a hole is a box that reaches
- * 1.5 times its size beyond it, or further if its kernel asks for it. The border of all pieces.
+ * Memory: what a piece takes, and the surrounding of its holes; that of a hole is a box that
+ * reaches 1.5 times its size beyond it, or further if its kernel asks for it. The border of all
+ * pieces.
  */
 #ifndef FilledPieces_h
 #define FilledPieces_h

@@ -26,6 +26,8 @@
  *
  * With FillHoles on, holes are filled as GetFill() would fill them in the whole surface: their
  * patches are the same to the last bit, and go to the piece with the first point of the rim.
+ * Where MaximumNumberOfInsertedPoints has room for one of two holes of the same need, it may be the
+ * other one.
  * MaximumEdgeLength of that filter is for a surface in memory, and is an error. Output 1, of piece 0,
  * has the outline and the report of each hole, as output 1 of that filter.
  *
@@ -35,8 +37,8 @@
  * that is asked for decides on the number of pieces; it takes the time of the whole triangulation,
  * which is linear in the points. Memory is what a piece takes, some 250 bytes a point of it; the
  * seams of pieces, which it holds too, have some multiple of the square root of so many points. To
- * fill the holes of a piece takes the surface around them, mostly up to 1.5 times the size of a hole
- * away from it, and all outlines of the surface, some 400 bytes an edge.
+ * fill the holes of a piece takes the surface around them, mostly up to 1.5 times the size of a
+ * hole away from it, and all outlines of the surface, some 400 bytes an edge.
  *
  * Points are float where all that are added are. While it works, the progress text names the step:
  * triangulating, trimming or filling holes.

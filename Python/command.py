@@ -24,7 +24,7 @@ from .options import (
 )
 from .pieces import Pieces
 from .ranks import by_first, total
-from .reconstruction import check_spacing, in_options, run_chain
+from .reconstruction import check_spacing, in_options, least_reach, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, Progress, Results, WrongOption, write_report
 from .spreading import can_be_dealt
@@ -77,7 +77,7 @@ class Run:
             ),
         )
         try:
-            check_spacing(cloud.points, options.given.get("spacing", 0.0))
+            check_spacing(least_reach(cloud.points), options.given.get("spacing", 0.0))
         except ValueError as error:
             raise WrongOption(f"{options.file}: --{error}") from None
         self.set_crs(cloud)

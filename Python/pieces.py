@@ -31,9 +31,9 @@ from .properties import LATTICE_MODES, PROPERTIES
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
-from .reconstruction import AS_GIVEN, STEPS, in_options, notes_of
+from .reconstruction import AS_GIVEN, STEPS, check_spacing, in_options, least_reach, notes_of
 from .report import MOST_LISTED, OUTSIDE, REASONS
-from .results import Failure, write_report
+from .results import Failure, WrongOption, write_report
 from .spreading import IN_NO_TRIANGLE
 from .supervisor import note_partial_file
 from .vtkElevationSurface import vtkReconstructPieces
@@ -216,17 +216,24 @@ class Pieces:
 
     def read(self):
         """Gives all points to the filter, slice by slice."""
+        options, reach = self.options, numpy.inf
+        path = options.boundary
+        boundary = reading.read_boundary(path) if path else None
         wanted = self.run.read_options()
-        for points in read_files(self.options.files, self.cloud, **wanted):
+        for points in read_files(options.files, self.cloud, **wanted):
             for part in slices(len(points), AT_ONCE):
-                self.source.AddPoints(make_points(points[part], copy=False))
+                given = make_points(points[part], copy=False)
+                reach = min(reach, least_reach(given))
+                self.source.AddPoints(given)
                 self.check()
+        try:
+            check_spacing(reach, options.given.get("spacing", 0.0))
+        except ValueError as error:
+            raise WrongOption(f"{options.file}: --{error}") from None
         self.run.set_crs(self.cloud)
-        path = self.options.boundary
         if path:
-            boundary = reading.read_boundary(path)
             self.cloud.notes += check_system(
-                path, crs_of(boundary), self.options.files[0], self.cloud.crs
+                path, crs_of(boundary), options.files[0], self.cloud.crs
             )
             self.source.GetTrim().SetBoundaryData(boundary)
 

@@ -399,20 +399,28 @@ def reconstruct(
         boundary = as_lines(boundary, "boundary", True)
     if faults is not None:
         faults = as_lines(faults, "faults", False)
-    check_spacing(cloud.points, given.get("spacing", 0.0))
+    check_spacing(least_reach(cloud.points), given.get("spacing", 0.0))
     result = run_chain(cloud, boundary, faults, given, trim=trim, fill=fill, progress=progress)
     for note in result.notes:
         warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
     return result
 
 
-def check_spacing(points, spacing):
-    """Refuses a spacing that no hole could be filled at, before any work is done."""
+def least_reach(points):
+    """The larger of |x| and |y| of the point where that is least; infinity without points."""
     xy = vtk_to_numpy(points.GetPoints().GetData())[:, :2]
     xy = xy[numpy.isfinite(xy).all(axis=1)]
-    if spacing and len(xy):
+    return numpy.abs(xy).max(axis=1).min(initial=numpy.inf)
+
+
+def check_spacing(reach, spacing):
+    """Refuses a spacing that no hole could be filled at, before any work is done.
+
+    reach  least_reach() of all points
+    """
+    if spacing and reach < numpy.inf:
         # The filter needs four steps between points that can be told apart.
-        step = float(numpy.spacing(numpy.abs(xy).max(axis=1).min()))
+        step = float(numpy.spacing(reach))
         if spacing < 4 * step:
             raise ValueError(
                 f"spacing: {spacing:g} is less than x and y of the points can tell apart, which are in "

@@ -819,6 +819,9 @@ class Command(Program):
         self.file("open.txt", "1 1\n2 2\n3 1\n4 4\n")
         done = self.call(name, "--pieces", "4", "--boundary", "open.txt", "--no-fill")
         self.assertIn("open.txt: the boundary from line 1 to line 4 is not closed", done.stderr)
+        self.file("nulls.xyz", "".join(f"{i % 40} {i // 40} {-9999 if i > 700 else i % 7}\n" for i in range(1000)))
+        done = self.call("nulls.xyz", "--pieces", "4", "--boundary", "open.txt")  # read first
+        self.assertIn("open.txt: the boundary from line 1", done.stderr)
         self.file("far.txt", "1 1\n2 2\n3 1\n1 1\n")
         done = self.call(name, "--pieces", "4", "--boundary", "far.txt", "--no-fill")
         self.assertIn("far.txt: trimming: The boundary", done.stderr)
@@ -864,6 +867,12 @@ class Command(Program):
             self.assertIn("a.npy: filling holes: Hole 0 (", strict.stderr)
         self.assertEqual(told[:2], told[2:])
         self.assertEqual(len(told[0]), 2)
+        said = []
+        for way in ("--no-picture", "--pieces=4"):
+            done = self.call(name, "--boundary", "lakes.txt", "--spacing", "1e-10", way)
+            said.append((done.returncode, done.stderr))
+        self.assertEqual(*said)
+        self.assertIn("--spacing: 1e-10 is less than x and y of the points can tell apart", said[0][1])
 
     def test_points_in_no_triangle_below_the_limit_are_told(self):
         points = clouds()["random"]
