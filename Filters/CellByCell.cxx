@@ -4,7 +4,6 @@
 
 #include "LatticeOfRanks.h"
 #include "MeshConversion.h"
-#include "SettledCell.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
@@ -260,8 +259,8 @@ Piece CellByCell::SettleNode(int begin, int end, const SharedLattice* lattice)
   joined = Join(std::move(joined), this->SettleNode(middle, end, lattice));
   std::vector<GlobalTriangle> triangles;
   const Progress progress = Part(this->Options.Monitor, this->PartDone(), this->PartDone());
-  Piece seam = SettleCell(
-    joined, this->Plane->CellOf(begin, end), this->Options, progress, triangles, lattice);
+  Piece seam = SettleSeams(
+    joined, this->Plane->CellOf(begin, end), this->OptionsWith(progress), triangles, lattice);
   for (const GlobalTriangle& triangle : triangles)
   {
     this->OfSeams[OwnerOf(triangle[0], this->Bases)].push_back(triangle);
@@ -269,6 +268,13 @@ Piece CellByCell::SettleNode(int begin, int end, const SharedLattice* lattice)
   this->CountShort(triangles);
   this->Total.Settled += static_cast<vtkIdType>(triangles.size());
   return seam;
+}
+
+DelaunayOptions CellByCell::OptionsWith(const Progress& progress) const
+{
+  DelaunayOptions options = this->Options;
+  options.Monitor = progress;
+  return options;
 }
 
 /** Of the whole work, when so many cells have been settled. */
@@ -291,26 +297,6 @@ SurfacePart CellByCell::OwnPart(int cell) const
   return part;
 }
 
-namespace
-{
-/** Lists the points that are no corners, nor on the seam. */
-template <typename Iterator>
-void ListUnused(const Buffer<Index>& corners, Iterator seamBegin, Iterator seamEnd, GlobalId first,
-  const Progress& progress, SurfacePart& part)
-{
-  std::vector<char> areUsed(part.Own.Count(), 0);
-  for (const Index corner : corners)
-  {
-    areUsed[corner] = 1;
-  }
-  for (; seamBegin != seamEnd; ++seamBegin)
-  {
-    areUsed[*seamBegin - first] = 1;
-  }
-  ListUnused(areUsed, progress, part);
-}
-} // namespace
-
 Piece CellByCell::SettleLeaf(int cell, const SharedLattice* lattice)
 {
   const GlobalId first = this->Bases[cell], count = this->Bases[cell + 1] - first;
@@ -323,36 +309,26 @@ Piece CellByCell::SettleLeaf(int cell, const SharedLattice* lattice)
   const double begin = this->PartDone();
   ++this->CellsDone;
   const Progress progress = Part(this->Options.Monitor, begin, this->PartDone());
-  Buffer<Index> corners;
-  Piece seam;
-  {
-    std::vector<GlobalTriangle> triangles;
-    triangles.reserve(2 * part.Own.Count());
-    seam = SettleCell(PieceOf(part.Own, first), this->Plane->CellOf(cell, cell + 1), this->Options,
-      progress, triangles, lattice);
-    corners.Reserve(3 * triangles.size());
-    for (const GlobalTriangle& triangle : triangles)
-    {
-      std::for_each(triangle.begin(), triangle.end(),
-        [&](GlobalId id) { corners.Append(static_cast<Index>(id - first)); });
-    }
-  }
+  SettledCell settled = SettleCell(ViewOf(part.Own), first, this->Plane->CellOf(cell, cell + 1),
+    this->OptionsWith(progress), lattice);
+  part.Result = std::move(settled.Result);
+  const Buffer<Index>& corners = part.Result.Triangles;
   if (!corners.empty())
   {
     this->Cells[cell].Triangles.Append(corners.data(), corners.size() * sizeof(Index));
   }
-  ListUnused(corners, seam.Ids.begin(), seam.Ids.end(), first, progress, part);
   this->Total.Settled += static_cast<vtkIdType>(corners.size() / 3);
   this->Total.Duplicates += part.Result.NumberOfDuplicates;
   this->Total.NotFinite += part.Result.NumberOfNotFinite;
-  this->KeepSeam(part, first, seam);
-  this->CountShort(part, first, corners);
-  return seam;
+  this->KeepSeam(part, first, settled.Seam);
+  this->CountShort(part, first);
+  return std::move(settled.Seam);
 }
 
 /** Counts the triangles of a cell within the limit, and the vertices that have none for good. */
-void CellByCell::CountShort(const SurfacePart& part, GlobalId first, const Buffer<Index>& corners)
+void CellByCell::CountShort(const SurfacePart& part, GlobalId first)
 {
+  const Buffer<Index>& corners = part.Result.Triangles;
   const EdgeLimit limit(this->Options.MaximumEdgeLength);
   const auto pointOf = [&part](Index place) { return part.PointAt(place); };
   std::vector<char> areMissing(part.Own.Count(), 1);
@@ -439,6 +415,31 @@ void CellByCell::KeepSeam(const SurfacePart& part, GlobalId first, const Piece& 
   this->SeamRows.Unpack(packed);
 }
 
+/**
+ * Lists the points of a cell that are neither corners nor on its seam, whose numbers are given:
+ * those that are not finite, and duplicates.
+ */
+void CellByCell::ListUnused(
+  Numbers seamBegin, Numbers seamEnd, GlobalId first, const Progress& progress, SurfacePart& part)
+{
+  std::vector<char> areUsed(part.Own.Count(), 0);
+  for (const Index corner : part.Result.Triangles)
+  {
+    areUsed[corner] = 1;
+  }
+  std::for_each(seamBegin, seamEnd, [&](GlobalId number) { areUsed[number - first] = 1; });
+  std::vector<Index> duplicates, notFinite;
+  for (std::size_t i = 0; i < areUsed.size(); ++i)
+  {
+    ReportStep(progress, i, areUsed.size(), 1 << 18);
+    if (!areUsed[i])
+    {
+      (part.Own.IsFinite(i) ? duplicates : notFinite).push_back(static_cast<Index>(i));
+    }
+  }
+  SetUnusedPoints(std::move(duplicates), notFinite, progress, part.Result);
+}
+
 SurfacePart CellByCell::PieceAt(int cell, const Progress& progress) const
 {
   const GlobalId first = this->Bases[cell];
@@ -453,7 +454,7 @@ SurfacePart CellByCell::PieceAt(int cell, const Progress& progress) const
   const auto numberAt = [this](GlobalId number) {
     return this->SeamNumbers.begin() + static_cast<std::ptrdiff_t>(this->PlaceOnSeam(number));
   };
-  ListUnused(corners, numberAt(first), numberAt(this->Bases[cell + 1]), first, progress, part);
+  ListUnused(numberAt(first), numberAt(this->Bases[cell + 1]), first, progress, part);
   ListOthers(this->OfSeams[cell], first, part);
   std::vector<vtkIdType> others;
   for (const GlobalId number : part.OtherNumbers)

@@ -91,9 +91,13 @@ private:
   Piece SettleLeaf(int cell, const SharedLattice* lattice);
   SurfacePart OwnPart(int cell) const;
   void KeepSeam(const SurfacePart& part, GlobalId first, const Piece& seam);
-  void CountShort(const SurfacePart& part, GlobalId first, const Buffer<Index>& corners);
+  void CountShort(const SurfacePart& part, GlobalId first);
   void CountShort(const std::vector<GlobalTriangle>& triangles);
   std::size_t PlaceOnSeam(GlobalId number) const;
+  using Numbers = std::vector<GlobalId>::const_iterator;
+  static void ListUnused(Numbers seamBegin, Numbers seamEnd, GlobalId first,
+    const Progress& progress, SurfacePart& part);
+  DelaunayOptions OptionsWith(const Progress& progress) const;
   double PartDone() const;
 
   const std::string Folder;

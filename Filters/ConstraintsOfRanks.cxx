@@ -225,21 +225,14 @@ LinesOfRanks Lines::Result() const
 /** A triangle of some rank, with its corners. */
 struct SentTriangle
 {
-  vtkIdType Place; // in the rank's list
+  std::size_t Place; // among the rank's
   GlobalTriangle Corners;
   std::array<Point2, 3> Places;
 };
 
-/** What has become of a triangle. */
-struct ChangedTriangle
-{
-  vtkIdType Place;
-  GlobalTriangle Corners;
-};
-
 /** The pieces that are edges of no rank's triangles; the same on all ranks. */
 std::vector<std::size_t> ListMissing(
-  const Ranks& ranks, const LinesOfRanks& lines, const std::vector<GlobalTriangle>& triangles)
+  const Ranks& ranks, const LinesOfRanks& lines, const TrianglesOfRank& triangles)
 {
   std::vector<vtkIdType> isEdge(lines.Pieces.size(), 0);
   ranks.Agree([&]() {
@@ -251,8 +244,9 @@ std::vector<std::size_t> ListMissing(
       ends.push_back(lines.Pieces[i][0]);
     }
     std::sort(ends.begin(), ends.end());
-    for (const GlobalTriangle& triangle : triangles)
+    for (std::size_t t = 0; t < triangles.Count; ++t)
     {
+      const GlobalTriangle triangle = triangles.CornersOf(t);
       for (int k = 0; k < 3; ++k)
       {
         const GlobalId a = triangle[k], b = triangle[(k + 1) % 3];
@@ -280,18 +274,19 @@ std::vector<std::size_t> ListMissing(
 }
 
 /** The triangles that meet one of the pieces. */
-Bytes PackMeeting(const std::vector<Ends>& pieces, const std::vector<GlobalTriangle>& triangles,
-  const std::function<Point2(GlobalId)>& placeOf, const Progress& progress)
+Bytes PackMeeting(
+  const std::vector<Ends>& pieces, const TrianglesOfRank& triangles, const Progress& progress)
 {
   const CellGrid grid = GridOf(pieces);
   Bytes bytes;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
+  for (std::size_t t = 0; t < triangles.Count; ++t)
   {
-    ReportStep(progress, t, triangles.size(), 1 << 12);
+    ReportStep(progress, t, triangles.Count, 1 << 12);
     SentTriangle sent;
-    sent.Place = static_cast<vtkIdType>(t);
-    sent.Corners = triangles[t];
-    std::transform(sent.Corners.begin(), sent.Corners.end(), sent.Places.begin(), placeOf);
+    sent.Place = t;
+    sent.Corners = triangles.CornersOf(t);
+    std::transform(
+      sent.Corners.begin(), sent.Corners.end(), sent.Places.begin(), triangles.PlaceOf);
     bool meets = false;
     grid.Visit(sent.Places, [&](Index i) { meets = meets || Meet(sent.Places, pieces[i]); });
     if (meets)
@@ -377,16 +372,15 @@ LinesOfRanks AddLines(const Ranks& ranks, vtkPolyData* source, const PointOwners
   return lines.Result();
 }
 
-void RecoverLines(const Ranks& ranks, const LinesOfRanks& lines, int worker,
-  const std::function<Point2(GlobalId)>& placeOf, const Progress& progress,
-  std::vector<GlobalTriangle>& triangles)
+std::vector<ChangedTriangle> RecoverLines(const Ranks& ranks, const LinesOfRanks& lines, int worker,
+  const TrianglesOfRank& triangles, const Progress& progress)
 {
-  std::vector<vtkIdType> count = { static_cast<vtkIdType>(triangles.size()) };
+  std::vector<vtkIdType> count = { static_cast<vtkIdType>(triangles.Count) };
   ranks.Sum(count);
   const std::vector<std::size_t> missing = ListMissing(ranks, lines, triangles);
   if (missing.empty() || count[0] == 0)
   {
-    return;
+    return {};
   }
   std::vector<Bytes> packed(ranks.Count());
   ranks.Agree([&]() {
@@ -395,8 +389,7 @@ void RecoverLines(const Ranks& ranks, const LinesOfRanks& lines, int worker,
     {
       pieces.push_back(lines.Places[i]);
     }
-    packed[worker] =
-      PackMeeting(pieces, triangles, placeOf, ranks.Watched(Part(progress, 0.0, 0.4)));
+    packed[worker] = PackMeeting(pieces, triangles, ranks.Watched(Part(progress, 0.0, 0.4)));
   });
   packed = ranks.Exchange(std::move(packed));
   ranks.Agree([&]() {
@@ -405,16 +398,16 @@ void RecoverLines(const Ranks& ranks, const LinesOfRanks& lines, int worker,
       : std::vector<Bytes>(packed.size());
   });
   packed = ranks.Exchange(std::move(packed));
+  std::vector<ChangedTriangle> changed; // by the worker alone
   for (const Bytes& bytes : packed)
   {
     const char* from = bytes.data();
-    while (from != bytes.data() + bytes.size())
+    if (!bytes.empty())
     {
-      ChangedTriangle changed;
-      TakeFrom(from, &changed, 1);
-      triangles[changed.Place] = changed.Corners;
+      TakeFrom(from, bytes.size() / sizeof(ChangedTriangle), changed);
     }
   }
+  return changed;
 }
 
 } // namespace elevation

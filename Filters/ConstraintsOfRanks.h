@@ -18,6 +18,7 @@
 #include "SurfacePart.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -48,15 +49,28 @@ LinesOfRanks AddLines(const Ranks& ranks, vtkPolyData* source, const PointOwners
   const DelaunayOptions& options, const Progress& progress, SurfacePart& part,
   std::vector<std::string>& warnings);
 
+/** The triangles of a rank. */
+struct TrianglesOfRank
+{
+  std::size_t Count = 0;
+  std::function<GlobalTriangle(std::size_t triangle)> CornersOf;
+  std::function<Point2(GlobalId number)> PlaceOf; ///< of their corners
+};
+
+/** What has become of one of them. */
+struct ChangedTriangle
+{
+  std::size_t Place;
+  GlobalTriangle Corners;
+};
+
 /**
  * Makes the pieces edges of the triangles of all ranks.
  * @param[in] worker  the rank that recovers those that are none
- * @param[in] placeOf  the place of the point with a number, for corners of this rank's triangles
- * @param[in,out] triangles  of this rank
+ * @return what changes on this rank
  */
-void RecoverLines(const Ranks& ranks, const LinesOfRanks& lines, int worker,
-  const std::function<Point2(GlobalId)>& placeOf, const Progress& progress,
-  std::vector<GlobalTriangle>& triangles);
+std::vector<ChangedTriangle> RecoverLines(const Ranks& ranks, const LinesOfRanks& lines, int worker,
+  const TrianglesOfRank& triangles, const Progress& progress);
 
 } // namespace elevation
 

@@ -6,7 +6,6 @@
 #include "Kernel/Base/Base.h"
 #include "LatticeOfRanks.h"
 #include "PointOwners.h"
-#include "SettledCell.h"
 
 #include <algorithm>
 #include <memory>
@@ -100,11 +99,13 @@ private:
   bool IsByChance(const SharedLattice& lattice) const;
   void SettleOwn(const SharedLattice* lattice);
   bool JoinSeams(const SharedLattice* lattice);
-  Piece SettlePiece(const Piece& piece, const Node& node, const Progress& progress,
-    const SharedLattice* lattice, std::vector<GlobalTriangle>& triangles);
+  template <typename Step>
+  void WatchLattice(const Step& step);
+  DelaunayOptions OptionsWith(const Progress& progress) const;
   bool IsOffAnywhere(const SharedLattice* lattice) const;
   Point2 PlaceOf(GlobalId number) const;
-  void ListUnused(const Progress& progress);
+  std::size_t CountOfCell() const { return this->Part.Result.Triangles.size() / 3; }
+  GlobalTriangle CornersOf(std::size_t triangle) const;
   int RankOf(int cell) const { return this->Owners.RankOfCell[cell]; }
 
   const Ranks& All;
@@ -115,8 +116,10 @@ private:
   const GlobalId First; // number of own points
   Piece Seam;
   bool IsOffLattice = false; // this rank's points are
+  // This rank's triangles are those of its cell, in the result, where they are places, then these.
   std::vector<GlobalTriangle> Triangles;
-  std::vector<GlobalTriangle> OfSeams; // settled by this rank for all
+  std::vector<ChangedTriangle> Changed; // of its cell
+  std::vector<GlobalTriangle> OfSeams;  // settled by this rank for all
 };
 
 /** All triangles, on the lattice of all points if there is one. */
@@ -169,10 +172,9 @@ void Work::SettleOnGiven(const Progress& progress)
 /** Whether so few points may fit a lattice by chance, or are all on one line of it. */
 bool Work::IsByChance(const SharedLattice& lattice) const
 {
-  std::vector<vtkIdType> sums = {
-    static_cast<vtkIdType>(this->Part.Own.Count() - this->Part.Result.UnusedPoints.size()),
-    static_cast<vtkIdType>(this->Triangles.size() + this->OfSeams.size())
-  };
+  const std::size_t used = this->Part.Own.Count() - this->Part.Result.UnusedPoints.size();
+  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(used),
+    static_cast<vtkIdType>(this->CountOfCell() + this->OfSeams.size()) };
   this->All.Sum(sums);
   return sums[1] == 0 || IsLatticeByChance(static_cast<double>(sums[0]), lattice.Tolerance());
 }
@@ -182,7 +184,6 @@ bool Work::SettleOn(const SharedLattice* lattice)
 {
   this->Seam = Piece();
   this->IsOffLattice = false;
-  this->Triangles.clear();
   this->OfSeams.clear();
   this->Part.Result = Triangulation();
   this->SettleOwn(lattice);
@@ -199,53 +200,44 @@ bool Work::IsOffAnywhere(const SharedLattice* lattice) const
   return off[0] > 0;
 }
 
-/** Settles what a node can. @return its seam */
-Piece Work::SettlePiece(const Piece& piece, const Node& node, const Progress& progress,
-  const SharedLattice* lattice, std::vector<GlobalTriangle>& triangles)
+/** Does a step that ends where points are not on the lattice. */
+template <typename Step>
+void Work::WatchLattice(const Step& step)
 {
   try
   {
-    const elevation::Cell cell = this->Owners.Plane.CellOf(node.Begin, node.End);
-    return SettleCell(piece, cell, this->Options, progress, triangles, lattice);
+    step();
   }
   catch (const NotOnLattice&)
   {
     this->IsOffLattice = true;
-    return Piece();
+    this->Seam = Piece();
   }
+}
+
+DelaunayOptions Work::OptionsWith(const Progress& progress) const
+{
+  DelaunayOptions options = this->Options;
+  options.Monitor = progress;
+  return options;
 }
 
 void Work::SettleOwn(const SharedLattice* lattice)
 {
   this->All.Agree([&]() {
-    const Piece piece = PieceOf(this->Part.Own, this->First);
-    this->Triangles.reserve(2 * piece.Ids.size());
-    if (this->Cell >= 0)
+    if (this->Cell < 0)
     {
-      this->Seam = this->SettlePiece(
-        piece, { this->Cell, this->Cell + 1 }, this->Watched(0.2, 0.75), lattice, this->Triangles);
+      return;
     }
+    this->WatchLattice([&]() {
+      SettledCell settled = SettleCell(ViewOf(this->Part.Own), this->First,
+        this->Owners.Plane.CellOf(this->Cell, this->Cell + 1),
+        this->OptionsWith(this->Watched(0.2, 0.78)), lattice);
+      this->Seam = std::move(settled.Seam);
+      this->Part.Result = std::move(settled.Result);
+    });
     this->NumberOfSeamPoints = this->Seam.Count();
-    this->ListUnused(this->Watched(0.75, 0.78));
   });
-}
-
-/** What is neither settled nor on the seam is a duplicate. */
-void Work::ListUnused(const Progress& progress)
-{
-  std::vector<char> areUsed(this->Part.Own.Count(), 0);
-  for (const GlobalTriangle& triangle : this->Triangles)
-  {
-    for (const GlobalId id : triangle)
-    {
-      areUsed[id - this->First] = 1;
-    }
-  }
-  for (const GlobalId id : this->Seam.Ids)
-  {
-    areUsed[id - this->First] = 1;
-  }
-  elevation::ListUnused(areUsed, progress, this->Part);
 }
 
 bool Work::JoinSeams(const SharedLattice* lattice)
@@ -276,7 +268,10 @@ bool Work::JoinSeams(const SharedLattice* lattice)
         const Progress progress = this->Watched(begin, begin + step);
         const Piece joined =
           Join(std::move(this->Seam), UnpackPiece(packed[this->RankOf(node.Middle())]));
-        this->Seam = this->SettlePiece(joined, node, progress, lattice, this->OfSeams);
+        this->WatchLattice([&]() {
+          this->Seam = SettleSeams(joined, this->Owners.Plane.CellOf(node.Begin, node.End),
+            this->OptionsWith(progress), this->OfSeams, lattice);
+        });
       }
     });
     if (this->IsOffAnywhere(lattice))
@@ -321,14 +316,40 @@ Point2 Work::PlaceOf(GlobalId number) const
   return this->Part.PointAt(this->Part.PlaceOf(number, this->First));
 }
 
+/** The numbers of the corners of one of this rank's triangles. */
+GlobalTriangle Work::CornersOf(std::size_t triangle) const
+{
+  const std::size_t ofCell = this->CountOfCell();
+  if (triangle >= ofCell)
+  {
+    return this->Triangles[triangle - ofCell];
+  }
+  const Index* const c = this->Part.Result.Triangles.data() + 3 * triangle;
+  return { this->First + c[0], this->First + c[1], this->First + c[2] };
+}
+
 /** Makes the pieces of lines edges. */
 void Work::Recover(const LinesOfRanks& lines)
 {
-  RecoverLines(
-    this->All, lines, this->RankOf(0), [this](GlobalId number) { return this->PlaceOf(number); },
-    elevation::Part(this->Options.Monitor, 0.9, 0.92), this->Triangles);
+  const TrianglesOfRank own = { this->CountOfCell() + this->Triangles.size(),
+    [this](std::size_t triangle) { return this->CornersOf(triangle); },
+    [this](GlobalId number) { return this->PlaceOf(number); } };
+  const std::vector<ChangedTriangle> changed = RecoverLines(
+    this->All, lines, this->RankOf(0), own, elevation::Part(this->Options.Monitor, 0.9, 0.92));
   this->All.Agree([&]() {
-    ListOthers(this->Triangles, this->First, this->Part);
+    std::vector<GlobalTriangle> mayHaveOthers;
+    for (const ChangedTriangle& triangle : changed)
+    {
+      if (triangle.Place < this->CountOfCell())
+      {
+        this->Changed.push_back(triangle);
+        mayHaveOthers.push_back(triangle.Corners);
+        continue;
+      }
+      this->Triangles[triangle.Place - this->CountOfCell()] = triangle.Corners;
+    }
+    mayHaveOthers.insert(mayHaveOthers.end(), this->Triangles.begin(), this->Triangles.end());
+    ListOthers(mayHaveOthers, this->First, this->Part);
     this->Part.Others = PointRows(this->Part.Kinds);
   });
   this->FetchOthers();
@@ -374,6 +395,13 @@ void Work::FetchOthers()
 void Work::PlaceCorners()
 {
   this->All.Agree([&]() {
+    for (const ChangedTriangle& changed : this->Changed)
+    {
+      std::transform(changed.Corners.begin(), changed.Corners.end(),
+        this->Part.Result.Triangles.data() + 3 * changed.Place, [this](GlobalId number) {
+          return static_cast<Index>(this->Part.PlaceOf(number, this->First));
+        });
+    }
     AppendTriangles(this->Triangles, this->First, this->Watched(0.92, 0.95), this->Part);
     this->Triangles = std::vector<GlobalTriangle>();
   });

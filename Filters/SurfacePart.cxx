@@ -81,20 +81,6 @@ void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId firs
   }
 }
 
-void ListUnused(const std::vector<char>& areUsed, const Progress& progress, SurfacePart& part)
-{
-  std::vector<Index> duplicates, notFinite;
-  for (std::size_t i = 0; i < areUsed.size(); ++i)
-  {
-    ReportStep(progress, i, areUsed.size(), 1 << 18);
-    if (!areUsed[i])
-    {
-      (part.Own.IsFinite(i) ? duplicates : notFinite).push_back(static_cast<Index>(i));
-    }
-  }
-  SetUnusedPoints(std::move(duplicates), notFinite, progress, part.Result);
-}
-
 namespace
 {
 /** A value of a point for the rank that owns it. */

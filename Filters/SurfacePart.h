@@ -56,9 +56,6 @@ void ListOthers(const std::vector<GlobalTriangle>& triangles, GlobalId first, Su
 void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
   const Progress& progress, SurfacePart& part);
 
-/** Sets the unused points of the result: those that are not finite, and duplicates. */
-void ListUnused(const std::vector<char>& areUsed, const Progress& progress, SurfacePart& part);
-
 /**
  * Leaves out triangles with a longer edge. With such a limit, each rank calls it.
  * @return of all ranks

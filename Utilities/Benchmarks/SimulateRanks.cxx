@@ -220,17 +220,17 @@ std::vector<double> CountPoints(const Cloud& cloud, const Cuts& cuts)
   return loads;
 }
 
-Piece PointsOf(const Cloud& cloud, const Cuts& cuts, int owner)
+/** x, y, z of each point of a cell. */
+std::vector<double> PointsOf(const Cloud& cloud, const Cuts& cuts, int owner)
 {
-  Piece piece;
+  std::vector<double> coordinates;
   cloud.ForEachNear(cuts.CellOf(owner, owner + 1), [&](Point2 p) {
     if (cuts.OwnerOf(p) == owner)
     {
-      piece.Coordinates.insert(piece.Coordinates.end(), { p.X, p.Y, 0.0 });
-      piece.Ids.push_back(piece.Count() + (GlobalId(owner) << 32));
+      coordinates.insert(coordinates.end(), { p.X, p.Y, 0.0 });
     }
   });
-  return piece;
+  return coordinates;
 }
 
 double BytesOf(const Piece& piece)
@@ -257,10 +257,15 @@ Piece SettleNode(
   Piece seam;
   if (end - begin == 1)
   {
-    const Piece points = PointsOf(cloud, cuts, begin);
-    seam = Settle(points, cell, DelaunayOptions(), settled);
+    const std::vector<double> coordinates = PointsOf(cloud, cuts, begin);
+    PointView points;
+    points.Double = coordinates.data();
+    points.Count = static_cast<Index>(coordinates.size() / 3);
+    SettledCell ofCell = SettleCell(points, GlobalId(begin) << 32, cell, DelaunayOptions());
+    seams.Triangles += static_cast<double>(ofCell.Result.Triangles.size() / 3);
+    seam = std::move(ofCell.Seam);
     seams.LargestRatio = std::max(seams.LargestRatio,
-      seam.Count() / std::sqrt(std::max(1.0, static_cast<double>(points.Count()))));
+      seam.Count() / std::sqrt(std::max(1.0, static_cast<double>(points.Count))));
     seams.LargestBytes = std::max(seams.LargestBytes, BytesOf(seam));
   }
   else
@@ -271,7 +276,7 @@ Piece SettleNode(
     sent[middle] += BytesOf(high);
     const Piece joined = Join(std::move(low), high);
     seams.LargestJoined = std::max(seams.LargestJoined, static_cast<double>(joined.Count()));
-    seam = Settle(joined, cell, DelaunayOptions(), settled);
+    seam = SettleSeams(joined, cell, DelaunayOptions(), settled);
   }
   seams.Triangles += static_cast<double>(settled.size());
   return seam;

@@ -56,8 +56,7 @@ bool Cell::HoldsByFar(Point2 a, Point2 b, Point2 c) const
 {
   const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
   const double d = 2.0 * (bx * cy - by * cx);
-  const double distance = std::min(std::min(a.X - this->Low.X, this->High.X - a.X),
-    std::min(a.Y - this->Low.Y, this->High.Y - a.Y));
+  const double distance = this->DistanceFromBorder(a);
   // The product of the squared sides is that of radius and d, squared.
   const double sides = (bx * bx + by * by) * (cx * cx + cy * cy) * SquaredLength(b, c);
   // Where nothing cancels or underflows, rounding takes far less than the hundredth that is spared.
@@ -92,19 +91,23 @@ void CheckAbort(const Progress& progress, std::size_t step)
   }
 }
 
-/** The mesh of a piece, with the state of its triangles. */
+/** The mesh of points, with the state of its triangles. */
 struct SettledMesh
 {
   enum State : char
   {
+    Unknown,
     Open,    // to be settled by a larger cell
     Covered, // lies where triangles have been settled before
     Settled  // by this cell
   };
-  Buffer<Index> Triangles;
-  std::vector<State> States; // of each triangle
-  std::vector<Edge> Seam;    // the edges of the piece, sorted
-  std::vector<Index> Unused; // places of duplicates and the like, increasing
+  PointView Points;
+  Triangulation Result;
+  std::vector<State> States;    // of each triangle
+  std::vector<Edge> Seam;       // edges of triangles that have been settled before, sorted
+  std::vector<char> IsOnBorder; // of each point: whether it is on the border of the mesh
+
+  const Index* CornersOf(std::size_t t) const { return this->Result.Triangles.data() + 3 * t; }
 
   bool IsOnSeam(Index halfEdge) const
   {
@@ -114,45 +117,24 @@ struct SettledMesh
   Edge EndsOf(Index halfEdge) const
   {
     const Index next = halfEdge % 3 == 2 ? halfEdge - 2 : halfEdge + 1;
-    return { this->Triangles[halfEdge], this->Triangles[next] };
+    return { this->Result.Triangles[halfEdge], this->Result.Triangles[next] };
   }
 };
 
-SettledMesh Triangulated(
-  const Piece& piece, const DelaunayOptions& options, const SharedLattice* lattice)
-{
-  PointView view;
-  view.Double = piece.Coordinates.data();
-  view.Count = piece.Count();
-  const bool areAll = piece.Edges.empty(); // points of a cell: mostly a lattice well filled
-  Triangulation triangulation =
-    lattice ? TriangulateNodes(view, *lattice, options, areAll) : Triangulate(view, options);
-  SettledMesh mesh;
-  mesh.Unused = std::move(triangulation.UnusedPoints);
-  mesh.Triangles = std::move(triangulation.Triangles);
-  mesh.States.assign(mesh.Triangles.size() / 3, SettledMesh::Open);
-  for (std::size_t i = 0; i < piece.Edges.size(); i += 2)
-  {
-    mesh.Seam.emplace_back(piece.Edges[i], piece.Edges[i + 1]);
-  }
-  std::sort(mesh.Seam.begin(), mesh.Seam.end());
-  return mesh;
-}
-
 /** Marks what lies to the left of edges of the piece, as far as the next such edges. */
-void MarkCovered(Index numberOfPoints, SettledMesh& mesh)
+void MarkCovered(SettledMesh& mesh)
 {
   if (mesh.Seam.empty())
   {
     return;
   }
   Mesh surface;
-  surface.Points.resize(static_cast<std::size_t>(numberOfPoints));
-  surface.Triangles.assign(mesh.Triangles.begin(), mesh.Triangles.end());
+  surface.Points.resize(static_cast<std::size_t>(mesh.Points.Count));
+  surface.Triangles.assign(mesh.Result.Triangles.begin(), mesh.Result.Triangles.end());
   surface.ConnectTwins();
   std::vector<Index> stack;
   std::size_t found = 0;
-  const Index count = static_cast<Index>(mesh.Triangles.size());
+  const Index count = static_cast<Index>(mesh.Result.Triangles.size());
   for (Index h = 0; h < count; ++h)
   {
     if (mesh.IsOnSeam(h))
@@ -208,6 +190,27 @@ std::vector<char> FindBorder(
   return isOnBorder;
 }
 
+SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edges,
+  DelaunayOptions options, const SharedLattice* lattice)
+{
+  options.MaximumEdgeLength = 0.0;
+  options.UseLattice = LatticeMode::Off;
+  SettledMesh mesh;
+  mesh.Points = points;
+  const bool areAll = edges.empty(); // points of a cell: mostly a lattice well filled
+  mesh.Result =
+    lattice ? TriangulateNodes(points, *lattice, options, areAll) : Triangulate(points, options);
+  mesh.States.assign(mesh.Result.Triangles.size() / 3, SettledMesh::Unknown);
+  for (std::size_t i = 0; i < edges.size(); i += 2)
+  {
+    mesh.Seam.emplace_back(edges[i], edges[i + 1]);
+  }
+  std::sort(mesh.Seam.begin(), mesh.Seam.end());
+  MarkCovered(mesh);
+  mesh.IsOnBorder = FindBorder(points.Count, mesh.Result.Triangles, options.Monitor);
+  return mesh;
+}
+
 bool Has(const std::vector<Edge>& sorted, Index from, Index to)
 {
   return std::binary_search(sorted.begin(), sorted.end(), Edge{ from, to });
@@ -217,18 +220,26 @@ bool Has(const std::vector<Edge>& sorted, Index from, Index to)
  * The edges of settled or covered triangles that have none of these on their right.
  * @param[in] open  the edges of open triangles, sorted
  */
-std::vector<Edge> FindEdgesOfSeam(const std::vector<Edge>& open,
-  const std::vector<char>& isOnBorder, const SettledMesh& mesh, const Progress& progress)
+std::vector<Edge> FindEdgesOfSeam(
+  const std::vector<Edge>& open, const SettledMesh& mesh, const Progress& progress)
 {
   std::vector<Edge> across; // edges between vertices of the border: those of the border, and others
-  const Index count = static_cast<Index>(mesh.Triangles.size());
-  for (Index h = 0; h < count; ++h)
+  const char* const isOnBorder = mesh.IsOnBorder.data();
+  for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
-    CheckAbort(progress, h);
-    const Edge ends = mesh.EndsOf(h);
-    if (isOnBorder[ends.first] && isOnBorder[ends.second])
+    CheckAbort(progress, t);
+    const Index* const c = mesh.CornersOf(t);
+    if (isOnBorder[c[0]] + isOnBorder[c[1]] + isOnBorder[c[2]] < 2)
     {
-      across.push_back(ends);
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const Edge ends{ c[k], c[(k + 1) % 3] };
+      if (isOnBorder[ends.first] && isOnBorder[ends.second])
+      {
+        across.push_back(ends);
+      }
     }
   }
   std::sort(across.begin(), across.end());
@@ -248,18 +259,21 @@ std::vector<Edge> FindEdgesOfSeam(const std::vector<Edge>& open,
   return edges;
 }
 
-/** The corners of open triangles, and the edges between settled ones and these or the outside. */
-Piece SeamOf(const Piece& piece, const SettledMesh& mesh, const Progress& progress)
+/**
+ * The corners of open triangles, and the edges between settled ones and these or the outside. Ids
+ * are places of points.
+ */
+Piece SeamOf(const SettledMesh& mesh, const Progress& progress)
 {
-  std::vector<Index> placeOf(piece.Ids.size(), None);
+  std::vector<Index> placeOf(static_cast<std::size_t>(mesh.Points.Count), None);
   Piece seam;
   const auto place = [&](Index vertex) {
     if (placeOf[vertex] == None)
     {
       placeOf[vertex] = seam.Count();
-      const double* const xyz = piece.Coordinates.data() + 3 * static_cast<std::size_t>(vertex);
-      seam.Coordinates.insert(seam.Coordinates.end(), xyz, xyz + 3);
-      seam.Ids.push_back(piece.Ids[vertex]);
+      const Point2 p = mesh.Points.At(vertex);
+      seam.Coordinates.insert(seam.Coordinates.end(), { p.X, p.Y, mesh.Points.Elevation(vertex) });
+      seam.Ids.push_back(vertex);
     }
     return placeOf[vertex];
   };
@@ -274,15 +288,16 @@ Piece SeamOf(const Piece& piece, const SettledMesh& mesh, const Progress& progre
   }
   std::sort(open.begin(), open.end());
   std::for_each(open.begin(), open.end(), [&](const Edge& edge) { place(edge.first); });
-  const std::vector<char> isOnBorder = FindBorder(piece.Count(), mesh.Triangles, progress);
-  for (const Edge& edge : FindEdgesOfSeam(open, isOnBorder, mesh, progress))
+  for (const Edge& edge : FindEdgesOfSeam(open, mesh, progress))
   {
     const Index first = place(edge.first);
     seam.Edges.insert(seam.Edges.end(), { first, place(edge.second) });
   }
-  for (Index i = 0; mesh.States.empty() && i < piece.Count(); ++i) // on a line, or fewer than three
+  const std::vector<Index>& unused = mesh.Result.UnusedPoints;
+  // On a line, or fewer than three.
+  for (Index i = 0; mesh.States.empty() && i < mesh.Points.Count; ++i)
   {
-    if (!std::binary_search(mesh.Unused.begin(), mesh.Unused.end(), i))
+    if (!std::binary_search(unused.begin(), unused.end(), i))
     {
       place(i);
     }
@@ -291,8 +306,11 @@ Piece SeamOf(const Piece& piece, const SettledMesh& mesh, const Progress& progre
 }
 
 /** @throws NotOnLattice if the triangle is flat or inverted in the coordinates of its points */
-bool HoldsCircleOf(const Cell& cell, Point2 a, Point2 b, Point2 c, const SharedLattice* lattice)
+bool HoldsCircleOf(
+  const Cell& cell, const SettledMesh& mesh, const Index* corners, const SharedLattice* lattice)
 {
+  const Point2 a = mesh.Points.At(corners[0]), b = mesh.Points.At(corners[1]),
+               c = mesh.Points.At(corners[2]);
   if (!lattice)
   {
     return cell.HoldsCircle(a, b, c);
@@ -305,29 +323,151 @@ bool HoldsCircleOf(const Cell& cell, Point2 a, Point2 b, Point2 c, const SharedL
   }
   return isHeld;
 }
-} // namespace
 
-Piece Settle(const Piece& piece, const Cell& cell, const DelaunayOptions& options,
-  std::vector<GlobalTriangle>& settled, const SharedLattice* lattice)
+/** Marks what is settled. */
+void MarkSettled(
+  const Cell& cell, const SharedLattice* lattice, const Progress& progress, SettledMesh& mesh)
 {
-  SettledMesh mesh = Triangulated(piece, options, lattice);
-  MarkCovered(piece.Count(), mesh);
-  const auto at = [&piece](Index vertex) {
-    const double* const xyz = piece.Coordinates.data() + 3 * static_cast<std::size_t>(vertex);
-    return Point2{ xyz[0], xyz[1] };
-  };
   for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
-    CheckAbort(options.Monitor, t);
-    const Index* const c = mesh.Triangles.data() + 3 * t;
-    if (mesh.States[t] == SettledMesh::Open &&
-      HoldsCircleOf(cell, at(c[0]), at(c[1]), at(c[2]), lattice))
+    CheckAbort(progress, t);
+    if (mesh.States[t] == SettledMesh::Unknown)
     {
-      mesh.States[t] = SettledMesh::Settled;
-      settled.push_back({ piece.Ids[c[0]], piece.Ids[c[1]], piece.Ids[c[2]] });
+      const bool isHeld = HoldsCircleOf(cell, mesh, mesh.CornersOf(t), lattice);
+      mesh.States[t] = isHeld ? SettledMesh::Settled : SettledMesh::Open;
     }
   }
-  return SeamOf(piece, mesh, options.Monitor);
+}
+
+/** The points on the border of the mesh, or near that of its box: few, if they are spread evenly. */
+std::vector<char> FindNear(const SettledMesh& mesh)
+{
+  std::vector<char> isNear = mesh.IsOnBorder;
+  Box box;
+  for (Index i = 0; i < mesh.Points.Count; ++i)
+  {
+    if (mesh.IsOnBorder[i])
+    {
+      box.Add(mesh.Points.At(i));
+    }
+  }
+  const double count = static_cast<double>(std::max(1, mesh.Points.Count));
+  const double distance = 0.5 * std::sqrt(box.Width() * box.Height() / std::sqrt(count));
+  const Box inner{ { box.Low.X + distance, box.Low.Y + distance },
+    { box.High.X - distance, box.High.Y - distance } };
+  for (Index i = 0; i < mesh.Points.Count; ++i)
+  {
+    isNear[i] |= inner.Contains(mesh.Points.At(i)) ? 0 : 1;
+  }
+  return isNear;
+}
+
+/**
+ * Does the same to the mesh of all points of a cell, none of it covered, and looks at few circles:
+ * those of triangles that have a corner which is near, as FindNear() says. Where one is found to be
+ * open, its other corners count as near, too.
+ *
+ * The others are settled. For let the circle of a triangle, with its rim, reach a place that is not
+ * inside the cell. As the cell is convex and has all points, that place is not inside the mesh
+ * either, at most on its border. Walk straight to it from some place inside the triangle, so that no
+ * vertex is on the way. Lifted to the paraboloid, the mesh is convex: each edge on the way is crossed
+ * to a triangle whose plane is at least as high over that place, so that its circle reaches it as
+ * well. Hence all triangles on the way are open. The last of them has an edge on the border of the
+ * mesh, whose ends are near; and what shares an edge with an open triangle has two near corners. So
+ * all are looked at. It does not matter where rounding alone refuses a circle: what is open without
+ * need makes more triangles near, never fewer.
+ *
+ * It holds for coordinates alone: on a lattice, nodes are triangulated, which are elsewhere.
+ */
+void MarkSettledOfCell(const Cell& cell, const Progress& progress, SettledMesh& mesh)
+{
+  constexpr int mostRounds = 8; // then all triangles are looked at; mostly two are enough
+  std::vector<char> isNear = FindNear(mesh);
+  char* const near = isNear.data();
+  const Index* const corners = mesh.CornersOf(0);
+  const std::size_t count = mesh.States.size();
+  bool hasSpread = true;
+  for (int round = 0; hasSpread; ++round)
+  {
+    if (round == mostRounds)
+    {
+      std::fill(isNear.begin(), isNear.end(), char(1));
+    }
+    hasSpread = false;
+    for (std::size_t t = 0; t < count; ++t)
+    {
+      CheckAbort(progress, t);
+      const Index* const c = corners + 3 * t;
+      const char isAny = near[c[0]] | near[c[1]] | near[c[2]];
+      if (!isAny || mesh.States[t] != SettledMesh::Unknown)
+      {
+        continue;
+      }
+      const bool isHeld = HoldsCircleOf(cell, mesh, c, nullptr);
+      mesh.States[t] = isHeld ? SettledMesh::Settled : SettledMesh::Open;
+      if (!isHeld && !(near[c[0]] & near[c[1]] & near[c[2]]))
+      {
+        hasSpread = true;
+        near[c[0]] = near[c[1]] = near[c[2]] = 1;
+      }
+    }
+  }
+  std::replace(mesh.States.begin(), mesh.States.end(), SettledMesh::Unknown, SettledMesh::Settled);
+}
+
+/** Takes away the triangles that are not settled. */
+void KeepSettled(const Progress& progress, SettledMesh& mesh)
+{
+  Buffer<Index>& triangles = mesh.Result.Triangles;
+  Index* to = triangles.data();
+  for (std::size_t t = 0; t < mesh.States.size(); ++t)
+  {
+    CheckAbort(progress, t);
+    if (mesh.States[t] == SettledMesh::Settled)
+    {
+      to = std::copy_n(mesh.CornersOf(t), 3, to);
+    }
+  }
+  triangles.Resize(static_cast<std::size_t>(to - triangles.data()));
+}
+} // namespace
+
+SettledCell SettleCell(const PointView& points, GlobalId first, const Cell& cell,
+  const DelaunayOptions& options, const SharedLattice* lattice)
+{
+  SettledMesh mesh = Triangulated(points, {}, options, lattice);
+  if (lattice)
+  {
+    MarkSettled(cell, lattice, options.Monitor, mesh);
+  }
+  else
+  {
+    MarkSettledOfCell(cell, options.Monitor, mesh);
+  }
+  Piece seam = SeamOf(mesh, options.Monitor);
+  std::for_each(seam.Ids.begin(), seam.Ids.end(), [first](GlobalId& id) { id += first; });
+  KeepSettled(options.Monitor, mesh);
+  return { std::move(mesh.Result), std::move(seam) };
+}
+
+Piece SettleSeams(const Piece& seams, const Cell& cell, const DelaunayOptions& options,
+  std::vector<GlobalTriangle>& settled, const SharedLattice* lattice)
+{
+  PointView points;
+  points.Double = seams.Coordinates.data();
+  points.Count = seams.Count();
+  SettledMesh mesh = Triangulated(points, seams.Edges, options, lattice);
+  MarkSettled(cell, lattice, options.Monitor, mesh);
+  Piece seam = SeamOf(mesh, options.Monitor);
+  const auto idOf = [&seams](GlobalId place) { return seams.Ids[place]; };
+  std::transform(seam.Ids.begin(), seam.Ids.end(), seam.Ids.begin(), idOf);
+  KeepSettled(options.Monitor, mesh);
+  for (std::size_t i = 0; i < mesh.Result.Triangles.size(); i += 3)
+  {
+    const Index* const c = mesh.Result.Triangles.data() + i;
+    settled.push_back({ idOf(c[0]), idOf(c[1]), idOf(c[2]) });
+  }
+  return seam;
 }
 
 } // namespace elevation

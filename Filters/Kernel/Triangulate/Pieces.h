@@ -29,6 +29,7 @@
 #include "Kernel/Lattice/Lattice.h"
 #include "Options.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -62,6 +63,13 @@ struct Cell
    */
   bool HoldsCircle(Point2 a, Point2 b, Point2 c) const;
 
+  /** Of a point in the cell, up to rounding. */
+  double DistanceFromBorder(Point2 p) const
+  {
+    return std::min(std::min(p.X - this->Low.X, this->High.X - p.X),
+      std::min(p.Y - this->Low.Y, this->High.Y - p.Y));
+  }
+
 private:
   /** Whether the corner a is so far from the border that a rough bound of the radius will do. */
   bool HoldsByFar(Point2 a, Point2 b, Point2 c) const;
@@ -70,7 +78,7 @@ private:
 /** A number of a point in the whole cloud, which may have more points than an Index counts. */
 using GlobalId = std::int64_t;
 
-/** Points of a cell, all of them or those of its seam. */
+/** Points and edges of a seam, or of several. */
 struct Piece
 {
   std::vector<double> Coordinates; ///< x, y, z of each point
@@ -84,18 +92,32 @@ struct Piece
 
 using GlobalTriangle = std::array<GlobalId, 3>;
 
+/** What is known once all points of a cell are. */
+struct SettledCell
+{
+  Triangulation Result; ///< without the triangles that are not settled
+  Piece Seam;           ///< what triangles across the border of the cell may have
+};
+
 /**
  * Finds the triangles that are settled once all points of a cell are known.
- * @param[in] piece  all points of the cell, without edges; or the seams of cells that make up the
- *                   cell, joined
- * @param[in] options  without a lattice and a limit of edges
- * @param[in,out] settled  gets the triangles, counter-clockwise
+ * @param[in] points  all points of the cell; some may be not finite, and are unused
+ * @param[in] first  id of the first point, from which they are numbered
+ * @param[in] options  but for a lattice and a limit of edges
  * @param[in] lattice  that of the whole cloud, if its nodes are to be triangulated
- * @return the seam: the points and edges that triangles across the border of the cell may have
  * @throws std::bad_alloc; Aborted; NotOnLattice: then all cells have to go without it. They also
  *         have to if none has settled a triangle: the nodes are on one line.
  */
-Piece Settle(const Piece& piece, const Cell& cell, const DelaunayOptions& options,
+SettledCell SettleCell(const PointView& points, GlobalId first, const Cell& cell,
+  const DelaunayOptions& options, const SharedLattice* lattice = nullptr);
+
+/**
+ * The same when the seams are known of cells that make up the cell.
+ * @param[in] seams  joined
+ * @param[in,out] settled  gets the triangles, counter-clockwise
+ * @return the seam of the cell
+ */
+Piece SettleSeams(const Piece& seams, const Cell& cell, const DelaunayOptions& options,
   std::vector<GlobalTriangle>& settled, const SharedLattice* lattice = nullptr);
 
 /** The points and edges of two pieces. */

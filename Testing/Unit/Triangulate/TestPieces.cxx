@@ -57,15 +57,7 @@ struct Pieces
     if (count == 1)
     {
       std::sort(ids.begin(), ids.end());
-      Piece leaf;
-      leaf.Ids = ids;
-      for (const GlobalId id : ids)
-      {
-        leaf.Coordinates.insert(leaf.Coordinates.end(), this->At(id), this->At(id) + 3);
-      }
-      const Piece seam = Settle(leaf, cell, this->Options, this->Triangles, this->Lattice);
-      this->LargestSeam = std::max(this->LargestSeam, seam.Count());
-      return seam;
+      return this->SettledLeaf(ids, cell);
     }
     Cell low = cell, high = cell;
     std::vector<GlobalId> below, above;
@@ -73,7 +65,28 @@ struct Pieces
     const int half = count / 2;
     Piece one = this->Settled(below, low, half);
     const Piece other = this->Settled(above, high, count - half);
-    return Settle(Join(std::move(one), other), cell, this->Options, this->Triangles, this->Lattice);
+    return SettleSeams(
+      Join(std::move(one), other), cell, this->Options, this->Triangles, this->Lattice);
+  }
+
+  Piece SettledLeaf(const std::vector<GlobalId>& ids, const Cell& cell)
+  {
+    Cloud leaf;
+    for (const GlobalId id : ids)
+    {
+      leaf.Coordinates.insert(leaf.Coordinates.end(), this->At(id), this->At(id) + 3);
+    }
+    SettledCell settled = SettleCell(leaf.View(), 7, cell, this->Options, this->Lattice);
+    const auto idOf = [&ids](GlobalId number) { return ids[number - 7]; };
+    const Buffer<Index>& corners = settled.Result.Triangles;
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+    {
+      this->Triangles.push_back({ ids[corners[i]], ids[corners[i + 1]], ids[corners[i + 2]] });
+    }
+    Piece& seam = settled.Seam;
+    std::transform(seam.Ids.begin(), seam.Ids.end(), seam.Ids.begin(), idOf);
+    this->LargestSeam = std::max(this->LargestSeam, seam.Count());
+    return seam;
   }
 
   void Cut(const std::vector<GlobalId>& ids, int count, Cell& low, Cell& high,
@@ -284,6 +297,60 @@ TEST(Pieces, MayHaveMorePiecesThanPoints)
     const Cloud cloud = SmallLatticeCloud(random, 6, 12);
     ASSERT_EQ(Cut(cloud, 40).Triangles, WholeOf(cloud)) << "cloud " << i;
   }
+}
+
+/** Whether a circle reaches the sides of a cell that has no right and no lower one. */
+bool Reaches(const Cell& cell, Point2 a, Point2 b, Point2 c)
+{
+  const long double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
+  const long double b2 = bx * bx + by * by, c2 = cx * cx + cy * cy, d = 2 * (bx * cy - by * cx);
+  const Point2 left{ cell.Low.X, static_cast<double>(a.Y + (bx * c2 - cx * b2) / d) };
+  const Point2 top{ static_cast<double>(a.X + (cy * b2 - by * c2) / d), cell.High.Y };
+  return (std::isfinite(left.X) && InCircle(a, b, c, left) != Negative) ||
+    (std::isfinite(top.Y) && InCircle(a, b, c, top) != Negative);
+}
+
+TEST(Pieces, OfACellSettleAllWhoseCircleItHoldsAndNoOther)
+{
+  std::mt19937_64 random(98);
+  int settled = 0, open = 0;
+  for (int i = 0; i < 200; ++i)
+  {
+    const Index count = 3 + static_cast<Index>(random() % 4000);
+    const Cloud clouds[] = { RandomCloud(random, count), LatticeCloud(random, 30, 0.3),
+      UnevenCloud(random, count), CircleCloud(3 + count % 100) };
+    const Cloud& whole = clouds[i % 4];
+    const Point2 cut = whole.View().At(static_cast<Index>(random() % whole.Count()));
+    Cell cell;
+    cell.Low.X = random() % 2 == 0 ? cut.X : cell.Low.X;
+    cell.High.Y = random() % 2 == 0 ? cut.Y : cell.High.Y;
+    Cloud cloud;
+    for (Index k = 0; k < whole.Count(); ++k)
+    {
+      const Point2 p = whole.View().At(k);
+      if (p.X >= cell.Low.X && p.Y < cell.High.Y)
+      {
+        cloud.Add(p.X, p.Y);
+      }
+    }
+    DelaunayOptions options;
+    options.UseLattice = LatticeMode::Off;
+    const std::vector<GlobalTriangle> all = TrianglesOf(Triangulate(cloud.View(), options));
+    const std::vector<GlobalTriangle> found =
+      TrianglesOf(SettleCell(cloud.View(), 0, cell, options).Result);
+    for (const GlobalTriangle& triangle : all)
+    {
+      const auto at = [&](int k) { return cloud.View().At(static_cast<Index>(triangle[k])); };
+      const bool isSettled = std::binary_search(found.begin(), found.end(), triangle);
+      const bool isHeld = cell.HoldsCircle(at(0), at(1), at(2)) &&
+        cell.HoldsCircle(at(1), at(2), at(0)) && cell.HoldsCircle(at(2), at(0), at(1));
+      ASSERT_TRUE(isSettled || !isHeld) << "cloud " << i;
+      ASSERT_FALSE(isSettled && Reaches(cell, at(0), at(1), at(2))) << "cloud " << i;
+      (isSettled ? settled : open) += 1;
+    }
+  }
+  EXPECT_GT(settled, 50000);
+  EXPECT_GT(open, 5000);
 }
 
 TEST(Pieces, PassOnFewPoints)
