@@ -87,8 +87,8 @@ void AddWork(
   work->SetName("WorkOfRank");
   work->SetNumberOfComponents(4);
   const char* const names[] = { "OwnPoints", "SeamPoints", "BytesSent", "Exchanges" };
-  const vtkIdType values[] = { static_cast<vtkIdType>(surface.Part.Own.Count()),
-    surface.NumberOfSeamPoints, traffic.BytesSent, traffic.Rounds };
+  const vtkIdType values[] = { surface.NumberOfOwnPoints, surface.NumberOfSeamPoints,
+    traffic.BytesSent, traffic.Rounds };
   for (int i = 0; i < 4; ++i)
   {
     work->SetComponentName(i, names[i]);

@@ -426,6 +426,7 @@ DistributedSurface TriangulateOnRanks(const Ranks& ranks, const PointsOfRank& po
   }
   Work work(ranks, options, std::move(owners), part);
   work.Settle();
+  surface.NumberOfOwnPoints = static_cast<Index>(part.Own.Count());
   surface.NumberOfSeamPoints = work.NumberOfSeamPoints;
   work.SendTriangles();
   work.FetchOthers();

@@ -42,6 +42,7 @@ struct DistributedSurface
   vtkIdType NumberOfPoints = 0;       ///< of all ranks, without those that constraints add
   vtkIdType NumberOfTriangles = 0;    ///< of all ranks, without a limit of edges
   EffectOfLimit Effect;               ///< if there is a limit
+  Index NumberOfOwnPoints = 0;        ///< that this rank owns
   Index NumberOfSeamPoints = 0;       ///< of the cell of this rank
   std::int64_t NumberOfCrossings = 0; ///< of the constraints; the same on all ranks
   Index NumberOfAddedPoints = 0;      ///< points that these add to the cell of this rank

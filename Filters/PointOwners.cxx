@@ -75,6 +75,8 @@ private:
   }
   bool TakeKindOfIds();
   void ReadPoints(bool areIdsGiven, vtkIdType first);
+  std::vector<std::vector<vtkIdType>> SharedOut(
+    const PointOwners& owners, const Progress& progress) const;
   void SortOwn();
 
   const Ranks& All;
@@ -155,6 +157,7 @@ void Redistribution::ReadPoints(bool areIdsGiven, vtkIdType first)
   auto* const plainIds = vtkIdTypeArray::FastDownCast(ids);
   auto* const ghosts =
     vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  this->Kept.reserve(this->Rows.Count());
   for (vtkIdType at = 0; at < static_cast<vtkIdType>(this->Rows.Count()); ++at)
   {
     if (ids)
@@ -202,29 +205,48 @@ PointOwners Redistribution::CutPlane()
   return { std::move(*plane), std::move(this->RankOfCell) };
 }
 
+/** The places of the points that go to each rank. */
+std::vector<std::vector<vtkIdType>> Redistribution::SharedOut(
+  const PointOwners& owners, const Progress& progress) const
+{
+  std::vector<int> ownerOf(this->Kept.size());
+  std::vector<std::size_t> counts(this->All.Count(), 0);
+  for (std::size_t i = 0; i < this->Kept.size(); ++i)
+  {
+    ReportStep(progress, i, this->Kept.size(), 1 << 16);
+    const double* const p = this->Rows.At(this->Kept[i]);
+    // What is not finite has no place in the plane, and stays here.
+    ownerOf[i] = this->Rows.IsFinite(this->Kept[i])
+      ? owners.RankOfCell[owners.Plane.OwnerOf({ p[0], p[1] })]
+      : this->All.Own();
+    ++counts[ownerOf[i]];
+  }
+  std::vector<std::vector<vtkIdType>> places(this->All.Count());
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    places[i].reserve(counts[i]);
+  }
+  for (std::size_t i = 0; i < this->Kept.size(); ++i)
+  {
+    places[ownerOf[i]].push_back(this->Kept[i]);
+  }
+  return places;
+}
+
 void Redistribution::Send(const PointOwners& owners)
 {
   std::vector<Bytes> packed(this->All.Count());
   this->All.Agree([&]() {
     const Progress progress = this->Watched(0.3, 0.7);
-    std::vector<std::vector<vtkIdType>> places(this->All.Count());
-    for (std::size_t i = 0; i < this->Kept.size(); ++i)
-    {
-      ReportStep(progress, i, this->Kept.size(), 1 << 16);
-      const double* const p = this->Rows.At(this->Kept[i]);
-      // What is not finite has no place in the plane, and stays here.
-      const int owner = this->Rows.IsFinite(this->Kept[i])
-        ? owners.RankOfCell[owners.Plane.OwnerOf({ p[0], p[1] })]
-        : this->All.Own();
-      places[owner].push_back(this->Kept[i]);
-    }
+    std::vector<std::vector<vtkIdType>> places = this->SharedOut(owners, progress);
+    this->Kept = std::vector<vtkIdType>();
     for (std::size_t i = 0; i < places.size(); ++i)
     {
       Report(progress, 1.0);
       packed[i] = places[i].empty() ? Bytes() : this->Rows.Pack(places[i]);
+      places[i] = std::vector<vtkIdType>();
     }
     this->Rows = PointRows();
-    this->Kept = std::vector<vtkIdType>();
   });
   packed = this->All.Exchange(std::move(packed));
   this->All.Agree([&]() {

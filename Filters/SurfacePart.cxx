@@ -7,6 +7,7 @@
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -211,12 +212,19 @@ void KeepCorners(SurfacePart& part)
   Buffer<Index>& corners = part.Result.Triangles;
   std::vector<Index> placeOf(others.Count(), None);
   std::vector<vtkIdType> order;
-  for (const Index corner : corners)
+  std::vector<std::size_t> ofOthers; // places among the corners
+  for (std::size_t i = 0; i < corners.size(); ++i)
   {
-    if (corner >= ownCount && placeOf[corner - ownCount] == None)
+    if (corners[i] < ownCount)
     {
-      placeOf[corner - ownCount] = 0; // set below
-      order.push_back(corner - ownCount);
+      continue;
+    }
+    ofOthers.push_back(i);
+    Index& place = placeOf[corners[i] - ownCount];
+    if (place == None)
+    {
+      place = 0; // set below
+      order.push_back(corners[i] - ownCount);
     }
   }
   std::sort(order.begin(), order.end(), [&others](vtkIdType a, vtkIdType b) {
@@ -226,30 +234,49 @@ void KeepCorners(SurfacePart& part)
   {
     placeOf[order[i]] = ownCount + static_cast<Index>(i);
   }
-  for (Index& corner : corners)
+  for (const std::size_t i : ofOthers)
   {
-    corner = corner < ownCount ? corner : placeOf[corner - ownCount];
+    corners[i] = placeOf[corners[i] - ownCount];
   }
   others.Choose(order);
   part.OtherNumbers.clear();
 }
 
+namespace
+{
+/** Hands over own values, and then those of others. */
+template <typename Value, typename Array>
+void TakeOver(Buffer<Value>& own, const Buffer<Value>& others, Array* array)
+{
+  const std::size_t ownSize = own.size();
+  own.Resize(ownSize + others.size());
+  own.Shrink();
+  std::copy(others.begin(), others.end(), own.begin() + ownSize);
+  const vtkIdType size = static_cast<vtkIdType>(own.size());
+  array->SetArray(own.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+}
+} // namespace
+
 void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
 {
   const vtkIdType ownCount = static_cast<vtkIdType>(part.Own.Count());
   const vtkIdType otherCount = static_cast<vtkIdType>(part.Others.Count());
-  vtkNew<vtkPoints> points;
-  points->SetDataType(part.TypeOfPoints);
-  points->SetNumberOfPoints(ownCount + otherCount);
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName(part.NameOfIds.c_str());
-  ids->SetNumberOfValues(ownCount + otherCount);
-  for (vtkIdType i = 0; i < ownCount + otherCount; ++i)
+  TakeOver(part.Own.Ids, part.Others.Ids, ids.Get());
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetName("Points"); // as vtkPoints does
+  coordinates->SetNumberOfComponents(3);
+  TakeOver(part.Own.Coordinates, part.Others.Coordinates, coordinates.Get());
+  vtkNew<vtkPoints> points;
+  points->SetDataType(part.TypeOfPoints);
+  if (part.TypeOfPoints == VTK_DOUBLE)
   {
-    const PointRows& rows = i < ownCount ? part.Own : part.Others;
-    const vtkIdType at = i < ownCount ? i : i - ownCount;
-    points->SetPoint(i, rows.At(at));
-    ids->SetValue(i, rows.Ids[at]);
+    points->SetData(coordinates);
+  }
+  else
+  {
+    points->GetData()->DeepCopy(coordinates);
   }
   output->SetPoints(points);
   vtkPointData* const data = output->GetPointData();

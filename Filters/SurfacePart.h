@@ -66,7 +66,7 @@ EffectOfLimit LimitEdges(
 /** Brings the points of other ranks into the order of their ids, only those that are corners. */
 void KeepCorners(SurfacePart& part);
 
-/** Hands over points, arrays, marks of ghosts, global ids and triangles. */
+/** Hands over points, arrays, marks of ghosts, global ids and triangles; they leave the part. */
 void PassPart(SurfacePart& part, int threads, vtkPolyData* output);
 
 } // namespace elevation

@@ -126,6 +126,8 @@ def part_of(delaunay, ids=None):
                       delaunay.GetNumberOfConstraintCrossings(), delaunay.GetNumberOfAddedPoints(),
                       delaunay.GetLatticeFound())
     part["lattice"] = found and found.GetTuple(0)
+    work = output.GetFieldData().GetArray("WorkOfRank")
+    part["own"] = work and int(work.GetComponent(0, 0))
     return part
 
 
@@ -144,6 +146,7 @@ def check_union(parts, whole, claim):
     for part in parts:
         own = [number for number, flag in zip(part["ids"], part["ghosts"]) if not flag]
         check(own == sorted(own), claim + ": points are in the order of their ids")
+        check(part["own"] in (None, len(own)), claim + ": the number of own points is told")
         ghosts = [i for i, flag in enumerate(part["ghosts"]) if flag]
         check(ghosts == list(range(len(part["ids"]) - len(ghosts), len(part["ids"]))),
               claim + ": points of other ranks come last")

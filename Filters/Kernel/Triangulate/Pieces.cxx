@@ -96,7 +96,7 @@ struct SettledMesh
 {
   enum State : char
   {
-    Unknown,
+    Inner,   // not looked at, for it is settled if what is nearer to the border is
     Open,    // to be settled by a larger cell
     Covered, // lies where triangles have been settled before
     Settled  // by this cell
@@ -200,7 +200,7 @@ SettledMesh Triangulated(const PointView& points, const std::vector<Index>& edge
   const bool areAll = edges.empty(); // points of a cell: mostly a lattice well filled
   mesh.Result =
     lattice ? TriangulateNodes(points, *lattice, options, areAll) : Triangulate(points, options);
-  mesh.States.assign(mesh.Result.Triangles.size() / 3, SettledMesh::Unknown);
+  mesh.States.assign(mesh.Result.Triangles.size() / 3, SettledMesh::Inner);
   for (std::size_t i = 0; i < edges.size(); i += 2)
   {
     mesh.Seam.emplace_back(edges[i], edges[i + 1]);
@@ -229,7 +229,8 @@ std::vector<Edge> FindEdgesOfSeam(
   {
     CheckAbort(progress, t);
     const Index* const c = mesh.CornersOf(t);
-    if (isOnBorder[c[0]] + isOnBorder[c[1]] + isOnBorder[c[2]] < 2)
+    if (mesh.States[t] == SettledMesh::Inner ||
+      isOnBorder[c[0]] + isOnBorder[c[1]] + isOnBorder[c[2]] < 2)
     {
       continue;
     }
@@ -331,7 +332,7 @@ void MarkSettled(
   for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
     CheckAbort(progress, t);
-    if (mesh.States[t] == SettledMesh::Unknown)
+    if (mesh.States[t] == SettledMesh::Inner)
     {
       const bool isHeld = HoldsCircleOf(cell, mesh, mesh.CornersOf(t), lattice);
       mesh.States[t] = isHeld ? SettledMesh::Settled : SettledMesh::Open;
@@ -399,7 +400,7 @@ void MarkSettledOfCell(const Cell& cell, const Progress& progress, SettledMesh& 
       CheckAbort(progress, t);
       const Index* const c = corners + 3 * t;
       const char isAny = near[c[0]] | near[c[1]] | near[c[2]];
-      if (!isAny || mesh.States[t] != SettledMesh::Unknown)
+      if (!isAny || mesh.States[t] != SettledMesh::Inner)
       {
         continue;
       }
@@ -412,7 +413,6 @@ void MarkSettledOfCell(const Cell& cell, const Progress& progress, SettledMesh& 
       }
     }
   }
-  std::replace(mesh.States.begin(), mesh.States.end(), SettledMesh::Unknown, SettledMesh::Settled);
 }
 
 /** Takes away the triangles that are not settled. */
@@ -423,7 +423,7 @@ void KeepSettled(const Progress& progress, SettledMesh& mesh)
   for (std::size_t t = 0; t < mesh.States.size(); ++t)
   {
     CheckAbort(progress, t);
-    if (mesh.States[t] == SettledMesh::Settled)
+    if (mesh.States[t] == SettledMesh::Settled || mesh.States[t] == SettledMesh::Inner)
     {
       to = std::copy_n(mesh.CornersOf(t), 3, to);
     }
