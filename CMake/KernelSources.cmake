@@ -25,10 +25,12 @@ set(es_kernel_Triangulate
   BoxTree
   BinGrid
   PointWindows
+  Simplify
   WideApexSearch
   ApexSearch
   Hull
   DivideAndConquer
+  GreedyInsertion
   GridGrowth
   LatticeApexes
   LatticeGrowth

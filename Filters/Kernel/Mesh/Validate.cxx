@@ -6,6 +6,9 @@
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace elevation
 {
@@ -219,6 +222,78 @@ private:
 std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options)
 {
   return Checker(mesh, options).Check();
+}
+
+namespace
+{
+/** Above the vertical distance of a point from the plane of a triangle, in long double. */
+long double BoundOfDistance(const PointView& points, const Index* corners, Index point)
+{
+  const auto at = [&points](Index id) {
+    const Point2 p = points.At(id);
+    return std::array<long double, 3>{ p.X, p.Y, points.Elevation(id) };
+  };
+  const auto p = at(point);
+  std::array<long double, 3> area, sizeOfArea, z;
+  for (int k = 0; k < 3; ++k)
+  {
+    const auto b = at(corners[(k + 1) % 3]), c = at(corners[(k + 2) % 3]);
+    const long double left = (b[0] - p[0]) * (c[1] - p[1]), right = (b[1] - p[1]) * (c[0] - p[0]);
+    area[k] = left - right;
+    sizeOfArea[k] = std::fabs(left) + std::fabs(right);
+    z[k] = at(corners[k])[2];
+  }
+  // The distance is the sum of area k times (z of k less z of p), through the sum of areas.
+  constexpr long double unit = 16.0L * std::numeric_limits<long double>::epsilon();
+  long double sum = 0.0L, sizeOfSum = 0.0L, whole = 0.0L, sizeOfWhole = 0.0L;
+  for (int k = 0; k < 3; ++k)
+  {
+    sum += area[k] * (z[k] - p[2]);
+    sizeOfSum += sizeOfArea[k] * std::fabs(z[k] - p[2]);
+    whole += area[k];
+    sizeOfWhole += sizeOfArea[k];
+  }
+  const long double least = whole - unit * sizeOfWhole;
+  return least > 0.0L ? (std::fabs(sum) + unit * sizeOfSum) / least
+                      : std::numeric_limits<long double>::infinity();
+}
+} // namespace
+
+std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points, double most,
+  const std::vector<Index>& exempt, std::size_t maximumFindings)
+{
+  std::vector<Finding> findings;
+  const CellGrid grid(static_cast<std::size_t>(mesh.NumberOfTriangles()), [&mesh](std::size_t t) {
+    const Index* const c = mesh.Triangles.data() + 3 * t;
+    return std::array<Point2, 3>{ mesh.PointOf(c[0]), mesh.PointOf(c[1]), mesh.PointOf(c[2]) };
+  });
+  for (Index point = 0; point < points.Count && findings.size() < maximumFindings; ++point)
+  {
+    const Point2 p = points.At(point);
+    if (!std::isfinite(p.X) || !std::isfinite(p.Y) || !std::isfinite(points.Elevation(point)) ||
+      std::binary_search(exempt.begin(), exempt.end(), point))
+    {
+      continue;
+    }
+    bool isCovered = false, isNear = false;
+    grid.Visit(p, [&](Index t) {
+      const Index* const c = mesh.Triangles.data() + 3 * static_cast<std::size_t>(t);
+      bool isInside = true;
+      for (int k = 0; k < 3; ++k)
+      {
+        isInside = isInside &&
+          Orientation(mesh.PointOf(c[k]), mesh.PointOf(c[(k + 1) % 3]), p) != Negative;
+      }
+      isCovered = isCovered || isInside;
+      isNear = isNear || (isInside && BoundOfDistance(points, c, point) <= most);
+    });
+    if (!isNear)
+    {
+      findings.push_back({ Rule::Distance, point,
+        NameOf(point, p) + (isCovered ? " is too far from the mesh." : " is beside the mesh.") });
+    }
+  }
+  return findings;
 }
 
 std::string ToString(const std::vector<Finding>& findings)

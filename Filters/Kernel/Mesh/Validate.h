@@ -16,6 +16,7 @@
  *   Hull          the border is one convex loop, counter-clockwise, so the convex hull is covered.
  *   Vertices      every point that is not listed as unused is a vertex.
  *   Overlap       border edges do not cross, and nest so that no place is covered twice.
+ *   Distance      no point is farther above or below the mesh than allowed.
  */
 #ifndef elevation_Mesh_Validate_h
 #define elevation_Mesh_Validate_h
@@ -37,7 +38,8 @@ enum class Rule
   TieRule,
   Hull,
   Vertices,
-  Overlap
+  Overlap,
+  Distance
 };
 
 struct Finding
@@ -63,6 +65,15 @@ struct ValidateOptions
  * Twins need not be filled. n log n time. Never throws on a bad mesh.
  */
 std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options = ValidateOptions());
+
+/**
+ * Checks Distance: finds each point's triangle anew, exactly, and bounds its vertical distance from
+ * above. Points beside the mesh are findings, too.
+ * @param[in] points  those of the mesh, with elevations
+ * @param[in] exempt  ids, increasing; points that are not finite are exempt, too
+ */
+std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points, double most,
+  const std::vector<Index>& exempt, std::size_t maximumFindings = 20);
 
 /** One line for each finding, for a test's message. */
 std::string ToString(const std::vector<Finding>& findings);

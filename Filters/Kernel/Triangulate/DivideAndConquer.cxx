@@ -313,13 +313,7 @@ private:
     {
       return InCircle(a, b, c, d);
     }
-    // Multiplied out, the comparison holds on either side of ab.
-    const auto from = [&a](const Point2& p) {
-      return Offset{ static_cast<std::int64_t>(p.X - a.X), static_cast<std::int64_t>(p.Y - a.Y) };
-    };
-    const Offset e = from(b);
-    return static_cast<Sign>(
-      CompareQuotients(ApexAt(*this->Metric, e, from(c)), ApexAt(*this->Metric, e, from(d))));
+    return InCircleOfNodes(*this->Metric, a, b, c, d);
   }
 
   /** Reports within a merge, which takes long at the top level. */

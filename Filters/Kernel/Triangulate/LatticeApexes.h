@@ -59,6 +59,19 @@ inline int CompareQuotients(const Apex& p, const Apex& q)
   return CompareProducts(p.Dot, q.Cross, q.Dot, p.Cross);
 }
 
+/** InCircle() in the metric, of nodes as points (column, row); a, b, c are counter-clockwise. */
+inline Sign InCircleOfNodes(
+  const LatticeMetric& metric, const Point2& a, const Point2& b, const Point2& c, const Point2& d)
+{
+  const auto from = [&a](const Point2& p) {
+    return Offset{ static_cast<std::int64_t>(p.X - a.X), static_cast<std::int64_t>(p.Y - a.Y) };
+  };
+  const Offset e = from(b);
+  // Multiplied out, the comparison holds on either side of ab.
+  return static_cast<Sign>(
+    CompareQuotients(ApexAt(metric, e, from(c)), ApexAt(metric, e, from(d))));
+}
+
 /**
  * Whether p is a better apex than q over the edge from a node to e; of cocircular ones, the first
  * as seen from the lower end of the edge. Over an edge upwards this is the rule for ties: the node

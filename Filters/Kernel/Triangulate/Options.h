@@ -19,7 +19,8 @@ namespace elevation
 enum class UnusedReason : unsigned char
 {
   Duplicate = 1,
-  NotFinite = 2
+  NotFinite = 2,
+  WithinError = 3 ///< within MaximumElevationError of the surface
 };
 
 /** Whether points on a lattice are triangulated in the metric of its steps. */
@@ -44,6 +45,11 @@ struct DelaunayOptions
   SearchStrategy Strategy = SearchStrategy::VoxelTraversal;
   /** Triangles with a longer edge (in x,y) are left out; 0: no limit. */
   double MaximumEdgeLength = 0.0;
+  /**
+   * As few points become vertices as are needed for the others to be within this vertical distance of
+   * the surface; 0: all points do.
+   */
+  double MaximumElevationError = 0.0;
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
   Progress Monitor;
   /** Off by default: other parts of the kernel need the triangulation by coordinates. */
@@ -70,6 +76,9 @@ struct Triangulation
   std::vector<UnusedReason> UnusedReasons; ///< one per unused point
   Index NumberOfDuplicates = 0;
   Index NumberOfNotFinite = 0;
+  Index NumberOfRedundant = 0; ///< points within MaximumElevationError
+  /** No vertical distance of such a point is larger; it is no larger than MaximumElevationError. */
+  double LargestElevationError = 0.0;
   bool LatticeFound = false; ///< whether the triangles are those of a lattice (LatticeGrowth.h)
   Lattice Steps;             ///< if found; Origin is the lowest occupied node
 };

@@ -7,6 +7,7 @@
 #include "Hull.h"
 #include "Kernel/Base/Base.h"
 #include "LatticeGrowth.h"
+#include "Simplify.h"
 #include "TriangulateNodes.h"
 
 #include <algorithm>
@@ -59,6 +60,10 @@ Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
       done = std::max(done, fraction);
       return asked.Monitor(done);
     };
+  }
+  if (options.MaximumElevationError > 0.0)
+  {
+    return TriangulateFew(points, options);
   }
   Extent extent;
   const bool isLatticeAsked = options.UseLattice == LatticeMode::Automatic;

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Few of many points whose Delaunay triangulation is nearly within an elevation error of all others,
+ * by greedy insertion [Garland & Heckbert 1995].
+ *
+ * In: points in the order of a grid's rows, a first triangulation that covers them. Out: the Delaunay
+ * triangulation of chosen points, unique as Triangulate.h, and the triangle of each other point.
+ *
+ * A triangle knows the points in it and the worst of them: that with the largest vertical distance.
+ * To insert a point takes away the triangles whose circles it is in [Bowyer 1981; Watson 1981], and
+ * joins it to the edges around; their points find their new triangles by the side of the new edges.
+ *
+ * The worst point of all would be next. Here it is the worst of any triangle with an error above a
+ * level; levels fall by a quarter, from the largest error to the one that is asked for. This needs no
+ * queue, and can be done for several strips of the plane at once: a triangle belongs to the strip that
+ * has all its corners, and others wait. The strips depend on the points alone, so the result is the
+ * same for any number of threads.
+ *
+ * While triangles are large, few of the points in them tell the worst one well enough. So samples are
+ * inserted first, each of 16 times as many points as the one before.
+ *
+ * The sides of edges and distances are computed in double precision without a bound of errors, which
+ * may give a point to the wrong one of two triangles that it is nearly between. Circles are exact.
+ *
+ * Cost: of the order of n log k for k chosen points of n. Memory: 36 bytes a point, and 80 a chosen
+ * one.
+ *
+ * [Garland & Heckbert 1995] Fast Polygonal Approximation of Terrains and Height Fields, Carnegie
+ * Mellon University, CMU-CS-95-181.
+ * [Bowyer 1981] Computing Dirichlet Tessellations, The Computer Journal 24(2):162-166.
+ * [Watson 1981] Computing the n-dimensional Delaunay Tessellation with Application to Voronoi
+ * Polytopes, The Computer Journal 24(2):167-172.
+ */
+#ifndef elevation_Triangulate_GreedyInsertion_h
+#define elevation_Triangulate_GreedyInsertion_h
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Lattice/Lattice.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace elevation
+{
+
+/** A triangle, counter-clockwise; edge k runs from corner k to the next. */
+struct Face
+{
+  Index Corners[3];
+  Index Neighbors[3]; ///< over each edge, or None
+  Index First;        ///< of the list of its points; None: it has none
+  Index Worst;        ///< of its points
+  float Error;        ///< of this one
+  bool IsInCavity;    ///< while a point is inserted
+
+  /** The edge that begins in a corner. */
+  int EdgeFrom(Index corner) const
+  {
+    return this->Corners[0] == corner ? 0 : this->Corners[1] == corner ? 1 : 2;
+  }
+};
+
+/** A point, or the node of one, with its elevation. */
+struct ElevatedPlace
+{
+  double X, Y, Z;
+};
+
+class GreedyInsertion
+{
+public:
+  /**
+   * @param[in] places  distinct; rows are one above the other
+   * @param[in] rows    the first place of each row, and the number of all
+   * @param[in] metric  if not null, places are nodes of a lattice (column, row)
+   * @param[in] first   corners of triangles that cover all places, a Delaunay triangulation
+   */
+  GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buffer<Index>& rows,
+    const LatticeMetric* metric, const Buffer<Index>& first);
+
+  /** Inserts points until no error is above this one. @throws Aborted; std::bad_alloc */
+  void Run(double error, int threads, const Progress& progress);
+
+  /** Inserts some places that are in lists; then Run() once more. */
+  void Insert(const std::vector<Index>& chosen);
+
+  /** The triangles, in an order that does not depend on the number of threads. */
+  const std::vector<Index>& Order() const { return this->Ordered; }
+  const Face& At(Index face) const { return this->Faces[face]; }
+  /** The point after another in the list of a face, or None. */
+  Index Next(Index place) const { return this->Links[place]; }
+  bool IsVertex(Index place) const { return this->Links[place] == Vertex; }
+
+private:
+  class Strip;
+  static constexpr Index Vertex = -2;     // in place of a link
+  static constexpr Index Unassigned = -3; // not yet in a list
+
+  Point2 PointOf(Index place) const { return { this->Places[place].X, this->Places[place].Y }; }
+  Sign SideOf(Index from, Index to, Index place) const;
+  Sign IsInCircle(const Face& face, Index place) const;
+  bool IsInConflict(const Face& face, Index place, int edge) const;
+  Index FaceOf(Index place, Index start) const;
+  void AddTo(Face& face, Index place, float error);
+  void AddSample(std::uint32_t mask, int threads, const Progress& progress);
+  std::vector<Strip> MakeStrips(Index count, bool areShifted);
+  void Refine(double error, double density, std::vector<Strip>&& strips, int threads,
+    const Progress& progress);
+
+  const Buffer<ElevatedPlace>& Places;
+  const Buffer<Index>& Rows;
+  const LatticeMetric* const Metric;
+  bool HasSmallProducts = false; // circles of the metric fit 64 bits
+  Buffer<Index> Links;
+  Buffer<Face> Faces;
+  std::atomic<Index> NumberOfFaces{ 0 };
+  std::vector<Index> Ordered;
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,510 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Simplify.h"
+
+#include "BinGrid.h"
+#include "DivideAndConquer.h"
+#include "GreedyInsertion.h"
+#include "Hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** The points that may be vertices, row after row. */
+struct PlacedPoints
+{
+  Buffer<ElevatedPlace> Places; ///< on a lattice: column and row
+  Buffer<Index> Rows;           ///< the first place of each, and the number of all
+  Buffer<Index> Ids;            ///< of the points
+  std::vector<Index> Corners;   ///< places, those of the convex hull, from the lowest up
+  std::vector<Index> Duplicates, NotFinite;
+  std::optional<LatticeMetric> Metric; ///< on a lattice
+  Lattice Steps;
+
+  Index Count() const { return static_cast<Index>(this->Ids.size()); }
+  Point2 At(Index place) const { return { this->Places[place].X, this->Places[place].Y }; }
+};
+
+/** Keeps the strict corners of a hull, which has candidates by increasing (y, x). */
+std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& candidates)
+{
+  const auto turn = [&placed](Index p, Index q, Index r) {
+    return Orientation(placed.At(p), placed.At(q), placed.At(r));
+  };
+  const Hull hull = FindHull(candidates, turn, Progress());
+  std::vector<Index> corners;
+  for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
+  {
+    for (std::size_t i = 0; i < chain->size(); ++i)
+    {
+      const bool isEnd = i == 0 || i + 1 == chain->size();
+      if (isEnd || turn((*chain)[i - 1], (*chain)[i], (*chain)[i + 1]) != Zero)
+      {
+        corners.push_back((*chain)[i]);
+      }
+    }
+  }
+  std::sort(corners.begin(), corners.end(), [&placed](Index a, Index b) {
+    return IsLower(placed.At(a), placed.At(b));
+  });
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+/** By the nodes of a lattice. @return false if there is none */
+bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int threads,
+  const Progress& progress, PlacedPoints& placed)
+{
+  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  LatticeSearch search = options.GivenLattice.IsSet()
+    ? GivenLattice(points, options.GivenLattice, tolerance, threads, Part(progress, 0.0, 0.4))
+    : FindLattice(points, tolerance, threads, Part(progress, 0.0, 0.4));
+  LatticeNodes nodes;
+  LatticeMetric metric;
+  if (!search.Found || !metric.Set(search.Steps) ||
+    !nodes.Place(
+      points, search, tolerance, options.Duplicates, threads, Part(progress, 0.4, 0.8)) ||
+    (!options.GivenLattice.IsSet() && IsLatticeByChance(nodes.NumberOfPoints(), tolerance)))
+  {
+    return false;
+  }
+  placed.Places.Reserve(static_cast<std::size_t>(nodes.NumberOfPoints()));
+  Buffer<Index> candidates;
+  Index place = 0;
+  for (Index row = 0; row < nodes.Rows; ++row)
+  {
+    placed.Rows.Append(place);
+    const Index first = nodes.NodeAt(row, 0) / 64;
+    const Index words = (nodes.Columns + 63) / 64;
+    for (Index word = 0; word < words; ++word)
+    {
+      for (std::uint64_t bits = nodes.Word(first + word); bits != 0; bits &= bits - 1)
+      {
+        const double z = points.Elevation(nodes.Ids[place++]);
+        placed.Places.Append({ static_cast<double>(64 * word + LowestBit(bits)),
+          static_cast<double>(row), z });
+      }
+    }
+    if (place > placed.Rows[row])
+    {
+      candidates.Append(placed.Rows[row]);
+    }
+    if (place > placed.Rows[row] + 1)
+    {
+      candidates.Append(place - 1);
+    }
+  }
+  placed.Rows.Append(place);
+  placed.Ids = std::move(nodes.Ids);
+  placed.Duplicates = std::move(nodes.Duplicates);
+  placed.NotFinite = std::move(search.NotFinite);
+  placed.Metric = metric;
+  placed.Steps = nodes.Steps;
+  placed.Corners = CornersOf(placed, candidates);
+  return true;
+}
+
+/** By the bins of a grid; in a bin, from the lowest up. */
+PlacedPoints PlaceInBins(
+  const PointView& points, const DelaunayOptions& options, int threads, const Progress& progress)
+{
+  PlacedPoints placed;
+  BinGrid grid(points, options.Duplicates, Part(progress, 0.0, 0.7), threads);
+  placed.Duplicates = std::move(grid.Duplicates);
+  placed.NotFinite = std::move(grid.NotFinite);
+  const Index count = grid.NumberOfPoints();
+  if (count == 0)
+  {
+    return placed;
+  }
+  Buffer<Index> slots; // of each place
+  slots.Resize(static_cast<std::size_t>(count));
+  std::iota(slots.begin(), slots.end(), 0);
+  const std::size_t columns = static_cast<std::size_t>(grid.Bins.Columns);
+  for (std::size_t bin = 0; bin + 1 < grid.Starts.size(); ++bin)
+  {
+    std::sort(slots.begin() + grid.Starts[bin], slots.begin() + grid.Starts[bin + 1],
+      [&grid](Index a, Index b) { return IsLower(grid.PointAt(a), grid.PointAt(b)); });
+    if (bin % columns == 0)
+    {
+      placed.Rows.Append(grid.Starts[bin]);
+    }
+  }
+  placed.Rows.Append(count);
+  placed.Places.Resize(slots.size());
+  placed.Ids.Resize(slots.size());
+  Buffer<Index> placeOf;
+  placeOf.Resize(slots.size());
+  for (Index place = 0; place < count; ++place)
+  {
+    const Index slot = slots[place];
+    ReportStep(progress, place, count);
+    placeOf[slot] = place;
+    placed.Ids[place] = grid.Ids[slot];
+    const Point2 p = points.At(grid.Ids[slot]);
+    placed.Places[place] = { p.X, p.Y, points.Elevation(grid.Ids[slot]) };
+  }
+  Buffer<Index> candidates; // the points of the hull, from the lowest up
+  const Hull hull = FindHull(grid, Progress());
+  for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
+  {
+    for (const Index slot : *chain)
+    {
+      candidates.Append(placeOf[slot]);
+    }
+  }
+  std::sort(candidates.begin(), candidates.end(),
+    [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); });
+  candidates.Resize(static_cast<std::size_t>(
+    std::unique(candidates.begin(), candidates.end()) - candidates.begin()));
+  placed.Corners = CornersOf(placed, candidates);
+  return placed;
+}
+
+/** The triangulation of the corners, by places. */
+Buffer<Index> FirstTriangles(const PlacedPoints& placed)
+{
+  Buffer<Point2> corners;
+  for (const Index place : placed.Corners)
+  {
+    corners.Append(placed.At(place));
+  }
+  Buffer<Index> triangles =
+    DivideAndConquer(corners, Progress(), placed.Metric ? &*placed.Metric : nullptr);
+  for (Index& corner : triangles)
+  {
+    corner = placed.Corners[corner];
+  }
+  return triangles;
+}
+
+/** An upper bound of a vertical distance: what rounding may have taken from it is added. */
+class PlaneOfFace
+{
+public:
+  PlaneOfFace(const Point2& a, double az, const Point2& b, double bz, const Point2& c, double cz)
+    : A(a)
+    , Az(az)
+  {
+    const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
+    const double db = bz - az, dc = cz - az;
+    const double d = bx * cy - cx * by;
+    this->X = (db * cy - dc * by) / d;
+    this->Y = (bx * dc - cx * db) / d;
+    // With u = 2^-53, the terms of numerators and denominator are each off by less than 4 u of their
+    // sums of absolute values; the rest is a few u of the slopes.
+    const double condition = 1.0 + (std::fabs(bx * cy) + std::fabs(cx * by)) / std::fabs(d);
+    constexpr double unit = 16.0 * 1.1102230246251565e-16;
+    this->ErrorX = unit * condition * (std::fabs(db * cy) + std::fabs(dc * by)) / std::fabs(d);
+    this->ErrorY = unit * condition * (std::fabs(bx * dc) + std::fabs(cx * db)) / std::fabs(d);
+  }
+
+  double BoundAt(const Point2& p, double z) const
+  {
+    constexpr double unit = 8.0 * 1.1102230246251565e-16;
+    const double dx = p.X - this->A.X, dy = p.Y - this->A.Y;
+    const double distance = std::fabs(z - this->Az - this->X * dx - this->Y * dy);
+    return distance + this->ErrorX * std::fabs(dx) + this->ErrorY * std::fabs(dy) +
+      unit * (std::fabs(z) + std::fabs(this->Az));
+  }
+
+private:
+  const Point2 A;
+  const double Az;
+  double X, Y, ErrorX, ErrorY;
+};
+
+/** Measures the points that are left out, by their coordinates. */
+class Measurement
+{
+public:
+  Measurement(const PointView& points, const PlacedPoints& placed, const GreedyInsertion& mesh)
+    : Points(points)
+    , Placed(placed)
+    , Mesh(mesh)
+  {
+  }
+
+  /**
+   * Measures all.
+   * @param[out] beyond  places that may be too far, increasing
+   * @return the largest distance of the others
+   * @throws NotOnLattice if a triangle is flat or inverted
+   */
+  double Run(double most, int threads, const Progress& progress, std::vector<Index>& beyond) const
+  {
+    constexpr Index facesAtOnce = 4096;
+    const Index count = static_cast<Index>(this->Mesh.Order().size());
+    const Index pieces = (count + facesAtOnce - 1) / facesAtOnce;
+    std::vector<double> largest(static_cast<std::size_t>(pieces), 0.0);
+    std::vector<std::vector<Index>> found(largest.size());
+    ForEachPiece(pieces, threads, progress, [&](Index piece) {
+      for (Index i = piece * facesAtOnce; i < std::min(count, (piece + 1) * facesAtOnce); ++i)
+      {
+        this->MeasureFace(this->Mesh.Order()[i], most, largest[piece], found[piece]);
+      }
+    });
+    for (const std::vector<Index>& some : found)
+    {
+      beyond.insert(beyond.end(), some.begin(), some.end());
+    }
+    std::sort(beyond.begin(), beyond.end());
+    return largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
+  }
+
+private:
+  Point2 At(Index place) const
+  {
+    return this->Placed.Metric ? this->Points.At(this->Placed.Ids[place]) : this->Placed.At(place);
+  }
+  double ElevationOf(Index place) const { return this->Placed.Places[place].Z; }
+  PlaneOfFace PlaneOf(const Face& face) const
+  {
+    const Index* const c = face.Corners;
+    return { this->At(c[0]), this->ElevationOf(c[0]), this->At(c[1]), this->ElevationOf(c[1]),
+      this->At(c[2]), this->ElevationOf(c[2]) };
+  }
+
+  void MeasureFace(Index number, double most, double& largest, std::vector<Index>& beyond) const
+  {
+    const Face& face = this->Mesh.At(number);
+    const Point2 a = this->At(face.Corners[0]), b = this->At(face.Corners[1]),
+                 c = this->At(face.Corners[2]);
+    if (Orientation(a, b, c) != Positive)
+    {
+      throw NotOnLattice();
+    }
+    const PlaneOfFace plane = this->PlaneOf(face);
+    for (Index place = face.First; place != None; place = this->Mesh.Next(place))
+    {
+      const Point2 p = this->At(place);
+      const bool isInside = Orientation(a, b, p) != Negative && Orientation(b, c, p) != Negative &&
+        Orientation(c, a, p) != Negative;
+      const double distance = isInside ? plane.BoundAt(p, this->ElevationOf(place))
+                                       : this->DistanceFrom(number, place);
+      if (distance <= most)
+      {
+        largest = std::max(largest, distance);
+      }
+      else
+      {
+        beyond.push_back(place);
+      }
+    }
+  }
+
+  /** Of a point that is not in its face, but in one nearby, or just outside of the hull. */
+  double DistanceFrom(Index face, Index place) const
+  {
+    const Point2 p = this->At(place);
+    for (int step = 0; step < 16; ++step)
+    {
+      const Face& at = this->Mesh.At(face);
+      int k = 0;
+      while (k < 3 &&
+        (at.Neighbors[k] == None ||
+          Orientation(this->At(at.Corners[k]), this->At(at.Corners[(k + 1) % 3]), p) != Negative))
+      {
+        ++k;
+      }
+      if (k == 3)
+      {
+        return this->PlaneOf(at).BoundAt(p, this->ElevationOf(place));
+      }
+      face = at.Neighbors[k];
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
+  const PointView& Points;
+  const PlacedPoints& Placed;
+  const GreedyInsertion& Mesh;
+};
+
+/** The rank of each vertex, from the lowest up, by places; what others have is not set. */
+Buffer<Index> RanksOf(const PlacedPoints& placed, const GreedyInsertion& mesh)
+{
+  std::vector<Index> vertices;
+  for (Index place = 0; place < placed.Count(); ++place)
+  {
+    if (mesh.IsVertex(place))
+    {
+      vertices.push_back(place);
+    }
+  }
+  if (!placed.Metric) // on a lattice, places are in this order
+  {
+    std::sort(vertices.begin(), vertices.end(),
+      [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); });
+  }
+  Buffer<Index> ranks;
+  ranks.Resize(placed.Ids.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+  {
+    ranks[vertices[i]] = static_cast<Index>(i);
+  }
+  return ranks;
+}
+
+/** The triangles by ids, in the order of Triangulate.h: fans of their lowest vertices. */
+Buffer<Index> TrianglesOf(const PlacedPoints& placed, const GreedyInsertion& mesh)
+{
+  struct Turned
+  {
+    Index Corners[3]; // from the lowest on
+  };
+  const Buffer<Index> ranks = RanksOf(placed, mesh);
+  std::vector<Turned> faces;
+  std::vector<Index> begins(1, 0); // of fans
+  for (const Index number : mesh.Order())
+  {
+    const Index* const c = mesh.At(number).Corners;
+    int low = ranks[c[1]] < ranks[c[0]] ? 1 : 0;
+    low = ranks[c[2]] < ranks[c[low]] ? 2 : low;
+    faces.push_back({ { c[low], c[(low + 1) % 3], c[(low + 2) % 3] } });
+    const std::size_t fan = static_cast<std::size_t>(ranks[c[low]]);
+    begins.resize(std::max(begins.size(), fan + 2), 0);
+    ++begins[fan + 1];
+  }
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<Index> ends(begins);
+  std::vector<Turned> triangles(faces.size());
+  for (const Turned& face : faces)
+  {
+    triangles[ends[ranks[face.Corners[0]]]++] = face;
+  }
+  for (std::size_t fan = 0; fan + 1 < begins.size(); ++fan)
+  {
+    std::sort(triangles.begin() + begins[fan], triangles.begin() + begins[fan + 1],
+      [&placed](const Turned& s, const Turned& t) {
+        return Orientation(placed.At(s.Corners[0]), placed.At(s.Corners[1]),
+                 placed.At(t.Corners[1])) == Positive;
+      });
+  }
+  Buffer<Index> corners;
+  corners.Reserve(3 * triangles.size());
+  for (const Turned& triangle : triangles)
+  {
+    for (const Index place : triangle.Corners)
+    {
+      corners.Append(placed.Ids[place]);
+    }
+  }
+  return corners;
+}
+
+/** Lists all points that are no vertices. @param[in] mesh  nullptr: there are no triangles */
+void ListUnused(
+  Index count, const PlacedPoints& placed, const GreedyInsertion* mesh, Triangulation& result)
+{
+  std::vector<unsigned char> reasons(static_cast<std::size_t>(count), 0);
+  const auto set = [&reasons](Index id, UnusedReason reason) {
+    reasons[id] = static_cast<unsigned char>(reason);
+  };
+  for (const Index id : placed.Duplicates)
+  {
+    set(id, UnusedReason::Duplicate);
+  }
+  for (const Index id : placed.NotFinite)
+  {
+    set(id, UnusedReason::NotFinite);
+  }
+  for (Index place = 0; mesh && place < placed.Count(); ++place)
+  {
+    if (!mesh->IsVertex(place))
+    {
+      set(placed.Ids[place], UnusedReason::WithinError);
+      ++result.NumberOfRedundant;
+    }
+  }
+  result.NumberOfDuplicates = static_cast<Index>(placed.Duplicates.size());
+  result.NumberOfNotFinite = static_cast<Index>(placed.NotFinite.size());
+  const std::size_t unused =
+    placed.Duplicates.size() + placed.NotFinite.size() + result.NumberOfRedundant;
+  result.UnusedPoints.reserve(unused);
+  result.UnusedReasons.reserve(unused);
+  for (Index id = 0; id < count; ++id)
+  {
+    if (reasons[id] != 0)
+    {
+      result.UnusedPoints.push_back(id);
+      result.UnusedReasons.push_back(static_cast<UnusedReason>(reasons[id]));
+    }
+  }
+}
+
+Triangulation Simplified(const PointView& points, const PlacedPoints& placed,
+  const DelaunayOptions& options, int threads, const Progress& progress)
+{
+  Triangulation result;
+  result.LatticeFound = placed.Metric.has_value();
+  result.Steps = placed.Steps;
+  const Buffer<Index> first =
+    placed.Corners.size() < 3 ? Buffer<Index>() : FirstTriangles(placed);
+  if (first.empty())
+  {
+    ListUnused(points.Count, placed, nullptr, result);
+    return result;
+  }
+  GreedyInsertion mesh(
+    placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first);
+  const Measurement measurement(points, placed, mesh);
+  std::vector<Index> beyond;
+  Progress ofRound = Part(progress, 0.0, 0.8);
+  do
+  {
+    if (!beyond.empty())
+    {
+      mesh.Insert(beyond);
+      beyond.clear();
+      ofRound = Part(progress, 0.8, 0.8);
+    }
+    mesh.Run(options.MaximumElevationError, threads, ofRound);
+    result.LargestElevationError = measurement.Run(
+      options.MaximumElevationError, threads, Part(progress, 0.8, 0.9), beyond);
+  } while (!beyond.empty());
+  result.Triangles = TrianglesOf(placed, mesh);
+  ListUnused(points.Count, placed, &mesh, result);
+  result.NumberOfHullPoints =
+    2 * (placed.Count() - result.NumberOfRedundant) - 2 - static_cast<Index>(result.Triangles.size() / 3);
+  Report(progress, 1.0);
+  return result;
+}
+} // namespace
+
+Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& options)
+{
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
+  const Progress placing = Part(options.Monitor, 0.0, 0.2), working = Part(options.Monitor, 0.2, 1.0);
+  if (options.UseLattice == LatticeMode::Automatic)
+  {
+    PlacedPoints placed;
+    if (PlaceOnLattice(points, options, threads, placing, placed))
+    {
+      try
+      {
+        return Simplified(points, placed, options, threads, working);
+      }
+      catch (const NotOnLattice&)
+      {
+        // by coordinates
+      }
+    }
+    if (options.GivenLattice.IsSet())
+    {
+      throw GivenLatticeUnfit();
+    }
+  }
+  return Simplified(points, PlaceInBins(points, options, threads, placing), options, threads, working);
+}
+
+} // namespace elevation

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The Delaunay triangulation of as few points as are needed to be within an elevation error of all
+ * others.
+ *
+ * In: points. Out: as Triangulate.h, of chosen points; the others are unused. The passes:
+ *   1. Put the points in the order of the nodes of a lattice, if there is one, else of a grid; set
+ *      duplicates aside.
+ *   2. Triangulate the corners of the convex hull, and insert points (GreedyInsertion.h).
+ *   3. Measure the vertical distance of each point that is left out from the triangle that it lies in,
+ *      and bound what rounding may have taken from it. Points that may be too far are inserted, too,
+ *      until there are none.
+ *
+ * Guarantees: no finite point that is not a duplicate is farther from the surface, as LargestError
+ * tells. Topology is exact and unique as in Triangulate.h: the triangles are those of Triangulate() for
+ * the chosen points. The choice depends on the positions of the points alone, not on their order, nor
+ * on the number of threads.
+ *
+ * Pass 3 takes the points by their coordinates. On a lattice, where they may lie beside their nodes, a
+ * triangle that is flat or inverted by coordinates sends everything back to the start, without a
+ * lattice.
+ */
+#ifndef elevation_Triangulate_Simplify_h
+#define elevation_Triangulate_Simplify_h
+
+#include "Options.h"
+
+namespace elevation
+{
+
+/** @param[in] options  with MaximumElevationError. @throws as Triangulate() */
+Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& options);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,398 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "PointSets.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+using namespace elevation;
+using namespace testing_points;
+
+namespace
+{
+double Unit(std::mt19937_64& random)
+{
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+/** Hills and a cliff. */
+double Terrain(double x, double y)
+{
+  return 30.0 * std::sin(5.0 * x) * std::cos(4.0 * y) + 8.0 * std::sin(31.0 * x * y) +
+    (x + 0.3 * y > 0.7 ? 25.0 : 0.0);
+}
+
+constexpr int Kinds = 8;
+
+/** A cloud in some place of the plane, of one of several kinds. */
+Cloud CloudOf(int kind, Index count, std::mt19937_64& random)
+{
+  Cloud cloud;
+  const Index side = static_cast<Index>(std::sqrt(static_cast<double>(count)));
+  for (Index i = 0; i < count; ++i)
+  {
+    double x = Unit(random), y = Unit(random);
+    const double along = y, noise = 6.0 * Unit(random);
+    switch (kind)
+    {
+      case 1: // a lattice, with rounded coordinates
+      case 2: // the same with missing nodes
+        x = static_cast<double>(i % side) / side;
+        y = static_cast<double>(i / side) / side;
+        if (kind == 2 && random() % 4 == 0)
+        {
+          continue;
+        }
+        break;
+      case 3: // tracks
+        x = static_cast<double>(i % 12) / 12.0 + 0.01 * std::sin(9.0 * along);
+        break;
+      case 4: // clustered
+        x = x * x * x * x;
+        y = y * y * y;
+        break;
+      case 5: // few values of each coordinate
+        x = static_cast<double>(random() % 64) / 64.0;
+        y = static_cast<double>(random() % 64) / 64.0;
+        break;
+      case 6: // on a circle and inside
+        x = 0.5 + 0.5 * std::cos(40.0 * x) * (i % 2 ? 1.0 : y);
+        y = 0.5 + 0.5 * std::sin(40.0 * x) * (i % 2 ? 1.0 : y);
+        break;
+      default:
+        break;
+    }
+    const double z = Terrain(x, y) + (kind == 7 ? noise : 0.0);
+    if (kind == 1 || kind == 2)
+    {
+      // Turned, and rounded to centimetres.
+      const double u = 1000.0 * (0.8 * x - 0.6 * y), v = 1000.0 * (0.6 * x + 0.8 * y);
+      cloud.Add(std::round(100.0 * u) / 100.0 + 4e5, std::round(100.0 * v) / 100.0 + 5e6, z);
+      continue;
+    }
+    cloud.Add(1000.0 * x + 4e5, 1000.0 * y + 5e6, z);
+  }
+  return cloud;
+}
+
+DelaunayOptions WithError(double error)
+{
+  DelaunayOptions options;
+  options.UseLattice = LatticeMode::Automatic;
+  options.MaximumElevationError = error;
+  return options;
+}
+
+/** Points that need not be near the surface. */
+std::vector<Index> ExemptOf(const Triangulation& made)
+{
+  std::vector<Index> exempt;
+  for (std::size_t i = 0; i < made.UnusedPoints.size(); ++i)
+  {
+    if (made.UnusedReasons[i] != UnusedReason::WithinError)
+    {
+      exempt.push_back(made.UnusedPoints[i]);
+    }
+  }
+  return exempt;
+}
+
+Mesh MeshOfTriangles(const Cloud& cloud, const Buffer<Index>& triangles)
+{
+  Mesh mesh;
+  for (Index i = 0; i < cloud.Count(); ++i)
+  {
+    mesh.Points.push_back(cloud.View().At(i));
+  }
+  mesh.Triangles.assign(triangles.begin(), triangles.end());
+  return mesh;
+}
+
+std::vector<Index> ChosenOf(const Cloud& cloud, const Triangulation& made)
+{
+  std::vector<Index> chosen;
+  for (Index i = 0; i < cloud.Count(); ++i)
+  {
+    if (!std::binary_search(made.UnusedPoints.begin(), made.UnusedPoints.end(), i))
+    {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+/** The triangles of the chosen points alone, by their ids in the cloud. */
+std::vector<Index> TrianglesOfChosen(
+  const Cloud& cloud, const std::vector<Index>& chosen, DelaunayOptions options)
+{
+  Cloud few;
+  for (const Index id : chosen)
+  {
+    const double* const p = cloud.Coordinates.data() + 3 * static_cast<std::size_t>(id);
+    few.Add(p[0], p[1], p[2]);
+  }
+  options.MaximumElevationError = 0.0;
+  const Triangulation made = Triangulate(few.View(), options);
+  std::vector<Index> triangles;
+  for (const Index corner : made.Triangles)
+  {
+    triangles.push_back(chosen[corner]);
+  }
+  return triangles;
+}
+
+/** Checks all that is promised. */
+void Check(const Cloud& cloud, const DelaunayOptions& options, const Triangulation& made)
+{
+  const Mesh mesh = MeshOfTriangles(cloud, made.Triangles);
+  const auto far = ValidateDistance(
+    mesh, cloud.View(), options.MaximumElevationError, ExemptOf(made));
+  EXPECT_TRUE(far.empty()) << ToString(far);
+  EXPECT_LE(made.LargestElevationError, options.MaximumElevationError);
+  DelaunayOptions again = options;
+  again.GivenLattice = made.LatticeFound ? made.Steps : Lattice();
+  again.UseLattice = made.LatticeFound ? LatticeMode::Automatic : LatticeMode::Off;
+  const std::vector<Index> chosen = ChosenOf(cloud, made);
+  EXPECT_EQ(std::vector<Index>(made.Triangles.begin(), made.Triangles.end()),
+    TrianglesOfChosen(cloud, chosen, again));
+  EXPECT_EQ(static_cast<std::size_t>(made.NumberOfRedundant) + made.NumberOfDuplicates +
+      made.NumberOfNotFinite + chosen.size(),
+    static_cast<std::size_t>(cloud.Count()));
+}
+
+/** The points of a triangulation, as places. */
+std::set<std::pair<double, double>> PlacesOf(const Cloud& cloud, const Buffer<Index>& corners)
+{
+  std::set<std::pair<double, double>> places;
+  for (const Index id : corners)
+  {
+    const Point2 p = cloud.View().At(id);
+    places.emplace(p.X, p.Y);
+  }
+  return places;
+}
+} // namespace
+
+TEST(Simplify, EveryPointIsWithinTheErrorAndTheTrianglesAreThoseOfTheChosen)
+{
+  std::mt19937_64 random(1);
+  for (int kind = 0; kind < Kinds; ++kind)
+  {
+    for (const Index count : { 5, 60, 900, 8000 })
+    {
+      const Cloud cloud = CloudOf(kind, count, random);
+      for (const double error : { 0.05, 1.0, 5.0, 40.0, 1e6 })
+      {
+        SCOPED_TRACE("kind " + std::to_string(kind) + ", " + std::to_string(count) +
+          " points, error " + std::to_string(error));
+        const DelaunayOptions options = WithError(error);
+        Check(cloud, options, Triangulate(cloud.View(), options));
+      }
+    }
+  }
+}
+
+TEST(Simplify, DoesNotDependOnOrderAndThreads)
+{
+  std::mt19937_64 random(2);
+  for (int kind = 0; kind < Kinds; ++kind)
+  {
+    const Cloud cloud = CloudOf(kind, kind == 0 ? 60000 : 20000, random);
+    DelaunayOptions options = WithError(0.5);
+    const Triangulation one = Triangulate(cloud.View(), options);
+    options.NumberOfThreads = 3;
+    const Triangulation three = Triangulate(cloud.View(), options);
+    EXPECT_TRUE(std::equal(one.Triangles.begin(), one.Triangles.end(), three.Triangles.begin(),
+      three.Triangles.end()));
+    EXPECT_EQ(one.UnusedPoints, three.UnusedPoints);
+    EXPECT_EQ(one.LargestElevationError, three.LargestElevationError);
+    const Cloud shuffled = cloud.Shuffled(random);
+    const Triangulation other = Triangulate(shuffled.View(), options);
+    if (kind != 5) // there, which of several points at a place counts depends on the order
+    {
+      EXPECT_EQ(PlacesOf(cloud, one.Triangles), PlacesOf(shuffled, other.Triangles)) << kind;
+    }
+  }
+}
+
+TEST(Simplify, TakesAtMostATenthMorePointsThanOneAtATime)
+{
+  std::mt19937_64 random(3);
+  for (const int kind : { 0, 1, 4, 7 })
+  {
+    const Cloud cloud = CloudOf(kind, 3600, random);
+    const DelaunayOptions options = WithError(3.0);
+    const Triangulation made = Triangulate(cloud.View(), options);
+    // The worst of all points again and again, from the corners of the hull on.
+    DelaunayOptions plain;
+    plain.UseLattice = made.LatticeFound ? LatticeMode::Automatic : LatticeMode::Off;
+    plain.GivenLattice = made.LatticeFound ? made.Steps : Lattice();
+    const Triangulation corners = Triangulate(cloud.View(), WithError(1e9));
+    std::vector<Index> chosen = ChosenOf(cloud, corners);
+    for (;;)
+    {
+      const std::vector<Index> triangles = TrianglesOfChosen(cloud, chosen, plain);
+      Buffer<Index> ids;
+      for (const Index corner : triangles)
+      {
+        ids.Append(corner);
+      }
+      const Mesh mesh = MeshOfTriangles(cloud, ids);
+      double largest = 0.0;
+      Index worst = None;
+      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+      {
+        const Index* const c = triangles.data() + 3 * static_cast<std::size_t>(t);
+        const Point2 p = mesh.PointOf(c[0]), q = mesh.PointOf(c[1]), r = mesh.PointOf(c[2]);
+        const double whole = (q.X - p.X) * (r.Y - p.Y) - (q.Y - p.Y) * (r.X - p.X);
+        const Box box = [&]() {
+          Box around;
+          around.Add(p);
+          around.Add(q);
+          around.Add(r);
+          return around;
+        }();
+        for (Index i = 0; i < cloud.Count(); ++i)
+        {
+          const Point2 at = mesh.PointOf(i);
+          if (!box.Contains(at) || Orientation(p, q, at) == Negative ||
+            Orientation(q, r, at) == Negative || Orientation(r, p, at) == Negative)
+          {
+            continue;
+          }
+          const double u = ((q.X - at.X) * (r.Y - at.Y) - (q.Y - at.Y) * (r.X - at.X)) / whole;
+          const double v = ((r.X - at.X) * (p.Y - at.Y) - (r.Y - at.Y) * (p.X - at.X)) / whole;
+          const PointView view = cloud.View();
+          const double z = u * view.Elevation(c[0]) + v * view.Elevation(c[1]) +
+            (1.0 - u - v) * view.Elevation(c[2]);
+          const double distance = std::fabs(z - view.Elevation(i));
+          if (distance > largest)
+          {
+            largest = distance;
+            worst = i;
+          }
+        }
+      }
+      if (largest <= options.MaximumElevationError)
+      {
+        break;
+      }
+      chosen.insert(std::lower_bound(chosen.begin(), chosen.end(), worst), worst);
+    }
+    const std::size_t ours = ChosenOf(cloud, made).size();
+    EXPECT_LE(static_cast<double>(ours), 1.1 * static_cast<double>(chosen.size())) << kind;
+  }
+}
+
+TEST(Simplify, OfAPlaneOnlyTheCornersOfTheHullAreLeft)
+{
+  for (const LatticeMode mode : { LatticeMode::Automatic, LatticeMode::Off })
+  {
+    Cloud cloud;
+    for (int i = 0; i < 5000; ++i)
+    {
+      const double x = i % 100, y = i / 100;
+      cloud.Add(x, y, 3.0 * x - 0.5 * y + 7.0);
+    }
+    DelaunayOptions options = WithError(1e-9);
+    options.UseLattice = mode;
+    const Triangulation made = Triangulate(cloud.View(), options);
+    EXPECT_EQ(ChosenOf(cloud, made), (std::vector<Index>{ 0, 99, 4900, 4999 }));
+    EXPECT_EQ(made.Triangles.size(), 6u);
+    EXPECT_EQ(made.NumberOfHullPoints, 4);
+    EXPECT_EQ(made.NumberOfRedundant, 4996);
+  }
+}
+
+TEST(Simplify, ASpikeAndItsFootAreKept)
+{
+  Cloud cloud;
+  for (int i = 0; i < 10000; ++i)
+  {
+    cloud.Add(i % 100, i / 100, i == 4242 ? 50.0 : 0.0);
+  }
+  const Triangulation made = Triangulate(cloud.View(), WithError(1.0));
+  const std::vector<Index> chosen = ChosenOf(cloud, made);
+  EXPECT_TRUE(std::binary_search(chosen.begin(), chosen.end(), 4242));
+  EXPECT_LT(chosen.size(), 40u);
+  Check(cloud, WithError(1.0), made);
+}
+
+TEST(Simplify, PointsThatAreDuplicatesOrNotFiniteAreSetAsideAsAlways)
+{
+  std::mt19937_64 random(4);
+  Cloud cloud = CloudOf(0, 3000, random);
+  for (Index i = 0; i < 50; ++i)
+  {
+    const double* const p = cloud.Coordinates.data() + 3 * static_cast<std::size_t>(7 * i);
+    cloud.Add(p[0], p[1], p[2] + 500.0);
+    cloud.Add(4e5, 5e6, std::numeric_limits<double>::quiet_NaN());
+  }
+  for (const DuplicatePolicy policy : { DuplicatePolicy::KeepFirst, DuplicatePolicy::KeepHighest })
+  {
+    DelaunayOptions options = WithError(2.0);
+    options.Duplicates = policy;
+    const Triangulation made = Triangulate(cloud.View(), options);
+    EXPECT_EQ(made.NumberOfDuplicates, 50);
+    EXPECT_EQ(made.NumberOfNotFinite, 50);
+    Check(cloud, options, made);
+  }
+}
+
+TEST(Simplify, OfPointsOnALineThereIsNoTriangleAndNoneIsWithinTheError)
+{
+  Cloud cloud;
+  for (int i = 0; i < 100; ++i)
+  {
+    cloud.Add(i, 2 * i, 0.0);
+  }
+  for (const LatticeMode mode : { LatticeMode::Automatic, LatticeMode::Off })
+  {
+    DelaunayOptions options = WithError(1.0);
+    options.UseLattice = mode;
+    const Triangulation made = Triangulate(cloud.View(), options);
+    EXPECT_TRUE(made.Triangles.empty());
+    EXPECT_TRUE(made.UnusedPoints.empty());
+    EXPECT_EQ(made.NumberOfHullPoints, 0);
+  }
+  EXPECT_TRUE(Triangulate(Cloud().View(), WithError(1.0)).Triangles.empty());
+}
+
+TEST(Simplify, ALatticeWhosePointsLieBesideTheirNodesIsMeasuredByCoordinates)
+{
+  std::mt19937_64 random(5);
+  for (int trial = 0; trial < 20; ++trial)
+  {
+    Cloud cloud;
+    for (int i = 0; i < 4000; ++i)
+    {
+      const double x = i % 80 + 0.009 * (2.0 * Unit(random) - 1.0);
+      const double y = i / 80 + 0.009 * (2.0 * Unit(random) - 1.0);
+      cloud.Add(x, y, Terrain(x / 80.0, y / 80.0));
+    }
+    const DelaunayOptions options = WithError(1.0);
+    Check(cloud, options, Triangulate(cloud.View(), options));
+  }
+}
+
+TEST(Simplify, StopsWhenItIsTold)
+{
+  std::mt19937_64 random(6);
+  const Cloud cloud = CloudOf(0, 50000, random);
+  for (const int threads : { 1, 2 })
+  {
+    for (const double when : { 0.0, 0.3, 0.6, 0.85 })
+    {
+      DelaunayOptions options = WithError(0.1);
+      options.NumberOfThreads = threads;
+      options.Monitor = [when](double fraction) { return fraction < when; };
+      EXPECT_THROW(Triangulate(cloud.View(), options), Aborted);
+    }
+  }
+}
