@@ -104,12 +104,16 @@ void FilledPart::FindCorners()
   const Index own = static_cast<Index>(this->Input->GetNumberOfPoints());
   this->PlaceOf.assign(this->Filled.Keys.size(), None);
   this->Added.clear();
+  std::map<PointKey, Index> added; // a point may be there several times
   const auto place = [&](Index corner) {
     if (corner < first && this->PlaceOf[corner] == None)
     {
-      const Index here = this->Shared.Find(this->Filled.Keys[corner]);
-      this->PlaceOf[corner] = here != None ? here : own + static_cast<Index>(this->Added.size());
-      if (here == None)
+      const PointKey& key = this->Filled.Keys[corner];
+      const Index here = this->Shared.Find(key);
+      const Index next = own + static_cast<Index>(this->Added.size());
+      const bool isNew = here == None && added.emplace(key, next).second;
+      this->PlaceOf[corner] = here != None ? here : added[key];
+      if (isNew)
       {
         this->Added.push_back(corner);
       }

@@ -16,22 +16,27 @@
 namespace elevation
 {
 
+namespace
+{
+constexpr double LeastPointsOfGroup = 1000.0;
+constexpr double GroupsOfPiece = 8.0; // so many groups together take the memory of a piece
+} // namespace
+
 FilledPieces::FilledPieces(int count, const std::string& folder, vtkIdType numberOfPoints,
   const MakePiece& makePiece, const FillOptions& options, bool interpolate)
-  : Make(makePiece)
+  : Folder(folder)
+  , Make(makePiece)
   , NumberOfPoints(numberOfPoints)
 {
   for (int piece = 0; piece < count; ++piece)
   {
-    const std::string number = std::to_string(piece);
-    this->Pieces.push_back({ Box(), {}, SpoolFile(folder + "/surrounding-" + number),
-      SpoolFile(folder + "/patches-" + number) });
+    this->Pieces.push_back({ Box(), 0.0, SpoolFile(folder + "/patches-" + std::to_string(piece)) });
   }
   this->Whole.Options = options;
   this->Whole.Interpolate = interpolate;
   this->Whole.ByIds = true;
   this->FindHoles();
-  this->AssignHoles();
+  this->GroupHoles();
   if (this->Whole.NeedLattice())
   {
     this->FindLattice();
@@ -79,6 +84,7 @@ void FilledPieces::FindHoles()
     {
       this->Pieces[piece].Place.Add(part.Own.PointOf(corner));
     }
+    this->Pieces[piece].NumberOfTriangles = part.Own.NumberOfTriangles();
     std::vector<Index> ends;
     std::copy_if(part.Shared.Places.begin(), part.Shared.Places.end(), std::back_inserter(ends),
       [&part](Index place) { return part.AreUsed[place] != 0; });
@@ -112,8 +118,19 @@ void FilledPieces::FindHoles()
   }
 }
 
-/** To the piece that has the first point of the rim. */
-void FilledPieces::AssignHoles()
+/** About how many points are in the box around a hole. */
+double FilledPieces::PointsAround(Index hole, int piece) const
+{
+  const HoleExtent& extent = this->Whole.Extents[hole];
+  const Box box = this->Whole.BoxOf(hole);
+  const double area = box.Width() * box.Height();
+  const Box& all = this->Pieces[piece].Place;
+  return std::max(area / (extent.MeanEdge * extent.MeanEdge),
+    0.5 * this->Pieces[piece].NumberOfTriangles * area / (all.Width() * all.Height()));
+}
+
+/** Holes belong to the piece that has the first point of the rim. */
+void FilledPieces::GroupHoles()
 {
   const BorderOfAll& border = this->Whole.Border;
   std::vector<int> pieceOf(border.Keys.size(), 0);
@@ -121,13 +138,30 @@ void FilledPieces::AssignHoles()
   {
     pieceOf[border.Edges[i].Origin] = border.PartOfEdge[i];
   }
+  const double pieces = static_cast<double>(this->Pieces.size());
+  const double most = std::max(
+    LeastPointsOfGroup, static_cast<double>(this->NumberOfPoints) / pieces / GroupsOfPiece);
+  std::vector<Index> groupOf(this->Pieces.size(), None); // the last one of each piece
+  std::vector<double> points;                            // around the holes of each group
   const Holes& found = this->Whole.OfAll.Found;
   for (Index hole = 0; hole < found.Count(); ++hole)
   {
-    if (this->Whole.IsToBeFilled(hole))
+    if (!this->Whole.IsToBeFilled(hole))
     {
-      this->Pieces[pieceOf[*found.Walks.Begin(found.Rim(hole))]].Holes.push_back(hole);
+      continue;
     }
+    const int piece = pieceOf[*found.Walks.Begin(found.Rim(hole))];
+    const double around = this->PointsAround(hole, piece);
+    Index& group = groupOf[piece];
+    if (group == None || points[group] + around > most)
+    {
+      group = static_cast<Index>(this->Groups.size());
+      this->Groups.push_back(
+        { piece, {}, SpoolFile(this->Folder + "/surrounding-" + std::to_string(group)) });
+      points.push_back(0.0);
+    }
+    this->Groups[group].Holes.push_back(hole);
+    points[group] += around;
   }
 }
 
@@ -143,18 +177,18 @@ void FilledPieces::FindLattice()
   this->Whole.FindLattice(Ranks(), points, Part(this->Whole.Options.Monitor, 0.2, 0.5));
 }
 
-/** Writes the triangles around the holes of pieces to their files. */
+/** Writes the triangles around the holes of groups to their files. */
 void FilledPieces::Surround(const std::vector<char>& areWaiting, double begin, double end)
 {
-  std::vector<std::vector<Box>> boxes(this->Pieces.size()); // around the holes of each piece
-  for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
+  std::vector<std::vector<Box>> boxes(this->Groups.size());
+  for (std::size_t group = 0; group < this->Groups.size(); ++group)
   {
-    this->Pieces[piece].Surrounding.Remove(); // of boxes that were too small
-    for (const Index hole : this->Pieces[piece].Holes)
+    this->Groups[group].Surrounding.Remove(); // of boxes that were too small
+    for (const Index hole : this->Groups[group].Holes)
     {
-      if (areWaiting[piece])
+      if (areWaiting[group])
       {
-        boxes[piece].push_back(this->Whole.BoxOf(hole));
+        boxes[group].push_back(this->Whole.BoxOf(hole));
       }
     }
   }
@@ -167,7 +201,7 @@ void FilledPieces::Surround(const std::vector<char>& areWaiting, double begin, d
   }
 }
 
-/** Writes what a piece has in the boxes of each, if any. */
+/** Writes what a piece has in the boxes of each group, if any. */
 void FilledPieces::AppendSurroundings(
   int piece, const std::vector<std::vector<Box>>& boxes, const Progress& progress)
 {
@@ -191,18 +225,18 @@ void FilledPieces::AppendSurroundings(
       if (!near.empty())
       {
         const Bytes packed = PackData(ChosenTriangles(part.Input, part.Own, near));
-        this->Pieces[of].Surrounding.Append(packed.data(), packed.size());
+        this->Groups[of].Surrounding.Append(packed.data(), packed.size());
       }
     }
   });
 }
 
-SurroundedHoles FilledPieces::HolesOf(int piece, const Progress& progress) const
+SurroundedHoles FilledPieces::HolesOf(const Group& group, const Progress& progress) const
 {
   SurroundedHoles holes;
-  holes.Numbers = this->Pieces[piece].Holes;
+  holes.Numbers = group.Holes;
   Parts parts;
-  this->Pieces[piece].Surrounding.ForEach(
+  group.Surrounding.ForEach(
     [&parts](Bytes&& bytes) { parts.push_back(UnpackData(bytes.data(), bytes.size())); });
   holes.Surround(parts, true, progress);
   return holes;
@@ -212,18 +246,14 @@ SurroundedHoles FilledPieces::HolesOf(int piece, const Progress& progress) const
 void FilledPieces::FindRooms()
 {
   std::vector<double> needs(this->Whole.Extents.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t piece = 0; piece < this->Pieces.size(); ++piece)
+  for (const Group& group : this->Groups)
   {
-    const std::vector<Index>& holes = this->Pieces[piece].Holes;
-    if (!holes.empty())
+    Report(this->Whole.Options.Monitor, 0.6);
+    const std::vector<double> ofGroup =
+      this->HolesOf(group, Progress()).Needs(this->Whole, Progress());
+    for (std::size_t i = 0; i < ofGroup.size(); ++i)
     {
-      Report(this->Whole.Options.Monitor, 0.6);
-      const std::vector<double> ofPiece =
-        this->HolesOf(static_cast<int>(piece), Progress()).Needs(this->Whole, Progress());
-      for (std::size_t i = 0; i < holes.size(); ++i)
-      {
-        needs[holes[i]] = ofPiece[i];
-      }
+      needs[group.Holes[i]] = ofGroup[i];
     }
   }
   this->Whole.Rooms = RoomsOfNeeds(needs, this->Whole.Options.MaximumInsertedPoints);
@@ -231,10 +261,7 @@ void FilledPieces::FindRooms()
 
 void FilledPieces::FillAll()
 {
-  const int count = static_cast<int>(this->Pieces.size());
-  std::vector<char> areWaiting(this->Pieces.size(), 0);
-  std::transform(this->Pieces.begin(), this->Pieces.end(), areWaiting.begin(),
-    [](const PieceFiles& files) { return files.Holes.empty() ? 0 : 1; });
+  std::vector<char> areWaiting(this->Groups.size(), 1);
   while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
   {
     // Few holes need more than their first box.
@@ -245,22 +272,22 @@ void FilledPieces::FillAll()
     {
       this->FindRooms();
     }
-    const double width = (isFirst ? 0.3 : 0.1) / count;
-    for (int piece = 0; piece < count; ++piece)
+    const double width = (isFirst ? 0.3 : 0.1) / static_cast<double>(this->Groups.size());
+    for (std::size_t group = 0; group < this->Groups.size(); ++group)
     {
-      const double first = end + width * piece;
+      const double first = end + width * static_cast<double>(group);
       const Progress progress =
         Part(this->Whole.Options.Monitor, first, std::min(1.0, first + width));
-      areWaiting[piece] = areWaiting[piece] && !this->FillHolesOf(piece, progress) ? 1 : 0;
+      areWaiting[group] =
+        areWaiting[group] && !this->FillHolesOf(this->Groups[group], progress) ? 1 : 0;
     }
   }
 }
 
 /** @return false if they need more of the surface around them */
-bool FilledPieces::FillHolesOf(int piece, const Progress& progress)
+bool FilledPieces::FillHolesOf(Group& group, const Progress& progress)
 {
-  PieceFiles& files = this->Pieces[piece];
-  SurroundedHoles holes = this->HolesOf(piece, Part(progress, 0.0, 0.1));
+  SurroundedHoles holes = this->HolesOf(group, Part(progress, 0.0, 0.1));
   const std::vector<Index> beyond = holes.Fill(this->Whole, Part(progress, 0.1, 1.0));
   for (const Index hole : beyond)
   {
@@ -270,17 +297,17 @@ bool FilledPieces::FillHolesOf(int piece, const Progress& progress)
   {
     return false;
   }
-  for (std::size_t i = 0; i < files.Holes.size(); ++i)
+  for (std::size_t i = 0; i < group.Holes.size(); ++i)
   {
-    this->Whole.OfAll.Reports[files.Holes[i]] = holes.Patches.Reports[i];
+    this->Whole.OfAll.Reports[group.Holes[i]] = holes.Patches.Reports[i];
   }
-  files.Surrounding.Remove();
+  group.Surrounding.Remove();
   if (holes.Patches.NumberOfTriangles() > 0)
   {
     this->NewTriangles += holes.Patches.NumberOfTriangles();
     holes.KeepCorners();
     const Bytes packed = holes.Pack();
-    files.Patches.Append(packed.data(), packed.size());
+    this->Pieces[group.Piece].Patches.Append(packed.data(), packed.size());
   }
   return true;
 }
@@ -297,8 +324,9 @@ void FilledPieces::Pass(int piece, const Progress& progress, vtkPolyData* output
   part.Read(Part(progress, 0.4, 0.6));
   part.ListShared(true);
   part.Shared.TakeMarks(made);
-  this->Pieces[piece].Patches.ForEach(
-    [&part](Bytes&& bytes) { part.Filled = SurroundedHoles(bytes); });
+  std::vector<SurroundedHoles> groups;
+  this->Pieces[piece].Patches.ForEach([&groups](Bytes&& bytes) { groups.emplace_back(bytes); });
+  part.Filled = SurroundedHoles(std::move(groups));
   part.FindCorners();
   part.Write(this->Whole, true, this->NumberOfPoints - 1, Part(progress, 0.6, 1.0), output);
 }

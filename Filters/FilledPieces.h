@@ -8,14 +8,14 @@
  * the first point of its rim. The passes over all pieces:
  *   1. What is on their borders tells the holes.
  *   2. Their points tell the lattice, in two more passes.
- *   3. The triangles around the holes of each piece go to a file. These holes are filled, and their
- *      patches go to another file. Where a hole turns out to need more triangles, those of a larger
- *      box are looked for.
+ *   3. The triangles around some holes, a group of one piece, go to a file. These holes are filled,
+ *      and their patches go to the file of the piece. Where a hole turns out to need more triangles,
+ *      those of a larger box are looked for.
  *   4. Each piece is written with its patches.
  *
- * Memory: what a piece takes, and the surrounding of its holes; that of a hole is a box that
- * reaches 1.5 times its size beyond it, or further if its kernel asks for it. The border of all
- * pieces.
+ * Memory: what a piece takes, and the border of all pieces. The surrounding of a group takes far
+ * less than a piece, unless that of a single hole is larger: a box that reaches 1.5 times its size
+ * beyond it, or further if its kernel asks for it.
  */
 #ifndef FilledPieces_h
 #define FilledPieces_h
@@ -61,11 +61,18 @@ public:
   vtkIdType CountOfNewTriangles() const { return this->NewTriangles; }
 
 private:
-  struct PieceFiles
+  struct PieceOfAll
   {
     Box Place; ///< of its triangles
+    double NumberOfTriangles;
+    SpoolFile Patches;
+  };
+  /** Holes of one piece, increasing, that are filled together. */
+  struct Group
+  {
+    int Piece;
     std::vector<Index> Holes;
-    SpoolFile Surrounding, Patches;
+    SpoolFile Surrounding;
   };
 
   /** Makes each piece with points; the monitor goes from begin to end. */
@@ -74,19 +81,22 @@ private:
   template <typename Visit>
   void VisitPiece(int piece, const Progress& progress, const Visit& visit) const;
   void FindHoles();
-  void AssignHoles();
+  double PointsAround(Index hole, int piece) const;
+  void GroupHoles();
   void FindLattice();
   void Surround(const std::vector<char>& areWaiting, double begin, double end);
   void AppendSurroundings(
     int piece, const std::vector<std::vector<Box>>& boxes, const Progress& progress);
-  SurroundedHoles HolesOf(int piece, const Progress& progress) const;
+  SurroundedHoles HolesOf(const Group& group, const Progress& progress) const;
   void FindRooms();
   void FillAll();
-  bool FillHolesOf(int piece, const Progress& progress);
+  bool FillHolesOf(Group& group, const Progress& progress);
 
+  const std::string Folder;
   const MakePiece Make;
   const vtkIdType NumberOfPoints;
-  std::vector<PieceFiles> Pieces;
+  std::vector<PieceOfAll> Pieces;
+  std::vector<Group> Groups;
   HolesOfParts Whole;
   Parts Rims; // points on the border
   vtkIdType NewTriangles = 0;

@@ -217,6 +217,24 @@ void ForEachList(Result& patches, const Visit& visit)
     visit(values);
   }
 }
+
+/** Appends all lists of a result, whose ids and offsets go on. */
+void AppendLists(const FillResult& from, FillResult& to)
+{
+  const auto append = [](const auto& values, auto& all) {
+    all.insert(all.end(), values.begin(), values.end());
+  };
+  append(from.Points, to.Points);
+  append(from.Triangles, to.Triangles);
+  append(from.PointOffsets, to.PointOffsets);
+  append(from.TriangleOffsets, to.TriangleOffsets);
+  append(from.NearestBoundaryPoints, to.NearestBoundaryPoints);
+  append(from.StandardErrors, to.StandardErrors);
+  for (std::size_t i = 0; i < from.Attributes.size(); ++i)
+  {
+    append(from.Attributes[i], to.Attributes[i]);
+  }
+}
 } // namespace
 
 Bytes SurroundedHoles::Pack() const
@@ -243,6 +261,43 @@ SurroundedHoles::SurroundedHoles(const Bytes& bytes)
   TakeList(from, this->Numbers);
   TakeList(from, this->Keys);
   ForEachList(this->Patches, [&from](auto& values) { TakeList(from, values); });
+}
+
+SurroundedHoles::SurroundedHoles(std::vector<SurroundedHoles>&& groups)
+{
+  std::sort(groups.begin(), groups.end(),
+    [](const SurroundedHoles& a, const SurroundedHoles& b) { return a.Numbers[0] < b.Numbers[0]; });
+  Parts surroundings;
+  for (const SurroundedHoles& group : groups)
+  {
+    this->Numbers.insert(this->Numbers.end(), group.Numbers.begin(), group.Numbers.end());
+    this->Keys.insert(this->Keys.end(), group.Keys.begin(), group.Keys.end());
+    surroundings.push_back(group.Surrounding);
+  }
+  this->Surrounding = groups.empty() ? nullptr : Append(surroundings);
+  Index first = 0, firstNew = static_cast<Index>(this->Keys.size());
+  for (SurroundedHoles& group : groups)
+  {
+    FillResult& patches = group.Patches;
+    const Index count = static_cast<Index>(group.Keys.size());
+    for (std::vector<Index>* ids : { &patches.Triangles, &patches.NearestBoundaryPoints })
+    {
+      std::for_each(ids->begin(), ids->end(),
+        [&](Index& id) { id = id < count ? first + id : firstNew + id - count; });
+    }
+    const Index points = this->Patches.NumberOfPoints();
+    const Index triangles = this->Patches.NumberOfTriangles();
+    first += count;
+    firstNew += patches.NumberOfPoints();
+    std::for_each(patches.PointOffsets.begin(), patches.PointOffsets.end(),
+      [points](Index& offset) { offset += points; });
+    std::for_each(patches.TriangleOffsets.begin(), patches.TriangleOffsets.end(),
+      [triangles](Index& offset) { offset += triangles; });
+    this->Patches.PointOffsets.pop_back();
+    this->Patches.TriangleOffsets.pop_back();
+    this->Patches.Attributes.resize(patches.Attributes.size());
+    AppendLists(patches, this->Patches);
+  }
 }
 
 } // namespace elevation

@@ -70,6 +70,8 @@ struct SurroundedHoles
   Bytes Pack() const;
   SurroundedHoles() = default;
   explicit SurroundedHoles(const Bytes& bytes);
+  /** Several groups in one, by the order of their first holes; without triangles around them. */
+  explicit SurroundedHoles(std::vector<SurroundedHoles>&& groups);
 
 private:
   Holes Listed(const HolesOfParts& all) const;
