@@ -260,13 +260,23 @@ long double BoundOfDistance(const PointView& points, const Index* corners, Index
 } // namespace
 
 std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points, double most,
-  const std::vector<Index>& exempt, std::size_t maximumFindings)
+  double besideBy, const std::vector<Index>& exempt, std::size_t maximumFindings)
 {
   std::vector<Finding> findings;
-  const CellGrid grid(static_cast<std::size_t>(mesh.NumberOfTriangles()), [&mesh](std::size_t t) {
-    const Index* const c = mesh.Triangles.data() + 3 * t;
+  const auto cornersOf = [&mesh](Index t) {
+    return mesh.Triangles.data() + 3 * static_cast<std::size_t>(t);
+  };
+  const CellGrid grid(static_cast<std::size_t>(mesh.NumberOfTriangles()), [&](std::size_t t) {
+    const Index* const c = cornersOf(static_cast<Index>(t));
     return std::array<Point2, 3>{ mesh.PointOf(c[0]), mesh.PointOf(c[1]), mesh.PointOf(c[2]) };
   });
+  /** Whether a point is on the left of an edge, or at most so far to its right. */
+  const auto isLeftOf = [&mesh](Index from, Index to, const Point2& p, double by) {
+    const Point2 a = mesh.PointOf(from), b = mesh.PointOf(to);
+    const double area = (b.X - a.X) * (p.Y - a.Y) - (b.Y - a.Y) * (p.X - a.X);
+    return by > 0.0 ? area >= -by * std::hypot(b.X - a.X, b.Y - a.Y)
+                    : Orientation(a, b, p) != Negative;
+  };
   for (Index point = 0; point < points.Count && findings.size() < maximumFindings; ++point)
   {
     const Point2 p = points.At(point);
@@ -276,17 +286,19 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
       continue;
     }
     bool isCovered = false, isNear = false;
-    grid.Visit(p, [&](Index t) {
-      const Index* const c = mesh.Triangles.data() + 3 * static_cast<std::size_t>(t);
-      bool isInside = true;
-      for (int k = 0; k < 3; ++k)
+    const auto look = [&](Index t, double by) {
+      const Index* const c = cornersOf(t);
+      if (isLeftOf(c[0], c[1], p, by) && isLeftOf(c[1], c[2], p, by) && isLeftOf(c[2], c[0], p, by))
       {
-        isInside = isInside &&
-          Orientation(mesh.PointOf(c[k]), mesh.PointOf(c[(k + 1) % 3]), p) != Negative;
+        isCovered = true;
+        isNear = isNear || BoundOfDistance(points, c, point) <= most;
       }
-      isCovered = isCovered || isInside;
-      isNear = isNear || (isInside && BoundOfDistance(points, c, point) <= most);
-    });
+    };
+    grid.Visit(p, [&](Index t) { look(t, 0.0); });
+    for (Index t = 0; !isCovered && besideBy > 0.0 && t < mesh.NumberOfTriangles(); ++t)
+    {
+      look(t, besideBy);
+    }
     if (!isNear)
     {
       findings.push_back({ Rule::Distance, point,

@@ -68,12 +68,14 @@ std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options =
 
 /**
  * Checks Distance: finds each point's triangle anew, exactly, and bounds its vertical distance from
- * above. Points beside the mesh are findings, too.
- * @param[in] points  those of the mesh, with elevations
- * @param[in] exempt  ids, increasing; points that are not finite are exempt, too
+ * above. Points beside the mesh are findings, too, unless they are near its border: these are
+ * measured from the plane of a triangle there.
+ * @param[in] points    those of the mesh, with elevations
+ * @param[in] besideBy  how far a point may lie beside the mesh
+ * @param[in] exempt    ids, increasing; points that are not finite are exempt, too
  */
 std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points, double most,
-  const std::vector<Index>& exempt, std::size_t maximumFindings = 20);
+  double besideBy, const std::vector<Index>& exempt, std::size_t maximumFindings = 20);
 
 /** One line for each finding, for a test's message. */
 std::string ToString(const std::vector<Finding>& findings);

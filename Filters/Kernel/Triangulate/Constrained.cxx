@@ -3,6 +3,7 @@
 #include "Constrained.h"
 
 #include "Kernel/Base/Base.h"
+#include "Simplify.h"
 #include "Triangulate.h"
 
 #include <algorithm>
@@ -918,6 +919,12 @@ ConstrainedTriangulation TriangulateConstrained(
   options.Monitor = Part(progress, 0.2, 0.6);
   options.UseLattice = LatticeMode::Off;
   options.MaximumEdgeLength = 0.0; // recovery needs all triangles
+  if (options.MaximumElevationError > 0.0)
+  {
+    options.Monitor = Part(progress, 0.2, 1.0);
+    result = TriangulateFew(all, options, constrained.Pieces);
+    return constrained;
+  }
   result = Triangulate(all, options);
   if (result.Triangles.empty())
   {

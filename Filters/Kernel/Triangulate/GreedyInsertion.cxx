@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GreedyInsertion.h"
 
-#include "Kernel/Mesh/Mesh.h"
 #include "LatticeApexes.h"
 
 #include <algorithm>
@@ -15,10 +14,10 @@ namespace elevation
 
 namespace
 {
-constexpr double LevelFactor = 0.75; // from one level of errors to the next
+constexpr double LevelFactor = 0.9; // from one level of errors to the next
 constexpr std::uint32_t SampleFactor = 16;
 constexpr double LeastSample = 2000.0;
-constexpr double PointsPerVertex = 8.0; // of a sample, where it ends
+constexpr double PointsPerVertex = 12.0; // of a sample, where it ends
 constexpr double VertexRowsPerStrip = 16.0;
 constexpr Index MostStrips = 64;
 constexpr Index FacesAtOnce = 64; // that a strip takes
@@ -79,6 +78,7 @@ private:
   {
     Index From, To;
     Index Outside; // a face, None, or Gap: the place lies on it
+    bool IsFixed;
   };
   static constexpr Index Gap = -2;
 
@@ -87,6 +87,7 @@ private:
   void MovePoints(Index place, std::size_t count, bool isClosed);
   std::size_t SectorOf(double dx, double dy, std::size_t start, std::size_t count, bool isClosed) const;
   Index NewFace();
+  bool IsCut(Index end) const { return end == this->Cut[0] || end == this->Cut[1]; }
   bool IsDue(Index face) const { return this->Of.Faces[face].Error > this->Level; }
 
   GreedyInsertion& Of;
@@ -105,6 +106,7 @@ private:
   std::vector<Index> Cavity, Fan; // faces
   std::vector<std::pair<Index, int>> Open;
   std::vector<RimEdge> Rim;
+  Index Cut[2]; // the ends of the fixed edge that the place lies on, or None
   std::vector<Index> Loose; // points
   std::vector<Point2> Spokes;
   std::vector<Slopes> Planes;
@@ -129,6 +131,7 @@ bool GreedyInsertion::Strip::FindCavity(Index place, Index face)
 {
   Buffer<Face>& faces = this->Of.Faces;
   this->Rim.clear();
+  this->Cut[0] = this->Cut[1] = None;
   this->Cavity.assign(1, face);
   this->Open = { { face, 2 }, { face, 1 }, { face, 0 } };
   faces[face].IsInCavity = true;
@@ -139,16 +142,24 @@ bool GreedyInsertion::Strip::FindCavity(Index place, Index face)
     this->Open.pop_back();
     const Index from = faces[inside].Corners[edge], to = faces[inside].Corners[(edge + 1) % 3];
     const Index outside = faces[inside].Neighbors[edge];
+    const bool isFixed = (faces[inside].Fixed >> edge & 1) != 0;
+    const bool isOn =
+      (outside == None || isFixed) && this->Of.SideOf(from, to, place) == Zero;
     if (outside == None)
     {
-      const bool isOn = this->Of.SideOf(from, to, place) == Zero;
-      this->Rim.push_back({ from, to, isOn ? Gap : None });
+      this->Rim.push_back({ from, to, isOn ? Gap : None, isFixed });
       continue;
+    }
+    if (isOn)
+    {
+      this->Cut[0] = from;
+      this->Cut[1] = to;
     }
     Face& other = faces[outside];
     isOwn = this->HasCorners(other);
     const int entry = other.EdgeFrom(to);
-    if (isOwn && !other.IsInCavity && this->Of.IsInConflict(other, place, entry))
+    if (isOwn && !other.IsInCavity && (isOn || !isFixed) &&
+      this->Of.IsInConflict(other, place, entry))
     {
       other.IsInCavity = true;
       this->Cavity.push_back(outside);
@@ -156,7 +167,7 @@ bool GreedyInsertion::Strip::FindCavity(Index place, Index face)
       this->Open.emplace_back(outside, (entry + 1) % 3);
       continue;
     }
-    this->Rim.push_back({ from, to, outside });
+    this->Rim.push_back({ from, to, outside, isFixed });
   }
   for (const Index inside : this->Cavity)
   {
@@ -182,8 +193,10 @@ void GreedyInsertion::Strip::FillCavity(Index place, std::size_t count, bool isC
     const RimEdge& edge = this->Rim[i];
     const Index before = i > 0 ? this->Fan[i - 1] : isClosed ? this->Fan[count - 1] : None;
     const Index after = i + 1 < count ? this->Fan[i + 1] : isClosed ? this->Fan[0] : None;
+    const int fixed = (edge.IsFixed ? 1 : 0) | (this->IsCut(edge.To) ? 2 : 0) |
+      (this->IsCut(edge.From) ? 4 : 0);
     faces[this->Fan[i]] = { { edge.From, edge.To, place }, { edge.Outside, after, before }, None,
-      None, 0.0f, false };
+      None, 0.0f, false, static_cast<unsigned char>(fixed) };
     if (edge.Outside != None)
     {
       Face& outside = faces[edge.Outside];
@@ -341,7 +354,7 @@ bool GreedyInsertion::Strip::Work(const RoundClock::time_point& end)
 }
 
 GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buffer<Index>& rows,
-  const LatticeMetric* metric, const Buffer<Index>& first)
+  const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed)
   : Places(places)
   , Rows(rows)
   , Metric(metric)
@@ -354,24 +367,21 @@ GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buff
     throw std::bad_alloc();
   }
   this->Faces.Resize(most);
-  Mesh mesh;
-  mesh.Triangles.assign(first.begin(), first.end());
-  mesh.Points.resize(places.size());
-  mesh.ConnectTwins();
-  for (Index face = 0; face < mesh.NumberOfTriangles(); ++face)
+  for (Index face = 0; face < first.NumberOfTriangles(); ++face)
   {
     Face& made = this->Faces[face];
-    made = { {}, {}, None, None, 0.0f, false };
+    made = { {}, {}, None, None, 0.0f, false, 0 };
     for (int k = 0; k < 3; ++k)
     {
-      const Index twin = mesh.Twins[3 * face + k];
-      made.Corners[k] = mesh.Triangles[3 * face + k];
-      made.Neighbors[k] = twin == Mesh::Border ? None : twin / 3;
+      const Index h = 3 * face + k;
+      made.Corners[k] = first.Origin(h);
+      made.Neighbors[k] = first.IsBorder(h) ? None : Mesh::Triangle(first.Twin(h));
+      made.Fixed |= static_cast<unsigned char>((!fixed.empty() && fixed[h] ? 1 : 0) << k);
       this->Links[made.Corners[k]] = Vertex;
     }
     this->Ordered.push_back(face);
   }
-  this->NumberOfFaces = mesh.NumberOfTriangles();
+  this->NumberOfFaces = first.NumberOfTriangles();
   if (metric)
   {
     double width = 1.0;

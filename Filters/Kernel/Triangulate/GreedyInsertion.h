@@ -13,13 +13,15 @@
  * joins it to the edges around; their points find their new triangles by the side of the new edges.
  *
  * The worst point of all would be next. Here it is the worst of any triangle with an error above a
- * level; levels fall by a quarter, from the largest error to the one that is asked for. This needs no
+ * level; levels fall by a tenth, from the largest error to the one that is asked for. This needs no
  * queue, and can be done for several strips of the plane at once: a triangle belongs to the strip that
  * has all its corners, and others wait. The strips depend on the points alone, so the result is the
  * same for any number of threads.
  *
  * While triangles are large, few of the points in them tell the worst one well enough. So samples are
  * inserted first, each of 16 times as many points as the one before.
+ *
+ * Fixed edges bound what a point can take away, and are cut where it lies on one.
  *
  * The sides of edges and distances are computed in double precision without a bound of errors, which
  * may give a point to the wrong one of two triangles that it is nearly between. Circles are exact.
@@ -38,6 +40,7 @@
 
 #include "Kernel/Base/Base.h"
 #include "Kernel/Lattice/Lattice.h"
+#include "Kernel/Mesh/Mesh.h"
 
 #include <atomic>
 #include <cstddef>
@@ -56,6 +59,7 @@ struct Face
   Index Worst;        ///< of its points
   float Error;        ///< of this one
   bool IsInCavity;    ///< while a point is inserted
+  unsigned char Fixed; ///< bit k: edge k stays an edge
 
   /** The edge that begins in a corner. */
   int EdgeFrom(Index corner) const
@@ -77,10 +81,12 @@ public:
    * @param[in] places  distinct; rows are one above the other
    * @param[in] rows    the first place of each row, and the number of all
    * @param[in] metric  if not null, places are nodes of a lattice (column, row)
-   * @param[in] first   corners of triangles that cover all places, a Delaunay triangulation
+   * @param[in] first   triangles that cover all places, with Twins: a Delaunay triangulation, constrained
+   *                    by the fixed edges
+   * @param[in] fixed   one flag a half-edge, or none
    */
   GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buffer<Index>& rows,
-    const LatticeMetric* metric, const Buffer<Index>& first);
+    const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed);
 
   /** Inserts points until no error is above this one. @throws Aborted; std::bad_alloc */
   void Run(double error, int threads, const Progress& progress);

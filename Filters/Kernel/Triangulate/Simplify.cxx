@@ -170,21 +170,77 @@ PlacedPoints PlaceInBins(
   return placed;
 }
 
-/** The triangulation of the corners, by places. */
-Buffer<Index> FirstTriangles(const PlacedPoints& placed)
+/** Adds the ends of pieces to the corners. @return the pieces by corners */
+std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& placed)
 {
+  std::vector<Segment> byCorners = pieces;
+  if (pieces.empty())
+  {
+    return byCorners;
+  }
+  std::vector<Index> ids;
+  for (const Segment& piece : pieces)
+  {
+    ids.insert(ids.end(), { piece.A, piece.B });
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  std::vector<Index> placeOf(ids.size(), None);
+  for (Index place = 0; place < placed.Count(); ++place)
+  {
+    const auto at = std::lower_bound(ids.begin(), ids.end(), placed.Ids[place]);
+    if (at != ids.end() && *at == placed.Ids[place])
+    {
+      placeOf[at - ids.begin()] = place;
+      placed.Corners.push_back(place);
+    }
+  }
+  const auto isLower = [&placed](Index a, Index b) {
+    return IsLower(placed.At(a), placed.At(b));
+  };
+  std::vector<Index>& corners = placed.Corners;
+  std::sort(corners.begin(), corners.end(), isLower);
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  const auto cornerOf = [&](Index id) {
+    const Index place = placeOf[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
+    return static_cast<Index>(
+      std::lower_bound(corners.begin(), corners.end(), place, isLower) - corners.begin());
+  };
+  for (Segment& piece : byCorners)
+  {
+    piece = { cornerOf(piece.A), cornerOf(piece.B) };
+  }
+  return byCorners;
+}
+
+/**
+ * The triangulation of the corners, with Twins, by places.
+ * @param[in] pieces  by corners
+ * @param[out] fixed  one flag a half-edge: of pieces
+ */
+Mesh FirstMesh(
+  const PlacedPoints& placed, const std::vector<Segment>& pieces, std::vector<char>& fixed)
+{
+  Mesh mesh;
   Buffer<Point2> corners;
   for (const Index place : placed.Corners)
   {
     corners.Append(placed.At(place));
   }
-  Buffer<Index> triangles =
+  const Buffer<Index> triangles =
     DivideAndConquer(corners, Progress(), placed.Metric ? &*placed.Metric : nullptr);
-  for (Index& corner : triangles)
+  mesh.Triangles.assign(triangles.begin(), triangles.end());
+  mesh.Points.assign(corners.begin(), corners.end());
+  mesh.ConnectTwins();
+  if (!pieces.empty() && mesh.NumberOfTriangles() > 0)
+  {
+    RecoverSegments(mesh, pieces, fixed);
+  }
+  for (Index& corner : mesh.Triangles)
   {
     corner = placed.Corners[corner];
   }
-  return triangles;
+  return mesh;
 }
 
 /** An upper bound of a vertical distance: what rounding may have taken from it is added. */
@@ -442,21 +498,23 @@ void ListUnused(
   }
 }
 
-Triangulation Simplified(const PointView& points, const PlacedPoints& placed,
-  const DelaunayOptions& options, int threads, const Progress& progress)
+Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
+  const std::vector<Segment>& pieces, const DelaunayOptions& options, int threads,
+  const Progress& progress)
 {
   Triangulation result;
   result.LatticeFound = placed.Metric.has_value();
   result.Steps = placed.Steps;
-  const Buffer<Index> first =
-    placed.Corners.size() < 3 ? Buffer<Index>() : FirstTriangles(placed);
-  if (first.empty())
+  const std::vector<Segment> byCorners = AddEnds(pieces, placed);
+  std::vector<char> fixed;
+  const Mesh first = FirstMesh(placed, byCorners, fixed);
+  if (first.NumberOfTriangles() == 0)
   {
     ListUnused(points.Count, placed, nullptr, result);
     return result;
   }
   GreedyInsertion mesh(
-    placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first);
+    placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first, fixed);
   const Measurement measurement(points, placed, mesh);
   std::vector<Index> beyond;
   Progress ofRound = Part(progress, 0.0, 0.8);
@@ -481,18 +539,19 @@ Triangulation Simplified(const PointView& points, const PlacedPoints& placed,
 }
 } // namespace
 
-Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& options)
+Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& options,
+  const std::vector<Segment>& pieces)
 {
   const int threads = ThreadsAtOnce(options.NumberOfThreads);
   const Progress placing = Part(options.Monitor, 0.0, 0.2), working = Part(options.Monitor, 0.2, 1.0);
-  if (options.UseLattice == LatticeMode::Automatic)
+  if (options.UseLattice == LatticeMode::Automatic && pieces.empty())
   {
     PlacedPoints placed;
     if (PlaceOnLattice(points, options, threads, placing, placed))
     {
       try
       {
-        return Simplified(points, placed, options, threads, working);
+        return Simplified(points, std::move(placed), pieces, options, threads, working);
       }
       catch (const NotOnLattice&)
       {
@@ -504,7 +563,8 @@ Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& opt
       throw GivenLatticeUnfit();
     }
   }
-  return Simplified(points, PlaceInBins(points, options, threads, placing), options, threads, working);
+  return Simplified(points, PlaceInBins(points, options, threads, placing), pieces, options,
+    threads, working);
 }
 
 } // namespace elevation

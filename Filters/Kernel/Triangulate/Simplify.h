@@ -8,7 +8,8 @@
  * In: points. Out: as Triangulate.h, of chosen points; the others are unused. The passes:
  *   1. Put the points in the order of the nodes of a lattice, if there is one, else of a grid; set
  *      duplicates aside.
- *   2. Triangulate the corners of the convex hull, and insert points (GreedyInsertion.h).
+ *   2. Triangulate the corners of the convex hull and the ends of lines, make lines edges, and insert
+ *      points (GreedyInsertion.h).
  *   3. Measure the vertical distance of each point that is left out from the triangle that it lies in,
  *      and bound what rounding may have taken from it. Points that may be too far are inserted, too,
  *      until there are none.
@@ -18,20 +19,33 @@
  * the chosen points. The choice depends on the positions of the points alone, not on their order, nor
  * on the number of threads.
  *
- * Pass 3 takes the points by their coordinates. On a lattice, where they may lie beside their nodes, a
+ * Pass 3 takes the points by their coordinates. On a lattice they may lie beside their nodes. A
  * triangle that is flat or inverted by coordinates sends everything back to the start, without a
- * lattice.
+ * lattice; and a point that lies beside the border of the surface by as little is measured from the
+ * plane of the triangle there.
  */
 #ifndef elevation_Triangulate_Simplify_h
 #define elevation_Triangulate_Simplify_h
 
+#include "Kernel/Mesh/Mesh.h"
 #include "Options.h"
+
+#include <vector>
 
 namespace elevation
 {
 
-/** @param[in] options  with MaximumElevationError. @throws as Triangulate() */
-Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& options);
+/**
+ * Triangulates.
+ * @param[in] options  with MaximumElevationError
+ * @param[in] pieces   between points, by ids: they become edges, and their ends are chosen. They neither
+ *                     cross nor run through a point, as those of CutLines(). With pieces, points are
+ *                     triangulated by coordinates, and the triangles are those of
+ *                     TriangulateConstrained() for the chosen points.
+ * @throws as Triangulate()
+ */
+Triangulation TriangulateFew(const PointView& points, const DelaunayOptions& options,
+  const std::vector<Segment>& pieces = std::vector<Segment>());
 
 } // namespace elevation
 
