@@ -11,6 +11,9 @@
 #include "vtkNew.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <cmath>
+#include <sstream>
+
 namespace elevation
 {
 
@@ -19,6 +22,7 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
   DelaunayOptions options;
   options.Strategy = static_cast<SearchStrategy>(filter->GetSearchStrategy());
   options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
+  options.MaximumElevationError = filter->GetMaximumElevationError();
   options.Duplicates = static_cast<DuplicatePolicy>(filter->GetDuplicatePolicy());
   options.UseLattice = static_cast<LatticeMode>(filter->GetLatticeMode());
   const double* const lattice = filter->GetLattice();
@@ -27,6 +31,23 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
   options.LatticeTolerance = filter->GetLatticeTolerance();
   options.NumberOfThreads = filter->GetNumberOfThreads();
   return options;
+}
+
+void CheckLimits(const DelaunayOptions& options)
+{
+  CheckMaximumEdgeLength(options.MaximumEdgeLength);
+  const double error = options.MaximumElevationError;
+  if (!(error >= 0.0) || std::isinf(error))
+  {
+    std::ostringstream text;
+    text << "MaximumElevationError is " << error << "; it must be 0 (off) or a distance in z.";
+    throw Error(text.str());
+  }
+  if (error > 0.0 && options.MaximumEdgeLength > 0.0)
+  {
+    throw Error("MaximumEdgeLength and MaximumElevationError are both set, but fewer points make "
+                "longer edges: set one of them to 0, and trim the surface instead.");
+  }
 }
 
 namespace
@@ -66,7 +87,10 @@ void AddReport(
   add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
   add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
   add("NumberOfAddedPoints", constrained.Added.size());
-  fieldData->RemoveArray("Lattice"); // passed from the input, of other points
+  for (const char* const name : { "Lattice", "NumberOfRedundantPoints", "LargestElevationError" })
+  {
+    fieldData->RemoveArray(name); // passed from the input, of other points
+  }
   if (triangulation.LatticeFound)
   {
     const Lattice& lattice = triangulation.Steps;
@@ -78,6 +102,15 @@ void AddReport(
     array->InsertNextTuple(values);
     fieldData->AddArray(array);
   }
+}
+
+void AddSimplification(const Triangulation& triangulation, vtkFieldData* fieldData)
+{
+  AddCount(fieldData, "NumberOfRedundantPoints", triangulation.NumberOfRedundant);
+  vtkNew<vtkDoubleArray> largest;
+  largest->SetName("LargestElevationError");
+  largest->InsertNextValue(triangulation.LargestElevationError);
+  fieldData->AddArray(largest);
 }
 
 void AddWork(

@@ -21,9 +21,15 @@ namespace elevation
 /** The kernel's options for the properties of the filter. */
 DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter);
 
+/** @throws Error if MaximumEdgeLength or MaximumElevationError is wrong, or both are set */
+void CheckLimits(const DelaunayOptions& options);
+
 /** Adds the field data on points, lines and lattice. */
 void AddReport(
   const ConstrainedTriangulation& constrained, const Progress& progress, vtkFieldData* fieldData);
+
+/** Adds what MaximumElevationError has come to. */
+void AddSimplification(const Triangulation& triangulation, vtkFieldData* fieldData);
 
 /** Adds what the work of this rank on points of all ranks took. */
 void AddWork(

@@ -155,7 +155,7 @@ void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
 elevation::ConstrainedTriangulation TriangulateSpread(
   const elevation::Ranks& ranks, elevation::DelaunayOptions options, elevation::Block& block)
 {
-  elevation::CheckMaximumEdgeLength(options.MaximumEdgeLength);
+  elevation::CheckLimits(options);
   options.Monitor = block.Progress;
   const elevation::PointsOfRank points{ block.Input, !block.Outputs.empty() };
   elevation::DistributedSurface surface =
@@ -239,9 +239,15 @@ int vtkGridDelaunay2D::RequestData(
   call.Second = "constraints";
   call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
-    &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints, &this->NumberOfLattices };
+    &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings,
+    &this->NumberOfAddedPoints, &this->NumberOfLattices };
+  call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
   call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
+    if (options.MaximumElevationError != 0.0)
+    {
+      return false;
+    }
     const elevation::ConstrainedTriangulation part = TriangulateSpread(ranks, options, block);
     this->NumberOfDuplicatePoints += part.Result.NumberOfDuplicates;
     this->NumberOfNonFinitePoints += part.Result.NumberOfNotFinite;
@@ -254,7 +260,7 @@ int vtkGridDelaunay2D::RequestData(
     const elevation::Progress& progress = block.Progress;
     vtkPolyData* const output = block.Outputs.front();
     elevation::Report(progress, 0.0);
-    elevation::CheckMaximumEdgeLength(this->MaximumEdgeLength);
+    elevation::CheckLimits(options);
     elevation::CheckPointArrays(block.Input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
     const double told = block.Second ? 0.95 : 1.0;
@@ -269,12 +275,19 @@ int vtkGridDelaunay2D::RequestData(
       block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
     elevation::AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
+    if (this->MaximumElevationError > 0.0)
+    {
+      elevation::AddSimplification(triangulation, output->GetFieldData());
+    }
     output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
       elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
     elevation::Report(progress, 1.0);
     // Added last, as an abort or an error leaves no counts.
     this->NumberOfDuplicatePoints += triangulation.NumberOfDuplicates;
     this->NumberOfNonFinitePoints += triangulation.NumberOfNotFinite;
+    this->NumberOfRedundantPoints += triangulation.NumberOfRedundant;
+    this->LargestElevationError =
+      std::max(this->LargestElevationError, triangulation.LargestElevationError);
     this->NumberOfConstraintCrossings += static_cast<vtkIdType>(constrained.NumberOfCrossings);
     this->NumberOfAddedPoints += static_cast<vtkIdType>(constrained.Added.size());
     this->NumberOfLattices += triangulation.LatticeFound ? 1 : 0;
@@ -302,6 +315,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "SearchStrategy: " << this->GetSearchStrategyAsString() << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
+  os << indent << "MaximumElevationError: " << this->MaximumElevationError << "\n";
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
   os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";
   os << indent << "Lattice:";
@@ -315,6 +329,8 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";
   os << indent << "NumberOfNonFinitePoints: " << this->NumberOfNonFinitePoints << "\n";
+  os << indent << "NumberOfRedundantPoints: " << this->NumberOfRedundantPoints << "\n";
+  os << indent << "LargestElevationError: " << this->LargestElevationError << "\n";
   os << indent << "NumberOfConstraintCrossings: " << this->NumberOfConstraintCrossings << "\n";
   os << indent << "NumberOfAddedPoints: " << this->NumberOfAddedPoints << "\n";
 }

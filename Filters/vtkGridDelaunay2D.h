@@ -61,6 +61,16 @@
  * - MaximumEdgeLength applies to the constrained triangulation, also to edges of lines.
  * - Several blocks of a composite are taken as one.
  *
+ * With a MaximumElevationError, the surface is simplified while it is made. The corners of the convex
+ * hull are vertices, with constraints the ends of their pieces; then the point farthest above or below
+ * the surface, as far as there is one beyond the error, and so on [Garland & Heckbert 1995]. At the end
+ * each point that is left out is measured once more, and what rounding may have taken from its
+ * distance is added; so the error is certain. The triangles are those of the chosen points alone. They
+ * are a few hundredths more than by strictly taking the farthest one each time. Points that are
+ * duplicates are not measured. On a lattice, where a point at the border may lie beside its node and
+ * so beside the surface, it is measured from the triangle there. The choice does not depend on the
+ * order of points, nor on the number of threads. Several ranks gather the block on one of them.
+ *
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives output
  * of the same structure: each block (each partition) is a surface of its own, with its own field
  * data. Counts of getters are sums. Messages name the block; one with an error is empty, the others
@@ -89,7 +99,8 @@
  * no triangle; a MaximumEdgeLength that leaves more than half of the points without a triangle (it
  * tells one that does not, for which it triangulates once more); constraints of which more than
  * half lies farther outside the points' bounding box than a tenth of its size.
- * Errors leave empty output: a MaximumEdgeLength that is no length; more points than can be handled
+ * Errors leave empty output: a MaximumEdgeLength that is no length, a MaximumElevationError that is no
+ * distance, or both; more points than can be handled
  * (357,913,941); a point array whose number of tuples is not that of the points; constraints
  * without a line or polygon, all beside the points' bounding box, with triangle strips, an invalid
  * vtkCellArray, or a point that does not exist or is not finite (the error names it).
@@ -98,8 +109,10 @@
  * Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
- *   the same x,y is the vertex), 2 = not finite (x, y or z);
+ *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError;
  * - NumberOfDuplicatePoints, NumberOfNonFinitePoints (vtkIdTypeArray, one value);
+ * - NumberOfRedundantPoints (vtkIdTypeArray, one value), LargestElevationError (vtkDoubleArray, one
+ *   value), only with a MaximumElevationError;
  * - Lattice (vtkDoubleArray, one tuple of 6), only when one was found: the lowest occupied node
  *   x,y, the first step x,y, the second step x,y, counter-clockwise from it, in input units;
  * - NumberOfConstraintCrossings, NumberOfAddedPoints (vtkIdTypeArray, one value);
@@ -112,11 +125,15 @@
  * point with one thread, 45 with several; less than 10 on a lattice that is well filled. Points on
  * which growing would take longer, such as thousands on one circle, are triangulated by divide and
  * conquer instead, which takes some 90 bytes more. Constraints take linear time on one thread, time
- * for what their segments cross, and some 120 bytes a point.
+ * for what their segments cross, and some 120 bytes a point. A MaximumElevationError that few of many
+ * points are needed for takes up to twice the time of triangulating them all, and some 60 bytes a point.
  *
  * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an
  * Elevation Surface of 3D Point Clouds": the third point of an edge is looked for by its voxel
  * traversal search, or by its search for the most compact triangle (SearchStrategy).
+ *
+ * [Garland & Heckbert 1995] Fast Polygonal Approximation of Terrains and Height Fields, Carnegie
+ * Mellon University, CMU-CS-95-181.
  *
  * @sa vtkTrimOutwardTriangles vtkFillElevationHoles vtkDelaunay2D
  */
@@ -172,6 +189,18 @@ public:
    */
   vtkSetMacro(MaximumEdgeLength, double);
   vtkGetMacro(MaximumEdgeLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * As few points become vertices as are needed for every other point to lie within this vertical
+   * distance of the surface (in the units of z). The others stay in the output, and are listed as
+   * unused. 0 (default): off; all points become vertices. A negative value, or one that is not
+   * finite, is an error, and so is a MaximumEdgeLength with it: fewer points make longer edges.
+   * See above for what is kept, and how well.
+   */
+  vtkSetMacro(MaximumElevationError, double);
+  vtkGetMacro(MaximumElevationError, double);
   ///@}
 
   /** Which of several points with the same x,y becomes the vertex. */
@@ -254,6 +283,16 @@ public:
   /** After Update(): points left aside because a coordinate is infinite or not a number. */
   vtkGetMacro(NumberOfNonFinitePoints, vtkIdType);
 
+  /** After Update(): points left aside because they are within MaximumElevationError. */
+  vtkGetMacro(NumberOfRedundantPoints, vtkIdType);
+
+  /**
+   * After Update(): no point that is left aside as redundant is farther above or below the surface;
+   * rounding errors are counted in. It is at most MaximumElevationError. Of several blocks, the
+   * largest.
+   */
+  vtkGetMacro(LargestElevationError, double);
+
   /** After Update(): pairs of segments of the constraints that cross, see above. */
   vtkGetMacro(NumberOfConstraintCrossings, vtkIdType);
 
@@ -274,6 +313,7 @@ protected:
 
   int SearchStrategy = VOXEL_TRAVERSAL;
   double MaximumEdgeLength = 0.0;
+  double MaximumElevationError = 0.0;
   int DuplicatePolicy = KEEP_FIRST;
   int LatticeMode = AUTOMATIC;
   double Lattice[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
@@ -283,6 +323,8 @@ protected:
   vtkIdType NumberOfLattices = 0;
   vtkIdType NumberOfDuplicatePoints = 0;
   vtkIdType NumberOfNonFinitePoints = 0;
+  vtkIdType NumberOfRedundantPoints = 0;
+  double LargestElevationError = 0.0;
   vtkIdType NumberOfConstraintCrossings = 0;
   vtkIdType NumberOfAddedPoints = 0;
 

@@ -214,16 +214,16 @@ std::string vtkReconstructPieces::WrongProperty()
 {
   try
   {
-    elevation::CheckMaximumEdgeLength(this->Delaunay->GetMaximumEdgeLength());
+    elevation::CheckLimits(elevation::OptionsOf(this->Delaunay));
   }
   catch (const elevation::Error& error)
   {
     return error.what();
   }
   const elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
-  if (options.GivenLattice.IsSet())
+  if (options.GivenLattice.IsSet() || options.MaximumElevationError > 0.0)
   {
-    return "A given Lattice is for points in memory, not for pieces.";
+    return "MaximumElevationError and a given Lattice are for points in memory, not for pieces.";
   }
   if (this->Delaunay->GetNumberOfInputConnections(1) > 0)
   {

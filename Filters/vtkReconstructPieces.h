@@ -17,8 +17,8 @@
  * if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
  * piece.
  *
- * All properties of the triangulation are those of GetDelaunay(), except Lattice and constraints,
- * which are for points in memory, and are errors. Where
+ * All properties of the triangulation are those of GetDelaunay(), except MaximumElevationError,
+ * Lattice and constraints, which are for points in memory, and are errors. Where
  * GetTrim() has a boundary, all pieces are trimmed along it, as that filter would trim the whole
  * surface; points that it inserts get ids after the largest. OutwardTest InwardNormal is an error.
  * Beside points that are inserted, diagonals may differ from those of that filter, as they do with

@@ -15,6 +15,7 @@ OTHER_VALUES = {
     "GridDelaunay2D": {
         "SearchStrategy": "Compactness",
         "MaximumEdgeLength": 2.5,
+        "MaximumElevationError": 0.5,
         "DuplicatePolicy": "Keep Highest",
         "LatticeMode": "Off",
         "Lattice": [0.0, 0.0, 25.0, 0.0, 0.0, 25.0],

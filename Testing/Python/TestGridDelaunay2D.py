@@ -13,6 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
 import vtkelevationsurface
 from vtkelevationsurface import vtkGridDelaunay2D
+from vtkelevationsurface.messages import Messages
 
 
 def cloud(coordinates):
@@ -45,6 +46,7 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetSearchStrategy(), vtkGridDelaunay2D.VOXEL_TRAVERSAL)
         self.assertEqual(delaunay.GetSearchStrategyAsString(), "VoxelTraversal")
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
+        self.assertEqual(delaunay.GetMaximumElevationError(), 0.0)
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)
         self.assertEqual(delaunay.GetDuplicatePolicyAsString(), "KeepFirst")
         self.assertEqual(delaunay.GetLatticeMode(), vtkGridDelaunay2D.AUTOMATIC)
@@ -183,6 +185,77 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetNumberOfDuplicatePoints(), 1)
         self.assertEqual(delaunay.GetNumberOfNonFinitePoints(), 1)
         self.assertEqual(triangles(delaunay.GetOutput()).tolist(), [[0, 1, 2]])
+
+    def test_few_points_are_within_an_elevation_error_of_all(self):
+        rng = numpy.random.default_rng(5)
+        points = rng.random((20000, 3)) * (1000.0, 800.0, 1.0)
+        points[:, 2] += 40.0 * numpy.sin(points[:, 0] / 90.0) * numpy.cos(points[:, 1] / 70.0)
+        points[-10:] = points[:10]
+        points[5000, 2] = numpy.nan
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(points))
+        delaunay.SetMaximumElevationError(2.5)
+        delaunay.Update()
+        output = delaunay.GetOutput()
+        fields = output.GetFieldData()
+        ids, reasons = (
+            vtk_to_numpy(fields.GetArray("UnusedPoint" + name)) for name in ("Ids", "Reasons"))
+        redundant = ids[reasons == 3]
+        self.assertEqual(delaunay.GetNumberOfRedundantPoints(), len(redundant))
+        self.assertEqual(fields.GetArray("NumberOfRedundantPoints").GetValue(0), len(redundant))
+        self.assertGreater(len(redundant), 15000)
+        self.assertEqual((reasons == 1).sum(), 10)
+        self.assertEqual((reasons == 2).sum(), 1)
+        largest = delaunay.GetLargestElevationError()
+        self.assertEqual(fields.GetArray("LargestElevationError").GetValue(0), largest)
+        self.assertTrue(2.0 < largest <= 2.5)
+        used = numpy.unique(triangles(output))
+        numpy.testing.assert_array_equal(
+            numpy.sort(numpy.concatenate((used, ids))), numpy.arange(len(points)))
+        # Each triangle and the points in it.
+        worst = 0.0
+        for a, b, c in points[triangles(output)]:
+            near = redundant[(points[redundant, :2] >= numpy.min((a, b, c), axis=0)[:2]).all(axis=1)
+                             & (points[redundant, :2] <= numpy.max((a, b, c), axis=0)[:2]).all(axis=1)]
+            matrix = numpy.column_stack((b - a, c - a))
+            weights = numpy.linalg.solve(matrix[:2], (points[near] - a)[:, :2].T)
+            inside = (weights >= 0).all(axis=0) & (weights.sum(axis=0) <= 1)
+            heights = a[2] + matrix[2] @ weights[:, inside]
+            worst = max(worst, numpy.abs(heights - points[near[inside], 2]).max(initial=0.0))
+        self.assertAlmostEqual(worst, largest, places=9)
+        delaunay.SetMaximumElevationError(0.0)
+        delaunay.Update()
+        self.assertIsNone(delaunay.GetOutput().GetFieldData().GetArray("LargestElevationError"))
+        self.assertEqual(delaunay.GetNumberOfRedundantPoints(), 0)
+        self.assertEqual(delaunay.GetLargestElevationError(), 0.0)
+
+    def test_an_elevation_error_that_is_none_is_an_error(self):
+        points = numpy.random.default_rng(6).random((50, 3))
+        for error, edge, words in (
+            (-1.0, 0.0, "MaximumElevationError is -1; it must be 0"),
+            (numpy.nan, 0.0, "MaximumElevationError is nan"),
+            (numpy.inf, 0.0, "MaximumElevationError is inf"),
+            (0.1, 5.0, "are both set"),
+        ):
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(cloud(points))
+            delaunay.SetMaximumElevationError(error)
+            delaunay.SetMaximumEdgeLength(edge)
+            with Messages(delaunay, delaunay.GetExecutive()) as messages:
+                delaunay.Update()
+            self.assertEqual(len(messages.errors), 1)
+            self.assertIn(words, messages.errors[0])
+            self.assertEqual(delaunay.GetOutput().GetNumberOfPoints(), 0)
+
+    def test_an_error_larger_than_the_relief_leaves_the_corners(self):
+        points = numpy.random.default_rng(7).random((500, 3))
+        points[:4, :2] = ((-1.0, -1.0), (2.0, -1.0), (2.0, 2.0), (-1.0, 2.0))
+        delaunay = vtkGridDelaunay2D()
+        delaunay.SetInputData(cloud(points))
+        delaunay.SetMaximumElevationError(5.0)
+        delaunay.Update()
+        self.assertEqual(delaunay.GetOutput().GetNumberOfPolys(), 2)
+        self.assertEqual(delaunay.GetNumberOfRedundantPoints(), 496)
 
     def test_constraints_are_edges_and_crossings_are_points(self):
         j, i = numpy.mgrid[0:10, 0:10]

@@ -295,6 +295,7 @@ class InPieces(WithFilter):
         for name, value, words in (
             ("MaximumEdgeLength", numpy.nan, "MaximumEdgeLength is nan"),
             ("Lattice", (0, 0, 1, 0, 0, 1), "in memory, not for pieces"),
+            ("MaximumElevationError", 1.0, "in memory, not for pieces"),
             ("SourceData", make_points(points), "Constraints are for points in memory"),
         ):
             source = self.source(points, **{name: value})
