@@ -25,11 +25,14 @@ set(es_kernel_Triangulate
   BoxTree
   BinGrid
   PointWindows
+  PlacedPoints
   Simplify
   WideApexSearch
   ApexSearch
   Hull
   DivideAndConquer
+  InsertionMesh
+  InsertionStrip
   GreedyInsertion
   GridGrowth
   LatticeApexes

@@ -24,7 +24,8 @@
  * Fixed edges bound what a point can take away, and are cut where it lies on one.
  *
  * The sides of edges and distances are computed in double precision without a bound of errors, which
- * may give a point to the wrong one of two triangles that it is nearly between. Circles are exact.
+ * may give a point to the wrong one of two triangles that it is nearly between; before it is inserted,
+ * that is put right. Circles are exact.
  *
  * Cost: of the order of n log k for k chosen points of n. Memory: 36 bytes a point, and 80 a chosen
  * one.
@@ -38,41 +39,13 @@
 #ifndef elevation_Triangulate_GreedyInsertion_h
 #define elevation_Triangulate_GreedyInsertion_h
 
-#include "Kernel/Base/Base.h"
-#include "Kernel/Lattice/Lattice.h"
-#include "Kernel/Mesh/Mesh.h"
+#include "InsertionStrip.h"
 
-#include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace elevation
 {
-
-/** A triangle, counter-clockwise; edge k runs from corner k to the next. */
-struct Face
-{
-  Index Corners[3];
-  Index Neighbors[3]; ///< over each edge, or None
-  Index First;        ///< of the list of its points; None: it has none
-  Index Worst;        ///< of its points
-  float Error;        ///< of this one
-  bool IsInCavity;    ///< while a point is inserted
-  unsigned char Fixed; ///< bit k: edge k stays an edge
-
-  /** The edge that begins in a corner. */
-  int EdgeFrom(Index corner) const
-  {
-    return this->Corners[0] == corner ? 0 : this->Corners[1] == corner ? 1 : 2;
-  }
-};
-
-/** A point, or the node of one, with its elevation. */
-struct ElevatedPlace
-{
-  double X, Y, Z;
-};
 
 class GreedyInsertion
 {
@@ -96,34 +69,20 @@ public:
 
   /** The triangles, in an order that does not depend on the number of threads. */
   const std::vector<Index>& Order() const { return this->Ordered; }
-  const Face& At(Index face) const { return this->Faces[face]; }
+  const Face& At(Index face) const { return this->Inserted.Faces[face]; }
   /** The point after another in the list of a face, or None. */
-  Index Next(Index place) const { return this->Links[place]; }
-  bool IsVertex(Index place) const { return this->Links[place] == Vertex; }
+  Index Next(Index place) const { return this->Inserted.Links[place]; }
+  bool IsVertex(Index place) const { return this->Inserted.Links[place] == InsertionMesh::Vertex; }
 
 private:
-  class Strip;
-  static constexpr Index Vertex = -2;     // in place of a link
-  static constexpr Index Unassigned = -3; // not yet in a list
-
-  Point2 PointOf(Index place) const { return { this->Places[place].X, this->Places[place].Y }; }
-  Sign SideOf(Index from, Index to, Index place) const;
-  Sign IsInCircle(const Face& face, Index place) const;
-  bool IsInConflict(const Face& face, Index place, int edge) const;
-  Index FaceOf(Index place, Index start) const;
-  void AddTo(Face& face, Index place, float error);
   void AddSample(std::uint32_t mask, int threads, const Progress& progress);
-  std::vector<Strip> MakeStrips(Index count, bool areShifted);
-  void Refine(double error, double density, std::vector<Strip>&& strips, int threads,
+  std::vector<InsertionStrip> MakeStrips(Index count, bool areShifted);
+  void Refine(double error, double density, std::vector<InsertionStrip>&& strips, int threads,
     const Progress& progress);
+  Index FaceWith(Index place, Index start) const;
 
-  const Buffer<ElevatedPlace>& Places;
   const Buffer<Index>& Rows;
-  const LatticeMetric* const Metric;
-  bool HasSmallProducts = false; // circles of the metric fit 64 bits
-  Buffer<Index> Links;
-  Buffer<Face> Faces;
-  std::atomic<Index> NumberOfFaces{ 0 };
+  InsertionMesh Inserted;
   std::vector<Index> Ordered;
 };
 

@@ -1,0 +1,307 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "InsertionStrip.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace elevation
+{
+
+namespace
+{
+constexpr double LevelFactor = 0.9; // from one level of errors to the next
+} // namespace
+
+Index InsertionStrip::NewFace()
+{
+  if (this->NextFace == this->LastFace)
+  {
+    this->NextFace = this->Of.NumberOfFaces.fetch_add(FacesAtOnce);
+    this->LastFace = this->NextFace + FacesAtOnce;
+  }
+  this->Faces.push_back(this->NextFace);
+  return this->NextFace++;
+}
+
+/** Whether the cavity of a place can be found from a face on: it is in conflict, and no line between. */
+bool InsertionStrip::MayBegin(Index place, const Face& face) const
+{
+  bool isVisible = true;
+  for (int k = 0; k < 3; ++k)
+  {
+    isVisible = isVisible &&
+      ((face.Fixed >> k & 1) == 0 ||
+        this->Of.SideOf(face.Corners[k], face.Corners[(k + 1) % 3], place) != Negative);
+  }
+  return isVisible && this->Of.IsInCircle(face, place) == Positive;
+}
+
+/**
+ * Moves a place, which rounding has given to the wrong face, to the list of its own.
+ * @return false if that is not of this strip; nothing is changed then
+ */
+bool InsertionStrip::Move(Index place, Index& face)
+{
+  const Index own =
+    this->Of.FaceOf(place, face, [this](const Face& next) { return this->HasCorners(next); });
+  if (own == None)
+  {
+    return false;
+  }
+  Face& before = this->Of.Faces[face];
+  std::vector<Index> others;
+  for (Index point = before.First; point != None; point = this->Of.Links[point])
+  {
+    if (point != place)
+    {
+      others.push_back(point);
+    }
+  }
+  before.First = before.Worst = None;
+  before.Error = 0.0f;
+  const auto add = [this](Face& to, Index point) {
+    const ElevatedPlace* const places = this->Of.Places.data();
+    const ElevatedPlace& a = places[to.Corners[0]];
+    const Slopes slopes = SlopesOf(a, places[to.Corners[1]], places[to.Corners[2]]);
+    this->Of.AddTo(to, point, ErrorOf(places[point], a, slopes));
+  };
+  for (const Index point : others)
+  {
+    add(before, point);
+  }
+  add(this->Of.Faces[own], place);
+  face = own;
+  return true;
+}
+
+/**
+ * Finds the faces in conflict with a place, and the edges around them, counter-clockwise.
+ * @return false if that touches a face that is not of this strip; nothing is changed then
+ */
+bool InsertionStrip::FindCavity(Index place, Index face)
+{
+  Buffer<Face>& faces = this->Of.Faces;
+  this->Rim.clear();
+  this->Cut[0] = this->Cut[1] = None;
+  this->Cavity.assign(1, face);
+  this->Open = { { face, 2 }, { face, 1 }, { face, 0 } };
+  faces[face].IsInCavity = true;
+  bool isOwn = true;
+  while (!this->Open.empty() && isOwn)
+  {
+    const auto [inside, edge] = this->Open.back();
+    this->Open.pop_back();
+    const Index from = faces[inside].Corners[edge], to = faces[inside].Corners[(edge + 1) % 3];
+    const Index outside = faces[inside].Neighbors[edge];
+    const bool isFixed = (faces[inside].Fixed >> edge & 1) != 0;
+    const bool isOn = (outside == None || isFixed) && this->Of.SideOf(from, to, place) == Zero;
+    if (outside == None)
+    {
+      this->Rim.push_back({ from, to, isOn ? Gap : None, isFixed });
+      continue;
+    }
+    if (isOn)
+    {
+      this->Cut[0] = from;
+      this->Cut[1] = to;
+    }
+    Face& other = faces[outside];
+    isOwn = this->HasCorners(other);
+    const int entry = other.EdgeFrom(to);
+    if (isOwn && !other.IsInCavity && (isOn || !isFixed) &&
+      this->Of.IsInConflict(other, place, entry))
+    {
+      other.IsInCavity = true;
+      this->Cavity.push_back(outside);
+      this->Open.emplace_back(outside, (entry + 2) % 3);
+      this->Open.emplace_back(outside, (entry + 1) % 3);
+      continue;
+    }
+    this->Rim.push_back({ from, to, outside, isFixed });
+  }
+  for (const Index inside : this->Cavity)
+  {
+    faces[inside].IsInCavity = false;
+  }
+  return isOwn;
+}
+
+/** Joins the place to the edges of the rim; the last one may be a gap. */
+void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
+{
+  Buffer<Face>& faces = this->Of.Faces;
+  const ElevatedPlace& p = this->Of.Places[place];
+  this->Fan.assign(this->Cavity.begin(), this->Cavity.end());
+  while (this->Fan.size() < count)
+  {
+    this->Fan.push_back(this->NewFace());
+  }
+  this->Spokes.clear();
+  this->Planes.clear();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const RimEdge& edge = this->Rim[i];
+    const Index before = i > 0 ? this->Fan[i - 1] : isClosed ? this->Fan[count - 1] : None;
+    const Index after = i + 1 < count ? this->Fan[i + 1] : isClosed ? this->Fan[0] : None;
+    const int fixed =
+      (edge.IsFixed ? 1 : 0) | (this->IsCut(edge.To) ? 2 : 0) | (this->IsCut(edge.From) ? 4 : 0);
+    faces[this->Fan[i]] = { { edge.From, edge.To, place }, { edge.Outside, after, before }, None,
+      None, 0.0f, false, static_cast<unsigned char>(fixed) };
+    if (edge.Outside != None)
+    {
+      Face& outside = faces[edge.Outside];
+      outside.Neighbors[outside.EdgeFrom(edge.To)] = this->Fan[i];
+    }
+    const ElevatedPlace& a = this->Of.Places[edge.From];
+    this->Spokes.push_back({ a.X - p.X, a.Y - p.Y });
+    this->Planes.push_back(SlopesOf(p, a, this->Of.Places[edge.To]));
+  }
+  const ElevatedPlace& last = this->Of.Places[this->Rim[count - 1].To];
+  this->Spokes.push_back({ last.X - p.X, last.Y - p.Y });
+}
+
+/** The face of the fan between whose spokes a point lies, from a guess on. */
+std::size_t InsertionStrip::SectorOf(
+  double dx, double dy, std::size_t start, std::size_t count, bool isClosed) const
+{
+  const auto isLeftOf = [&](std::size_t spoke) {
+    const Point2& s = this->Spokes[spoke];
+    return s.X * dy - s.Y * dx >= 0.0;
+  };
+  std::size_t sector = start;
+  // A point opposite to a spoke is on neither side: no more than a turn.
+  for (std::size_t step = 0; step < count; ++step)
+  {
+    if (!isLeftOf(sector))
+    {
+      if (sector == 0 && !isClosed)
+      {
+        return sector;
+      }
+      sector = sector == 0 ? count - 1 : sector - 1;
+    }
+    else if (isLeftOf(sector + 1))
+    {
+      if (sector + 1 == count && !isClosed)
+      {
+        return sector;
+      }
+      sector = sector + 1 == count ? 0 : sector + 1;
+    }
+    else
+    {
+      return sector;
+    }
+  }
+  for (sector = 0; sector + 1 < count; ++sector)
+  {
+    if (isLeftOf(sector) && !isLeftOf(sector + 1))
+    {
+      break;
+    }
+  }
+  return sector;
+}
+
+/** Gives the points of the cavity to the faces of the fan. */
+void InsertionStrip::MovePoints(Index place, std::size_t count, bool isClosed)
+{
+  const ElevatedPlace& p = this->Of.Places[place];
+  std::size_t sector = 0;
+  for (const Index point : this->Loose)
+  {
+    const ElevatedPlace& q = this->Of.Places[point];
+    sector = this->SectorOf(q.X - p.X, q.Y - p.Y, sector, count, isClosed);
+    this->Of.AddTo(this->Of.Faces[this->Fan[sector]], point, ErrorOf(q, p, this->Planes[sector]));
+  }
+}
+
+bool InsertionStrip::Insert(Index place, Index face)
+{
+  if ((!this->MayBegin(place, this->Of.Faces[face]) && !this->Move(place, face)) ||
+    !this->FindCavity(place, face))
+  {
+    return false;
+  }
+  this->Loose.clear();
+  for (const Index inside : this->Cavity)
+  {
+    for (Index point = this->Of.Faces[inside].First; point != None; point = this->Of.Links[point])
+    {
+      if (point != place)
+      {
+        this->Loose.push_back(point);
+      }
+    }
+  }
+  this->Of.Links[place] = InsertionMesh::Vertex;
+  const auto gap = std::find_if(
+    this->Rim.begin(), this->Rim.end(), [](const RimEdge& edge) { return edge.Outside == Gap; });
+  const bool isClosed = gap == this->Rim.end();
+  if (!isClosed)
+  {
+    std::rotate(this->Rim.begin(), gap + 1, this->Rim.end());
+  }
+  const std::size_t count = this->Rim.size() - (isClosed ? 0 : 1);
+  this->FillCavity(place, count, isClosed);
+  this->MovePoints(place, count, isClosed);
+  return true;
+}
+
+void InsertionStrip::SetLevels(double error, double mostVertices)
+{
+  float largest = 0.0f;
+  for (const Index face : this->Faces)
+  {
+    largest = std::max(largest, this->Of.Faces[face].Error);
+  }
+  this->Error = error;
+  this->MostFaces = 2.0 * mostVertices;
+  this->Level = error;
+  while (this->Level < LevelFactor * static_cast<double>(largest))
+  {
+    this->Level /= LevelFactor;
+  }
+  this->Cursor = 0;
+  this->Count = this->Faces.size();
+}
+
+bool InsertionStrip::Work(const RoundClock::time_point& end)
+{
+  constexpr int stepsPerLook = 1024;
+  for (int step = 1;; ++step)
+  {
+    if (step % stepsPerLook == 0 && RoundClock::now() > end)
+    {
+      return true;
+    }
+    if (!this->Due.empty())
+    {
+      const Index face = this->Due.back();
+      this->Due.pop_back();
+      if (this->IsDue(face) && this->Insert(this->Of.Faces[face].Worst, face))
+      {
+        std::copy_if(this->Fan.begin(), this->Fan.end(), std::back_inserter(this->Due),
+          [this](Index made) { return this->IsDue(made); });
+      }
+    }
+    else if (this->Cursor < this->Count)
+    {
+      this->Due.push_back(this->Faces[this->Cursor++]);
+    }
+    else if (this->Level <= this->Error ||
+      static_cast<double>(this->Faces.size()) >= this->MostFaces)
+    {
+      return false;
+    }
+    else
+    {
+      this->Level = std::max(this->Error, LevelFactor * this->Level);
+      this->Cursor = 0;
+      this->Count = this->Faces.size();
+    }
+  }
+}
+
+} // namespace elevation
