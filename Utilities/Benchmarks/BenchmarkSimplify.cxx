@@ -1,0 +1,412 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Times vtkGridDelaunay2D with a MaximumElevationError, and counts its vertices, beside greedy
+// insertion one point at a time, vtkDecimatePro and vtkQuadricDecimation. See README.md.
+#include "Arguments.h"
+#include "ChildProcess.h"
+#include "DecimationPeers.h"
+#include "GreedyReference.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkGridDelaunay2D.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <random>
+
+namespace
+{
+using namespace benchmark;
+
+const char* const Usage = R"(Usage: BenchmarkSimplify [options]
+
+Times vtkGridDelaunay2D with a MaximumElevationError beside triangulating all points, in turns, and
+counts its vertices beside greedy insertion one point at a time (by coordinates, also on a
+lattice). Tells the largest vertical distance of all points from what vtkDecimatePro and
+vtkQuadricDecimation make of the full triangulation with as many vertices. Tables are Markdown.
+
+  --files LIST      .vtp, .f64, .csv or .xyz files
+  --random N        a smooth surface at N random points
+  --lattice N       the same at about N nodes of a square lattice
+  --errors LIST     in percent of the relief; default 0.5,1,3,5,10
+  --threads LIST    threads of vtkGridDelaunay2D, 0: one a core; default 1
+  --repeats N       timed runs, of which the median counts; default 5
+  --no-peers        without greedy insertion, vtkDecimatePro and vtkQuadricDecimation
+  --no-decimation   without the last two, which take longest
+  --help            shows this text
+
+The exit code is 1 when an error told is above the limit; 2 for a wrong option.
+)";
+
+struct Options
+{
+  std::vector<std::string> Files;
+  Index Random = 0;
+  Index Lattice = 0;
+  std::vector<double> Errors{ 10.0, 5.0, 3.0, 1.0, 0.5 }; // decreasing
+  std::vector<int> Threads{ 1 };
+  int Repeats = 5;
+  bool Peers = true;
+  bool Decimation = true;
+};
+
+std::vector<double> ToErrors(const std::string& list)
+{
+  std::vector<double> errors;
+  for (const std::string& text : Split(list))
+  {
+    char* end = nullptr;
+    const double error = std::strtod(text.c_str(), &end);
+    if (*end != '\0' || !(error > 0.0 && error <= 100.0))
+    {
+      throw UsageError("--errors takes percent above 0, up to 100, not \"" + text + "\"");
+    }
+    errors.push_back(error);
+  }
+  std::sort(errors.rbegin(), errors.rend());
+  return errors;
+}
+
+/** @return whether the option is known */
+bool ReadOption(const std::string& option, const std::string& value, Options& options)
+{
+  const auto number = [&](std::uint64_t least, std::uint64_t most) {
+    return static_cast<int>(ToNumber(option, value, least, most));
+  };
+  if (option == "--files")
+  {
+    options.Files = Split(value);
+  }
+  else if (option == "--random")
+  {
+    options.Random = number(4, elevation::MaximumNumberOfPoints);
+  }
+  else if (option == "--lattice")
+  {
+    options.Lattice = number(4, elevation::MaximumNumberOfPoints);
+  }
+  else if (option == "--errors")
+  {
+    options.Errors = ToErrors(value);
+  }
+  else if (option == "--threads")
+  {
+    options.Threads.clear();
+    for (const std::string& threads : Split(value))
+    {
+      options.Threads.push_back(static_cast<int>(ToNumber(option, threads, 0, 1024)));
+    }
+  }
+  else if (option == "--repeats")
+  {
+    options.Repeats = number(1, 101);
+  }
+  else
+  {
+    return false;
+  }
+  return true;
+}
+
+/** @return false when the help was asked for */
+bool ReadOptions(int argc, char* argv[], Options& options)
+{
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string option = argv[i];
+    if (option == "--help" || option == "-h")
+    {
+      return false;
+    }
+    if (option == "--no-peers")
+    {
+      options.Peers = false;
+      continue;
+    }
+    if (option == "--no-decimation")
+    {
+      options.Decimation = false;
+      continue;
+    }
+    if (i + 1 >= argc)
+    {
+      throw UsageError(option + " is no option, or needs a value; --help lists them");
+    }
+    if (!ReadOption(option, argv[++i], options))
+    {
+      throw UsageError("there is no option \"" + option + "\"; --help lists them");
+    }
+  }
+  if (options.Files.empty() && options.Random == 0 && options.Lattice == 0)
+  {
+    throw UsageError("nothing to do without --files, --random or --lattice");
+  }
+  if (options.Errors.empty() || options.Threads.empty())
+  {
+    throw UsageError("--errors and --threads need at least one number");
+  }
+  return true;
+}
+
+/** Smooth hills on the unit square, some 100 of them. */
+void AddHill(Coordinates& points, double x, double y)
+{
+  const double z =
+    std::sin(36.0 * x + 5.0 * y) * std::cos(31.0 * y - 9.0 * x) + std::sin(4.0 * x) * y;
+  points.insert(points.end(), { x, y, z });
+}
+
+std::vector<PointSource> SourcesOf(const Options& options)
+{
+  std::vector<PointSource> sources;
+  for (const std::string& file : options.Files)
+  {
+    sources.push_back(FileSource(file));
+  }
+  if (options.Random > 0)
+  {
+    sources.push_back({ "random", [options]() {
+                         std::mt19937_64 random(1);
+                         const auto next = [&]() { return double(random() >> 11) * 0x1p-53; };
+                         Coordinates points;
+                         for (Index i = 0; i < options.Random; ++i)
+                         {
+                           const double x = next();
+                           AddHill(points, x, next());
+                         }
+                         return points;
+                       } });
+  }
+  if (options.Lattice > 0)
+  {
+    sources.push_back({ "lattice", [options]() {
+                         const int side = static_cast<int>(std::lround(std::sqrt(options.Lattice)));
+                         Coordinates points;
+                         for (int i = 0; i < side * side; ++i)
+                         {
+                           AddHill(points, double(i % side) / side, double(i / side) / side);
+                         }
+                         return points;
+                       } });
+  }
+  return sources;
+}
+
+vtkSmartPointer<vtkPolyData> ToPolyData(const Coordinates& coordinates)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetNumberOfComponents(3);
+  array->SetArray(
+    const_cast<double*>(coordinates.data()), static_cast<vtkIdType>(coordinates.size()), 1);
+  vtkNew<vtkPoints> points;
+  points->SetData(array);
+  auto cloud = vtkSmartPointer<vtkPolyData>::New();
+  cloud->SetPoints(points);
+  return cloud;
+}
+
+double ReliefOf(const Coordinates& points)
+{
+  double low = points.at(2), high = low;
+  for (std::size_t i = 2; i < points.size(); i += 3)
+  {
+    low = std::min(low, points[i]);
+    high = std::max(high, points[i]);
+  }
+  return high - low;
+}
+
+double SecondsSince(std::chrono::steady_clock::time_point start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/** vtkGridDelaunay2D with an error, 0 for all points, and a number of threads. */
+struct Variant
+{
+  double Error;
+  int Threads;
+  std::vector<double> Seconds{};
+  std::vector<double> ProcessorSeconds{};
+  Index Vertices = 0;
+  double Largest = 0.0; ///< error, as told
+  bool IsLattice = false;
+  vtkSmartPointer<vtkPolyData> Mesh{}; ///< of all points
+
+  double Time() const { return Median(this->Seconds); }
+  double ProcessorTime() const { return Median(this->ProcessorSeconds); }
+};
+
+void Time(vtkPolyData* cloud, Variant& variant)
+{
+  TrimMemory();
+  const std::clock_t processor = std::clock();
+  const auto start = std::chrono::steady_clock::now();
+  vtkNew<vtkGridDelaunay2D> filter;
+  filter->SetNumberOfThreads(variant.Threads);
+  filter->SetMaximumElevationError(variant.Error);
+  filter->SetInputData(cloud);
+  filter->Update();
+  variant.Seconds.push_back(SecondsSince(start));
+  variant.ProcessorSeconds.push_back(
+    static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC);
+  if (variant.Seconds.size() == 1)
+  {
+    variant.Vertices = VerticesOf(filter->GetOutput());
+    variant.Largest = filter->GetLargestElevationError();
+    variant.IsLattice = filter->GetLatticeFound();
+    if (variant.Error == 0.0)
+    {
+      variant.Mesh = filter->GetOutput();
+    }
+  }
+}
+
+/** All variants in turns: for each number of threads all points, then each error. */
+std::vector<Variant> TimeAll(vtkPolyData* cloud, double relief, const Options& options)
+{
+  std::vector<Variant> variants;
+  for (const int threads : options.Threads)
+  {
+    variants.push_back({ 0.0, threads });
+    for (const double error : options.Errors)
+    {
+      variants.push_back({ 0.01 * error * relief, threads });
+    }
+  }
+  for (int round = 0; round < options.Repeats; ++round)
+  {
+    for (Variant& variant : variants)
+    {
+      Time(cloud, variant);
+    }
+  }
+  return variants;
+}
+
+/** @return whether no error is above its limit */
+bool PrintTimes(const std::vector<Variant>& variants, const Options& options)
+{
+  std::printf(
+    "| error %% | threads | vertices | of points %% | largest / limit | ms | / all points "
+    "| processor ms | / all points | gain of threads |\n"
+    "|---|---|---|---|---|---|---|---|---|---|\n");
+  bool isWithin = true;
+  const std::size_t stride = options.Errors.size() + 1;
+  for (std::size_t k = 1; k < stride; ++k)
+  {
+    for (std::size_t i = k; i < variants.size(); i += stride)
+    {
+      const Variant &few = variants[i], &all = variants[i - k];
+      isWithin = isWithin && few.Largest <= few.Error;
+      std::printf("| %g | %d | %d | %.2f | %.4f | %.1f | %.2f | %.1f | %.2f | %.2f |%s\n",
+        options.Errors[k - 1], few.Threads, few.Vertices, 100.0 * few.Vertices / all.Vertices,
+        few.Largest / few.Error, 1e3 * few.Time(), few.Time() / all.Time(),
+        1e3 * few.ProcessorTime(), few.ProcessorTime() / all.ProcessorTime(),
+        variants[k].Time() / few.Time(), few.Largest <= few.Error ? "" : " ABOVE THE LIMIT");
+    }
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+  return isWithin;
+}
+
+/** The error in parts of the limit. */
+void Print(const Decimated& decimated, double error, std::size_t coordinates)
+{
+  std::printf(" %d | %.2f | %.2f | %.0f |", decimated.Vertices, decimated.Largest / error,
+    300.0 * decimated.Beside / static_cast<double>(coordinates), 1e3 * decimated.Seconds);
+}
+
+void PrintPeers(
+  const std::vector<Variant>& variants, const Coordinates& points, const Options& options)
+{
+  std::printf("| error %% | vertices | greedy | ratio | greedy ms |%s\n|---|---|---|---|---|%s\n",
+    options.Decimation ? " vtkDecimatePro | error | beside % | ms | vtkQuadricDecimation | error "
+                         "| beside % | ms |"
+                       : "",
+    options.Decimation ? "---|---|---|---|---|---|---|---|" : "");
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < options.Errors.size(); ++k)
+  {
+    errors.push_back(variants[k + 1].Error);
+  }
+  const std::vector<GreedyCount> greedy = InsertGreedily(points, errors);
+  for (std::size_t k = 0; k < greedy.size(); ++k)
+  {
+    const Variant& few = variants[k + 1];
+    std::printf("| %g | %d | %d | %.3f | %.0f |", options.Errors[k], few.Vertices,
+      greedy[k].Vertices, static_cast<double>(few.Vertices) / greedy[k].Vertices,
+      1e3 * greedy[k].Seconds);
+    if (options.Decimation)
+    {
+      vtkPolyData* const all = variants[0].Mesh;
+      Print(DecimateByPro(all, few.Vertices, points), few.Error, points.size());
+      Print(DecimateByQuadric(all, few.Vertices, points), few.Error, points.size());
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+  std::printf("\n");
+}
+
+/** @return whether no error is above its limit */
+bool Run(const PointSource& source, const Options& options)
+{
+  const Coordinates points = source.Make();
+  if (points.empty())
+  {
+    throw elevation::Error(source.Name + ": there are no points");
+  }
+  const double relief = ReliefOf(points);
+  if (!(relief > 0.0))
+  {
+    throw elevation::Error(source.Name + ": all points have the same z");
+  }
+  const std::vector<Variant> variants = TimeAll(ToPolyData(points), relief, options);
+  std::printf("**%s**: %zu points, %s, relief %g\n\n", source.Name.c_str(), points.size() / 3,
+    variants[1].IsLattice ? "a lattice" : "no lattice", relief);
+  const bool isWithin = PrintTimes(variants, options);
+  if (options.Peers)
+  {
+    PrintPeers(variants, points, options);
+  }
+  return isWithin;
+}
+} // namespace
+
+int main(int argc, char* argv[])
+{
+  try
+  {
+    Options options;
+    if (!ReadOptions(argc, argv, options))
+    {
+      std::fputs(Usage, stdout);
+      return 0;
+    }
+    bool isWithin = true;
+    for (const PointSource& source : SourcesOf(options))
+    {
+      isWithin = Run(source, options) && isWithin;
+    }
+    return isWithin ? 0 : 1;
+  }
+  catch (const UsageError& error)
+  {
+    std::fprintf(stderr, "BenchmarkSimplify: %s\n", error.what());
+    return 2;
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "BenchmarkSimplify: %s\n", error.what());
+    return 1;
+  }
+}
