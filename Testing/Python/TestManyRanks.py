@@ -216,6 +216,23 @@ def check_given_lattice(random):
     compare("no finite point", nodes * numpy.nan, numpy.arange(40) % COUNT, None, Lattice=given)
 
 
+def check_elevation_error(random):
+    """With an elevation error, the points are gathered on one rank; all tell the counts."""
+    points = random.random((2000, 3))
+    owners = owners_of(random, len(points))
+    for error in (0.2, -1.0):
+        spread, messages = triangulate(cloud(points[owners == RANK]), False, MaximumElevationError=error)
+        alone, expected = triangulate(
+            cloud(numpy.concatenate([points[owners == rank] for rank in range(COUNT)])), True,
+            MaximumElevationError=error)
+        check(messages == (expected if RANK == 0 else []), "elevation error %s: %s" % (error, messages))
+        triangles = WORLD.allgather(spread.GetOutput().GetNumberOfPolys())
+        check(sorted(triangles)[-1] == sum(triangles) == alone.GetOutput().GetNumberOfPolys(),
+              "elevation error: %s triangles are on one rank" % triangles)
+        for name in ("NumberOfRedundantPoints", "LargestElevationError"):
+            check(getattr(spread, "Get" + name)() == getattr(alone, "Get" + name)(), name)
+
+
 def owners_of(random, count):
     """Which rank has which point: drawn, in stretches, in rows, on few ranks, on one but for a point."""
     kind = random.integers(5)
@@ -422,6 +439,7 @@ def main():
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
     check_given_lattice(random)
+    check_elevation_error(random)
     for i in range(options.clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     latest = check_aborts(random, options.aborts, options.size)
