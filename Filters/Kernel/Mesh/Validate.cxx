@@ -295,7 +295,8 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
       }
     };
     grid.Visit(p, [&](Index t) { look(t, 0.0); });
-    for (Index t = 0; !isCovered && besideBy > 0.0 && t < mesh.NumberOfTriangles(); ++t)
+    const bool isBeside = !isCovered && besideBy > 0.0;
+    for (Index t = 0; isBeside && t < mesh.NumberOfTriangles(); ++t)
     {
       look(t, besideBy);
     }

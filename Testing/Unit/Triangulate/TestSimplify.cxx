@@ -163,9 +163,9 @@ void Check(const Cloud& cloud, const DelaunayOptions& options, const Triangulati
 {
   const Mesh mesh = MeshOfTriangles(cloud, made.Triangles);
   // On a lattice, points at the border may lie beside their nodes, and so beside the mesh.
-  const double besideBy = made.LatticeFound ? 2.0 * options.LatticeTolerance *
-      std::hypot(made.Steps.StepU.X + made.Steps.StepV.X, made.Steps.StepU.Y + made.Steps.StepV.Y)
-                                            : 0.0;
+  const Point2 &u = made.Steps.StepU, &v = made.Steps.StepV;
+  const double ofBoth = std::hypot(u.X, u.Y) + std::hypot(v.X, v.Y);
+  const double besideBy = made.LatticeFound ? 2.0 * options.LatticeTolerance * ofBoth : 0.0;
   const auto far =
     ValidateDistance(mesh, cloud.View(), options.MaximumElevationError, besideBy, ExemptOf(made));
   EXPECT_TRUE(far.empty()) << ToString(far);
