@@ -42,8 +42,9 @@ from .progress import share
 from .properties import PROPERTIES
 from .ranks import controller_of, is_to_speak, shared, together
 from .reading import read, read_boundary, read_faults
-from .reconstruction import STEPS, reconstruct
+from .reconstruction import reconstruct
 from .report import crs_name
+from .steps import STEPS
 from .telling import (
     TellingAlgorithm,
     drop_elevation,

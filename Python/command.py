@@ -24,10 +24,11 @@ from .options import (
 )
 from .pieces import Pieces
 from .ranks import by_first, total
-from .reconstruction import check_spacing, in_options, least_reach, run_chain
+from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, Progress, Results, WrongOption, write_report
 from .spreading import can_be_dealt
+from .steps import in_options
 from .supervisor import allow_stops
 from .writing.grids import write_prj
 from .writing.outputs import beside, write_output
@@ -125,6 +126,8 @@ class Run:
     def reconstruct(self, cloud, boundary, faults):
         options = self.options
         ranks = self.ranks if total(self.ranks, not can_be_dealt(cloud.points)) == 0 else None
+        if options.given.get("maximum_elevation_error"):
+            ranks = None  # points are chosen on one rank
         if not self.is_first and not ranks:
             return None  # the first does it alone
         try:

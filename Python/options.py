@@ -18,6 +18,7 @@ from .pieces import MEMORY, SUFFIX as OF_PIECES, check_files, check_given, memor
 from .properties import (
     COLOURS,
     PROPERTIES,
+    check_together,
     number_above_zero,
     number_at_least_zero,
     option_of,
@@ -158,6 +159,10 @@ def parse_arguments(arguments):
     options.given = {
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
+    try:
+        check_together(options.given, option_of)
+    except ValueError as error:
+        parser.error(str(error))
     options.in_pieces = options.pieces is not None or options.memory is not None
     if options.in_pieces:
         check_given(options, parser.error)

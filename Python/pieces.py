@@ -31,10 +31,11 @@ from .properties import LATTICE_MODES, PROPERTIES
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
-from .reconstruction import AS_GIVEN, STEPS, check_spacing, in_options, least_reach, notes_of
+from .reconstruction import AS_GIVEN, check_spacing, least_reach
 from .report import MOST_LISTED, OUTSIDE, REASONS
 from .results import Failure, WrongOption, write_report
 from .spreading import IN_NO_TRIANGLE
+from .steps import STEPS, in_options, notes_of
 from .supervisor import note_partial_file
 from .vtkElevationSurface import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
@@ -46,7 +47,7 @@ BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
 OF_THE_WHOLE = ("faults", "open_edge_length", "grid", "contours", "outlines", "picture", "view")
-OF_THE_WHOLE += ("exaggeration", "colours", "outward_test")
+OF_THE_WHOLE += ("exaggeration", "colours", "outward_test", "maximum_elevation_error")
 
 
 def memory_size(text):

@@ -96,6 +96,9 @@ PROPERTIES = {
     "maximum_edge_length": Property(
         "delaunay", "SetMaximumEdgeLength", number_at_least_zero, NUMBER
     ),
+    "maximum_elevation_error": Property(
+        "delaunay", "SetMaximumElevationError", number_at_least_zero, NUMBER
+    ),
     "duplicates": _choice("delaunay", "SetDuplicatePolicy", DUPLICATES),
     "lattice_mode": _choice("delaunay", "SetLatticeMode", LATTICE_MODES),
     "lattice_tolerance": Property(
@@ -134,4 +137,13 @@ def checked(properties: dict[str, Any]) -> dict[str, Any]:
             result[name] = PROPERTIES[name].convert(value)
         except (TypeError, ValueError, OverflowError):
             raise ValueError(f"{name} takes {PROPERTIES[name].takes}, not {value!r}") from None
+    check_together(result)
     return result
+
+
+def check_together(given, name_of=str):
+    """Raises ValueError for properties that do not go with each other. name_of: as they are called."""
+    names = ("maximum_edge_length", "maximum_elevation_error")
+    if all(given.get(name) for name in names):
+        words = " and ".join(name_of(name) for name in names)
+        raise ValueError(f"{words} cannot be used together: fewer points make longer edges")

@@ -6,8 +6,6 @@ from __future__ import annotations
 
 import functools
 import os
-import re
-import time
 import warnings
 from typing import Any, Callable, Optional, Sequence, Union
 
@@ -16,24 +14,14 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
 
 from .clouds import Cloud, make_lines, make_points
-from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Messages
-from .opening import lattice_of, length_to_open
+from .messages import ElevationSurfaceError, ElevationSurfaceWarning
+from .opening import length_to_open
 from .paths import check_suffix
-from .properties import (
-    COLOURS,
-    PROPERTIES,
-    checked,
-    number_above_zero,
-    option_of,
-    view_angles,
-)
-from .ranks import agreed, total
-from .spreading import dealt, reasons_of, update, whole_lines, whole_surface
-from .vtkElevationSurface import (
-    vtkFillElevationHoles,
-    vtkGridDelaunay2D,
-    vtkTrimOutwardTriangles,
-)
+from .properties import COLOURS, checked, number_above_zero, view_angles
+from .ranks import total
+from .spreading import whole_lines, whole_surface
+from .steps import Step, triangulate, trim_along, trim_few
+from .vtkElevationSurface import vtkFillElevationHoles
 
 # ---- input ------------------------------------------------------------------------------------
 
@@ -97,7 +85,6 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
 
 # ---- the chain --------------------------------------------------------------------------------
 
-STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
 AS_GIVEN = "as given"  # the length of edges above which triangles are opened
 
 
@@ -108,6 +95,8 @@ class Reconstruction:
     boundary  vtkPolyData, the rings that bound the surface; None without trimming
     holes     vtkPolyData, the outline of each hole, filled or not; None without filling
     delaunay, trim, fill   the filters that have run; None for those left out
+    outlined  (delaunay, trim) that have found the outline of all points, where a surface of few of
+              them is trimmed; else None
     cloud     the points and what their reader found out
     triangles {"delaunay": count, "trimmed": count, "filled": count} after each step
     reasons   (n,) numbers: 0 for points in triangles of the triangulation, or why they are in none,
@@ -121,7 +110,7 @@ class Reconstruction:
         self.cloud = cloud
         self.times = {}
         self.notes = []
-        self.delaunay = self.trim = self.fill = None
+        self.delaunay = self.trim = self.fill = self.outlined = None
         self.surface = self.boundary = self.holes = None
         self.triangles, self.reasons, self.lattice = {}, None, None
         self.progress = None  # what run_chain() was given
@@ -229,73 +218,6 @@ class Reconstruction:
         )
 
 
-class _Step:
-    """Runs a filter with progress. Its errors are raised, its warnings become notes.
-
-    ranks  the controller of those that run it together, or None
-    """
-
-    def __init__(self, result, progress, strict, ranks):
-        self.result = result
-        self.progress = progress
-        self.strict = strict
-        self.ranks = ranks
-
-    def __call__(self, name, algorithm):
-        raised = []
-
-        def show(caller, _event):
-            # What is raised in an observer does not get through VTK: the filter is aborted first.
-            # That holds for Ctrl-C too.
-            try:
-                if self.progress:
-                    self.progress(STEPS[name], caller.GetProgress())
-            except BaseException as error:  # pylint: disable=broad-except
-                raised.append(error)
-            if raised:
-                caller.SetAbortExecute(1)
-
-        tag = algorithm.AddObserver("ProgressEvent", show)
-        began = time.perf_counter()
-        with Messages(algorithm, algorithm.GetExecutive()) as messages:
-            update(algorithm, self.ranks)
-        self.result.times["triangulate" if name == "delaunay" else name] = (
-            time.perf_counter() - began
-        )
-        algorithm.RemoveObserver(tag)
-        if raised:
-            raise raised[0]
-        agreed(self.ranks, lambda: self.tell(name, messages))
-        return algorithm
-
-    def tell(self, name, messages):
-        problems = messages.errors + (messages.warnings if self.strict else [])
-        if problems:
-            about = "points"
-            if name == "trim" and self.result.boundary_name:
-                about = "boundary"
-            elif name == "delaunay" and "constraints" in problems[0]:
-                about = "faults"
-            raise ElevationSurfaceError(f"{STEPS[name]}: {problems[0]}", about)
-        for warning in messages.warnings:
-            self.result.notes += notes_of(STEPS[name], warning)
-
-
-def in_options(words):
-    """A filter's message, with the names of options where it has names of properties."""
-    for name, one in PROPERTIES.items():
-        if not one.step or words.startswith(STEPS[one.step]):
-            words = re.sub(rf"\b{one.setter[3:]}\b", option_of(name), words)
-        if "_" in name:
-            words = words.replace(name, option_of(name))
-    return words
-
-
-def notes_of(step, warning):
-    """A filter's warning as notes. It may tell of several holes."""
-    return [f"{step}: {one}" for one in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n")]
-
-
 def run_chain(
     cloud, boundary, faults, given, *, trim=True, fill=True, progress=None, strict=False, ranks=None
 ):
@@ -308,45 +230,21 @@ def run_chain(
     result.progress = progress
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
-    run = _Step(result, progress, strict, ranks)
-
-    def made(step, algorithm):
-        for name, value in given.items():
-            if PROPERTIES[name].step in (step, ""):
-                getattr(algorithm, PROPERTIES[name].setter)(value)
-        return algorithm
-
-    delaunay = made("delaunay", vtkGridDelaunay2D())
-    delaunay.SetInputData(dealt(ranks, cloud.points))
-    if faults is not None:
-        delaunay.SetSourceData(faults)
-    result.delaunay = last = run("delaunay", delaunay)
-    result.triangles["delaunay"] = total(ranks, last.GetOutput().GetNumberOfPolys())
-    result.lattice = lattice_of(ranks, last.GetOutput())
-    result.reasons = reasons_of(ranks, last.GetOutput(), cloud.points.GetNumberOfPoints())
-    if result.triangles["delaunay"] == 0:
-        limit = given.get("maximum_edge_length", 0.0)
-        agreed(ranks, lambda: refuse(cloud.points, limit, result.notes))
-    if trim:
-        trimming = made("trim", vtkTrimOutwardTriangles())
-        trimming.SetInputData(0, last.GetOutput())
-        if boundary is not None:
-            trimming.SetBoundaryData(boundary)
-        result.trim = last = run("trim", trimming)
-        result.triangles["trimmed"] = total(ranks, last.GetOutput().GetNumberOfPolys())
-        if result.triangles["trimmed"] == 0:
-            raise ElevationSurfaceError(
-                "no triangle lies inside the boundary; are boundary and points in the same "
-                "coordinates?",
-                "boundary" if boundary is not None else "points",
-            )
-        result.boundary = whole_lines(ranks, trimming.GetOutput(2))
+    run = Step(result, given, progress, strict, ranks)
+    if given.get("maximum_elevation_error") and trim:
+        trim_few(run, boundary, faults)
+    else:
+        triangulate(run, faults, given.get("maximum_elevation_error", 0.0))
+        if trim:
+            trim_along(run, boundary)
+            result.boundary = whole_lines(ranks, result.trim.GetOutput(2))
+    last = result.trim or result.delaunay
     if fill:
-        filling = made("fill", vtkFillElevationHoles())
+        filling = run.made("fill", vtkFillElevationHoles())
         filling.SetInputData(last.GetOutput())
         if "open_edge_length" in given:
             result.why_opened = AS_GIVEN
-        else:
+        elif not given.get("maximum_elevation_error"):  # else long edges are no voids
             length, result.why_opened = length_to_open(ranks, last.GetOutput(), result)
             filling.SetMaximumEdgeLength(length)
         result.fill = last = run("fill", filling)
@@ -383,8 +281,8 @@ def reconstruct(
     progress  None, or a function that is called with a step's name and its fraction done; what it
               raises stops the filter
     properties  of the filters, named as the options of the command line, with underscores:
-              maximum_edge_length, duplicates, lattice_mode, lattice_tolerance, search_strategy,
-              outward_test, gap_tolerance, recover_boundary, open_edge_length, maximum_hole_size,
+              maximum_edge_length, maximum_elevation_error, duplicates, lattice_mode,
+              lattice_tolerance, search_strategy, outward_test, gap_tolerance, recover_boundary, open_edge_length, maximum_hole_size,
               maximum_hole_edges, spacing, interpolation, interpolate_point_data, threads. Lengths
               are in the units of x and y. The program's --help tells what each does, and its default.
 
@@ -426,43 +324,3 @@ def check_spacing(reach, spacing):
                 f"spacing: {spacing:g} is less than x and y of the points can tell apart, which are in "
                 f"steps of {step:.3g}"
             )
-
-
-def refuse(points, limit, notes):
-    """Raises ElevationSurfaceError, where there are points, with the reason why no triangle is."""
-    if points.GetNumberOfPoints():
-        raise ElevationSurfaceError(why_no_triangle(points, limit, notes))
-
-
-def why_no_triangle(points, limit, notes):
-    """The reason in words when the triangulation is empty; notes: what the filter warned of."""
-    xyz = vtk_to_numpy(points.GetPoints().GetData())
-    count = len(xyz)
-    finite = xyz[numpy.isfinite(xyz).all(axis=1)]
-    distinct = numpy.unique(finite[:, :2], axis=0)
-    total = "the only point" if count == 1 else f"all {count:,} points"
-    if len(finite) == 0:
-        return f"no surface: {total} {'is' if count == 1 else 'are'} not finite (NaN or infinite)"
-    if count == 1:
-        return "no surface: there is only one point; three not on a line are needed"
-    if len(distinct) == 1:
-        x, y = distinct[0]
-        where = f"({x:.10g}, {y:.10g})"
-        return f"no surface: all {len(finite):,} finite points have the same x,y {where}"
-    if len(distinct) == 2:
-        return "no surface: only two points differ in x,y; three not on a line are needed"
-    away = distinct - distinct[0]
-    far = away[numpy.argmax((away**2).sum(axis=1))]
-    offset = numpy.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() / (far @ far)
-    if offset < 1e-12 or not limit:
-        a, b = distinct[0], distinct[-1]
-        return (
-            f"no surface: all {len(finite):,} finite points lie on one line in x,y, from "
-            f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
-        )
-    advice = re.search(r"Between neighbours.*", " ".join(notes))
-    advice = advice.group().replace("MaximumEdgeLength", "maximum_edge_length") if advice else ""
-    return (
-        f"no surface: no triangle has edges of at most {limit:g}; "
-        f"use a larger maximum_edge_length. {advice}".rstrip()
-    )

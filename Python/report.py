@@ -13,15 +13,16 @@ from .distance import distance_to
 from .holes import hole_counts, hole_lines, holes_of
 from .messages import counted, of_reason
 from .properties import LATTICE_MODES
-from .spreading import IN_NO_TRIANGLE
+from .spreading import IN_NO_TRIANGLE, OUT_OF_OUTLINE, WITHIN_ERROR
 
 OUTSIDE = "outside the boundary"
-# Why a point is not used, by number: the first two are those of vtkGridDelaunay2D.
+# Why a point is not used, by number: the first three are those of vtkGridDelaunay2D.
 REASONS = {
     1: "same x,y as another point",
     2: "not finite",
+    WITHIN_ERROR: "within the elevation error",
+    OUT_OF_OUTLINE: OUTSIDE,
     IN_NO_TRIANGLE: "in no triangle below the edge limit",
-    4: OUTSIDE,
 }
 MOST_LISTED = 25_000  # unused points for each reason
 FOUND = "found from the points"
@@ -48,11 +49,19 @@ def make_report(result):
         "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
         "triangles": result.triangles,
     }
+    if delaunay.GetMaximumElevationError():
+        report["simplified"] = {
+            "maximum_elevation_error": delaunay.GetMaximumElevationError(),
+            "largest_elevation_error": delaunay.GetLargestElevationError(),
+            "points_kept": int(numpy.count_nonzero(reasons == 0)),
+            "points_redundant": int(numpy.count_nonzero(reasons == WITHIN_ERROR)),
+        }
     if result.faults_name:
+        with_faults = result.outlined[0] if result.outlined else delaunay
         report["faults"] = {
             "file": result.faults_name,
-            "added_points": delaunay.GetNumberOfAddedPoints(),
-            "crossings": delaunay.GetNumberOfConstraintCrossings(),
+            "added_points": with_faults.GetNumberOfAddedPoints(),
+            "crossings": with_faults.GetNumberOfConstraintCrossings(),
         }
     if trim:
         report["trim"] = trimming_of(result)
@@ -64,9 +73,9 @@ def make_report(result):
 
 def trimming_of(result):
     """The part of the report on trimming."""
-    trim = result.trim
+    trim = result.outlined[1] if result.outlined else result.trim
     report = {
-        "outward_triangles": trim.GetNumberOfOutwardTriangles(),
+        "outward_triangles": result.trim.GetNumberOfOutwardTriangles(),
         "recovered_edges": trim.GetNumberOfRecoveredEdges(),
         "inserted_points": trim.GetNumberOfInsertedPoints(),
         "boundary": result.boundary_name or FOUND,
@@ -82,7 +91,7 @@ def distance_of(result, coordinates, reasons):
     """The distance of all points that the user wants in the surface, used or not."""
     measured = numpy.isfinite(coordinates).all(axis=1)
     if result.boundary_name:
-        measured &= reasons != 4
+        measured &= reasons != OUT_OF_OUTLINE
     began = time.perf_counter()
     distance = distance_to(result.surface, coordinates, measured, result.measuring)
     result.times["measure"] = time.perf_counter() - began
@@ -93,7 +102,7 @@ def reasons_unused(result):
     """(n,) numbers of REASONS, or 0, for the points of the cloud."""
     corners = vtk_to_numpy(result.surface.GetPolys().GetConnectivityArray())
     used = corner_flags(corners, result.surface.GetNumberOfPoints())[: len(result.reasons)]
-    return numpy.where((result.reasons == 0) & ~used, 4, result.reasons)
+    return numpy.where((result.reasons == 0) & ~used, OUT_OF_OUTLINE, result.reasons)
 
 
 def list_unused(reasons, lines):
@@ -179,6 +188,13 @@ def point_lines(report, line):
     line("points", text)
     if report["points_unused"] == 0:
         line("unused", "none")
+    if "simplified" in report:
+        few = report["simplified"]
+        line(
+            "simplified",
+            f"{few['points_kept']:,} of {counted(report['points'], 'point')} kept; others of the "
+            f"surface are at most {few['largest_elevation_error']:.4g} above or below it",
+        )
     for reason, count in report["unused_reasons"].items():
         some = [u for u in report["unused"] if u["reason"] == reason][:5]
         if "line" in some[0]:

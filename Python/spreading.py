@@ -23,7 +23,8 @@ IDS = "PlaceInInput"  # the global ids that points have on the way
 GHOSTS = vtkDataSetAttributes.GhostArrayName()
 OF_A_RANK = ("WorkOfRank", "WorkOfTrim")  # field data
 TAG = 20
-IN_NO_TRIANGLE = 3
+# Why a point is in no triangle, by number; others are those of vtkGridDelaunay2D.
+WITHIN_ERROR, OUT_OF_OUTLINE, IN_NO_TRIANGLE = 3, 4, 5
 
 
 def update(algorithm, ranks):

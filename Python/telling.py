@@ -30,7 +30,7 @@ def in_panel(words):
 
     properties = "|".join([*PROPERTIES, *ReadOptions.__dataclass_fields__])
     words = re.sub(r"--([a-z][a-z-]*)", title, words)
-    return re.sub(rf"\b((?:{properties})(?= takes )|[a-z]+_edge_length)\b", title, words)
+    return re.sub(rf"\b((?:{properties})(?= takes )|[a-z]+_edge_length|maximum_elevation_error)\b", title, words)
 
 
 def set_elevation(data):

@@ -121,6 +121,10 @@ class OnRanks(Program):
         self.file("a.txt", grid())
         self.check_same(2, "a.txt")
 
+    def test_few_points_within_an_elevation_error(self):
+        self.file("a.txt", grid())
+        self.check_same(2, "a.txt", "--maximum-elevation-error", "0.5")
+
     def test_ids_of_64_bits(self):
         points = vtk_files.run_vtk_reader(os.path.join(DATA, "b9_ground.vtp"))
         ids = numpy_to_vtkIdTypeArray(2**35 + numpy.arange(points.GetNumberOfPoints()), deep=True)

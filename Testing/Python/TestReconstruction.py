@@ -108,6 +108,7 @@ class Properties(unittest.TestCase):
     def test_each_reaches_its_filter(self):
         given = {
             "maximum_edge_length": (30.0, "delaunay", "GetMaximumEdgeLength", 30.0),
+            "maximum_elevation_error": (0.1, "delaunay", "GetMaximumElevationError", 0.1),
             "duplicates": ("keep-lowest", "delaunay", "GetDuplicatePolicy", 2),
             "lattice_mode": ("off", "delaunay", "GetLatticeMode", 1),
             "lattice_tolerance": (0.125, "delaunay", "GetLatticeTolerance", 0.125),

@@ -1,0 +1,168 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The outline of a surface that is made of few of its points: that of all points, simplified.
+
+[Douglas & Peucker 1973] Algorithms for the reduction of the number of points required to represent
+a digitized line or its caricature, The Canadian Cartographer 10(2).
+"""
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkIdList
+from vtkmodules.vtkCommonDataModel import vtkCellArray
+
+from .clouds import cells_of, some_points
+from .messages import Messages
+from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
+
+ON_OUTLINE = 0.01  # spacings: points as near to an outline that was found are not outside of it
+ON_BORDER = 1e-9  # of the size of a border along a given boundary, likewise
+
+
+def border_of(surface):
+    """The edges of one triangle only, as lines, and their points with z and point data."""
+    triangles = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    edges = numpy.vstack((triangles[:, :2], triangles[:, 1:], triangles[:, ::2]))
+    edges = numpy.sort(edges, axis=1)
+    edges, counts = numpy.unique(edges, axis=0, return_counts=True)
+    edges = edges[counts == 1]
+    keep, places = numpy.unique(edges, return_inverse=True)
+    border = some_points(surface, keep)
+    border.SetLines(cells_of(places.reshape(-1, 2)))
+    return border
+
+
+def rings_of(outline):
+    """[(n,) ids] of the points of closed lines, each once."""
+    cells, ids, rings = outline.GetLines(), vtkIdList(), []
+    for ring in range(cells.GetNumberOfCells()):
+        cells.GetCellAtId(ring, ids)
+        rings.append(numpy.array([ids.GetId(i) for i in range(ids.GetNumberOfIds() - 1)]))
+    return rings
+
+
+def with_rings(outline, rings):
+    """Rings of ids of an outline's points as closed lines, with these points and their data."""
+    keep = numpy.unique(numpy.concatenate(rings))
+    result, cells = some_points(outline, keep), vtkCellArray()
+    for ring in rings:
+        ids = numpy.searchsorted(keep, numpy.append(ring, ring[0])).tolist()
+        cells.InsertNextCell(len(ids), ids)
+    result.SetLines(cells)
+    return result
+
+
+def spacing_of(outline, lattice):
+    """The distance of neighbouring points along an outline."""
+    if lattice:
+        return min(lattice["lengths"])
+    p, q = edges_of(outline)
+    return float(numpy.median(numpy.hypot(*(q - p).T)))
+
+
+def simplified(outline, spacing, error):
+    """An outline of fewer points: the others are within half a spacing in x,y, and an error in z.
+
+    Points where rings touch stay. So does the whole outline where rings would cross.
+    """
+    xyz = vtk_to_numpy(outline.GetPoints().GetData()).astype("f8")
+    rings = rings_of(outline)
+    ids, counts = numpy.unique(numpy.concatenate(rings), return_counts=True)
+    touching = ids[counts > 1]
+    fewer = [
+        ring[kept_of(xyz[ring], numpy.isin(ring, touching), 0.5 * spacing, error)] for ring in rings
+    ]
+    result = with_rings(outline, fewer)
+    return result if is_sound(result) else with_rings(outline, rings)
+
+
+def kept_of(ring, fixed, reach, error):
+    """(n,) of bool: the points of a ring that stay [Douglas & Peucker 1973].
+
+    fixed  (n,) of bool: those that have to
+    """
+    ring = ring - ring[0]
+    first = int(numpy.argmax(numpy.hypot(ring[:, 0], ring[:, 1])))
+    ring, kept = numpy.roll(ring, -first, axis=0), numpy.roll(fixed, -first)
+    kept[0] = kept[numpy.argmax(numpy.hypot(*(ring - ring[0])[:, :2].T))] = True
+    closed, kept = numpy.vstack((ring, ring[:1])), numpy.append(kept, True)
+    ends = numpy.flatnonzero(kept).tolist()
+    parts = list(zip(ends[:-1], ends[1:]))
+    while parts:
+        i, j = parts.pop()
+        if j - i < 2:
+            continue
+        beside, above = away_from(closed[i], closed[j], closed[i + 1 : j])
+        away = numpy.maximum(beside / reach, above / error)
+        worst = int(numpy.argmax(away))
+        if away[worst] > 1.0:
+            kept[i + 1 + worst] = True
+            parts += [(i, i + 1 + worst), (i + 1 + worst, j)]
+    kept = kept[:-1]
+    if numpy.count_nonzero(kept) < 3:
+        i, j = numpy.flatnonzero(kept)
+        kept[numpy.argmax(away_from(ring[i], ring[j], ring)[0])] = True
+    return numpy.roll(kept, first)
+
+
+def away_from(p, q, points):
+    """((n,), (n,)): how far points are from a segment in x,y, and in z from its nearest place."""
+    step = q - p
+    square = step[:2] @ step[:2]
+    along = numpy.clip((points[:, :2] - p[:2]) @ step[:2] / square, 0, 1) if square else 0.0
+    off = points - p - numpy.multiply.outer(along * numpy.ones(len(points)), step)
+    return numpy.hypot(off[:, 0], off[:, 1]), numpy.abs(off[:, 2])
+
+
+def is_sound(rings):
+    """Whether rings cross neither themselves nor each other: a mesh can be trimmed along them."""
+    mesh = vtkGridDelaunay2D()
+    mesh.SetInputData(rings)
+    mesh.SetSourceData(rings)
+    trim = vtkTrimOutwardTriangles()
+    trim.SetInputConnection(mesh.GetOutputPort())
+    trim.SetBoundaryData(rings)
+    steps = (mesh, mesh.GetExecutive(), trim, trim.GetExecutive())
+    with Messages(*steps) as messages:
+        trim.Update()
+    is_bad = messages.errors or mesh.GetNumberOfConstraintCrossings()
+    return not is_bad and trim.GetOutput().GetNumberOfPolys() > 0
+
+
+def edges_of(lines):
+    """((n, 2), (n, 2)): x,y of both ends of the edges of lines."""
+    cells = lines.GetLines()
+    ids = vtk_to_numpy(cells.GetConnectivityArray())
+    offsets = vtk_to_numpy(cells.GetOffsetsArray())
+    is_start = numpy.ones(len(ids), dtype=bool)
+    is_start[offsets[1:] - 1] = False
+    starts = numpy.flatnonzero(is_start)
+    xy = vtk_to_numpy(lines.GetPoints().GetData())[:, :2].astype("f8")
+    return xy[ids[starts]], xy[ids[starts + 1]]
+
+
+def outside_of(lines, points, reach):
+    """(n,) of bool: the points that are outside of rings or border edges, by more than a length."""
+    x, y = points[:, 0].astype("f8"), points[:, 1].astype("f8")
+    order = numpy.argsort(y, kind="stable")
+    x, y = x[order], y[order]
+    inside, near = (numpy.zeros(len(y), dtype=bool) for _ in range(2))
+    p, q = edges_of(lines)
+    first = numpy.searchsorted(y, numpy.minimum(p[:, 1], q[:, 1]) - reach, "left")
+    last = numpy.searchsorted(y, numpy.maximum(p[:, 1], q[:, 1]) + reach, "right")
+    steps, lengths = q - p, numpy.hypot(*(q - p).T)
+    for edge in numpy.flatnonzero(last > first).tolist():
+        rows = slice(first[edge], last[edge])
+        (px, py), (dx, dy), length = p[edge], steps[edge], lengths[edge]
+        rx, ry = x[rows] - px, y[rows] - py
+        side, along = dx * ry - dy * rx, dx * rx + dy * ry
+        passes = (y[rows] >= py) != (y[rows] >= q[edge, 1])
+        inside[rows] ^= passes & (side > 0 if dy > 0 else side < 0)
+        near[rows] |= (
+            (numpy.abs(side) <= reach * length)
+            & (along >= -reach * length)
+            & (along <= (length + reach) * length)
+        )
+    result = numpy.empty(len(y), dtype=bool)
+    result[order] = ~(inside | near)
+    return result

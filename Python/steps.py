@@ -1,0 +1,200 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The steps of the chain: how its filters run, what they tell, triangulating and trimming."""
+
+import re
+import time
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .inputs import joined
+from .messages import ElevationSurfaceError, Messages
+from .opening import lattice_of
+from .outline import ON_BORDER, ON_OUTLINE, border_of, outside_of, simplified, spacing_of
+from .properties import PROPERTIES, option_of
+from .ranks import agreed, total
+from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, dealt, reasons_of, update
+from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
+
+STEPS = {"delaunay": "triangulating", "trim": "trimming", "fill": "filling holes"}
+
+
+class Step:
+    """Runs a filter with progress. Its errors are raised, its warnings become notes.
+
+    given  the properties of filters, see checked()
+    ranks  the controller of those that run it together, or None
+    """
+
+    def __init__(self, result, given, progress, strict, ranks):
+        self.result = result
+        self.given = given
+        self.progress = progress
+        self.strict = strict
+        self.ranks = ranks
+
+    def made(self, step, algorithm):
+        """The filter of a step with the properties that are given."""
+        for name, value in self.given.items():
+            if PROPERTIES[name].step in (step, ""):
+                getattr(algorithm, PROPERTIES[name].setter)(value)
+        return algorithm
+
+    def __call__(self, name, algorithm):
+        raised = []
+
+        def show(caller, _event):
+            # What is raised in an observer does not get through VTK: the filter is aborted first.
+            # That holds for Ctrl-C too.
+            try:
+                if self.progress:
+                    self.progress(STEPS[name], caller.GetProgress())
+            except BaseException as error:  # pylint: disable=broad-except
+                raised.append(error)
+            if raised:
+                caller.SetAbortExecute(1)
+
+        tag = algorithm.AddObserver("ProgressEvent", show)
+        began = time.perf_counter()
+        with Messages(algorithm, algorithm.GetExecutive()) as messages:
+            update(algorithm, self.ranks)
+        times, words = self.result.times, "triangulate" if name == "delaunay" else name
+        times[words] = times.get(words, 0.0) + time.perf_counter() - began
+        algorithm.RemoveObserver(tag)
+        if raised:
+            raise raised[0]
+        agreed(self.ranks, lambda: self.tell(name, messages))
+        return algorithm
+
+    def tell(self, name, messages):
+        problems = messages.errors + (messages.warnings if self.strict else [])
+        if problems:
+            about = "points"
+            if name == "trim" and self.result.boundary_name:
+                about = "boundary"
+            elif name == "delaunay" and "constraints" in problems[0]:
+                about = "faults"
+            raise ElevationSurfaceError(f"{STEPS[name]}: {problems[0]}", about)
+        for warning in messages.warnings:
+            notes = notes_of(STEPS[name], warning)
+            self.result.notes += [note for note in notes if note not in self.result.notes]
+
+
+def in_options(words):
+    """A filter's message, with the names of options where it has names of properties."""
+    for name, one in PROPERTIES.items():
+        if not one.step or words.startswith(STEPS[one.step]):
+            words = re.sub(rf"\b{one.setter[3:]}\b", option_of(name), words)
+        if "_" in name:
+            words = words.replace(name, option_of(name))
+    return words
+
+
+def notes_of(step, warning):
+    """A filter's warning as notes. It may tell of several holes."""
+    return [f"{step}: {one}" for one in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n")]
+
+
+def triangulate(run, lines, error):
+    """The first step, with lines or None as constraints, and a maximum elevation error."""
+    result, ranks, points = run.result, run.ranks, run.result.cloud.points
+    delaunay = run.made("delaunay", vtkGridDelaunay2D())
+    delaunay.SetMaximumElevationError(error)
+    delaunay.SetInputData(dealt(ranks, points))
+    if lines is not None:
+        delaunay.SetSourceData(lines)
+    result.delaunay = run("delaunay", delaunay)
+    surface = delaunay.GetOutput()
+    result.triangles["delaunay"] = total(ranks, surface.GetNumberOfPolys())
+    result.lattice = lattice_of(ranks, surface)
+    result.reasons = reasons_of(ranks, surface, points.GetNumberOfPoints())
+    if result.triangles["delaunay"] == 0:
+        limit = run.given.get("maximum_edge_length", 0.0)
+        agreed(ranks, lambda: refuse(points, limit, result.notes))
+
+
+def trim_along(run, boundary):
+    """The second step, along a boundary, or None."""
+    result = run.result
+    trim = run.made("trim", vtkTrimOutwardTriangles())
+    trim.SetInputData(0, result.delaunay.GetOutput())
+    if boundary is not None:
+        trim.SetBoundaryData(boundary)
+    result.trim = run("trim", trim)
+    result.triangles["trimmed"] = total(run.ranks, trim.GetOutput().GetNumberOfPolys())
+    if result.triangles["trimmed"] == 0:
+        raise ElevationSurfaceError(
+            "no triangle lies inside the boundary; are boundary and points in the same "
+            "coordinates?",
+            "boundary" if result.boundary_name else "points",
+        )
+
+
+def trim_few(run, boundary, faults):
+    """The first two steps for few points, within an elevation error: the outline is that of all."""
+    result, error = run.result, run.given["maximum_elevation_error"]
+    triangulate(run, faults, 0.0)
+    trim_along(run, boundary)
+    result.outlined, lattice = (result.delaunay, result.trim), result.lattice
+    lines = [] if faults is None else [faults]
+    if boundary is not None:
+        # It has no elevations, and may leave the points: its edges in the surface of all points do.
+        outline = border_of(result.trim.GetOutput())
+        reach = ON_BORDER * outline.GetLength()
+    else:
+        outline = result.trim.GetOutput(2)
+        spacing = spacing_of(outline, lattice)
+        outline, reach = simplified(outline, spacing, error), ON_OUTLINE * spacing
+    if boundary is None and result.trim.GetNumberOfOutwardTriangles() == 0:
+        outline = None  # the convex hull, which stays without constraints
+    else:
+        lines.append(outline)
+    triangulate(run, joined(lines) if lines else None, error)
+    outline = outline or border_of(result.delaunay.GetOutput())
+    trim_along(run, outline)
+    result.lattice = lattice
+    result.boundary = (result.trim if boundary is None else result.outlined[1]).GetOutput(2)
+    left = numpy.flatnonzero(result.reasons == WITHIN_ERROR)
+    xyz = vtk_to_numpy(result.cloud.points.GetPoints().GetData())
+    result.reasons[left[outside_of(outline, xyz[left], reach)]] = OUT_OF_OUTLINE
+
+
+def refuse(points, limit, notes):
+    """Raises ElevationSurfaceError, where there are points, with the reason why no triangle is."""
+    if points.GetNumberOfPoints():
+        raise ElevationSurfaceError(why_no_triangle(points, limit, notes))
+
+
+def why_no_triangle(points, limit, notes):
+    """The reason in words when the triangulation is empty; notes: what the filter warned of."""
+    xyz = vtk_to_numpy(points.GetPoints().GetData())
+    count = len(xyz)
+    finite = xyz[numpy.isfinite(xyz).all(axis=1)]
+    distinct = numpy.unique(finite[:, :2], axis=0)
+    total = "the only point" if count == 1 else f"all {count:,} points"
+    if len(finite) == 0:
+        return f"no surface: {total} {'is' if count == 1 else 'are'} not finite (NaN or infinite)"
+    if count == 1:
+        return "no surface: there is only one point; three not on a line are needed"
+    if len(distinct) == 1:
+        x, y = distinct[0]
+        where = f"({x:.10g}, {y:.10g})"
+        return f"no surface: all {len(finite):,} finite points have the same x,y {where}"
+    if len(distinct) == 2:
+        return "no surface: only two points differ in x,y; three not on a line are needed"
+    away = distinct - distinct[0]
+    far = away[numpy.argmax((away**2).sum(axis=1))]
+    offset = numpy.abs(away[:, 0] * far[1] - away[:, 1] * far[0]).max() / (far @ far)
+    if offset < 1e-12 or not limit:
+        a, b = distinct[0], distinct[-1]
+        return (
+            f"no surface: all {len(finite):,} finite points lie on one line in x,y, from "
+            f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
+        )
+    advice = re.search(r"Between neighbours.*", " ".join(notes))
+    advice = advice.group().replace("MaximumEdgeLength", "maximum_edge_length") if advice else ""
+    return (
+        f"no surface: no triangle has edges of at most {limit:g}; "
+        f"use a larger maximum_edge_length. {advice}".rstrip()
+    )

@@ -1,0 +1,247 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Surfaces of as few points as an elevation error allows: outline, faults, bound and report."""
+
+import json
+import os
+import sys
+import unittest
+
+import numpy
+from in_folder import Program
+from vtkelevationsurface import read, reconstruct
+from vtkelevationsurface.clouds import make_lines
+from vtkelevationsurface.outline import (
+    ON_OUTLINE,
+    outside_of,
+    rings_of,
+    simplified,
+    spacing_of,
+)
+from vtkelevationsurface.report import OUTSIDE
+from vtkelevationsurface.spreading import OUT_OF_OUTLINE, WITHIN_ERROR
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+DATA = sys.argv[sys.argv.index("-D") + 1] if "-D" in sys.argv else "Data"
+ERROR = 0.2
+WITHIN = "within the elevation error"
+BOUNDARY = numpy.array([(5.0, 5), (95, 5), (95, 90), (70, 90), (65, 70), (60, 95), (5, 95)])
+STEPS = numpy.arange(40)
+FAULT = numpy.column_stack((25 + 0.75 * STEPS, 10 + numpy.sin(STEPS / 9), 0 * STEPS + 9))
+
+
+def cloud(seed=1):
+    """Random points of waves, with a lake in the middle and a bay from above."""
+    xy = numpy.random.RandomState(seed).rand(12000, 2) * 100
+    x, y = xy.T
+    xy = xy[(numpy.hypot(x - 50, y - 50) > 15) & ((y < 60) | (abs(x - 20) > 10))]
+    return numpy.column_stack((xy, numpy.sin(xy[:, 0] / 15) * 5 + xy[:, 1] / 20))
+
+
+def area(result):
+    points, triangles = result.to_numpy()
+    a, b, c = (points[triangles[:, i], :2] for i in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    return 0.5 * float(abs(ux * vy - uy * vx).sum())
+
+
+def edges(result):
+    triangles = result.to_numpy()[1]
+    return {tuple(sorted(t[[i, i - 1]])) for t in triangles for i in range(3)}
+
+
+def residuals(result, points, reach=0.0):
+    """The vertical distance of each point from the triangle that it lies in, or NaN."""
+    places, triangles = result.to_numpy()
+    found = numpy.full(len(points), numpy.nan)
+    for corners in places[triangles]:
+        away = numpy.full(len(points), numpy.inf)
+        for p, q in zip(corners, numpy.roll(corners, -1, axis=0)):
+            (dx, dy), off = (q - p)[:2], points[:, :2] - p[:2]
+            away = numpy.minimum(away, (dx * off[:, 1] - dy * off[:, 0]) / numpy.hypot(dx, dy))
+        rows = numpy.flatnonzero(away >= -reach - 1e-9)
+        normal = numpy.cross(corners[1] - corners[0], corners[2] - corners[0])
+        distance = abs((points[rows] - corners[0]) @ normal / normal[2])
+        found[rows] = numpy.fmin(found[rows], distance)
+    return found
+
+
+class Surface(unittest.TestCase):
+    def check_bound(self, points, result, error, reach=0.0):
+        """The points that are left out are near the surface, and the report counts them."""
+        few, reasons = result.report["simplified"], result.reasons
+        left = points[reasons == WITHIN_ERROR]
+        # A point just outside of the outline may be as far above a slope as it is beside it.
+        self.assertLessEqual(residuals(result, left, reach).max(), error + reach)
+        self.assertLessEqual(few["largest_elevation_error"], error)
+        self.assertEqual(few["points_redundant"], len(left))
+        outside = result.report["unused_reasons"].get(OUTSIDE, 0)
+        self.assertEqual(few["points_kept"] + len(left) + outside, len(points))
+        self.assertLess(few["points_kept"], 0.25 * len(points))
+
+    def test_the_outline_is_that_of_all_points(self):
+        points = cloud()
+        full = reconstruct(points, fill=False)
+        result = reconstruct(points, fill=False, maximum_elevation_error=ERROR)
+        self.assertEqual(result.boundary.GetNumberOfLines(), full.boundary.GetNumberOfLines())
+        self.assertLess(result.boundary.GetNumberOfPoints(), full.boundary.GetNumberOfPoints() / 3)
+        self.assertLess(abs(area(result) / area(full) - 1), 0.01)
+        trim, of_all = result.report["trim"], full.report["trim"]
+        for name in ("boundary", "effective_gap_tolerance", "points_left_out"):
+            self.assertEqual(trim[name], of_all[name])
+        spacing = spacing_of(full.boundary, None)
+        self.check_bound(points, result, ERROR, 2 * ON_OUTLINE * spacing)
+        outside = points[result.reasons == OUT_OF_OUTLINE]
+        self.assertFalse(outside_of(result.boundary, outside, 0.5 * spacing).any())
+        self.assertTrue(0 < len(outside) < 0.02 * len(points))
+
+    def test_holes_are_filled_and_no_triangles_opened(self):
+        holes = reconstruct(cloud(), open_edge_length=0).report["holes"]["filled"]
+        result = reconstruct(cloud(), maximum_elevation_error=ERROR)
+        self.assertEqual(result.report["holes"]["filled"], holes)
+        lines = [(x, y, numpy.sin(x)) for y in range(0, 101, 20) for x in range(101)]
+        self.assertGreater(reconstruct(lines).fill.GetMaximumEdgeLength(), 0.0)
+        result = reconstruct(lines, maximum_elevation_error=ERROR)
+        self.assertEqual(result.fill.GetMaximumEdgeLength(), 0.0)
+        given = reconstruct(cloud(), maximum_elevation_error=ERROR, open_edge_length=30)
+        self.assertEqual(given.fill.GetMaximumEdgeLength(), 30.0)
+
+    def test_faults_stay_edges(self):
+        points = cloud()
+        for boundary in (None, BOUNDARY):
+            result = reconstruct(
+                points, faults=FAULT, boundary=boundary, fill=False, maximum_elevation_error=ERROR
+            )
+            self.assertEqual(result.report["faults"]["added_points"], len(FAULT))
+            self.assertEqual(result.report["faults"]["crossings"], 0)
+            places = result.to_numpy()[0]
+            ids = [int(numpy.flatnonzero((places == row).all(axis=1))[0]) for row in FAULT]
+            self.assertEqual(set(zip(ids[:-1], ids[1:])) - edges(result), set())
+
+    def test_a_boundary_that_is_given_cuts_as_it_does_all_points(self):
+        points = cloud()
+        full = reconstruct(points, boundary=BOUNDARY, fill=False)
+        result = reconstruct(points, boundary=BOUNDARY, fill=False, maximum_elevation_error=ERROR)
+        self.assertAlmostEqual(area(result), area(full), places=6)
+        self.check_bound(points, result, ERROR)
+        trim, of_all = result.report["trim"], full.report["trim"]
+        for name in ("boundary", "boundary_rings", "inserted_points", "recovered_edges"):
+            self.assertEqual(trim[name], of_all[name])
+        self.assertEqual(result.report["distance"]["points"], full.report["distance"]["points"])
+        self.assertLessEqual(result.report["distance"]["maximum"], ERROR)
+
+    def test_without_trimming_the_hull_stays(self):
+        points = cloud()
+        full = reconstruct(points, trim=False, fill=False)
+        result = reconstruct(points, trim=False, fill=False, maximum_elevation_error=ERROR)
+        self.assertAlmostEqual(area(result), area(full), places=6)
+        self.check_bound(points, result, ERROR)
+
+    def test_grids(self):
+        points = read(os.path.join(DATA, "jacksboro_fault.vtp")).points
+        points = vtk_to_numpy(points.GetPoints().GetData()).astype("f8")
+        steps = [numpy.unique(points[:, i], return_inverse=True)[1] for i in range(2)]
+        points = points[(steps[0] % 5 == 0) & (steps[1] % 5 == 0)]
+        cut = numpy.hypot(*(points[:, :2] - points[:, :2].min(axis=0)).T) > 8000  # a missing corner
+        for some, is_full in ((points, True), (points[cut], False)):
+            error = 0.1 * numpy.ptp(some[:, 2])
+            full = reconstruct(some, fill=False)
+            result = reconstruct(some, fill=False, maximum_elevation_error=error)
+            self.assertEqual(result.lattice, full.lattice)
+            self.assertIsNotNone(result.lattice)
+            self.assertLess(abs(area(result) / area(full) - 1), 1e-9 if is_full else 0.01)
+            self.check_bound(some, result, error, 0 if is_full else 5)
+
+    def test_an_error_above_the_relief_leaves_the_outline(self):
+        sheet = numpy.array([(x, y, 0.5 * x) for y in range(12) for x in range(12)], "f8")
+        result = reconstruct(sheet, maximum_elevation_error=100)
+        self.assertEqual(result.report["simplified"]["points_kept"], 4)
+        self.assertEqual(result.surface.GetNumberOfPolys(), 2)
+        self.assertEqual(result.report["unused_reasons"], {WITHIN: 140})
+
+    def test_what_cannot_be_is_refused(self):
+        for value in (-1, float("nan"), float("inf"), "much"):
+            with self.assertRaisesRegex(ValueError, "^maximum_elevation_error takes a number of 0"):
+                reconstruct(cloud(), maximum_elevation_error=value)
+        with self.assertRaisesRegex(ValueError, "^maximum_edge_length and maximum_elevation_error"):
+            reconstruct(cloud(), maximum_elevation_error=1, maximum_edge_length=5)
+        for other in ({"maximum_elevation_error": 0}, {"maximum_edge_length": 5}):
+            both = {"maximum_edge_length": 0, "maximum_elevation_error": 0, **other}
+            self.assertNotIn("simplified", reconstruct(cloud(), **both).report)
+
+
+class Outline(unittest.TestCase):
+    def few(self, *rings, error=0.1):
+        outline = make_lines([numpy.vstack((ring, ring[:1])) for ring in rings])
+        return simplified(outline, 1.0, error)
+
+    def test_points_beside_a_straight_line_go_within_both_bounds(self):
+        corners = numpy.array([(0.0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)])
+        for point, count in (((5, 0.4, 0.05), 4), ((5, 0.6, 0), 5), ((5, 0, 0.2), 5)):
+            ring = numpy.insert(corners, 1, point, axis=0)
+            for turn in range(5):
+                few = self.few(numpy.roll(ring, turn, axis=0))
+                self.assertEqual(few.GetNumberOfPoints(), count)
+
+    def test_small_rings_keep_three_points(self):
+        angles = numpy.arange(12) * numpy.pi / 6
+        ring = numpy.column_stack((0.3 * numpy.cos(angles), 0.2 * numpy.sin(angles), 0 * angles))
+        (left,) = rings_of(self.few(ring))
+        self.assertEqual(len(set(left)), 3)
+
+    def test_rings_that_would_cross_stay_whole(self):
+        ring = numpy.array([(0.0, 0, 0), (4, 0, 0), (5, 0.45, 0), (6, 0, 0), (10, 0, 0), (5, 9, 0)])
+        near = numpy.array([(4.9, -0.05, 0), (5.1, -0.05, 0), (5, 0.1, 0)])
+        self.assertEqual(self.few(ring).GetNumberOfPoints(), 3)
+        self.assertEqual(self.few(ring, near).GetNumberOfPoints(), 9)
+
+    def test_points_where_rings_touch_stay(self):
+        upper = [(0.0, 0, 0), (5, 0.1, 0), (10, 0, 0), (7.5, 4.6, 0), (5, 9, 0)]
+        data = make_lines([numpy.array(upper + [(0, -9, 0), (10, -9, 0)])])
+        lines = data.GetLines()
+        lines.Reset()
+        for ids in ([0, 1, 2, 3, 4, 0], [5, 6, 1, 5]):
+            lines.InsertNextCell(len(ids), ids)
+        self.assertEqual([len(ring) for ring in rings_of(simplified(data, 1.0, 0.1))], [4, 3])
+
+    def test_points_are_outside_of_rings_in_odd_numbers(self):
+        rings = [numpy.array([(0.0, 0, 0), (8, 1, 0), (9, 9, 0), (1, 8, 0)]), None]
+        rings[1] = rings[0] * 0.5 + (2, 2, 0)
+        lines = make_lines([numpy.vstack((ring, ring[:1])) for ring in rings])
+        inside = numpy.array([(1.0, 1.5), (8.05, 1), (8, 1), (4, 0.45)])
+        outside = numpy.array([(4.5, 4.5), (-1, 4), (8.2, 1)])
+        self.assertFalse(outside_of(lines, inside, 0.1).any())
+        self.assertTrue(outside_of(lines, outside, 0.1).all())
+
+
+class OfProgram(Program):
+    def test_the_report_tells_what_is_kept(self):
+        self.file("a.xyz", "".join("%.17g %.17g %.17g\n" % tuple(row) for row in cloud()))
+        done = self.call(
+            "a.xyz", "--maximum-elevation-error", "0.2", "--no-picture", "--report", "a.json"
+        )
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with open(self.path("a.json"), encoding="utf-8") as stream:
+            report = json.load(stream)
+        few = report["simplified"]
+        self.assertEqual(few["maximum_elevation_error"], 0.2)
+        self.assertEqual(few["points_redundant"], report["unused_reasons"][WITHIN])
+        self.assertEqual(few["points_kept"], report["points"] - report["points_unused"])
+        kept = f"  simplified {few['points_kept']:,} of {report['points']:,} points kept"
+        self.assertIn(kept, done.stdout)
+
+    def test_options_that_do_not_go_with_it_are_refused(self):
+        self.file("a.xyz", "0 0 0\n1 0 0\n0 1 0\n")
+        few = ("a.xyz", "--maximum-elevation-error", "1")
+        for arguments, words in (
+            (("--maximum-edge-length", "5"), "--maximum-edge-length and --maximum-elevation-error"),
+            (("--pieces", "2", "--no-trim", "--no-fill"), "--maximum-elevation-error needs"),
+        ):
+            done = self.call(*few, *arguments)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
+            self.assertEqual(os.listdir(self.folder), ["a.xyz"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
