@@ -55,6 +55,23 @@ void TakeFrom(const char*& from, std::size_t count, std::vector<Value>& values)
   TakeFrom(from, values.data(), count);
 }
 
+/** A list with its length, so that it can be taken without knowing that. */
+template <typename Value>
+void AppendList(Bytes& bytes, const std::vector<Value>& values)
+{
+  const std::size_t count = values.size();
+  AppendTo(bytes, &count, 1);
+  AppendTo(bytes, values);
+}
+
+template <typename Value>
+void TakeList(const char*& from, std::vector<Value>& values)
+{
+  std::size_t count = 0;
+  TakeFrom(from, &count, 1);
+  TakeFrom(from, count, values);
+}
+
 } // namespace elevation
 
 #endif

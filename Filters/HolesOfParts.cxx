@@ -186,22 +186,6 @@ void SurroundedHoles::KeepCorners()
 
 namespace
 {
-template <typename Value>
-void PackList(const std::vector<Value>& values, Bytes& bytes)
-{
-  const std::size_t count = values.size();
-  AppendTo(bytes, &count, 1);
-  AppendTo(bytes, values);
-}
-
-template <typename Value>
-void TakeList(const char*& from, std::vector<Value>& values)
-{
-  std::size_t count = 0;
-  TakeFrom(from, &count, 1);
-  TakeFrom(from, count, values);
-}
-
 /** Calls visit for each list of a result, without holes and reports. */
 template <typename Result, typename Visit>
 void ForEachList(Result& patches, const Visit& visit)
@@ -244,9 +228,9 @@ Bytes SurroundedHoles::Pack() const
   const std::size_t sizes[] = { data.size(), this->Patches.Attributes.size() };
   AppendTo(bytes, sizes, 2);
   AppendTo(bytes, data.data(), data.size());
-  PackList(this->Numbers, bytes);
-  PackList(this->Keys, bytes);
-  ForEachList(this->Patches, [&bytes](const auto& values) { PackList(values, bytes); });
+  AppendList(bytes, this->Numbers);
+  AppendList(bytes, this->Keys);
+  ForEachList(this->Patches, [&bytes](const auto& values) { AppendList(bytes, values); });
   return bytes;
 }
 

@@ -27,36 +27,17 @@
 namespace elevation
 {
 
-namespace
-{
-template <typename Value>
-void Put(Bytes& bytes, const std::vector<Value>& values)
-{
-  const std::size_t size = values.size();
-  AppendTo(bytes, &size, 1);
-  AppendTo(bytes, values);
-}
-
-template <typename Value>
-void Get(const char*& from, std::vector<Value>& values)
-{
-  std::size_t size = 0;
-  TakeFrom(from, &size, 1);
-  TakeFrom(from, size, values);
-}
-} // namespace
-
 Bytes TrimmedPart::Pack() const
 {
   Bytes bytes;
   for (const int side : { 0, 1 })
   {
-    Put(bytes, this->Parents[side]);
-    Put(bytes, this->Corners[side]);
+    AppendList(bytes, this->Parents[side]);
+    AppendList(bytes, this->Corners[side]);
   }
-  Put(bytes, this->IsInserted);
-  Put(bytes, this->IsOwned);
-  Put(bytes, this->OfOthers);
+  AppendList(bytes, this->IsInserted);
+  AppendList(bytes, this->IsOwned);
+  AppendList(bytes, this->OfOthers);
   if (!this->IsInserted.empty())
   {
     const Bytes points = PackData(this->NewPoints);
@@ -70,12 +51,12 @@ TrimmedPart::TrimmedPart(const Bytes& bytes)
   const char* from = bytes.data();
   for (const int side : { 0, 1 })
   {
-    Get(from, this->Parents[side]);
-    Get(from, this->Corners[side]);
+    TakeList(from, this->Parents[side]);
+    TakeList(from, this->Corners[side]);
   }
-  Get(from, this->IsInserted);
-  Get(from, this->IsOwned);
-  Get(from, this->OfOthers);
+  TakeList(from, this->IsInserted);
+  TakeList(from, this->IsOwned);
+  TakeList(from, this->OfOthers);
   if (!this->IsInserted.empty())
   {
     this->NewPoints =

@@ -111,6 +111,17 @@ class WithFilter(InFolder):
                 result.append(part)
         return result
 
+    def assert_one_owner(self, parts, given, new):
+        """Each point is one piece's own; new ones have ids after those given, and one place each."""
+        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
+        numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(given + new))
+        places = {}
+        for part in parts:
+            here = vtk_to_numpy(part.GetPoints().GetData())
+            for number, place in zip(ids_of(part).tolist(), here.tolist()):
+                if number >= given:
+                    self.assertEqual(places.setdefault(number, place), place)
+
     def errors_of(self, source, work):
         with Messages(source, source.GetExecutive()) as messages:
             work()
@@ -392,15 +403,7 @@ class Trimmed(WithFilter):
     def test_inserted_points_have_ids_and_one_owner(self):
         points = clouds()["random"]
         source, parts = self.assert_trimmed_as_one(points, self.rings(points), 6)
-        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
-        inserted = source.GetNumberOfInsertedPoints()
-        numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(len(points) + inserted))
-        places = {}
-        for part in parts:
-            here = vtk_to_numpy(part.GetPoints().GetData())
-            for number, place in zip(ids_of(part).tolist(), here.tolist()):
-                if number >= len(points):
-                    self.assertEqual(places.setdefault(number, place), place)
+        self.assert_one_owner(parts, len(points), source.GetNumberOfInsertedPoints())
 
     def test_a_test_of_triangles_for_memory_can_be_put_right(self):
         points = clouds()["random"]
@@ -579,18 +582,10 @@ class Filled(WithFilter):
     def test_new_points_have_ids_and_one_owner(self):
         points = clouds()["random"]
         source, parts = self.assert_filled_as_one(points, self.rings(points), 6)
-        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
         new = sum(
             int(vtk_to_numpy(part.GetPointData().GetArray("FilledPoint")).sum()) for part in parts)
         self.assertGreater(new, 50)
-        count = len(points) + source.GetNumberOfInsertedPoints() + new
-        numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(count))
-        places = {}
-        for part in parts:
-            here = vtk_to_numpy(part.GetPoints().GetData())
-            for number, place in zip(ids_of(part).tolist(), here.tolist()):
-                if number >= len(points):
-                    self.assertEqual(places.setdefault(number, place), place)
+        self.assert_one_owner(parts, len(points), source.GetNumberOfInsertedPoints() + new)
 
     def test_files_go_and_pieces_can_be_asked_for_again(self):
         points = clouds()["random"]
