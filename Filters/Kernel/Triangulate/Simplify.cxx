@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace elevation
@@ -368,8 +369,15 @@ Triangulation TriangulateFew(
       throw GivenLatticeUnfit();
     }
   }
-  return Simplified(
-    points, PlaceInBins(points, options, threads, placing), pieces, options, threads, working);
+  try
+  {
+    return Simplified(
+      points, PlaceInBins(points, options, threads, placing), pieces, options, threads, working);
+  }
+  catch (const NotOnLattice&)
+  {
+    throw std::logic_error("A triangle of a simplified surface is flat or inverted.");
+  }
 }
 
 } // namespace elevation
