@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -81,6 +83,58 @@ inline double Median(std::vector<double> values)
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+/**
+ * Reads a command line.
+ * @param isFlag     isFlag(option): takes an option without a value; false if it is none
+ * @param takeValue  takeValue(option, value): the same with one
+ * @return false when the help was asked for
+ */
+template <typename IsFlag, typename TakeValue>
+bool ReadArguments(int argc, char* argv[], const IsFlag& isFlag, const TakeValue& takeValue)
+{
+  for (int i = 1; i < argc; ++i)
+  {
+    const std::string option = argv[i];
+    if (option == "--help" || option == "-h")
+    {
+      return false;
+    }
+    if (isFlag(option))
+    {
+      continue;
+    }
+    if (i + 1 >= argc)
+    {
+      throw UsageError(option + " is no option, or needs a value; --help lists them");
+    }
+    if (!takeValue(option, std::string(argv[++i])))
+    {
+      throw UsageError("there is no option \"" + option + "\"; --help lists them");
+    }
+  }
+  return true;
+}
+
+/** The exit code of a program: that of run(), 2 after a wrong option, 1 after another error. */
+template <typename Run>
+int ExitCode(const char* program, const Run& run)
+{
+  try
+  {
+    return run();
+  }
+  catch (const UsageError& error)
+  {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 2;
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 1;
+  }
 }
 
 } // namespace benchmark

@@ -788,8 +788,7 @@ int Run(const Options& options)
 
 int main(int argc, char* argv[])
 {
-  try
-  {
+  return ExitCode("BenchmarkDelaunay", [&]() {
     Options options;
     if (!ReadOptions(argc, argv, options))
     {
@@ -802,15 +801,5 @@ int main(int argc, char* argv[])
       return 0;
     }
     return Run(options);
-  }
-  catch (const UsageError& error)
-  {
-    std::fprintf(stderr, "BenchmarkDelaunay: %s\n", error.what());
-    return 2;
-  }
-  catch (const std::exception& error)
-  {
-    std::fprintf(stderr, "BenchmarkDelaunay: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -65,28 +65,12 @@ struct Options
 
 bool ReadOptions(int argc, char* argv[], Options& options)
 {
-  for (int i = 1; i < argc; ++i)
-  {
-    const std::string option = argv[i];
-    if (option == "--help" || option == "-h")
-    {
-      return false;
-    }
-    if (option == "--lattice")
-    {
-      options.Lattice = true;
-      continue;
-    }
-    if (option == "--no-cgal")
-    {
-      options.CGAL = false;
-      continue;
-    }
-    if (i + 1 >= argc)
-    {
-      throw UsageError(option + " is no option, or needs a value; --help lists them");
-    }
-    const std::string value = argv[++i];
+  const auto isFlag = [&options](const std::string& option) {
+    options.Lattice = options.Lattice || option == "--lattice";
+    options.CGAL = options.CGAL && option != "--no-cgal";
+    return option == "--lattice" || option == "--no-cgal";
+  };
+  const auto takeValue = [&options](const std::string& option, const std::string& value) {
     const auto number = [&](std::uint64_t least, std::uint64_t most) {
       return static_cast<int>(ToNumber(option, value, least, most));
     };
@@ -120,8 +104,13 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     }
     else
     {
-      throw UsageError("there is no option \"" + option + "\"; --help lists them");
+      return false;
     }
+    return true;
+  };
+  if (!ReadArguments(argc, argv, isFlag, takeValue))
+  {
+    return false;
   }
   if (options.Most < options.Least)
   {
@@ -405,8 +394,7 @@ void Run(const Options& options)
 
 int main(int argc, char* argv[])
 {
-  try
-  {
+  return ExitCode("BenchmarkFill", [&]() {
     Options options;
     if (!ReadOptions(argc, argv, options))
     {
@@ -415,15 +403,5 @@ int main(int argc, char* argv[])
     }
     Run(options);
     return 0;
-  }
-  catch (const UsageError& error)
-  {
-    std::fprintf(stderr, "BenchmarkFill: %s\n", error.what());
-    return 2;
-  }
-  catch (const std::exception& error)
-  {
-    std::fprintf(stderr, "BenchmarkFill: %s\n", error.what());
-    return 1;
-  }
+  });
 }

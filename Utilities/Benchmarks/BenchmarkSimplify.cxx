@@ -7,11 +7,10 @@
 #include "ChildProcess.h"
 #include "DecimationPeers.h"
 #include "GreedyReference.h"
+#include "PolyDataOf.h"
 
-#include "vtkDoubleArray.h"
 #include "vtkGridDelaunay2D.h"
 #include "vtkNew.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
@@ -118,31 +117,16 @@ bool ReadOption(const std::string& option, const std::string& value, Options& op
 /** @return false when the help was asked for */
 bool ReadOptions(int argc, char* argv[], Options& options)
 {
-  for (int i = 1; i < argc; ++i)
+  const auto isFlag = [&options](const std::string& option) {
+    options.Peers = options.Peers && option != "--no-peers";
+    options.Decimation = options.Decimation && option != "--no-decimation";
+    return option == "--no-peers" || option == "--no-decimation";
+  };
+  if (!ReadArguments(argc, argv, isFlag, [&options](const auto& option, const auto& value) {
+        return ReadOption(option, value, options);
+      }))
   {
-    const std::string option = argv[i];
-    if (option == "--help" || option == "-h")
-    {
-      return false;
-    }
-    if (option == "--no-peers")
-    {
-      options.Peers = false;
-      continue;
-    }
-    if (option == "--no-decimation")
-    {
-      options.Decimation = false;
-      continue;
-    }
-    if (i + 1 >= argc)
-    {
-      throw UsageError(option + " is no option, or needs a value; --help lists them");
-    }
-    if (!ReadOption(option, argv[++i], options))
-    {
-      throw UsageError("there is no option \"" + option + "\"; --help lists them");
-    }
+    return false;
   }
   if (options.Files.empty() && options.Random == 0 && options.Lattice == 0)
   {
@@ -197,19 +181,6 @@ std::vector<PointSource> SourcesOf(const Options& options)
                        } });
   }
   return sources;
-}
-
-vtkSmartPointer<vtkPolyData> ToPolyData(const Coordinates& coordinates)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetNumberOfComponents(3);
-  array->SetArray(
-    const_cast<double*>(coordinates.data()), static_cast<vtkIdType>(coordinates.size()), 1);
-  vtkNew<vtkPoints> points;
-  points->SetData(array);
-  auto cloud = vtkSmartPointer<vtkPolyData>::New();
-  cloud->SetPoints(points);
-  return cloud;
 }
 
 double ReliefOf(const Coordinates& points)
@@ -370,7 +341,7 @@ bool Run(const PointSource& source, const Options& options)
   {
     throw elevation::Error(source.Name + ": all points have the same z");
   }
-  const std::vector<Variant> variants = TimeAll(ToPolyData(points), relief, options);
+  const std::vector<Variant> variants = TimeAll(PolyDataOf(points), relief, options);
   std::printf("**%s**: %zu points, %s, relief %g\n\n", source.Name.c_str(), points.size() / 3,
     variants[1].IsLattice ? "a lattice" : "no lattice", relief);
   const bool isWithin = PrintTimes(variants, options);
@@ -384,8 +355,7 @@ bool Run(const PointSource& source, const Options& options)
 
 int main(int argc, char* argv[])
 {
-  try
-  {
+  return ExitCode("BenchmarkSimplify", [&]() {
     Options options;
     if (!ReadOptions(argc, argv, options))
     {
@@ -398,15 +368,5 @@ int main(int argc, char* argv[])
       isWithin = Run(source, options) && isWithin;
     }
     return isWithin ? 0 : 1;
-  }
-  catch (const UsageError& error)
-  {
-    std::fprintf(stderr, "BenchmarkSimplify: %s\n", error.what());
-    return 2;
-  }
-  catch (const std::exception& error)
-  {
-    std::fprintf(stderr, "BenchmarkSimplify: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -5,15 +5,14 @@
 // vtkGridDelaunay2D, which made the mesh. See README.md.
 #include "Arguments.h"
 #include "ChildProcess.h"
+#include "PolyDataOf.h"
 
 #include "vtkGridDelaunay2D.h"
 #include "vtkTrimOutwardTriangles.h"
 
 #include "vtkCellArray.h"
-#include "vtkDoubleArray.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
@@ -102,19 +101,6 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     AddSets("L,D,U", options.Sets);
   }
   return true;
-}
-
-vtkSmartPointer<vtkPolyData> ToPolyData(const Coordinates& coordinates)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetNumberOfComponents(3);
-  array->SetArray(
-    const_cast<double*>(coordinates.data()), static_cast<vtkIdType>(coordinates.size()), 1);
-  vtkNew<vtkPoints> points;
-  points->SetData(array);
-  auto cloud = vtkSmartPointer<vtkPolyData>::New();
-  cloud->SetPoints(points);
-  return cloud;
 }
 
 /** Where a place of the unit square is inside the coast and outside the lakes. */
@@ -209,7 +195,7 @@ bool Measure(
   const std::string& set, Index count, const Coordinates& coordinates, const Options& options)
 {
   using Clock = std::chrono::steady_clock;
-  const auto cloud = ToPolyData(coordinates);
+  const auto cloud = PolyDataOf(coordinates);
   vtkSmartPointer<vtkPolyData> mesh, coast;
   double area = 0.0;
   bool isRight = true;
@@ -282,8 +268,7 @@ bool Measure(
 
 int main(int argc, char* argv[])
 {
-  try
-  {
+  return ExitCode("BenchmarkTrim", [&]() {
     Options options;
     if (!ReadOptions(argc, argv, options))
     {
@@ -308,10 +293,5 @@ int main(int argc, char* argv[])
       }
     }
     return isRight ? 0 : 1;
-  }
-  catch (const UsageError& error)
-  {
-    std::fprintf(stderr, "BenchmarkTrim: %s\n", error.what());
-    return 2;
-  }
+  });
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Competitor.h"
+#include "PolyDataOf.h"
 
 #include "Kernel/Base/Threads.h"
 #include "vtkGridDelaunay2D.h"
@@ -8,11 +9,9 @@
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkDelaunay2D.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkVersion.h"
@@ -39,15 +38,7 @@ public:
 
   void SetPoints(const benchmark::Coordinates& coordinates) override
   {
-    vtkNew<vtkDoubleArray> array;
-    array->SetNumberOfComponents(3);
-    // The array keeps the caller's memory and never writes to it.
-    array->SetArray(
-      const_cast<double*>(coordinates.data()), static_cast<vtkIdType>(coordinates.size()), 1);
-    vtkNew<vtkPoints> points;
-    points->SetData(array);
-    this->Input->Initialize();
-    this->Input->SetPoints(points);
+    this->Input->ShallowCopy(benchmark::PolyDataOf(coordinates));
   }
 
   void Run() override
