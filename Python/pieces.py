@@ -43,6 +43,7 @@ from .writing.xml_writer import write_vtp
 AT_ONCE = 1_000_000  # points given to the filter at a time
 SUFFIX = ".vtpd"
 BYTES_A_POINT = 250  # of memory, where a piece is triangulated
+BYTES_TO_FILL = 320  # where its holes are filled
 BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
@@ -62,9 +63,10 @@ def memory_size(text):
 MEMORY = f"a size of at least {1.5 * BYTES_BESIDES / 1e6:g}M, such as 2G"
 
 
-def pieces_within(memory, points):
+def pieces_within(memory, points, fill=False):
     """How many pieces take no more memory than that."""
-    return max(1, math.ceil(BYTES_A_POINT * points / (memory - BYTES_BESIDES)))
+    needed = (BYTES_TO_FILL if fill else BYTES_A_POINT) * points
+    return max(1, math.ceil(needed / (memory - BYTES_BESIDES)))
 
 
 def check_given(options, error):
@@ -195,7 +197,7 @@ class Pieces:
             with MessagesOfSteps(source, source.GetExecutive()) as self.messages:
                 run.timed("read", "reading", self.read)
                 count = options.pieces or pieces_within(
-                    options.memory, source.GetNumberOfPoints()
+                    options.memory, source.GetNumberOfPoints(), options.fill
                 )
                 run.timed("triangulate", STEPS["delaunay"], lambda: self.update(0, count))
                 names = run.timed("write", "writing", lambda: self.write(folder, count))
