@@ -144,6 +144,10 @@ private:
     {
       throw NotOnLattice();
     }
+    if (face.First == None)
+    {
+      return; // no plane is needed
+    }
     const PlaneOfFace plane = this->PlaneOf(face);
     for (Index place = face.First; place != None; place = this->Mesh.Next(place))
     {
