@@ -330,6 +330,11 @@ void CellByCell::CountShort(const SurfacePart& part, GlobalId first)
 {
   const Buffer<Index>& corners = part.Result.Triangles;
   const EdgeLimit limit(this->Options.MaximumEdgeLength);
+  if (!limit.IsSet()) // all are, and no vertex is without one
+  {
+    this->Total.Triangles += static_cast<vtkIdType>(corners.size() / 3);
+    return;
+  }
   const auto pointOf = [&part](Index place) { return part.PointAt(place); };
   std::vector<char> areMissing(part.Own.Count(), 1);
   for (std::size_t i = 0; i < corners.size(); i += 3)
@@ -357,6 +362,11 @@ void CellByCell::CountShort(const SurfacePart& part, GlobalId first)
 void CellByCell::CountShort(const std::vector<GlobalTriangle>& triangles)
 {
   const EdgeLimit limit(this->Options.MaximumEdgeLength);
+  if (!limit.IsSet())
+  {
+    this->Total.Triangles += static_cast<vtkIdType>(triangles.size());
+    return;
+  }
   const auto pointOf = [this](std::size_t place) {
     const double* const p = this->SeamRows.At(place);
     return Point2{ p[0], p[1] };
