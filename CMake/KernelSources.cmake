@@ -26,6 +26,7 @@ set(es_kernel_Triangulate
   BinGrid
   PointWindows
   PlacedPoints
+  FewerPieces
   Simplify
   WideApexSearch
   ApexSearch

@@ -23,6 +23,7 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
   options.Strategy = static_cast<SearchStrategy>(filter->GetSearchStrategy());
   options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
   options.MaximumElevationError = filter->GetMaximumElevationError();
+  options.SimplifyConstraints = filter->GetSimplifyConstraints();
   options.Duplicates = static_cast<DuplicatePolicy>(filter->GetDuplicatePolicy());
   options.UseLattice = static_cast<LatticeMode>(filter->GetLatticeMode());
   const double* const lattice = filter->GetLattice();

@@ -62,7 +62,8 @@
  * - Several blocks of a composite are taken as one.
  *
  * With a MaximumElevationError, the surface is simplified while it is made. The corners of the convex
- * hull are vertices, with constraints the ends of their pieces; then the point farthest above or below
+ * hull are vertices, with constraints the ends of their pieces (SimplifyConstraints leaves out some of
+ * these); then the point farthest above or below
  * the surface, as far as there is one beyond the error, and so on [Garland & Heckbert 1995]. At the end
  * each point that is left out is measured once more, and what rounding may have taken from its
  * distance is added; so the error is certain. The triangles are those of the chosen points alone. They
@@ -203,6 +204,20 @@ public:
   vtkGetMacro(MaximumElevationError, double);
   ///@}
 
+  ///@{
+  /**
+   * With a MaximumElevationError: whether points of constraints may be left out, too. A point goes
+   * where exactly two pieces of lines meet, the line without it passes it within the error above or
+   * below, and within a thousandth of the shorter of the two pieces beside, and no other point changes
+   * its side of the line. Ends, corners and crossings stay. On, a straight line through the nodes of
+   * a grid has as few points as its elevations need. Off (default), lines keep all their points, also
+   * those of the cloud that lie on them. Without a MaximumElevationError it does nothing.
+   */
+  vtkSetMacro(SimplifyConstraints, bool);
+  vtkGetMacro(SimplifyConstraints, bool);
+  vtkBooleanMacro(SimplifyConstraints, bool);
+  ///@}
+
   /** Which of several points with the same x,y becomes the vertex. */
   enum DuplicatePolicyType
   {
@@ -314,6 +329,7 @@ protected:
   int SearchStrategy = VOXEL_TRAVERSAL;
   double MaximumEdgeLength = 0.0;
   double MaximumElevationError = 0.0;
+  bool SimplifyConstraints = false;
   int DuplicatePolicy = KEEP_FIRST;
   int LatticeMode = AUTOMATIC;
   double Lattice[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

@@ -13,6 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from .clouds import cells_of, some_points
 from .messages import Messages
+from .spreading import WITHIN_ERROR
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
 ON_OUTLINE = 0.01  # spacings: points as near to an outline that was found are not outside of it
@@ -50,6 +51,18 @@ def with_rings(outline, rings):
         cells.InsertNextCell(len(ids), ids)
     result.SetLines(cells)
     return result
+
+
+def in_use(outline, surface):
+    """An outline along edges of a surface, without the points that the surface has left out of it."""
+    fields = surface.GetFieldData()
+    ids, why = (vtk_to_numpy(fields.GetArray("UnusedPoint" + name)) for name in ("Ids", "Reasons"))
+    xy, of_surface = (
+        numpy.ascontiguousarray(vtk_to_numpy(p.GetPoints().GetData())[:, :2], "f8").view("c16")[:, 0]
+        for p in (outline, surface)
+    )
+    is_used = ~numpy.isin(xy, of_surface[ids[why == WITHIN_ERROR]])
+    return with_rings(outline, [ring[is_used[ring]] for ring in rings_of(outline)])
 
 
 def spacing_of(outline, lattice):

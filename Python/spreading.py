@@ -110,7 +110,7 @@ def reasons_of(ranks, triangulation, count):
     if count:
         reasons[here_not[here_not < count]] = IN_NO_TRIANGLE
         reasons[elsewhere[elsewhere < count]] = 0
-        reasons[told] = why
+        reasons[told[told < count]] = why[told < count]  # lines may have added others
     return reasons
 
 

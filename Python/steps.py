@@ -11,7 +11,15 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .inputs import joined
 from .messages import ElevationSurfaceError, Messages
 from .opening import lattice_of
-from .outline import ON_BORDER, ON_OUTLINE, border_of, outside_of, simplified, spacing_of
+from .outline import (
+    ON_BORDER,
+    ON_OUTLINE,
+    border_of,
+    in_use,
+    outside_of,
+    simplified,
+    spacing_of,
+)
 from .properties import PROPERTIES, option_of
 from .ranks import agreed, total
 from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, dealt, reasons_of, update
@@ -101,6 +109,8 @@ def triangulate(run, lines, error):
     result, ranks, points = run.result, run.ranks, run.result.cloud.points
     delaunay = run.made("delaunay", vtkGridDelaunay2D())
     delaunay.SetMaximumElevationError(error)
+    # A boundary that is given cuts the surface at all its points.
+    delaunay.SetSimplifyConstraints(not result.boundary_name)
     delaunay.SetInputData(dealt(ranks, points))
     if lines is not None:
         delaunay.SetSourceData(lines)
@@ -151,7 +161,10 @@ def trim_few(run, boundary, faults):
     else:
         lines.append(outline)
     triangulate(run, joined(lines) if lines else None, error)
-    outline = outline or border_of(result.delaunay.GetOutput())
+    if outline is None:
+        outline = border_of(result.delaunay.GetOutput())
+    elif boundary is None:
+        outline = in_use(outline, result.delaunay.GetOutput())
     trim_along(run, outline)
     result.lattice = lattice
     result.boundary = (result.trim if boundary is None else result.outlined[1]).GetOutput(2)

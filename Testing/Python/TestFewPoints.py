@@ -27,7 +27,7 @@ ERROR = 0.2
 WITHIN = "within the elevation error"
 BOUNDARY = numpy.array([(5.0, 5), (95, 5), (95, 90), (70, 90), (65, 70), (60, 95), (5, 95)])
 STEPS = numpy.arange(40)
-FAULT = numpy.column_stack((25 + 0.75 * STEPS, 10 + numpy.sin(STEPS / 9), 0 * STEPS + 9))
+FAULT = numpy.column_stack((25 + 0.75 * STEPS, 10 + 0.02 * (STEPS % 2), 0 * STEPS + 9))  # bent
 
 
 def cloud(seed=1):
@@ -118,6 +118,14 @@ class Surface(unittest.TestCase):
             ids = [int(numpy.flatnonzero((places == row).all(axis=1))[0]) for row in FAULT]
             self.assertEqual(set(zip(ids[:-1], ids[1:])) - edges(result), set())
 
+    def test_of_a_straight_fault_the_ends_stay(self):
+        fault = numpy.column_stack((25 + 0.75 * STEPS, 10 + 0.25 * STEPS, 0 * STEPS + 9))
+        result = reconstruct(cloud(), faults=fault, fill=False, maximum_elevation_error=ERROR)
+        places, triangles = result.to_numpy()
+        ids = [int(numpy.flatnonzero((places == row).all(axis=1))[0]) for row in fault]
+        self.assertEqual([i for i in ids if i in triangles], [ids[0], ids[-1]])
+        self.assertIn((ids[0], ids[-1]), edges(result))
+
     def test_a_boundary_that_is_given_cuts_as_it_does_all_points(self):
         points = cloud()
         full = reconstruct(points, boundary=BOUNDARY, fill=False)
@@ -151,6 +159,19 @@ class Surface(unittest.TestCase):
             self.assertIsNotNone(result.lattice)
             self.assertLess(abs(area(result) / area(full) - 1), 1e-9 if is_full else 0.01)
             self.check_bound(some, result, error, 0 if is_full else 5)
+
+    def test_a_straight_outline_along_a_grid_has_few_points(self):
+        sheet = numpy.array([(x, y, 0.5 * x) for y in range(60) for x in range(60)], "f8")
+        x, y = sheet[:, :2].T
+        sheet = sheet[(abs(x - 30) > 8) | (abs(y - 30) > 12)]
+        sheet = sheet[(sheet[:, 0] < 20) | (sheet[:, 1] > 2)]
+        result = reconstruct(sheet, fill=False, maximum_elevation_error=0.01)
+        self.assertEqual(result.surface.GetNumberOfPoints(), len(sheet))
+        corners = result.boundary.GetNumberOfPoints()
+        self.assertEqual(result.report["simplified"]["points_kept"], corners)
+        self.assertLess(corners, 20)
+        full = reconstruct(sheet, fill=False)
+        self.assertAlmostEqual(area(result), area(full))
 
     def test_an_error_above_the_relief_leaves_the_outline(self):
         sheet = numpy.array([(x, y, 0.5 * x) for y in range(12) for x in range(12)], "f8")

@@ -47,6 +47,7 @@ class TestGridDelaunay2D(unittest.TestCase):
         self.assertEqual(delaunay.GetSearchStrategyAsString(), "VoxelTraversal")
         self.assertEqual(delaunay.GetMaximumEdgeLength(), 0.0)
         self.assertEqual(delaunay.GetMaximumElevationError(), 0.0)
+        self.assertFalse(delaunay.GetSimplifyConstraints())
         self.assertEqual(delaunay.GetDuplicatePolicy(), vtkGridDelaunay2D.KEEP_FIRST)
         self.assertEqual(delaunay.GetDuplicatePolicyAsString(), "KeepFirst")
         self.assertEqual(delaunay.GetLatticeMode(), vtkGridDelaunay2D.AUTOMATIC)
@@ -256,6 +257,22 @@ class TestGridDelaunay2D(unittest.TestCase):
         delaunay.Update()
         self.assertEqual(delaunay.GetOutput().GetNumberOfPolys(), 2)
         self.assertEqual(delaunay.GetNumberOfRedundantPoints(), 496)
+
+    def test_lines_keep_few_points_when_they_may(self):
+        j, i = numpy.mgrid[0:40, 0:40]
+        grid = numpy.column_stack([i.ravel(), j.ravel(), numpy.abs(j.ravel() - 15)]).astype(float)
+        lines = cloud(numpy.array([[0, 15, 0], [39, 15, 0], [39, 30, 15.0]]))
+        lines.SetLines(vtkCellArray())
+        lines.GetLines().InsertNextCell(3, [0, 1, 2])
+        for simplify, count in ((False, 40 + 15 + 4), (True, 2 + 1 + 4)):
+            delaunay = vtkGridDelaunay2D()
+            delaunay.SetInputData(cloud(grid))
+            delaunay.SetSourceData(lines)
+            delaunay.SetMaximumElevationError(0.1)
+            delaunay.SetSimplifyConstraints(simplify)
+            delaunay.Update()
+            self.assertEqual(len(numpy.unique(triangles(delaunay.GetOutput()))), count)
+            self.assertEqual(delaunay.GetNumberOfRedundantPoints(), 1600 - count)
 
     def test_constraints_are_edges_and_crossings_are_points(self):
         j, i = numpy.mgrid[0:10, 0:10]

@@ -50,6 +50,8 @@ struct DelaunayOptions
    * the surface; 0: all points do.
    */
   double MaximumElevationError = 0.0;
+  /** With it: points of lines go, too, where the lines stay nearly the same (FewerPieces.h). */
+  bool SimplifyConstraints = false;
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
   Progress Monitor;
   /** Off by default: other parts of the kernel need the triangulation by coordinates. */

@@ -153,13 +153,8 @@ PlacedPoints PlaceInBins(
   return placed;
 }
 
-std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& placed)
+std::vector<Segment> PiecesByPlaces(const std::vector<Segment>& pieces, const PlacedPoints& placed)
 {
-  std::vector<Segment> byCorners = pieces;
-  if (pieces.empty())
-  {
-    return byCorners;
-  }
   std::vector<Index> ids;
   for (const Segment& piece : pieces)
   {
@@ -168,27 +163,45 @@ std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& p
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Index> placeOf(ids.size(), None);
-  for (Index place = 0; place < placed.Count(); ++place)
+  for (Index place = 0; !ids.empty() && place < placed.Count(); ++place)
   {
     const auto at = std::lower_bound(ids.begin(), ids.end(), placed.Ids[place]);
     if (at != ids.end() && *at == placed.Ids[place])
     {
       placeOf[at - ids.begin()] = place;
-      placed.Corners.push_back(place);
     }
   }
-  const auto isLower = [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
+  const auto find = [&](Index id) {
+    return placeOf[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
+  };
+  std::vector<Segment> byPlaces;
+  byPlaces.reserve(pieces.size());
+  for (const Segment& piece : pieces)
+  {
+    byPlaces.push_back({ find(piece.A), find(piece.B) });
+  }
+  return byPlaces;
+}
+
+std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& placed)
+{
   std::vector<Index>& corners = placed.Corners;
+  for (const Segment& piece : pieces)
+  {
+    corners.insert(corners.end(), { piece.A, piece.B });
+  }
+  const auto isLower = [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
   std::sort(corners.begin(), corners.end(), isLower);
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  const auto cornerOf = [&](Index id) {
-    const Index place = placeOf[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
+  const auto cornerOf = [&](Index place) {
     return static_cast<Index>(
       std::lower_bound(corners.begin(), corners.end(), place, isLower) - corners.begin());
   };
-  for (Segment& piece : byCorners)
+  std::vector<Segment> byCorners;
+  byCorners.reserve(pieces.size());
+  for (const Segment& piece : pieces)
   {
-    piece = { cornerOf(piece.A), cornerOf(piece.B) };
+    byCorners.push_back({ cornerOf(piece.A), cornerOf(piece.B) });
   }
   return byCorners;
 }

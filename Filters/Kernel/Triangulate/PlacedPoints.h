@@ -40,7 +40,10 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
 PlacedPoints PlaceInBins(
   const PointView& points, const DelaunayOptions& options, int threads, const Progress& progress);
 
-/** Adds the ends of pieces to the corners. @return the pieces by corners */
+/** Pieces by ids as pieces by places. */
+std::vector<Segment> PiecesByPlaces(const std::vector<Segment>& pieces, const PlacedPoints& placed);
+
+/** Adds the ends of pieces by places to the corners. @return the pieces by corners */
 std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& placed);
 
 } // namespace elevation

@@ -3,6 +3,7 @@
 #include "Simplify.h"
 
 #include "DivideAndConquer.h"
+#include "FewerPieces.h"
 #include "GreedyInsertion.h"
 #include "PlacedPoints.h"
 
@@ -314,7 +315,12 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   Triangulation result;
   result.LatticeFound = placed.Metric.has_value();
   result.Steps = placed.Steps;
-  const std::vector<Segment> byCorners = AddEnds(pieces, placed);
+  std::vector<Segment> lines = PiecesByPlaces(pieces, placed);
+  if (options.SimplifyConstraints && !lines.empty())
+  {
+    lines = FewerPieces(placed, lines, options.MaximumElevationError, Part(progress, 0.0, 0.05));
+  }
+  const std::vector<Segment> byCorners = AddEnds(lines, placed);
   std::vector<char> fixed;
   const Mesh first = FirstMesh(placed, byCorners, fixed);
   if (first.NumberOfTriangles() == 0)
@@ -326,7 +332,7 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
     placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first, fixed);
   const Measurement measurement(points, placed, mesh);
   std::vector<Index> beyond;
-  Progress ofRound = Part(progress, 0.0, 0.8);
+  Progress ofRound = Part(progress, 0.05, 0.8);
   do
   {
     if (!beyond.empty())

@@ -8,7 +8,8 @@
  * In: points. Out: as Triangulate.h, of chosen points; the others are unused. The passes:
  *   1. Put the points in the order of the nodes of a lattice, if there is one, else of a grid; set
  *      duplicates aside.
- *   2. Triangulate the corners of the convex hull and the ends of lines, make lines edges, and insert
+ *   2. Leave out points of lines that the lines do not need, if this is asked for (FewerPieces.h).
+ *      Triangulate the corners of the convex hull and the ends of lines, make lines edges, and insert
  *      points (GreedyInsertion.h).
  *   3. Measure the vertical distance of each point that is left out from the triangle that it lies in,
  *      and bound what rounding may have taken from it. Points that may be too far are inserted, too,
@@ -38,8 +39,9 @@ namespace elevation
 /**
  * Triangulates.
  * @param[in] options  with MaximumElevationError
- * @param[in] pieces   between points, by ids: they become edges, and their ends are chosen. They neither
- *                     cross nor run through a point, as those of CutLines(). With pieces, points are
+ * @param[in] pieces   between points, by ids: they become edges, and their ends are chosen, except for
+ *                     those that SimplifyConstraints leaves out. They neither cross nor run through a
+ *                     point, as those of CutLines(). With pieces, points are
  *                     triangulated by coordinates, and the triangles are those of
  *                     TriangulateConstrained() for the chosen points.
  * @throws as Triangulate()
