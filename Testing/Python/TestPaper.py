@@ -131,7 +131,7 @@ class Script(InFolder):
         self.assertEqual(
             sorted(os.listdir(self.folder)), ["steps_distance.png", "steps_fill.png", "steps_trim.png"])
         for name in os.listdir(self.folder):
-            self.assertTrue(20_000 < os.path.getsize(self.path(name)) < 150_000, name)
+            self.assertTrue(20_000 < os.path.getsize(self.path(name)) < 200_000, name)
 
 
 class Parts(InFolder):
