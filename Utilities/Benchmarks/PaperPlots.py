@@ -8,6 +8,7 @@ import matplotlib
 
 matplotlib.use("Agg")  # needs no screen
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 from PaperTables import NAMES, PAPER_NAMES, paper_series, series, slope  # noqa: E402
 
@@ -34,7 +35,10 @@ def lines(axes, measured, value, factor, with_paper):
         pairs = series(measured, key, value)
         if pairs:
             x, y = zip(*pairs)
-            axes.plot(x, [factor * v for v in y], color=colour, marker=marker, linewidth=1.8,
+            # Both searches need the same memory: the wider line is seen under the other.
+            is_wide = value == "bytes" and key == "voxel_traversal"
+            axes.plot(x, [factor * v for v in y], color=colour, marker=marker,
+                      linewidth=3.6 if is_wide else 1.6, markersize=10 if is_wide else 6,
                       label=named(NAMES[key], pairs))
         papers = paper_series(measured, key) if with_paper else []
         if papers:
@@ -42,8 +46,16 @@ def lines(axes, measured, value, factor, with_paper):
                       markerfacecolor="white", label=named(PAPER_NAMES[key], papers))
 
 
+def plain_ticks(axis):
+    """Of an axis with less than two powers of ten: 20,000, 50,000, ..."""
+    axis.set_major_locator(LogLocator(10, (1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 1 else f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def dress(axes, what, title):
     axes.set_xscale("log")
+    plain_ticks(axes.xaxis)
     axes.set_xlabel("points")
     axes.set_ylabel(what)
     axes.set_title(title, loc="left", fontsize=12)
@@ -73,6 +85,7 @@ def memory(measured, folder):
     lines(axes, measured, "bytes", 1e-6, False)
     dress(axes, "MB above the input, with the output", "Triangulation: peak memory against points")
     axes.set_yscale("log")
+    plain_ticks(axes.yaxis)
     axes.legend(loc="upper left", frameon=True, framealpha=0.9, fontsize=9.5)
     save(figure, folder, "paper_memory.png")
 
@@ -81,21 +94,23 @@ def threads(measured, folder):
     clouds = [cloud for cloud in measured["clouds"] if cloud["threads"]]
     if not clouds:
         return
-    figure, (left, right) = plt.subplots(1, 2, figsize=(SIZE[0] + 2.4, SIZE[1] - 1.2))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(SIZE[0] + 3.4, SIZE[1] - 1.2))
     x = [cloud["points"] for cloud in clouds]
-    runs = {name: [cloud["threads"][name]["seconds"] for cloud in clouds] for name in ("one", "two")}
+    runs = {name: [1e3 * cloud["threads"][name]["seconds"] for cloud in clouds]
+            for name in ("one", "two")}
     for name, words, colour, marker in (
         ("one", "one thread", "#0072b2", "s"), ("two", "two threads", "#d55e00", "o")
     ):
         left.plot(x, runs[name], color=colour, marker=marker, label=words)
-    dress(left, "seconds on the clock", "vtkGridDelaunay2D on threads")
+    dress(left, "milliseconds on the clock", "vtkGridDelaunay2D on threads")
     left.set_yscale("log")
+    plain_ticks(left.yaxis)
     left.legend(frameon=False)
     gain = [one / two for one, two in zip(runs["one"], runs["two"])]
     right.plot(x, gain, color="#d55e00", marker="o", label="two threads")
     copies = [cloud["threads"]["copies"] for cloud in clouds]
     if all(copies):
-        most = [one / copy["seconds"] for one, copy in zip(runs["one"], copies)]
+        most = [1e-3 * one / copy["seconds"] for one, copy in zip(runs["one"], copies)]
         right.plot(x, most, color="#7f7f7f", marker="v", linestyle="--",
                    label="two copies at once: what the machine gives")
     dress(right, "times as fast as one thread", "Gain")

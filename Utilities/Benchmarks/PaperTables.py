@@ -76,6 +76,12 @@ def number(value, digits=3):
     return f"{value:,.{places}f}"
 
 
+def exponent(pairs):
+    """A slope as words."""
+    found = slope(pairs)
+    return "" if found is None else f"{found:.2f}"
+
+
 def markdown(head, rows, words=1):
     """A table; the first columns are words."""
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * words + "---:|" * (len(head) - words)]
@@ -135,9 +141,9 @@ def beside_paper(measured):
         rows.append([*row, cell(cloud["codes"], "default", "processor_seconds", 1e3)])
     last = ["slope"]
     for key in keys:
-        last += [number(slope(paper_series(measured, key)), 2),
-                 number(slope(series(measured, key, "processor_seconds")), 2)]
-    last.append(number(slope(series(measured, "default", "processor_seconds")), 2))
+        last += [exponent(paper_series(measured, key)),
+                 exponent(series(measured, key, "processor_seconds"))]
+    last.append(exponent(series(measured, "default", "processor_seconds")))
     return markdown([*head, "vtkGridDelaunay2D"], [*rows, last])
 
 
@@ -147,8 +153,7 @@ def table_of(measured, value, factor, digits=3):
         for cloud in measured["clouds"]
     ]
     if value != "faces":
-        slopes = (slope(series(measured, key, value)) for key in NAMES)
-        rows.append(["slope", *(number(found, 2) for found in slopes)])
+        rows.append(["slope", *(exponent(series(measured, key, value)) for key in NAMES)])
     return rows
 
 
@@ -208,26 +213,26 @@ def threads_table(measured):
 
 def accuracy_table(measured):
     head = ("surface", "points", "error allowed", "points kept", "kB before", "kB after", "smaller",
-            "points outside", "largest", "mean", "largest / relief", "mean / relief", "largest / diagonal",
-            "mean / diagonal")
+            "points outside", "largest", "mean", "of the relief", "of the diagonal")
     rows = [
         (f"paper's {place}", "", "", "", f"{before:,}", f"{after:,}", number(before / after), "",
-         *(f"{distance:g}" for distance in distances), "", "", "", "")
+         *(f"{distance:g}" for distance in distances), "", "")
         for place, (before, after, *distances) in zip(("first", "second"), PAPER_ACCURACY)
     ]
     for surface in measured["accuracy"]:
         for row in surface["rows"]:
             words = [surface["name"], f"{surface['points']:,}"]
             if "error" not in row:
-                rows.append((*words, row["asked"] + ": never", *[""] * 11))
+                rows.append((*words, row["asked"] + ": never", *[""] * 9))
                 continue
             distances = [row["largest"], row["mean"]]
             rows.append((
                 *words, f"{number(row['error'])} ({row['asked']})", f"{row['kept']:,}",
                 f"{0.001 * surface['bytes']:,.0f}", number(0.001 * row["bytes"]),
-                number(surface["bytes"] / row["bytes"]), f"{row['outside']:,}", *map(number, distances),
-                *(number(d / surface["relief"], 2) for d in distances),
-                *(number(d / surface["diagonal"], 2) for d in distances)))
+                number(surface["bytes"] / row["bytes"]), f"{row['outside']:,}",
+                *map(number, distances),
+                *(", ".join(number(distance / surface[unit], 2) for distance in distances)
+                  for unit in ("relief", "diagonal"))))
     return markdown(head, rows)
 
 
