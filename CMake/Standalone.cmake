@@ -201,6 +201,9 @@ if (ES_PARAVIEW)
   es_build_plugin()
 endif ()
 
+# ---- documentation -----------------------------------------------------------------------------
+include("${CMAKE_CURRENT_LIST_DIR}/Documentation.cmake")
+
 # ---- tests -------------------------------------------------------------------------------------
 if (BUILD_TESTING)
   include("${CMAKE_CURRENT_LIST_DIR}/Testing.cmake")

@@ -7,16 +7,19 @@
  * Input: a vtkPolyData of triangles, an elevation surface from any source, of one or more
  * components. x,y is the plane of projection, z the elevation.
  *
+ * @par What is a hole:
  * A hole is an empty region that the surface encloses. The outer boundary of a component is never a
  * hole. A component that lies inside a hole, an island, stays, and the ring around it is filled.
  * Holes may be nested, pinched, and may share vertices.
  *
  * Voids that triangles with long edges bridge are no holes: see MaximumEdgeLength, which opens them.
  *
- * Output 0, the surface: the points and cells of the input first, with their ids, then the new
- * points and triangles. (Where MaximumEdgeLength lets patches replace triangles of the input, these
- * are left out, and the ids of later cells are lower.) The triangles are counter-clockwise seen from +z: a clockwise one of the
- * input is turned over (its last two points change places); nothing else of the input changes.
+ * @par Output 0, the surface:
+ * The points and cells of the input first, with their ids, then the new points and triangles.
+ * (Where MaximumEdgeLength lets patches replace triangles of the input, these are left out, and the
+ * ids of later cells are lower.) The triangles are counter-clockwise seen from +z: a clockwise one
+ * of the input is turned over (its last two points change places); nothing else of the input
+ * changes.
  * - Point array FilledPoint (vtkUnsignedCharArray): 1 for new points, else 0.
  * - Point array FilledError (vtkDoubleArray): the standard error of the z of new points, in units of
  *   z, 0 for points of the input: of 100 new points some 68 are within one of the truth, some 95
@@ -33,8 +36,8 @@
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
  *   before they are triangulated, so that the result stays exact.
  *
- * Output 1, the report: one closed line for each hole, filled or not, its rim, counter-clockwise.
- * Cell data:
+ * @par Output 1, the report:
+ * One closed line for each hole, filled or not, its rim, counter-clockwise. Cell data:
  * - HoleId (vtkIdTypeArray): 0, 1, 2, ...
  * - Status (vtkUnsignedCharArray): see HoleStatusType.
  * - NumberOfEdges (vtkIdTypeArray): boundary edges, those of the rim and of the islands; in a
@@ -47,9 +50,10 @@
  *   ADAPTIVE it is the method that was chosen; of mixed methods, the one with the largest share. 0
  *   also where there are no new points.
  *
- * Field data of both outputs: NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
+ * @par Field data of both outputs:
+ * NumberOfHoles, NumberOfFilledHoles (vtkIdTypeArray, one value).
  *
- * The method, for each hole on its own:
+ * @par The method, for each hole on its own:
  * 1. If the surface's points lie on a lattice, no spacing is given, and half of the triangles at
  *    the hole's boundary have an area of at most 1.75 cells (a thinned lattice has too many nodes),
  *    new points lie on the nodes of the lattice. Else they are put into the hole in rows, one
@@ -65,10 +69,12 @@
  *    triangles remain where the circumcentre lies nearer to the boundary than that, or beyond it.
  * 4. The z of new points is found from the surface around the hole, see Interpolation.
  *
- * What can be relied on: a patch covers its hole exactly and overlaps nothing; every boundary edge
- * gets its second triangle and no edge a third one; patches are constrained Delaunay. New points
- * and triangles do not depend on the order of the input's points and cells, only their ids do.
+ * @par What can be relied on:
+ * A patch covers its hole exactly and overlaps nothing; every boundary edge gets its second
+ * triangle and no edge a third one; patches are constrained Delaunay. New points and triangles do
+ * not depend on the order of the input's points and cells, only their ids do.
  *
+ * @par Warnings and errors:
  * A hole is left open, with status FAILED and a warning that says why, when
  * - it might take more new points than smaller holes leave of MaximumNumberOfInsertedPoints, or of
  *   the 357,913,941 points that a surface has at most;
@@ -88,11 +94,13 @@
  * vtkGridDelaunay2D has made it and told why). An abort also leaves empty output, which counts
  * as up to date: call Modified() to start again.
  *
+ * @par Composite input:
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs
  * of the same structure: each block (each partition) is filled on its own, and has its own holes
  * and field data. Counts of getters are sums. Messages name the block; one with an error is empty,
  * the others stay.
  *
+ * @par Several ranks:
  * On several ranks (processes), a block may be spread over them. Each hole is filled on one of them,
  * the largest first, on the one with least work; only the triangles around it are sent there. The
  * triangles and new points of all ranks are those of one, to the last bit; holes are numbered with
@@ -117,8 +125,10 @@
  * before the filter fails on one rank, VTK does not run the filter there, and the others wait for
  * it for ever.
  *
- * Cost: linear in the size of the input and in the number of new points, plus sorting the border.
+ * @par Cost:
+ * Linear in the size of the input and in the number of new points, plus sorting the border.
  *
+ * @par Source:
  * The method is the hole filling of Nguyen, "A Complete Method for Reconstructing an Elevation
  * Surface of 3D Point Clouds": spacing by its eq. 1; z by its eq. 2 with Interpolation
  * NEIGHBOR_MEAN.
@@ -134,14 +144,17 @@
 class VTKELEVATIONSURFACE_EXPORT vtkFillElevationHoles : public vtkPolyDataAlgorithm
 {
 public:
+  ///@{
+  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
   static vtkFillElevationHoles* New();
   vtkTypeMacro(vtkFillElevationHoles, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   /** What became of a hole: the values of the array Status of output 1. */
   enum HoleStatusType
   {
-    FILLED = 0,
+    FILLED = 0,         ///< all of it, with a patch
     TOO_LARGE = 1,      ///< left open because of MaximumHoleSize
     TOO_MANY_EDGES = 2, ///< left open because of MaximumHoleEdges
     FAILED = 3,         ///< could not be filled; a warning says why
@@ -151,11 +164,11 @@ public:
   /** How z of new points is found: the values of Interpolation, and of the array of output 1. */
   enum InterpolationType
   {
-    NEIGHBOR_MEAN = 0,
-    MEMBRANE = 1,
-    THIN_PLATE = 2,
-    ADAPTIVE = 3,
-    CUBIC_SPLINE = 4
+    NEIGHBOR_MEAN = 0, ///< the mean of known neighbours, as published: flattens what was lost
+    MEMBRANE = 1,      ///< stays within the heights of the hole's boundary
+    THIN_PLATE = 2,    ///< continues slope and curvature
+    ADAPTIVE = 3,      ///< for each hole what predicts the surface around it best (default)
+    CUBIC_SPLINE = 4   ///< as THIN_PLATE, but smoother
   };
 
   ///@{

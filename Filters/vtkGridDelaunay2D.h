@@ -11,7 +11,8 @@
  * never written), all point data and field data, and the triangles in Polys,
  * counter-clockwise seen from +z.
  *
- * What can be relied on, without constraints and with MaximumEdgeLength 0:
+ * @par What can be relied on:
+ * Without constraints and with MaximumEdgeLength 0 the triangulation is
  * - Exact: no point lies inside the circle through the corners of a triangle, decided by exact
  *   arithmetic; the triangles cover the whole convex hull; every point that is finite and not a
  *   duplicate is a vertex. On a lattice (below) this holds for its nodes.
@@ -21,26 +22,26 @@
  * - Complete: points that are not vertices are counted, and listed in the field data.
  *   Coordinates may be of any size a double holds.
  *
- * Lattices: ideally, the points of a grid, such as inlines and crosslines in map coordinates or the
- * pixels of an elevation model, are on the nodes of a lattice. But rounding moves each of them a
- * little, so that their exact triangulation cuts the cells at random and has thin triangles along
- * the border. With LatticeMode Automatic (default) the filter looks for a
- * lattice: an origin and two step vectors, which may be turned, sheared, of unequal lengths, with
- * any number of nodes missing (down to about 1 in 64 of the nodes around the points). Where every
- * point lies on its own node, within LatticeTolerance, the result is the exact Delaunay
- * triangulation of the nodes, in the metric of the two steps and in integers, which is faster,
- * too. Steps that are perpendicular or equal to within a ten-thousandth count as such. "Lowest" is
- * then by row of the lattice, then column; on a lattice parallel to the axes with exact
- * coordinates the triangles are the same in both modes. No triangle is inverted or flat in the
- * coordinates of the points; where one would be, or a point does not fit, the coordinates are
- * triangulated as they are.
+ * @par Lattices:
+ * Ideally, the points of a grid, such as inlines and crosslines in map coordinates or the pixels of
+ * an elevation model, are on the nodes of a lattice. But rounding moves each of them a little, so
+ * that their exact triangulation cuts the cells at random and has thin triangles along the border.
+ * With LatticeMode Automatic (default) the filter looks for a lattice: an origin and two step
+ * vectors, which may be turned, sheared, of unequal lengths, with any number of nodes missing (down
+ * to about 1 in 64 of the nodes around the points). Where every point lies on its own node, within
+ * LatticeTolerance, the result is the exact Delaunay triangulation of the nodes, in the metric of
+ * the two steps and in integers, which is faster, too. Steps that are perpendicular or equal to
+ * within a ten-thousandth count as such. "Lowest" is then by row of the lattice, then column; on a
+ * lattice parallel to the axes with exact coordinates the triangles are the same in both modes. No
+ * triangle is inverted or flat in the coordinates of the points; where one would be, or a point
+ * does not fit, the coordinates are triangulated as they are.
  *
- * Constraints (SetSourceConnection, SetSourceData): a vtkPolyData whose lines and polygon edges
- * must be edges of the result: breaklines, faults, outlines. Polygons count as closed lines,
- * nothing is cut out; vertex cells are ignored. The result is the constrained Delaunay
- * triangulation: all edges but those of the lines are locally Delaunay. It is exact and unique as
- * above, whatever the order and direction of the lines. A segment that runs exactly through points
- * is a chain of edges.
+ * @par Constraints:
+ * Input 1 (SetSourceConnection, SetSourceData) is a vtkPolyData whose lines and polygon edges must
+ * be edges of the result: breaklines, faults, outlines. Polygons count as closed lines, nothing is
+ * cut out; vertex cells are ignored. The result is the constrained Delaunay triangulation: all
+ * edges but those of the lines are locally Delaunay. It is exact and unique as above, whatever the
+ * order and direction of the lines. A segment that runs exactly through points is a chain of edges.
  * - A point of a line with the x,y of an input point is that point, with the input's z. Any
  *   other is added behind the input's points, with its own z (of several with the same x,y the
  *   first). So is the only point of a line of one point. Segments of no length are ignored.
@@ -61,6 +62,7 @@
  * - MaximumEdgeLength applies to the constrained triangulation, also to edges of lines.
  * - Several blocks of a composite are taken as one.
  *
+ * @par Few points:
  * With a MaximumElevationError, the surface is simplified while it is made. The corners of the convex
  * hull are vertices, with constraints the ends of their pieces (SimplifyConstraints leaves out some of
  * these); then the point farthest above or below
@@ -72,11 +74,13 @@
  * so beside the surface, it is measured from the triangle there. The choice does not depend on the
  * order of points, nor on the number of threads. Several ranks gather the block on one of them.
  *
+ * @par Composite input:
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives output
  * of the same structure: each block (each partition) is a surface of its own, with its own field
  * data. Counts of getters are sums. Messages name the block; one with an error is empty, the others
  * stay.
  *
+ * @par Several ranks:
  * On several ranks (processes), a block may be spread over them. They triangulate it together: each
  * gets the points in a part of the plane, all with about as many, and the triangles of all ranks are
  * those of one, each on one of them. A rank has the points of its part first, then those of other
@@ -96,18 +100,20 @@
  * before the filter fails on one rank, VTK does not run the filter there, and the others wait for
  * it for ever.
  *
- * Warnings: fewer than three distinct points, or points all on one line, which give the points and
- * no triangle; a MaximumEdgeLength that leaves more than half of the points without a triangle (it
- * tells one that does not, for which it triangulates once more); constraints of which more than
- * half lies farther outside the points' bounding box than a tenth of its size.
- * Errors leave empty output: a MaximumEdgeLength that is no length, a MaximumElevationError that is no
- * distance, or both; more points than can be handled
+ * @par Warnings and errors:
+ * Warnings tell of fewer than three distinct points, or points all on one line, which give the
+ * points and no triangle; a MaximumEdgeLength that leaves more than half of the points without a
+ * triangle (it tells one that does not, for which it triangulates once more); constraints of which
+ * more than half lies farther outside the points' bounding box than a tenth of its size.
+ *
+ * Errors leave empty output. They are: a MaximumEdgeLength that is no length, a
+ * MaximumElevationError that is no distance, or both; more points than can be handled
  * (357,913,941); a point array whose number of tuples is not that of the points; constraints
  * without a line or polygon, all beside the points' bounding box, with triangle strips, an invalid
  * vtkCellArray, or a point that does not exist or is not finite (the error names it).
  * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
  *
- * Field data of the output:
+ * @par Field data of the output:
  * - UnusedPointIds (vtkIdTypeArray): the points that are not a vertex, increasing;
  * - UnusedPointReasons (vtkUnsignedCharArray): for each of them, 1 = duplicate (another point with
  *   the same x,y is the vertex), 2 = not finite (x, y or z), 3 = within MaximumElevationError;
@@ -121,14 +127,17 @@
  *   in the part of this rank, those that it had to pass on for triangles across the border of its
  *   part, the bytes it has sent, and in how many exchanges of all ranks.
  *
- * Cost: linear expected time for points of even density, n log n where density is very uneven,
- * which is also the worst case. Memory during the run, above input and output: about 35 bytes a
- * point with one thread, 45 with several; less than 10 on a lattice that is well filled. Points on
- * which growing would take longer, such as thousands on one circle, are triangulated by divide and
+ * @par Cost:
+ * Linear expected time for points of even density, n log n where density is very uneven, which is
+ * also the worst case. Memory during the run, above input and output: about 35 bytes a point with
+ * one thread, 45 with several; less than 10 on a lattice that is well filled. Points on which
+ * growing would take longer, such as thousands on one circle, are triangulated by divide and
  * conquer instead, which takes some 90 bytes more. Constraints take linear time on one thread, time
- * for what their segments cross, and some 120 bytes a point. A MaximumElevationError that few of many
- * points are needed for takes up to twice the time of triangulating them all, and some 60 bytes a point.
+ * for what their segments cross, and some 120 bytes a point. A MaximumElevationError that few of
+ * many points are needed for takes up to twice the time of triangulating them all, and some 60
+ * bytes a point.
  *
+ * @par Source:
  * The method is the grid triangulation of Nguyen, "A Complete Method for Reconstructing an
  * Elevation Surface of 3D Point Clouds": the third point of an edge is looked for by its voxel
  * traversal search, or by its search for the most compact triangle (SearchStrategy).
@@ -147,9 +156,12 @@
 class VTKELEVATIONSURFACE_EXPORT vtkGridDelaunay2D : public vtkPolyDataAlgorithm
 {
 public:
+  ///@{
+  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
   static vtkGridDelaunay2D* New();
   vtkTypeMacro(vtkGridDelaunay2D, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**

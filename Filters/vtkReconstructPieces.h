@@ -10,6 +10,7 @@
  * once, whatever the number of pieces and the order of parts: also the lattice, and which of
  * duplicates is kept, are those of all.
  *
+ * @par Pieces:
  * The plane is cut into a cell for each piece, with about as many points each. A piece has the
  * points of its cell, also unused ones, then the corners of its triangles that are points of other
  * pieces: these are marked in vtkGhostType as DUPLICATEPOINT, and GlobalPointIds tell the place of
@@ -17,6 +18,7 @@
  * if it reaches over the border of a cell. Field data are those of vtkGridDelaunay2D, for this
  * piece.
  *
+ * @par Properties:
  * All properties of the triangulation are those of GetDelaunay(), except MaximumElevationError,
  * Lattice and constraints, which are for points in memory, and are errors. Where
  * GetTrim() has a boundary, all pieces are trimmed along it, as that filter would trim the whole
@@ -31,6 +33,7 @@
  * MaximumEdgeLength of that filter is for a surface in memory, and is an error. Output 1, of piece 0,
  * has the outline and the report of each hole, as output 1 of that filter.
  *
+ * @par Files, memory and time:
  * What is not worked on is in files in Folder. They take 32 bytes a point and the values of its
  * point arrays, twice while the points go to their cells, and later 24 bytes more. Pieces can be
  * asked for again until the files are removed: by Reset(), and with this object. The first piece
@@ -43,6 +46,7 @@
  * Points are float where all that are added are. While it works, the progress text names the step:
  * triangulating, trimming or filling holes.
  *
+ * @par Errors:
  * A wrong property or call is an error that loses nothing. After an error of the work, such as a
  * full disk, or an abort, the output is empty, and only Reset() helps.
  *
@@ -75,10 +79,13 @@ class vtkTrimOutwardTriangles;
 class VTKELEVATIONSURFACE_EXPORT vtkReconstructPieces : public vtkPolyDataAlgorithm
 {
 public:
+  ///@{
+  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
   static vtkReconstructPieces* New();
   vtkTypeMacro(vtkReconstructPieces, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-  vtkMTimeType GetMTime() override; ///< also of the filters
+  ///@}
+  vtkMTimeType GetMTime() override; ///< the latest change, also of the three filters' properties
 
   ///@{
   /**

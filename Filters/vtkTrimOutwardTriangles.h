@@ -9,6 +9,7 @@
  *
  * Input 0: a vtkPolyData of triangles that covers no place of the x,y plane twice.
  *
+ * @par The boundary:
  * Input 1, optional: the boundary, a vtkPolyData of
  * - closed lines (the last point is the first, by its id or by its x,y),
  * - lines that join each other to closed rings, and
@@ -35,6 +36,7 @@
  *   Delaunay and no point has been inserted. Only there does the surface change between its points.
  *   An edge that runs through points of the mesh is cut there.
  *
+ * @par Without a boundary:
  * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its
  * longest edge is at most GapTolerance times the spacing of the points there; so dense and thin
  * parts of a cloud are both outlined well. The details:
@@ -60,7 +62,7 @@
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
  * - The input should be a Delaunay triangulation. Its holes stay open and are part of the boundary.
  *
- * Outputs
+ * @par Outputs:
  * - 0: the triangles inside. Vertices and lines of the input come first.
  * - 1: the triangles outside.
  * - 2: the boundary used: one closed line (its last point is its first) for each ring, with the
@@ -75,12 +77,14 @@
  * parts of a cut triangle have its cell data, and all but one come after the input's triangles.
  * Field data passes to outputs 0 and 1. Nothing is written to the inputs.
  *
+ * @par Composite input:
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs
  * of the same structure: each block (each partition) is trimmed on its own, along the same boundary
  * if one is given, and has its own field data. Counts of getters are sums. Messages name the block;
  * one with an error is empty, the others stay. Several blocks of a composite input 1 are one
  * boundary.
  *
+ * @par Several ranks:
  * On several ranks (processes), a block may be spread over them. Each rank trims its own triangles;
  * only those near the boundary, and the border of each rank's part, are brought together on one rank.
  * Without a boundary, these are triangles that may not be surface, and some rows along the border
@@ -105,18 +109,22 @@
  * processes. All ranks have to update then, as in ParaView: where a source before the filter fails
  * on one rank, VTK does not run the filter there, and the others wait for it for ever.
  *
- * Guarantee (OutwardTest EXACT): all decisions are exact. The triangles of output 0 cover exactly
- * what is inside the boundary and covered by the mesh (apart from the rounding of crossings);
- * interior holes of the mesh stay.
+ * @par What can be relied on:
+ * With OutwardTest EXACT all decisions are exact. The triangles of output 0 cover exactly what is
+ * inside the boundary and covered by the mesh (apart from the rounding of crossings); interior
+ * holes of the mesh stay.
  *
- * Field data of all outputs: NumberOfOutwardTriangles, NumberOfRecoveredEdges,
- * NumberOfPointsLeftOut, NumberOfInsertedPoints (vtkIdTypeArray, one value), EffectiveGapTolerance
- * (vtkDoubleArray, one value). Of output 0, where a block stays spread over ranks: WorkOfTrim
- * (vtkIdTypeArray, one tuple of 4), the triangles of this rank's part, those of them that count as
- * near the boundary, the bytes it has sent, and in how many exchanges of all ranks.
+ * @par Field data of all outputs:
+ * NumberOfOutwardTriangles, NumberOfRecoveredEdges, NumberOfPointsLeftOut, NumberOfInsertedPoints
+ * (vtkIdTypeArray, one value), EffectiveGapTolerance (vtkDoubleArray, one value). Of output 0,
+ * where a block stays spread over ranks: WorkOfTrim (vtkIdTypeArray, one tuple of 4), the triangles
+ * of this rank's part, those of them that count as near the boundary, the bytes it has sent, and in
+ * how many exchanges of all ranks.
  *
+ * @par Warnings and errors:
  * When an extracted boundary leaves out more than 5 % of the points or half of the area, a warning
- * tells how much, and which GapTolerance would keep it. One that leaves out every point is an error.
+ * tells how much, and which GapTolerance would keep it. One that leaves out every point is an
+ * error.
  *
  * Errors leave empty outputs and name the cell, point or edge: a cell that is not a triangle, a
  * mesh that covers a place twice, a boundary that is not closed or has a point that is not finite,
@@ -129,8 +137,13 @@
  * passes there may be refused: merge the points, as vtkStaticCleanPolyData does. An abort also
  * leaves empty output, which counts as up to date: call Modified() to start again.
  *
- * Cost: linear in the number of triangles, plus the triangles crossed by boundary edges; one more
- * sweep over the triangles where points are inserted.
+ * @par Cost:
+ * Linear in the number of triangles, plus the triangles crossed by boundary edges; one more sweep
+ * over the triangles where points are inserted.
+ *
+ * @par Source:
+ * The removal of outward triangles of Nguyen, "A Complete Method for Reconstructing an Elevation
+ * Surface of 3D Point Clouds"; its test is INWARD_NORMAL.
  *
  * @sa vtkGridDelaunay2D vtkFillElevationHoles
  */
@@ -143,9 +156,12 @@
 class VTKELEVATIONSURFACE_EXPORT vtkTrimOutwardTriangles : public vtkPolyDataAlgorithm
 {
 public:
+  ///@{
+  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
   static vtkTrimOutwardTriangles* New();
   vtkTypeMacro(vtkTrimOutwardTriangles, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
+  ///@}
 
   ///@{
   /**
