@@ -1,0 +1,585 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each row of Documentation/Migration.md runs: our side always, the other where it is installed."""
+
+import ast
+import glob
+import importlib
+import json
+import os
+import re
+import shlex
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy
+from documented import run_commands, text_of
+from osgeo import gdal, ogr
+from vtkelevationsurface import (
+    read,
+    reconstruct,
+    vtkFillElevationHoles,
+    vtkGridDelaunay2D,
+    vtkTrimOutwardTriangles,
+)
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonTransforms import vtkTransform
+from vtkmodules.vtkFiltersCore import vtkDelaunay2D
+from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
+from vtkmodules.vtkFiltersModeling import vtkFillHolesFilter
+
+gdal.UseExceptions()
+ogr.UseExceptions()
+SIZE, VOID = 100.0, 12.0
+STEP, KNOWN = 10.0, (50, 60)  # of dem.tif: pixel, rows and columns
+CHECKS = {}
+
+
+def rows_of(section):
+    """[(first cell, its code, code of the second cell)]"""
+    text = text_of("Migration.md").split(f"\n## {section}\n")[1].split("\n## ")[0]
+    rows = [re.split(r"(?<!\\) \| ", line.strip("| ")) for line in text.splitlines() if line.startswith("| `")]
+    code = re.compile("`([^`]+)`")
+    return [(row[0], code.search(row[0]).group(1), code.search(row[1]).group(1)) for row in rows]
+
+
+def checks(section, there):
+    """Notes that a function checks the row of a section that begins so."""
+    def note(function):
+        CHECKS[section, there] = function
+        return function
+    return note
+
+
+def cloud():
+    """Random points around a void, on hills; then one with the x,y of point 0, one near point 1."""
+    numbers = numpy.random.RandomState(7)
+    xy = numbers.rand(1500, 2) * SIZE
+    xy = xy[numpy.hypot(*(xy - SIZE / 2).T) > VOID]
+    xy = numpy.vstack((xy, xy[0], xy[1] + 0.05))
+    z = 3 * numpy.sin(xy[:, 0] / 20) + xy[:, 1] / 25
+    z[-2] -= 1
+    return numpy.column_stack((xy, z))
+
+
+XYZ = cloud()
+CORNERS = [int(numpy.hypot(*(XYZ[:-2, :2] - corner).T).argmin())
+           for corner in ((20, 20), (32, 22), (30, 32), (18, 30))]
+
+
+def data(**cells):
+    """vtkPolyData with the points of the cloud, and Lines or Polys of ids."""
+    result = vtkPolyData()
+    result.SetPoints(vtkPoints())
+    result.GetPoints().SetData(numpy_to_vtk(XYZ, deep=True))
+    for kind, ids in cells.items():
+        array = vtkCellArray()
+        array.InsertNextCell(len(ids), ids)
+        getattr(result, "Set" + kind)(array)
+    return result
+
+
+def triangles(surface):
+    return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+
+
+def corners(surface):
+    """(n, 3, 2): x,y of the corners of triangles"""
+    return vtk_to_numpy(surface.GetPoints().GetData())[:, :2][triangles(surface)]
+
+
+def area(surface):
+    a, b, c = corners(surface).swapaxes(0, 1)
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    return 0.5 * float(abs(ux * vy - uy * vx).sum())
+
+
+def lengths(surface):
+    """(n, 3): of edges, on the map"""
+    xy = corners(surface)
+    return numpy.linalg.norm(xy - numpy.roll(xy, 1, axis=1), axis=2)
+
+
+def edges(surface):
+    return {tuple(sorted(t[[i, i - 1]])) for t in triangles(surface) for i in range(3)}
+
+
+def area_of_ring(xy):
+    x, y = xy.T
+    return 0.5 * abs(float(x @ numpy.roll(y, 1) - y @ numpy.roll(x, 1)))
+
+
+HULL = area(reconstruct(XYZ, trim=False, fill=False).surface)
+
+
+def names():
+    """What the code of the tables may use."""
+    transform = vtkTransform()
+    transform.RotateZ(30)
+    return {
+        "points": data(), "lines": data(Lines=CORNERS[:2]), "ring": data(Polys=CORNERS),
+        "surface": reconstruct(XYZ, fill=False).surface, "transform": transform, "spacing": 2.6,
+        "read": read, "reconstruct": reconstruct, "vtkTransformFilter": vtkTransformFilter,
+        "vtkDelaunay2D": vtkDelaunay2D, "vtkFillHolesFilter": vtkFillHolesFilter,
+        "vtkGridDelaunay2D": vtkGridDelaunay2D, "vtkFillElevationHoles": vtkFillElevationHoles,
+    }
+
+
+def run_code(code, known):
+    """Runs statements; the value of one that is an expression is called value."""
+    for statement in ast.parse(code).body:
+        if isinstance(statement, ast.Expr):
+            known["value"] = eval(compile(ast.Expression(statement.value), code, "eval"), known)
+        else:
+            exec(compile(ast.Module([statement], []), code, "exec"), known)
+
+
+# ---- vtkDelaunay2D -----------------------------------------------------------------------------
+
+
+def delaunay_of(code, kind):
+    """The names after code ran with a filter of a kind; result is what the last filter puts out."""
+    known = names()
+    known["delaunay"], known["trim"] = kind(), vtkTrimOutwardTriangles()
+    known["delaunay"].SetInputData(known["points"])
+    known["trim"].SetInputConnection(known["delaunay"].GetOutputPort())
+    run_code(code, known)
+    last = known["trim" if "trim" in code else "delaunay"]
+    if last.GetNumberOfInputConnections(0) == 0:
+        last.SetInputData(known["points"])
+    last.Update()
+    return {**known, "result": last.GetOutput()}
+
+
+@checks("vtkDelaunay2D", "delaunay = vtkDelaunay2D()")
+def _(test, there, here):
+    same = {tuple(sorted(t)) for t in triangles(there["result"])}
+    own = {tuple(sorted(t)) for t in triangles(here["result"])}
+    test.assertGreater(len(same & own), 0.95 * len(own))
+    unused = here["result"].GetFieldData().GetArray("UnusedPointIds")
+    test.assertEqual(vtk_to_numpy(unused).tolist(), [len(XYZ) - 2])
+
+
+@checks("vtkDelaunay2D", "delaunay.SetSourceData(lines)")
+def _(test, there, here):
+    for side in (there, here):
+        test.assertIn(tuple(sorted(CORNERS[:2])), edges(side["result"]))
+    test.assertEqual(here["delaunay"].GetNumberOfAddedPoints(), 0)
+    apart = vtkPolyData()
+    apart.DeepCopy(here["lines"])
+    apart.GetPoints().SetPoint(CORNERS[0], 21.125, 33.5, 4.0)
+    here["delaunay"].SetSourceData(apart)
+    here["delaunay"].Update()
+    test.assertEqual(here["delaunay"].GetNumberOfAddedPoints(), 1)
+
+
+@checks("vtkDelaunay2D", "delaunay.SetSourceData(ring)")
+def _(test, there, here):
+    expected = area_of_ring(XYZ[CORNERS, :2])
+    test.assertAlmostEqual(area(here["result"]), expected, 6)
+    test.assertTrue(expected - 1e-6 < area(there["result"]) < 1.3 * expected)
+
+
+@checks("vtkDelaunay2D", "delaunay.SetAlpha(4)")
+def _(test, there, here):
+    a, b, c = lengths(there["result"]).T
+    xy = corners(there["result"])
+    (ux, uy), (vx, vy) = (xy[:, 1] - xy[:, 0]).T, (xy[:, 2] - xy[:, 0]).T
+    test.assertLess((a * b * c / abs(2 * (ux * vy - uy * vx))).max(), 4.001)
+    test.assertGreater(there["result"].GetNumberOfLines(), 0)
+    test.assertLessEqual(lengths(here["result"]).max(), 6)
+    test.assertEqual(here["result"].GetNumberOfCells(), len(triangles(here["result"])))
+
+
+@checks("vtkDelaunay2D", "delaunay.SetTolerance(0.001)")
+def _(test, there, here):
+    last = len(XYZ) - 1
+    used = [set(triangles(side["result"]).ravel()) for side in (there, here)]
+    test.assertFalse({1, last} <= used[0])
+    test.assertTrue({1, last} <= used[1])
+    test.assertTrue(last - 1 in used[1] and 0 not in used[1])  # the lower one
+
+
+@checks("vtkDelaunay2D", "delaunay.SetOffset(10)")
+def _(test, _there, here):
+    test.assertAlmostEqual(area(here["result"]), HULL, 6)
+
+
+@checks("vtkDelaunay2D", "delaunay.SetTransform(transform)")
+def _(test, there, here):
+    test.assertEqual(there["result"].GetPoint(5), tuple(XYZ[5]))
+    numpy.testing.assert_allclose(here["result"].GetPoint(5), here["transform"].TransformPoint(XYZ[5]))
+    test.assertGreater(len(triangles(here["result"])), 2000)
+
+
+# ---- vtkFillHolesFilter ------------------------------------------------------------------------
+
+
+def fill_of(code, kind):
+    known = names()
+    known["fill"] = kind()
+    run_code(code, known)
+    known["fill"].SetInputData(known["surface"])
+    if "SetHoleSize" not in code and kind is vtkFillHolesFilter:
+        known["fill"].SetHoleSize(20)
+    known["fill"].Update()
+    return {**known, "result": known["fill"].GetOutput()}
+
+
+@checks("vtkFillHolesFilter", "fill = vtkFillHolesFilter()")
+def _(test, there, here):
+    count = there["surface"].GetNumberOfPoints()
+    test.assertEqual(there["result"].GetNumberOfPoints(), count)
+    test.assertGreater(here["result"].GetNumberOfPoints(), count)
+    test.assertTrue(here["result"].GetPointData().HasArray("FilledError"))
+    test.assertEqual(here["fill"].GetOutput(1).GetNumberOfLines(), 1)
+
+
+@checks("vtkFillHolesFilter", "fill.SetHoleSize(20)")
+def _(test, there, here):
+    test.assertGreater(there["result"].GetNumberOfPolys(), there["surface"].GetNumberOfPolys())
+    test.assertEqual(here["fill"].GetNumberOfFilledHoles(), 1)
+    here["fill"].SetMaximumHoleSize(20)
+    here["fill"].Update()
+    test.assertEqual(here["fill"].GetNumberOfFilledHoles(), 0)
+
+
+@checks("vtkFillHolesFilter", "fill.SetHoleSize(1000)")
+def _(test, there, here):
+    test.assertLess(area(here["result"]), HULL + 1e-6)
+    test.assertGreater(area(there["result"]), 1.5 * HULL)
+
+
+# ---- PyVista -----------------------------------------------------------------------------------
+
+
+@checks("PyVista", "points.delaunay_2d()")
+@checks("PyVista", "points.delaunay_2d(edge_source=lines)")
+def _(test, there, here):
+    test.assertAlmostEqual(area(here.surface), HULL, 6)
+    if here.delaunay.GetSource():
+        test.assertIn(tuple(sorted(CORNERS[:2])), edges(here.surface))
+    if there is not None:
+        test.assertGreater(area(there), 0.9 * HULL)
+
+
+@checks("PyVista", "points.delaunay_2d(alpha=4)")
+def _(test, _there, here):
+    test.assertLessEqual(lengths(here.surface).max(), 6)
+
+
+@checks("PyVista", "points.delaunay_2d(tol=0.001)")
+@checks("PyVista", "points.delaunay_2d(offset=10, bound=False)")
+def _(test, _there, here):
+    test.assertGreater(area(here.surface), 0.8 * HULL)
+
+
+# ---- CGAL's terrain tutorial, PDAL -------------------------------------------------------------
+
+
+@checks("CGAL's terrain tutorial", "TIN dsm (points.points().begin(), points.points().end());")
+def _(test, here, _printed):
+    test.assertAlmostEqual(area(here["result"].surface), HULL, 6)
+
+
+@checks("CGAL's terrain tutorial", "face_height(fh) > spacing")
+def _(test, here, _printed):
+    test.assertEqual(here["result"].report["points"], len(XYZ) - 100)
+
+
+@checks("CGAL's terrain tutorial", "double limit = CGAL::square (5 * spacing);")
+def _(test, here, _printed):
+    test.assertEqual(here["result"].report["holes"]["open_edge_length"], 13)
+
+
+@checks("CGAL's terrain tutorial", "extract_boundary_cycles")
+def _(test, here, _printed):
+    here["fill"].Update()
+    test.assertEqual((here["fill"].GetNumberOfHoles(), here["fill"].GetNumberOfFilledHoles()), (1, 1))
+
+
+@checks("CGAL's terrain tutorial", "isotropic_remeshing")
+def _(test, here, _printed):
+    report = here["result"].report
+    test.assertGreater(report["unused_reasons"]["within the elevation error"], 0.8 * len(XYZ))
+    test.assertLessEqual(here["result"].delaunay.GetLargestElevationError(), 0.5)
+
+
+@checks("CGAL's terrain tutorial", "raster")
+def _(test, here, _printed):
+    test.assertEqual(here["grid"].z.shape, (100, 100))
+    test.assertTrue(numpy.isnan(here["grid"].z).any())
+
+
+@checks("CGAL's terrain tutorial", "isocontour_in_face")
+def _(test, _here, _printed):
+    test.assertGreater(features_of("survey_contours.gpkg"), 3)
+
+
+def features_of(path):
+    """The number of features in the first layer."""
+    source = ogr.Open(path)
+    return source.GetLayer().GetFeatureCount()
+
+
+def faces_of(path):
+    """The number of triangles that the head of a PLY file tells."""
+    with open(path, "rb") as file:
+        return int(re.search(rb"element face (\d+)", file.read(2000)).group(1))
+
+
+@checks("PDAL", '{"type": "filters.delaunay"}')
+def _(test, _here, _printed):
+    test.assertAlmostEqual(area(read("survey_surface.vtp").points), HULL, 4)
+
+
+@checks("PDAL", '{"type": "writers.ply", "filename": "mesh.ply", "faces": true}')
+def _(test, _here, _printed):
+    test.assertGreater(faces_of("mesh.ply"), 2000)
+
+
+@checks("PDAL", '{"type": "filters.hexbin"}')
+def _(test, _here, _printed):
+    test.assertGreater(features_of("outlines.gpkg"), 0)
+
+
+@checks("PDAL", '{"type": "filters.hexbin", "edge_length": 8}')
+def _(test, _here, printed):
+    test.assertIn("gap tolerance 6 spacings", printed)
+
+
+@checks("PDAL", '{"type": "filters.hexbin", "threshold": 1}')
+def _(test, _here, printed):
+    test.assertIn("boundary found from the points", printed)
+
+
+# ---- QGIS, GDAL --------------------------------------------------------------------------------
+
+
+def pixels(path, band=1):
+    """(rows, columns), NaN where there are no data, and the transform of a raster."""
+    raster = gdal.Open(path)
+    one = raster.GetRasterBand(band)
+    values = one.ReadAsArray().astype("f8")
+    none = one.GetNoDataValue()
+    if none is not None:
+        values[values == none] = numpy.nan
+    return values, raster.GetGeoTransform()
+
+
+@checks("QGIS", "INTERPOLATION_DATA, points")
+def _(test, _here, _printed):
+    test.assertGreater(numpy.nanmin(pixels("points_grid.tif")[0]), 990)  # of the attribute
+
+
+@checks("QGIS", "INTERPOLATION_DATA, break lines")
+def _(test, _here, printed):
+    test.assertIn("lines.gpkg: 2 points added", printed)
+
+
+@checks("QGIS", "METHOD: Linear")
+@checks("QGIS", "PIXEL_SIZE")
+def _(test, _here, _printed):
+    values, transform = pixels("points_grid.tif")
+    test.assertEqual((transform[1], transform[5], transform[0] % 5), (5, -5, 0))
+    test.assertGreater(numpy.nanmax(pixels("points_grid.tif", 2)[0]), 0)
+    test.assertLess(numpy.nanmax(values), 20)
+
+
+@checks("QGIS", "EXTENT")
+def _(test, _here, _printed):
+    test.assertEqual(pixels("points_grid.tif")[0].shape, (12, 12))
+
+
+@checks("QGIS", "TRIANGULATION")
+def _(test, _here, _printed):
+    test.assertGreater(faces_of("surface.ply"), 2000)
+
+
+def compare_with_dem(test, here, there, band=1):
+    """Known pixels stay on both sides. Returns what is missing: (theirs, ours)."""
+    known = pixels("dem.tif", band)[0]
+    there, here = pixels(there)[0], pixels(here)[0]
+    test.assertEqual(known.shape, here.shape)
+    numpy.testing.assert_allclose(numpy.where(numpy.isnan(known), numpy.nan, here), known, atol=1e-4)
+    return numpy.isnan(there).sum(), numpy.isnan(here).sum()
+
+
+@checks("GDAL", "gdal_fillnodata.py dem.tif filled.tif")
+@checks("GDAL", "gdal_fillnodata.py -si 2 dem.tif filled.tif")
+def _(test, _here, _printed):
+    test.assertEqual(compare_with_dem(test, "filled.tif", "there.tif"), (0, 0))
+
+
+@checks("GDAL", "gdal_fillnodata.py -md 3 dem.tif filled.tif")
+def _(test, _here, _printed):
+    theirs, ours = compare_with_dem(test, "filled.tif", "there.tif")
+    test.assertTrue(0 < theirs < 144, theirs)
+    test.assertEqual(ours, 144)
+
+
+@checks("GDAL", "gdal_fillnodata.py -b 2 dem.tif filled.tif")
+def _(test, _here, _printed):
+    test.assertEqual(compare_with_dem(test, "filled.tif", "there.tif", 2), (0, 0))
+
+
+# ---- files that the commands read --------------------------------------------------------------
+
+
+def write_vectors(path, geometries, **fields):
+    layer_type = {"POINT": ogr.wkbPoint25D, "LINES": ogr.wkbLineString25D, "POLYG": ogr.wkbPolygon}
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(path)
+    layer = source.CreateLayer("all", None, layer_type[geometries[0][:5]])
+    for name in fields:
+        layer.CreateField(ogr.FieldDefn(name, ogr.OFTReal))
+    layer.StartTransaction()
+    for i, geometry in enumerate(geometries):
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(geometry))
+        for name, values in fields.items():
+            feature.SetField(name, float(values[i]))
+        layer.CreateFeature(feature)
+    layer.CommitTransaction()
+
+
+def write_dem(path):
+    """Two bands with a gap of 2 x 2 and one of 12 x 12 pixels; edges of pixels are multiples of STEP."""
+    rows, columns = KNOWN
+    raster = gdal.GetDriverByName("GTiff").Create(path, columns, rows, 2, gdal.GDT_Float32)
+    raster.SetGeoTransform((500 * STEP, STEP, 0, 900 * STEP, 0, -STEP))
+    y, x = numpy.mgrid[:rows, :columns]
+    z = 40 + 5 * numpy.sin(x / 9) + y / 4
+    z[5:7, 8:10] = z[20:32, 30:42] = -9999
+    for i in (1, 2):
+        raster.GetRasterBand(i).SetNoDataValue(-9999)
+        raster.GetRasterBand(i).WriteArray(numpy.where(z == -9999, z, z + 100 * (i - 1)))
+
+
+def write_las(path):
+    """Points of class 2, but the last 100 of class 6; LAS 1.2, format 0, in thousandths."""
+    low, high = XYZ.min(axis=0), XYZ.max(axis=0)
+    bounds = [value for pair in zip(high, low) for value in pair]
+    head = b"LASF" + bytes(20) + bytes((1, 2)) + bytes(68)
+    head += struct.pack("<HIIBHI5I", 227, 227, 0, 0, 20, len(XYZ), len(XYZ), 0, 0, 0, 0)
+    head += struct.pack("<12d", 1e-3, 1e-3, 1e-3, 0, 0, 0, *bounds)
+    with open(path, "wb") as file:
+        file.write(head)
+        for i, point in enumerate(numpy.rint(XYZ * 1000).astype(int)):
+            kind = 6 if i >= len(XYZ) - 100 else 2
+            file.write(struct.pack("<iiiHBBbBH", *point, 0, 9, kind, 0, 0, 0))
+
+
+def write_files():
+    numpy.savetxt("survey.csv", XYZ, delimiter=",", header="X,Y,Z", comments="")
+    write_las("survey.las")
+    write_dem("dem.tif")
+    write_vectors("points.gpkg", ["POINT Z (%r %r %r)" % tuple(map(float, p)) for p in XYZ], height=XYZ[:, 2] + 1000)
+    write_vectors("lines.gpkg", ["LINESTRING Z (10.5 10.25 3, 90.125 20.5 5)"])
+    write_vectors("area.gpkg", ["POLYGON ((20 20, 80 20, 80 80, 20 80, 20 20))"])
+
+
+def is_there(module):
+    """Whether Python can import the other program; says so if not."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        print(f"{module} is not installed: its side of the table is not run")
+        return None
+
+
+class Migration(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+
+    def run_rows(self, section, run_row):
+        """Calls run_row(code there, code here, check) for each row; each has a check, each check a row."""
+        rows = rows_of(section)
+        # Where cells begin with the same code, the words after it belong to the name.
+        codes = [there for _, there, _ in rows]
+        named = [cell.replace("`", "") if codes.count(there) > 1 or ": " in cell and section == "QGIS" else there
+                 for cell, there, _ in rows]
+        self.assertEqual(sorted(named), sorted(name for where, name in CHECKS if where == section))
+        for name, (_, there, here) in zip(named, rows):
+            with self.subTest(section=section, there=name):
+                run_row(there, here, CHECKS[section, name])
+
+    def test_vtk_delaunay_2d(self):
+        def run_row(there, here, check):
+            check(self, delaunay_of(there, vtkDelaunay2D), delaunay_of(here, vtkGridDelaunay2D))
+
+        self.run_rows("vtkDelaunay2D", run_row)
+
+    def test_vtk_fill_holes_filter(self):
+        def run_row(there, here, check):
+            check(self, fill_of(there, vtkFillHolesFilter), fill_of(here, vtkFillElevationHoles))
+
+        self.run_rows("vtkFillHolesFilter", run_row)
+
+    def test_pyvista(self):
+        pyvista = is_there("pyvista")
+
+        def run_row(there, here, check):
+            theirs, ours = names(), names()
+            if pyvista:
+                for known in (theirs, ours):
+                    known.update({name: pyvista.wrap(known[name]) for name in ("points", "lines")})
+                run_code(there, theirs)
+            run_code(here, ours)
+            check(self, theirs.get("value"), ours["value"])
+
+        self.run_rows("PyVista", run_row)
+
+    def run_here(self, code, check):
+        for path in glob.glob("*_surface.*"):
+            os.remove(path)
+        known, printed = names(), ""
+        if code.startswith("Utilities/reconstruct"):
+            printed = run_commands(code + " --no-picture", ".")
+        else:
+            run_code(code, known)
+        check(self, known, printed)
+
+    def test_cgal(self):
+        write_files()
+        self.run_rows("CGAL's terrain tutorial", lambda _, here, check: self.run_here(here, check))
+
+    def test_pdal(self):
+        write_files()
+        pdal = is_there("pdal")
+
+        def run_row(there, here, check):
+            stage = json.loads(there)
+            if pdal:
+                stages = ["survey.csv", {"type": "filters.delaunay"}, stage]
+                pdal.Pipeline(json.dumps([s for i, s in enumerate(stages) if s not in stages[:i]])).execute()
+            self.run_here(here, check)
+
+        self.run_rows("PDAL", run_row)
+
+    def test_qgis(self):
+        write_files()
+        self.run_rows("QGIS", lambda _, here, check: self.run_here(here, check))
+
+    def test_gdal(self):
+        write_files()
+
+        def run_row(there, here, check):
+            arguments = shlex.split(there)[1:-1]
+            subprocess.run([sys.executable, "-m", "osgeo_utils.gdal_fillnodata", "-q", *arguments, "there.tif"],
+                           check=True, stdout=subprocess.DEVNULL)
+            self.run_here(here, check)
+            os.remove("there.tif")
+
+        self.run_rows("GDAL", run_row)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["TestMigration"])
