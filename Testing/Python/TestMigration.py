@@ -374,10 +374,8 @@ class Migration(unittest.TestCase):
     def run_rows(self, section, run_row):
         """Calls run_row(code there, code here, check) for each row; each has a check, each check a row."""
         rows = rows_of(section)
-        # Where cells begin with the same code, the words after it belong to the name.
-        codes = [there for _, there, _ in rows]
-        named = [cell.replace("`", "") if codes.count(there) > 1 or ": " in cell and section == "QGIS" else there
-                 for cell, there, _ in rows]
+        # A row is known by the code of its first cell; that of QGIS is a parameter, and words tell which.
+        named = [cell.replace("`", "") if section == "QGIS" else there for cell, there, _ in rows]
         self.assertEqual(sorted(named), sorted(name for where, name in CHECKS if where == section))
         for name, (_, there, here) in zip(named, rows):
             with self.subTest(section=section, there=name):
