@@ -206,9 +206,10 @@ def threads_table(measured):
             rows.append((
                 f"{cloud['points']:,}", number(1e3 * one["seconds"]), number(1e3 * two["seconds"]),
                 number(one["seconds"] / two["seconds"]),
-                number(one["seconds"] / copies["seconds"]) if copies else ""))
+                number(one["seconds"] / copies["seconds"]) if copies else "",
+                number(two["processor_seconds"] / one["processor_seconds"])))
     return markdown(("points", "ms, one thread", "ms, two threads", "gain",
-                     "gain of two copies at once"), rows)
+                     "gain of two copies at once", "processor time, two / one"), rows)
 
 
 def accuracy_table(measured):
