@@ -25,6 +25,44 @@ def flat_share(surface):
     return areas[(uz == 0) & (vz == 0)].sum() / areas.sum()
 
 
+class Gaps(unittest.TestCase):
+    """The table of what becomes of gaps, on rough squares with two gaps inside and two at the border."""
+
+    BOXES = {"narrow": (10, 13, 10, 25), "wide": (35, 46, 10, 25),
+             "narrow bay": (10, 13, 48, 70), "wide bay": (35, 46, 48, 70)}
+
+    def setUp(self):
+        xy = numpy.stack(numpy.meshgrid(*2 * [numpy.arange(60.0)]), axis=-1).reshape(-1, 2)
+        xy += numpy.random.RandomState(3).uniform(-0.2, 0.2, xy.shape)
+        for left, right, low, high in self.BOXES.values():
+            xy = xy[~((xy > (left, low)) & (xy < (right, high))).all(axis=1)]
+        self.points = numpy.column_stack((xy, numpy.sin(xy[:, 0] / 9)))
+
+    def fates(self, option, **properties):
+        """{gap: what became of it}, and how many points are new"""
+        self.assertRegex(GUIDE, rf"\| {option} \| ")
+        result = reconstruct(self.points, **properties)
+        places = result.to_numpy()[0][len(self.points):, :2]
+        grid, fates, counts = result.to_grid(0.5), {}, {}
+        for name, (left, right, low, high) in self.BOXES.items():
+            high = min(high, 58)
+            inside = ((places > (left, low)) & (places < (right, high))).all(axis=1)
+            counts[name] = int(inside.sum())
+            row, column = abs(grid.y - (low + high) / 2).argmin(), abs(grid.x - (left + right) / 2).argmin()
+            is_open = numpy.isnan(grid.z[row, column])
+            fates[name] = "open" if is_open else "filled" if counts[name] else "bridged"
+        return list(fates.values()), counts["wide"]
+
+    def test_each_row_of_the_table_is_true(self):
+        plain, few = self.fates("neither")
+        self.assertEqual(plain, ["bridged", "filled", "bridged", "open"])
+        cut, many = self.fates("`--maximum-edge-length L`", maximum_edge_length=2.3)
+        self.assertEqual(cut, ["filled", "filled", "open", "open"])
+        opened, _ = self.fates("`--open-edge-length L`", open_edge_length=2.3)
+        self.assertEqual(opened, ["filled", "filled", "filled", "open"])
+        self.assertGreater(many, 5 * few)  # as dense as around, and coarser
+
+
 class Guide(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
