@@ -24,6 +24,8 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
   options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
   options.MaximumElevationError = filter->GetMaximumElevationError();
   options.SimplifyConstraints = filter->GetSimplifyConstraints();
+  options.Edges =
+    filter->GetDataDependentEdges() ? EdgeCriterion::DataDependent : EdgeCriterion::Delaunay;
   options.Duplicates = static_cast<DuplicatePolicy>(filter->GetDuplicatePolicy());
   options.UseLattice = static_cast<LatticeMode>(filter->GetLatticeMode());
   const double* const lattice = filter->GetLattice();

@@ -316,6 +316,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SearchStrategy: " << this->GetSearchStrategyAsString() << "\n";
   os << indent << "MaximumEdgeLength: " << this->MaximumEdgeLength << "\n";
   os << indent << "MaximumElevationError: " << this->MaximumElevationError << "\n";
+  os << indent << "DataDependentEdges: " << (this->DataDependentEdges ? "On" : "Off") << "\n";
   os << indent << "SimplifyConstraints: " << (this->SimplifyConstraints ? "On" : "Off") << "\n";
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
   os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";

@@ -64,7 +64,7 @@ TAKES = {
 
 
 def is_switch(name):
-    """Whether a property is on or off: --no-NAME turns it off."""
+    """Whether a property is on or off."""
     return PROPERTIES[name].takes == "True or False"
 
 
@@ -122,7 +122,9 @@ def make_parser():
     add("--faults", "--breaklines", dest="faults")
     add("--boundary")
     for name, one in PROPERTIES.items():
-        if is_switch(name):
+        if name == "data_dependent_edges":  # off by default
+            add(option_of(name), action="store_true", default=None)
+        elif is_switch(name):
             add("--no-" + name.replace("_", "-"), dest=name, action="store_false", default=None)
         else:
             add(option_of(name), type=one.convert)

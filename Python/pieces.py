@@ -43,7 +43,7 @@ from .writing.xml_writer import write_vtp
 AT_ONCE = 1_000_000  # points given to the filter at a time
 SUFFIX = ".vtpd"
 BYTES_A_POINT = 250  # of memory, where a piece is triangulated
-BYTES_TO_FILL = 320  # where its holes are filled
+BYTES_TO_FILL = 350  # where its holes are filled
 BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.

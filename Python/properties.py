@@ -99,6 +99,7 @@ PROPERTIES = {
     "maximum_elevation_error": Property(
         "delaunay", "SetMaximumElevationError", number_at_least_zero, NUMBER
     ),
+    "data_dependent_edges": Property("delaunay", "SetDataDependentEdges", yes_or_no, YES_OR_NO),
     "duplicates": _choice("delaunay", "SetDuplicatePolicy", DUPLICATES),
     "lattice_mode": _choice("delaunay", "SetLatticeMode", LATTICE_MODES),
     "lattice_tolerance": Property(
@@ -147,3 +148,6 @@ def check_together(given, name_of=str):
     if all(given.get(name) for name in names):
         words = " and ".join(name_of(name) for name in names)
         raise ValueError(f"{words} cannot be used together: fewer points make longer edges")
+    if given.get("data_dependent_edges") and not given.get("maximum_elevation_error"):
+        needs, needed = name_of("data_dependent_edges"), name_of("maximum_elevation_error")
+        raise ValueError(f"{needs} needs {needed}: with all points, edges are Delaunay")

@@ -281,10 +281,11 @@ def reconstruct(
     progress  None, or a function that is called with a step's name and its fraction done; what it
               raises stops the filter
     properties  of the filters, named as the options of the command line, with underscores:
-              maximum_edge_length, maximum_elevation_error, duplicates, lattice_mode,
-              lattice_tolerance, search_strategy, outward_test, gap_tolerance, recover_boundary, open_edge_length, maximum_hole_size,
-              maximum_hole_edges, spacing, interpolation, interpolate_point_data, threads. Lengths
-              are in the units of x and y. The program's --help tells what each does, and its default.
+              maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
+              lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
+              recover_boundary, open_edge_length, maximum_hole_size, maximum_hole_edges, spacing,
+              interpolation, interpolate_point_data, threads. Lengths are in the units of x and y.
+              The program's --help tells what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made, TypeError for unknown properties, ValueError for values that a property does not

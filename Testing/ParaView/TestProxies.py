@@ -16,6 +16,7 @@ OTHER_VALUES = {
         "SearchStrategy": "Compactness",
         "MaximumEdgeLength": 2.5,
         "MaximumElevationError": 0.5,
+        "DataDependentEdges": 1,
         "SimplifyConstraints": 1,
         "DuplicatePolicy": "Keep Highest",
         "LatticeMode": "Off",

@@ -180,12 +180,25 @@ class Surface(unittest.TestCase):
         self.assertEqual(result.surface.GetNumberOfPolys(), 2)
         self.assertEqual(result.report["unused_reasons"], {WITHIN: 140})
 
+    def test_data_dependent_edges_need_fewer_points(self):
+        points = cloud()
+        few = reconstruct(points, fill=False, maximum_elevation_error=ERROR)
+        result = reconstruct(
+            points, fill=False, maximum_elevation_error=ERROR, data_dependent_edges=True
+        )
+        kept, of_delaunay = (r.report["simplified"]["points_kept"] for r in (result, few))
+        self.assertLess(kept, 0.97 * of_delaunay)
+        spacing = spacing_of(reconstruct(points, fill=False).boundary, None)
+        self.check_bound(points, result, ERROR, 2 * ON_OUTLINE * spacing)
+
     def test_what_cannot_be_is_refused(self):
         for value in (-1, float("nan"), float("inf"), "much"):
             with self.assertRaisesRegex(ValueError, "^maximum_elevation_error takes a number of 0"):
                 reconstruct(cloud(), maximum_elevation_error=value)
         with self.assertRaisesRegex(ValueError, "^maximum_edge_length and maximum_elevation_error"):
             reconstruct(cloud(), maximum_elevation_error=1, maximum_edge_length=5)
+        with self.assertRaisesRegex(ValueError, "^data_dependent_edges needs maximum_elevation_er"):
+            reconstruct(cloud(), data_dependent_edges=True)
         for other in ({"maximum_elevation_error": 0}, {"maximum_edge_length": 5}):
             both = {"maximum_edge_length": 0, "maximum_elevation_error": 0, **other}
             self.assertNotIn("simplified", reconstruct(cloud(), **both).report)
@@ -256,6 +269,7 @@ class OfProgram(Program):
         few = ("a.xyz", "--maximum-elevation-error", "1")
         for arguments, words in (
             (("--maximum-edge-length", "5"), "--maximum-edge-length and --maximum-elevation-error"),
+            (("--maximum-elevation-error", "0", "--data-dependent-edges"), "edges needs --max"),
             (("--pieces", "2", "--no-trim", "--no-fill"), "--maximum-elevation-error needs"),
         ):
             done = self.call(*few, *arguments)

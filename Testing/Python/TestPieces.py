@@ -917,7 +917,7 @@ class Command(Program):
         self.assertEqual(pieces.memory_size("2GiB"), 2e9)
         self.assertEqual(pieces.pieces_within(2e9, 1000), 1)
         self.assertEqual(pieces.pieces_within(2e9, 200_000_000), 30)
-        self.assertEqual(pieces.pieces_within(2e9, 200_000_000, fill=True), 38)
+        self.assertEqual(pieces.pieces_within(2e9, 200_000_000, fill=True), 42)
         for wrong in ("", "2X", "10", "-2G", "100M", "nan", "1e9"):
             done = self.call("a.npy", f"--memory={wrong}", *TRIANGULATION_ONLY)
             words = f"--memory takes a size of at least 450M, such as 2G, not '{wrong}'"

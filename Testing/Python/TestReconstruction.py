@@ -109,6 +109,7 @@ class Properties(unittest.TestCase):
         given = {
             "maximum_edge_length": (30.0, "delaunay", "GetMaximumEdgeLength", 30.0),
             "maximum_elevation_error": (0.1, "delaunay", "GetMaximumElevationError", 0.1),
+            "data_dependent_edges": (True, "delaunay", "GetDataDependentEdges", 1),
             "duplicates": ("keep-lowest", "delaunay", "GetDuplicatePolicy", 2),
             "lattice_mode": ("off", "delaunay", "GetLatticeMode", 1),
             "lattice_tolerance": (0.125, "delaunay", "GetLatticeTolerance", 0.125),
@@ -127,7 +128,8 @@ class Properties(unittest.TestCase):
         self.assertEqual(set(given), set(PROPERTIES))
         for name, (value, step, getter, expected) in given.items():
             with self.subTest(name=name):
-                result = reconstruct(SHEET, **{name: value})
+                needed = {"maximum_elevation_error": 0.1} if name == "data_dependent_edges" else {}
+                result = reconstruct(SHEET, **{name: value}, **needed)
                 self.assertEqual(getattr(getattr(result, step), getter)(), expected)
 
     def test_misspelt_names_and_wrong_values_raise(self):

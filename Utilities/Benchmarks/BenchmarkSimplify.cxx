@@ -38,6 +38,7 @@ vtkQuadricDecimation make of the full triangulation with as many vertices. Table
   --threads LIST    threads of vtkGridDelaunay2D, 0: one a core; default 1
   --repeats N       timed runs, of which the median counts; default 5
   --no-peers        without greedy insertion, vtkDecimatePro and vtkQuadricDecimation
+  --data-dependent  vtkGridDelaunay2D and greedy insertion with data-dependent edges
   --no-decimation   without the last two, which take longest
   --help            shows this text
 
@@ -54,6 +55,7 @@ struct Options
   int Repeats = 5;
   bool Peers = true;
   bool Decimation = true;
+  bool DataDependent = false;
 };
 
 std::vector<double> ToErrors(const std::string& list)
@@ -120,7 +122,8 @@ bool ReadOptions(int argc, char* argv[], Options& options)
   const auto isFlag = [&options](const std::string& option) {
     options.Peers = options.Peers && option != "--no-peers";
     options.Decimation = options.Decimation && option != "--no-decimation";
-    return option == "--no-peers" || option == "--no-decimation";
+    options.DataDependent = options.DataDependent || option == "--data-dependent";
+    return option == "--no-peers" || option == "--no-decimation" || option == "--data-dependent";
   };
   if (!ReadArguments(argc, argv, isFlag, [&options](const auto& option, const auto& value) {
         return ReadOption(option, value, options);
@@ -204,6 +207,7 @@ struct Variant
 {
   double Error;
   int Threads;
+  bool DataDependent;
   std::vector<double> Seconds{};
   std::vector<double> ProcessorSeconds{};
   Index Vertices = 0;
@@ -223,6 +227,7 @@ void Time(vtkPolyData* cloud, Variant& variant)
   vtkNew<vtkGridDelaunay2D> filter;
   filter->SetNumberOfThreads(variant.Threads);
   filter->SetMaximumElevationError(variant.Error);
+  filter->SetDataDependentEdges(variant.DataDependent);
   filter->SetInputData(cloud);
   filter->Update();
   variant.Seconds.push_back(SecondsSince(start));
@@ -246,10 +251,10 @@ std::vector<Variant> TimeAll(vtkPolyData* cloud, double relief, const Options& o
   std::vector<Variant> variants;
   for (const int threads : options.Threads)
   {
-    variants.push_back({ 0.0, threads });
+    variants.push_back({ 0.0, threads, false });
     for (const double error : options.Errors)
     {
-      variants.push_back({ 0.01 * error * relief, threads });
+      variants.push_back({ 0.01 * error * relief, threads, options.DataDependent });
     }
   }
   for (int round = 0; round < options.Repeats; ++round)
@@ -309,7 +314,7 @@ void PrintPeers(
   {
     errors.push_back(variants[k + 1].Error);
   }
-  const std::vector<GreedyCount> greedy = InsertGreedily(points, errors);
+  const std::vector<GreedyCount> greedy = InsertGreedily(points, errors, !options.DataDependent);
   for (std::size_t k = 0; k < greedy.size(); ++k)
   {
     const Variant& few = variants[k + 1];

@@ -38,7 +38,7 @@ struct Triangle
 class Insertion
 {
 public:
-  explicit Insertion(const Coordinates& points);
+  Insertion(const Coordinates& points, bool isDelaunay);
 
   bool IsLine() const { return this->Triangles.empty(); }
   Index NumberOfVertices() const { return this->Vertices; }
@@ -68,11 +68,16 @@ private:
   std::vector<Index> FindHull(const std::vector<Index>& sorted) const;
   void TriangulateHull(const std::vector<Index>& hull);
   void Flip(Index triangle, int edge);
+  double ErrorAt(const Index* corners, Index point) const;
   void Enter(Index triangle, Index point);
+  void FlipByData();
+  double ShapeOf(Index a, Index b, Index c) const;
+  bool IsBetterFlipped(Index triangle) const;
   void FindCavity(Index point, Index start);
   void Insert(Index point, Index start);
 
   const Coordinates& Points;
+  const bool IsDelaunay;
   std::vector<Triangle> Triangles;
   std::vector<Index> Next; // in the list of a triangle
   std::priority_queue<std::pair<double, Index>> Queue;
@@ -81,8 +86,9 @@ private:
   std::vector<RimEdge> Rim; // counter-clockwise
 };
 
-Insertion::Insertion(const Coordinates& points)
+Insertion::Insertion(const Coordinates& points, bool isDelaunay)
   : Points(points)
+  , IsDelaunay(isDelaunay)
   , Next(points.size() / 3, None)
 {
   std::vector<Index> sorted(this->Next.size());
@@ -211,21 +217,27 @@ void Insertion::Flip(Index triangle, int edge)
   relink(overBC, c, other);
 }
 
-/** Puts a point into the list of the triangle that it lies in. */
-void Insertion::Enter(Index triangle, Index point)
+/** The vertical distance of a point from the triangle that it lies in. */
+double Insertion::ErrorAt(const Index* corners, Index point) const
 {
-  Triangle& here = this->Triangles[triangle];
   const Point2 p = this->At(point);
   double weights = 0.0, sum = 0.0;
   for (int k = 0; k < 3; ++k)
   {
-    const Point2 a = this->At(here.Corners[(k + 1) % 3]), b = this->At(here.Corners[(k + 2) % 3]);
+    const Point2 a = this->At(corners[(k + 1) % 3]), b = this->At(corners[(k + 2) % 3]);
     const double weight =
       std::max(0.0, (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X)); // rounding
     weights += weight;
-    sum += weight * (this->ElevationOf(here.Corners[k]) - this->ElevationOf(point));
+    sum += weight * (this->ElevationOf(corners[k]) - this->ElevationOf(point));
   }
-  const double error = weights > 0.0 ? std::fabs(sum / weights) : 0.0;
+  return weights > 0.0 ? std::fabs(sum / weights) : 0.0;
+}
+
+/** Puts a point into the list of the triangle that it lies in. */
+void Insertion::Enter(Index triangle, Index point)
+{
+  Triangle& here = this->Triangles[triangle];
+  const double error = this->ErrorAt(here.Corners, point);
   this->Next[point] = here.First;
   here.First = point;
   if (here.Worst == None || error > here.Error)
@@ -250,7 +262,8 @@ void Insertion::FindCavity(Index point, Index start)
     const Index from = inner.Corners[k], to = inner.Corners[(k + 1) % 3];
     const Index beyond = inner.Neighbors[k];
     if (beyond != None && !this->Triangles[beyond].IsInCavity &&
-      this->IsInCircle(this->Triangles[beyond], point))
+      (this->IsDelaunay ? this->IsInCircle(this->Triangles[beyond], point)
+                        : this->SideOf(from, to, point) == 0))
     {
       const int j = this->Triangles[beyond].EdgeFrom(to);
       this->Triangles[beyond].IsInCavity = true;
@@ -318,6 +331,86 @@ void Insertion::Insert(Index point, Index start)
     }
   }
   ++this->Vertices;
+  if (!this->IsDelaunay)
+  {
+    this->FlipByData();
+  }
+}
+
+/** How far a triangle is from a sliver: its area in parts of the squares of its edges. */
+double Insertion::ShapeOf(Index a, Index b, Index c) const
+{
+  const Point2 p = this->At(a), q = this->At(b), r = this->At(c);
+  const auto square = [](const Point2& u, const Point2& v) {
+    return (v.X - u.X) * (v.X - u.X) + (v.Y - u.Y) * (v.Y - u.Y);
+  };
+  return ((q.X - p.X) * (r.Y - p.Y) - (q.Y - p.Y) * (r.X - p.X)) /
+    (square(p, q) + square(q, r) + square(r, p));
+}
+
+/** Whether a triangle, whose last corner is new, and that over its first edge had better be flipped. */
+bool Insertion::IsBetterFlipped(Index triangle) const
+{
+  const Triangle& here = this->Triangles[triangle];
+  const Triangle& beyond = this->Triangles[here.Neighbors[0]];
+  const Index from = here.Corners[0], to = here.Corners[1], point = here.Corners[2];
+  const Index across = beyond.Corners[(beyond.EdgeFrom(to) + 2) % 3];
+  if (this->SideOf(point, from, across) <= 0 || this->SideOf(point, across, to) <= 0)
+  {
+    return false;
+  }
+  constexpr double least = 0.5;
+  const double shape = std::min(this->ShapeOf(from, to, point), this->ShapeOf(to, from, across));
+  const double flipped =
+    std::min(this->ShapeOf(point, from, across), this->ShapeOf(point, across, to));
+  if (flipped < least * shape || shape < least * flipped)
+  {
+    return flipped > shape;
+  }
+  const Index first[] = { point, from, across }, second[] = { point, across, to };
+  double sum = 0.0;
+  for (const Triangle* one : { &here, &beyond })
+  {
+    for (Index i = one->First; i != None; i = this->Next[i])
+    {
+      const double before = this->ErrorAt(one->Corners, i);
+      const double after = this->ErrorAt(this->SideOf(point, across, i) < 0 ? first : second, i);
+      sum += after * after - before * before;
+    }
+  }
+  return sum < 0.0;
+}
+
+/** Flips edges around the triangles of a new point, which are in the star, and those that become so. */
+void Insertion::FlipByData()
+{
+  std::vector<Index> open = this->Star;
+  while (!open.empty())
+  {
+    const Index triangle = open.back();
+    open.pop_back();
+    const Index other = this->Triangles[triangle].Neighbors[0];
+    if (other == None || !this->IsBetterFlipped(triangle))
+    {
+      continue;
+    }
+    this->Moved.clear();
+    for (const Index one : { triangle, other })
+    {
+      for (Index i = this->Triangles[one].First; i != None; i = this->Next[i])
+      {
+        this->Moved.push_back(i);
+      }
+    }
+    this->Flip(triangle, 0); // to (from, across, point) and (across, to, point)
+    const Index* const corners = this->Triangles[triangle].Corners;
+    for (const Index moved : this->Moved)
+    {
+      this->Enter(this->SideOf(corners[2], corners[1], moved) < 0 ? triangle : other, moved);
+    }
+    this->Star.push_back(other);
+    open.insert(open.end(), { triangle, other });
+  }
 }
 
 bool Insertion::InsertWorst(double error)
@@ -348,12 +441,12 @@ bool Insertion::InsertWorst(double error)
 } // namespace
 
 std::vector<GreedyCount> InsertGreedily(
-  const Coordinates& points, const std::vector<double>& errors)
+  const Coordinates& points, const std::vector<double>& errors, bool isDelaunay)
 {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   std::vector<GreedyCount> counts;
-  Insertion insertion(points);
+  Insertion insertion(points, isDelaunay);
   for (std::size_t i = 0; i < errors.size() && !insertion.IsLine(); ++i)
   {
     while (insertion.InsertWorst(errors[i]))

@@ -31,8 +31,10 @@ bool IsInSample(Index place, std::uint32_t mask)
 } // namespace
 
 GreedyInsertion::GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buffer<Index>& rows,
-  const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed)
+  const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed,
+  EdgeCriterion edges)
   : Rows(rows)
+  , Edges(edges)
   , Inserted(places, metric, first, fixed, SpareFaces)
   , Ordered(static_cast<std::size_t>(first.NumberOfTriangles()))
 {
@@ -94,7 +96,7 @@ std::vector<InsertionStrip> GreedyInsertion::MakeStrips(Index count, bool areShi
     const double end = (i + (areShifted ? 0.5 : 1.0)) / count * all;
     const auto row = std::lower_bound(
       this->Rows.begin(), this->Rows.end() - 1, static_cast<Index>(std::min(end, all)));
-    strips.emplace_back(this->Inserted, begin, *row);
+    strips.emplace_back(this->Inserted, this->Edges, begin, *row);
     begin = *row;
   }
   return strips;
@@ -192,7 +194,8 @@ Index GreedyInsertion::FaceWith(Index place, Index start) const
 
 void GreedyInsertion::Insert(const std::vector<Index>& chosen)
 {
-  InsertionStrip all(this->Inserted, 0, static_cast<Index>(this->Inserted.Places.size()));
+  InsertionStrip all(
+    this->Inserted, this->Edges, 0, static_cast<Index>(this->Inserted.Places.size()));
   Index face = this->Ordered.front();
   for (const Index place : chosen)
   {

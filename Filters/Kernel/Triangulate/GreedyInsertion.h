@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Few of many points whose Delaunay triangulation is nearly within an elevation error of all others,
+ * Few of many points whose triangulation is nearly within an elevation error of all others,
  * by greedy insertion [Garland & Heckbert 1995].
  *
  * In: points in the order of a grid's rows, a first triangulation that covers them. Out: the Delaunay
@@ -23,6 +23,12 @@
  *
  * Fixed edges bound what a point can take away, and are cut where it lies on one.
  *
+ * Instead of Delaunay edges there may be data-dependent ones [Dyn, Levin & Rippa 1990]: a point takes
+ * away the triangle that it lies in alone; then each edge over which it sees another vertex is flipped if
+ * that makes the squares of distances in both triangles smaller in sum. Where one of the two ways makes
+ * a triangle of less than half of the other one's shape, the better shape counts, as slivers fit few
+ * points to come.
+ *
  * The sides of edges and distances are computed in double precision without a bound of errors, which
  * may give a point to the wrong one of two triangles that it is nearly between; before it is inserted,
  * that is put right. Circles are exact.
@@ -32,6 +38,8 @@
  *
  * [Garland & Heckbert 1995] Fast Polygonal Approximation of Terrains and Height Fields, Carnegie
  * Mellon University, CMU-CS-95-181.
+ * [Dyn, Levin & Rippa 1990] Data Dependent Triangulations for Piecewise Linear Interpolation, IMA
+ * Journal of Numerical Analysis 10(1):137-154.
  * [Bowyer 1981] Computing Dirichlet Tessellations, The Computer Journal 24(2):162-166.
  * [Watson 1981] Computing the n-dimensional Delaunay Tessellation with Application to Voronoi
  * Polytopes, The Computer Journal 24(2):167-172.
@@ -57,9 +65,11 @@ public:
    * @param[in] first   triangles that cover all places, with Twins: a Delaunay triangulation, constrained
    *                    by the fixed edges
    * @param[in] fixed   one flag a half-edge, or none
+   * @param[in] edges   which ones are made
    */
   GreedyInsertion(const Buffer<ElevatedPlace>& places, const Buffer<Index>& rows,
-    const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed);
+    const LatticeMetric* metric, const Mesh& first, const std::vector<char>& fixed,
+    EdgeCriterion edges);
 
   /** Inserts points until no error is above this one. @throws Aborted; std::bad_alloc */
   void Run(double error, int threads, const Progress& progress);
@@ -82,6 +92,7 @@ private:
   Index FaceWith(Index place, Index start) const;
 
   const Buffer<Index>& Rows;
+  const EdgeCriterion Edges;
   InsertionMesh Inserted;
   std::vector<Index> Ordered;
 };

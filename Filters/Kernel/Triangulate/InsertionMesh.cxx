@@ -107,6 +107,21 @@ bool InsertionMesh::IsInConflict(const Face& face, Index place, int edge) const
   return IsLower(apex, ofEdge) || IsLower(p, ofEdge);
 }
 
+double InsertionMesh::ShapeOf(Index a, Index b, Index c) const
+{
+  const auto square = [this](Index p, Index q) {
+    const double x = this->Places[q].X - this->Places[p].X;
+    const double y = this->Places[q].Y - this->Places[p].Y;
+    return this->Metric
+      ? static_cast<double>(this->Metric->Dot(static_cast<std::int64_t>(x),
+          static_cast<std::int64_t>(y), static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)))
+      : x * x + y * y;
+  };
+  const ElevatedPlace &p = this->Places[a], &q = this->Places[b], &r = this->Places[c];
+  const double area = (q.X - p.X) * (r.Y - p.Y) - (q.Y - p.Y) * (r.X - p.X);
+  return area / (square(a, b) + square(b, c) + square(c, a));
+}
+
 void InsertionMesh::AddTo(Face& face, Index place, float error)
 {
   this->Links[place] = face.First;

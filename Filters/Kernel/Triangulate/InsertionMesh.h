@@ -79,6 +79,8 @@ public:
   Sign SideOf(Index from, Index to, Index place) const;
   Sign IsInCircle(const Face& face, Index place) const;
   bool IsInConflict(const Face& face, Index place, int edge) const;
+  /** How far a triangle is from a sliver: its area in parts of the squares of its edges; any unit. */
+  double ShapeOf(Index a, Index b, Index c) const;
   /** Enters a place in the list of a face. */
   void AddTo(Face& face, Index place, float error);
   template <typename MayEnter>

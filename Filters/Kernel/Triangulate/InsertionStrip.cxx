@@ -11,6 +11,7 @@ namespace elevation
 namespace
 {
 constexpr double LevelFactor = 0.9; // from one level of errors to the next
+constexpr double LeastShape = 0.5;  // of two ways to flip an edge, in parts of the other one's
 } // namespace
 
 Index InsertionStrip::NewFace()
@@ -24,17 +25,21 @@ Index InsertionStrip::NewFace()
   return this->NextFace++;
 }
 
-/** Whether the cavity of a place can be found from a face on: it is in conflict, and no line between. */
+/**
+ * Whether the cavity of a place can be found from a face on: it is in conflict, and no line between. With
+ * edges by data, the place lies in the face.
+ */
 bool InsertionStrip::MayBegin(Index place, const Face& face) const
 {
+  const bool isDelaunay = this->Edges == EdgeCriterion::Delaunay;
   bool isVisible = true;
   for (int k = 0; k < 3; ++k)
   {
     isVisible = isVisible &&
-      ((face.Fixed >> k & 1) == 0 ||
+      ((isDelaunay && (face.Fixed >> k & 1) == 0) ||
         this->Of.SideOf(face.Corners[k], face.Corners[(k + 1) % 3], place) != Negative);
   }
-  return isVisible && this->Of.IsInCircle(face, place) == Positive;
+  return isVisible && (!isDelaunay || this->Of.IsInCircle(face, place) == Positive);
 }
 
 /**
@@ -87,6 +92,7 @@ bool InsertionStrip::FindCavity(Index place, Index face)
   this->Cavity.assign(1, face);
   this->Open = { { face, 2 }, { face, 1 }, { face, 0 } };
   faces[face].IsInCavity = true;
+  const bool isDelaunay = this->Edges == EdgeCriterion::Delaunay;
   bool isOwn = true;
   while (!this->Open.empty() && isOwn)
   {
@@ -95,13 +101,14 @@ bool InsertionStrip::FindCavity(Index place, Index face)
     const Index from = faces[inside].Corners[edge], to = faces[inside].Corners[(edge + 1) % 3];
     const Index outside = faces[inside].Neighbors[edge];
     const bool isFixed = (faces[inside].Fixed >> edge & 1) != 0;
-    const bool isOn = (outside == None || isFixed) && this->Of.SideOf(from, to, place) == Zero;
+    const bool isOn =
+      (outside == None || isFixed || !isDelaunay) && this->Of.SideOf(from, to, place) == Zero;
     if (outside == None)
     {
       this->Rim.push_back({ from, to, isOn ? Gap : None, isFixed });
       continue;
     }
-    if (isOn)
+    if (isOn && isFixed)
     {
       this->Cut[0] = from;
       this->Cut[1] = to;
@@ -110,7 +117,7 @@ bool InsertionStrip::FindCavity(Index place, Index face)
     isOwn = this->HasCorners(other);
     const int entry = other.EdgeFrom(to);
     if (isOwn && !other.IsInCavity && (isOn || !isFixed) &&
-      this->Of.IsInConflict(other, place, entry))
+      (isDelaunay ? this->Of.IsInConflict(other, place, entry) : isOn))
     {
       other.IsInCavity = true;
       this->Cavity.push_back(outside);
@@ -246,7 +253,116 @@ bool InsertionStrip::Insert(Index place, Index face)
   const std::size_t count = this->Rim.size() - (isClosed ? 0 : 1);
   this->FillCavity(place, count, isClosed);
   this->MovePoints(place, count, isClosed);
+  if (this->Edges == EdgeCriterion::DataDependent)
+  {
+    this->FlipByData();
+  }
   return true;
+}
+
+/**
+ * Whether the edge over which a new place, the last corner of a face, sees the next vertex had better
+ * be flipped: for the shape of the triangles, or if neither is much worse, for the squares of distances.
+ */
+bool InsertionStrip::IsBetterFlipped(Index face) const
+{
+  const Face& here = this->Of.Faces[face];
+  if (here.Neighbors[0] == None || (here.Fixed & 1) != 0)
+  {
+    return false;
+  }
+  const Index from = here.Corners[0], to = here.Corners[1], place = here.Corners[2];
+  const Face& beyond = this->Of.Faces[here.Neighbors[0]];
+  const int entry = beyond.EdgeFrom(to);
+  const Index across = beyond.Corners[(entry + 2) % 3], outside = beyond.Neighbors[(entry + 1) % 3];
+  if (!this->HasCorner(across) || (outside != None && !this->HasCorners(this->Of.Faces[outside])) ||
+    this->Of.SideOf(place, from, across) != Positive ||
+    this->Of.SideOf(place, across, to) != Positive)
+  {
+    return false;
+  }
+  const double shape =
+    std::min(this->Of.ShapeOf(from, to, place), this->Of.ShapeOf(to, from, across));
+  const double flipped =
+    std::min(this->Of.ShapeOf(place, from, across), this->Of.ShapeOf(place, across, to));
+  if (flipped < LeastShape * shape || shape < LeastShape * flipped)
+  {
+    return flipped > shape;
+  }
+  const ElevatedPlace* const places = this->Of.Places.data();
+  const ElevatedPlace &a = places[from], &b = places[to], &p = places[place], &d = places[across];
+  const Slopes first = SlopesOf(p, a, d), second = SlopesOf(p, d, b);
+  double sum = 0.0;
+  for (const Face* one : { &here, &beyond })
+  {
+    const Slopes slopes = SlopesOf(a, b, one == &here ? p : d);
+    for (Index point = one->First; point != None; point = this->Of.Links[point])
+    {
+      const ElevatedPlace& q = places[point];
+      const bool isFirst = (d.X - p.X) * (q.Y - p.Y) - (d.Y - p.Y) * (q.X - p.X) < 0.0;
+      const double before = ErrorOf(q, a, slopes), after = ErrorOf(q, p, isFirst ? first : second);
+      sum += after * after - before * before;
+    }
+  }
+  return sum < 0.0;
+}
+
+/** The face becomes the triangle before the new edge, its neighbour the one after it. */
+void InsertionStrip::Flip(Index face)
+{
+  Buffer<Face>& faces = this->Of.Faces;
+  const Face here = faces[face];
+  const Index other = here.Neighbors[0];
+  const Face beyond = faces[other];
+  const Index from = here.Corners[0], to = here.Corners[1], place = here.Corners[2];
+  const int entry = beyond.EdgeFrom(to), before = (entry + 1) % 3, after = (entry + 2) % 3;
+  const Index across = beyond.Corners[after];
+  const auto bit = [](const Face& of, int edge, int as) { return (of.Fixed >> edge & 1) << as; };
+  faces[face] = { { from, across, place }, { beyond.Neighbors[before], other, here.Neighbors[2] },
+    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, before, 0) | bit(here, 2, 2)) };
+  faces[other] = { { across, to, place }, { beyond.Neighbors[after], here.Neighbors[1], face },
+    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, after, 0) | bit(here, 1, 1)) };
+  if (beyond.Neighbors[before] != None)
+  {
+    Face& outside = faces[beyond.Neighbors[before]];
+    outside.Neighbors[outside.EdgeFrom(across)] = face;
+  }
+  if (here.Neighbors[1] != None)
+  {
+    Face& next = faces[here.Neighbors[1]];
+    next.Neighbors[next.EdgeFrom(place)] = other;
+  }
+  const ElevatedPlace* const places = this->Of.Places.data();
+  const ElevatedPlace &p = places[place], &d = places[across];
+  const Slopes first = SlopesOf(p, places[from], d), second = SlopesOf(p, d, places[to]);
+  for (const Index list : { here.First, beyond.First })
+  {
+    for (Index point = list, next; point != None; point = next)
+    {
+      next = this->Of.Links[point];
+      const ElevatedPlace& q = places[point];
+      const bool isFirst = (d.X - p.X) * (q.Y - p.Y) - (d.Y - p.Y) * (q.X - p.X) < 0.0;
+      this->Of.AddTo(faces[isFirst ? face : other], point, ErrorOf(q, p, isFirst ? first : second));
+    }
+  }
+}
+
+/** Flips edges around the fan of a new place, and around those that it gets by this. */
+void InsertionStrip::FlipByData()
+{
+  std::vector<Index> open(this->Fan);
+  while (!open.empty())
+  {
+    const Index face = open.back();
+    open.pop_back();
+    if (this->IsBetterFlipped(face))
+    {
+      const Index other = this->Of.Faces[face].Neighbors[0];
+      this->Flip(face);
+      this->Fan.push_back(other);
+      open.insert(open.end(), { face, other });
+    }
+  }
 }
 
 void InsertionStrip::SetLevels(double error, double mostVertices)

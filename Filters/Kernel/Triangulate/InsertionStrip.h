@@ -8,6 +8,7 @@
 #define elevation_Triangulate_InsertionStrip_h
 
 #include "InsertionMesh.h"
+#include "Options.h"
 
 #include <cstddef>
 #include <utility>
@@ -22,8 +23,10 @@ class InsertionStrip
 public:
   static constexpr Index FacesAtOnce = 64; ///< that a strip takes from the mesh
 
-  InsertionStrip(InsertionMesh& of, Index begin, Index end)
+  /** @param[in] edges  which ones a new point is joined to others by */
+  InsertionStrip(InsertionMesh& of, EdgeCriterion edges, Index begin, Index end)
     : Of(of)
+    , Edges(edges)
     , Begin(begin)
     , End(end)
   {
@@ -43,6 +46,7 @@ public:
 
 private:
   InsertionMesh& Of;
+  const EdgeCriterion Edges;
 
 public:
   const Index Begin, End;   ///< places
@@ -64,6 +68,9 @@ private:
   void MovePoints(Index place, std::size_t count, bool isClosed);
   std::size_t SectorOf(
     double dx, double dy, std::size_t start, std::size_t count, bool isClosed) const;
+  bool IsBetterFlipped(Index face) const;
+  void Flip(Index face);
+  void FlipByData();
   Index NewFace();
   bool IsCut(Index end) const { return end == this->Cut[0] || end == this->Cut[1]; }
   bool IsDue(Index face) const { return this->Of.Faces[face].Error > this->Level; }

@@ -30,6 +30,13 @@ enum class LatticeMode
   Off        ///< never: by their coordinates
 };
 
+/** Which edges a triangulation of few points has (MaximumElevationError). */
+enum class EdgeCriterion
+{
+  Delaunay,     ///< those of the chosen points: unique
+  DataDependent ///< those that are nearer to the other points, unless triangles become much narrower
+};
+
 /** How the apex over an edge is searched for. Both find the same one. */
 enum class SearchStrategy
 {
@@ -52,6 +59,7 @@ struct DelaunayOptions
   double MaximumElevationError = 0.0;
   /** With it: points of lines go, too, where the lines stay nearly the same (FewerPieces.h). */
   bool SimplifyConstraints = false;
+  EdgeCriterion Edges = EdgeCriterion::Delaunay; ///< with it
   DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
   Progress Monitor;
   /** Off by default: other parts of the kernel need the triangulation by coordinates. */

@@ -328,8 +328,8 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
     ListUnused(points.Count, placed, nullptr, result);
     return result;
   }
-  GreedyInsertion mesh(
-    placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first, fixed);
+  GreedyInsertion mesh(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
+    fixed, options.Edges);
   const Measurement measurement(points, placed, mesh);
   std::vector<Index> beyond;
   Progress ofRound = Part(progress, 0.05, 0.8);

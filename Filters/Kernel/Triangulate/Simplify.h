@@ -16,8 +16,8 @@
  *      until there are none.
  *
  * Guarantees: no finite point that is not a duplicate is farther from the surface, as LargestError
- * tells. Topology is exact and unique as in Triangulate.h: the triangles are those of Triangulate() for
- * the chosen points. The choice depends on the positions of the points alone, not on their order, nor
+ * tells. Topology is exact. With Delaunay edges it is unique as in Triangulate.h: the triangles are those
+ * of Triangulate() for the chosen points. The choice depends on the positions of the points alone, not on their order, nor
  * on the number of threads.
  *
  * Pass 3 takes the points by their coordinates. On a lattice they may lie beside their nodes. A
