@@ -58,33 +58,38 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
   {
     return false;
   }
-  placed.Places.Reserve(static_cast<std::size_t>(nodes.NumberOfPoints()));
-  Buffer<Index> candidates;
-  Index place = 0;
-  for (Index row = 0; row < nodes.Rows; ++row)
-  {
-    placed.Rows.Append(place);
+  const auto placesBefore = [&nodes](Index row) {
+    return row < nodes.Rows ? nodes.RankOf(nodes.NodeAt(row, 0)) : nodes.NumberOfPoints();
+  };
+  placed.Places.Resize(static_cast<std::size_t>(nodes.NumberOfPoints()));
+  ForEachPiece(nodes.Rows, threads, Part(progress, 0.8, 1.0), [&](Index row) {
+    Index place = placesBefore(row);
     const Index first = nodes.NodeAt(row, 0) / 64;
     const Index words = (nodes.Columns + 63) / 64;
     for (Index word = 0; word < words; ++word)
     {
       for (std::uint64_t bits = nodes.Word(first + word); bits != 0; bits &= bits - 1)
       {
-        const double z = points.Elevation(nodes.Ids[place++]);
-        placed.Places.Append(
-          { static_cast<double>(64 * word + LowestBit(bits)), static_cast<double>(row), z });
+        placed.Places[place] = { static_cast<double>(64 * word + LowestBit(bits)),
+          static_cast<double>(row), points.Elevation(nodes.Ids[place]) };
+        ++place;
       }
     }
-    if (place > placed.Rows[row])
+  });
+  Buffer<Index> candidates;
+  for (Index row = 0; row <= nodes.Rows; ++row)
+  {
+    placed.Rows.Append(placesBefore(row));
+    const Index begin = row > 0 ? placed.Rows[row - 1] : 0;
+    if (placed.Rows[row] > begin)
     {
-      candidates.Append(placed.Rows[row]);
+      candidates.Append(begin);
     }
-    if (place > placed.Rows[row] + 1)
+    if (placed.Rows[row] > begin + 1)
     {
-      candidates.Append(place - 1);
+      candidates.Append(placed.Rows[row] - 1);
     }
   }
-  placed.Rows.Append(place);
   placed.Ids = std::move(nodes.Ids);
   placed.Duplicates = std::move(nodes.Duplicates);
   placed.NotFinite = std::move(search.NotFinite);
@@ -109,33 +114,33 @@ PlacedPoints PlaceInBins(
   Buffer<Index> slots; // of each place
   slots.Resize(static_cast<std::size_t>(count));
   std::iota(slots.begin(), slots.end(), 0);
-  const std::size_t columns = static_cast<std::size_t>(grid.Bins.Columns);
-  const Progress sorting = Part(progress, 0.7, 0.8);
-  for (std::size_t bin = 0; bin + 1 < grid.Starts.size(); ++bin)
-  {
-    ReportStep(sorting, bin, grid.Starts.size(), 1 << 16);
-    std::sort(slots.begin() + grid.Starts[bin], slots.begin() + grid.Starts[bin + 1],
-      [&grid](Index a, Index b) { return IsLower(grid.PointAt(a), grid.PointAt(b)); });
-    if (bin % columns == 0)
-    {
-      placed.Rows.Append(grid.Starts[bin]);
-    }
-  }
-  placed.Rows.Append(count);
+  Buffer<Index> placeOf; // of each slot
+  placeOf.Resize(slots.size());
   placed.Places.Resize(slots.size());
   placed.Ids.Resize(slots.size());
-  Buffer<Index> placeOf;
-  placeOf.Resize(slots.size());
-  const Progress placing = Part(progress, 0.8, 1.0);
-  for (Index place = 0; place < count; ++place)
+  const std::size_t columns = static_cast<std::size_t>(grid.Bins.Columns);
+  for (Index row = 0; row <= grid.Bins.Rows; ++row)
   {
-    ReportStep(placing, place, count, 1 << 16);
-    const Index slot = slots[place];
-    placeOf[slot] = place;
-    placed.Ids[place] = grid.Ids[slot];
-    const Point2 p = points.At(grid.Ids[slot]);
-    placed.Places[place] = { p.X, p.Y, points.Elevation(grid.Ids[slot]) };
+    placed.Rows.Append(grid.Starts[row * columns]);
   }
+  const auto placeBins = [&](Index, Index begin, Index end) {
+    for (Index bin = begin; bin < end; ++bin)
+    {
+      std::sort(slots.begin() + grid.Starts[bin], slots.begin() + grid.Starts[bin + 1],
+        [&grid](Index a, Index b) { return IsLower(grid.PointAt(a), grid.PointAt(b)); });
+    }
+    for (Index place = grid.Starts[begin]; place < grid.Starts[end]; ++place)
+    {
+      const Index slot = slots[place];
+      placeOf[slot] = place;
+      placed.Ids[place] = grid.Ids[slot];
+      const Point2 p = points.At(grid.Ids[slot]);
+      placed.Places[place] = { p.X, p.Y, points.Elevation(grid.Ids[slot]) };
+    }
+  };
+  constexpr Index binsAtOnce = 2048;
+  ForEachRange(static_cast<Index>(grid.Starts.size()) - 1, threads, Part(progress, 0.7, 1.0),
+    placeBins, binsAtOnce);
   Buffer<Index> candidates; // the points of the hull, from the lowest up
   const Hull hull = FindHull(grid, Progress());
   for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
