@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 namespace elevation
 {
@@ -12,6 +13,9 @@ namespace
 {
 constexpr double LevelFactor = 0.9; // from one level of errors to the next
 constexpr double LeastShape = 0.5;  // of two ways to flip an edge, in parts of the other one's
+// Errors are floats: smaller ones are 0, larger ones infinite.
+constexpr double LeastLevel = 0.5 * std::numeric_limits<float>::denorm_min();
+constexpr float LargestLevel = std::numeric_limits<float>::max();
 } // namespace
 
 Index InsertionStrip::NewFace()
@@ -372,9 +376,10 @@ void InsertionStrip::SetLevels(double error, double mostVertices)
   {
     largest = std::max(largest, this->Of.Faces[face].Error);
   }
-  this->Error = error;
+  largest = std::min(largest, LargestLevel);
+  this->Error = std::max(error, LeastLevel);
   this->MostFaces = 2.0 * mostVertices;
-  this->Level = error;
+  this->Level = this->Error;
   while (this->Level < LevelFactor * static_cast<double>(largest))
   {
     this->Level /= LevelFactor;

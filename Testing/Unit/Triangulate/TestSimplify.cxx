@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 
@@ -577,6 +578,35 @@ TEST(Simplify, WithDataDependentEdgesLinesStayEdges)
     mesh.ConnectTwins();
     std::vector<char> flags;
     EXPECT_EQ(RecoverSegments(mesh, made.Pieces, flags), 0); // none is missing
+  }
+}
+
+TEST(Simplify, EndsWithElevationsAndErrorsBeyondTheRangeOfFloat)
+{
+  std::mt19937_64 random(10);
+  for (const EdgeCriterion edges : { EdgeCriterion::Delaunay, EdgeCriterion::DataDependent })
+  {
+    for (const double relief : { 1e39, 1e300, 1.0, 1e-60 })
+    {
+      Cloud cloud;
+      for (int i = 0; i < 400; ++i)
+      {
+        const double x = Unit(random), y = Unit(random);
+        cloud.Add(x, y, relief * std::sin(9.0 * x * y));
+      }
+      for (const double error : { 0.1 * relief, 5e-324 })
+      {
+        SCOPED_TRACE(std::to_string(std::log10(relief)) + " " + std::to_string(std::log10(error)));
+        DelaunayOptions options = WithError(error);
+        options.Edges = edges;
+        std::int64_t calls = 0;
+        options.Monitor = [&calls](double) { return ++calls < 1000; }; // else for ever
+        const Triangulation made = Triangulate(cloud.View(), options);
+        const auto far = ValidateDistance(
+          MeshOfTriangles(cloud, made.Triangles), cloud.View(), error, 0.0, ExemptOf(made));
+        EXPECT_TRUE(far.empty()) << ToString(far);
+      }
+    }
   }
 }
 
