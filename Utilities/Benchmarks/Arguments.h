@@ -13,9 +13,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace benchmark
@@ -84,6 +86,37 @@ inline double Median(std::vector<double> values)
   const std::size_t half = values.size() / 2;
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
+
+/** Median seconds by name, for a script. */
+class Figures
+{
+public:
+  void Add(const std::string& name, double seconds) { this->Rows.emplace_back(name, seconds); }
+  /** Writes a JSON object; nothing where no file is named. */
+  void Write(const std::string& path) const
+  {
+    if (path.empty())
+    {
+      return;
+    }
+    std::ofstream json(path);
+    const char* before = "{\n";
+    for (const std::pair<std::string, double>& row : this->Rows)
+    {
+      json << before << "  \"" << row.first << "\": " << row.second;
+      before = ",\n";
+    }
+    json << "\n}\n";
+    json.close();
+    if (!json)
+    {
+      throw std::runtime_error(path + ": cannot be written");
+    }
+  }
+
+private:
+  std::vector<std::pair<std::string, double>> Rows;
+};
 
 /**
  * Reads a command line.

@@ -45,6 +45,7 @@ CGAL the filling alone.
   --repeats N       timed runs, of which the fastest counts; default 3
   --no-cgal         without CGAL, which takes longest
   --seed N          of the points; default 1
+  --json FILE       writes the seconds of each row to a file
   --help            shows this text
 
 The exit code is 1 when vtkFillElevationHoles leaves a hole open; 2 for a wrong option.
@@ -61,6 +62,7 @@ struct Options
   int Repeats = 3;
   bool CGAL = true;
   std::uint64_t Seed = 1;
+  std::string JSONFile;
 };
 
 bool ReadOptions(int argc, char* argv[], Options& options)
@@ -101,6 +103,10 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     else if (option == "--seed")
     {
       options.Seed = ToNumber(option, value, 0, 1000000000);
+    }
+    else if (option == "--json")
+    {
+      options.JSONFile = value;
     }
     else
     {
@@ -256,7 +262,8 @@ struct Outcome
   vtkIdType Open = 0;      ///< holes, where it is known
 };
 
-void Measure(const char* name, int repeats, const std::function<Outcome()>& run, double& reference)
+void Measure(const char* name, int repeats, const std::function<Outcome()>& run, double& reference,
+  Figures& figures)
 {
   Outcome best = run();
   for (int i = 1; i < repeats; ++i)
@@ -264,6 +271,7 @@ void Measure(const char* name, int repeats, const std::function<Outcome()>& run,
     const Outcome next = run();
     best = next.Seconds < best.Seconds ? next : best;
   }
+  figures.Add(name, best.Seconds);
   std::printf("%-34s %9.3f %10lld %10lld", name, best.Seconds, static_cast<long long>(best.Points),
     static_cast<long long>(best.Triangles));
   if (best.Points > 0)
@@ -352,6 +360,7 @@ void Run(const Options& options)
   std::printf("%-34s %9s %10s %10s %9s %7s %6s\n", "", "s", "points", "triangles", "us/point",
     "ratio", "us/tri");
   double reference = 0.0;
+  Figures figures;
   bool isFilled = true;
   const struct
   {
@@ -370,21 +379,23 @@ void Run(const Options& options)
         isFilled = isFilled && outcome.Open == 0;
         return outcome;
       },
-      reference);
+      reference, figures);
   }
   const double radius = std::sqrt(options.Most / 3.14159265358979);
   Measure(
     "vtkFillHolesFilter", options.Repeats,
-    [&]() { return FillWithVTK(surface, 1.5 * radius + 3.0); }, reference);
+    [&]() { return FillWithVTK(surface, 1.5 * radius + 3.0); }, reference, figures);
 #ifdef ES_BENCHMARK_CGAL
   if (options.CGAL)
   {
     // Twice the edges of the largest disc; the outer border has more.
     Measure(
       "CGAL refine and fair", 1,
-      [&]() { return FillByCGAL(surface, static_cast<int>(12.6 * radius) + 20); }, reference);
+      [&]() { return FillByCGAL(surface, static_cast<int>(12.6 * radius) + 20); }, reference,
+      figures);
   }
 #endif
+  figures.Write(options.JSONFile);
   if (!isFilled)
   {
     throw std::runtime_error("vtkFillElevationHoles left holes open.");

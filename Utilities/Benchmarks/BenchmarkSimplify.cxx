@@ -40,6 +40,7 @@ vtkQuadricDecimation make of the full triangulation with as many vertices. Table
   --no-peers        without greedy insertion, vtkDecimatePro and vtkQuadricDecimation
   --data-dependent  vtkGridDelaunay2D and greedy insertion with data-dependent edges
   --no-decimation   without the last two, which take longest
+  --json FILE       writes the seconds of each row to a file
   --help            shows this text
 
 The exit code is 1 when an error told is above the limit; 2 for a wrong option.
@@ -56,6 +57,7 @@ struct Options
   bool Peers = true;
   bool Decimation = true;
   bool DataDependent = false;
+  std::string JSONFile;
 };
 
 std::vector<double> ToErrors(const std::string& list)
@@ -108,6 +110,10 @@ bool ReadOption(const std::string& option, const std::string& value, Options& op
   else if (option == "--repeats")
   {
     options.Repeats = number(1, 101);
+  }
+  else if (option == "--json")
+  {
+    options.JSONFile = value;
   }
   else
   {
@@ -334,7 +340,7 @@ void PrintPeers(
 }
 
 /** @return whether no error is above its limit */
-bool Run(const PointSource& source, const Options& options)
+bool Run(const PointSource& source, const Options& options, Figures& figures)
 {
   const Coordinates points = source.Make();
   if (points.empty())
@@ -350,6 +356,15 @@ bool Run(const PointSource& source, const Options& options)
   std::printf("**%s**: %zu points, %s, relief %g\n\n", source.Name.c_str(), points.size() / 3,
     variants[1].IsLattice ? "a lattice" : "no lattice", relief);
   const bool isWithin = PrintTimes(variants, options);
+  for (std::size_t i = 0; i < variants.size(); ++i)
+  {
+    const std::size_t error = i % (options.Errors.size() + 1);
+    std::ostringstream name;
+    name << source.Name << ", " << points.size() / 3 << " points, "
+         << (error ? options.Errors[error - 1] : 0.0) << " %, " << variants[i].Threads
+         << " threads";
+    figures.Add(name.str(), variants[i].Time());
+  }
   if (options.Peers)
   {
     PrintPeers(variants, points, options);
@@ -367,11 +382,13 @@ int main(int argc, char* argv[])
       std::fputs(Usage, stdout);
       return 0;
     }
+    Figures figures;
     bool isWithin = true;
     for (const PointSource& source : SourcesOf(options))
     {
-      isWithin = Run(source, options) && isWithin;
+      isWithin = Run(source, options, figures) && isWithin;
     }
+    figures.Write(options.JSONFile);
     return isWithin ? 0 : 1;
   });
 }

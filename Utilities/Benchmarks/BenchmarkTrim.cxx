@@ -36,6 +36,7 @@ with the boundary that it extracts. All in one process and in turn; whole filter
   --threads N       threads of all filters, 0: one a core; default 1
   --repeats N       timed runs; default 5
   --seed N          seed of the generators; default 1
+  --json FILE       writes the seconds of each row to a file
   --help            shows this text
 
 The exit code is 1 when kept and outward triangles are not those of the mesh, or the kept ones do not
@@ -49,6 +50,7 @@ struct Options
   std::uint64_t Seed = 1;
   int Threads = 1;
   int Repeats = 5;
+  std::string JSONFile;
 };
 
 /** @return false when the help was asked for */
@@ -90,6 +92,10 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     else if (option == "--seed")
     {
       options.Seed = ToNumber(option, value, 0, 1000000000);
+    }
+    else if (option == "--json")
+    {
+      options.JSONFile = value;
     }
     else
     {
@@ -191,8 +197,8 @@ struct Row
 };
 
 /** @return whether all is right */
-bool Measure(
-  const std::string& set, Index count, const Coordinates& coordinates, const Options& options)
+bool Measure(const std::string& set, Index count, const Coordinates& coordinates,
+  const Options& options, Figures& figures)
 {
   using Clock = std::chrono::steady_clock;
   const auto cloud = PolyDataOf(coordinates);
@@ -250,6 +256,7 @@ bool Measure(
     const bool isFirst = &row == &rows[0];
     const auto ends = std::minmax_element(row.Milliseconds.begin(), row.Milliseconds.end());
     const double median = Median(row.Milliseconds);
+    figures.Add(set + ", " + std::to_string(count) + " points, " + row.Name, 1e-3 * median);
     std::printf("%-10s %9s %9s  %-28s %8.1f %8.1f %8.1f %9.1f", isFirst ? set.c_str() : "",
       isFirst ? std::to_string(count).c_str() : "",
       isFirst ? std::to_string(triangles).c_str() : "", row.Name, median, *ends.first, *ends.second,
@@ -277,6 +284,7 @@ int main(int argc, char* argv[])
     }
     std::printf("%-10s %9s %9s  %-28s %8s %8s %8s %9s %7s\n", "data set", "points", "triangles",
       "filter", "ms", "least", "greatest", "ns/tri.", "ratio");
+    Figures figures;
     bool isRight = true;
     for (const Index count : options.Points)
     {
@@ -287,11 +295,12 @@ int main(int argc, char* argv[])
           if (set == generator.Name)
           {
             const Coordinates coordinates = generator.Generate(count, options.Seed);
-            isRight = Measure(set, count, coordinates, options) && isRight;
+            isRight = Measure(set, count, coordinates, options, figures) && isRight;
           }
         }
       }
     }
+    figures.Write(options.JSONFile);
     return isRight ? 0 : 1;
   });
 }

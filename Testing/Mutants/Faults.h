@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The switch of the faults that Utilities/test --mutants compiles into its copy of the code. The
+ * environment tells which one is on, and where the numbers of those are written that a program came by.
+ */
+#ifndef Faults_h
+#define Faults_h
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+
+class EsFaults
+{
+public:
+  static constexpr int Most = 1000;
+  EsFaults()
+  {
+    const char* number = std::getenv("ES_FAULT");
+    this->On = number ? std::atoi(number) : 0;
+  }
+  ~EsFaults()
+  {
+    const char* name = std::getenv("ES_FAULTS_REACHED");
+    std::FILE* file = name ? std::fopen(name, "a") : nullptr;
+    for (int i = 0; file && i < Most; ++i)
+    {
+      if (this->Reached[i])
+      {
+        std::fprintf(file, "%d\n", i);
+      }
+    }
+    if (file)
+    {
+      std::fclose(file);
+    }
+  }
+  bool Is(int number)
+  {
+    this->Reached[number].store(true, std::memory_order_relaxed);
+    return this->On == number;
+  }
+
+private:
+  int On = 0;
+  std::atomic<bool> Reached[Most] = {};
+};
+
+inline EsFaults TheFaults;
+inline bool esFault(int number)
+{
+  return TheFaults.Is(number);
+}
+
+#endif

@@ -1,0 +1,123 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What Utilities/Benchmarks/run-all makes of the seconds of the benchmarks, and how it compares two runs."""
+
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import json
+import os
+import sys
+import unittest
+
+FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../Utilities/Benchmarks")
+
+
+def load():
+    path = os.path.join(FOLDER, "run-all")
+    sys.dont_write_bytecode = True  # beside the sources
+    loader = importlib.machinery.SourceFileLoader("run_all", path)
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("run_all", loader))
+    loader.exec_module(module)
+    return module
+
+
+RUN_ALL = load()
+
+
+def run(figures, processor="P", commands=None):
+    return {
+        "processor": processor, "date": "2000-01-01", "commit": "0", "figures": figures,
+        "commands": commands or {"B": "--x"},
+    }
+
+
+def verdicts(new, old):
+    return {name: verdict for name, _, verdict in RUN_ALL.compared(run(new), run(old))}
+
+
+def exit_code(new, old):
+    with contextlib.redirect_stdout(io.StringIO()) as output:
+        code = RUN_ALL.comparison(new, old)
+    return code, output.getvalue()
+
+
+class Comparison(unittest.TestCase):
+    def test_slower_is_what_leaves_the_stored_range_by_more_than_five_percent(self):
+        old = {name: [1.0, 1.02, 0.98, 1.1, 0.99] for name in "abcdef"}
+        new = {
+            "a": [1.0, 1.02, 0.98, 1.1, 0.99],  # the same
+            "b": [1.5, 1.45, 1.55, 1.6, 1.5],  # clearly slower
+            "c": [1.5, 1.45, 1.09, 1.6, 1.5],  # one round as fast as before
+            "d": [0.5, 0.52, 0.51, 0.5, 0.49],  # faster
+            "e": [0.5, 0.52, 0.51, 0.99, 0.49],  # perhaps faster
+        }
+        expected = {"a": "same", "b": "slower", "c": "same", "d": "faster", "e": "same"}
+        self.assertEqual(verdicts(new, old), expected)
+
+    def test_a_difference_of_a_few_percent_is_none(self):
+        self.assertEqual(verdicts({"a": [1.04, 1.041]}, {"a": [1.0, 1.001]}), {"a": "same"})
+
+    def test_exit_codes(self):
+        old = run({"a": [1.0, 1.1], "b": [1.0, 1.1]})
+        self.assertEqual(exit_code(old, old)[0], 0)
+        code, text = exit_code(run({"a": [1.0, 1.1], "b": [2.0, 2.1]}), old)
+        self.assertEqual(code, 1)
+        self.assertIn("1 of 2 figures are slower", text)
+
+    def test_nothing_in_common_or_another_way_of_measuring_is_no_success(self):
+        old = run({"a": [1.0]})
+        self.assertEqual(exit_code(run({"b": [1.0]}), old)[0], 2)
+        code, text = exit_code(run({"a": [1.0]}, commands={"B": "--y"}), old)
+        self.assertEqual(code, 2)
+        self.assertIn("measured in another way: B", text)
+
+    def test_figures_that_are_missing_and_other_processors_are_told(self):
+        _, text = exit_code(run({"a": [1.0]}, "Q"), run({"a": [1.0], "gone": [1.0]}))
+        self.assertIn("another processor", text)
+        self.assertRegex(text, r"gone +not measured")
+
+
+class Ratios(unittest.TestCase):
+    def test_of_triangulating_are_parts_of_cgal(self):
+        codes = [
+            {"code": "vtkGridDelaunay2D", "ns_per_point": {"median": 50.0}},
+            {"code": "CGAL", "ns_per_point": {"median": 200.0}},
+            {"code": "vtkDelaunay2D", "not_run": "more than 1 s"},
+        ]
+        written = {"sets": [{"set": "U", "codes": codes}, {"set": "L", "codes": codes[:1]}]}
+        ratios = RUN_ALL.ratios_of("BenchmarkDelaunay", written)
+        self.assertEqual(ratios, {"triangulating U / CGAL": 0.25})
+
+    def test_of_trimming_are_parts_of_triangulating_the_same_points(self):
+        written = {
+            "L, vtkGridDelaunay2D": 2.0, "L, trimmed": 1.0,
+            "U, vtkGridDelaunay2D": 4.0, "U, trimmed": 1.0,
+        }
+        ratios = RUN_ALL.ratios_of("BenchmarkTrim", written)
+        self.assertEqual(ratios, {"L, trimmed": 0.5, "U, trimmed": 0.25})
+
+    def test_of_filling_are_parts_of_a_yardstick_that_comes_last(self):
+        written = {"ThinPlate": 1.0, "Membrane": 3.0, "vtkFillHolesFilter": 4.0}
+        ratios = RUN_ALL.ratios_of("BenchmarkFill", written)
+        self.assertEqual(ratios, {"filled by ThinPlate": 0.25, "filled by Membrane": 0.75})
+
+    def test_of_few_points_are_parts_of_all(self):
+        written = {"random, 0 %, 1 threads": 2.0, "random, 10 %, 1 threads": 1.0}
+        ratios = RUN_ALL.ratios_of("BenchmarkSimplify", written)
+        self.assertEqual(ratios, {"few of random, 10 %, 1 threads": 0.5})
+
+
+class Stored(unittest.TestCase):
+    def test_run_is_made_as_runs_are_made_now(self):
+        with open(os.path.join(FOLDER, "stored.json"), encoding="utf-8") as stream:
+            stored = json.load(stream)
+        now = {program: " ".join(options) for program, options in RUN_ALL.COMMANDS.items()}
+        self.assertEqual(stored["commands"], now)
+        for name, ratios in stored["figures"].items():
+            self.assertGreaterEqual(len(ratios), 5, name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
