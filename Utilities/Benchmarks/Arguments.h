@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <fstream>
 #include <sstream>
@@ -87,7 +88,13 @@ inline double Median(std::vector<double> values)
   return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/** Median seconds by name, for a script. */
+/** Seconds that the process has taken of processors, of all its threads. */
+inline double ProcessorSeconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/** Processor seconds by name, for a script. */
 class Figures
 {
 public:

@@ -17,7 +17,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <random>
 
 namespace
@@ -40,7 +39,7 @@ vtkQuadricDecimation make of the full triangulation with as many vertices. Table
   --no-peers        without greedy insertion, vtkDecimatePro and vtkQuadricDecimation
   --data-dependent  vtkGridDelaunay2D and greedy insertion with data-dependent edges
   --no-decimation   without the last two, which take longest
-  --json FILE       writes the seconds of each row to a file
+  --json FILE       writes the processor seconds of each row to a file
   --help            shows this text
 
 The exit code is 1 when an error told is above the limit; 2 for a wrong option.
@@ -215,20 +214,20 @@ struct Variant
   int Threads;
   bool DataDependent;
   std::vector<double> Seconds{};
-  std::vector<double> ProcessorSeconds{};
+  std::vector<double> Processor{};
   Index Vertices = 0;
   double Largest = 0.0; ///< error, as told
   bool IsLattice = false;
   vtkSmartPointer<vtkPolyData> Mesh{}; ///< of all points
 
   double Time() const { return Median(this->Seconds); }
-  double ProcessorTime() const { return Median(this->ProcessorSeconds); }
+  double ProcessorTime() const { return Median(this->Processor); }
 };
 
 void Time(vtkPolyData* cloud, Variant& variant)
 {
   TrimMemory();
-  const std::clock_t processor = std::clock();
+  const double processor = ProcessorSeconds();
   const auto start = std::chrono::steady_clock::now();
   vtkNew<vtkGridDelaunay2D> filter;
   filter->SetNumberOfThreads(variant.Threads);
@@ -237,8 +236,7 @@ void Time(vtkPolyData* cloud, Variant& variant)
   filter->SetInputData(cloud);
   filter->Update();
   variant.Seconds.push_back(SecondsSince(start));
-  variant.ProcessorSeconds.push_back(
-    static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC);
+  variant.Processor.push_back(ProcessorSeconds() - processor);
   if (variant.Seconds.size() == 1)
   {
     variant.Vertices = VerticesOf(filter->GetOutput());
@@ -363,7 +361,7 @@ bool Run(const PointSource& source, const Options& options, Figures& figures)
     name << source.Name << ", " << points.size() / 3 << " points, "
          << (error ? options.Errors[error - 1] : 0.0) << " %, " << variants[i].Threads
          << " threads";
-    figures.Add(name.str(), variants[i].Time());
+    figures.Add(name.str(), variants[i].ProcessorTime());
   }
   if (options.Peers)
   {

@@ -36,7 +36,7 @@ with the boundary that it extracts. All in one process and in turn; whole filter
   --threads N       threads of all filters, 0: one a core; default 1
   --repeats N       timed runs; default 5
   --seed N          seed of the generators; default 1
-  --json FILE       writes the seconds of each row to a file
+  --json FILE       writes the processor seconds of each row to a file
   --help            shows this text
 
 The exit code is 1 when kept and outward triangles are not those of the mesh, or the kept ones do not
@@ -194,6 +194,7 @@ struct Row
 {
   const char* Name;
   std::vector<double> Milliseconds;
+  std::vector<double> Processor{}; ///< seconds
 };
 
 /** @return whether all is right */
@@ -212,10 +213,12 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
     for (std::size_t i = 0; i < rows.size(); ++i)
     {
       TrimMemory();
+      const double processor = ProcessorSeconds();
       const Clock::time_point start = Clock::now();
       const auto stop = [&]() {
         rows[i].Milliseconds.push_back(
           std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+        rows[i].Processor.push_back(ProcessorSeconds() - processor);
       };
       if (i == 0)
       {
@@ -256,7 +259,7 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
     const bool isFirst = &row == &rows[0];
     const auto ends = std::minmax_element(row.Milliseconds.begin(), row.Milliseconds.end());
     const double median = Median(row.Milliseconds);
-    figures.Add(set + ", " + std::to_string(count) + " points, " + row.Name, 1e-3 * median);
+    figures.Add(set + ", " + std::to_string(count) + " points, " + row.Name, Median(row.Processor));
     std::printf("%-10s %9s %9s  %-28s %8.1f %8.1f %8.1f %9.1f", isFirst ? set.c_str() : "",
       isFirst ? std::to_string(count).c_str() : "",
       isFirst ? std::to_string(triangles).c_str() : "", row.Name, median, *ends.first, *ends.second,
