@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 using namespace elevation;
 
 namespace
@@ -50,6 +52,23 @@ TEST(Validate, FindsIdsThatAreNotPoints)
   EXPECT_EQ(BrokenRules(mesh), std::vector<Rule>{ Rule::Ids });
 }
 
+TEST(Validate, FindsCornersThatMakeNoTriangle)
+{
+  Mesh mesh = Square();
+  mesh.Triangles.push_back(0);
+  EXPECT_EQ(BrokenRules(mesh), std::vector<Rule>{ Rule::Ids });
+}
+
+TEST(Validate, TellsNoMoreFindingsThanWanted)
+{
+  Mesh mesh = Square();
+  mesh.Triangles = { 0, 1, 4, 0, 2, 5, 0, 3, 6 };
+  EXPECT_EQ(Validate(mesh).size(), 3u);
+  ValidateOptions options;
+  options.MaximumFindings = 2;
+  EXPECT_EQ(Validate(mesh, options).size(), 2u);
+}
+
 TEST(Validate, FindsClockwiseAndFlatTriangles)
 {
   Mesh mesh = Square();
@@ -94,6 +113,17 @@ TEST(Validate, FindsABorderThatIsNotTheHull)
   EXPECT_EQ(BrokenRules(mesh), std::vector<Rule>{ Rule::Hull });
 }
 
+TEST(Validate, FindsABorderOfTwoLoops)
+{
+  Mesh mesh = Square();
+  for (const Point2& p : Square().Points)
+  {
+    mesh.Points.push_back({ p.X + 2.0, p.Y });
+  }
+  mesh.Triangles.insert(mesh.Triangles.end(), { 4, 5, 6, 4, 6, 7 });
+  EXPECT_EQ(BrokenRules(mesh), std::vector<Rule>{ Rule::Hull });
+}
+
 TEST(Validate, FindsABorderThatWindsAroundTwice)
 {
   // A fan of ten triangles twice around its middle: nowhere does the border turn inwards.
@@ -132,4 +162,44 @@ TEST(Validate, FindsPlacesCoveredTwice)
   ValidateOptions options;
   options.ConvexHull = false;
   EXPECT_EQ(BrokenRules(mesh, options), std::vector<Rule>{ Rule::Overlap });
+}
+
+TEST(Validate, FindsPointsTooFarAboveOrBelowTheMesh)
+{
+  Mesh mesh = Square();
+  mesh.Points.insert(mesh.Points.end(), { { 0.75, 0.25 }, { 0.75, 0.25 }, { 0.25, 0.75 } });
+  // On the plane z = x + 2 y the elevation of both places is 1.25 and 1.75.
+  const std::vector<double> xyz{ 0, 0, 0, 1, 0, 1, 1, 1, 3, 0, 1, 2, //
+    0.75, 0.25, 1.5, 0.75, 0.25, 1.0, 0.25, 0.75, 1.75 };
+  const PointView points{ nullptr, xyz.data(), 7 };
+  EXPECT_EQ(ToString(ValidateDistance(mesh, points, 0.2500001, 0.0, {})), "");
+  const std::vector<Finding> findings = ValidateDistance(mesh, points, 0.2499999, 0.0, {});
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_EQ(findings[0].Broken, Rule::Distance);
+  EXPECT_EQ(findings[0].Where, 4);
+  EXPECT_EQ(findings[1].Where, 5);
+  EXPECT_EQ(ToString(findings), findings[0].Message + "\n" + findings[1].Message + "\n");
+  EXPECT_EQ(ValidateDistance(mesh, points, 0.2, 0.0, {}, 1).size(), 1u);
+  const std::vector<Finding> others = ValidateDistance(mesh, points, 0.2, 0.0, { 4 });
+  ASSERT_EQ(others.size(), 1u);
+  EXPECT_EQ(others[0].Where, 5);
+}
+
+TEST(Validate, FindsPointsBesideTheMeshUnlessTheyAreNear)
+{
+  Mesh mesh = Square();
+  mesh.Points.push_back({ 0.5, -0.125 });
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> xyz{ 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, -0.125, 1, //
+    nan, 0, 0, 0, nan, 0, 0, 0, nan };
+  const PointView points{ nullptr, xyz.data(), 8 };
+  const auto count = [&](double most, double besideBy) {
+    return ValidateDistance(mesh, points, most, besideBy, {}).size();
+  };
+  EXPECT_EQ(count(2.0, 0.0), 1u) << "points that are not finite are exempt";
+  EXPECT_EQ(count(2.0, 0.1249), 1u);
+  EXPECT_EQ(count(2.0, 0.1251), 0u);
+  EXPECT_EQ(count(0.5, 0.1251), 1u) << "it is measured from the plane beside it";
+  EXPECT_NE(
+    ToString(ValidateDistance(mesh, points, 2.0, 0.0, {})).find("beside"), std::string::npos);
 }
