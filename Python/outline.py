@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
-from .clouds import cells_of, some_points
+from .clouds import cells_of, make_points, some_points
 from .messages import Messages
 from .spreading import WITHIN_ERROR
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
@@ -53,16 +53,54 @@ def with_rings(outline, rings):
     return result
 
 
+def places_of(points):
+    """(n,) complex numbers: x,y of points, to look for equal ones."""
+    return numpy.ascontiguousarray(points[:, :2], "f8").view("c16")[:, 0]
+
+
 def in_use(outline, surface):
     """An outline along edges of a surface, without the points that the surface has left out of it."""
     fields = surface.GetFieldData()
     ids, why = (vtk_to_numpy(fields.GetArray("UnusedPoint" + name)) for name in ("Ids", "Reasons"))
-    xy, of_surface = (
-        numpy.ascontiguousarray(vtk_to_numpy(p.GetPoints().GetData())[:, :2], "f8").view("c16")[:, 0]
-        for p in (outline, surface)
-    )
+    xy, of_surface = (places_of(vtk_to_numpy(p.GetPoints().GetData())) for p in (outline, surface))
     is_used = ~numpy.isin(xy, of_surface[ids[why == WITHIN_ERROR]])
     return with_rings(outline, [ring[is_used[ring]] for ring in rings_of(outline)])
+
+
+def along_edges(outline, surface):
+    """An outline through the vertices of a surface that lie on it: where faults cross it."""
+    xyz = vtk_to_numpy(outline.GetPoints().GetData()).astype("f8")
+    used = numpy.unique(vtk_to_numpy(surface.GetPolys().GetConnectivityArray()))
+    vertices = vtk_to_numpy(surface.GetPoints().GetData())[used].astype("f8")
+    vertices = vertices[~numpy.isin(places_of(vertices), places_of(xyz))]
+    vertices = vertices[numpy.argsort(vertices[:, 1], kind="stable")]
+    reach = max(ON_BORDER * outline.GetLength(), 16 * numpy.spacing(abs(xyz[:, :2]).max()))
+    added, lines, ids = [xyz], vtkCellArray(), vtkIdList()
+    count = len(xyz)
+    for line in range(outline.GetNumberOfLines()):
+        outline.GetLines().GetCellAtId(line, ids)
+        ends = [ids.GetId(i) for i in range(ids.GetNumberOfIds())]
+        through = ends[:1]
+        for p, q in zip(ends[:-1], ends[1:]):
+            on_it = between(xyz[p], xyz[q], vertices, reach)
+            added.append(on_it)
+            through += [*range(count, count + len(on_it)), q]
+            count += len(on_it)
+        lines.InsertNextCell(len(through), through)
+    result = make_points(numpy.concatenate(added))
+    result.SetLines(lines)
+    return result
+
+
+def between(p, q, points, reach):
+    """The points, of some by increasing y, that lie on an edge, from its begin to its end."""
+    low, high = sorted((p[1], q[1]))
+    rows = slice(*numpy.searchsorted(points[:, 1], (low - reach, high + reach)))
+    (dx, dy), length = (q - p)[:2], numpy.hypot(*(q - p)[:2])
+    rx, ry = (points[rows] - p)[:, :2].T
+    along = (dx * rx + dy * ry) / length
+    is_on = (abs(dx * ry - dy * rx) <= reach * length) & (along > 0) & (along < length)
+    return points[rows][is_on][numpy.argsort(along[is_on])]
 
 
 def spacing_of(outline, lattice):

@@ -14,6 +14,7 @@ from .opening import lattice_of
 from .outline import (
     ON_BORDER,
     ON_OUTLINE,
+    along_edges,
     border_of,
     in_use,
     outside_of,
@@ -165,6 +166,8 @@ def trim_few(run, boundary, faults):
         outline = border_of(result.delaunay.GetOutput())
     elif boundary is None:
         outline = in_use(outline, result.delaunay.GetOutput())
+    if faults is not None:
+        outline = along_edges(outline, result.delaunay.GetOutput())
     trim_along(run, outline)
     result.lattice = lattice
     result.boundary = (result.trim if boundary is None else result.outlined[1]).GetOutput(2)

@@ -126,6 +126,21 @@ class Surface(unittest.TestCase):
         self.assertEqual([i for i in ids if i in triangles], [ids[0], ids[-1]])
         self.assertIn((ids[0], ids[-1]), edges(result))
 
+    def test_a_fault_across_the_outline_leaves_the_triangles_as_they_are(self):
+        points = cloud()
+        points[:, 2] += numpy.random.RandomState(2).rand(len(points))  # steep wherever edges change
+        turns = 0.7 * STEPS[:, None]
+        across = numpy.hstack((50 + 60 * numpy.cos(turns), 50 + 60 * numpy.sin(turns), 0 * turns))
+        for boundary in (None, BOUNDARY):
+            result = reconstruct(
+                points, faults=across, boundary=boundary, fill=False, maximum_elevation_error=ERROR
+            )
+            self.assertEqual(result.trim.GetNumberOfRecoveredEdges(), 0)
+            left = points[result.reasons == WITHIN_ERROR]
+            distances = residuals(result, left)
+            self.assertLessEqual(numpy.nanmax(distances), ERROR + 1e-9)
+            self.assertLess(numpy.count_nonzero(numpy.isnan(distances)), 0.01 * len(left))
+
     def test_a_boundary_that_is_given_cuts_as_it_does_all_points(self):
         points = cloud()
         full = reconstruct(points, boundary=BOUNDARY, fill=False)
