@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 
 namespace elevation
@@ -39,6 +38,85 @@ std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& ca
     [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); });
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
+}
+/** Calls work(first, last) for the slots of each bin, on several threads. */
+template <typename Work>
+void ForEachBin(const BinGrid& grid, int threads, const Progress& progress, Work&& work)
+{
+  constexpr Index binsAtOnce = 2048;
+  ForEachRange(
+    static_cast<Index>(grid.Starts.size()) - 1, threads, progress,
+    [&](Index, Index begin, Index end) {
+      for (Index bin = begin; bin < end; ++bin)
+      {
+        work(grid.Starts[bin], grid.Starts[bin + 1]);
+      }
+    },
+    binsAtOnce);
+}
+
+/** Puts the points of each bin in order, from the lowest up. */
+void SortBins(BinGrid& grid, int threads, const Progress& progress)
+{
+  ForEachBin(grid, threads, progress, [&grid](Index first, Index last) {
+    if (last - first < 2)
+    {
+      return;
+    }
+    std::vector<std::pair<Point2, Index>> sorted;
+    sorted.reserve(static_cast<std::size_t>(last - first));
+    for (Index slot = first; slot < last; ++slot)
+    {
+      sorted.emplace_back(grid.PointAt(slot), grid.Ids[slot]);
+    }
+    std::sort(sorted.begin(), sorted.end(),
+      [](const auto& a, const auto& b) { return IsLower(a.first, b.first); });
+    for (const auto& [point, id] : sorted)
+    {
+      grid.X[first] = point.X;
+      grid.Y[first] = point.Y;
+      grid.Ids[first++] = id;
+    }
+  });
+}
+
+/** The slot of a point after SortBins(). */
+Index SlotOf(const BinGrid& grid, const Point2& point)
+{
+  const Index column = grid.Bins.Column(point.X);
+  auto [first, last] = grid.Slots(grid.Bins.Row(point.Y), column, column);
+  while (last - first > 1)
+  {
+    const Index middle = first + (last - first) / 2;
+    (IsLower(point, grid.PointAt(middle)) ? last : first) = middle;
+  }
+  return first;
+}
+
+/** Sorts the bins. @return the slots that may be corners of the convex hull, from the lowest up */
+Buffer<Index> SortedCandidates(BinGrid& grid, int threads, const Progress& progress)
+{
+  std::vector<Point2> corners;
+  const Hull hull = FindHull(grid, Progress());
+  for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
+  {
+    for (const Index slot : *chain)
+    {
+      corners.push_back(grid.PointAt(slot));
+    }
+  }
+  std::sort(corners.begin(), corners.end(), IsLower);
+  SortBins(grid, threads, progress);
+  Buffer<Index> candidates;
+  for (const Point2& corner : corners)
+  {
+    const Index slot = SlotOf(grid, corner);
+    if (candidates.size() == 0 || candidates[candidates.size() - 1] != slot)
+    {
+      candidates.Append(slot);
+    }
+  }
+  return candidates;
 }
 } // namespace
 
@@ -106,54 +184,32 @@ PlacedPoints PlaceInBins(
   BinGrid grid(points, options.Duplicates, Part(progress, 0.0, 0.7), threads);
   placed.Duplicates = std::move(grid.Duplicates);
   placed.NotFinite = std::move(grid.NotFinite);
-  const Index count = grid.NumberOfPoints();
-  if (count == 0)
+  if (grid.NumberOfPoints() == 0)
   {
     return placed;
   }
-  Buffer<Index> slots; // of each place
-  slots.Resize(static_cast<std::size_t>(count));
-  std::iota(slots.begin(), slots.end(), 0);
-  Buffer<Index> placeOf; // of each slot
-  placeOf.Resize(slots.size());
-  placed.Places.Resize(slots.size());
-  placed.Ids.Resize(slots.size());
-  const std::size_t columns = static_cast<std::size_t>(grid.Bins.Columns);
+  // As much memory as all places need.
+  grid.Scratch = Buffer<Index>();
+  grid.Tree = BoxTree();
+  const Buffer<Index> candidates = SortedCandidates(grid, threads, Part(progress, 0.7, 0.85));
+  grid.Order = Buffer<Index>();
+  grid.X = Buffer<double>();
+  grid.Y = Buffer<double>();
   for (Index row = 0; row <= grid.Bins.Rows; ++row)
   {
-    placed.Rows.Append(grid.Starts[row * columns]);
+    placed.Rows.Append(grid.Starts[static_cast<std::size_t>(row) * grid.Bins.Columns]);
   }
-  const auto placeBins = [&](Index, Index begin, Index end) {
-    for (Index bin = begin; bin < end; ++bin)
-    {
-      std::sort(slots.begin() + grid.Starts[bin], slots.begin() + grid.Starts[bin + 1],
-        [&grid](Index a, Index b) { return IsLower(grid.PointAt(a), grid.PointAt(b)); });
-    }
-    for (Index place = grid.Starts[begin]; place < grid.Starts[end]; ++place)
-    {
-      const Index slot = slots[place];
-      placeOf[slot] = place;
-      placed.Ids[place] = grid.Ids[slot];
-      const Point2 p = points.At(grid.Ids[slot]);
-      placed.Places[place] = { p.X, p.Y, points.Elevation(grid.Ids[slot]) };
-    }
-  };
-  constexpr Index binsAtOnce = 2048;
-  ForEachRange(static_cast<Index>(grid.Starts.size()) - 1, threads, Part(progress, 0.7, 1.0),
-    placeBins, binsAtOnce);
-  Buffer<Index> candidates; // the points of the hull, from the lowest up
-  const Hull hull = FindHull(grid, Progress());
-  for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
-  {
-    for (const Index slot : *chain)
-    {
-      candidates.Append(placeOf[slot]);
-    }
-  }
-  std::sort(candidates.begin(), candidates.end(),
-    [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); });
-  candidates.Resize(static_cast<std::size_t>(
-    std::unique(candidates.begin(), candidates.end()) - candidates.begin()));
+  placed.Ids = std::move(grid.Ids);
+  placed.Places.Resize(placed.Ids.size());
+  ForEachRange(
+    placed.Count(), threads, Part(progress, 0.85, 1.0), [&](Index, Index begin, Index end) {
+      for (Index place = begin; place < end; ++place)
+      {
+        const Index id = placed.Ids[place];
+        const Point2 p = points.At(id);
+        placed.Places[place] = { p.X, p.Y, points.Elevation(id) };
+      }
+    });
   placed.Corners = CornersOf(placed, candidates);
   return placed;
 }
