@@ -24,8 +24,8 @@ namespace
  * @param[in] pieces  by corners
  * @param[out] fixed  one flag a half-edge: of pieces
  */
-Mesh FirstMesh(
-  const PlacedPoints& placed, const std::vector<Segment>& pieces, std::vector<char>& fixed)
+Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
+  std::vector<char>& fixed, const Progress& progress)
 {
   Mesh mesh;
   Buffer<Point2> corners;
@@ -34,13 +34,13 @@ Mesh FirstMesh(
     corners.Append(placed.At(place));
   }
   const Buffer<Index> triangles =
-    DivideAndConquer(corners, Progress(), placed.Metric ? &*placed.Metric : nullptr);
+    DivideAndConquer(corners, Part(progress, 0.0, 0.5), placed.Metric ? &*placed.Metric : nullptr);
   mesh.Triangles.assign(triangles.begin(), triangles.end());
   mesh.Points.assign(corners.begin(), corners.end());
   mesh.ConnectTwins();
   if (!pieces.empty() && mesh.NumberOfTriangles() > 0)
   {
-    RecoverSegments(mesh, pieces, fixed);
+    RecoverSegments(mesh, pieces, fixed, Part(progress, 0.5, 1.0));
   }
   for (Index& corner : mesh.Triangles)
   {
@@ -318,11 +318,11 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   std::vector<Segment> lines = PiecesByPlaces(pieces, placed);
   if (options.SimplifyConstraints && !lines.empty())
   {
-    lines = FewerPieces(placed, lines, options.MaximumElevationError, Part(progress, 0.0, 0.05));
+    lines = FewerPieces(placed, lines, options.MaximumElevationError, Part(progress, 0.0, 0.02));
   }
   const std::vector<Segment> byCorners = AddEnds(lines, placed);
   std::vector<char> fixed;
-  const Mesh first = FirstMesh(placed, byCorners, fixed);
+  const Mesh first = FirstMesh(placed, byCorners, fixed, Part(progress, 0.02, 0.05));
   if (first.NumberOfTriangles() == 0)
   {
     ListUnused(points.Count, placed, nullptr, result);

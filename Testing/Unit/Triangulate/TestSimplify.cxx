@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Triangulate/FewerPieces.h"
+#include "Kernel/Triangulate/Simplify.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 
@@ -624,4 +625,27 @@ TEST(Simplify, StopsWhenItIsTold)
       EXPECT_THROW(Triangulate(cloud.View(), options), Aborted);
     }
   }
+}
+
+TEST(Simplify, StopsWhileLinesBecomeEdges)
+{
+  std::mt19937_64 random(11);
+  Cloud cloud;
+  std::vector<Segment> pieces;
+  for (Index i = 0; i < 60000; ++i)
+  {
+    cloud.Add(i % 300 + 0.5 * Unit(random), i / 300 + 0.5 * Unit(random));
+    if (i % 300 > 0)
+    {
+      pieces.push_back({ i - 1, i });
+    }
+  }
+  DelaunayOptions options = WithError(1.0);
+  double reached = 0.0;
+  options.Monitor = [&reached](double fraction) {
+    reached = std::max(reached, fraction);
+    return fraction <= 0.2; // where points are placed
+  };
+  EXPECT_THROW(TriangulateFew(cloud.View(), options, pieces), Aborted);
+  EXPECT_LT(reached, 0.22);
 }
