@@ -72,8 +72,9 @@
  * DataDependentEdges is on. They
  * are a few hundredths more than by strictly taking the farthest one each time. Points that are
  * duplicates are not measured. On a lattice, where a point at the border may lie beside its node and
- * so beside the surface, it is measured from the triangle there. The choice does not depend on the
- * order of points, nor on the number of threads. Several ranks gather the block on one of them.
+ * so beside the surface, it is measured from the triangle there; and where a long triangle of few nodes
+ * would be flat, also of a given lattice, the coordinates are triangulated. The choice does not
+ * depend on the order of points, nor on the number of threads. Several ranks gather the block on one of them.
  *
  * @par Composite input:
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives output

@@ -374,7 +374,7 @@ Triangulation TriangulateFew(
         // by coordinates
       }
     }
-    if (options.GivenLattice.IsSet())
+    else if (options.GivenLattice.IsSet())
     {
       throw GivenLatticeUnfit();
     }

@@ -627,6 +627,28 @@ TEST(Simplify, StopsWhenItIsTold)
   }
 }
 
+TEST(Simplify, PointsFarFromTheNodesOfAGivenLatticeAreTriangulatedByCoordinates)
+{
+  std::mt19937_64 random(12);
+  Cloud cloud;
+  for (int i = 0; i < 3600; ++i)
+  {
+    const double x = i % 60 + 0.48 * (Unit(random) - 0.5), y = i / 60 + 0.48 * (Unit(random) - 0.5);
+    cloud.Add(x, y, Terrain(x / 60.0, y / 60.0));
+  }
+  DelaunayOptions options = WithError(1.0);
+  options.LatticeTolerance = 0.25;
+  options.GivenLattice.StepU = { 1.0, 0.0 };
+  options.GivenLattice.StepV = { 0.0, 1.0 };
+  const Triangulation made = Triangulate(cloud.View(), options);
+  EXPECT_FALSE(made.LatticeFound); // long triangles would be inverted
+  const auto far = ValidateDistance(
+    MeshOfTriangles(cloud, made.Triangles), cloud.View(), 1.0, 0.0, ExemptOf(made));
+  EXPECT_TRUE(far.empty()) << ToString(far);
+  options.GivenLattice.StepU = { 2.0, 0.0 }; // nodes of which points are too far
+  EXPECT_THROW(Triangulate(cloud.View(), options), Error);
+}
+
 TEST(Simplify, StopsWhileLinesBecomeEdges)
 {
   std::mt19937_64 random(11);
