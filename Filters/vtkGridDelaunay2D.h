@@ -64,17 +64,19 @@
  *
  * @par Few points:
  * With a MaximumElevationError, the surface is simplified while it is made. The corners of the convex
- * hull are vertices, with constraints the ends of their pieces (SimplifyConstraints leaves out some of
- * these); then the point farthest above or below
- * the surface, as far as there is one beyond the error, and so on [Garland & Heckbert 1995]. At the end
- * each point that is left out is measured once more, and what rounding may have taken from its
- * distance is added; so the error is certain. The triangles are those of the chosen points alone, unless
- * DataDependentEdges is on. They
- * are a few hundredths more than by strictly taking the farthest one each time. Points that are
- * duplicates are not measured. On a lattice, where a point at the border may lie beside its node and
- * so beside the surface, it is measured from the triangle there; and where a long triangle of few nodes
- * would be flat, also of a given lattice, the coordinates are triangulated. The choice does not
- * depend on the order of points, nor on the number of threads. Several ranks gather the block on one of them.
+ * hull are vertices, with constraints the ends of their pieces (SimplifyConstraints leaves out some
+ * of these); then the point farthest above or below the surface, as far as there is one beyond the
+ * error, and so on [Garland & Heckbert 1995]. Several places are worked on at once, which takes a few
+ * hundredths more vertices than strictly one point at a time. At the end each point that is left out
+ * is measured once more, and what rounding may have taken from its distance is added; so the error is
+ * certain. Points that are duplicates are not measured.
+ *
+ * The triangles are those of the chosen points alone, unless DataDependentEdges is on. On a lattice,
+ * where a point at the border may lie beside its node and so beside the surface, it is measured from
+ * the triangle there; and where a long triangle of few nodes would be flat, also of a given lattice,
+ * the coordinates are triangulated. The choice does not depend on the order of points, nor on the
+ * number of threads. Several ranks gather the block on one of them. Where coordinates or elevations are
+ * beyond some 1e-150 or 1e38, more points are kept, and the time may grow with their square.
  *
  * @par Composite input:
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives output
@@ -210,11 +212,11 @@ public:
 
   ///@{
   /**
-   * As few points become vertices as are needed for every other point to lie within this vertical
-   * distance of the surface (in the units of z). The others stay in the output, and are listed as
-   * unused. 0 (default): off; all points become vertices. A negative value, or one that is not
-   * finite, is an error, and so is a MaximumEdgeLength with it: fewer points make longer edges.
-   * See above for what is kept, and how well.
+   * Points become vertices until every other point lies within this vertical distance of the surface
+   * (in the units of z): few points, if not always the fewest possible. The others stay in the output,
+   * and are listed as unused. 0 (default): off; all points become vertices. A negative value, or one
+   * that is not finite, is an error, and so is a MaximumEdgeLength with it: fewer points make longer
+   * edges. See above for what is kept, and how well.
    */
   vtkSetMacro(MaximumElevationError, double);
   vtkGetMacro(MaximumElevationError, double);

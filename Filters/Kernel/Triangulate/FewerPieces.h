@@ -15,7 +15,7 @@
  * replacement, but not its line, has an end between the two.
  *
  * Guarantees: the result depends on the positions of points and pieces alone. No point other than those
- * left out changes its side of a line.
+ * left out changes its side of a line. Two lines with the same ends may become one piece, given twice.
  *
  * So little beside, because a point that has been left out may be needed later after all, and is then
  * inserted beside the piece.
