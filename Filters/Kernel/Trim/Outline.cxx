@@ -1051,6 +1051,7 @@ bool FindPartOfOutline(
   }
   part =
     OutlineSearch(std::move(measured), options).FindPart(margin, Part(options.Monitor, 0.5, 1.0));
+  part.Spacings.resize(list.Points.Count); // there are more of the measured ids than of points
   return true;
 }
 

@@ -189,6 +189,18 @@ TEST(Regions, OfLinesKeepEveryPointAndTrack)
   }
 }
 
+TEST(Regions, CountPointsInside)
+{
+  // Of 5 lines of 40 points those at the border are 2 * 40 + 3 * 2.
+  const auto flat = [](const Point2&) { return 0.0; };
+  const Outcome run =
+    Fill(Delaunay(Lines(4, 5, 40, 20.0, 0.0)), ByMethod(Interpolation::Membrane), flat, 1.5);
+  ASSERT_EQ(run.Found.Count(), 1);
+  const Patch patch = CollectBoundary(run.Surface, run.Found, 0);
+  EXPECT_EQ(patch.BoundaryIds.size(), 200u);
+  EXPECT_EQ(patch.NumberOfPointsInside, 200 - 86);
+}
+
 TEST(Regions, TakePointsInsideForKnown)
 {
   // One line is raised: near it, new points are raised by about as much.

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Mesh/TriangleSweep.h"
 #include "Kernel/Base/Predicates.h"
+#include "Surface.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
 #include <vector>
 
 using namespace elevation;
@@ -60,4 +62,26 @@ TEST(TriangleSweep, SeesATriangleInAFanThatIsInvertedByOneRounding)
     }
   }
   EXPECT_GT(numberOfTraps, 20);
+}
+
+TEST(TriangleList, TheShareOfASquareIsTheSameForAnyFirstCorner)
+{
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
+  testing_surfaces::Surface surface;
+  for (int i = 0; i < 3000; ++i)
+  {
+    const double x = anywhere(random), y = anywhere(random);
+    surface.Coordinates.insert(surface.Coordinates.end(), { x, y, 0.0 });
+    const Index a = i / 3 * 3, b = a + 1, c = a + 2;
+    const Index corners[][3] = { { a, b, c }, { b, c, a }, { c, a, b } };
+    surface.Corners.insert(surface.Corners.end(), corners[i % 3], corners[i % 3] + 3);
+  }
+  const TriangleList list = surface.List();
+  for (Index t = 0; t < list.Count; t += 3)
+  {
+    const double share = list.ShareOfSquare(t, 0.3);
+    ASSERT_EQ(list.ShareOfSquare(t + 1, 0.3), share);
+    ASSERT_EQ(list.ShareOfSquare(t + 2, 0.3), share);
+  }
 }

@@ -671,3 +671,22 @@ TEST(Simplify, StopsWhileLinesBecomeEdges)
   EXPECT_THROW(TriangulateFew(cloud.View(), options, pieces), Aborted);
   EXPECT_LT(reached, 0.22);
 }
+
+TEST(Simplify, ReportsProgressThatRises)
+{
+  std::mt19937_64 random(8);
+  const Cloud cloud = CloudOf(0, 50000, random);
+  for (const int threads : { 1, 2 })
+  {
+    double last = 0.0;
+    DelaunayOptions options = WithError(0.01);
+    options.NumberOfThreads = threads;
+    options.Monitor = [&last](double fraction) {
+      EXPECT_GE(fraction, last);
+      EXPECT_LE(fraction, 1.0);
+      last = fraction;
+      return true;
+    };
+    EXPECT_GT(Triangulate(cloud.View(), options).Triangles.size(), 15000u);
+  }
+}

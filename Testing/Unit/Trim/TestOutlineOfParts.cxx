@@ -128,6 +128,7 @@ Joined Join(const Surface& surface, const std::vector<std::vector<Index>>& parts
       return joined;
     }
     EXPECT_EQ(part.Triangles.size(), part.States.size());
+    EXPECT_EQ(part.Spacings.size(), joined.Spacings.size());
     for (const Index t : part.Triangles)
     {
       joined.Triangles.push_back(triangles[t]);
