@@ -366,6 +366,9 @@ void TestLinesOutside()
     "a warning gives both places; it was: " + far);
   Check(warningOf(MakeLines({ { { 4, 4, 0 }, { 3, 5, 0 }, { 40, 9, 0 } } }), 1).empty(),
     "one point of three is no reason");
+  Check(warningOf(MakeLines({ { { 4, 4, 0 }, { 3, 5, 0 }, { 5, 5, 0 }, { 30, 5, 0 },
+                      { 40, 9, 0 } } }), 2).empty(),
+    "nor are two of five");
   Check(warningOf(MakeLines({ { { -0.5, -0.5, 0 }, { 8.5, -0.5, 0 }, { 8.5, 8.5, 0 },
                       { -0.5, 8.5, 0 } } }, true), 4).empty(),
     "nor is an outline around the points");

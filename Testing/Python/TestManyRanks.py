@@ -325,11 +325,12 @@ def compare_random(random, claim):
             LatticeMode=int(random.random() < 0.3))
 
 
-def check_stops(random, count, share, make):
+def check_stops(random, count, share, make, rises=False):
     """An abort on one rank, at any moment, ends all of them, and one rank tells of it.
 
     share  the part of the progress in which it comes
     make   make(i) -> a filter with its input
+    rises  whether the progress must rise
     Returns how late the latest was.
     """
     late, reached = [], 0
@@ -337,9 +338,10 @@ def check_stops(random, count, share, make):
         at, culprit = share * random.random(), random.integers(COUNT)
         algorithm = make(i)
         algorithm.SetNumberOfThreads(1)
-        begun, told_of = [], []
+        begun, told_of, progress = [], [], []
 
         def stop(caller, _event):
+            progress.append(caller.GetProgress())
             if RANK == culprit and caller.GetProgress() >= at and not begun:
                 begun.append(time.monotonic())
                 caller.SetAbortExecute(1)
@@ -350,6 +352,7 @@ def check_stops(random, count, share, make):
         WORLD.barrier()
         algorithm.UpdatePiece(RANK, COUNT, 0)
         ended = time.monotonic()
+        check(not rises or progress == sorted(progress), "progress rises on rank %d" % RANK)
         begun = WORLD.bcast(begun, int(culprit))
         if begun:
             reached += 1
@@ -368,7 +371,7 @@ def check_aborts(random, count, size, **properties):
             getattr(delaunay, "Set" + name)(value)
         return delaunay
 
-    return check_stops(random, count, 0.9, make)  # the last tenth is one rank's own
+    return check_stops(random, count, 0.9, make, rises=True)  # the last tenth is one rank's own
 
 
 def check_refused(data, part, claim, **properties):

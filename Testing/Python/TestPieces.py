@@ -275,10 +275,18 @@ class InPieces(WithFilter):
         source.Reset()
         self.assertEqual(os.listdir(source.GetFolder()), [])
         self.assertEqual(source.GetNumberOfPoints(), 0)
+        self.assertEqual(source.GetNumberOfTriangles(), 0)
         few = clouds()["few"]
         self.assertTrue(source.AddPoints(make_points(few)))
         self.assertEqual(sum(part.GetNumberOfPolys() for part in self.parts(source, 2)),
                          source.GetNumberOfTriangles())
+
+    @unittest.skipUnless(os.path.isdir("/proc/self/fd"), "the system lists no open files")
+    def test_no_file_stays_open(self):
+        before = os.listdir("/proc/self/fd")
+        source = self.source(clouds()["random"])
+        self.parts(source, 3)
+        self.assertEqual(len(os.listdir("/proc/self/fd")), len(before))
 
     def test_what_cannot_be_done_is_one_error(self):
         points = clouds()["random"]

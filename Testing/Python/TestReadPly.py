@@ -102,6 +102,23 @@ class Ply(InFolder):
                     self.assertIn("only the points are used, not the file's cells", cloud.notes)
                     self.assertFalse(any("cut off" in note for note in cloud.notes))
 
+    def test_vertices_are_found_behind_rows_of_numbers_and_lists(self):
+        properties = "property uchar flag\nproperty list uchar int vertex_indices\nproperty float a"
+        rows = [(7, (0, 1, 2), 0.5), (8, (1, 2, 3, 0), 1.5), (9, (), 2.5)]
+        for coding, order in CODINGS.items():
+            with self.subTest(coding=coding):
+                body = b""
+                for flag, ids, area in rows:
+                    words = (flag, len(ids), *ids, area)
+                    text = " ".join(map(str, words)) + "\n"
+                    packed = order and struct.pack(f"{order}BB{len(ids)}if", *words)
+                    body += packed or text.encode()
+                head, points = ply(coding, ("vertex", xyz("double"), MAP)).split(b"element", 1)
+                points, coordinates = points.split(b"end_header\n")
+                head += f"element face {len(rows)}\n{properties}\nelement".encode() + points
+                content = head + b"end_header\n" + body + coordinates
+                self.assert_rows(self.read(content, "a.ply"), MAP)
+
     def test_a_cut_in_what_follows_the_vertices_is_told(self):
         faces = ("face", "list uchar int vertex_indices", [[0, 1, 2], [1, 2, 3]] * 20)
         for coding in CODINGS:
