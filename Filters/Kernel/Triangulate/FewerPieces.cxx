@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -30,7 +31,7 @@ double DistanceFromLine(const Point2& p, const Point2& q, const Point2& r)
 class Network
 {
 public:
-  Network(const PlacedPoints& placed, const std::vector<Segment>& pieces)
+  Network(const PlacedPoints& placed, const std::vector<Segment>& pieces, const Progress& progress)
     : Placed(placed)
     , Corners(placed.Corners)
   {
@@ -43,22 +44,25 @@ public:
       return s.A != t.A ? IsLower(placed.At(s.A), placed.At(t.A))
                         : IsLower(placed.At(s.B), placed.At(t.B));
     };
-    std::sort(this->Ways.begin(), this->Ways.end(), isBefore);
+    Sort(this->Ways.begin(), this->Ways.end(), isBefore, progress);
     this->IsTaken.assign(this->Ways.size(), 0);
     std::sort(this->Corners.begin(), this->Corners.end());
   }
 
   /** Chains of places, each between two that stay: first open ones, then closed ones. */
-  std::vector<std::vector<Index>> Chains()
+  std::vector<std::vector<Index>> Chains(const Progress& progress)
   {
     std::vector<std::vector<Index>> chains;
     for (const bool areOpen : { true, false })
     {
+      const Progress half = areOpen ? Part(progress, 0.0, 0.5) : Part(progress, 0.5, 1.0);
+      WorkReporter reporter(half);
       for (std::size_t way = 0; way < this->Ways.size(); ++way)
       {
+        reporter.Step(way, this->Ways.size());
         if (!this->IsTaken[way] && !(areOpen && this->IsPassed(this->Ways[way].A)))
         {
-          chains.push_back(this->ChainFrom(way));
+          chains.push_back(this->ChainFrom(way, reporter));
         }
       }
     }
@@ -98,12 +102,13 @@ private:
     }
   }
 
-  std::vector<Index> ChainFrom(std::size_t way)
+  std::vector<Index> ChainFrom(std::size_t way, WorkReporter& reporter)
   {
     const Index start = this->Ways[way].A;
     std::vector<Index> chain(1, start);
     for (;;)
     {
+      reporter.Tick();
       this->Take(way);
       const Index at = this->Ways[way].B;
       chain.push_back(at);
@@ -246,12 +251,14 @@ std::vector<char> FindHindered(
       own.emplace_back((*one.Chain)[at], i);
     }
   }
-  std::sort(own.begin(), own.end());
+  Sort(
+    own.begin(), own.end(), std::less<std::pair<Index, std::size_t>>(), Part(progress, 0.0, 0.2));
   std::vector<char> isHindered(stretches.size(), 0);
   const CellGrid grid(stretches.size(), endsOf);
+  const Progress looking = Part(progress, 0.2, 1.0);
   for (Index place = 0; place < placed.Count(); ++place)
   {
-    ReportStep(progress, place, placed.Count());
+    ReportStep(looking, place, placed.Count());
     const Point2 p = placed.At(place);
     const std::array<Point2, 3> around{ { { p.X - 2.0 * reach, p.Y - reach },
       { p.X + 2.0 * reach, p.Y - reach }, { p.X, p.Y + 3.0 * reach } } };
@@ -270,13 +277,16 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
   double error, const Progress& progress)
 {
   std::vector<Segment> fewer;
-  const std::vector<std::vector<Index>> chains = Network(placed, pieces).Chains();
+  const std::vector<std::vector<Index>> chains =
+    Network(placed, pieces, Part(progress, 0.0, 0.2)).Chains(Part(progress, 0.2, 0.5));
   const Straightening straightening(placed, error);
   std::vector<Stretch> bent; // not exactly straight
+  const Progress straight = Part(progress, 0.5, 0.6);
   for (const std::vector<Index>& chain : chains)
   {
     for (std::size_t first = 0; first + 1 < chain.size();)
     {
+      ReportStep(straight, fewer.size() + bent.size(), pieces.size());
       const Stretch one = straightening.From(chain, first);
       first = one.Last;
       if (one.Beside > 0.0)
@@ -290,7 +300,7 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
     }
   }
   const std::vector<char> isHindered =
-    bent.empty() ? std::vector<char>() : FindHindered(placed, bent, progress);
+    bent.empty() ? std::vector<char>() : FindHindered(placed, bent, Part(progress, 0.6, 1.0));
   for (std::size_t i = 0; i < bent.size(); ++i)
   {
     const Stretch& one = bent[i];

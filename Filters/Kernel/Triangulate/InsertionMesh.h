@@ -31,6 +31,7 @@ struct Face
   float Error;         ///< of this one
   bool IsInCavity;     ///< while a point is inserted
   unsigned char Fixed; ///< bit k: edge k stays an edge
+  bool IsPostponed;    ///< its point changes too many triangles to be inserted in a strip
 
   /** The edge that begins in a corner. */
   int EdgeFrom(Index corner) const

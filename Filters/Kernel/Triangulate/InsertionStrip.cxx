@@ -11,6 +11,9 @@ namespace elevation
 
 namespace
 {
+// A point that changes more triangles waits until the whole surface is worked on: beside dense lines most
+// would do so in vain, as one of them is beyond the strip.
+constexpr std::size_t MostInCavity = 64;
 constexpr double LevelFactor = 0.9; // from one level of errors to the next
 constexpr double LeastShape = 0.5;  // of two ways to flip an edge, in parts of the other one's
 // Errors are floats: smaller ones are 0, larger ones infinite.
@@ -125,6 +128,11 @@ bool InsertionStrip::FindCavity(Index place, Index face)
     {
       other.IsInCavity = true;
       this->Cavity.push_back(outside);
+      if (this->Cavity.size() > MostInCavity && !this->IsWhole())
+      {
+        faces[face].IsPostponed = true;
+        isOwn = false;
+      }
       this->Open.emplace_back(outside, (entry + 2) % 3);
       this->Open.emplace_back(outside, (entry + 1) % 3);
       continue;
@@ -158,7 +166,7 @@ void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
     const int fixed =
       (edge.IsFixed ? 1 : 0) | (this->IsCut(edge.To) ? 2 : 0) | (this->IsCut(edge.From) ? 4 : 0);
     faces[this->Fan[i]] = { { edge.From, edge.To, place }, { edge.Outside, after, before }, None,
-      None, 0.0f, false, static_cast<unsigned char>(fixed) };
+      None, 0.0f, false, static_cast<unsigned char>(fixed), false };
     if (edge.Outside != None)
     {
       Face& outside = faces[edge.Outside];
@@ -323,9 +331,11 @@ void InsertionStrip::Flip(Index face)
   const Index across = beyond.Corners[after];
   const auto bit = [](const Face& of, int edge, int as) { return (of.Fixed >> edge & 1) << as; };
   faces[face] = { { from, across, place }, { beyond.Neighbors[before], other, here.Neighbors[2] },
-    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, before, 0) | bit(here, 2, 2)) };
+    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, before, 0) | bit(here, 2, 2)),
+    false };
   faces[other] = { { across, to, place }, { beyond.Neighbors[after], here.Neighbors[1], face },
-    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, after, 0) | bit(here, 1, 1)) };
+    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, after, 0) | bit(here, 1, 1)),
+    false };
   if (beyond.Neighbors[before] != None)
   {
     Face& outside = faces[beyond.Neighbors[before]];
@@ -375,6 +385,7 @@ void InsertionStrip::SetLevels(double error, double mostVertices)
   for (const Index face : this->Faces)
   {
     largest = std::max(largest, this->Of.Faces[face].Error);
+    this->Of.Faces[face].IsPostponed = false;
   }
   largest = std::min(largest, LargestLevel);
   this->Error = std::max(error, LeastLevel);

@@ -73,7 +73,14 @@ private:
   void FlipByData();
   Index NewFace();
   bool IsCut(Index end) const { return end == this->Cut[0] || end == this->Cut[1]; }
-  bool IsDue(Index face) const { return this->Of.Faces[face].Error > this->Level; }
+  bool IsDue(Index face) const
+  {
+    return this->Of.Faces[face].Error > this->Level && !this->Of.Faces[face].IsPostponed;
+  }
+  bool IsWhole() const
+  {
+    return this->End - this->Begin == static_cast<Index>(this->Of.Places.size());
+  }
 
   double Error = 0.0, Level = 0.0, MostFaces = 0.0;
   std::size_t Cursor = 0, Count = 0;

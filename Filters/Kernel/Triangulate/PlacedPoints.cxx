@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <utility>
 
 namespace elevation
@@ -214,18 +215,21 @@ PlacedPoints PlaceInBins(
   return placed;
 }
 
-std::vector<Segment> PiecesByPlaces(const std::vector<Segment>& pieces, const PlacedPoints& placed)
+std::vector<Segment> PiecesByPlaces(
+  const std::vector<Segment>& pieces, const PlacedPoints& placed, const Progress& progress)
 {
   std::vector<Index> ids;
   for (const Segment& piece : pieces)
   {
     ids.insert(ids.end(), { piece.A, piece.B });
   }
-  std::sort(ids.begin(), ids.end());
+  Sort(ids.begin(), ids.end(), std::less<Index>(), Part(progress, 0.0, 0.3));
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Index> placeOf(ids.size(), None);
+  const Progress finding = Part(progress, 0.3, 0.8);
   for (Index place = 0; !ids.empty() && place < placed.Count(); ++place)
   {
+    ReportStep(finding, place, placed.Ids.size());
     const auto at = std::lower_bound(ids.begin(), ids.end(), placed.Ids[place]);
     if (at != ids.end() && *at == placed.Ids[place])
     {
@@ -237,14 +241,17 @@ std::vector<Segment> PiecesByPlaces(const std::vector<Segment>& pieces, const Pl
   };
   std::vector<Segment> byPlaces;
   byPlaces.reserve(pieces.size());
+  const Progress writing = Part(progress, 0.8, 1.0);
   for (const Segment& piece : pieces)
   {
+    ReportStep(writing, byPlaces.size(), pieces.size());
     byPlaces.push_back({ find(piece.A), find(piece.B) });
   }
   return byPlaces;
 }
 
-std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& placed)
+std::vector<Segment> AddEnds(
+  const std::vector<Segment>& pieces, PlacedPoints& placed, const Progress& progress)
 {
   std::vector<Index>& corners = placed.Corners;
   for (const Segment& piece : pieces)
@@ -252,7 +259,7 @@ std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& p
     corners.insert(corners.end(), { piece.A, piece.B });
   }
   const auto isLower = [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
-  std::sort(corners.begin(), corners.end(), isLower);
+  Sort(corners.begin(), corners.end(), isLower, Part(progress, 0.0, 0.6));
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   const auto cornerOf = [&](Index place) {
     return static_cast<Index>(
@@ -260,8 +267,10 @@ std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& p
   };
   std::vector<Segment> byCorners;
   byCorners.reserve(pieces.size());
+  const Progress writing = Part(progress, 0.6, 1.0);
   for (const Segment& piece : pieces)
   {
+    ReportStep(writing, byCorners.size(), pieces.size());
     byCorners.push_back({ cornerOf(piece.A), cornerOf(piece.B) });
   }
   return byCorners;

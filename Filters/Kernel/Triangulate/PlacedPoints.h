@@ -41,10 +41,12 @@ PlacedPoints PlaceInBins(
   const PointView& points, const DelaunayOptions& options, int threads, const Progress& progress);
 
 /** Pieces by ids as pieces by places. */
-std::vector<Segment> PiecesByPlaces(const std::vector<Segment>& pieces, const PlacedPoints& placed);
+std::vector<Segment> PiecesByPlaces(
+  const std::vector<Segment>& pieces, const PlacedPoints& placed, const Progress& progress);
 
 /** Adds the ends of pieces by places to the corners. @return the pieces by corners */
-std::vector<Segment> AddEnds(const std::vector<Segment>& pieces, PlacedPoints& placed);
+std::vector<Segment> AddEnds(
+  const std::vector<Segment>& pieces, PlacedPoints& placed, const Progress& progress);
 
 } // namespace elevation
 

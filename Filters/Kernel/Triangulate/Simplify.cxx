@@ -37,10 +37,10 @@ Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
     DivideAndConquer(corners, Part(progress, 0.0, 0.5), placed.Metric ? &*placed.Metric : nullptr);
   mesh.Triangles.assign(triangles.begin(), triangles.end());
   mesh.Points.assign(corners.begin(), corners.end());
-  mesh.ConnectTwins();
+  mesh.ConnectTwins(0, Part(progress, 0.5, 0.6));
   if (!pieces.empty() && mesh.NumberOfTriangles() > 0)
   {
-    RecoverSegments(mesh, pieces, fixed, Part(progress, 0.5, 1.0));
+    RecoverSegments(mesh, pieces, fixed, Part(progress, 0.6, 1.0));
   }
   for (Index& corner : mesh.Triangles)
   {
@@ -197,42 +197,52 @@ private:
 };
 
 /** The rank of each vertex, from the lowest up, by places; what others have is not set. */
-Buffer<Index> RanksOf(const PlacedPoints& placed, const GreedyInsertion& mesh)
+Buffer<Index> RanksOf(
+  const PlacedPoints& placed, const GreedyInsertion& mesh, const Progress& progress)
 {
   std::vector<Index> vertices;
-  for (Index place = 0; place < placed.Count(); ++place)
-  {
-    if (mesh.IsVertex(place))
+  ForEachStretch(placed.Count(), Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
+    for (Index place = begin; place < end; ++place)
     {
-      vertices.push_back(place);
+      if (mesh.IsVertex(place))
+      {
+        vertices.push_back(place);
+      }
     }
-  }
+  });
   if (!placed.Metric) // on a lattice, places are in this order
   {
-    std::sort(vertices.begin(), vertices.end(),
-      [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); });
+    const auto isLower = [&placed](
+                           Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
+    Sort(vertices.begin(), vertices.end(), isLower, Part(progress, 0.2, 0.8));
   }
   Buffer<Index> ranks;
   ranks.Resize(placed.Ids.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-  {
-    ranks[vertices[i]] = static_cast<Index>(i);
-  }
+  const Index count = static_cast<Index>(vertices.size());
+  ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      ranks[vertices[i]] = i;
+    }
+  });
   return ranks;
 }
 
 /** The triangles by ids, in the order of Triangulate.h: fans of their lowest vertices. */
-Buffer<Index> TrianglesOf(const PlacedPoints& placed, const GreedyInsertion& mesh)
+Buffer<Index> TrianglesOf(
+  const PlacedPoints& placed, const GreedyInsertion& mesh, const Progress& progress)
 {
   struct Turned
   {
     Index Corners[3]; // from the lowest on
   };
-  const Buffer<Index> ranks = RanksOf(placed, mesh);
+  const Buffer<Index> ranks = RanksOf(placed, mesh, Part(progress, 0.0, 0.4));
+  const Progress turning = Part(progress, 0.4, 0.6), sorting = Part(progress, 0.6, 1.0);
   std::vector<Turned> faces;
   std::vector<Index> begins(1, 0); // of fans
   for (const Index number : mesh.Order())
   {
+    ReportStep(turning, faces.size(), mesh.Order().size());
     const Index* const c = mesh.At(number).Corners;
     int low = ranks[c[1]] < ranks[c[0]] ? 1 : 0;
     low = ranks[c[2]] < ranks[c[low]] ? 2 : low;
@@ -250,6 +260,7 @@ Buffer<Index> TrianglesOf(const PlacedPoints& placed, const GreedyInsertion& mes
   }
   for (std::size_t fan = 0; fan + 1 < begins.size(); ++fan)
   {
+    ReportStep(sorting, fan, begins.size());
     std::sort(triangles.begin() + begins[fan], triangles.begin() + begins[fan + 1],
       [&placed](const Turned& s, const Turned& t) {
         return Orientation(placed.At(s.Corners[0]), placed.At(s.Corners[1]),
@@ -269,8 +280,8 @@ Buffer<Index> TrianglesOf(const PlacedPoints& placed, const GreedyInsertion& mes
 }
 
 /** Lists all points that are no vertices. @param[in] mesh  nullptr: there are no triangles */
-void ListUnused(
-  Index count, const PlacedPoints& placed, const GreedyInsertion* mesh, Triangulation& result)
+void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* mesh,
+  const Progress& progress, Triangulation& result)
 {
   std::vector<unsigned char> reasons(static_cast<std::size_t>(count), 0);
   const auto set = [&reasons](Index id, UnusedReason reason) {
@@ -284,28 +295,33 @@ void ListUnused(
   {
     set(id, UnusedReason::NotFinite);
   }
-  for (Index place = 0; mesh && place < placed.Count(); ++place)
-  {
-    if (!mesh->IsVertex(place))
+  const Index candidates = mesh ? placed.Count() : 0;
+  ForEachStretch(candidates, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+    for (Index place = begin; place < end; ++place)
     {
-      set(placed.Ids[place], UnusedReason::WithinError);
-      ++result.NumberOfRedundant;
+      if (!mesh->IsVertex(place))
+      {
+        set(placed.Ids[place], UnusedReason::WithinError);
+        ++result.NumberOfRedundant;
+      }
     }
-  }
+  });
   result.NumberOfDuplicates = static_cast<Index>(placed.Duplicates.size());
   result.NumberOfNotFinite = static_cast<Index>(placed.NotFinite.size());
   const std::size_t unused =
     placed.Duplicates.size() + placed.NotFinite.size() + result.NumberOfRedundant;
   result.UnusedPoints.reserve(unused);
   result.UnusedReasons.reserve(unused);
-  for (Index id = 0; id < count; ++id)
-  {
-    if (reasons[id] != 0)
+  ForEachStretch(count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
+    for (Index id = begin; id < end; ++id)
     {
-      result.UnusedPoints.push_back(id);
-      result.UnusedReasons.push_back(static_cast<UnusedReason>(reasons[id]));
+      if (reasons[id] != 0)
+      {
+        result.UnusedPoints.push_back(id);
+        result.UnusedReasons.push_back(static_cast<UnusedReason>(reasons[id]));
+      }
     }
-  }
+  });
 }
 
 Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
@@ -315,17 +331,17 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
   Triangulation result;
   result.LatticeFound = placed.Metric.has_value();
   result.Steps = placed.Steps;
-  std::vector<Segment> lines = PiecesByPlaces(pieces, placed);
+  std::vector<Segment> lines = PiecesByPlaces(pieces, placed, Part(progress, 0.0, 0.01));
   if (options.SimplifyConstraints && !lines.empty())
   {
-    lines = FewerPieces(placed, lines, options.MaximumElevationError, Part(progress, 0.0, 0.02));
+    lines = FewerPieces(placed, lines, options.MaximumElevationError, Part(progress, 0.01, 0.02));
   }
-  const std::vector<Segment> byCorners = AddEnds(lines, placed);
+  const std::vector<Segment> byCorners = AddEnds(lines, placed, Part(progress, 0.02, 0.03));
   std::vector<char> fixed;
-  const Mesh first = FirstMesh(placed, byCorners, fixed, Part(progress, 0.02, 0.05));
+  const Mesh first = FirstMesh(placed, byCorners, fixed, Part(progress, 0.03, 0.05));
   if (first.NumberOfTriangles() == 0)
   {
-    ListUnused(points.Count, placed, nullptr, result);
+    ListUnused(points.Count, placed, nullptr, Part(progress, 0.05, 1.0), result);
     return result;
   }
   GreedyInsertion mesh(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
@@ -345,8 +361,8 @@ Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
     result.LargestElevationError =
       measurement.Run(options.MaximumElevationError, threads, Part(progress, 0.8, 0.9), beyond);
   } while (!beyond.empty());
-  result.Triangles = TrianglesOf(placed, mesh);
-  ListUnused(points.Count, placed, &mesh, result);
+  result.Triangles = TrianglesOf(placed, mesh, Part(progress, 0.9, 0.98));
+  ListUnused(points.Count, placed, &mesh, Part(progress, 0.98, 1.0), result);
   result.NumberOfHullPoints = 2 * (placed.Count() - result.NumberOfRedundant) - 2 -
     static_cast<Index>(result.Triangles.size() / 3);
   Report(progress, 1.0);

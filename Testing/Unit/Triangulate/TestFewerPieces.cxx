@@ -50,7 +50,7 @@ std::set<std::pair<Place, Place>> Fewer(
   const PlacedPoints placed = PlaceInBins(cloud.View(), DelaunayOptions(), 1, Progress());
   std::set<std::pair<Place, Place>> left;
   for (const Segment& piece :
-    FewerPieces(placed, PiecesByPlaces(pieces, placed), error, Progress()))
+    FewerPieces(placed, PiecesByPlaces(pieces, placed, Progress()), error, Progress()))
   {
     left.insert(std::minmax(PlaceOf(placed, piece.A), PlaceOf(placed, piece.B)));
   }

@@ -414,7 +414,7 @@ Chords ChordsOf(const Cloud& whole, const ConstrainedTriangulation& made, double
   const PlacedPoints placed = PlaceInBins(whole.View(), DelaunayOptions(), 1, Progress());
   Chords chords;
   for (const Segment& piece :
-    FewerPieces(placed, PiecesByPlaces(made.Pieces, placed), error, Progress()))
+    FewerPieces(placed, PiecesByPlaces(made.Pieces, placed, Progress()), error, Progress()))
   {
     for (const Index place : { piece.A, piece.B })
     {
