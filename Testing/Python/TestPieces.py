@@ -413,6 +413,19 @@ class Trimmed(WithFilter):
         source, parts = self.assert_trimmed_as_one(points, self.rings(points), 6)
         self.assert_one_owner(parts, len(points), source.GetNumberOfInsertedPoints())
 
+    def test_progress_rises(self):
+        points = clouds()["random"]
+        source = self.source(points)
+        source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
+        for i in range(3):
+            told = []
+            tag = source.AddObserver("ProgressEvent", lambda *_: told.append(source.GetProgress()))
+            source.UpdatePiece(i, 3, 0)
+            source.RemoveObserver(tag)
+            self.assertEqual(told, sorted(told))
+            along = sum(0.83 < one < 0.89 for one in told)  # the work along the boundary
+            self.assertGreater(along, 5 if i == 0 else -1)
+
     def test_a_test_of_triangles_for_memory_can_be_put_right(self):
         points = clouds()["random"]
         source = self.source(points)

@@ -372,7 +372,7 @@ class VtkFormats(InFolder):
             ("line 4: is no vertex", "b.obj", obj.replace("1e-09", "")[:-20]),
             ("line 4: is no vertex", "b.obj", obj.replace("612015.1", "spoil")),
             ("cannot be read", "b.stl", stl.replace("612015.1", "spoil")),
-            ("cannot be read", "b.stl", stl[:-40]),
+            ("damaged after 1 whole facets", "b.stl", stl[:-40]),
             ("holds no points", "b.obj", "# nothing\n"),
         ):
             with self.subTest(words=words, name=name):

@@ -18,15 +18,54 @@ from vtkelevationsurface import (
     read,
     reconstruct,
 )
+from vtkelevationsurface.gathering import BASE, ROW, make_grid
+from vtkelevationsurface.picture.signs import add_scalar_bar
 from vtkelevationsurface.properties import PROPERTIES
 from vtkelevationsurface.reconstruction import as_lines
+from vtkelevationsurface.steps import in_options
+from vtkelevationsurface.writing.xml_writer import named_arrays
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkRenderingCore import vtkRenderer
 
 SIZE = 12
 SHEET = numpy.array([(x, y, 0.5 * x - 0.25 * y) for y in range(SIZE) for x in range(SIZE)], "f8")
 RING = numpy.array([(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)])
+
+
+class Parts(unittest.TestCase):
+    """What larger tests see only in a picture, on several ranks, or in a message."""
+
+    def test_messages_name_options_in_place_of_properties(self):
+        words = "a larger maximum_edge_length; the spacing and the interpolation stay"
+        self.assertEqual(
+            in_options(words), words.replace("maximum_edge_length", "--maximum-edge-length"))
+
+    def test_a_grid_of_ranks_has_the_extent_of_its_nodes(self):
+        own, whole = vtkImageData(), vtkImageData()
+        own.SetDimensions(2, 2, 1)
+        rows, columns = numpy.meshgrid(numpy.arange(-3, 2), numpy.arange(5, 9), indexing="ij")
+        numbers = ROW * (BASE + rows.ravel()) + BASE + columns.ravel()
+        make_grid(whole, own, numbers, numpy.empty((0, 3)))
+        self.assertEqual(whole.GetExtent(), (5, 8, -3, 1, 0, 0))
+
+    def test_arrays_keep_their_names_in_xml(self):
+        data = vtkPolyData()
+        for name in ("depth", None):
+            array = numpy_to_vtk(numpy.arange(3.0), deep=True)
+            array.SetName(name)
+            data.GetPointData().AddArray(array)
+        self.assertEqual(
+            [name for name, _, _ in named_arrays(data.GetPointData())], ["depth", "Array1"])
+
+    def test_the_bar_of_colours_is_higher_than_wide(self):
+        colours, renderer = vtkLookupTable(), vtkRenderer()
+        colours.SetRange(0.0, 10.0)
+        add_scalar_bar(renderer, colours, "z", 1200, 900)
+        props = renderer.GetViewProps()
+        width, height, _ = props.GetItemAsObject(0).GetPosition2Coordinate().GetValue()
+        self.assertGreater(height, 2 * width)
 
 
 class Input(unittest.TestCase):

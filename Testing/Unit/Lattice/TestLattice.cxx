@@ -1184,11 +1184,12 @@ TEST(Lattice, ProgressRisesAndAbortStops)
       cloud.Coordinates[3 * 700000] += 0.02; // the general path after all
     }
     DelaunayOptions options = Automatic();
-    double last = 0.0;
+    double last = 0.0, step = 0.0;
     int calls = 0;
     options.Monitor = [&](double fraction) {
       EXPECT_GE(fraction, last);
       EXPECT_LE(fraction, 1.0);
+      step = std::max(step, fraction - last);
       last = fraction;
       ++calls;
       return true;
@@ -1196,6 +1197,7 @@ TEST(Lattice, ProgressRisesAndAbortStops)
     EXPECT_EQ(Triangulate(cloud.View(), options).LatticeFound, isLattice);
     EXPECT_EQ(last, 1.0);
     EXPECT_GT(calls, 20);
+    EXPECT_LT(step, 0.14);
     for (const double end : { 0.05, 0.3, 0.7 })
     {
       options.Monitor = [end](double fraction) { return fraction < end; };
