@@ -35,6 +35,7 @@ Progress ProgressOf(vtkAlgorithm* filter)
     constexpr double step = 0.001;
     constexpr std::chrono::milliseconds silence{ 50 };
     const Clock::time_point now = Clock::now();
+    fraction = std::max(fraction, last); // where work begins anew, as ranks gather after all
     if (fraction >= std::min(1.0, last + step) || now >= next)
     {
       last = fraction;

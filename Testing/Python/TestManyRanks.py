@@ -325,12 +325,11 @@ def compare_random(random, claim):
             LatticeMode=int(random.random() < 0.3))
 
 
-def check_stops(random, count, share, make, rises=False):
-    """An abort on one rank, at any moment, ends all of them, and one rank tells of it.
+def check_stops(random, count, share, make):
+    """Progress rises; an abort on one rank, at any moment, ends all of them, and one rank tells of it.
 
     share  the part of the progress in which it comes
     make   make(i) -> a filter with its input
-    rises  whether the progress must rise
     Returns how late the latest was.
     """
     late, reached = [], 0
@@ -352,7 +351,7 @@ def check_stops(random, count, share, make, rises=False):
         WORLD.barrier()
         algorithm.UpdatePiece(RANK, COUNT, 0)
         ended = time.monotonic()
-        check(not rises or progress == sorted(progress), "progress rises on rank %d" % RANK)
+        check(progress == sorted(progress), "progress rises on rank %d" % RANK)
         begun = WORLD.bcast(begun, int(culprit))
         if begun:
             reached += 1
@@ -371,7 +370,7 @@ def check_aborts(random, count, size, **properties):
             getattr(delaunay, "Set" + name)(value)
         return delaunay
 
-    return check_stops(random, count, 0.9, make, rises=True)  # the last tenth is one rank's own
+    return check_stops(random, count, 0.9, make)  # the last tenth is one rank's own
 
 
 def check_refused(data, part, claim, **properties):
