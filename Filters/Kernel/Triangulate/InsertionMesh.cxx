@@ -27,7 +27,7 @@ InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const LatticeM
   for (Index face = 0; face < first.NumberOfTriangles(); ++face)
   {
     Face& made = this->Faces[face];
-    made = { {}, {}, None, None, 0.0f, false, 0, false };
+    made = { {}, {}, None, None, 0.0f, false, 0 };
     for (int k = 0; k < 3; ++k)
     {
       const Index h = 3 * face + k;

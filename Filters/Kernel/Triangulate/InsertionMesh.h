@@ -25,13 +25,13 @@ namespace elevation
 struct Face
 {
   Index Corners[3];
-  Index Neighbors[3];  ///< over each edge, or None
-  Index First;         ///< of the list of its points; None: it has none
-  Index Worst;         ///< of its points
-  float Error;         ///< of this one
-  bool IsInCavity;     ///< while a point is inserted
-  unsigned char Fixed; ///< bit k: edge k stays an edge
-  bool IsPostponed;    ///< its point changes too many triangles to be inserted in a strip
+  Index Neighbors[3];       ///< over each edge, or None
+  Index First;              ///< of the list of its points; None: it has none
+  Index Worst;              ///< of its points
+  float Error;              ///< of this one
+  bool IsInCavity;          ///< while a point is inserted
+  unsigned char Fixed;      ///< bit k: edge k stays an edge
+  bool IsPostponed = false; ///< its point changes too many triangles to be inserted in a strip
 
   /** The edge that begins in a corner. */
   int EdgeFrom(Index corner) const

@@ -19,6 +19,32 @@ constexpr double LeastShape = 0.5;  // of two ways to flip an edge, in parts of 
 // Errors are floats: smaller ones are 0, larger ones infinite.
 constexpr double LeastLevel = 0.5 * std::numeric_limits<float>::denorm_min();
 constexpr float LargestLevel = std::numeric_limits<float>::max();
+
+/** The two triangles beside an edge from P to D: the first one, right of it, with A, the second one with B. */
+struct TwoTriangles
+{
+  TwoTriangles(
+    const ElevatedPlace& p, const ElevatedPlace& d, const ElevatedPlace& a, const ElevatedPlace& b)
+    : P(p)
+    , D(d)
+    , First(SlopesOf(p, a, d))
+    , Second(SlopesOf(p, d, b))
+  {
+  }
+  bool IsInFirst(const ElevatedPlace& q) const
+  {
+    return (this->D.X - this->P.X) * (q.Y - this->P.Y) -
+      (this->D.Y - this->P.Y) * (q.X - this->P.X) <
+      0.0;
+  }
+  float ErrorAt(const ElevatedPlace& q) const
+  {
+    return ErrorOf(q, this->P, this->IsInFirst(q) ? this->First : this->Second);
+  }
+
+  const ElevatedPlace &P, &D;
+  const Slopes First, Second;
+};
 } // namespace
 
 Index InsertionStrip::NewFace()
@@ -166,7 +192,7 @@ void InsertionStrip::FillCavity(Index place, std::size_t count, bool isClosed)
     const int fixed =
       (edge.IsFixed ? 1 : 0) | (this->IsCut(edge.To) ? 2 : 0) | (this->IsCut(edge.From) ? 4 : 0);
     faces[this->Fan[i]] = { { edge.From, edge.To, place }, { edge.Outside, after, before }, None,
-      None, 0.0f, false, static_cast<unsigned char>(fixed), false };
+      None, 0.0f, false, static_cast<unsigned char>(fixed) };
     if (edge.Outside != None)
     {
       Face& outside = faces[edge.Outside];
@@ -303,7 +329,7 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
   }
   const ElevatedPlace* const places = this->Of.Places.data();
   const ElevatedPlace &a = places[from], &b = places[to], &p = places[place], &d = places[across];
-  const Slopes first = SlopesOf(p, a, d), second = SlopesOf(p, d, b);
+  const TwoTriangles made(p, d, a, b);
   double sum = 0.0;
   for (const Face* one : { &here, &beyond })
   {
@@ -311,8 +337,7 @@ bool InsertionStrip::IsBetterFlipped(Index face) const
     for (Index point = one->First; point != None; point = this->Of.Links[point])
     {
       const ElevatedPlace& q = places[point];
-      const bool isFirst = (d.X - p.X) * (q.Y - p.Y) - (d.Y - p.Y) * (q.X - p.X) < 0.0;
-      const double before = ErrorOf(q, a, slopes), after = ErrorOf(q, p, isFirst ? first : second);
+      const double before = ErrorOf(q, a, slopes), after = made.ErrorAt(q);
       sum += after * after - before * before;
     }
   }
@@ -331,11 +356,9 @@ void InsertionStrip::Flip(Index face)
   const Index across = beyond.Corners[after];
   const auto bit = [](const Face& of, int edge, int as) { return (of.Fixed >> edge & 1) << as; };
   faces[face] = { { from, across, place }, { beyond.Neighbors[before], other, here.Neighbors[2] },
-    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, before, 0) | bit(here, 2, 2)),
-    false };
+    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, before, 0) | bit(here, 2, 2)) };
   faces[other] = { { across, to, place }, { beyond.Neighbors[after], here.Neighbors[1], face },
-    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, after, 0) | bit(here, 1, 1)),
-    false };
+    None, None, 0.0f, false, static_cast<unsigned char>(bit(beyond, after, 0) | bit(here, 1, 1)) };
   if (beyond.Neighbors[before] != None)
   {
     Face& outside = faces[beyond.Neighbors[before]];
@@ -347,16 +370,14 @@ void InsertionStrip::Flip(Index face)
     next.Neighbors[next.EdgeFrom(place)] = other;
   }
   const ElevatedPlace* const places = this->Of.Places.data();
-  const ElevatedPlace &p = places[place], &d = places[across];
-  const Slopes first = SlopesOf(p, places[from], d), second = SlopesOf(p, d, places[to]);
+  const TwoTriangles made(places[place], places[across], places[from], places[to]);
   for (const Index list : { here.First, beyond.First })
   {
     for (Index point = list, next; point != None; point = next)
     {
       next = this->Of.Links[point];
       const ElevatedPlace& q = places[point];
-      const bool isFirst = (d.X - p.X) * (q.Y - p.Y) - (d.Y - p.Y) * (q.X - p.X) < 0.0;
-      this->Of.AddTo(faces[isFirst ? face : other], point, ErrorOf(q, p, isFirst ? first : second));
+      this->Of.AddTo(faces[made.IsInFirst(q) ? face : other], point, made.ErrorAt(q));
     }
   }
 }

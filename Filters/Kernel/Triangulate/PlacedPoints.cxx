@@ -40,45 +40,44 @@ std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& ca
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   return corners;
 }
-/** Calls work(first, last) for the slots of each bin, on several threads. */
-template <typename Work>
-void ForEachBin(const BinGrid& grid, int threads, const Progress& progress, Work&& work)
+
+/** Puts the points of a bin in order, from the lowest up. */
+void SortBin(BinGrid& grid, Index bin)
+{
+  Index slot = grid.Starts[bin];
+  const Index last = grid.Starts[bin + 1];
+  if (last - slot < 2)
+  {
+    return;
+  }
+  std::vector<std::pair<Point2, Index>> sorted;
+  sorted.reserve(static_cast<std::size_t>(last - slot));
+  for (Index of = slot; of < last; ++of)
+  {
+    sorted.emplace_back(grid.PointAt(of), grid.Ids[of]);
+  }
+  std::sort(sorted.begin(), sorted.end(),
+    [](const auto& a, const auto& b) { return IsLower(a.first, b.first); });
+  for (const auto& [point, id] : sorted)
+  {
+    grid.X[slot] = point.X;
+    grid.Y[slot] = point.Y;
+    grid.Ids[slot++] = id;
+  }
+}
+
+void SortBins(BinGrid& grid, int threads, const Progress& progress)
 {
   constexpr Index binsAtOnce = 2048;
   ForEachRange(
     static_cast<Index>(grid.Starts.size()) - 1, threads, progress,
-    [&](Index, Index begin, Index end) {
+    [&grid](Index, Index begin, Index end) {
       for (Index bin = begin; bin < end; ++bin)
       {
-        work(grid.Starts[bin], grid.Starts[bin + 1]);
+        SortBin(grid, bin);
       }
     },
     binsAtOnce);
-}
-
-/** Puts the points of each bin in order, from the lowest up. */
-void SortBins(BinGrid& grid, int threads, const Progress& progress)
-{
-  ForEachBin(grid, threads, progress, [&grid](Index first, Index last) {
-    if (last - first < 2)
-    {
-      return;
-    }
-    std::vector<std::pair<Point2, Index>> sorted;
-    sorted.reserve(static_cast<std::size_t>(last - first));
-    for (Index slot = first; slot < last; ++slot)
-    {
-      sorted.emplace_back(grid.PointAt(slot), grid.Ids[slot]);
-    }
-    std::sort(sorted.begin(), sorted.end(),
-      [](const auto& a, const auto& b) { return IsLower(a.first, b.first); });
-    for (const auto& [point, id] : sorted)
-    {
-      grid.X[first] = point.X;
-      grid.Y[first] = point.Y;
-      grid.Ids[first++] = id;
-    }
-  });
 }
 
 /** The slot of a point after SortBins(). */
@@ -118,6 +117,21 @@ Buffer<Index> SortedCandidates(BinGrid& grid, int threads, const Progress& progr
     }
   }
   return candidates;
+}
+
+/** Pieces with another number for each end. */
+template <typename NumberOf>
+std::vector<Segment> Renumbered(
+  const std::vector<Segment>& pieces, const NumberOf& numberOf, const Progress& progress)
+{
+  std::vector<Segment> renumbered;
+  renumbered.reserve(pieces.size());
+  for (const Segment& piece : pieces)
+  {
+    ReportStep(progress, renumbered.size(), pieces.size());
+    renumbered.push_back({ numberOf(piece.A), numberOf(piece.B) });
+  }
+  return renumbered;
 }
 } // namespace
 
@@ -239,15 +253,7 @@ std::vector<Segment> PiecesByPlaces(
   const auto find = [&](Index id) {
     return placeOf[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
   };
-  std::vector<Segment> byPlaces;
-  byPlaces.reserve(pieces.size());
-  const Progress writing = Part(progress, 0.8, 1.0);
-  for (const Segment& piece : pieces)
-  {
-    ReportStep(writing, byPlaces.size(), pieces.size());
-    byPlaces.push_back({ find(piece.A), find(piece.B) });
-  }
-  return byPlaces;
+  return Renumbered(pieces, find, Part(progress, 0.8, 1.0));
 }
 
 std::vector<Segment> AddEnds(
@@ -265,15 +271,7 @@ std::vector<Segment> AddEnds(
     return static_cast<Index>(
       std::lower_bound(corners.begin(), corners.end(), place, isLower) - corners.begin());
   };
-  std::vector<Segment> byCorners;
-  byCorners.reserve(pieces.size());
-  const Progress writing = Part(progress, 0.6, 1.0);
-  for (const Segment& piece : pieces)
-  {
-    ReportStep(writing, byCorners.size(), pieces.size());
-    byCorners.push_back({ cornerOf(piece.A), cornerOf(piece.B) });
-  }
-  return byCorners;
+  return Renumbered(pieces, cornerOf, Part(progress, 0.6, 1.0));
 }
 
 } // namespace elevation
