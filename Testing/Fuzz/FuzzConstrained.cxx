@@ -6,7 +6,7 @@
  * direction of lines change nothing.
  */
 #include "ConstrainedMesh.h"
-#include "FuzzInput.h"
+#include "FuzzLines.h"
 
 #include "Kernel/Triangulate/Triangulate.h"
 
@@ -16,39 +16,6 @@
 namespace
 {
 using namespace fuzz;
-
-/** Lines between the points of a cloud. */
-struct Lines
-{
-  Cloud Own;
-  std::vector<std::vector<Index>> Ids;
-  std::vector<char> AreClosed;
-
-  ConstraintLines Get() const
-  {
-    ConstraintLines lines;
-    lines.Points = this->Own.View();
-    for (std::size_t i = 0; i < this->Ids.size(); ++i)
-    {
-      lines.Vertices.insert(lines.Vertices.end(), this->Ids[i].begin(), this->Ids[i].end());
-      lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
-      lines.IsClosed.push_back(this->AreClosed[i]);
-      lines.Cells.push_back(static_cast<Index>(i));
-    }
-    return lines;
-  }
-  Lines Turned() const
-  {
-    Lines lines = *this;
-    std::reverse(lines.Ids.begin(), lines.Ids.end());
-    std::reverse(lines.AreClosed.begin(), lines.AreClosed.end());
-    for (std::vector<Index>& ids : lines.Ids)
-    {
-      std::reverse(ids.begin(), ids.end());
-    }
-    return lines;
-  }
-};
 
 void RequireRules(const Cloud& cloud, const ConstrainedTriangulation& constrained)
 {
@@ -71,8 +38,7 @@ void RequireRules(const Cloud& cloud, const ConstrainedTriangulation& constraine
   Mesh mesh = MeshOf(all, result);
   mesh.ConnectTwins();
   std::string failure;
-  const std::vector<char> flags =
-    testing_points::MarkPieces(mesh, constrained.Pieces, failure);
+  const std::vector<char> flags = testing_points::MarkPieces(mesh, constrained.Pieces, failure);
   RequireNone(failure, "every line is a chain of edges");
   ValidateOptions rules;
   rules.Constrained = &flags;
@@ -108,46 +74,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.Duplicates = static_cast<DuplicatePolicy>(input.Below(4));
   options.DivideAtOnce = (bits & 1) != 0;
   options.NumberOfThreads = (bits & 14) == 14 ? 3 : 1;
-  const unsigned shared = input.Byte();
-  Lines lines;
-  lines.AreClosed.resize(1 + input.Below(8));
-  lines.Ids.resize(lines.AreClosed.size());
-  std::vector<std::vector<unsigned>> chosen(lines.Ids.size());
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-  {
-    const unsigned kind = input.Byte();
-    lines.AreClosed[i] = kind % 2 != 0;
-    chosen[i].resize(1 + kind / 2 % 8);
-    for (unsigned& id : chosen[i])
-    {
-      id = input.Byte();
-    }
-  }
-  // The lines' points are a cloud of which the first points are the input.
-  lines.Own = ReadCloud(input, 120);
+  const PointsAndLines drawn = ReadPointsAndLines(input, 120);
+  const Cloud& cloud = drawn.Points;
+  const Lines& lines = drawn.Constraints;
   if (lines.Own.Count() == 0)
   {
     return 0;
   }
-  Cloud cloud = lines.Own;
-  cloud.Coordinates.resize(3 * (cloud.Coordinates.size() / 3 * shared / 255));
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-  {
-    for (const unsigned id : chosen[i])
-    {
-      const Index point = static_cast<Index>(id % lines.Own.Count());
-      if (IsFinite(lines.Own.View().At(point)) && std::isfinite(lines.Own.View().Elevation(point)))
-      {
-        lines.Ids[i].push_back(point);
-      }
-    }
-  }
-
   const ConstraintLines given = lines.Get();
-  Show("points", cloud.View());
-  Show("points of the lines", given.Points);
-  Show("ids of the lines", given.Vertices);
-  Show("offsets of the lines", given.Offsets);
+  Show(cloud, given);
 
   ConstrainedTriangulation constrained;
   try
