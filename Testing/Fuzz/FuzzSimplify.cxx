@@ -165,7 +165,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   RequireRules(all, few, options);
-  if (few.Pieces.empty() && few.Added.empty() && options.Edges == EdgeCriterion::Delaunay)
+  if (few.AreNone && options.Edges == EdgeCriterion::Delaunay)
   {
     RequireTrianglesOfChosen(cloud, few.Result, options);
   }
@@ -177,7 +177,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       few.Result.UnusedPoints == again.Result.UnusedPoints &&
       few.Result.LargestElevationError == again.Result.LargestElevationError,
     "the number of threads changes nothing");
-  if (bits & 16 && few.Added.empty() && few.Pieces.empty() && few.Result.NumberOfDuplicates == 0)
+  if (bits & 16 && few.AreNone && few.Result.NumberOfDuplicates == 0)
   {
     Cloud reversed;
     for (Index id = cloud.Count(); id-- > 0;)

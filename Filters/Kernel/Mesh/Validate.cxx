@@ -237,11 +237,16 @@ long double BoundOfDistance(const PointView& points, const Index* corners, Index
   std::array<long double, 3> area, sizeOfArea, z;
   for (int k = 0; k < 3; ++k)
   {
+    const auto a = at(corners[k]);
+    if (a[0] == p[0] && a[1] == p[1])
+    {
+      return std::fabs(a[2] - p[2]); // however thin the triangle is
+    }
     const auto b = at(corners[(k + 1) % 3]), c = at(corners[(k + 2) % 3]);
     const long double left = (b[0] - p[0]) * (c[1] - p[1]), right = (b[1] - p[1]) * (c[0] - p[0]);
     area[k] = left - right;
     sizeOfArea[k] = std::fabs(left) + std::fabs(right);
-    z[k] = at(corners[k])[2];
+    z[k] = a[2];
   }
   // The distance is the sum of area k times (z of k less z of p), through the sum of areas.
   constexpr long double unit = 16.0L * std::numeric_limits<long double>::epsilon();

@@ -611,6 +611,32 @@ TEST(Simplify, EndsWithElevationsAndErrorsBeyondTheRangeOfFloat)
   }
 }
 
+TEST(Simplify, EveryPointIsWithinTheErrorWhereProductsOfCoordinatesLeaveTheRangeOfDouble)
+{
+  std::mt19937_64 random(13);
+  for (const double size :
+    { 1e-300, 1e-200, 1e-162, 1e-161, 1e-160, 1e-159, 1e153, 1e154, 1e155, 1e200, 1e300 })
+  {
+    Cloud cloud;
+    for (int i = 0; i < 400; ++i)
+    {
+      const double x = Unit(random), y = Unit(random);
+      cloud.Add(size * x, size * y, 10.0 * std::sin(9.0 * x * y));
+    }
+    for (const EdgeCriterion edges : { EdgeCriterion::Delaunay, EdgeCriterion::DataDependent })
+    {
+      SCOPED_TRACE(std::to_string(std::log10(size)));
+      DelaunayOptions options = WithError(0.3);
+      options.UseLattice = LatticeMode::Off;
+      options.Edges = edges;
+      const Triangulation made = Triangulate(cloud.View(), options);
+      const auto far = ValidateDistance(
+        MeshOfTriangles(cloud, made.Triangles), cloud.View(), 0.3, 0.0, ExemptOf(made));
+      EXPECT_TRUE(far.empty()) << ToString(far);
+    }
+  }
+}
+
 TEST(Simplify, StopsWhenItIsTold)
 {
   std::mt19937_64 random(6);
