@@ -122,10 +122,8 @@ def make_parser():
     add("--faults", "--breaklines", dest="faults")
     add("--boundary")
     for name, one in PROPERTIES.items():
-        if name == "data_dependent_edges":  # off by default
-            add(option_of(name), action="store_true", default=None)
-        elif is_switch(name):
-            add("--no-" + name.replace("_", "-"), dest=name, action="store_false", default=None)
+        if is_switch(name):
+            add(option_of(name), action=argparse.BooleanOptionalAction)
         else:
             add(option_of(name), type=one.convert)
     add("--pieces", type=whole_number)
