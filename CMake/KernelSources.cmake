@@ -74,7 +74,7 @@ set(es_kernel_headers_Mesh
 set(es_kernel_headers_Lattice
   Lattice NodeOfPoint)
 set(es_kernel_headers_Triangulate
-  Growth Instructions Options WorkBudget)
+  Growth Instructions Options PlaneOfFace WorkBudget)
 set(es_kernel_headers_Trim)
 set(es_kernel_headers_Fill
   Trials Walk)

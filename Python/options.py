@@ -78,12 +78,14 @@ class Parser(argparse.ArgumentParser):
     def error(self, message):
         found = re.match(r"argument ([^:]+): (.*)", message)
         if found:
-            option = found.group(1).split("/")[-1]
+            option = found.group(1).split("/--no-")[0].split("/")[-1]
             given = re.search(r"(?:value|choice): ('.*?')(?: \(choose.*)?$", found.group(2))
             message = f"{option}: {found.group(2)}"
             if option in TAKES:
                 given = f", not {given.group(1)}" if given else ""
                 message = f"{option} takes {TAKES[option]}{given}"
+            elif found.group(2).startswith("ignored explicit argument"):
+                message = f"{option} takes no value"
         elif message.startswith("unrecognized arguments: "):
             words = message.split(": ", 1)[1]
             known = list(self._option_string_actions)

@@ -3,7 +3,8 @@
 /**
  * @file
  * Points, lines and an elevation error -> mesh of few points: every other point is within the error,
- * lines are edges, all else is Delaunay where that is asked for, and threads and order change nothing.
+ * lines are edges, all else is Delaunay where that is asked for; threads change nothing, and where there
+ * are no lines the order of points does not either.
  */
 #include "ConstrainedMesh.h"
 #include "FuzzLines.h"
@@ -13,6 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace
 {
@@ -21,6 +25,9 @@ using namespace fuzz;
 /** Duplicates and points that are not finite are told as without an error; the others by the error. */
 void RequireAccount(const Cloud& all, const Triangulation& few, const Triangulation& whole)
 {
+  Require(few.UnusedPoints.size() == few.UnusedReasons.size() &&
+      std::is_sorted(few.UnusedPoints.begin(), few.UnusedPoints.end()),
+    "unused points are listed in order, each with a reason");
   std::vector<Index> unused;
   std::vector<UnusedReason> reasons;
   Index redundant = 0;
@@ -39,8 +46,6 @@ void RequireAccount(const Cloud& all, const Triangulation& few, const Triangulat
   Require(few.NumberOfDuplicates == whole.NumberOfDuplicates &&
       few.NumberOfNotFinite == whole.NumberOfNotFinite && few.NumberOfRedundant == redundant,
     "the counts are those of the lists");
-  Require(std::is_sorted(few.UnusedPoints.begin(), few.UnusedPoints.end()),
-    "unused points are listed in order");
   std::vector<char> isVertex(all.Count(), 0);
   for (const Index id : few.Triangles)
   {
@@ -50,6 +55,31 @@ void RequireAccount(const Cloud& all, const Triangulation& few, const Triangulat
   Require(few.Triangles.empty() ||
       vertices + static_cast<std::ptrdiff_t>(few.UnusedPoints.size()) == all.Count(),
     "a point is a vertex or unused");
+}
+
+/** Of the ends of pieces: those where one piece ends, or more than two meet. */
+std::vector<Index> EndsOf(const std::vector<Segment>& pieces)
+{
+  std::set<std::pair<Index, Index>> distinct;
+  for (const Segment& piece : pieces)
+  {
+    distinct.insert(std::minmax(piece.A, piece.B));
+  }
+  std::map<Index, int> counts;
+  for (const auto& piece : distinct)
+  {
+    ++counts[piece.first];
+    ++counts[piece.second];
+  }
+  std::vector<Index> ends;
+  for (const auto& count : counts)
+  {
+    if (count.second != 2)
+    {
+      ends.push_back(count.first);
+    }
+  }
+  return ends;
 }
 
 /** How far points may lie beside a mesh whose border is that of a lattice's nodes. */
@@ -74,10 +104,11 @@ void RequireRules(
     }
   }
   Mesh mesh = MeshOf(all, few);
-  const double error = options.MaximumElevationError;
-  RequireNone(ToString(ValidateDistance(mesh, all.View(), error, BesideBy(few, options), exempt)),
+  Require(few.LargestElevationError <= options.MaximumElevationError,
+    "the largest error is within the error");
+  RequireNone(ToString(ValidateDistance(
+                mesh, all.View(), few.LargestElevationError, BesideBy(few, options), exempt)),
     "distance");
-  Require(few.LargestElevationError <= error, "the largest error is within the error");
 
   mesh.ConnectTwins();
   ValidateOptions rules;
@@ -86,6 +117,11 @@ void RequireRules(
   if (options.SimplifyConstraints)
   {
     rules.Delaunay = rules.Delaunay && constrained.Pieces.empty();
+    for (const Index id : EndsOf(constrained.Pieces))
+    {
+      Require(!std::binary_search(few.UnusedPoints.begin(), few.UnusedPoints.end(), id),
+        "ends of lines and places where they meet stay");
+    }
   }
   else
   {
@@ -97,6 +133,12 @@ void RequireRules(
   rules.ConvexHull = !few.LatticeFound; // points may lie beside their nodes
   rules.UnusedPoints = &few.UnusedPoints;
   RequireNone(ToString(Validate(mesh, rules)), "triangulation of few points");
+  Index borders = 0;
+  for (Index h = 0; h < 3 * mesh.NumberOfTriangles(); ++h)
+  {
+    borders += mesh.IsBorder(h);
+  }
+  Require(few.NumberOfHullPoints == borders, "there are as many points as edges on the hull");
 }
 
 /** With Delaunay edges and without lines. */
@@ -138,7 +180,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const double errors[] = { 0.5, 0.01, 0.25, 1.0, 2.5, 100.0, 1e-6, 1e-300, 5e-324, 1e299,
     1e308 };
   options.MaximumElevationError = input.OneOf(errors);
-  const PointsAndLines drawn = ReadPointsAndLines(input, 200);
+  static const int heights[] = { 0, 0, 0, -1070, -500, 500, 1021 };
+  const int height = input.OneOf(heights);
+  PointsAndLines drawn = ReadPointsAndLines(input, 200);
+  for (Cloud* const any : { &drawn.Points, &drawn.Constraints.Own })
+  {
+    for (std::size_t i = 2; i < any->Coordinates.size(); i += 3)
+    {
+      const double scaled = std::ldexp(any->Coordinates[i], height);
+      any->Coordinates[i] = std::isfinite(scaled) ? scaled : any->Coordinates[i];
+    }
+  }
   const Cloud& cloud = drawn.Points;
   const ConstraintLines given = bits & 8 ? drawn.Constraints.Get() : ConstraintLines();
   Show(cloud, given);
@@ -150,9 +202,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     whole = TriangulateConstrained(cloud.View(), given, everything);
   }
-  catch (const Error&)
+  catch (const Error& error)
   {
-    return 0; // FuzzConstrained tells which ones there may be
+    Require(given.Count() > 0 && std::strstr(error.what(), "cross again and again"), error.what());
+    return 0;
   }
   const ConstrainedTriangulation few = TriangulateConstrained(cloud.View(), given, options);
   const Cloud all = testing_points::AllPoints(cloud, few);
@@ -175,6 +228,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const ConstrainedTriangulation again = TriangulateConstrained(cloud.View(), given, other);
   Require(AreSame(few.Result.Triangles, again.Result.Triangles) &&
       few.Result.UnusedPoints == again.Result.UnusedPoints &&
+      few.Result.UnusedReasons == again.Result.UnusedReasons &&
+      few.Result.NumberOfHullPoints == again.Result.NumberOfHullPoints &&
       few.Result.LargestElevationError == again.Result.LargestElevationError,
     "the number of threads changes nothing");
   if (bits & 16 && few.AreNone && few.Result.NumberOfDuplicates == 0)
@@ -188,6 +243,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Triangulation turned = Triangulate(reversed.View(), options);
     Require(TriangleSet(reversed, turned) == TriangleSet(cloud, few.Result),
       "the order of points does not change the triangles");
+    Require(turned.NumberOfRedundant == few.Result.NumberOfRedundant &&
+        turned.LargestElevationError == few.Result.LargestElevationError,
+      "the order of points does not change the counts");
   }
   return 0;
 }

@@ -64,6 +64,22 @@ class Options(InFolder):
                 else:
                     self.assertNotIn("did you mean", done.stderr)
 
+    def test_properties_that_are_on_or_off_have_two_options(self):
+        from vtkelevationsurface import options
+
+        switches = [name for name in options.PROPERTIES if options.is_switch(name)]
+        self.assertIn("recover_boundary", switches)
+        for name in switches:
+            on = options.option_of(name)
+            off = on.replace("--", "--no-", 1)
+            for given, value in ((), None), ((on,), True), ((off,), False), ((off, on), True):
+                with self.subTest(given=given):
+                    parsed = options.make_parser().parse_args(["a.xyz", *given])
+                    self.assertIs(getattr(parsed, name), value)
+        done = self.call("a.xyz", "--recover-boundary=1")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("error: --recover-boundary takes no value; see --help", done.stderr)
+
     def test_what_follows_two_dashes_is_a_file(self):
         self.file("-a.xyz", sheet(4))
         self.assertEqual(self.call("--no-picture", "--", "-a.xyz").returncode, 0)

@@ -226,13 +226,17 @@ std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options)
 
 namespace
 {
-/** Above the vertical distance of a point from the plane of a triangle, in long double. */
+/**
+ * Above the vertical distance of a point from the plane of a triangle. In long double: where that is no
+ * wider than double, there is no bound, infinity or not a number, for the largest and smallest coordinates.
+ */
 long double BoundOfDistance(const PointView& points, const Index* corners, Index point)
 {
   const auto at = [&points](Index id) {
     const Point2 p = points.At(id);
     return std::array<long double, 3>{ p.X, p.Y, points.Elevation(id) };
   };
+  constexpr long double unit = 16.0L * std::numeric_limits<long double>::epsilon();
   const auto p = at(point);
   std::array<long double, 3> area, sizeOfArea, z;
   for (int k = 0; k < 3; ++k)
@@ -240,7 +244,7 @@ long double BoundOfDistance(const PointView& points, const Index* corners, Index
     const auto a = at(corners[k]);
     if (a[0] == p[0] && a[1] == p[1])
     {
-      return std::fabs(a[2] - p[2]); // however thin the triangle is
+      return std::fabs(a[2] - p[2]) * (1.0L + unit); // however thin the triangle is
     }
     const auto b = at(corners[(k + 1) % 3]), c = at(corners[(k + 2) % 3]);
     const long double left = (b[0] - p[0]) * (c[1] - p[1]), right = (b[1] - p[1]) * (c[0] - p[0]);
@@ -249,7 +253,6 @@ long double BoundOfDistance(const PointView& points, const Index* corners, Index
     z[k] = a[2];
   }
   // The distance is the sum of area k times (z of k less z of p), through the sum of areas.
-  constexpr long double unit = 16.0L * std::numeric_limits<long double>::epsilon();
   long double sum = 0.0L, sizeOfSum = 0.0L, whole = 0.0L, sizeOfWhole = 0.0L;
   for (int k = 0; k < 3; ++k)
   {
@@ -278,8 +281,8 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
   /** Whether a point is on the left of an edge, or at most so far to its right. */
   const auto isLeftOf = [&mesh](Index from, Index to, const Point2& p, double by) {
     const Point2 a = mesh.PointOf(from), b = mesh.PointOf(to);
-    const double area = (b.X - a.X) * (p.Y - a.Y) - (b.Y - a.Y) * (p.X - a.X);
-    return by > 0.0 ? area >= -by * std::hypot(b.X - a.X, b.Y - a.Y)
+    const long double x = b.X - a.X, y = b.Y - a.Y;
+    return by > 0.0 ? x * (p.Y - a.Y) - y * (p.X - a.X) >= -by * std::hypot(x, y)
                     : Orientation(a, b, p) != Negative;
   };
   for (Index point = 0; point < points.Count && findings.size() < maximumFindings; ++point)

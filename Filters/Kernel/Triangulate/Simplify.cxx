@@ -5,6 +5,7 @@
 #include "DivideAndConquer.h"
 #include "FewerPieces.h"
 #include "GreedyInsertion.h"
+#include "PlaneOfFace.h"
 #include "PlacedPoints.h"
 
 #include <algorithm>
@@ -48,59 +49,6 @@ Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
   }
   return mesh;
 }
-
-/**
- * An upper bound of a vertical distance: what rounding may have taken from it is added. Infinite or not a
- * number where the triangle is too thin for one.
- */
-class PlaneOfFace
-{
-public:
-  PlaneOfFace(const Point2& a, double az, const Point2& b, double bz, const Point2& c, double cz)
-    : A(a)
-    , Az(az)
-  {
-    double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
-    const double db = bz - az, dc = cz - az;
-    // Scaled by a power of two, so that products neither overflow nor vanish.
-    const double size = std::max({ std::fabs(bx), std::fabs(by), std::fabs(cx), std::fabs(cy) });
-    const double scale = std::ldexp(1.0, -std::max(-1000, std::min(std::ilogb(size), 1000)));
-    bx *= scale;
-    by *= scale;
-    cx *= scale;
-    cy *= scale;
-    const double d = bx * cy - cx * by;
-    this->X = (db * cy - dc * by) / d * scale;
-    this->Y = (bx * dc - cx * db) / d * scale;
-    // With u = 2^-53, the terms of numerators and denominator are each off by less than 4 u of their
-    // sums of absolute values, or of the least normal number; the rest is a few u of the slopes.
-    constexpr double unit = 16.0 * 1.1102230246251565e-16,
-                     least = std::numeric_limits<double>::min();
-    const double area = std::fabs(d);
-    const double error = unit * (1.0 + (std::fabs(bx * cy) + std::fabs(cx * by) + least) / area);
-    const double perArea =
-      error < 1.0 ? error / area * scale : std::numeric_limits<double>::infinity();
-    this->ErrorX = perArea * (std::fabs(db * cy) + std::fabs(dc * by) + least) + Smallest;
-    this->ErrorY = perArea * (std::fabs(bx * dc) + std::fabs(cx * db) + least) + Smallest;
-  }
-
-  double BoundAt(const Point2& p, double z) const
-  {
-    constexpr double unit = 8.0 * 1.1102230246251565e-16;
-    const double dx = p.X - this->A.X, dy = p.Y - this->A.Y;
-    const double distance = std::fabs(z - this->Az - this->X * dx - this->Y * dy);
-    return distance + this->ErrorX * std::fabs(dx) + this->ErrorY * std::fabs(dy) +
-      unit * (std::fabs(z) + std::fabs(this->Az)) + Smallest;
-  }
-
-private:
-  /** More than some numbers lose that become as small as doubles can be. */
-  static constexpr double Smallest = 8.0 * std::numeric_limits<double>::denorm_min();
-
-  const Point2 A;
-  const double Az;
-  double X, Y, ErrorX, ErrorY;
-};
 
 /** Measures the points that are left out, by their coordinates. */
 class Measurement
