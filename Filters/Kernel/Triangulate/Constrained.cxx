@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -571,16 +570,17 @@ private:
   {
     const SegmentPiece& one = this->Pieces[crossing.first];
     const SegmentPiece& other = this->Pieces[crossing.second];
-    // Not zero, as a divisor.
-    const double least = std::numeric_limits<double>::denorm_min();
-    const double unitX = std::max({ one.Unit.X, other.Unit.X, least });
-    const double unitY = std::max({ one.Unit.Y, other.Unit.Y, least });
+    const double unitX = std::max(one.Unit.X, other.Unit.X);
+    const double unitY = std::max(one.Unit.Y, other.Unit.Y);
     const double reach = 2.0 * this->Reach, reachX = reach * unitX, reachY = reach * unitY;
     Index nearest = None;
     double shortest = 0.0;
+    const auto inUnits = [](double difference, double unit) {
+      return difference == 0.0 ? 0.0 : unit > 0.0 ? std::fabs(difference) / unit : HUGE_VAL;
+    };
     const auto look = [&](Index v) {
       const double distance =
-        std::max(std::fabs(this->At(v).X - p.X) / unitX, std::fabs(this->At(v).Y - p.Y) / unitY);
+        std::max(inUnits(this->At(v).X - p.X, unitX), inUnits(this->At(v).Y - p.Y, unitY));
       if (distance <= reach &&
         (this->At(v) == p || (this->CanPassThrough(one, v) && this->CanPassThrough(other, v))) &&
         (nearest == None || distance < shortest ||

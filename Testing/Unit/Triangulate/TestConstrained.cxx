@@ -7,8 +7,8 @@
 #include "DelaunayMesh.h"
 #include "ErrorMessage.h"
 
-#include "Kernel/Triangulate/Constrained.h"
 #include "Kernel/Base/Predicates.h"
+#include "Kernel/Triangulate/Constrained.h"
 #include "PointSets.h"
 
 #ifdef ES_TEST_CGAL
@@ -1005,22 +1005,32 @@ TEST(ConstrainedDelaunay, HundredsOfLinesThroughOnePlaceMeetInFewVertices)
 
 TEST(ConstrainedDelaunay, InFewBitsSettles)
 {
-  // Crossings are rounded to the doubles around 2^52, which are whole numbers: pieces move by up to
-  // half their distance from others, and cross anew.
+  // Crossings are rounded to the doubles around 2^52, which are whole numbers, or to the smallest
+  // doubles there are: pieces move by up to half their distance from others, and cross anew.
   Random random(41);
-  for (int round = 0; round < 30; ++round)
+  struct Numbers
   {
-    const double base = std::ldexp(1.0, 52);
-    Cloud cloud;
-    Lines lines;
-    for (int i = 0; i < 30; ++i)
+    double Base, Unit;
+  };
+  for (const Numbers& of : { Numbers{ 0x1p52, 1.0 }, Numbers{ 0.0, 0x1p-1074 } })
+  {
+    for (int round = 0; round < 30; ++round)
     {
-      cloud.Add(base + random.Below(60), base + random.Below(60));
-      lines.AddPoints({ { base + random.Below(60), base + random.Below(60), 0 },
-        { base + random.Below(60), base + random.Below(60), 0 } });
+      const auto any = [&]() { return of.Base + of.Unit * random.Below(round % 2 ? 60 : 16); };
+      Cloud cloud;
+      Lines lines;
+      for (int i = 0; i < 30; ++i)
+      {
+        const double x = any(), y = any(), ax = any(), ay = any(), bx = any(), by = any();
+        cloud.Add(x, y);
+        if (round % 2 || i % 4 == 0)
+        {
+          lines.AddPoints({ { ax, ay, 0.0 }, { bx, by, 0.0 } });
+        }
+      }
+      const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
+      ExpectRules(cloud, constrained);
     }
-    const ConstrainedTriangulation constrained = Triangulate(cloud, lines);
-    ExpectRules(cloud, constrained);
   }
 }
 
