@@ -291,10 +291,18 @@ def walls_actor(points, pairs, floor):
     return actor
 
 
+def patches_to_outline(surface):
+    """Which triangles are patches, or None: where most are, outlines would hide the surface."""
+    ids = surface.GetCellData().GetArray("HoleId")
+    flags = None if ids is None else vtk_to_numpy(ids) >= 0
+    return None if flags is None or 2 * numpy.count_nonzero(flags) > len(flags) else flags
+
+
 def draw(surface, path, title, subtitle, holes=None, **options):
     """Renders the surface into a PNG file; starts a virtual display where there is no screen.
 
-    surface   vtkPolyData with triangles; with a cell array HoleId, patches are outlined
+    surface   vtkPolyData with triangles; with a cell array HoleId, patches are outlined, unless most
+              triangles are patches
     holes     None, or the second output of vtkFillElevationHoles
     view      None, or (bearing, height) of the eye in degrees; height 90 looks straight down
     exaggeration  None, or the factor for z
@@ -339,12 +347,11 @@ def render(
     margin = 0.3 * (high - low) if is_cut else 0.0
     cut = (low - margin, high + margin) if is_cut else (-numpy.inf, numpy.inf)
     frame = Frame(middle, low, 1.0, cut, across, stretch)
-    patches = surface.GetCellData().GetArray("HoleId")
     cells = None
     progress(0.1)
     if len(triangles) > MOST_TRIANGLES:
         cells = Cells(real, frame.widen, used, (WIDTH - LEFT - RIGHT) / PIXELS_OF_CELL)
-    mesh = mesh_for_screen(triangles, None if patches is None else vtk_to_numpy(patches) >= 0, cells)
+    mesh = mesh_for_screen(triangles, patches_to_outline(surface), cells)
     progress(0.5)
     real = real[mesh.ids].astype("f8")
     exaggeration = exaggeration or choose_exaggeration(frame(real), mesh.triangles)

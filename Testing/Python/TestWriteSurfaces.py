@@ -211,6 +211,21 @@ class LargeSurfaces(unittest.TestCase):
 
         self.assertAlmostEqual(area(mesh.ids[mesh.triangles]), area(triangles), places=9)
 
+    def test_patches_that_are_most_of_a_surface_are_not_outlined(self):
+        from vtkelevationsurface import picture
+        from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+        for ids, expected in (
+            ([-1, -1, 0, 3], [False, False, True, True]), ([-1, 2, 0, 3], None), ([], None)
+        ):
+            surface = vtkPolyData()
+            if ids:
+                array = numpy_to_vtk(numpy.array(ids), deep=True)
+                array.SetName("HoleId")
+                surface.GetCellData().AddArray(array)
+            flags = picture.patches_to_outline(surface)
+            self.assertEqual(flags if flags is None else flags.tolist(), expected)
+
     def test_distances_are_those_to_all_triangles(self):
         random = numpy.random.default_rng(3)
         xyz = random.uniform(0, 100, (30000, 3))

@@ -39,7 +39,7 @@ namespace
 using namespace benchmark;
 
 constexpr int MaximumRepeats = 101;
-constexpr std::size_t MaximumCompetitors = 10;
+constexpr std::size_t MaximumCompetitors = 12;
 constexpr Index MostPointsOfVTK = 20000;
 
 // ---- options -----------------------------------------------------------------------------------
@@ -47,8 +47,9 @@ constexpr Index MostPointsOfVTK = 20000;
 const char* const Usage =
   R"(Usage: BenchmarkDelaunay [options]
 
-Times vtkGridDelaunay2D beside CGAL (where built with it) and vtkDelaunay2D on the same points, in
-one process and in turn, measures peak memory, and checks the results against each other.
+Times vtkGridDelaunay2D beside CGAL and delaunay32 (where built with them) and vtkDelaunay2D on the
+same points, in one process and in turn, measures peak memory, and checks the results against each
+other.
 
   --sets LIST       generated data sets, or "all"; default L,D,U where no file is named
   --points LIST     numbers of points of the generated sets; default 886639
@@ -66,6 +67,7 @@ one process and in turn, measures peak memory, and checks the results against ea
                     also times the kernel alone, without lattices, with no wider instructions of the
                     processor than scalar, avx2 or avx512
   --no-cgal         leaves CGAL out
+  --no-delaunay32   leaves delaunay32 out
   --vtk             runs vtkDelaunay2D on more than 20000 points too
   --no-vtk          leaves vtkDelaunay2D out
   --no-check        does not check the results
@@ -99,6 +101,7 @@ struct Options
   bool UseSearches = false;
   std::vector<std::string> Instructions;
   bool UseCGAL = true;
+  bool UseDelaunay32 = true;
   bool UseVTK = true;
   bool UseVTKAlways = false;
   bool Check = true;
@@ -207,6 +210,10 @@ bool ReadOptions(int argc, char* argv[], Options& options)
     else if (option == "--no-cgal")
     {
       options.UseCGAL = false;
+    }
+    else if (option == "--no-delaunay32")
+    {
+      options.UseDelaunay32 = false;
     }
     else if (option == "--vtk")
     {
@@ -322,6 +329,12 @@ Competitors MakeCompetitors(const Options& options)
   if (options.UseCGAL)
   {
     competitors.push_back(NewCGALDelaunay());
+  }
+#endif
+#if defined(ES_BENCHMARK_DELAUNAY32)
+  if (options.UseDelaunay32)
+  {
+    competitors.push_back(NewDelaunay32());
   }
 #endif
   if (options.UseVTK)

@@ -4,6 +4,8 @@
 // Times vtkFillElevationHoles on a large surface with many holes, beside CGAL and
 // vtkFillHolesFilter. See README.md.
 #include "Arguments.h"
+#include "ChildProcess.h"
+#include "PolyDataOf.h"
 #ifdef ES_BENCHMARK_CGAL
 #include "CGALFill.h"
 #endif
@@ -34,7 +36,8 @@ const char* const Usage = R"(Usage: BenchmarkFill [options]
 Times filling the holes of a surface, per inserted point: vtkFillElevationHoles by each method,
 CGAL's triangulate_refine_and_fair_hole, and vtkFillHolesFilter, which inserts no points. The holes
 are discs whose numbers of lost points are spread evenly by their logarithm. Filters are timed as a whole; of
-CGAL the filling alone.
+CGAL the filling alone. MB is the peak of memory of the first run above input and output, where it is
+measured.
 
   --holes N         holes; default 2000
   --least N         lost points of the smallest; default 20
@@ -254,22 +257,24 @@ vtkSmartPointer<vtkPolyData> MakeSurface(const Options& options, Index& lost)
   return surface;
 }
 
-struct Outcome
+struct Filling
 {
   double Seconds = 0.0;
   double Processor = 0.0;  ///< seconds
   vtkIdType Points = 0;    ///< inserted
   vtkIdType Triangles = 0; ///< inserted
   vtkIdType Open = 0;      ///< holes, where it is known
+  double Bytes = -1.0;     ///< peak of memory above input and output; -1: not known
 };
 
-void Measure(const char* name, int repeats, const std::function<Outcome()>& run, double& reference,
+void Measure(const char* name, int repeats, const std::function<Filling()>& run, double& reference,
   Figures& figures)
 {
-  Outcome best = run();
+  Filling best = run();
+  const double bytes = best.Bytes; // of a later run, less is known: memory is there
   for (int i = 1; i < repeats; ++i)
   {
-    const Outcome next = run();
+    const Filling next = run();
     best = next.Seconds < best.Seconds ? next : best;
   }
   figures.Add(name, best.Processor);
@@ -285,23 +290,30 @@ void Measure(const char* name, int repeats, const std::function<Outcome()>& run,
   {
     std::printf(" %9s %7s", "-", "-");
   }
-  std::printf(" %6.2f%s\n", 1e6 * best.Seconds / static_cast<double>(best.Triangles),
+  std::printf(" %6.2f %6.1f%s\n", 1e6 * best.Seconds / static_cast<double>(best.Triangles),
+    bytes / (bytes < 0.0 ? 1.0 : 1e6),
     best.Open > 0 ? ("  " + std::to_string(best.Open) + " holes left open").c_str() : "");
   std::fflush(stdout);
 }
 
-Outcome FillWithOurs(vtkPolyData* surface, int method, int threads)
+Filling FillWithOurs(vtkPolyData* surface, int method, int threads)
 {
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputData(surface);
   fill->SetInterpolation(method);
   fill->SetNumberOfThreads(threads);
+  TrimMemory();
+  const PeakMemory peak;
   const double processor = ProcessorSeconds();
   const auto start = std::chrono::steady_clock::now();
   fill->Update();
-  Outcome outcome;
+  Filling outcome;
   outcome.Processor = ProcessorSeconds() - processor;
   outcome.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (peak.Growth() >= 0.0)
+  {
+    outcome.Bytes = peak.Growth() - BytesOfOutputs(fill, surface);
+  }
   outcome.Points = fill->GetOutput()->GetNumberOfPoints() - surface->GetNumberOfPoints();
   outcome.Triangles = fill->GetOutput()->GetNumberOfPolys() - surface->GetNumberOfPolys();
   outcome.Open = fill->GetNumberOfHoles() - fill->GetNumberOfFilledHoles();
@@ -309,7 +321,7 @@ Outcome FillWithOurs(vtkPolyData* surface, int method, int threads)
 }
 
 /** Only holes up to a size, or it closes the outer border too. */
-Outcome FillWithVTK(vtkPolyData* surface, double size)
+Filling FillWithVTK(vtkPolyData* surface, double size)
 {
   vtkNew<vtkFillHolesFilter> fill;
   fill->SetInputData(surface);
@@ -317,7 +329,7 @@ Outcome FillWithVTK(vtkPolyData* surface, double size)
   const double processor = ProcessorSeconds();
   const auto start = std::chrono::steady_clock::now();
   fill->Update();
-  Outcome outcome;
+  Filling outcome;
   outcome.Processor = ProcessorSeconds() - processor;
   outcome.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.Points = fill->GetOutput()->GetNumberOfPoints() - surface->GetNumberOfPoints();
@@ -326,7 +338,7 @@ Outcome FillWithVTK(vtkPolyData* surface, double size)
 }
 
 #ifdef ES_BENCHMARK_CGAL
-Outcome FillByCGAL(vtkPolyData* surface, int longest)
+Filling FillByCGAL(vtkPolyData* surface, int longest)
 {
   Coordinates points;
   for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
@@ -346,7 +358,7 @@ Outcome FillByCGAL(vtkPolyData* surface, int longest)
   }
   const double processor = ProcessorSeconds();
   const TimedFill timed = TimeFillWithCGAL(points, triangles, longest);
-  Outcome outcome;
+  Filling outcome;
   outcome.Processor = ProcessorSeconds() - processor;
   outcome.Seconds = timed.Seconds;
   outcome.Points = timed.Points;
@@ -364,8 +376,8 @@ void Run(const Options& options)
     static_cast<long long>(surface->GetNumberOfPoints()),
     static_cast<long long>(surface->GetNumberOfPolys()), options.Holes, lost,
     options.Lattice ? "a lattice" : "points at random");
-  std::printf("%-34s %9s %10s %10s %9s %7s %6s\n", "", "s", "points", "triangles", "us/point",
-    "ratio", "us/tri");
+  std::printf("%-34s %9s %10s %10s %9s %7s %6s %6s\n", "", "s", "points", "triangles", "us/point",
+    "ratio", "us/tri", "MB");
   double reference = 0.0;
   Figures figures;
   bool isFilled = true;
@@ -382,7 +394,7 @@ void Run(const Options& options)
     Measure(
       method.Name, options.Repeats,
       [&]() {
-        const Outcome outcome = FillWithOurs(surface, method.Method, options.Threads);
+        const Filling outcome = FillWithOurs(surface, method.Method, options.Threads);
         isFilled = isFilled && outcome.Open == 0;
         return outcome;
       },

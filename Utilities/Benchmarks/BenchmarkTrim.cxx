@@ -29,7 +29,8 @@ const char* const Usage = R"(Usage: BenchmarkTrim [options]
 
 Times vtkTrimOutwardTriangles on the mesh that vtkGridDelaunay2D makes of the same points, in parts of
 the time that took: with a given boundary (a wavy coast with three lakes along edges of the mesh) and
-with the boundary that it extracts. All in one process and in turn; whole filters.
+with the boundary that it extracts. All in one process and in turn; whole filters. B/pt is the peak of
+memory of the first run above input and output, in bytes per point.
 
   --sets LIST       generated data sets, or "all"; default L,D,U
   --points LIST     numbers of points; default 1000000
@@ -195,6 +196,7 @@ struct Row
   const char* Name;
   std::vector<double> Milliseconds;
   std::vector<double> Processor{}; ///< seconds
+  double Bytes = -1.0;             ///< peak of memory above input and output; -1: not known
 };
 
 /** @return whether all is right */
@@ -213,12 +215,19 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
     for (std::size_t i = 0; i < rows.size(); ++i)
     {
       TrimMemory();
+      const PeakMemory peak;
       const double processor = ProcessorSeconds();
       const Clock::time_point start = Clock::now();
       const auto stop = [&]() {
         rows[i].Milliseconds.push_back(
           std::chrono::duration<double, std::milli>(Clock::now() - start).count());
         rows[i].Processor.push_back(ProcessorSeconds() - processor);
+      };
+      const auto measure = [&](vtkPolyDataAlgorithm* filter, vtkPolyData* input) {
+        if (round == 0 && peak.Growth() >= 0.0)
+        {
+          rows[i].Bytes = peak.Growth() - BytesOfOutputs(filter, input);
+        }
       };
       if (i == 0)
       {
@@ -228,6 +237,7 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
         filter->SetInputData(cloud);
         filter->Update();
         stop();
+        measure(filter, cloud);
         mesh = filter->GetOutput();
         if (!coast)
         {
@@ -244,6 +254,7 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
       }
       filter->Update();
       stop();
+      measure(filter, mesh);
       const vtkIdType kept = filter->GetOutput(0)->GetNumberOfPolys();
       const vtkIdType outward = filter->GetOutput(1)->GetNumberOfPolys();
       isRight = isRight && kept > 0 && kept + outward == mesh->GetNumberOfPolys();
@@ -264,6 +275,7 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
       isFirst ? std::to_string(count).c_str() : "",
       isFirst ? std::to_string(triangles).c_str() : "", row.Name, median, *ends.first, *ends.second,
       1e6 * median / triangles);
+    std::printf(" %7.0f", row.Bytes < 0.0 ? row.Bytes : row.Bytes / count);
     if (!isFirst)
     {
       std::printf(" %7.3f", median / Median(rows[0].Milliseconds));
@@ -285,8 +297,8 @@ int main(int argc, char* argv[])
       std::fputs(Usage, stdout);
       return 0;
     }
-    std::printf("%-10s %9s %9s  %-28s %8s %8s %8s %9s %7s\n", "data set", "points", "triangles",
-      "filter", "ms", "least", "greatest", "ns/tri.", "ratio");
+    std::printf("%-10s %9s %9s  %-28s %8s %8s %8s %9s %7s %7s\n", "data set", "points", "triangles",
+      "filter", "ms", "least", "greatest", "ns/tri.", "B/pt", "ratio");
     Figures figures;
     bool isRight = true;
     for (const Index count : options.Points)

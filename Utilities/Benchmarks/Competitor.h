@@ -86,6 +86,9 @@ std::unique_ptr<Competitor> NewVTKDelaunay();
 /** CGAL's Delaunay_triangulation_2; only where the benchmark was built with CGAL. */
 std::unique_ptr<Competitor> NewCGALDelaunay();
 
+/** delaunay32; only where the benchmark was built with it. */
+std::unique_ptr<Competitor> NewDelaunay32();
+
 } // namespace benchmark
 
 #endif

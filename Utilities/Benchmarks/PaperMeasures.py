@@ -20,6 +20,7 @@ CODES = {
     "- VoxelTraversal": "voxel_traversal",
     "- Compactness": "compactness",
     "CGAL": "cgal",
+    "delaunay32": "delaunay32",
     "vtkDelaunay2D": "vtk",
     "- one thread": "one_thread",
     "- 2 copies": "copies",
@@ -104,7 +105,7 @@ def triangulations(benchmark, cloud, folder, options):
             return json.load(stream)
 
     one = measured("--searches", "--vtk")
-    two = measured("--threads", "2", "--no-check", "--no-cgal", "--no-vtk")
+    two = measured("--threads", "2", "--no-check", "--no-cgal", "--no-delaunay32", "--no-vtk")
     threads = codes_of(two)
     return codes_of(one), {
         "one": threads["one_thread"], "two": threads["default"], "copies": threads.get("copies")
@@ -182,6 +183,15 @@ def package_version(name):
     return done.stdout if done.returncode == 0 else ""
 
 
+def commit():
+    """Of the code, or nothing."""
+    done = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], cwd=HERE, stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL, text=True, check=False,
+    ) if shutil.which("git") else None
+    return done.stdout.strip() if done and done.returncode == 0 else ""
+
+
 def machine():
     from vtkmodules.vtkCommonCore import vtkVersion
 
@@ -192,6 +202,7 @@ def machine():
         "vtk": vtkVersion.GetVTKVersion(),
         "meshlab": package_version("meshlab"),
         "date": datetime.date.today().isoformat(),
+        "commit": commit(),
     }
 
 

@@ -18,6 +18,7 @@ LOOKS = {
     "voxel_traversal": ("#0072b2", "s"),
     "compactness": ("#56b4e9", "D"),
     "cgal": ("#009e73", "^"),
+    "delaunay32": ("#f0c000", "<"),
     "vtk": ("#7f7f7f", "v"),
     "meshlab": ("#cc79a7", "P"),
 }
@@ -42,8 +43,9 @@ def lines(axes, measured, value, factor, with_paper):
                       label=named(NAMES[key], pairs))
         papers = paper_series(measured, key) if with_paper else []
         if papers:
-            axes.plot(*zip(*papers), color=colour, marker=marker, linewidth=1.2, linestyle="--",
-                      markerfacecolor="white", label=named(PAPER_NAMES[key], papers))
+            x, y = zip(*papers)
+            axes.plot(x, [factor * v for v in y], color=colour, marker=marker, linewidth=1.2,
+                      linestyle="--", markerfacecolor="white", label=named(PAPER_NAMES[key], papers))
 
 
 def plain_ticks(axis):
@@ -72,9 +74,10 @@ def save(figure, folder, name):
 
 def times(measured, folder):
     figure, axes = plt.subplots(figsize=(SIZE[0] + 2.4, SIZE[1]))
-    lines(axes, measured, "processor_seconds", 1.0, True)
-    dress(axes, "seconds", "Triangulation: time against points")
+    lines(axes, measured, "processor_seconds", 1e3, True)
+    dress(axes, "milliseconds", "Triangulation: time against points")
     axes.set_yscale("log")
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=9.5,
                 title="solid: here, one thread\ndashed: the paper, Core2Duo", alignment="left")
     save(figure, folder, "paper_times.png")
@@ -104,7 +107,9 @@ def threads(measured, folder):
         left.plot(x, runs[name], color=colour, marker=marker, label=words)
     dress(left, "milliseconds on the clock", "vtkGridDelaunay2D on threads")
     left.set_yscale("log")
-    plain_ticks(left.yaxis)
+    left.yaxis.set_major_locator(LogLocator(10, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)))
+    left.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+    left.yaxis.set_minor_formatter(NullFormatter())
     left.legend(frameon=False)
     gain = [one / two for one, two in zip(runs["one"], runs["two"])]
     right.plot(x, gain, color="#d55e00", marker="o", label="two threads")
