@@ -54,7 +54,7 @@ class Gaps(unittest.TestCase):
         return list(fates.values()), counts["wide"]
 
     def test_each_row_of_the_table_is_true(self):
-        plain, few = self.fates("neither")
+        plain, few = self.fates("no length")
         self.assertEqual(plain, ["bridged", "filled", "bridged", "open"])
         cut, many = self.fates("`--maximum-edge-length L`", maximum_edge_length=2.3)
         self.assertEqual(cut, ["filled", "filled", "open", "open"])

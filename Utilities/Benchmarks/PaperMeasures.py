@@ -20,7 +20,6 @@ CODES = {
     "- VoxelTraversal": "voxel_traversal",
     "- Compactness": "compactness",
     "CGAL": "cgal",
-    "delaunay32": "delaunay32",
     "vtkDelaunay2D": "vtk",
     "- one thread": "one_thread",
     "- 2 copies": "copies",
@@ -104,7 +103,7 @@ def triangulations(benchmark, cloud, folder, options):
         with open(path, encoding="utf-8") as stream:
             return json.load(stream)
 
-    one = measured("--searches", "--vtk")
+    one = measured("--searches", "--vtk", "--no-delaunay32")
     two = measured("--threads", "2", "--no-check", "--no-cgal", "--no-delaunay32", "--no-vtk")
     threads = codes_of(two)
     return codes_of(one), {

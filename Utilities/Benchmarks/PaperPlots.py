@@ -18,7 +18,6 @@ LOOKS = {
     "voxel_traversal": ("#0072b2", "s"),
     "compactness": ("#56b4e9", "D"),
     "cgal": ("#009e73", "^"),
-    "delaunay32": ("#f0c000", "<"),
     "vtk": ("#7f7f7f", "v"),
     "meshlab": ("#cc79a7", "P"),
 }

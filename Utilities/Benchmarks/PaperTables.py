@@ -23,7 +23,6 @@ NAMES = {
     "voxel_traversal": "VoxelTraversal",
     "compactness": "Compactness",
     "cgal": "CGAL",
-    "delaunay32": "delaunay32",
     "vtk": "vtkDelaunay2D",
     "meshlab": "MeshLab BP",
 }
@@ -103,7 +102,7 @@ def cell(codes, key, value, factor=1, digits=3):
 def machine_table(measured):
     machine, options = measured["machine"], measured["options"]
     versions = {one.get("name", "") for c in measured["clouds"] for one in c["codes"].values()}
-    peers = sorted(name for name in versions if name.startswith(("CGAL", "delaunay32")))
+    peers = sorted(name for name in versions if name.startswith("CGAL"))
     shares = [one["seconds"] / one["processor_seconds"]
               for cloud in measured["clouds"] for key, one in cloud["codes"].items()
               if one.get("processor_seconds") and key != "meshlab"]
