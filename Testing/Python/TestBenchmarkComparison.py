@@ -60,6 +60,11 @@ class Comparison(unittest.TestCase):
     def test_a_difference_of_a_few_percent_is_none(self):
         self.assertEqual(verdicts({"a": [1.04, 1.041]}, {"a": [1.0, 1.001]}), {"a": "same"})
 
+    def test_memory_comes_in_pages(self):
+        old = {"memory, a": [1.0, 1.01], "memory, b": [1.0, 1.01]}
+        new = {"memory, a": [1.15, 1.16], "memory, b": [1.3, 1.31]}
+        self.assertEqual(verdicts(new, old), {"memory, a": "same", "memory, b": "worse"})
+
     def test_exit_codes(self):
         old = run({"a": [1.0, 1.1], "b": [1.0, 1.1]})
         self.assertEqual(exit_code(old, old)[0], 0)
