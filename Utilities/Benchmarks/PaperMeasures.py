@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 import PaperClouds
+import ThisMachine
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 # The codes of BenchmarkDelaunay by the beginnings of their names.
@@ -160,17 +161,6 @@ class MeshLab:
 # ---- all ----------------------------------------------------------------------------------------
 
 
-def cpu_name():
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as stream:
-            for line in stream:
-                if line.startswith("model name"):
-                    return line.split(":", 1)[1].strip()
-    except OSError:
-        pass
-    return platform.processor() or platform.machine()
-
-
 def package_version(name):
     """What Debian says, or nothing."""
     if not shutil.which("dpkg-query"):
@@ -182,26 +172,17 @@ def package_version(name):
     return done.stdout if done.returncode == 0 else ""
 
 
-def commit():
-    """Of the code, or nothing."""
-    done = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], cwd=HERE, stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL, text=True, check=False,
-    ) if shutil.which("git") else None
-    return done.stdout.strip() if done and done.returncode == 0 else ""
-
-
 def machine():
     from vtkmodules.vtkCommonCore import vtkVersion
 
     return {
-        "processor": cpu_name(),
+        "processor": ThisMachine.processor(),
         "cores": os.cpu_count(),
         "system": f"{platform.system()} {platform.machine()}",
         "vtk": vtkVersion.GetVTKVersion(),
         "meshlab": package_version("meshlab"),
         "date": datetime.date.today().isoformat(),
-        "commit": commit(),
+        "commit": ThisMachine.commit(),
     }
 
 

@@ -47,10 +47,14 @@ def lines(axes, measured, value, factor, with_paper):
                       linestyle="--", markerfacecolor="white", label=named(PAPER_NAMES[key], papers))
 
 
-def plain_ticks(axis):
+# 20,000, but 1.5
+PLAIN = FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 10 else f"{value:g}")
+
+
+def plain_ticks(axis, *, steps=(1.0, 2.0, 5.0)):
     """Of an axis with less than two powers of ten: 20,000, 50,000, ..."""
-    axis.set_major_locator(LogLocator(10, (1.0, 2.0, 5.0)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}" if value >= 1 else f"{value:g}"))
+    axis.set_major_locator(LogLocator(10, steps))
+    axis.set_major_formatter(PLAIN)
     axis.set_minor_formatter(NullFormatter())
 
 
@@ -76,7 +80,7 @@ def times(measured, folder):
     lines(axes, measured, "processor_seconds", 1e3, True)
     dress(axes, "milliseconds", "Triangulation: time against points")
     axes.set_yscale("log")
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+    axes.yaxis.set_major_formatter(PLAIN)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=9.5,
                 title="solid: here, one thread\ndashed: the paper, Core2Duo", alignment="left")
     save(figure, folder, "paper_times.png")
@@ -106,9 +110,7 @@ def threads(measured, folder):
         left.plot(x, runs[name], color=colour, marker=marker, label=words)
     dress(left, "milliseconds on the clock", "vtkGridDelaunay2D on threads")
     left.set_yscale("log")
-    left.yaxis.set_major_locator(LogLocator(10, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0)))
-    left.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
-    left.yaxis.set_minor_formatter(NullFormatter())
+    plain_ticks(left.yaxis, steps=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
     left.legend(frameon=False)
     gain = [one / two for one, two in zip(runs["one"], runs["two"])]
     right.plot(x, gain, color="#d55e00", marker="o", label="two threads")

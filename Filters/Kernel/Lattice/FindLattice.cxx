@@ -21,7 +21,6 @@ constexpr Index FewestPoints = 6;      // fewer fit some lattice by chance
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
 constexpr std::size_t Vectors = 128;   // shortest of their differences
 constexpr double SampleSize = 1024.0;
-constexpr double WideSampleSize = 16384.0; // in which the fullest place is looked for
 // A remainder below so many steps counts as zero; tried in turn. A small value suits exact
 // coordinates at large multiples of the steps; rounded coordinates need a large one.
 constexpr std::array<double, 3> ZeroTolerances{ 0.02, 0.06, 0.15 };
@@ -237,6 +236,15 @@ std::uint64_t HashOf(const Point2& p)
   a = (a ^ (a >> 32)) * 0x9e3779b97f4a7c15u + b;
   a = (a ^ (a >> 29)) * 0xbf58476d1ce4e5b9u;
   return (a ^ (a >> 32)) & 0xffffffffu;
+}
+
+/**
+ * In how many points the fullest place is looked for. A share of a small cloud, since the search would
+ * take longer than its triangulation; not fewer than those that are fitted, which are some of them.
+ */
+double WideSampleSize(double count)
+{
+  return std::min(std::max(SampleSize, count / 16.0), 16384.0);
 }
 
 /** Points with a hash below this limit are a sample of about @a size, whatever their order. */
@@ -747,7 +755,7 @@ LatticeSample SampleForLattice(const PointView& points, double countOfAll, int t
 {
   Picked picked(NumberOfRanges(points.Count));
   std::vector<PlaceSet> sets(picked.size());
-  const std::uint64_t limit = HashLimit(WideSampleSize, countOfAll);
+  const std::uint64_t limit = HashLimit(WideSampleSize(countOfAll), countOfAll);
   Extent extent =
     FindExtent(points, threads, Part(progress, 0.0, 0.9), [&](Index piece, const Point2& p) {
       if (HashOf(p) < limit)

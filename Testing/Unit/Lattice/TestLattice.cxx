@@ -495,6 +495,20 @@ TEST(Lattice, IsFoundAndPlacedTheSameByAnyNumberOfThreads)
   ExpectPlaced(cloud, distinct, static_cast<std::size_t>(distinct / 3 + 999) / 1000, random);
 }
 
+TEST(Lattice, IsLookedForInAShareOfTheCloudNotFewerThanAreFitted)
+{
+  std::mt19937_64 random(58);
+  for (const auto& [count, sampled] : std::map<Index, double>{
+         { 500, 500.0 }, { 4000, 1024.0 }, { 40000, 2500.0 }, { 600000, 16384.0 } })
+  {
+    const Cloud cloud = RandomCloud(random, count);
+    std::vector<Index> notFinite;
+    const LatticeSample sample = SampleForLattice(cloud.View(), count, 1, Progress(), notFinite);
+    const double chance = 5.0 * std::sqrt(sampled); // five standard deviations
+    EXPECT_NEAR(static_cast<double>(sample.Points.size()), sampled, count > 500 ? chance : 0.0);
+  }
+}
+
 TEST(Lattice, IsPlacedWhereMostPointsAreOnFewNodes)
 {
   std::mt19937_64 random(56);
