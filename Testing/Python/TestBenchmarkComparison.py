@@ -8,14 +8,18 @@ import importlib.util
 import io
 import json
 import os
+import subprocess
 import sys
+import tempfile
 import unittest
+from unittest import mock
 
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../Utilities/Benchmarks")
 
 
 def load():
     path = os.path.join(FOLDER, "run-all")
+    sys.path.insert(0, FOLDER)
     sys.dont_write_bytecode = True  # beside the sources
     loader = importlib.machinery.SourceFileLoader("run_all", path)
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("run_all", loader))
@@ -114,7 +118,6 @@ class Ratios(unittest.TestCase):
         ratios = RUN_ALL.ratios_of("BenchmarkSimplify", written)
         self.assertEqual(ratios, {"few of random, 10 %, 1 threads": 0.5})
 
-
     def test_of_errors_are_parts_of_a_linear_patch_over_all_holes(self):
         rows = [
             {"surface": "dome", "method": method, "covered": covered, "squares": squares}
@@ -134,13 +137,57 @@ class Ratios(unittest.TestCase):
         ):
             self.assertEqual(RUN_ALL.ratios_of(program, written), expected)
 
-    def test_a_program_of_python_is_left_out_where_the_package_is_missing(self):
-        environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-        environment["PYTHONNOUSERSITE"] = "1"
-        self.assertIsNone(RUN_ALL.why_left_out("BenchmarkTrim", environment))
-        environment["PYTHONPATH"] = FOLDER  # where a package of this name is not
-        why = RUN_ALL.why_left_out("benchmark-pieces", {**environment, "PYTHONHOME": FOLDER})
-        self.assertIn("vtkelevationsurface is not there", why)
+
+class Programs(unittest.TestCase):
+    def test_a_script_is_left_out_where_a_module_is_missing_and_python_says_which(self):
+        environment = {**os.environ, "PYTHONPATH": ""}
+        with mock.patch.dict(RUN_ALL.SCRIPTS, {"benchmark-pieces": ("os", "no_such_module")}):
+            why = RUN_ALL.why_left_out("benchmark-pieces", sys.executable, environment)
+            self.assertIsNone(RUN_ALL.why_left_out("BenchmarkTrim", sys.executable, environment))
+        self.assertIn(sys.executable, why)
+        self.assertIn("No module named 'no_such_module'", why)
+
+    def test_scripts_run_in_the_python_of_the_build_and_with_its_package(self):
+        with tempfile.TemporaryDirectory() as build:
+            programs = os.path.join(build, "bin")
+            package = os.path.join(build, "lib", "python3", "dist-packages")
+            os.mkdir(programs)
+            self.assertEqual(RUN_ALL.python_of(programs), sys.executable)
+            with open(os.path.join(build, "CMakeCache.txt"), "w", encoding="utf-8") as stream:
+                stream.write("Python3_EXECUTABLE:FILEPATH=/of/the/build\n")
+            self.assertEqual(RUN_ALL.python_of(programs), "/of/the/build")
+            os.makedirs(os.path.join(package, "vtkelevationsurface"))
+            with mock.patch.dict(os.environ, {"PYTHONPATH": "relative"}):
+                found = RUN_ALL.environment_of(os.path.relpath(programs))["PYTHONPATH"]
+            self.assertEqual(found.split(os.pathsep), [package, os.path.abspath("relative")])
+
+    def run_script(self, name, *options):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "figures.json")
+            subprocess.run(
+                [sys.executable, os.path.join(FOLDER, name), *options, "--json", path],
+                check=True, cwd=folder, stdout=subprocess.DEVNULL,
+                env=RUN_ALL.ProgramRun.with_absolute_paths(os.environ),
+            )
+            with open(path, encoding="utf-8") as stream:
+                return json.load(stream)
+
+    def test_pieces_and_memory_are_told_by_the_processor_time_of_the_whole_program(self):
+        begun = os.times()
+        rows = self.run_script(
+            "benchmark-pieces", "random", "--points", "20000", "--pieces", "2")
+        ended = os.times()
+        self.assertEqual(list(rows), ["in memory", "in pieces, random, 20,000 points"])
+        # To start takes most of it, and the script itself does little.
+        all_seconds = sum(ended[2:4]) - sum(begun[2:4])
+        self.assertGreater(sum(rows.values()), 0.4 * all_seconds)
+        self.assertLess(sum(rows.values()), all_seconds)
+
+    def test_the_program_is_told_beside_loadtxt_with_options_of_its_own(self):
+        rows = self.run_script(
+            "benchmark-reconstruct", "--points", "1000", "--no-picture", "--threads", "2")
+        self.assertEqual(list(rows), ["numpy.loadtxt", "the program, 1,000 points of text"])
+        self.assertTrue(all(seconds > 0.0 for seconds in rows.values()))
 
 
 class Stored(unittest.TestCase):
