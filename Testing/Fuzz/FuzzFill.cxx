@@ -145,16 +145,15 @@ void RequirePoints(const Surface& surface, const Holes& holes, Index hole, const
     return std::isfinite(value) && std::fabs(value) < 1e100;
   });
   const Interpolation method = filled.Reports[hole].Method;
+  // Adaptive mixes methods, and tells the one with the largest share: its Membrane may be a mixture.
+  const bool isMean = method == Interpolation::NeighborMean ||
+    (method == Interpolation::Membrane && options.Method != Interpolation::Adaptive);
   for (Index i = begin; i < end; ++i)
   {
     const double* p = filled.Points.data() + 3 * static_cast<std::size_t>(i);
     Require(std::isfinite(p[0]) && std::isfinite(p[1]), "new points are finite");
     Require(!allFinite || std::isfinite(p[2]), "elevations are finite on a surface that is");
-    // Adaptive mixes; it tells the method with the largest share.
-    const bool isMixed =
-      options.Method == Interpolation::Adaptive && method != Interpolation::NeighborMean;
-    if (areFinite && !isMixed &&
-      (method == Interpolation::Membrane || method == Interpolation::NeighborMean))
+    if (areFinite && isMean)
     {
       const double room = 1e-9 * std::max(std::fabs(least), std::fabs(most));
       Require(p[2] >= least - room && p[2] <= most + room, "means are within the boundary's range");

@@ -9,12 +9,19 @@
 
 #include "Competitor.h"
 
+#include "vtkAbstractArray.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h"
+
+#include <set>
 
 namespace benchmark
 {
@@ -33,20 +40,43 @@ inline vtkSmartPointer<vtkPolyData> PolyDataOf(const Coordinates& coordinates)
   return cloud;
 }
 
-/** Bytes of all outputs of a filter, without what they share with its input. */
+/** Bytes of all outputs of a filter, each array once, without those that are its input's. */
 inline double BytesOfOutputs(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 {
-  unsigned long kibibytes = 0;
+  std::set<vtkAbstractArray*> counted;
+  double bytes = 0.0;
+  const auto count = [&](vtkAbstractArray* array, bool counts) {
+    if (array && counted.insert(array).second && counts)
+    {
+      bytes += 1024.0 * static_cast<double>(array->GetActualMemorySize());
+    }
+  };
+  const auto countAll = [&](vtkPolyData* data, bool counts) {
+    if (data->GetPoints())
+    {
+      count(data->GetPoints()->GetData(), counts);
+    }
+    for (vtkCellArray* const cells :
+      { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
+    {
+      count(cells->GetOffsetsArray(), counts);
+      count(cells->GetConnectivityArray(), counts);
+    }
+    for (vtkFieldData* const fields : { static_cast<vtkFieldData*>(data->GetPointData()),
+           static_cast<vtkFieldData*>(data->GetCellData()), data->GetFieldData() })
+    {
+      for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
+      {
+        count(fields->GetAbstractArray(i), counts);
+      }
+    }
+  };
+  countAll(input, false);
   for (int port = 0; port < filter->GetNumberOfOutputPorts(); ++port)
   {
-    vtkPolyData* const output = filter->GetOutput(port);
-    kibibytes += output->GetActualMemorySize();
-    if (output->GetPoints() && output->GetPoints() == input->GetPoints())
-    {
-      kibibytes -= output->GetPoints()->GetActualMemorySize();
-    }
+    countAll(filter->GetOutput(port), true);
   }
-  return 1024.0 * static_cast<double>(kibibytes);
+  return bytes;
 }
 
 } // namespace benchmark
