@@ -21,6 +21,7 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -312,7 +313,7 @@ Filling FillWithOurs(vtkPolyData* surface, int method, int threads)
   outcome.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (peak.Growth() >= 0.0)
   {
-    outcome.Bytes = peak.Growth() - BytesOfOutputs(fill, surface);
+    outcome.Bytes = std::max(0.0, peak.Growth() - BytesOfOutputs(fill, surface));
   }
   outcome.Points = fill->GetOutput()->GetNumberOfPoints() - surface->GetNumberOfPoints();
   outcome.Triangles = fill->GetOutput()->GetNumberOfPolys() - surface->GetNumberOfPolys();

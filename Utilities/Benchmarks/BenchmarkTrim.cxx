@@ -16,6 +16,7 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -226,7 +227,7 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
       const auto measure = [&](vtkPolyDataAlgorithm* filter, vtkPolyData* input) {
         if (round == 0 && peak.Growth() >= 0.0)
         {
-          rows[i].Bytes = peak.Growth() - BytesOfOutputs(filter, input);
+          rows[i].Bytes = std::max(0.0, peak.Growth() - BytesOfOutputs(filter, input));
         }
       };
       if (i == 0)

@@ -40,7 +40,7 @@ inline vtkSmartPointer<vtkPolyData> PolyDataOf(const Coordinates& coordinates)
   return cloud;
 }
 
-/** Bytes of all outputs of a filter, each array once, without those that are its input's. */
+/** Bytes of the values of all outputs of a filter, each array once, without the input's arrays. */
 inline double BytesOfOutputs(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 {
   std::set<vtkAbstractArray*> counted;
@@ -48,7 +48,7 @@ inline double BytesOfOutputs(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
   const auto count = [&](vtkAbstractArray* array, bool counts) {
     if (array && counted.insert(array).second && counts)
     {
-      bytes += 1024.0 * static_cast<double>(array->GetActualMemorySize());
+      bytes += static_cast<double>(array->GetNumberOfValues()) * array->GetDataTypeSize();
     }
   };
   const auto countAll = [&](vtkPolyData* data, bool counts) {
