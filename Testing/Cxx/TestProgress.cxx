@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// On many points, the progress of the three filters rises in small steps, without long silences, and
-// an abort stops soon, wherever it comes, and leaves nothing. An abort is noticed at the next report,
-// so it takes at most a silence and a stop: half a second. On one thread, and in the time of its
-// processor, so that the claims hold on a machine that has other work to do. A filter reports every
-// 30 ms in places, so a step that takes no longer than that may be large: nobody sees it.
+// On many points, the progress of the three filters rises in small steps, without long silences,
+// and an abort stops soon, wherever it comes, and leaves nothing. An abort is noticed at the next
+// report, so it takes at most a silence and a stop: half a second. On one thread, and in the time of
+// its processor, so that the claims hold on a machine that has other work to do. A filter reports
+// every 30 ms in places, so a step that takes no longer may be large: nobody sees it.
 #include "Check.h"
 
 #include "vtkCallbackCommand.h"

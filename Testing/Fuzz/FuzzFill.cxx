@@ -145,7 +145,7 @@ void RequirePoints(const Surface& surface, const Holes& holes, Index hole, const
     return std::isfinite(value) && std::fabs(value) < 1e100;
   });
   const Interpolation method = filled.Reports[hole].Method;
-  // Adaptive mixes methods, and tells the one with the largest share: its Membrane may be a mixture.
+  // Adaptive mixes methods, and tells the one with the largest share: it may not be all Membrane.
   const bool isMean = method == Interpolation::NeighborMean ||
     (method == Interpolation::Membrane && options.Method != Interpolation::Adaptive);
   for (Index i = begin; i < end; ++i)

@@ -154,8 +154,11 @@ class Programs(unittest.TestCase):
             os.mkdir(programs)
             self.assertEqual(RUN_ALL.python_of(programs), sys.executable)
             with open(os.path.join(build, "CMakeCache.txt"), "w", encoding="utf-8") as stream:
-                stream.write("Python3_EXECUTABLE:FILEPATH=/of/the/build\n")
-            self.assertEqual(RUN_ALL.python_of(programs), "/of/the/build")
+                stream.write("Python3_EXECUTABLE:FILEPATH=/bin/sh\n")
+            self.assertEqual(RUN_ALL.python_of(programs), "/bin/sh")
+            with open(os.path.join(build, "CMakeCache.txt"), "w", encoding="utf-8") as stream:
+                stream.write("Python3_EXECUTABLE:FILEPATH=/no/such/python\n")
+            self.assertEqual(RUN_ALL.python_of(programs), sys.executable)
             os.makedirs(os.path.join(package, "vtkelevationsurface"))
             with mock.patch.dict(os.environ, {"PYTHONPATH": "relative"}):
                 found = RUN_ALL.environment_of(os.path.relpath(programs))["PYTHONPATH"]

@@ -15,8 +15,8 @@ using benchmark::Index;
 
 /**
  * delaunay32 takes points of 32-bit integers. Whole coordinates that span no more than it takes are
- * given to it but for an offset. Others are rounded to a square grid of as many steps as it takes, so
- * that what it triangulates are other points. Making the integers is not timed.
+ * moved to begin at 0. Others are rounded to a square grid of as many steps as it takes: what it
+ * triangulates then are other points. Making the integers is not timed.
  */
 class Delaunay32 : public benchmark::Competitor
 {

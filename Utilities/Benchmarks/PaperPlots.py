@@ -80,6 +80,7 @@ def times(measured, folder):
     lines(axes, measured, "processor_seconds", 1e3, True)
     dress(axes, "milliseconds", "Triangulation: time against points")
     axes.set_yscale("log")
+    axes.set_ylim(bottom=1.0)
     axes.yaxis.set_major_formatter(PLAIN)
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=9.5,
                 title="solid: here, one thread\ndashed: the paper, Core2Duo", alignment="left")
@@ -112,6 +113,8 @@ def threads(measured, folder):
     left.set_yscale("log")
     plain_ticks(left.yaxis, steps=(1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0))
     left.legend(frameon=False)
+    for axes in (left, right):
+        axes.tick_params(axis="x", labelsize=9)
     gain = [one / two for one, two in zip(runs["one"], runs["two"])]
     right.plot(x, gain, color="#d55e00", marker="o", label="two threads")
     copies = [cloud["threads"]["copies"] for cloud in clouds]

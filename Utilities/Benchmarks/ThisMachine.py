@@ -19,8 +19,8 @@ def commit():
     """Of the code, with -dirty where it was changed since; empty without Git."""
     try:
         done = subprocess.run(
-            ["git", "describe", "--always", "--dirty", "--exclude=*"], capture_output=True, text=True,
-            check=True, cwd=os.path.dirname(os.path.abspath(__file__)),
+            ["git", "describe", "--always", "--dirty", "--exclude=*"], check=True,
+            capture_output=True, text=True, cwd=os.path.dirname(os.path.abspath(__file__)),
         )
     except (OSError, subprocess.CalledProcessError):
         return ""

@@ -239,8 +239,8 @@ std::uint64_t HashOf(const Point2& p)
 }
 
 /**
- * In how many points the fullest place is looked for. A share of a small cloud, since the search would
- * take longer than its triangulation; not fewer than those that are fitted, which are some of them.
+ * In how many points the fullest place is looked for: a share of a small cloud, since the search
+ * would take longer than its triangulation. Not fewer than are fitted, which are some of them.
  */
 double WideSampleSize(double count)
 {
