@@ -20,6 +20,7 @@ namespace
 constexpr Index FewestPoints = 6;      // fewer fit some lattice by chance
 constexpr std::size_t Neighbors = 128; // points whose differences begin the search
 constexpr std::size_t Vectors = 128;   // shortest of their differences
+constexpr std::size_t Crowd = 32;      // of the sample, in a place that is cut no further
 constexpr double SampleSize = 1024.0;
 // A remainder below so many steps counts as zero; tried in turn. A small value suits exact
 // coordinates at large multiples of the steps; rounded coordinates need a large one.
@@ -244,7 +245,7 @@ std::uint64_t HashOf(const Point2& p)
  */
 double WideSampleSize(double count)
 {
-  return std::min(std::max(SampleSize, count / 16.0), 16384.0);
+  return std::min(std::max(SampleSize, count / 16.0), 4096.0);
 }
 
 /** Points with a hash below this limit are a sample of about @a size, whatever their order. */
@@ -778,7 +779,7 @@ Box FullestPlace(const LatticeSample& ofAll)
 {
   Box place = ofAll;
   std::vector<Point2> crowd = ofAll.Points;
-  for (int depth = 0; depth < 64 && crowd.size() > Neighbors; ++depth)
+  for (int depth = 0; depth < 64 && crowd.size() > Crowd; ++depth)
   {
     const double here = ofAll.Count * (crowd.size() / static_cast<double>(ofAll.Points.size()));
     const double cells = std::sqrt(here / static_cast<double>(Neighbors));

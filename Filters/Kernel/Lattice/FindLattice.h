@@ -19,7 +19,7 @@
  * Each pass depends on the set of points alone, not on their order. Nodes.h checks every point.
  *
  * Cost: two linear passes over the coordinates, on several threads, and sorting a sample of one
- * point in 16 (1,024 at least, 16,384 at most).
+ * point in 16 (1,024 at least, 4,096 at most).
  */
 #ifndef elevation_Lattice_FindLattice_h
 #define elevation_Lattice_FindLattice_h

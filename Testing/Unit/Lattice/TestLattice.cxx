@@ -499,7 +499,7 @@ TEST(Lattice, IsLookedForInAShareOfTheCloudNotFewerThanAreFitted)
 {
   std::mt19937_64 random(58);
   for (const auto& [count, sampled] : std::map<Index, double>{
-         { 500, 500.0 }, { 4000, 1024.0 }, { 40000, 2500.0 }, { 600000, 16384.0 } })
+         { 500, 500.0 }, { 4000, 1024.0 }, { 40000, 2500.0 }, { 600000, 4096.0 } })
   {
     const Cloud cloud = RandomCloud(random, count);
     std::vector<Index> notFinite;
