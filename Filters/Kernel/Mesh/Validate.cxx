@@ -226,6 +226,23 @@ std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options)
 
 namespace
 {
+/** Above the distance of a point on an edge from it: its triangles may be too thin for a plane. */
+long double BoundOfDistanceFromEdge(const PointView& points, Index from, Index to, Index point)
+{
+  const Point2 a = points.At(from), b = points.At(to), p = points.At(point);
+  const long double x = static_cast<long double>(b.X) - a.X,
+                    y = static_cast<long double>(b.Y) - a.Y;
+  const bool isAlongX = std::fabs(x) > std::fabs(y);
+  const long double share = isAlongX ? (static_cast<long double>(p.X) - a.X) / x
+                                     : (static_cast<long double>(p.Y) - a.Y) / y;
+  const long double down =
+    points.Elevation(from) - static_cast<long double>(points.Elevation(point));
+  const long double along =
+    share * (static_cast<long double>(points.Elevation(to)) - points.Elevation(from));
+  constexpr long double unit = 16.0L * std::numeric_limits<long double>::epsilon();
+  return std::fabs(down + along) + unit * (std::fabs(down) + std::fabs(along));
+}
+
 /**
  * Above the vertical distance of a point from the plane of a triangle. In long double: where that is no
  * wider than double, there is no bound, infinity or not a number, for the largest and smallest coordinates.
@@ -300,6 +317,12 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
       {
         isCovered = true;
         isNear = isNear || BoundOfDistance(points, c, point) <= most;
+        for (int k = 0; k < 3 && !isNear; ++k)
+        {
+          const Index from = c[k], to = c[(k + 1) % 3];
+          isNear = Orientation(mesh.PointOf(from), mesh.PointOf(to), p) == Zero &&
+            BoundOfDistanceFromEdge(points, from, to, point) <= most;
+        }
       }
     };
     grid.Visit(p, [&](Index t) { look(t, 0.0); });

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -236,7 +237,9 @@ private:
       if (kept > 0 && this->Pieces[kept - 1].A == piece.A && this->Pieces[kept - 1].B == piece.B)
       {
         SegmentPiece& same = this->Pieces[kept - 1];
-        same.Count += piece.Count;
+        // Where pieces run to and fro, each round may double it. Crossings are counted in the first
+        // round, in which it is not above the number of segments.
+        same.Count += std::min(piece.Count, std::numeric_limits<Index>::max() - same.Count);
         same.Unit = { std::max(same.Unit.X, piece.Unit.X), std::max(same.Unit.Y, piece.Unit.Y) };
       }
       else

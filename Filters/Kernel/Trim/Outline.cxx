@@ -54,11 +54,14 @@ enum Flag : char
   Sliver = 3 ///< while DropSlivers() runs
 };
 
-/** In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1. */
+/**
+ * In whole numbers, so that a sum does not depend on the order. Shares above 1 count as 1, and those
+ * below 0, of needles whose area rounding has turned, as 0.
+ */
 constexpr std::int64_t Whole = std::int64_t(1) << 30;
 std::int64_t ToWhole(double share)
 {
-  return static_cast<std::int64_t>(std::min(1.0, share) * static_cast<double>(Whole));
+  return static_cast<std::int64_t>(std::max(0.0, std::min(1.0, share)) * static_cast<double>(Whole));
 }
 
 /** What is known of connected triangles that are not surface. */
