@@ -392,7 +392,8 @@ void RequireTrimmed(const Surface& surface, const std::vector<Point2>& points, c
     largest = std::max({ largest, std::fabs(points[id].X), std::fabs(points[id].Y) });
   }
   // A vertex of the border may move by some units in the last place, into what is thinner than that.
-  const bool isThick = LeastHeight(surface.Triangles) > 64.0 * 0x1p-53 * largest;
+  const double height = LeastHeight(surface.Triangles);
+  const bool isThick = height > 64.0 * 0x1p-53 * largest;
   RequireNone(SurfaceFindings(mesh, isThick), "trimmed, with what is outward");
   Require(trimmed.IsOutward.size() == static_cast<std::size_t>(mesh.NumberOfTriangles()),
     "every triangle has a flag");
@@ -407,7 +408,9 @@ void RequireTrimmed(const Surface& surface, const std::vector<Point2>& points, c
     return;
   }
   const double rounding = 1e-13 * largest;
-  RequireInsertedFits(surface, trimmed, isThick ? rounding : surface.Largest);
+  // Weights are shares of a triangle's area, which is the less exact the thinner it is.
+  const double ofAreas = 16.0 * 0x1p-53 * largest * largest / height;
+  RequireInsertedFits(surface, trimmed, isThick ? std::max(rounding, ofAreas) : surface.Largest);
   RequireInside(trimmed, points, rings, rounding, options.Test == OutwardTest::Exact);
   Require(std::fabs(AreaOf(mesh) - AreaOf(surface.Triangles)) <=
       rounding * surface.Largest * mesh.NumberOfTriangles(),
