@@ -153,12 +153,10 @@ class Programs(unittest.TestCase):
             package = os.path.join(build, "lib", "python3", "dist-packages")
             os.mkdir(programs)
             self.assertEqual(RUN_ALL.python_of(programs), sys.executable)
-            with open(os.path.join(build, "CMakeCache.txt"), "w", encoding="utf-8") as stream:
-                stream.write("Python3_EXECUTABLE:FILEPATH=/bin/sh\n")
-            self.assertEqual(RUN_ALL.python_of(programs), "/bin/sh")
-            with open(os.path.join(build, "CMakeCache.txt"), "w", encoding="utf-8") as stream:
-                stream.write("Python3_EXECUTABLE:FILEPATH=/no/such/python\n")
-            self.assertEqual(RUN_ALL.python_of(programs), sys.executable)
+            for given, taken in ("/bin/sh", "/bin/sh"), ("/no/such/python", sys.executable):
+                with open(os.path.join(build, "CMakeCache.txt"), "w", encoding="utf-8") as stream:
+                    stream.write(f"Python3_EXECUTABLE:FILEPATH={given}\n")
+                self.assertEqual(RUN_ALL.python_of(programs), taken)
             os.makedirs(os.path.join(package, "vtkelevationsurface"))
             with mock.patch.dict(os.environ, {"PYTHONPATH": "relative"}):
                 found = RUN_ALL.environment_of(os.path.relpath(programs))["PYTHONPATH"]

@@ -311,10 +311,7 @@ Filling FillWithOurs(vtkPolyData* surface, int method, int threads)
   Filling outcome;
   outcome.Processor = ProcessorSeconds() - processor;
   outcome.Seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (peak.Growth() >= 0.0)
-  {
-    outcome.Bytes = std::max(0.0, peak.Growth() - BytesOfOutputs(fill, surface));
-  }
+  outcome.Bytes = BytesAboveOutputs(peak, fill, surface);
   outcome.Points = fill->GetOutput()->GetNumberOfPoints() - surface->GetNumberOfPoints();
   outcome.Triangles = fill->GetOutput()->GetNumberOfPolys() - surface->GetNumberOfPolys();
   outcome.Open = fill->GetNumberOfHoles() - fill->GetNumberOfFilledHoles();

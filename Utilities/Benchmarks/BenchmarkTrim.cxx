@@ -225,9 +225,9 @@ bool Measure(const std::string& set, Index count, const Coordinates& coordinates
         rows[i].Processor.push_back(ProcessorSeconds() - processor);
       };
       const auto measure = [&](vtkPolyDataAlgorithm* filter, vtkPolyData* input) {
-        if (round == 0 && peak.Growth() >= 0.0)
+        if (round == 0)
         {
-          rows[i].Bytes = std::max(0.0, peak.Growth() - BytesOfOutputs(filter, input));
+          rows[i].Bytes = BytesAboveOutputs(peak, filter, input);
         }
       };
       if (i == 0)

@@ -7,6 +7,7 @@
 #ifndef PolyDataOf_h
 #define PolyDataOf_h
 
+#include "ChildProcess.h"
 #include "Competitor.h"
 
 #include "vtkAbstractArray.h"
@@ -21,6 +22,7 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <set>
 
 namespace benchmark
@@ -40,43 +42,57 @@ inline vtkSmartPointer<vtkPolyData> PolyDataOf(const Coordinates& coordinates)
   return cloud;
 }
 
-/** Bytes of the values of all outputs of a filter, each array once, without the input's arrays. */
-inline double BytesOfOutputs(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
+/** The arrays of points, cells and fields. */
+inline std::set<vtkAbstractArray*> ArraysOf(vtkPolyData* data)
 {
-  std::set<vtkAbstractArray*> counted;
-  double bytes = 0.0;
-  const auto count = [&](vtkAbstractArray* array, bool counts) {
-    if (array && counted.insert(array).second && counts)
+  std::set<vtkAbstractArray*> arrays;
+  if (data->GetPoints())
+  {
+    arrays.insert(data->GetPoints()->GetData());
+  }
+  for (vtkCellArray* const cells :
+    { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
+  {
+    arrays.insert({ cells->GetOffsetsArray(), cells->GetConnectivityArray() });
+  }
+  for (vtkFieldData* const fields : { static_cast<vtkFieldData*>(data->GetPointData()),
+         static_cast<vtkFieldData*>(data->GetCellData()), data->GetFieldData() })
+  {
+    for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
     {
-      bytes += static_cast<double>(array->GetNumberOfValues()) * array->GetDataTypeSize();
+      arrays.insert(fields->GetAbstractArray(i));
     }
-  };
-  const auto countAll = [&](vtkPolyData* data, bool counts) {
-    if (data->GetPoints())
-    {
-      count(data->GetPoints()->GetData(), counts);
-    }
-    for (vtkCellArray* const cells :
-      { data->GetVerts(), data->GetLines(), data->GetPolys(), data->GetStrips() })
-    {
-      count(cells->GetOffsetsArray(), counts);
-      count(cells->GetConnectivityArray(), counts);
-    }
-    for (vtkFieldData* const fields : { static_cast<vtkFieldData*>(data->GetPointData()),
-           static_cast<vtkFieldData*>(data->GetCellData()), data->GetFieldData() })
-    {
-      for (int i = 0; i < fields->GetNumberOfArrays(); ++i)
-      {
-        count(fields->GetAbstractArray(i), counts);
-      }
-    }
-  };
-  countAll(input, false);
+  }
+  return arrays;
+}
+
+/**
+ * Bytes that a filter needed at most, above its input and the values of its outputs; -1 where the
+ * peak is not known. An array that several outputs share counts once.
+ */
+inline double BytesAboveOutputs(
+  const PeakMemory& peak, vtkPolyDataAlgorithm* filter, vtkPolyData* input)
+{
+  const double growth = peak.Growth();
+  if (growth < 0.0)
+  {
+    return -1.0;
+  }
+  std::set<vtkAbstractArray*> outputs;
   for (int port = 0; port < filter->GetNumberOfOutputPorts(); ++port)
   {
-    countAll(filter->GetOutput(port), true);
+    outputs.merge(ArraysOf(filter->GetOutput(port)));
   }
-  return bytes;
+  for (vtkAbstractArray* const array : ArraysOf(input))
+  {
+    outputs.erase(array);
+  }
+  double bytes = 0.0;
+  for (vtkAbstractArray* const array : outputs)
+  {
+    bytes += static_cast<double>(array->GetNumberOfValues()) * array->GetDataTypeSize();
+  }
+  return std::max(0.0, growth - bytes);
 }
 
 } // namespace benchmark

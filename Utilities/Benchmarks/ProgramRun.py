@@ -11,7 +11,6 @@ import sys
 import time
 from typing import NamedTuple
 
-
 REPORT = "report.json"
 
 

@@ -226,17 +226,18 @@ std::vector<Finding> Validate(const Mesh& mesh, const ValidateOptions& options)
 
 namespace
 {
+constexpr long double UnitOfLong = 16.0L * std::numeric_limits<long double>::epsilon();
 // Some needles need more digits than long double has. This takes twenty times as long.
 #ifdef __SIZEOF_FLOAT128__
 __extension__ typedef __float128 Widest;
 constexpr Widest UnitOfWidest = 0x1p-108;
 #else
 using Widest = long double;
-constexpr Widest UnitOfWidest = 16.0L * std::numeric_limits<long double>::epsilon();
+constexpr Widest UnitOfWidest = UnitOfLong;
 #endif
 
-/** Above the distance of a point on an edge from it: its triangles may be too thin for a plane. */
-long double BoundOfDistanceFromEdge(const PointView& points, Index from, Index to, Index point)
+/** IsWithin() for a point on an edge: its triangles may be too thin for a plane. */
+bool IsWithinOfEdge(double most, const PointView& points, Index from, Index to, Index point)
 {
   const Point2 a = points.At(from), b = points.At(to), p = points.At(point);
   const long double x = static_cast<long double>(b.X) - a.X,
@@ -248,8 +249,7 @@ long double BoundOfDistanceFromEdge(const PointView& points, Index from, Index t
     points.Elevation(from) - static_cast<long double>(points.Elevation(point));
   const long double along =
     share * (static_cast<long double>(points.Elevation(to)) - points.Elevation(from));
-  constexpr long double unit = 16.0L * std::numeric_limits<long double>::epsilon();
-  return std::fabs(down + along) + unit * (std::fabs(down) + std::fabs(along));
+  return std::fabs(down + along) + UnitOfLong * (std::fabs(down) + std::fabs(along)) <= most;
 }
 
 /**
@@ -325,14 +325,13 @@ std::vector<Finding> ValidateDistance(const Mesh& mesh, const PointView& points,
       if (isLeftOf(c[0], c[1], p, by) && isLeftOf(c[1], c[2], p, by) && isLeftOf(c[2], c[0], p, by))
       {
         isCovered = true;
-        isNear = isNear ||
-          IsWithin(most, 16.0L * std::numeric_limits<long double>::epsilon(), points, c, point) ||
+        isNear = isNear || IsWithin(most, UnitOfLong, points, c, point) ||
           IsWithin(most, UnitOfWidest, points, c, point);
         for (int k = 0; k < 3 && !isNear; ++k)
         {
           const Index from = c[k], to = c[(k + 1) % 3];
           isNear = Orientation(mesh.PointOf(from), mesh.PointOf(to), p) == Zero &&
-            BoundOfDistanceFromEdge(points, from, to, point) <= most;
+            IsWithinOfEdge(most, points, from, to, point);
         }
       }
     };
