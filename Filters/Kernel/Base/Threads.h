@@ -2,21 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Independent pieces of work on several threads, through vtkSMPTools.
+ * Independent pieces of work on several threads. Where the threads come from is for the one who links
+ * the kernel to say.
  */
 #ifndef elevation_Base_Threads_h
 #define elevation_Base_Threads_h
 
 #include "Progress.h"
 
-#include "vtkSMPTools.h"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <functional>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -37,9 +36,15 @@ inline int ThreadsAtOnce(int requested)
 }
 
 /**
+ * Calls call(0) to call(count - 1), each once, on up to @a threads threads, and returns when all have
+ * returned. The kernel only declares it: the module defines it with vtkSMPTools, in Filters/Threads.cxx.
+ * @param[in] call  throws nothing
+ */
+void CallOnThreads(Index count, int threads, const std::function<void(Index)>& call);
+
+/**
  * Calls work(0) to work(count - 1) on up to @a threads threads; with one, in order on the calling
  * thread. Results must not depend on which thread does a piece.
- * Where VTK's default backend is sequential, as in ParaView, its STDThread backend is used.
  * @throws what the failed piece of the lowest number threw, after all have ended
  */
 template <typename Work>
@@ -54,26 +59,17 @@ void ForEachPiece(Index count, int threads, Work&& work)
     return;
   }
   std::vector<std::exception_ptr> failures(count);
-  const auto run = [&](vtkIdType begin, vtkIdType end) {
-    for (vtkIdType i = begin; i < end; ++i)
+  // More threads than cores gain nothing.
+  CallOnThreads(count, ThreadsAtOnce(threads), [&](Index i) {
+    try
     {
-      try
-      {
-        work(static_cast<Index>(i));
-      }
-      catch (...)
-      {
-        failures[i] = std::current_exception();
-      }
+      work(i);
     }
-  };
-  const char* current = vtkSMPTools::GetBackend();
-  const std::string backend =
-    current && std::string(current) != "Sequential" ? current : "STDThread";
-  // More threads than cores gain nothing, and some backends complain.
-  const int used = ThreadsAtOnce(threads);
-  vtkSMPTools::LocalScope(
-    vtkSMPTools::Config{ used, backend, false }, [&]() { vtkSMPTools::For(0, count, 1, run); });
+    catch (...)
+    {
+      failures[i] = std::current_exception();
+    }
+  });
   for (const std::exception_ptr& failure : failures)
   {
     if (failure)
