@@ -51,6 +51,15 @@ function (es_display_prefix variable)
   set("${variable}" ${prefix} PARENT_SCOPE)
 endfunction ()
 
+# es_skip_test(<name> <label> <reason>...)
+# A test that this machine lacks something for: ctest lists it as skipped, and Utilities/test says why.
+function (es_skip_test name label)
+  string(JOIN "" reason ${ARGN})
+  message(STATUS "${name} is skipped: ${reason}")
+  add_test(NAME "${name}" COMMAND "${CMAKE_COMMAND}" -E echo "SKIPPED ${name}: ${reason}")
+  set_tests_properties("${name}" PROPERTIES LABELS "${label}" SKIP_REGULAR_EXPRESSION "SKIPPED ")
+endfunction ()
+
 # es_find_mpirun(<variable>)
 # What starts a program on several ranks, up to the option for their number; empty if it was not found.
 # The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 60 s.

@@ -979,10 +979,7 @@ class Command(Program):
     def test_a_full_disk_is_one_message_and_leaves_nothing(self):
         name = self.npy("a.npy", clouds()["random"])
         for most in (20_000, 100_000):  # bytes of a file: of all points, of a piece
-            done = self.call(
-                name, "--pieces", "1", *TRIANGULATION_ONLY,
-                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)),
-            )
+            done = self.call(name, "--pieces", "1", *TRIANGULATION_ONLY, largest_file=most)
             self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
             self.assertIn("cannot be written: File too large", done.stderr)
             self.assertEqual(os.listdir(self.folder), ["a.npy"])

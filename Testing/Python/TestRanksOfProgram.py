@@ -72,12 +72,10 @@ def plain(output):
 
 class OnRanks(Program):
     def on(self, ranks, *arguments):
-        program = type(self).PROGRAM
-        self.PROGRAM = (*MPIRUN, str(ranks), *program) if ranks else program
-        try:
+        """Of no rank: the program as it is without mpirun."""
+        if ranks == 0:
             return self.call(*arguments)
-        finally:
-            self.PROGRAM = program
+        return self.execute(*MPIRUN, str(ranks), *self.PROGRAM, *arguments)
 
     def results(self, ranks, arguments):
         """(the report's lines, the JSON, the surface)"""
@@ -211,11 +209,9 @@ class OnRanks(Program):
 class Example(Program):
     def test_all_ranks_have_the_triangles_of_one(self):
         alone = (sys.executable, os.path.join(DATA, "..", "Examples", "Python", "many_ranks.py"))
-        self.PROGRAM = alone
-        expected = plain(self.call().stdout)
+        expected = plain(self.execute(*alone).stdout)
         self.assertRegex(expected[0], "^[0-9,]+ triangles, 211.885 square kilometres$")
-        self.PROGRAM = (*MPIRUN, "3", *alone)
-        lines = plain(self.call("s.pvtp").stdout)
+        lines = plain(self.execute(*MPIRUN, "3", *alone, "s.pvtp").stdout)
         self.assertEqual(lines[:2], expected[:2])
         self.assertEqual(lines[2].count(", "), 2)
         parts = sorted(set(os.listdir(self.folder)) - {"s.pvtp"})

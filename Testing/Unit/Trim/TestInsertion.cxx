@@ -969,16 +969,9 @@ TEST(VisitCrossings, FindsTheSamePairsWhereVeryManyAreNearEachOther)
 
 TEST(InsertRings, InRealCloudsKeepsTheAreaOfThePolygon)
 {
-  int clouds = 0;
-  for (const char* name : { "f3_fs6", "st_helens_after_usgs", "autzen_trim_ground",
-         "nankai_channels", "srtm_pyrenees_voids400" })
+  for (const char* name : testing_points::RealClouds)
   {
-    testing_points::Cloud cloud;
-    if (!testing_points::ReadExtraData(name, cloud).empty() || cloud.Count() > 2000000)
-    {
-      continue;
-    }
-    ++clouds;
+    const testing_points::Cloud cloud = testing_points::RealCloud(name);
     std::vector<Point2> points;
     Point2 low{ 1e300, 1e300 };
     Point2 high{ -1e300, -1e300 };
@@ -1014,10 +1007,6 @@ TEST(InsertRings, InRealCloudsKeepsTheAreaOfThePolygon)
       kept += trimmed.IsOutward[t] ? 0.0 : testing_surfaces::TwiceArea(mesh, t);
     }
     EXPECT_NEAR(kept, expected, 1e-12 * expected) << name;
-  }
-  if (clouds == 0)
-  {
-    GTEST_SKIP() << "ELEVATION_SURFACE_EXTRA_DATA has none of the clouds";
   }
 }
 

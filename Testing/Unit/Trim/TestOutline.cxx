@@ -727,17 +727,9 @@ TEST(ExtractBoundary, BridgesWhatIsNarrowerThanTheToleranceWhereItGrows)
 // The same on real elevation data, in x and y scaled to the unit square.
 TEST(ExtractBoundary, FollowsMaskedSurveysWholeThinnedAndGraded)
 {
-  int clouds = 0;
-  std::string reason;
   for (const char* name : { "st_helens_after_usgs", "nankai_channels" })
   {
-    testing_points::Cloud cloud;
-    reason = testing_points::ReadExtraData(name, cloud);
-    if (!reason.empty())
-    {
-      continue;
-    }
-    ++clouds;
+    const testing_points::Cloud cloud = testing_points::RealCloud(name);
     const PointView view = cloud.View();
     Point2 low = view.At(0), high = low;
     for (Index i = 0; i < view.Count; ++i)
@@ -791,10 +783,6 @@ TEST(ExtractBoundary, FollowsMaskedSurveysWholeThinnedAndGraded)
         }
       }
     }
-  }
-  if (clouds == 0)
-  {
-    GTEST_SKIP() << reason;
   }
 }
 
