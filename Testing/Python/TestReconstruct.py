@@ -479,7 +479,7 @@ class Script(Program):
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
-            timeout=60,
+            timeout=300,
             check=False,
         )
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -494,7 +494,7 @@ class Script(Program):
             cwd=self.folder,
             stdout=subprocess.PIPE,
             text=True,
-            timeout=60,
+            timeout=300,
             check=True,
         )
         self.assertIn("examples:", done.stdout)
@@ -692,7 +692,7 @@ class VirtualDisplay(Program):
         return found
 
     def wait_until(self, condition):
-        end = time.monotonic() + 60
+        end = time.monotonic() + 300
         while not condition():
             self.assertLess(time.monotonic(), end)
             time.sleep(0.01)
