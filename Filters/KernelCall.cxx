@@ -20,7 +20,6 @@
 #include "vtkSetGet.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <new>
 #include <sstream>
@@ -30,17 +29,11 @@ namespace elevation
 
 Progress ProgressOf(vtkAlgorithm* filter)
 {
-  using Clock = std::chrono::steady_clock;
-  return [filter, last = -1.0, next = Clock::time_point()](double fraction) mutable {
-    constexpr double step = 0.001;
-    constexpr std::chrono::milliseconds silence{ 50 };
-    const Clock::time_point now = Clock::now();
-    fraction = std::max(fraction, last); // where work begins anew, as ranks gather after all
-    if (fraction >= std::min(1.0, last + step) || now >= next)
+  return [filter, last = 0.0, pace = ReportPace()](double fraction) mutable {
+    last = std::max(fraction, last); // where work begins anew, as ranks gather after all
+    if (pace.Admits(last, ReportPace::Clock::now()))
     {
-      last = fraction;
-      next = now + silence;
-      filter->UpdateProgress(fraction);
+      filter->UpdateProgress(last);
     }
     return !IsAbortRequested(filter);
   };

@@ -214,9 +214,9 @@ def main():
     for i in range(options.clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     places, cells = draw_lines(random, random.random((9, 3)))
-    latest = check_aborts(random, options.aborts, options.size, SourceData=lines_of(places, cells))
-    end("%d clouds with constraints, %d aborts (the latest took %.2f s)" % (
-        options.clouds, options.aborts, latest))
+    most = check_aborts(random, options.aborts, options.size, SourceData=lines_of(places, cells))
+    end("%d clouds with constraints, %d aborts (%d reports after one at most)" % (
+        options.clouds, options.aborts, most))
 
 
 if __name__ == "__main__":

@@ -474,8 +474,8 @@ def main():
     check(sum(SPREAD) >= 0.5 * len(SPREAD) - 1, "%d of %d stay where they are" % (sum(SPREAD), len(SPREAD)))
     for i in range(max(1, options.clouds // 6)):
         check_chain(random, "chain %d of seed %d" % (i, options.seed))
-    latest = check_aborts(random, options.aborts, int(options.size**0.5))
-    end("%d clouds, %d aborts (the latest took %.2f s)" % (options.clouds, options.aborts, latest))
+    most = check_aborts(random, options.aborts, int(options.size**0.5))
+    end("%d clouds, %d aborts (%d reports after one at most)" % (options.clouds, options.aborts, most))
 
 
 main()

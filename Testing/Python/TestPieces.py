@@ -992,7 +992,8 @@ class Command(Program):
                 "from vtkelevationsurface import command, pieces, supervisor\n"
                 "def stopped(*_):\n"
                 "    os.kill(os.getppid(), signal.SIGTERM)\n"
-                "    time.sleep(20)\n"
+                "    time.sleep(50)\n"
+                "    open('went-on', 'w').close()\n"
                 f"home = pieces if hasattr(pieces, {when!r}) else pieces.Pieces\n"
                 f"setattr(home, {when!r}, stopped)\n"
                 f"options = [{name!r}, '--pieces', '3', '--no-trim', '--no-fill']\n"
@@ -1001,7 +1002,7 @@ class Command(Program):
             )
             done = subprocess.run(
                 [sys.executable, "-c", script], cwd=self.folder, text=True, capture_output=True,
-                timeout=60, check=False,
+                timeout=300, check=False,
             )
             words = "reconstruct: stopped; nothing is written\n"
             self.assertEqual((done.returncode, done.stderr), (130, words))

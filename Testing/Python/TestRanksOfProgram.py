@@ -195,7 +195,7 @@ class OnRanks(Program):
                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             time.sleep(moments.uniform(0.3, 0.9) * whole)
             program.send_signal(signal.SIGINT)
-            _, errors = program.communicate(timeout=50)
+            _, errors = program.communicate(timeout=300)
             made = set(os.listdir(self.folder)) - {"a.txt"}
             if not gives_time:
                 made = {name for name in made if ".partial" not in name}

@@ -665,7 +665,7 @@ class VirtualDisplay(Program):
         return found
 
     def wait_until(self, condition):
-        end = time.monotonic() + 60
+        end = time.monotonic() + 300
         while not condition():
             self.assertLess(time.monotonic(), end)
             time.sleep(0.01)

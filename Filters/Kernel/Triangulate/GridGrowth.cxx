@@ -42,7 +42,7 @@ public:
     const Buffer<Index>& order = this->Grid.Order;
     Buffer<Point2> places;
     places.Resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
+    for (const std::size_t i : Counted(order.size()))
     {
       ReportStep(progress, i, order.size());
       places[i] = this->Grid.PointAt(order[i]);

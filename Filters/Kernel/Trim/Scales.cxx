@@ -440,13 +440,14 @@ private:
   void FollowEvents(const Progress& progress)
   {
     std::vector<char> isOpen(this->Lengths.size(), 0);
-    std::size_t done = 0;
+    StepCount done;
     for (auto first = this->Events.begin(); first != this->Events.end();)
     {
       auto event = first;
       for (; event != this->Events.end() && event->Length == first->Length; ++event)
       {
-        ReportStep(progress, done++, this->Events.size());
+        ReportStep(progress, done.Count(), this->Events.size());
+        done.Add();
         this->Follow(*event, isOpen);
       }
       for (; first != event; ++first)
