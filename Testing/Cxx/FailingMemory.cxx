@@ -30,9 +30,10 @@ namespace failing_memory
 namespace
 {
 std::atomic<std::size_t> Large{ 0 };
-std::atomic<bool> IsCounting{ false }, IsRemembering{ false };
 
 #ifdef REPLACES_MALLOC
+std::atomic<bool> IsCounting{ false }, IsRemembering{ false };
+
 /** Where the code of a shared library is. */
 struct Range
 {
