@@ -21,7 +21,6 @@
 
 #include <algorithm>
 #include <map>
-#include <new>
 #include <sstream>
 
 namespace elevation
@@ -102,6 +101,19 @@ KernelCall::KernelCall(vtkAlgorithm* filter, vtkInformation* request,
 {
 }
 
+void EndWithError(
+  vtkAlgorithm* filter, vtkInformationVector* outputs, const std::exception& failure)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* const output = vtkDataObject::GetData(outputs, port))
+    {
+      output->Initialize();
+    }
+  }
+  vtkErrorWithObjectMacro(filter, << MessageOf(failure));
+}
+
 int KernelCall::Run(const std::function<void(Block&)>& body)
 {
   const Ranks ranks(this->Request, this->Outputs);
@@ -129,7 +141,7 @@ int KernelCall::Run(const std::function<void(Block&)>& body)
   catch (const std::exception& error)
   {
     this->EmptyOutputs();
-    this->Errors = { error.what() };
+    this->Errors = { MessageOf(error) };
     this->Warnings.clear();
   }
   this->Tell(ranks);
@@ -350,13 +362,9 @@ std::string KernelCall::RunPlace(
   {
     throw;
   }
-  catch (const std::bad_alloc&)
-  {
-    message = NotEnoughMemory;
-  }
   catch (const std::exception& error)
   {
-    message = error.what();
+    message = MessageOf(error);
   }
   elevation::EmptyOutputs(place);
   return message;

@@ -32,7 +32,9 @@ inline int ResolveNumberOfThreads(int requested)
 /** The same, but at most one a core: a thread that waits for a core would delay the next report. */
 inline int ThreadsAtOnce(int requested)
 {
-  return std::min(ResolveNumberOfThreads(requested), ResolveNumberOfThreads(0));
+  // Asking the system takes longer than a triangulation of few points.
+  return requested == 1 ? 1
+                        : std::min(ResolveNumberOfThreads(requested), ResolveNumberOfThreads(0));
 }
 
 /**

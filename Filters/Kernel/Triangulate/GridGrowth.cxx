@@ -250,7 +250,7 @@ std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& h
   std::vector<std::unique_ptr<GridStrip>> strips;
   for (Index i = 0; i < number; ++i)
   {
-    strips.emplace_back(new GridStrip(*this, hull, at(i), at(i + 1)));
+    strips.push_back(std::make_unique<GridStrip>(*this, hull, at(i), at(i + 1)));
   }
   return strips;
 }
