@@ -35,6 +35,7 @@ from vtkmodules.vtkIOXML import vtkXMLPartitionedDataSetReader, vtkXMLPolyDataRe
 
 TRIANGULATION_ONLY = ("--no-trim", "--no-fill")
 COUNTS = ("DuplicatePoints", "NonFinitePoints")
+ARRAYS = ("Velocity", "Depth", "RGB", "FilledPoint", "FilledError")  # of a surface that is filled
 
 
 def sorted_triangles(triangles):
@@ -468,12 +469,13 @@ class Filled(WithFilter):
             for x, y, radius in lakes]
 
     def points_of(self, points):
-        """With arrays of which one is interpolated."""
+        """With arrays of which two are interpolated, not in the order of their names."""
         data = make_points(points)
         if points.dtype == numpy.float32:
             places = vtkPoints()
             places.SetData(numpy_to_vtk(points, deep=True))
             data.SetPoints(places)
+        add_array(data, "Velocity", numpy.cos(points[:, 1] / 40.0))
         add_array(data, "Depth", numpy.sin(points[:, 0] / 30.0))
         add_array(data, "RGB", numpy.column_stack((numpy.arange(len(points)) % 251,) * 3).astype("u1"))
         return data
@@ -685,7 +687,7 @@ def point_rows(parts):
     for part in parts:
         data = part.GetPointData()
         columns = [vtk_to_numpy(part.GetPoints().GetData())]
-        columns += [vtk_to_numpy(data.GetArray(n)) for n in ("Depth", "RGB", "FilledPoint", "FilledError")]
+        columns += [vtk_to_numpy(data.GetArray(n)) for n in ARRAYS]
         row = numpy.column_stack(columns)
         rows.append(row[ghosts_of(part) == 0] if data.GetArray("vtkGhostType") else row)
     rows = numpy.nan_to_num(numpy.concatenate(rows), nan=-1e99)
