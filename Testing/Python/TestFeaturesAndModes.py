@@ -63,10 +63,13 @@ def word_for(row, case, parts, expected):
 
 def in_one_process(row):
     """{mode: (word, what differs)}"""
-    many = modes.make_case(row, POINTS_FOR_THREADS)
-    expected = modes.joined([modes.in_memory(row, many)])
-    found = {mode: word_for(row, many, [modes.in_memory(row, many, threads)], expected)
-             for mode, threads in (("1 thread", 1), ("2 threads", 2))}
+    case = modes.make_case(row, POINTS_FOR_THREADS)
+    expected, *others = (
+        modes.joined([modes.in_memory(row, case, threads)], True) for threads in (1, 1, 2))
+    found = {}
+    for mode, other in zip(features.MODES, others):
+        why = modes.difference(other, expected)
+        found[mode] = "differs" if why else "same", why
     case = modes.make_case(row, POINTS)
     expected = modes.joined([modes.in_memory(row, case)])
     for mode, count in (("1 piece", 1), ("4 pieces", 4)):
@@ -92,25 +95,30 @@ def note_effects(row, case, expected):
 
 
 def on_ranks(row):
-    """{mode: (word, what differs)}, on all ranks."""
+    """The same of modes on ranks; on the first rank, others return nothing."""
     from on_ranks import COUNT, RANK, gather
 
     case = modes.make_case(row, POINTS)
-    expected = modes.joined([modes.in_memory(row, case)])
     parts = gather(modes.on_rank(row, case, RANK, COUNT))
-    found = {"%d ranks" % COUNT: word_for(row, case, parts, expected)}
+    made = {"%d ranks" % COUNT: parts}
     mode = "%d ranks, 2 pieces each" % COUNT
-    if mode in features.MODES:
+    found, is_apart = {}, False
+    if mode in features.MODES and modes.has_pieces(row, case):
+        pieces = modes.in_pieces(row, case, [(RANK, COUNT)], range(2 * COUNT), 2 * COUNT)
+        alone = modes.joined([modes.in_memory(row, case, 1, (RANK, COUNT))])
+        messages = pieces[0]["messages"]
+        why = modes.difference({**modes.joined(pieces), "messages": alone["messages"]}, alone)
+        own = pieces[2 * RANK : 2 * RANK + 2] or pieces[:1]
+        own[0]["messages"] = messages
+        made[mode] = sum(gather(own), [])
+        is_apart = not any(gather(why))
+    elif mode in features.MODES:
         found[mode] = "none", ""
-        if modes.has_pieces(row, case):
-            own = modes.in_pieces(row, case, [(RANK, COUNT)], (2 * RANK, 2 * RANK + 1), 2 * COUNT)
-            own_surface = modes.in_pieces(row, case, [(RANK, COUNT)], range(2 * COUNT), 2 * COUNT)
-            alone = modes.joined([modes.in_memory(row, case, 1, (RANK, COUNT))])
-            own_surface = {**modes.joined(own_surface), "messages": alone["messages"]}
-            is_alone = not modes.difference(own_surface, alone)
-            found[mode] = word_for(row, case, sum(gather(own), []), expected)
-            if all(gather(is_alone)) and found[mode][0].startswith("differs"):
-                found[mode] = "apart", ""
+    if RANK == 0:
+        expected = modes.joined([modes.in_memory(row, case)])
+        found = {**{name: word_for(row, case, parts, expected) for name, parts in made.items()}, **found}
+        if is_apart and found[mode][0].startswith("differs"):
+            found[mode] = "apart", ""
     return found
 
 

@@ -479,8 +479,11 @@ def made_by(algorithms, messages):
     return {"ports": ports, "counts": counts_of(*algorithms), "messages": messages}
 
 
-def joined(parts):
-    """What parts of one surface have together. All tell the same counts."""
+def joined(parts, are_in_order=False):
+    """What parts of one surface have together. All tell the same counts.
+
+    are_in_order  whether the order of points and triangles counts, too
+    """
     whole = {"counts": parts[0]["counts"], "messages": [told for part in parts for told in part["messages"]],
              "alike": all(part["counts"] == parts[0]["counts"] for part in parts), "ports": []}
     whole["shares"] = [sum(block["count"] for block in part["ports"][0]) for part in parts]
@@ -513,7 +516,7 @@ def joined(parts):
         for block in blocks:
             block["report"] = [told for _, told in sorted(block["report"], key=lambda one: one[1])]
             del block["holes"]
-            for name in ("points", "triangles", "unused"):
+            for name in ("points", "triangles", "unused") if not are_in_order else ():
                 block[name] = meshes.sorted_rows(block[name])
     return whole
 
