@@ -53,7 +53,7 @@ endfunction ()
 
 # es_find_mpirun(<variable>)
 # What starts a program on several ranks, up to the option for their number; empty if it was not found.
-# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 60 s.
+# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 300 s.
 function (es_find_mpirun variable)
   find_program(ES_MPIRUN NAMES mpirun mpiexec DOC "Starts a program on several ranks")
   set(command)
@@ -62,7 +62,7 @@ function (es_find_mpirun variable)
     execute_process(COMMAND "${ES_MPIRUN}" --version OUTPUT_VARIABLE version ERROR_QUIET)
     if (version MATCHES "Open MPI|OpenRTE")
       # As root and on one core too.
-      list(APPEND command --allow-run-as-root --oversubscribe --timeout 55)
+      list(APPEND command --allow-run-as-root --oversubscribe --timeout 290)
     endif ()
     list(APPEND command -n)
   endif ()

@@ -13,6 +13,7 @@ import sys
 import documented
 import features
 import modes
+import outcomes
 from vtkelevationsurface import vtkReconstructPieces
 
 POINTS = 500  # of a row, or about so many
@@ -43,7 +44,7 @@ def words_of(row, case):
 
 def word_for(row, case, parts, expected):
     """The word for what parts have made, beside one run in memory, and what differs."""
-    found = modes.joined(parts)
+    found = outcomes.joined(parts)
     errors = {text for event, text in found["messages"] if event == "ErrorEvent"}
     if errors and not any(map(is_error, expected["messages"])):
         is_named = len(errors) == 1 and any(word in text for text in errors for word in words_of(row, case))
@@ -51,7 +52,7 @@ def word_for(row, case, parts, expected):
         return "refused" if is_named and is_empty else "differs", str(errors)
     told = [message for message in found["messages"] if "one rank" in message[1]]
     found["messages"] = [message for message in found["messages"] if message not in told]
-    why = modes.difference(found, expected)
+    why = outcomes.difference(found, expected)
     if why:
         remark = [str(number) for number, begin in REMARKS.items() if why.startswith(begin)]
         return " ".join(["differs", *(remark[-1:])]), why
@@ -65,13 +66,13 @@ def in_one_process(row):
     """{mode: (word, what differs)}"""
     case = modes.make_case(row, POINTS_FOR_THREADS)
     expected, *others = (
-        modes.joined([modes.in_memory(row, case, threads)], True) for threads in (1, 1, 2))
+        outcomes.joined([modes.in_memory(row, case, threads)], True) for threads in (1, 1, 2))
     found = {}
     for mode, other in zip(features.MODES, others):
-        why = modes.difference(other, expected)
+        why = outcomes.difference(other, expected)
         found[mode] = "differs" if why else "same", why
     case = modes.make_case(row, POINTS)
-    expected = modes.joined([modes.in_memory(row, case)])
+    expected = outcomes.joined([modes.in_memory(row, case)])
     for mode, count in (("1 piece", 1), ("4 pieces", 4)):
         found[mode] = "none", ""
         if modes.has_pieces(row, case):
@@ -90,7 +91,7 @@ def note_effects(row, case, expected):
         if value != getattr(modes.FILTERS[of or row.filter](), "Get" + last)():
             plain = argparse.Namespace(**vars(row))
             plain.properties = {key: one for key, one in row.properties.items() if key != name}
-            if modes.difference(modes.joined([modes.in_memory(plain, case)]), expected):
+            if outcomes.difference(outcomes.joined([modes.in_memory(plain, case)]), expected):
                 EFFECTIVE.add((row.filter, name))
 
 
@@ -105,9 +106,9 @@ def on_ranks(row):
     found, is_apart = {}, False
     if mode in features.MODES and modes.has_pieces(row, case):
         pieces = modes.in_pieces(row, case, [(RANK, COUNT)], range(2 * COUNT), 2 * COUNT)
-        alone = modes.joined([modes.in_memory(row, case, 1, (RANK, COUNT))])
+        alone = outcomes.joined([modes.in_memory(row, case, 1, (RANK, COUNT))])
         messages = pieces[0]["messages"]
-        why = modes.difference({**modes.joined(pieces), "messages": alone["messages"]}, alone)
+        why = outcomes.difference({**outcomes.joined(pieces), "messages": alone["messages"]}, alone)
         own = pieces[2 * RANK : 2 * RANK + 2] or pieces[:1]
         own[0]["messages"] = messages
         made[mode] = sum(gather(own), [])
@@ -115,7 +116,7 @@ def on_ranks(row):
     elif mode in features.MODES:
         found[mode] = "none", ""
     if RANK == 0:
-        expected = modes.joined([modes.in_memory(row, case)])
+        expected = outcomes.joined([modes.in_memory(row, case)])
         found = {**{name: word_for(row, case, parts, expected) for name, parts in made.items()}, **found}
         if is_apart and found[mode][0].startswith("differs"):
             found[mode] = "apart", ""
@@ -131,7 +132,7 @@ def check_more_pieces_than_ranks(row):
     both = []
     for piece in (2 * RANK, 2 * RANK + 1):
         last.UpdatePiece(piece, 2 * COUNT, 0)
-        both.append(modes.part_made(last.GetOutput())["triangles"].tolist())
+        both.append(outcomes.part_made(last.GetOutput())["triangles"].tolist())
     check(both[0] == both[1] and len(both[0]) > FEW, "a rank has its part twice")
     all_of = sum(len(part) for part in gather(both[0]))
     check(all_of == modes.in_memory(row, case)["ports"][0][0]["count"], "once, the parts are the surface")
@@ -145,7 +146,7 @@ def check_properties(rows):
         named = {key for row in mine for key in row.properties if "." not in key} | {"NumberOfThreads"}
         named |= {"SourceData", "SourceConnection"} if any(case.lines for case in cases) else set()
         named |= {"BoundaryData", "BoundaryConnection"} if any(case.rings for case in cases) else set()
-        has = modes.own_names(make(), "Set")
+        has = outcomes.own_names(make(), "Set")
         values = {word.split("To", 1)[0] for word in has if "To" in word}
         plain = {word for word in has if "To" not in word or word.split("To", 1)[0] not in has}
         check(plain <= named, "%s: no row names %s" % (name, ", ".join(sorted(plain - named))))
@@ -153,7 +154,7 @@ def check_properties(rows):
             wanted = sum(word.startswith(one + "To") for word in has)
             shown = {row.properties[one] for row in mine if one in row.properties}
             check(len(shown) == wanted, "%s: of %d values of %s, rows have %s" % (name, wanted, one, shown))
-    has = modes.own_names(vtkReconstructPieces(), "Set")
+    has = outcomes.own_names(vtkReconstructPieces(), "Set")
     check(has == {"Folder", "FillHoles"}, "modes.in_pieces() sets all of vtkReconstructPieces: %s" % has)
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rows of features.py, run in each mode: what they work on, how they are run, and what came out.
+"""The rows of features.py, run in each mode: what they work on, and how they are run.
 
 A row is a chain of filters up to that of the row: triangulate, trim where there is a boundary, fill. The
 same chain runs in memory, on ranks, in pieces, and on ranks with pieces each.
@@ -17,24 +17,20 @@ from vtkelevationsurface import (
     vtkReconstructPieces,
     vtkTrimOutwardTriangles,
 )
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkMultiBlockDataSet,
     vtkPartitionedDataSet,
     vtkPartitionedDataSetCollection,
-    vtkPointSet,
     vtkPolyData,
     vtkUnstructuredGrid,
 )
-from vtkmodules.vtkCommonExecutionModel import vtkPolyDataAlgorithm
 
 import meshes
+from outcomes import made_by, noted
 
 FILTERS = {
     "Delaunay": vtkGridDelaunay2D, "Trim": vtkTrimOutwardTriangles, "Fill": vtkFillElevationHoles,
 }
-DIFFERENT = 1e-9  # of z and values of points that are inserted, which follow the order of sums
 
 # ---- what rows work on ----------------------------------------------------------------------------
 
@@ -368,184 +364,6 @@ def part_of(case, part, parts):
     return composite
 
 
-# ---- what has come out ----------------------------------------------------------------------------
-
-
-def numbers_of(array):
-    """(n, k) numbers of an array: of words, their sums."""
-    if isinstance(array, vtkStringArray):
-        words = [array.GetValue(i) for i in range(array.GetNumberOfValues())]
-        return numpy.array([[float(int.from_bytes(word.encode()[-6:], "big"))] for word in words]).reshape(-1, 1)
-    values = vtk_to_numpy(array)
-    return numpy.nan_to_num(values.reshape(len(values), -1).astype("f8"), nan=-1e99, posinf=1e98, neginf=-1e98)
-
-
-def columns_of(attributes, count, without=()):
-    """{name: (type, numbers)} of all arrays but marks, and the numbers that filters give points."""
-    found = {}
-    for i in range(attributes.GetNumberOfArrays()):
-        array = attributes.GetAbstractArray(i)
-        if array.GetName() not in (meshes.GHOSTS, "GlobalPointIds", *without):
-            words = numbers_of(array) if count else numpy.zeros((0, array.GetNumberOfComponents()))
-            found[array.GetName()] = (array.GetClassName(), words)
-    return found
-
-
-def row_of(columns, first):
-    return numpy.column_stack([first, *(columns[name][1] for name in sorted(columns))])
-
-
-def part_made(data):
-    """What a part of an output has, as plain arrays."""
-    count = data.GetNumberOfPoints()
-    kinds, made = {}, {"triangles": numpy.zeros((0, 0)), "holes": numpy.zeros(0), "count": data.GetNumberOfPolys()}
-    columns = columns_of(data.GetPointData(), count)
-    rows = row_of(columns, numbers_of(data.GetPoints().GetData()) if count else numpy.zeros((0, 3)))
-    made["points"] = rows[~meshes.ghosts_of(data)]
-    cells = columns_of(data.GetCellData(), data.GetNumberOfCells(), ("HoleId",))
-    if count:
-        kinds = {"points": data.GetPoints().GetDataType()}
-        kinds.update({"point " + name: kind for name, (kind, _) in columns.items()})
-        kinds.update({"cell " + name: kind for name, (kind, _) in cells.items()} if data.GetNumberOfPolys() else {})
-    made["kinds"] = kinds
-    if data.GetNumberOfPolys():
-        first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-        corners = meshes.turned(meshes.triangles_of(data), rows[:, :3])
-        values = row_of(cells, numpy.zeros((data.GetNumberOfCells(), 0)))[first:]
-        made["triangles"] = numpy.column_stack((rows[corners].reshape(len(corners), -1), values))
-        holes = data.GetCellData().GetArray("HoleId")
-        made["holes"] = vtk_to_numpy(holes)[first:].astype(int) if holes else numpy.full(len(corners), -1)
-    fields = data.GetFieldData()
-    unused = [fields.GetArray("UnusedPoint" + name) for name in ("Ids", "Reasons")]
-    made["unused"] = numpy.zeros((0, 2))
-    if all(unused) and unused[0].GetNumberOfTuples() and "Number" in columns:
-        ids, reasons = (vtk_to_numpy(array) for array in unused)
-        made["unused"] = numpy.column_stack((columns["Number"][1][ids], reasons))
-    found = fields.GetArray("Lattice")
-    made["lattice"] = [found.GetTuple(0)] if found else []
-    made["report"] = report_of(data)
-    return made
-
-
-REPORTED = ("Status", "NumberOfEdges", "Perimeter", "Area", "NumberOfInsertedPoints", "Interpolation")
-
-
-def report_of(data):
-    """[(number of the hole, what is told of it, its rim's points in one order)], or of rings the last."""
-    cells, found = data.GetCellData(), []
-    rows = numbers_of(data.GetPoints().GetData()) if data.GetNumberOfPoints() else None
-    ids = cells.GetArray("HoleId")
-    for i in range(data.GetNumberOfLines()):
-        told = [cells.GetArray(name).GetValue(i) for name in REPORTED] if ids else []
-        corners = data.GetCell(data.GetNumberOfVerts() + i).GetPointIds()
-        rim = [tuple(rows[corners.GetId(k)]) for k in range(corners.GetNumberOfIds() - 1)]
-        found.append((ids.GetValue(i) if ids else i, (*told, *sorted(rim))))
-    return found
-
-
-def leaves(output):
-    """The data sets of an output, in order."""
-    if isinstance(output, vtkPointSet):
-        return [output]
-    each, found = output.NewIterator(), []
-    each.InitTraversal()
-    while not each.IsDoneWithTraversal():
-        found.append(each.GetCurrentDataObject())
-        each.GoToNextItem()
-    return found
-
-
-def own_names(algorithm, verb):
-    """Of the methods that a filter's own class has, those of a verb, without it."""
-    return {name[len(verb) :] for name in dir(algorithm)
-            if name.startswith(verb) and not hasattr(vtkPolyDataAlgorithm, name)}
-
-
-GETTERS = ("NumberOf", "LargestElevationError", "EffectiveGapTolerance", "LatticeFound")
-
-
-def counts_of(*algorithms):
-    """{name: value} of what filters count."""
-    return {name: getattr(algorithm, "Get" + name)() for algorithm in algorithms
-            for name in sorted(own_names(algorithm, "Get"))
-            if name.startswith(GETTERS) and not name.startswith("NumberOfThreads")}
-
-
-def made_by(algorithms, messages):
-    """What the last filter of a chain has made on this rank."""
-    last = algorithms[-1]
-    ports = [[part_made(data) for data in leaves(last.GetOutputDataObject(port))]
-             for port in range(last.GetNumberOfOutputPorts())]
-    return {"ports": ports, "counts": counts_of(*algorithms), "messages": messages}
-
-
-def joined(parts, are_in_order=False):
-    """What parts of one surface have together. All tell the same counts.
-
-    are_in_order  whether the order of points and triangles counts, too
-    """
-    whole = {"counts": parts[0]["counts"], "messages": [told for part in parts for told in part["messages"]],
-             "alike": all(part["counts"] == parts[0]["counts"] for part in parts), "ports": []}
-    whole["shares"] = [sum(block["count"] for block in part["ports"][0]) for part in parts]
-    for port in range(min(len(part["ports"]) for part in parts)):
-        blocks = []
-        for index in range(max(len(part["ports"][port]) for part in parts)):
-            each = [part["ports"][port][index] for part in parts if index < len(part["ports"][port])]
-            block = {}
-            for name in ("points", "triangles", "unused"):
-                rows = [one[name] for one in each if len(one[name])]
-                widths = {one.shape[1] for one in rows}
-                block[name] = numpy.vstack(rows) if len(widths) == 1 else numpy.zeros((len(rows), 0))
-            block["holes"] = numpy.concatenate([one["holes"] for one in each])
-            block["report"] = [told for one in each for told in one["report"]]
-            block["lattice"] = sorted({told for one in each for told in one["lattice"] if port == 0})
-            block["kinds"] = {}
-            for one in each:
-                for name, kind in one["kinds"].items():
-                    block["kinds"].setdefault(name, set()).add(kind)
-            blocks.append(block)
-        whole["ports"].append(blocks)
-    # Holes have numbers by the order of triangles; here, by what is told of them.
-    for block, told in zip(whole["ports"][0], whole["ports"][1] if len(whole["ports"]) == 2 else []):
-        order = sorted(told["report"], key=lambda one: one[1])
-        place = {number: i for i, (number, _) in enumerate(order)}
-        block["holes"] = numpy.array([place.get(number, -1) for number in block["holes"].tolist()], float)
-        if len(block["triangles"]):
-            block["triangles"] = numpy.column_stack((block["triangles"], block["holes"]))
-    for blocks in whole["ports"]:
-        for block in blocks:
-            block["report"] = [told for _, told in sorted(block["report"], key=lambda one: one[1])]
-            del block["holes"]
-            for name in ("points", "triangles", "unused") if not are_in_order else ():
-                block[name] = meshes.sorted_rows(block[name])
-    return whole
-
-
-def difference(found, expected):
-    """What differs first, in words, or ""."""
-    if found["messages"] != expected["messages"]:
-        return "messages %s, not %s" % (found["messages"], expected["messages"])
-    if not found["alike"]:
-        return "counts differ by part"
-    for name, value in found["counts"].items():
-        if expected["counts"].get(name, value) != value:
-            return "%s: %s, not %s" % (name, value, expected["counts"][name])
-    for port, (blocks, wanted) in enumerate(zip(found["ports"], expected["ports"])):
-        if len(blocks) != len(wanted):
-            return "%d blocks, not %d" % (len(blocks), len(wanted))
-        for block, right in zip(blocks, wanted):
-            for name, value in right.items():
-                mine = block[name]
-                if isinstance(value, numpy.ndarray):
-                    if mine.shape != value.shape and (len(mine) or len(value)):
-                        return "output %d: %s %s, not %s" % (port, name, mine.shape, value.shape)
-                    if len(mine) and not numpy.array_equal(mine, value):
-                        return "output %d: %s differ by %g" % (port, name, numpy.nanmax(abs(mine - value)))
-                elif mine != value:
-                    return "output %d: %s %s, not %s" % (port, name, str(mine)[:300], str(value)[:300])
-    return ""
-
-
 # ---- modes ----------------------------------------------------------------------------------------
 
 
@@ -555,20 +373,6 @@ def set_properties(row, of):
         name = name if "." in name else row.filter + "." + name
         step, name = name.split(".")
         getattr(of(step), "Set" + name)(value)
-
-
-def noted(*algorithms):
-    """The list that gets the messages of filters, without their addresses."""
-    messages = []
-
-    def note(_caller, event, text):
-        messages.append((event, text.split("): ", 1)[-1].strip()))
-
-    note.CallDataType = "string0"
-    for algorithm in algorithms:
-        algorithm.AddObserver("ErrorEvent", note)
-        algorithm.AddObserver("WarningEvent", note)
-    return messages
 
 
 def chain(row, case, data, threads, has_second=True):
