@@ -112,3 +112,14 @@ def turned(triangles, keys=None):
 def sorted_rows(rows):
     """Rows of numbers in one order."""
     return rows[numpy.lexsort(rows.T[::-1])] if rows.size else rows
+
+
+def sorted_triangles(triangles):
+    """Each from its least id on, in one order."""
+    return sorted_rows(turned(triangles))
+
+
+def by_places(data):
+    """The triangles by the places of their corners, nine numbers each, in one order."""
+    places = points_of(data)
+    return sorted_rows(places[turned(triangles_of(data), places)].reshape(-1, 9))
