@@ -71,7 +71,7 @@ function (es_find_mpirun variable)
     execute_process(COMMAND "${ES_MPIRUN}" --version OUTPUT_VARIABLE version ERROR_QUIET)
     if (version MATCHES "Open MPI|OpenRTE")
       # As root and on one core too.
-      list(APPEND command --allow-run-as-root --oversubscribe --timeout 280)
+      list(APPEND command --allow-run-as-root --oversubscribe --timeout 290)
     endif ()
     list(APPEND command -n)
   endif ()

@@ -17,6 +17,7 @@ import unittest
 
 import numpy
 from in_folder import Program
+from meshes import by_places as triangles
 from vtkelevationsurface.reading import vtk_files
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
@@ -47,16 +48,6 @@ def grid():
     known[20:26, 20:30] = False
     rows = numpy.column_stack([a[known] for a in (0.96 * x - 0.28 * y, 0.28 * x + 0.96 * y, z)])
     return "\n".join("%.4f %.4f %.4f" % tuple(row) for row in rows)
-
-
-def triangles(surface):
-    """The triangles as rows of coordinates, in an order that does not depend on that of the mesh."""
-    places = vtk_to_numpy(surface.GetPoints().GetData())
-    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    first = numpy.lexsort(places[corners].transpose(2, 0, 1)[::-1], axis=1)[:, :1]
-    rows = numpy.arange(len(corners))[:, None]
-    rows = places[corners[rows, (first + numpy.arange(3)) % 3]].reshape(-1, 9)
-    return rows[numpy.lexsort(rows.T)]
 
 
 def arrays(data):
