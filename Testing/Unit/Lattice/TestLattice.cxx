@@ -268,7 +268,7 @@ void ExpectSameForAnyStrips(
   }
 }
 
-TEST(Lattice, IsTheDefinitionOnAMillionSmallClouds)
+TEST(Lattice, IsTheDefinitionOnManySmallClouds)
 {
   // Reduced steps of small integers: square, rectangular, turned, sheared to both sides, the last
   // two as far as can be.
@@ -284,7 +284,7 @@ TEST(Lattice, IsTheDefinitionOnAMillionSmallClouds)
   Cloud cloud;
   DelaunayOptions options = Automatic(0.0);
   int triangulated = 0;
-  for (int i = 0; i < 1000000; ++i)
+  for (int i = 0; i < 250000; ++i)
   {
     SmallNodes(random, i / 10 % 5, nodes);
     sorted = SortedNodes(nodes);
@@ -331,7 +331,7 @@ TEST(Lattice, IsTheDefinitionOnAMillionSmallClouds)
       ASSERT_EQ(set, expected) << "cloud " << i << ", strips of " << perStrip;
     }
   }
-  EXPECT_GT(triangulated, 1500000);
+  EXPECT_GT(triangulated, 375000);
 }
 
 TEST(Lattice, IsTheSameForAnyNumberOfThreads)
