@@ -70,8 +70,8 @@ function (es_find_mpirun variable)
     set(command "${ES_MPIRUN}")
     execute_process(COMMAND "${ES_MPIRUN}" --version OUTPUT_VARIABLE version ERROR_QUIET)
     if (version MATCHES "Open MPI|OpenRTE")
-      # As root and on one core too.
-      list(APPEND command --allow-run-as-root --oversubscribe --timeout 290)
+      # As root and on one core too; a rank that waits leaves its core to others.
+      list(APPEND command --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 --timeout 290)
     endif ()
     list(APPEND command -n)
   endif ()
