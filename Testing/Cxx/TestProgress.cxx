@@ -26,7 +26,7 @@
 
 namespace
 {
-constexpr double LargestStep = 0.15;
+constexpr double LargestStep = 0.25; // 1.5 times what was found
 constexpr int MostAfterAbort = 2; // the report that it is noticed at, and one of the executive
 
 struct Reports

@@ -151,15 +151,17 @@ void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
     std::sort(begin, end, less);
     return;
   }
-  StepCount comparisons;
+  constexpr std::size_t stretch = 65536;
+  std::size_t comparisons = 0;
   std::sort(begin, end, [&](const auto& a, const auto& b) {
-    comparisons.Add();
-    if (comparisons.Count() % 65536 == 0)
+    if (++comparisons % stretch == 0)
     {
-      Report(progress, std::min(1.0, static_cast<double>(comparisons.Count()) / expected));
+      CountWork(stretch);
+      Report(progress, std::min(1.0, static_cast<double>(comparisons) / expected));
     }
     return less(a, b);
   });
+  CountWork(comparisons % stretch);
 }
 
 /**

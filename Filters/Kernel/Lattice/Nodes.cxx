@@ -363,7 +363,8 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
 /** As Occupy(), for one bucket. */
 void LatticeNodes::Placement::OccupyBucket(Buckets& buckets, Index bucket)
 {
-  for (const Index i : Counted(buckets.Begins[bucket], buckets.Begins[bucket + 1]))
+  CountWork(static_cast<std::size_t>(buckets.Begins[bucket + 1] - buckets.Begins[bucket]));
+  for (Index i = buckets.Begins[bucket]; i < buckets.Begins[bucket + 1]; ++i)
   {
     Index& node = buckets.Nodes[i];
     const std::uint64_t bit = std::uint64_t(1) << (node & 63);
@@ -377,7 +378,8 @@ void LatticeNodes::Placement::OccupyBucket(Buckets& buckets, Index bucket)
 /** Writes the ids of a bucket to their places. */
 void LatticeNodes::Placement::PlaceBucket(const Buckets& buckets, Index bucket)
 {
-  for (const Index i : Counted(buckets.Begins[bucket], buckets.Begins[bucket + 1]))
+  CountWork(static_cast<std::size_t>(buckets.Begins[bucket + 1] - buckets.Begins[bucket]));
+  for (Index i = buckets.Begins[bucket]; i < buckets.Begins[bucket + 1]; ++i)
   {
     if (buckets.Nodes[i] != None)
     {
@@ -449,7 +451,8 @@ void LatticeNodes::Placement::CountBefore()
   std::vector<Index> sums(pieces, 0);
   ForEachPiece(pieces - 1, this->Threads, [&](Index piece) {
     Index sum = 0;
-    for (const Index word : Counted(beginOf(piece), beginOf(piece + 1)))
+    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
+    for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
     {
       sum += CountBits(this->Nodes.Word(word));
     }
@@ -458,7 +461,8 @@ void LatticeNodes::Placement::CountBefore()
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
   ForEachPiece(pieces, this->Threads, [&](Index piece) {
     Index rank = sums[piece];
-    for (const Index word : Counted(beginOf(piece), beginOf(piece + 1)))
+    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
+    for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
     {
       this->Nodes.Before[word] = rank;
       rank += CountBits(this->Nodes.Word(word));

@@ -668,7 +668,10 @@ private:
   void JoinPiece(Block& block, Index firstNode, std::size_t part, std::size_t parts)
   {
     const auto forEach = [&](std::size_t count, auto&& work) {
-      for (const std::size_t k : Counted(count * part / parts, count * (part + 1) / parts))
+      const std::size_t end = count * (part + 1) / parts;
+      std::size_t k = count * part / parts;
+      CountWork(end - k);
+      for (; k < end; ++k)
       {
         work(k);
       }

@@ -446,6 +446,7 @@ private:
       auto event = first;
       for (; event != this->Events.end() && event->Length == first->Length; ++event)
       {
+        CountWork(20); // of the triangle and the parts that it joins
         ReportStep(progress, done.Count(), this->Events.size());
         done.Add();
         this->Follow(*event, isOpen);
