@@ -68,7 +68,7 @@ set(es_kernel_Fill
 # Headers without a source file.
 set(es_kernel_headers_Base
   Base CellGrid Duplicates EdgeLimit Extent IdSet Memory Points Progress SnapRounding Threads
-  UnionFind)
+  UnionFind Work)
 set(es_kernel_headers_Mesh
   Mesh TriangleSweep)
 set(es_kernel_headers_Lattice

@@ -51,9 +51,18 @@ function (es_display_prefix variable)
   set("${variable}" ${prefix} PARENT_SCOPE)
 endfunction ()
 
+# es_skip_test(<name> <label> <reason>...)
+# A test that this machine lacks something for: ctest lists it as skipped, and Utilities/test says why.
+function (es_skip_test name label)
+  string(JOIN "" reason ${ARGN})
+  message(STATUS "${name} is skipped: ${reason}")
+  add_test(NAME "${name}" COMMAND "${CMAKE_COMMAND}" -E echo "SKIPPED ${name}: ${reason}")
+  set_tests_properties("${name}" PROPERTIES LABELS "${label}" SKIP_REGULAR_EXPRESSION "SKIPPED ")
+endfunction ()
+
 # es_find_mpirun(<variable>)
 # What starts a program on several ranks, up to the option for their number; empty if it was not found.
-# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 60 s.
+# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 300 s.
 function (es_find_mpirun variable)
   find_program(ES_MPIRUN NAMES mpirun mpiexec DOC "Starts a program on several ranks")
   set(command)
@@ -61,8 +70,8 @@ function (es_find_mpirun variable)
     set(command "${ES_MPIRUN}")
     execute_process(COMMAND "${ES_MPIRUN}" --version OUTPUT_VARIABLE version ERROR_QUIET)
     if (version MATCHES "Open MPI|OpenRTE")
-      # As root and on one core too.
-      list(APPEND command --allow-run-as-root --oversubscribe --timeout 55)
+      # As root and on one core too; a rank that waits leaves its core to others.
+      list(APPEND command --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 --timeout 290)
     endif ()
     list(APPEND command -n)
   endif ()

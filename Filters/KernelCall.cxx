@@ -20,9 +20,7 @@
 #include "vtkSetGet.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
-#include <new>
 #include <sstream>
 
 namespace elevation
@@ -30,17 +28,11 @@ namespace elevation
 
 Progress ProgressOf(vtkAlgorithm* filter)
 {
-  using Clock = std::chrono::steady_clock;
-  return [filter, last = -1.0, next = Clock::time_point()](double fraction) mutable {
-    constexpr double step = 0.001;
-    constexpr std::chrono::milliseconds silence{ 50 };
-    const Clock::time_point now = Clock::now();
-    fraction = std::max(fraction, last); // where work begins anew, as ranks gather after all
-    if (fraction >= std::min(1.0, last + step) || now >= next)
+  return [filter, last = 0.0, pace = ReportPace()](double fraction) mutable {
+    last = std::max(fraction, last); // where work begins anew, as ranks gather after all
+    if (pace.Admits(last, ReportPace::Clock::now()))
     {
-      last = fraction;
-      next = now + silence;
-      filter->UpdateProgress(fraction);
+      filter->UpdateProgress(last);
     }
     return !IsAbortRequested(filter);
   };
@@ -109,6 +101,19 @@ KernelCall::KernelCall(vtkAlgorithm* filter, vtkInformation* request,
 {
 }
 
+void EndWithError(
+  vtkAlgorithm* filter, vtkInformationVector* outputs, const std::exception& failure)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* const output = vtkDataObject::GetData(outputs, port))
+    {
+      output->Initialize();
+    }
+  }
+  vtkErrorWithObjectMacro(filter, << MessageOf(failure));
+}
+
 int KernelCall::Run(const std::function<void(Block&)>& body)
 {
   const Ranks ranks(this->Request, this->Outputs);
@@ -136,7 +141,7 @@ int KernelCall::Run(const std::function<void(Block&)>& body)
   catch (const std::exception& error)
   {
     this->EmptyOutputs();
-    this->Errors = { error.what() };
+    this->Errors = { MessageOf(error) };
     this->Warnings.clear();
   }
   this->Tell(ranks);
@@ -357,13 +362,9 @@ std::string KernelCall::RunPlace(
   {
     throw;
   }
-  catch (const std::bad_alloc&)
-  {
-    message = NotEnoughMemory;
-  }
   catch (const std::exception& error)
   {
-    message = error.what();
+    message = MessageOf(error);
   }
   elevation::EmptyOutputs(place);
   return message;

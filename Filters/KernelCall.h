@@ -13,6 +13,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <exception>
 #include <functional>
 #include <string>
 #include <vector>
@@ -110,6 +111,30 @@ private:
   bool IsAborted = false;
   std::vector<vtkIdType> Occupied; ///< numbers of the blocks with points, on any rank
 };
+
+/** Reports a failure of a request as an error of the filter, and empties the outputs. */
+void EndWithError(
+  vtkAlgorithm* filter, vtkInformationVector* outputs, const std::exception& failure);
+
+/**
+ * Answers a request of the pipeline. An exception that would leave the filter, as when there is no
+ * memory even for what surrounds KernelCall::Run(), becomes an error: after an exception VTK takes
+ * the filter to be at work for ever, and runs it no more.
+ * @param[in] answer  returns what ProcessRequest returns; after an error that is 1, as Run() says
+ */
+template <typename Answer>
+int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, Answer&& answer)
+{
+  try
+  {
+    return answer();
+  }
+  catch (const std::exception& error)
+  {
+    EndWithError(filter, outputs, error);
+  }
+  return 1;
+}
 
 /**
  * The kernel's Progress for a filter: its progress and abort flag. The kernel reports as often as

@@ -333,6 +333,35 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
   }
 }
 
+namespace
+{
+/** Brings arrays into the order that they have in another data set. */
+void OrderArrays(vtkDataSetAttributes* wanted, vtkDataSetAttributes* data)
+{
+  vtkNew<vtkDataSetAttributes> ordered;
+  for (int i = 0; i < wanted->GetNumberOfArrays(); ++i)
+  {
+    const char* const name = wanted->GetAbstractArray(i)->GetName();
+    if (vtkAbstractArray* const array = name ? data->GetAbstractArray(name) : nullptr)
+    {
+      ordered->AddArray(array);
+    }
+  }
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    ordered->AddArray(data->GetAbstractArray(i)); // once, if it has a name
+  }
+  for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
+  {
+    if (vtkAbstractArray* const array = data->GetAbstractAttribute(type))
+    {
+      ordered->SetActiveAttribute(ordered->AddArray(array), type);
+    }
+  }
+  data->ShallowCopy(ordered);
+}
+} // namespace
+
 vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyData>>& parts)
 {
   if (parts.size() == 1)
@@ -346,6 +375,9 @@ vtkSmartPointer<vtkPolyData> Append(const std::vector<vtkSmartPointer<vtkPolyDat
     append->AddInputData(part);
   }
   append->Update();
+  // Its order of arrays is its own; values by place in a list are by that of the parts.
+  OrderArrays(parts.front()->GetPointData(), append->GetOutput()->GetPointData());
+  OrderArrays(parts.front()->GetCellData(), append->GetOutput()->GetCellData());
   return append->GetOutput();
 }
 

@@ -18,7 +18,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <new>
 #include <numeric>
 
 namespace elevation
@@ -178,13 +177,9 @@ void Ranks::Agree(const std::function<void()>& step) const
   {
     failures = { "A" };
   }
-  catch (const std::bad_alloc&)
-  {
-    failures = { std::string("E") + NotEnoughMemory };
-  }
   catch (const std::exception& error)
   {
-    failures = { std::string("E") + error.what() };
+    failures = { std::string("E") + MessageOf(error) };
   }
   const bool isStopped = this->IsStopped; // and not by a failure of its own
   this->IsStopped = false;

@@ -15,8 +15,10 @@
 #include "vtkType.h"
 
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,12 @@ namespace elevation
 
 /** What is told where memory has run out. */
 constexpr const char* NotEnoughMemory = "There is not enough memory for this input.";
+
+/** What is told of a failure. */
+inline const char* MessageOf(const std::exception& failure)
+{
+  return dynamic_cast<const std::bad_alloc*>(&failure) ? NotEnoughMemory : failure.what();
+}
 
 /**
  * The ranks that take part in one execution. They are several where the global controller has

@@ -62,9 +62,11 @@ int vtkFillElevationHoles::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkFillElevationHoles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
-    ? elevation::MakeOutputs(inputVector, outputVector)
-    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+  return elevation::Guarded(this, outputVector, [&] {
+    return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
+      ? elevation::MakeOutputs(inputVector, outputVector)
+      : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+  });
 }
 
 int vtkFillElevationHoles::RequestData(

@@ -210,9 +210,11 @@ int vtkGridDelaunay2D::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkGridDelaunay2D::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
-    ? elevation::MakeOutputs(inputVector, outputVector)
-    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+  return elevation::Guarded(this, outputVector, [&] {
+    return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
+      ? elevation::MakeOutputs(inputVector, outputVector)
+      : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+  });
 }
 
 void vtkGridDelaunay2D::SetSourceConnection(vtkAlgorithmOutput* output)

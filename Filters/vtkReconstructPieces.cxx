@@ -396,7 +396,7 @@ int vtkReconstructPieces::RequestData(
     vtkErrorMacro("Properties were changed after the first piece; that needs Reset().");
     return 1;
   }
-  this->Try([this, piece, count, output, rims]() {
+  const auto work = [this, piece, count, output, rims]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
     if (this->Work->CountOfCells() != count)
     {
@@ -417,7 +417,8 @@ int vtkReconstructPieces::RequestData(
       this->Filled->PassRims(rims);
       elevation::AddHoleCounts(this->Filled->Result(), { rims });
     }
-  });
+  };
+  this->Try(std::ref(work)); // a copy would need memory, which may be at its end
   if (this->HasFailed)
   {
     output->Initialize();

@@ -93,9 +93,11 @@ int vtkTrimOutwardTriangles::FillOutputPortInformation(int, vtkInformation* info
 vtkTypeBool vtkTrimOutwardTriangles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
-    ? elevation::MakeOutputs(inputVector, outputVector)
-    : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+  return elevation::Guarded(this, outputVector, [&] {
+    return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
+      ? elevation::MakeOutputs(inputVector, outputVector)
+      : this->Superclass::ProcessRequest(request, inputVector, outputVector);
+  });
 }
 
 void vtkTrimOutwardTriangles::SetBoundaryConnection(vtkAlgorithmOutput* output)

@@ -3,6 +3,7 @@
 //
 // Where memory ends while a filter looks for advice, its result stays, and the warning too.
 #include "Check.h"
+#include "FailingMemory.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkGridDelaunay2D.h"
@@ -12,43 +13,7 @@
 #include "vtkPolyData.h"
 #include "vtkTestErrorObserver.h"
 
-#include <atomic>
-#include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <string>
-
-namespace
-{
-std::atomic<bool> isMemoryShort{ false };
-}
-
-// For the whole program: large pieces are refused while memory is short.
-void* operator new(std::size_t size)
-{
-  constexpr std::size_t large = 100000;
-  void* const piece = isMemoryShort && size > large ? nullptr : std::malloc(size > 0 ? size : 1);
-  if (!piece)
-  {
-    throw std::bad_alloc();
-  }
-  return piece;
-}
-
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept
-{
-  return std::malloc(size > 0 ? size : 1);
-}
-
-void operator delete(void* piece) noexcept
-{
-  std::free(piece);
-}
-
-void operator delete(void* piece, std::size_t) noexcept
-{
-  std::free(piece);
-}
 
 int TestMemory(int, char*[])
 {
@@ -82,12 +47,13 @@ int TestMemory(int, char*[])
   vtkNew<vtkCallbackCommand> command;
   command->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
     const double progress = vtkAlgorithm::SafeDownCast(caller)->GetProgress();
-    isMemoryShort = progress > 0.9 && progress < 1.0; // while it looks for advice
+    const bool isAdvising = progress > 0.9 && progress < 1.0;
+    failing_memory::RefuseLarge(isAdvising ? 100000 : 0);
   });
   delaunay->AddObserver(vtkCommand::ProgressEvent, command);
   delaunay->Modified();
   delaunay->Update();
-  isMemoryShort = false;
+  failing_memory::RefuseLarge(0);
   const std::string warning = observer->GetWarningMessage();
   Check(!observer->GetError() && delaunay->GetOutput()->GetNumberOfPolys() == triangles,
     "without memory for the advice, the result stays");

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// On many points, the progress of the three filters rises in small steps, without long silences,
-// and an abort stops soon, wherever it comes, and leaves nothing. An abort is noticed at the next
-// report, so it takes at most a silence and a stop: half a second. On one thread, and in the time of
-// its processor, so that the claims hold on a machine that has other work to do. A filter reports
-// every 30 ms in places, so a step that takes no longer may be large: nobody sees it.
+// On many points, the progress of the three filters rises in small steps, and after an abort,
+// wherever it comes, at most two reports follow, and nothing is left. How much work is done between
+// two reports is counted by the unit tests named Progress, which see the kernel; how many seconds
+// that takes, and a stop, is told by BenchmarkProgress.
 #include "Check.h"
 
 #include "vtkCallbackCommand.h"
@@ -21,42 +20,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <iostream>
 #include <string>
 #include <utility>
 
 namespace
 {
-constexpr double LargestStep = 0.15;
-constexpr double LongestSilence = 0.25; // seconds
-constexpr double LongestStop = 0.25;    // seconds from the report of an abort to the end
-constexpr double Unseen = 0.05;         // seconds
+constexpr double LargestStep = 0.25; // 1.5 times what was found
+constexpr int MostAfterAbort = 2; // the report that it is noticed at, and one of the executive
 
 struct Reports
 {
-  double Last = 0.0, Step = 0.0, StepAt = 0.0, Silence = 0.0, SilenceAt = 0.0, AbortAt = 2.0;
-  double Stop = -1.0; ///< seconds from the abort to the end; -1: there was none
-  bool Falls = false, IsAborted = false;
-  std::clock_t Time = std::clock(), AbortTime = 0;
+  double Last = 0.0, Step = 0.0, StepAt = 0.0, AbortAt = 2.0;
+  int Number = 0, AfterAbort = -1; ///< -1: there was none
+  bool Falls = false;
 
   void Add(double progress)
   {
-    const std::clock_t now = std::clock();
-    const double silence = static_cast<double>(now - this->Time) / CLOCKS_PER_SEC;
-    if (silence > Unseen && progress - this->Last > this->Step)
+    if (progress - this->Last > this->Step)
     {
       this->Step = progress - this->Last;
       this->StepAt = this->Last;
     }
-    if (silence > this->Silence)
-    {
-      this->Silence = silence;
-      this->SilenceAt = this->Last;
-    }
     this->Falls = this->Falls || progress < this->Last;
     this->Last = progress;
-    this->Time = now;
+    ++this->Number;
+    this->AfterAbort += this->AfterAbort >= 0 ? 1 : 0;
   }
 };
 
@@ -75,49 +64,40 @@ Reports Watch(vtkPolyDataAlgorithm* filter, double abortAt = 2.0)
     {
       seen->Add(observed->GetProgress());
     }
-    if (observed->GetProgress() >= seen->AbortAt && !seen->IsAborted)
+    if (observed->GetProgress() >= seen->AbortAt && seen->AfterAbort < 0)
     {
       observed->SetAbortExecute(1);
-      seen->IsAborted = true;
-      seen->AbortTime = std::clock();
+      seen->AfterAbort = 0;
     }
   });
   const unsigned long tag = filter->AddObserver(vtkCommand::ProgressEvent, command);
   filter->Modified();
   filter->Update();
   filter->RemoveObserver(tag);
-  if (reports.IsAborted)
-  {
-    reports.Stop = static_cast<double>(std::clock() - reports.AbortTime) / CLOCKS_PER_SEC;
-  }
   return reports;
 }
 
 void CheckReports(vtkPolyDataAlgorithm* filter, const std::string& name)
 {
   const Reports reports = Watch(filter);
-  std::cout << name << ": longest silence " << reports.Silence << " s\n";
+  std::cout << name << ": " << reports.Number << " reports, largest step " << reports.Step << "\n";
   Check(!reports.Falls && reports.Last == 1.0, name + ": progress rises to 1");
   Check(reports.Step <= LargestStep, name + ": a step of " + std::to_string(reports.Step) +
       " at " + std::to_string(reports.StepAt));
-  Check(reports.Silence <= LongestSilence, name + ": a silence of " +
-      std::to_string(reports.Silence) + " s at " + std::to_string(reports.SilenceAt));
 }
 
-/** An abort early, midway or late stops soon and leaves nothing. */
+/** An abort early, midway or late stops at the next report and leaves nothing. */
 void CheckAborts(vtkPolyDataAlgorithm* filter, const std::string& name)
 {
-  double longest = 0.0;
   for (const double at : { 0.05, 0.3, 0.55, 0.8, 0.97 })
   {
     const Reports reports = Watch(filter, at);
     Check(filter->GetOutput()->GetNumberOfPoints() == 0,
       name + ": an abort at " + std::to_string(at) + " leaves nothing");
-    Check(reports.Stop >= 0.0 && reports.Stop <= LongestStop,
-      name + ": an abort at " + std::to_string(at) + " took " + std::to_string(reports.Stop) + " s");
-    longest = std::max(longest, reports.Stop);
+    Check(reports.AfterAbort >= 0 && reports.AfterAbort <= MostAfterAbort,
+      name + ": " + std::to_string(reports.AfterAbort) + " reports after an abort at " +
+        std::to_string(at));
   }
-  std::cout << name << ": longest time from an abort to the end " << longest << " s\n";
 }
 
 vtkSmartPointer<vtkPolyData> MakeCloud(int count)
@@ -192,7 +172,7 @@ int TestProgress(int, char*[])
   CheckAdvice();
   const auto ring = MakeRing();
   vtkNew<vtkGridDelaunay2D> delaunay;
-  delaunay->SetInputData(MakeCloud(1000000));
+  delaunay->SetInputData(MakeCloud(400000));
   delaunay->SetNumberOfThreads(1);
   vtkNew<vtkTrimOutwardTriangles> extracted, given;
   extracted->SetInputConnection(delaunay->GetOutputPort());

@@ -131,7 +131,7 @@ def main():
     if os.path.exists(results):
         os.remove(results)
     steps(client, os.path.abspath(options.D))
-    output = client.run(timeout=60)
+    output = client.run(timeout=300)
     checks = sum("check_" in arguments for *_, arguments in client.steps)
     found = json.load(open(results)) if os.path.exists(results) else []
     failures = [failure for failures in found for failure in failures]

@@ -46,7 +46,7 @@ def stop(server):
     if server.poll() is None:
         os.killpg(server.pid, signal.SIGTERM)
     try:
-        server.wait(10)
+        server.wait(60)
     except subprocess.TimeoutExpired:
         os.killpg(server.pid, signal.SIGKILL)
         server.wait()

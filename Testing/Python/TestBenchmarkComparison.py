@@ -69,6 +69,12 @@ class Comparison(unittest.TestCase):
         new = {"memory, a": [1.15, 1.16], "memory, b": [1.3, 1.31]}
         self.assertEqual(verdicts(new, old), {"memory, a": "same", "memory, b": "worse"})
 
+    def test_the_longest_of_many_short_times_varies(self):
+        old = {"longest of a": [1.0, 1.3], "longest of b": [1.0, 1.3]}
+        new = {"longest of a": [1.8, 1.9], "longest of b": [2.5, 2.6]}
+        expected = {"longest of a": "same", "longest of b": "worse"}
+        self.assertEqual(verdicts(new, old), expected)
+
     def test_exit_codes(self):
         old = run({"a": [1.0, 1.1], "b": [1.0, 1.1]})
         self.assertEqual(exit_code(old, old)[0], 0)
@@ -112,6 +118,16 @@ class Ratios(unittest.TestCase):
         written = {"ThinPlate": 1.0, "Membrane": 3.0, "vtkFillHolesFilter": 4.0}
         ratios = RUN_ALL.ratios_of("BenchmarkFill", written)
         self.assertEqual(ratios, {"filled by ThinPlate": 0.25, "filled by Membrane": 0.75})
+
+    def test_of_silences_and_aborts_are_parts_of_the_whole_update(self):
+        written = {
+            "F, whole update": 2.0, "F, silence": 0.5, "F, abort to end": 0.25,
+            "G, whole update": 4.0, "G, silence": 0.5,
+        }
+        ratios = RUN_ALL.ratios_of("BenchmarkProgress", written)
+        self.assertEqual(ratios, {
+            "longest of F, silence": 0.25, "longest of F, abort to end": 0.125,
+            "longest of G, silence": 0.125})
 
     def test_of_few_points_are_parts_of_all(self):
         written = {"random, 0 %, 1 threads": 2.0, "random, 10 %, 1 threads": 1.0}
@@ -173,16 +189,11 @@ class Programs(unittest.TestCase):
             with open(path, encoding="utf-8") as stream:
                 return json.load(stream)
 
-    def test_pieces_and_memory_are_told_by_the_processor_time_of_the_whole_program(self):
-        begun = os.times()
+    def test_pieces_and_memory_are_told_beside_each_other(self):
         rows = self.run_script(
             "benchmark-pieces", "random", "--points", "20000", "--pieces", "2")
-        ended = os.times()
         self.assertEqual(list(rows), ["in memory", "in pieces, random, 20,000 points"])
-        # To start takes most of it, and the script itself does little.
-        all_seconds = sum(ended[2:4]) - sum(begun[2:4])
-        self.assertGreater(sum(rows.values()), 0.4 * all_seconds)
-        self.assertLess(sum(rows.values()), all_seconds)
+        self.assertTrue(all(seconds > 0.0 for seconds in rows.values()))
 
     def test_the_program_is_told_beside_loadtxt_with_options_of_its_own(self):
         rows = self.run_script(

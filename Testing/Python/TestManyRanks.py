@@ -3,168 +3,48 @@
 """Points that are spread over ranks give the triangles of one rank, whatever the ranks have.
 
 Run by mpirun: all ranks run this script. Each case is also made by rank 0 alone, and compared with what
-all ranks have made: points, arrays, triangles, unused points and counts, by global ids. With --clouds
-more random clouds are compared than the suite has time for, with --aborts more aborts.
+all ranks have made: points, arrays, triangles, unused points, counts and messages, by global ids.
 """
-import argparse
-import sys
-import time
 
-from mpi4py import MPI  # before VTK: it starts MPI
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkStringArray
-from vtkmodules.vtkCommonDataModel import vtkPolyData
-from vtkmodules.vtkParallelCore import vtkMultiProcessController
-from vtkmodules.vtkParallelMPI import vtkMPIController
+from on_ranks import (
+    COUNT, RANK, check, check_refused, check_stops, end, fewer, gather, options_of, owners_in_places, updated)
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
+import outcomes
+from meshes import cloud, ghosts_of, triangles_of
 from vtkelevationsurface import vtkGridDelaunay2D
 
-WORLD = MPI.COMM_WORLD
-RANK, COUNT = WORLD.rank, WORLD.size
-CONTROLLER = vtkMPIController()
-CONTROLLER.Initialize()
-vtkMultiProcessController.SetGlobalController(CONTROLLER)
-FAILURES = []
 POLICIES = 4
-
-
-def check(is_true, claim):
-    if not is_true:
-        FAILURES.append(claim)
-        print("rank %d: FAILED: %s" % (RANK, claim), flush=True)
-
-
-def cloud(coordinates, ids=None, arrays=()):
-    """A data set; ids are marked as global ids."""
-    data, points = vtkPolyData(), vtkPoints()
-    points.SetData(numpy_to_vtk(numpy.ascontiguousarray(coordinates), deep=True))
-    data.SetPoints(points)
-    if ids is not None:
-        array = vtkIdTypeArray()
-        array.SetName("numbers")
-        array.SetNumberOfValues(len(ids))
-        for i, number in enumerate(ids):
-            array.SetValue(i, number)
-        data.GetPointData().SetGlobalIds(array)
-    for name, values in arrays:
-        if values.dtype.kind == "U":
-            array = vtkStringArray()
-            for value in values:
-                array.InsertNextValue(str(value))
-        else:
-            array = numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
-        array.SetName(name)
-        data.GetPointData().AddArray(array)
-    return data
-
-
-def updated(algorithm, data, alone, **properties):
-    """A filter after its update, and its messages."""
-    algorithm.SetNumberOfThreads(1)
-    algorithm.SetInputData(data)
-    messages = []
-
-    def note(_caller, event, text):
-        messages.append((event, text.split("): ", 1)[1].strip()))  # without the address
-
-    note.CallDataType = "string0"
-    algorithm.AddObserver("ErrorEvent", note)
-    algorithm.AddObserver("WarningEvent", note)
-    for name, value in properties.items():
-        getattr(algorithm, "Set" + name)(value)
-    algorithm.UpdatePiece(*(0, 1, 0) if alone else (RANK, COUNT, 0))
-    return algorithm, messages
 
 
 def triangulate(data, alone, **properties):
     return updated(vtkGridDelaunay2D(), data, alone, **properties)
 
 
-def values_of(array):
-    """The values of an array, as a list of what can be compared."""
-    if isinstance(array, vtkStringArray):
-        return [array.GetValue(i) for i in range(array.GetNumberOfValues())]
-    values = vtk_to_numpy(array)
-    return [repr(value) for value in values.tolist()]
-
-
-def turned(triangles):
-    """Triangles from their least id on, as a list."""
-    first = numpy.argmin(triangles, axis=1)
-    rows = numpy.arange(len(triangles))
-    return list(map(tuple, numpy.stack(
-        [triangles[rows, (first + i) % 3] for i in range(3)], axis=1).tolist()))
-
-
-def part_of(delaunay, ids=None):
-    """What a rank has made, by global ids: of the output, given, or places where all points are here."""
+def made_by(delaunay, messages, numbers=None):
+    """What a rank has made, by global ids: those given, of the output, or places where it has all points."""
     output = delaunay.GetOutput()
-    data, count = output.GetPointData(), output.GetNumberOfPoints()
-    ghosts = numpy.zeros(count, int)
-    if ids is None and data.GetGlobalIds():
-        ids = vtk_to_numpy(data.GetGlobalIds())
-    elif ids is None:
-        ids = numpy.arange(count)
-    if data.GetArray("vtkGhostType"):
-        ghosts = vtk_to_numpy(data.GetArray("vtkGhostType"))
-    part = {"ids": ids.tolist(), "ghosts": ghosts.tolist(), "triangles": [], "unused": []}
-    if output.GetNumberOfPolys():
-        corners = vtk_to_numpy(output.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-        part["triangles"] = turned(ids[corners])
-    unused = output.GetFieldData().GetArray("UnusedPointIds")
-    reasons = output.GetFieldData().GetArray("UnusedPointReasons")
-    for i in range(unused.GetNumberOfTuples() if unused else 0):
-        part["unused"].append((int(ids[unused.GetValue(i)]), reasons.GetValue(i)))
-    part["points"] = values_of(output.GetPoints().GetData()) if count else []
-    part["type"] = output.GetPoints().GetDataType() if count else None
-    part["arrays"] = {data.GetArrayName(i): values_of(data.GetAbstractArray(i))
-                      for i in range(data.GetNumberOfArrays())
-                      if data.GetArrayName(i) not in ("vtkGhostType", "GlobalPointIds")}
-    found = output.GetFieldData().GetArray("Lattice")
-    part["counts"] = (delaunay.GetNumberOfDuplicatePoints(), delaunay.GetNumberOfNonFinitePoints(),
-                      delaunay.GetNumberOfConstraintCrossings(), delaunay.GetNumberOfAddedPoints(),
-                      delaunay.GetLatticeFound())
-    part["lattice"] = found and found.GetTuple(0)
+    count, given = output.GetNumberOfPoints(), output.GetPointData().GetGlobalIds()
+    if numbers is None:
+        numbers = vtk_to_numpy(given) if given and count else numpy.arange(count)
+    return outcomes.made_by([delaunay], messages, numbers[:count], ("numbers",))
+
+
+def check_part(delaunay, claim):
+    """A rank has its own points first, then other ranks' corners, both in the order of their ids."""
+    output = delaunay.GetOutput()
+    count, ids = output.GetNumberOfPoints(), output.GetPointData().GetGlobalIds()
+    are_others = ghosts_of(output)
+    own = count - numpy.count_nonzero(are_others)
+    check(not are_others[:own].any(), claim + ": points of other ranks come last")
+    if ids and count:
+        ids = vtk_to_numpy(ids)
+        check((numpy.diff(ids[:own]) > 0).all() and (numpy.diff(ids[own:]) > 0).all(), claim + ": the order of ids")
+    check(numpy.isin(numpy.arange(own, count), triangles_of(output)).all(),
+          claim + ": points of other ranks are corners")
     work = output.GetFieldData().GetArray("WorkOfRank")
-    part["own"] = work and int(work.GetComponent(0, 0))
-    return part
-
-
-def check_union(parts, whole, claim):
-    """Compares what all ranks have made with what one has."""
-    owned = {}
-    for part in parts:
-        for i, number in enumerate(part["ids"]):
-            values = [part["points"][i]] + [part["arrays"][name][i] for name in sorted(part["arrays"])]
-            if not part["ghosts"][i]:
-                check(number not in owned, "%s: point %d has one owner" % (claim, number))
-                owned[number] = values
-    expected = {number: [whole["points"][i]] + [whole["arrays"][name][i] for name in sorted(whole["arrays"])]
-                for i, number in enumerate(whole["ids"])}
-    check(owned == expected, claim + ": points and their values are those of one rank")
-    for part in parts:
-        own = [number for number, flag in zip(part["ids"], part["ghosts"]) if not flag]
-        check(own == sorted(own), claim + ": points are in the order of their ids")
-        check(part["own"] in (None, len(own)), claim + ": the number of own points is told")
-        ghosts = [i for i, flag in enumerate(part["ghosts"]) if flag]
-        check(ghosts == list(range(len(part["ids"]) - len(ghosts), len(part["ids"]))),
-              claim + ": points of other ranks come last")
-        for i in ghosts:
-            values = [part["points"][i]] + [part["arrays"][name][i] for name in sorted(part["arrays"])]
-            check(part["ghosts"][i] == 1 and values == expected[part["ids"][i]],
-                  "%s: point %d is the owner's" % (claim, part["ids"][i]))
-        used = {corner for triangle in part["triangles"] for corner in triangle}
-        check(all(part["ids"][i] in used for i in ghosts), claim + ": points of other ranks are corners")
-        check(part["counts"] == whole["counts"], "%s: counts %s, not %s" % (claim, part["counts"], whole["counts"]))
-        check(not part["ids"] or part["lattice"] == whole["lattice"], claim + ": the lattice")
-        check(part["type"] in (None, whole["type"]), claim + ": the type of points")
-    triangles = [triangle for part in parts for triangle in part["triangles"]]
-    check(len(triangles) == len(set(triangles)), claim + ": each triangle is on one rank")
-    check(set(triangles) == set(whole["triangles"]),
-          "%s: %d triangles are the %d of one rank" % (claim, len(triangles), len(whole["triangles"])))
-    unused = [point for part in parts for point in part["unused"]]
-    check(sorted(unused) == sorted(whole["unused"]), claim + ": each unused point is told once")
+    check(not work or work.GetComponent(0, 0) == own, claim + ": the number of own points is told")
 
 
 def compare(claim, coordinates, owners, ids=None, arrays=(), **properties):
@@ -179,15 +59,20 @@ def compare(claim, coordinates, owners, ids=None, arrays=(), **properties):
     part, messages = triangulate(
         cloud(coordinates[mine], None if ids is None else ids[mine], [(n, a[mine]) for n, a in arrays]), False,
         **properties)
-    check(RANK == 0 or not messages, "%s: rank %d is silent: %s" % (claim, RANK, messages))
-    parts = WORLD.gather(part_of(part))
+    check_part(part, claim)
+    parts = gather(made_by(part, messages))
     if RANK == 0:
         numbers = numpy.arange(len(order)) if ids is None else ids[order]
-        given = arrays if ids is None else (("numbers", ids),) + tuple(arrays)
         whole, expected = triangulate(
-            cloud(coordinates[order], None, [(n, a[order]) for n, a in given]), True, **properties)
-        check(messages == expected, "%s: messages %s, not %s" % (claim, messages, expected))
-        check_union(parts, part_of(whole, numbers[:whole.GetOutput().GetNumberOfPoints()]), claim)
+            cloud(coordinates[order], None, [(n, a[order]) for n, a in arrays]), True, **properties)
+        check_union(parts, made_by(whole, expected, numbers), claim)
+
+
+def check_union(parts, whole, claim):
+    """Compares what all ranks have made with what one has; messages come from the first."""
+    check(not any(part["messages"] for part in parts[1:]), claim + ": other ranks are silent")
+    why = outcomes.difference(outcomes.joined(parts), outcomes.joined([whole]))
+    check(not why, "%s: %s" % (claim, why))
 
 
 def check_given_lattice(random):
@@ -219,34 +104,16 @@ def check_given_lattice(random):
 def check_elevation_error(random):
     """With an elevation error, the points are gathered on one rank; all tell the counts."""
     points = random.random((2000, 3))
-    owners = owners_of(random, len(points))
+    owners = owners_in_places(random, points)
     for error in (0.2, -1.0):
         spread, messages = triangulate(cloud(points[owners == RANK]), False, MaximumElevationError=error)
+        parts = gather(outcomes.made_by([spread], messages))
         alone, expected = triangulate(
             cloud(numpy.concatenate([points[owners == rank] for rank in range(COUNT)])), True,
             MaximumElevationError=error)
-        check(messages == (expected if RANK == 0 else []), "elevation error %s: %s" % (error, messages))
-        triangles = WORLD.allgather(spread.GetOutput().GetNumberOfPolys())
-        check(sorted(triangles)[-1] == sum(triangles) == alone.GetOutput().GetNumberOfPolys(),
-              "elevation error: %s triangles are on one rank" % triangles)
-        for name in ("NumberOfRedundantPoints", "LargestElevationError"):
-            check(getattr(spread, "Get" + name)() == getattr(alone, "Get" + name)(), name)
-
-
-def owners_of(random, count):
-    """Which rank has which point: drawn, in stretches, in rows, on few ranks, on one but for a point."""
-    kind = random.integers(5)
-    if kind == 0 or count < COUNT:
-        return random.integers(COUNT, size=count)
-    if kind == 1:
-        return numpy.sort(random.integers(COUNT, size=count))
-    if kind == 2:
-        return numpy.arange(count) % COUNT
-    if kind == 3:
-        return random.choice(random.integers(COUNT, size=max(1, COUNT // 2)), size=count)
-    owners = numpy.full(count, random.integers(COUNT))
-    owners[random.integers(count)] = random.integers(COUNT)
-    return owners
+        check_union(parts, outcomes.made_by([alone], expected), "elevation error %s" % error)
+        shares = outcomes.joined(parts)["shares"]
+        check(max(shares) == sum(shares), "elevation error: %s triangles are on one rank" % shares)
 
 
 def tracks(random, count):
@@ -320,46 +187,9 @@ def compare_random(random, claim):
                   ("vector", random.random((count, 3))),
                   ("text", numpy.array(["t" * (i % 4) + str(i) for i in range(count)], dtype="U")))
     limit = random.choice([0.0, 0.0, 0.05, 1.5, 30.0])
-    compare(claim, coordinates, owners_of(random, count), ids, arrays,
+    compare(claim, coordinates, owners_in_places(random, coordinates), ids, arrays,
             DuplicatePolicy=int(random.integers(POLICIES)), MaximumEdgeLength=float(limit),
             LatticeMode=int(random.random() < 0.3))
-
-
-def check_stops(random, count, share, make):
-    """Progress rises; an abort on one rank, at any moment, ends all of them, and one rank tells of it.
-
-    share  the part of the progress in which it comes
-    make   make(i) -> a filter with its input
-    Returns how late the latest was.
-    """
-    late, reached = [], 0
-    for i in range(count):
-        at, culprit = share * random.random(), random.integers(COUNT)
-        algorithm = make(i)
-        algorithm.SetNumberOfThreads(1)
-        begun, told_of, progress = [], [], []
-
-        def stop(caller, _event):
-            progress.append(caller.GetProgress())
-            if RANK == culprit and caller.GetProgress() >= at and not begun:
-                begun.append(time.monotonic())
-                caller.SetAbortExecute(1)
-
-        algorithm.AddObserver("ProgressEvent", stop)
-        algorithm.AddObserver("WarningEvent", lambda *_: told_of.append("warning"))
-        algorithm.AddObserver("ErrorEvent", lambda *_: told_of.append("error"))
-        WORLD.barrier()
-        algorithm.UpdatePiece(RANK, COUNT, 0)
-        ended = time.monotonic()
-        check(progress == sorted(progress), "progress rises on rank %d" % RANK)
-        begun = WORLD.bcast(begun, int(culprit))
-        if begun:
-            reached += 1
-            late.append(ended - begun[0])
-            check(algorithm.GetOutput().GetNumberOfPoints() == 0, "rank %d is empty after abort %d" % (RANK, i))
-            check(told_of == ["warning"] * (RANK == 0), "rank %d: %s of abort %d" % (RANK, told_of, i))
-    check(reached > count // 2, "%d of %d aborts have come to pass" % (reached, count))
-    return max(WORLD.allgather(max(late, default=0.0)))
 
 
 def check_aborts(random, count, size, **properties):
@@ -370,15 +200,7 @@ def check_aborts(random, count, size, **properties):
             getattr(delaunay, "Set" + name)(value)
         return delaunay
 
-    return check_stops(random, count, 0.9, make)  # the last tenth is one rank's own
-
-
-def check_refused(data, part, claim, **properties):
-    """One error of all ranks, by rank 0, and nothing on any."""
-    delaunay, messages = triangulate(data, False, **properties)
-    check(len(messages) == (RANK == 0) and (RANK > 0 or part in messages[0][1]),
-          "rank %d, %s: one error with %r, not %s" % (RANK, claim, part, messages))
-    check(delaunay.GetOutput().GetNumberOfPoints() == 0, "rank %d, %s: no point" % (RANK, claim))
+    check_stops(random, count, 0.9, make)  # the last tenth is one rank's own
 
 
 def check_errors(random):
@@ -387,11 +209,12 @@ def check_errors(random):
         return
     for culprit in range(min(COUNT, 3)):
         data = cloud(random.random((COUNT, 50, 3))[RANK], None, [("short", numpy.zeros(50 if RANK != culprit else 49))])
-        check_refused(data, 'On rank %d: Point array "short" has 49 tuples' % culprit, "a short array")
-    # Two points of one part of the plane have the same id.
+        check_refused(vtkGridDelaunay2D(), data, 'On rank %d: Point array "short" has 49 tuples' % culprit, "a short array")
+    # Several points of one part of the plane have the same id, 7 or 7 + COUNT: one of them is told, which
+    # of the two, depends on the rank that is first.
     corner = numpy.array([[0.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.001, 0.0]])
-    check_refused(cloud(corner + [1e-5 * RANK, 0.0, 0.0], numpy.array([7, 7 + COUNT, 8 + COUNT + RANK, 9 + 3 * COUNT + RANK])),
-                  "have the same global id, 7", "ids of several points")
+    check_refused(vtkGridDelaunay2D(), cloud(corner + [1e-5 * RANK, 0.0, 0.0], numpy.array([7, 7 + COUNT, 8 + COUNT + RANK, 9 + 3 * COUNT + RANK])),
+                  "have the same global id, ", "ids of several points")
 
 
 def check_kinds():
@@ -417,36 +240,18 @@ def check_kinds():
     compare("no point", coordinates[:0], numpy.zeros(0, int))
 
 
-def end(done):
-    """Ends the test of all ranks."""
-    failures = sum(WORLD.allgather(len(FAILURES)))
-    if RANK == 0:
-        print("%d ranks, %s: %d failures" % (COUNT, done, failures))
-    sys.exit(1 if failures else 0)
-
-
-def options_of(clouds, aborts):
-    """The options of the command line, with these defaults."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--clouds", type=int, default=clouds)
-    parser.add_argument("--aborts", type=int, default=aborts)
-    parser.add_argument("--size", type=int, default=20000, help="points of a cloud that is aborted")
-    parser.add_argument("--seed", type=int, default=1)
-    return parser.parse_args()
-
-
-def main():
-    options = options_of(30, 4)
+def main(options):
     check_kinds()
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
     check_given_lattice(random)
     check_elevation_error(random)
-    for i in range(options.clouds):
+    clouds = options.clouds or fewer(30)
+    for i in range(clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
-    latest = check_aborts(random, options.aborts, options.size)
-    end("%d clouds, %d aborts (the latest took %.2f s)" % (options.clouds, options.aborts, latest))
+    check_aborts(random, options.aborts or fewer(4), options.size)
+    return "%d clouds" % clouds
 
 
 if __name__ == "__main__":
-    main()
+    end(main(options_of()))

@@ -2,29 +2,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Points and constraints that are spread over ranks give the triangles of one rank.
 
-Run by mpirun, as TestManyRanks.py. With --clouds more random clouds are compared than the suite has time
-for.
+Run by mpirun, as TestManyRanks.py.
 """
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from on_ranks import COUNT, RANK, check, check_refused, end, fewer, gather, options_of, owners_in_places
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-from TestManyRanks import (
-    CLOUDS, COUNT, POLICIES, RANK, WORLD, check, check_aborts, check_refused, check_union, cloud, end, options_of,
-    owners_of, part_of, triangulate)
+import meshes
+from meshes import array_of, cloud
+from TestManyRanks import CLOUDS, POLICIES, check_aborts, check_part, check_union, made_by, triangulate
+from vtkelevationsurface import vtkGridDelaunay2D
 
 
 def lines_of(coordinates, cells, arrays=()):
     """A data set of lines; of cells (ids of points, whether it is a polygon)."""
-    data, lines, polygons = cloud(coordinates, None, arrays), vtkCellArray(), vtkCellArray()
-    for ids, is_polygon in cells:
-        cell = polygons if is_polygon else lines
-        cell.InsertNextCell(len(ids))
-        for number in ids:
-            cell.InsertCellPoint(int(number))
-    data.SetLines(lines)
-    data.SetPolys(polygons)
-    return data
+    lines, polygons = ([ids for ids, is_one in cells if is_one == kind] for kind in (False, True))
+    return meshes.lines(coordinates, lines, polygons, arrays)
 
 
 def kept(coordinates, cells, arrays, chosen):
@@ -59,25 +53,22 @@ def compare(claim, coordinates, owners, lines, holders, ids=None, arrays=(), **p
     if ids is not None and len(set(owners)) == 1:
         mine = mine[numpy.argsort(ids[mine])]  # on one rank, places decide, not ids
     order = numpy.argsort(owners, kind="stable") if ids is None else numpy.argsort(ids, kind="stable")
-    parts = [kept(*lines, [holder in (-1, rank) for holder in holders]) for rank in range(COUNT)]
-    own = parts[RANK]
+    parts_of_lines = [kept(*lines, [holder in (-1, rank) for holder in holders]) for rank in range(COUNT)]
+    own = parts_of_lines[RANK]
     part, messages = triangulate(
         cloud(coordinates[mine], None if ids is None else ids[mine], [(n, a[mine]) for n, a in arrays]), False,
         SourceData=lines_of(*own) if len(own[0]) else vtkPolyData(), **properties)
-    check(RANK == 0 or not messages, "%s: rank %d is silent: %s" % (claim, RANK, messages))
-    made = part_of(part)
-    made["arrays"].pop("numbers", None)  # the ids of added points are others
-    made = WORLD.gather(made)
+    check_part(part, claim)
+    parts = gather(made_by(part, messages))
     if RANK == 0:
         whole, expected = triangulate(
             cloud(coordinates[order], None, [(n, a[order]) for n, a in arrays]), True,
-            SourceData=lines_of(*(joined(parts) if holders[0] >= 0 else parts[0])), **properties)
-        check(messages == expected, "%s: messages %s, not %s" % (claim, messages, expected))
+            SourceData=lines_of(*(joined(parts_of_lines) if holders[0] >= 0 else parts_of_lines[0])), **properties)
         added = whole.GetOutput().GetNumberOfPoints() - len(order)
         numbers = numpy.arange(len(order)) if ids is None else ids[order]
         first = numbers.max(initial=-1) + 1
-        numbers = numpy.concatenate((numbers, numpy.arange(first, first + added)))[:max(0, added + len(order))]
-        check_union(made, part_of(whole, numbers), claim)
+        numbers = numpy.concatenate((numbers, numpy.arange(first, first + added)))
+        check_union(parts, made_by(whole, expected, numbers), claim)
 
 
 def draw_lines(random, coordinates):
@@ -140,7 +131,7 @@ def compare_random(random, claim):
     kind = random.integers(3)  # the same on all ranks, all on one, or spread
     holders = (numpy.full(len(cells), -1) if kind == 0 else numpy.full(len(cells), random.integers(COUNT))
                if kind == 1 else random.integers(COUNT, size=len(cells)))
-    compare(claim, coordinates, owners_of(random, count), (places, cells, arrays_of_lines), holders,
+    compare(claim, coordinates, owners_in_places(random, coordinates), (places, cells, arrays_of_lines), holders,
             random.permutation(3 * count)[:count] if random.random() < 0.3 and COUNT > 1 else None, arrays,
             DuplicatePolicy=int(random.integers(POLICIES)),
             MaximumEdgeLength=float(random.choice([0.0, 0.0, 0.05, 30.0])))
@@ -172,9 +163,7 @@ def check_kinds():
 def with_wide_ids(data, first):
     """With an array of ids that 32 bits cannot hold."""
     ids = numpy.arange(first, first + data.GetNumberOfPoints(), dtype=numpy.int64)
-    array = numpy_to_vtkIdTypeArray(ids, deep=True)
-    array.SetName("wide")
-    data.GetPointData().AddArray(array)
+    data.GetPointData().AddArray(array_of(ids, "wide"))
     return data
 
 
@@ -202,22 +191,21 @@ def check_errors(random):
                 ("z not finite", across + [0.0, 0.0, numpy.inf], cell, (), "not finite"),
                 ("a short array", across, cell, [("short", numpy.zeros(1))], '"short" has 1 tuple')):
             source = lines_of(places, cells, arrays) if is_mine else vtkPolyData()
-            check_refused(cloud(points), text, "%s on rank %d" % (claim, holder), SourceData=source)
+            check_refused(vtkGridDelaunay2D(), cloud(points), text, "%s on rank %d" % (claim, holder), SourceData=source)
 
 
-def main():
-    options = options_of(15, 3)
+def main(options):
     check_kinds()
     random = numpy.random.default_rng(options.seed)
     check_errors(random)
     check_wide_ids(random)
-    for i in range(options.clouds):
+    clouds = options.clouds or fewer(15)
+    for i in range(clouds):
         compare_random(random, "cloud %d of seed %d" % (i, options.seed))
     places, cells = draw_lines(random, random.random((9, 3)))
-    latest = check_aborts(random, options.aborts, options.size, SourceData=lines_of(places, cells))
-    end("%d clouds with constraints, %d aborts (the latest took %.2f s)" % (
-        options.clouds, options.aborts, latest))
+    check_aborts(random, options.aborts or fewer(3), options.size, SourceData=lines_of(places, cells))
+    return "%d clouds with constraints" % clouds
 
 
 if __name__ == "__main__":
-    main()
+    end(main(options_of()))

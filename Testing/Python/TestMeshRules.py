@@ -6,11 +6,10 @@ import sys
 import unittest
 
 import numpy
-from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from meshes import array_of, cells_of, cloud  # noqa: E402
 from mesh_rules import findings, in_circle, number_of_border_edges, orientation  # noqa: E402
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -18,20 +17,10 @@ ALL = {"delaunay": True, "convex_hull": True, "all_points": True}
 
 
 def mesh(places, polygons, unused=()):
-    points = vtkPoints()
-    points.SetDataTypeToDouble()
-    for x, y in places:
-        points.InsertNextPoint(x, y, 0.0)
-    cells = vtkCellArray()
-    for corners in polygons:
-        cells.InsertNextCell(len(corners), corners)
-    data = vtkPolyData()
-    data.SetPoints(points)
-    data.SetPolys(cells)
+    data = cloud(numpy.column_stack((numpy.array(places, float), numpy.zeros(len(places)))))
+    data.SetPolys(cells_of(polygons))
     if unused:
-        ids = numpy_to_vtkIdTypeArray(numpy.array(unused, dtype=numpy.int64), deep=True)
-        ids.SetName("UnusedPointIds")
-        data.GetFieldData().AddArray(ids)
+        data.GetFieldData().AddArray(array_of(numpy.array(unused, "i8"), "UnusedPointIds"))
     return data
 
 

@@ -17,6 +17,7 @@ from unittest import mock
 
 import numpy
 from in_folder import InFolder, Program
+from meshes import by_places, ghosts_of, sorted_rows, sorted_triangles, triangles_of
 from vtkelevationsurface import (
     pieces,
     reading,
@@ -35,26 +36,11 @@ from vtkmodules.vtkIOXML import vtkXMLPartitionedDataSetReader, vtkXMLPolyDataRe
 
 TRIANGULATION_ONLY = ("--no-trim", "--no-fill")
 COUNTS = ("DuplicatePoints", "NonFinitePoints")
-
-
-def sorted_triangles(triangles):
-    """Each with its least corner first, in one order."""
-    first = triangles.argmin(axis=1)
-    turned = [triangles[numpy.arange(len(triangles)), (first + i) % 3] for i in range(3)]
-    turned = numpy.column_stack(turned)
-    return turned[numpy.lexsort(turned.T[::-1])]
-
-
-def triangles_of(data):
-    return vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype("i8")
+ARRAYS = ("Velocity", "Depth", "RGB", "FilledPoint", "FilledError")  # of a surface that is filled
 
 
 def ids_of(data):
     return vtk_to_numpy(data.GetPointData().GetGlobalIds())
-
-
-def ghosts_of(data):
-    return vtk_to_numpy(data.GetPointData().GetArray("vtkGhostType"))
 
 
 def all_triangles(parts):
@@ -113,7 +99,7 @@ class WithFilter(InFolder):
 
     def assert_one_owner(self, parts, given, new):
         """Each point is one piece's own; new ones have ids after those given, and one place each."""
-        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
+        own = numpy.concatenate([ids_of(part)[~ghosts_of(part)] for part in parts])
         numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(given + new))
         places = {}
         for part in parts:
@@ -159,18 +145,18 @@ class InPieces(WithFilter):
         points = clouds()["random"]
         _, parts = self.assert_as_one(points, 7)
         self.assertEqual(len(parts), 7)
-        own = numpy.concatenate([ids_of(part)[ghosts_of(part) == 0] for part in parts])
+        own = numpy.concatenate([ids_of(part)[~ghosts_of(part)] for part in parts])
         numpy.testing.assert_array_equal(numpy.sort(own), numpy.arange(len(points)))
         for part in parts:
             here = vtk_to_numpy(part.GetPoints().GetData())
             numpy.testing.assert_array_equal(here, points[ids_of(part)])
             used = numpy.zeros(len(here), dtype=bool)
             used[triangles_of(part)] = True
-            self.assertTrue(used[ghosts_of(part) == 1].all())
-            self.assertTrue((numpy.diff(ids_of(part)[ghosts_of(part) == 0]) > 0).all())
+            self.assertTrue(used[ghosts_of(part)].all())
+            self.assertTrue((numpy.diff(ids_of(part)[~ghosts_of(part)]) > 0).all())
             y = here[:, 1][triangles_of(part)]
             lowest = triangles_of(part)[numpy.arange(len(y)), y.argmin(axis=1)]
-            self.assertTrue((ghosts_of(part)[lowest] == 0).all())
+            self.assertFalse(ghosts_of(part)[lowest].any())
 
     def test_duplicates_and_points_that_are_not_finite_are_those_of_one(self):
         points = clouds()["random"]
@@ -359,15 +345,6 @@ def star(centre, radius, points=240):
     return ring + (*centre, 0.0)
 
 
-def by_places(data):
-    """The triangles of a mesh by the places of their corners, in one order."""
-    corners = vtk_to_numpy(data.GetPoints().GetData())[triangles_of(data)]
-    first = numpy.lexsort((corners[:, :, 1], corners[:, :, 0]), axis=1)[:, 0]
-    turned = [corners[numpy.arange(len(corners)), (first + i) % 3] for i in range(3)]
-    turned = numpy.column_stack(turned)
-    return turned[numpy.lexsort(turned.T[::-1])]
-
-
 class Trimmed(WithFilter):
     """Pieces that are trimmed along a boundary."""
 
@@ -390,8 +367,7 @@ class Trimmed(WithFilter):
             getattr(source.GetTrim(), "Set" + name)(value)
         one.Update()
         parts = self.parts(source, count)
-        found = numpy.concatenate([by_places(part) for part in parts])
-        found = found[numpy.lexsort(found.T[::-1])]
+        found = sorted_rows(numpy.concatenate([by_places(part) for part in parts]))
         numpy.testing.assert_array_equal(found, by_places(one.GetOutput()))
         for name in ("OutwardTriangles", "RecoveredEdges", "InsertedPoints"):
             counts = [getattr(f, "GetNumberOf" + name)() for f in (source, one)]
@@ -468,12 +444,13 @@ class Filled(WithFilter):
             for x, y, radius in lakes]
 
     def points_of(self, points):
-        """With arrays of which one is interpolated."""
+        """With arrays of which two are interpolated, not in the order of their names."""
         data = make_points(points)
         if points.dtype == numpy.float32:
             places = vtkPoints()
             places.SetData(numpy_to_vtk(points, deep=True))
             data.SetPoints(places)
+        add_array(data, "Velocity", numpy.cos(points[:, 1] / 40.0))
         add_array(data, "Depth", numpy.sin(points[:, 0] / 30.0))
         add_array(data, "RGB", numpy.column_stack((numpy.arange(len(points)) % 251,) * 3).astype("u1"))
         return data
@@ -507,8 +484,7 @@ class Filled(WithFilter):
             one.Update()
         source, parts = self.source_of(
             points, rings, count, len(told.warnings), limit, **properties)
-        found = numpy.concatenate([by_places(part) for part in parts])
-        found = found[numpy.lexsort(found.T[::-1])]
+        found = sorted_rows(numpy.concatenate([by_places(part) for part in parts]))
         numpy.testing.assert_array_equal(found, by_places(one.GetOutput()))
         self.assertEqual(source.GetNumberOfFilledTriangles(), len(found))
         for name in ("Holes", "FilledHoles"):
@@ -685,11 +661,9 @@ def point_rows(parts):
     for part in parts:
         data = part.GetPointData()
         columns = [vtk_to_numpy(part.GetPoints().GetData())]
-        columns += [vtk_to_numpy(data.GetArray(n)) for n in ("Depth", "RGB", "FilledPoint", "FilledError")]
-        row = numpy.column_stack(columns)
-        rows.append(row[ghosts_of(part) == 0] if data.GetArray("vtkGhostType") else row)
-    rows = numpy.nan_to_num(numpy.concatenate(rows), nan=-1e99)
-    return rows[numpy.lexsort(rows.T[::-1])]
+        columns += [vtk_to_numpy(data.GetArray(n)) for n in ARRAYS]
+        rows.append(numpy.column_stack(columns)[~ghosts_of(part)])
+    return sorted_rows(numpy.nan_to_num(numpy.concatenate(rows), nan=-1e99))
 
 
 def hole_rows(rims):
@@ -979,10 +953,7 @@ class Command(Program):
     def test_a_full_disk_is_one_message_and_leaves_nothing(self):
         name = self.npy("a.npy", clouds()["random"])
         for most in (20_000, 100_000):  # bytes of a file: of all points, of a piece
-            done = self.call(
-                name, "--pieces", "1", *TRIANGULATION_ONLY,
-                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)),
-            )
+            done = self.call(name, "--pieces", "1", *TRIANGULATION_ONLY, largest_file=most)
             self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
             self.assertIn("cannot be written: File too large", done.stderr)
             self.assertEqual(os.listdir(self.folder), ["a.npy"])
@@ -995,7 +966,8 @@ class Command(Program):
                 "from vtkelevationsurface import command, pieces, supervisor\n"
                 "def stopped(*_):\n"
                 "    os.kill(os.getppid(), signal.SIGTERM)\n"
-                "    time.sleep(20)\n"
+                "    time.sleep(50)\n"
+                "    open('went-on', 'w').close()\n"
                 f"home = pieces if hasattr(pieces, {when!r}) else pieces.Pieces\n"
                 f"setattr(home, {when!r}, stopped)\n"
                 f"options = [{name!r}, '--pieces', '3', '--no-trim', '--no-fill']\n"
@@ -1004,7 +976,7 @@ class Command(Program):
             )
             done = subprocess.run(
                 [sys.executable, "-c", script], cwd=self.folder, text=True, capture_output=True,
-                timeout=60, check=False,
+                timeout=300, check=False,
             )
             words = "reconstruct: stopped; nothing is written\n"
             self.assertEqual((done.returncode, done.stderr), (130, words))

@@ -4,12 +4,11 @@
 
 import json
 import os
-import subprocess
 import sys
 import unittest
 
 import numpy
-from in_folder import InFolder
+from in_folder import InFolder, Program
 from vtkelevationsurface import ElevationSurfaceError, reconstruct
 from vtkelevationsurface.writing import grids, lines as line_files
 from vtkelevationsurface.clouds import Cloud, make_points
@@ -200,23 +199,14 @@ class Files(InFolder):
 
 
 @unittest.skipUnless(gdal, "GDAL's Python module is missing")
-class CommandLine(InFolder):
+class CommandLine(Program):
     def call(self, *arguments, **options):
-        return subprocess.run(
-            [sys.executable, "-m", "vtkelevationsurface", *arguments, "--no-picture"],
-            cwd=self.folder,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-            **options,
-        )
+        return super().call(*arguments, "--no-picture", **options)
 
     def setUp(self):
         super().setUp()
         rows = "".join("%r %r %r\n" % tuple(row) for row in wavy(500).tolist())
-        self.name = os.path.basename(self.file("a.xyz", rows))
+        self.name = self.file("a.xyz", rows)
 
     def test_all_results_appear_and_know_where_they_lie(self):
         done = self.call(
@@ -284,14 +274,6 @@ class CommandLine(InFolder):
             self.assertEqual(os.listdir(self.folder), [self.name])
 
     def test_a_full_disk_leaves_nothing_behind(self):
-        try:
-            import resource
-        except ImportError:
-            self.skipTest("there are no resource limits here")
-
-        def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
-
         for arguments in (
             ("--grid", "0.1"),
             ("--grid", "0.5", "--grid-output", "g.asc"),
@@ -301,7 +283,7 @@ class CommandLine(InFolder):
             ("--contours", "0.01", "--contours-output", "c.dxf"),
         ):
             with self.subTest(arguments=arguments):
-                done = self.call(self.name, *arguments, preexec_fn=limit)
+                done = self.call(self.name, *arguments, largest_file=100_000)
                 self.assertEqual((done.returncode, len(done.stderr.splitlines())), (1, 1), done.stderr)
                 self.assertIn("cannot be written", done.stderr)
                 self.assertEqual(os.listdir(self.folder), [self.name])

@@ -10,6 +10,13 @@ import faulthandler
 import os
 import runpy
 import sys
+import unittest
+
+
+def name_skipped(result, test, reason, add=unittest.TextTestResult.addSkip):
+    """What Utilities/test lists at its end."""
+    print(f"SKIPPED {test.id()}: {reason}", flush=True)
+    add(result, test, reason)
 
 
 def main():
@@ -26,6 +33,7 @@ def main():
     paths = [package_folder, os.environ.get("PYTHONPATH")]
     os.environ["PYTHONPATH"] = os.pathsep.join(path for path in paths if path)
     sys.argv = arguments
+    unittest.TextTestResult.addSkip = name_skipped
     runpy.run_path(script, run_name="__main__")
 
 

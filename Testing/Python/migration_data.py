@@ -7,9 +7,9 @@ import struct
 
 import numpy
 from osgeo import gdal, ogr
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+import meshes
+from meshes import triangles_of as triangles
 
 gdal.UseExceptions()
 ogr.UseExceptions()
@@ -35,23 +35,15 @@ CORNERS = [int(numpy.hypot(*(XYZ[:-2, :2] - corner).T).argmin())
 
 def data(**cells):
     """vtkPolyData with the points of the cloud, and Lines or Polys of ids."""
-    result = vtkPolyData()
-    result.SetPoints(vtkPoints())
-    result.GetPoints().SetData(numpy_to_vtk(XYZ, deep=True))
+    result = meshes.cloud(XYZ)
     for kind, ids in cells.items():
-        array = vtkCellArray()
-        array.InsertNextCell(len(ids), ids)
-        getattr(result, "Set" + kind)(array)
+        getattr(result, "Set" + kind)(meshes.cells_of([ids]))
     return result
-
-
-def triangles(surface):
-    return vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
 
 
 def corners(surface):
     """(n, 3, 2): x,y of the corners of triangles"""
-    return vtk_to_numpy(surface.GetPoints().GetData())[:, :2][triangles(surface)]
+    return meshes.points_of(surface)[:, :2][triangles(surface)]
 
 
 def area(surface):

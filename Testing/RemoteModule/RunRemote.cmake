@@ -39,7 +39,8 @@ step("Configuring"
   "-DCMAKE_C_COMPILER=${C_COMPILER}"
   "-DCMAKE_CXX_COMPILER=${COMPILER}"
   "-DCMAKE_CXX_STANDARD=11"
-  "-DCMAKE_BUILD_TYPE=${CONFIG}"
+  "-DCMAKE_BUILD_TYPE="
+  "-DES_KERNEL=${KERNEL}"
   "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin")
 step("Building"
   "${CMAKE_COMMAND}" --build "${build}" --config "${CONFIG}" --target LinkCheck)

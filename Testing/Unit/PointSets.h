@@ -7,15 +7,17 @@
 #ifndef PointSets_h
 #define PointSets_h
 
-#include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Mesh/Validate.h"
+#include "Kernel/Triangulate/Triangulate.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -61,35 +63,100 @@ struct Cloud
   }
 };
 
+/** Uniform in [0, 1), the same with every library. */
+inline double Uniform(std::mt19937_64& random)
+{
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+/** The real clouds that tests run on, in the order of their names. */
+constexpr const char* RealClouds[] = { "autzen_trim_ground", "f3_fs6", "f3_truncation",
+  "landlab_nocella", "nankai_channels", "srtm_pyrenees_voids400", "st_helens_after_usgs" };
+
 /**
- * Reads a real cloud for measuring: little-endian doubles x, y, z, in a file <name>.f64 of the folder
- * ELEVATION_SURFACE_EXTRA_DATA.
- * @return why it cannot be read; empty when all is well
+ * A small cloud of the kind of a real one: with its steps, its place on the map, an outline and voids
+ * of its kind. Of LiDAR, points of uneven density; of others, nodes of a lattice.
  */
-inline std::string ReadExtraData(const std::string& name, Cloud& cloud)
+inline Cloud CloudLike(const std::string& name)
+{
+  struct Kind
+  {
+    const char* Name;
+    double OriginX, OriginY, StepX, StepY; ///< a node is (i, j) times the steps, turned
+    double Turn;                           ///< radians
+    int Columns, Rows;
+    double Slant; ///< of the outline: the share of a row's width that is missing at the last one
+    bool IsConcave, HasVoids, HasMissingLines;
+  };
+  constexpr Kind kinds[] = {
+    { "autzen_trim_ground", 636001.76, 848935.85, 2.0, 2.0, 0.0, 90, 60, 0.0, true, true, false },
+    { "f3_fs6", 622360.64, 6074324.52, 50.0, 50.0, 0.026, 93, 70, 0.1, true, true, false },
+    { "f3_truncation", 612014.67, 6073983.68, 50.0, 50.0, 0.026, 150, 45, 0.1, false, true, false },
+    { "landlab_nocella", 2348666.925, 4208067.953, 100.0, 100.0, 0.0, 90, 80, 0.4, true, false,
+      false },
+    { "nankai_channels", 2168.0, 4900.0, 1.0, 1.0, 0.0, 370, 255, 0.0, false, false, true },
+    { "srtm_pyrenees_voids400", 46182.91, 7783.64, 68.31791615274783, 92.6624388704656, 0.0, 120,
+      120, 0.0, false, true, false },
+    { "st_helens_after_usgs", 557820.0, 5108010.0, 30.0, 30.0, 0.0, 240, 340, 0.02, false, false,
+      false },
+  };
+  const Kind* const kind = std::find_if(
+    std::begin(kinds), std::end(kinds), [&name](const Kind& k) { return name == k.Name; });
+  if (kind == std::end(kinds))
+  {
+    throw std::invalid_argument("no cloud is called " + name);
+  }
+  const bool isLidar = kind == kinds;
+  std::mt19937_64 random(kind - kinds + 1);
+  const double cosine = std::cos(kind->Turn), sine = std::sin(kind->Turn);
+  Cloud cloud;
+  for (int row = 0; row < kind->Rows; ++row)
+  {
+    for (int column = 0; column < kind->Columns; ++column)
+    {
+      const double u = (column + 0.5) / kind->Columns, v = (row + 0.5) / kind->Rows;
+      const bool isOutside =
+        u > 1.0 - kind->Slant * v || (kind->IsConcave && std::hypot(u - 0.5, v - 1.0) < 0.3);
+      const bool isVoid = kind->HasVoids &&
+        (std::hypot(5.0 * u - std::floor(5.0 * u) - 0.5, 4.0 * v - std::floor(4.0 * v) - 0.4) <
+          0.2);
+      const bool isMissing = kind->HasMissingLines && row % 10 == 3 && Uniform(random) < 0.3;
+      const int count = isLidar ? 1 + static_cast<int>(random() % 3) * (u < 0.5) : 1;
+      for (int i = 0; i < count && !isOutside && !isVoid && !isMissing; ++i)
+      {
+        const double x = kind->StepX * (column + (isLidar ? Uniform(random) : 0.0));
+        const double y = kind->StepY * (row + (isLidar ? Uniform(random) : 0.0));
+        cloud.Add(kind->OriginX + cosine * x - sine * y, kind->OriginY + sine * x + cosine * y,
+          1000.0 + 100.0 * std::sin(6.0 * u) * std::cos(4.0 * v));
+      }
+    }
+  }
+  return cloud;
+}
+
+/**
+ * A real cloud: little-endian doubles x, y, z, in the file <name>.f64 of the folder
+ * ELEVATION_SURFACE_EXTRA_DATA; where that is not set, a small one of its kind.
+ */
+inline Cloud RealCloud(const std::string& name)
 {
   const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
   if (!folder)
   {
-    return "ELEVATION_SURFACE_EXTRA_DATA is not set";
+    return CloudLike(name);
   }
   const std::string path = std::string(folder) + "/" + name + ".f64";
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file)
   {
-    return path + " is not there";
+    throw std::runtime_error(path + " is not there");
   }
+  Cloud cloud;
   cloud.Coordinates.resize(static_cast<std::size_t>(file.tellg()) / sizeof(double));
   file.seekg(0);
   file.read(reinterpret_cast<char*>(cloud.Coordinates.data()),
     static_cast<std::streamsize>(cloud.Coordinates.size() * sizeof(double)));
-  return std::string();
-}
-
-/** Uniform in [0, 1), the same with every library. */
-inline double Uniform(std::mt19937_64& random)
-{
-  return static_cast<double>(random() >> 11) * 0x1p-53;
+  return cloud;
 }
 
 inline Cloud RandomCloud(std::mt19937_64& random, Index count)

@@ -19,5 +19,6 @@
 #include "SnapRounding.h"
 #include "Threads.h"
 #include "UnionFind.h"
+#include "Work.h"
 
 #endif

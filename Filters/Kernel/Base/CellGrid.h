@@ -31,7 +31,7 @@ public:
     this->SetExtent(count, cornersOf);
     // Count, sum, fill.
     this->Begins.assign(static_cast<std::size_t>(this->Columns) * this->Rows + 1, 0);
-    for (std::size_t i = 0; i < count; ++i)
+    for (const std::size_t i : Counted(count))
     {
       ReportStep(progress, i, 2 * count);
       this->ForEachCell(cornersOf(i), [&](std::size_t cell) { ++this->Begins[cell + 1]; });
@@ -42,7 +42,7 @@ public:
     }
     this->Items.resize(this->Begins.back());
     std::vector<std::size_t> next(this->Begins.begin(), this->Begins.end() - 1);
-    for (std::size_t i = 0; i < count; ++i)
+    for (const std::size_t i : Counted(count))
     {
       ReportStep(progress, count + i, 2 * count);
       this->ForEachCell(
@@ -75,7 +75,7 @@ public:
     std::size_t cell;
     if (this->FindCell(p, cell))
     {
-      std::for_each(this->Begin(cell), this->End(cell), visit);
+      this->VisitItems(cell, visit);
     }
   }
 
@@ -84,10 +84,17 @@ public:
   void Visit(const std::array<Point2, Count>& corners, Visitor&& visit) const
   {
     this->ForEachCell(
-      corners, [&](std::size_t cell) { std::for_each(this->Begin(cell), this->End(cell), visit); });
+      corners, [&](std::size_t cell) { this->VisitItems(cell, visit); });
   }
 
 private:
+  template <typename Visitor>
+  void VisitItems(std::size_t cell, Visitor&& visit) const
+  {
+    CountWork(static_cast<std::size_t>(this->End(cell) - this->Begin(cell)));
+    std::for_each(this->Begin(cell), this->End(cell), visit);
+  }
+
   template <std::size_t Count>
   static Box BoxOf(const std::array<Point2, Count>& corners)
   {

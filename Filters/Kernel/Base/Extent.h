@@ -83,8 +83,9 @@ void ForEachRange(
   Index count, int threads, const Progress& progress, Work&& work, Index size = PointsPerRange)
 {
   ForEachPiece(NumberOfRanges(count, size), threads, progress, [&](Index piece) {
-    const Index begin = piece * size;
-    work(piece, begin, begin + std::min(size, count - begin));
+    const Index begin = piece * size, here = std::min(size, count - begin);
+    CountWork(static_cast<std::size_t>(here));
+    work(piece, begin, begin + here);
   });
 }
 

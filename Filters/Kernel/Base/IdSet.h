@@ -111,7 +111,7 @@ public:
   {
     std::vector<Index> ids;
     ids.reserve(this->Count());
-    for (std::size_t word = 0; word < this->Words.size(); ++word)
+    for (const std::size_t word : Counted(this->Words.size()))
     {
       ReportStep(progress, word, this->Words.size());
       for (std::uint64_t left = this->Words[word]; left != 0; left &= left - 1)

@@ -170,10 +170,12 @@ template <typename T>
 void TouchPages(Buffer<T>& values, Index begin, Index end, const Progress& progress = Progress())
 {
   constexpr Index step = std::max<Index>(1, 4096 / sizeof(T));
+  constexpr std::size_t WorkPerPage = 64; // the system's
   end = std::min(end, static_cast<Index>(values.size()));
   const std::size_t pages = begin < end ? (end - begin) / step + 1 : 0;
   for (std::size_t page = 0; begin < end; ++page, begin += step)
   {
+    CountWork(WorkPerPage);
     ReportStep(progress, page, pages, 1024);
     std::memset(static_cast<void*>(values.data() + begin), 0, sizeof(T));
   }

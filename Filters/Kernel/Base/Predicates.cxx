@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Predicates.h"
 
+#include "Work.h"
+
 #include <algorithm>
 #include <cfloat>
 #include <vector>
@@ -270,6 +272,7 @@ public:
 
   BigInteger operator*(const BigInteger& other) const
   {
+    CountWork(8 + this->Limbs.size() * other.Limbs.size() / 8);
     BigInteger result;
     result.IsNegative = this->IsNegative != other.IsNegative;
     result.Limbs.assign(this->Limbs.size() + other.Limbs.size(), 0);
@@ -376,6 +379,9 @@ private:
   std::vector<std::uint32_t> Limbs; // least significant first, no leading zeros
 };
 
+/** What an exact orientation counts as work; a circle takes about ten times as long. */
+constexpr std::size_t WorkOfExpansions = 10;
+
 /** The exponent of a power of two of which every coordinate is a multiple. */
 int CommonExponent(std::initializer_list<Point2> points)
 {
@@ -479,6 +485,7 @@ Sign ExactOrientation(const Point2& a, const Point2& b, const Point2& c)
   {
     return IntegerOrientation(a, b, c);
   }
+  CountWork(WorkOfExpansions);
   return OrientationOf(
     Difference(a.X, c.X), Difference(a.Y, c.Y), Difference(b.X, c.X), Difference(b.Y, c.Y));
 }
@@ -502,6 +509,7 @@ Sign ExactInCircle(const Point2& a, const Point2& b, const Point2& c, const Poin
   {
     return IntegerInCircle(a, b, c, d);
   }
+  CountWork(10 * WorkOfExpansions);
   return InCircleOf(Difference(a.X, d.X), Difference(a.Y, d.Y), Difference(b.X, d.X),
     Difference(b.Y, d.Y), Difference(c.X, d.X), Difference(c.Y, d.Y));
 }

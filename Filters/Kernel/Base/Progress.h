@@ -8,8 +8,10 @@
 #define elevation_Base_Progress_h
 
 #include "Points.h"
+#include "Work.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <functional>
@@ -79,17 +81,45 @@ public:
   /** A small piece of work is done. */
   void Tick()
   {
-    if (++this->Number % 65536 == 0)
+    this->Ticks.Add();
+    if (this->Ticks.Count() % 65536 == 0)
     {
       ReportStep(this->Monitor, this->Done, this->OfAll, 1);
     }
   }
-  std::size_t Count() const { return this->Number; }
+  std::size_t Count() const { return this->Ticks.Count(); }
 
 private:
   const Progress& Monitor;
   std::size_t Done = 0, OfAll = 1;
-  std::size_t Number = 0;
+  StepCount Ticks;
+};
+
+/**
+ * Which reports an observer hears of, who may be slow: those a thousandth beyond the last one that
+ * it heard of, and 20 a second. The first one, and the end.
+ */
+class ReportPace
+{
+public:
+  using Clock = std::chrono::steady_clock;
+
+  bool Admits(double fraction, Clock::time_point now)
+  {
+    constexpr double step = 0.001;
+    constexpr std::chrono::milliseconds silence{ 50 };
+    if (fraction < std::min(1.0, this->Last + step) && now < this->Next)
+    {
+      return false;
+    }
+    this->Last = fraction;
+    this->Next = now + silence;
+    return true;
+  }
+
+private:
+  double Last = -1.0;
+  Clock::time_point Next;
 };
 
 /**
@@ -112,22 +142,26 @@ inline Progress Part(const Progress& progress, double begin, double end)
 template <typename Iterator, typename Less>
 void Sort(Iterator begin, Iterator end, Less less, const Progress& progress)
 {
-  if (!progress)
-  {
-    std::sort(begin, end, less);
-    return;
-  }
   // An estimate; the fraction stays at 1 when it takes more comparisons.
   const double count = static_cast<double>(end - begin);
   const double expected = 1.0 + 1.5 * count * std::log2(1.0 + count);
+  if (!progress)
+  {
+    CountWork(static_cast<std::size_t>(expected));
+    std::sort(begin, end, less);
+    return;
+  }
+  constexpr std::size_t stretch = 65536;
   std::size_t comparisons = 0;
   std::sort(begin, end, [&](const auto& a, const auto& b) {
-    if (++comparisons % 65536 == 0)
+    if (++comparisons % stretch == 0)
     {
+      CountWork(stretch);
       Report(progress, std::min(1.0, static_cast<double>(comparisons) / expected));
     }
     return less(a, b);
   });
+  CountWork(comparisons % stretch);
 }
 
 /**
@@ -142,6 +176,7 @@ void ForEachStretch(Index count, const Progress& progress, Work&& work)
   {
     Report(progress, static_cast<double>(begin) / count);
     const Index end = count - begin < stretch ? count : begin + stretch;
+    CountWork(static_cast<std::size_t>(end - begin));
     work(begin, end);
     begin = end;
   }

@@ -32,7 +32,9 @@ inline int ResolveNumberOfThreads(int requested)
 /** The same, but at most one a core: a thread that waits for a core would delay the next report. */
 inline int ThreadsAtOnce(int requested)
 {
-  return std::min(ResolveNumberOfThreads(requested), ResolveNumberOfThreads(0));
+  // Asking the system takes longer than a triangulation of few points.
+  return requested == 1 ? 1
+                        : std::min(ResolveNumberOfThreads(requested), ResolveNumberOfThreads(0));
 }
 
 /**
@@ -79,27 +81,46 @@ void ForEachPiece(Index count, int threads, Work&& work)
   }
 }
 
-using RoundClock = std::chrono::steady_clock;
+/**
+ * How long a thread works between two reports: until some time, or for so much work. By the latter,
+ * which is less for a thread alone that waits for no other, silence is the same on every machine.
+ */
+class Round
+{
+public:
+  using Clock = std::chrono::steady_clock;
+
+  Round(Clock::time_point end, bool isAlone)
+    : End(end)
+    , LastWork(WorkOfThread() + (isAlone ? 1 << 20 : 1 << 23))
+  {
+  }
+  /** For the thread that made it. */
+  bool IsOver() const { return WorkOfThread() >= this->LastWork || Clock::now() >= this->End; }
+
+private:
+  const Clock::time_point End;
+  const std::size_t LastWork;
+};
 
 /**
- * Calls work(thread, end) on all threads at once, round after round, until all calls of a round
- * return false: no work is left. Each call should return at about the time @a end, so that no
- * thread waits long for another one. Before each round the calling thread reports fraction(). With
- * one thread, everything is done on the calling thread.
+ * Calls work(thread, round) on all threads at once, round after round, until all calls of a round
+ * return false: no work is left. Each call should return when the round is over, so that no thread
+ * waits long for another one. Before each round the calling thread reports fraction(). With one
+ * thread, everything is done on the calling thread.
  */
 template <typename Fraction, typename Work>
 void InRounds(int threads, const Progress& progress, Fraction&& fraction, Work&& work)
 {
-  constexpr std::chrono::milliseconds length{ 30 };
   const int used = threads > 1 ? ThreadsAtOnce(threads) : 1;
   std::atomic<bool> isMoreLeft{ true };
   while (isMoreLeft)
   {
     Report(progress, fraction());
     isMoreLeft = false;
-    const RoundClock::time_point end = RoundClock::now() + length;
+    const Round::Clock::time_point end = Round::Clock::now() + std::chrono::milliseconds(30);
     ForEachPiece(used, used, [&](Index thread) {
-      if (work(thread, end))
+      if (work(thread, Round(end, used == 1)))
       {
         isMoreLeft = true;
       }
@@ -133,7 +154,7 @@ void ForEachPiece(Index count, int threads, const Progress& progress, Work&& wor
   std::exception_ptr failure;
   InRounds(
     threads, progress, [&]() { return fractionOf(next); },
-    [&](Index, const RoundClock::time_point& end) {
+    [&](Index, const Round& round) {
       do
       {
         const Index i = next++;
@@ -156,7 +177,7 @@ void ForEachPiece(Index count, int threads, const Progress& progress, Work&& wor
           }
           return false;
         }
-      } while (RoundClock::now() < end);
+      } while (!round.IsOver());
       return true;
     });
   if (failure)

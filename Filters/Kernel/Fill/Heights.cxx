@@ -315,6 +315,7 @@ void Heights::ChooseCenters(
       {
         return;
       }
+      CountWork(count);
       ReportStep(progress, this->Centers.size(), most, 16);
       this->Centers.push_back(static_cast<Index>(best));
       for (std::size_t i = 0; i < count; ++i)
@@ -463,7 +464,7 @@ std::vector<double> Heights::Mean(const Values& values, const Progress& progress
   const Index boundary = this->Patch.NumberOfBoundaryVertices();
   const Adjacency& neighbors = this->Patch.Neighbors;
   std::vector<double> result(this->Patch.NumberOfNewVertices());
-  for (std::size_t k = 0; k < this->Patch.Order.size(); ++k)
+  for (const std::size_t k : Counted(this->Patch.Order.size()))
   {
     ReportStep(progress, k, this->Patch.Order.size());
     const Index i = this->Patch.Order[k] - boundary;
@@ -513,6 +514,7 @@ std::vector<double> Heights::SumOfSplines(
   {
     Report(progress, static_cast<double>(begin - first) / static_cast<double>(sums.size() - first));
     const std::size_t size = std::min(PointsPerReport, sums.size() - begin);
+    CountWork(size * (1 + this->Centers.size()));
     for (std::size_t i = 0; i < size; ++i)
     {
       points[i] = this->Normalized(this->Patch.At(static_cast<Index>(begin + i)));

@@ -20,7 +20,7 @@ Multigrid::Matrix MatrixOf(const Adjacency& graph, const Progress& progress)
   Multigrid::Matrix matrix(size, size);
   matrix.reserve(static_cast<Eigen::Index>(graph.Neighbors.size()) + size);
   std::vector<std::pair<Index, double>> row;
-  for (Index i = 0; i < size; ++i)
+  for (const Index i : Counted(size))
   {
     ReportStep(progress, i, size);
     row.assign(1, { i, 0.0 });

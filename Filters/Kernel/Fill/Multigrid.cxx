@@ -47,7 +47,7 @@ public:
     : A(a)
     , Of(a.rows(), None)
   {
-    for (Index i = 0; i < a.rows(); ++i)
+    for (const Index i : Counted(a.rows()))
     {
       ReportStep(progress, i, a.rows());
       bool isFree = true;
@@ -125,7 +125,7 @@ Matrix Coarsen(const Aggregates& aggregates, const Progress& progress)
   Matrix coarse(aggregates.Count, aggregates.Count);
   std::vector<double> sums(aggregates.Count, 0.0);
   std::vector<Index> columns;
-  for (Index c = 0; c < aggregates.Count; ++c)
+  for (const Index c : Counted(aggregates.Count))
   {
     ReportStep(progress, c, aggregates.Count);
     columns.assign(1, c);
@@ -186,10 +186,13 @@ Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& 
     return this->Coarsest.solve(right);
   }
   const Matrix& a = this->Levels[level].A;
+  const std::size_t entries = static_cast<std::size_t>(a.nonZeros());
   const std::vector<Index>& aggregate = this->Levels[level].Coarse;
   const Matrix& next = this->Levels[level + 1].A;
+  CountWork(entries / 2);
   Report(progress, 0.0);
   Vector x = a.triangularView<Eigen::Lower>().solve(right);
+  CountWork(entries / 2);
   Report(progress, 0.0);
   Vector rest = a.triangularView<Eigen::StrictlyUpper>() * x; // the negative residual
   Vector restOfNext = Vector::Zero(next.rows());
@@ -208,9 +211,11 @@ Vector Multigrid::Cycle(std::size_t level, const Vector& right, const Progress& 
   {
     x[i] += Correction * coarse[aggregate[i]];
   }
+  CountWork(entries / 2);
   Report(progress, 0.0);
   rest = right;
   rest -= a.triangularView<Eigen::StrictlyLower>() * x;
+  CountWork(entries / 2);
   Report(progress, 0.0);
   return a.triangularView<Eigen::Upper>().solve(rest);
 }
@@ -243,6 +248,7 @@ Vector Multigrid::Solve(Vector right, double accuracy, const Progress& progress)
     done = std::max(done, 0.5 * std::log(now / first) / std::log(accuracy));
     direction = preconditioned + (step == 0 ? 0.0 : now / before) * direction;
     before = now;
+    CountWork(static_cast<std::size_t>(a.nonZeros()));
     image = a * direction;
     const double length = now / direction.dot(image);
     x += length * direction;

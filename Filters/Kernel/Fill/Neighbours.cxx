@@ -51,7 +51,7 @@ void CollectNeighbors(PatchMesh& patch, const Progress& progress)
   patch.Neighbors.NumberOfKnown = boundary;
   patch.Neighbors.Neighbors.resize(offsets[count]);
   std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+  for (const std::size_t h : Counted(patch.Triangles.size()))
   {
     ReportStep(progress, h, patch.Triangles.size());
     const Index vertex = patch.Triangles[h];
@@ -84,7 +84,7 @@ void WeighNeighbors(PatchMesh& patch, const Progress& progress)
       weights[k] += weight;
     }
   };
-  for (std::size_t h = 0; h < patch.Triangles.size(); ++h)
+  for (const std::size_t h : Counted(patch.Triangles.size()))
   {
     ReportStep(progress, h, patch.Triangles.size());
     const Index edge = static_cast<Index>(h);
@@ -130,8 +130,10 @@ void FindLayers(PatchMesh& patch, const Progress& progress)
       reach(i, 1, *first);
     }
   }
+  StepCount steps;
   for (std::size_t k = 0; k < patch.Order.size(); ++k)
   {
+    steps.Add();
     ReportStep(progress, k, count);
     const Index i = patch.Order[k] - boundary;
     for (std::size_t j = offsets[i]; j < offsets[i + 1]; ++j)
@@ -246,7 +248,7 @@ void FindNearest(PatchMesh& patch, const Progress& progress)
   NearestBoundary boundary(patch);
   const Index first = patch.NumberOfBoundaryVertices();
   patch.Nearest.resize(patch.NumberOfNewVertices());
-  for (std::size_t k = 0; k < patch.Order.size(); ++k)
+  for (const std::size_t k : Counted(patch.Order.size()))
   {
     // Reports often: in the middle of a round hole, much of the boundary is about equally near.
     ReportStep(progress, k, patch.Order.size(), 1024);

@@ -127,7 +127,7 @@ std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& poin
 {
   const Progress blocking = Part(progress, 0.0, 0.7);
   std::vector<Blocked> blocked;
-  std::size_t visited = 0;
+  StepCount visited;
   const std::size_t count = patch.Edges.size() + patch.InnerEdges.size();
   for (std::size_t i = 0; i < count; ++i)
   {
@@ -141,7 +141,8 @@ std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& poin
     for (Index row = static_cast<Index>(from); row <= static_cast<Index>(to); ++row)
     {
       // With a small spacing, a long edge is near many rows.
-      if (++visited % 16384 == 0)
+      visited.Add();
+      if (visited.Count() % 16384 == 0)
       {
         Report(blocking, static_cast<double>(i) / static_cast<double>(count));
       }
@@ -177,7 +178,7 @@ void VisitRows(const Rows& rows, const std::vector<Point2>& points, const Patch&
   std::vector<Blocked> blocked = BlockRows(rows, points, patch, Part(progress, 0.0, 0.6));
   const Progress placing = Part(progress, 0.6, 1.0);
   bool isInside = false;
-  std::size_t placed = 0;
+  StepCount placed;
   for (std::size_t i = 0; i < blocked.size(); ++i)
   {
     if (i == 0 || blocked[i].Row != blocked[i - 1].Row)
@@ -199,7 +200,8 @@ void VisitRows(const Rows& rows, const std::vector<Point2>& points, const Patch&
     const double last = std::floor(blocked[i + 1].Begin / rows.Step - shift);
     for (double k = std::ceil(blocked[i].End / rows.Step - shift); k <= last; ++k)
     {
-      if (++placed % 16384 == 0)
+      placed.Add();
+      if (placed.Count() % 16384 == 0)
       {
         Report(placing, static_cast<double>(i) / static_cast<double>(blocked.size()));
       }
@@ -280,10 +282,11 @@ std::vector<char> FindInside(
       stack.push_back(Mesh::Triangle(h));
     }
   }
-  std::size_t done = 0;
+  StepCount done;
   while (!stack.empty())
   {
-    ReportStep(progress, done++, isInside.size());
+    ReportStep(progress, done.Count(), isInside.size());
+    done.Add();
     const Index t = stack.back();
     stack.pop_back();
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
@@ -422,6 +425,7 @@ public:
     {
       for (const Index t : queue)
       {
+        CountWork(10);
         if (std::fmod(++steps, 4096.0) == 0.0)
         {
           const double points = static_cast<double>(this->Patch.NumberOfPoints());

@@ -99,6 +99,7 @@ bool Spline::Prepare(const std::vector<Point2>& centers, Kernel kernel)
   {
     return false;
   }
+  CountWork(static_cast<std::size_t>(n * n + n * n * n / 64));
   this->F = kernel;
   this->X.resize(n);
   this->Y.resize(n);

@@ -325,7 +325,7 @@ std::vector<Point2> JoinPicked(Picked sets, const Progress& progress)
 {
   PlaceSet all;
   std::size_t joined = 0;
-  for (std::vector<Point2>& set : sets)
+  for (std::vector<Point2>& set : Counted(sets))
   {
     ReportStep(progress, joined++, 2 * sets.size(), 16);
     for (const Point2& p : set)
@@ -875,7 +875,9 @@ Index FirstBeside(const PointView& points, const std::vector<Index>& notFinite,
 {
   const NodeOfPoint nodeOf(steps);
   Index first = None;
+  StepCount looks;
   ForEachPoint(points, 0, points.Count, notFinite, [&](Index id, const Point2& p) {
+    looks.Add();
     ReportStep(progress, id, points.Count);
     if (first == None && !(StepsBeside(nodeOf, p) <= tolerance + NodeRoundoff))
     {

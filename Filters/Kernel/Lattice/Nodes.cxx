@@ -203,7 +203,7 @@ private:
       [&](Index bucket) { this->PlaceBucket(sorted, bucket); });
     const Progress settling = Part(progress, 0.85, 1.0);
     const Index placed = sorted.Begins.back();
-    for (Index i = 0; i < placed && this->Nodes.NumberOfPoints() < placed; ++i)
+    for (const Index i : Counted(this->Nodes.NumberOfPoints() < placed ? placed : 0))
     {
       ReportStep(settling, static_cast<std::size_t>(i), static_cast<std::size_t>(placed));
       if (sorted.Nodes[i] == None && !this->ResolveDuplicate(sorted.Ids[i], duplicates))
@@ -232,7 +232,7 @@ private:
     std::size_t steps = 0;
     for (const std::vector<Index>& second : this->Second)
     {
-      for (const Index id : second)
+      for (const Index id : Counted(second))
       {
         ReportStep(settling, steps++, static_cast<std::size_t>(this->Points.Count));
         if (!this->ResolveDuplicate(id, duplicates))
@@ -363,6 +363,7 @@ bool LatticeNodes::Placement::SortIntoBuckets(Buckets& sorted, const Progress& p
 /** As Occupy(), for one bucket. */
 void LatticeNodes::Placement::OccupyBucket(Buckets& buckets, Index bucket)
 {
+  CountWork(static_cast<std::size_t>(buckets.Begins[bucket + 1] - buckets.Begins[bucket]));
   for (Index i = buckets.Begins[bucket]; i < buckets.Begins[bucket + 1]; ++i)
   {
     Index& node = buckets.Nodes[i];
@@ -377,6 +378,7 @@ void LatticeNodes::Placement::OccupyBucket(Buckets& buckets, Index bucket)
 /** Writes the ids of a bucket to their places. */
 void LatticeNodes::Placement::PlaceBucket(const Buckets& buckets, Index bucket)
 {
+  CountWork(static_cast<std::size_t>(buckets.Begins[bucket + 1] - buckets.Begins[bucket]));
   for (Index i = buckets.Begins[bucket]; i < buckets.Begins[bucket + 1]; ++i)
   {
     if (buckets.Nodes[i] != None)
@@ -449,6 +451,7 @@ void LatticeNodes::Placement::CountBefore()
   std::vector<Index> sums(pieces, 0);
   ForEachPiece(pieces - 1, this->Threads, [&](Index piece) {
     Index sum = 0;
+    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
     for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
     {
       sum += CountBits(this->Nodes.Word(word));
@@ -458,6 +461,7 @@ void LatticeNodes::Placement::CountBefore()
   std::partial_sum(sums.begin(), sums.end(), sums.begin());
   ForEachPiece(pieces, this->Threads, [&](Index piece) {
     Index rank = sums[piece];
+    CountWork(static_cast<std::size_t>(beginOf(piece + 1) - beginOf(piece)));
     for (Index word = beginOf(piece); word < beginOf(piece + 1); ++word)
     {
       this->Nodes.Before[word] = rank;

@@ -460,6 +460,7 @@ private:
     Rings walks;
     walks.Vertices.reserve(this->Borders.size());
     std::vector<char> seen(this->Borders.size(), 0);
+    StepCount steps;
     for (Index start = 0; start < this->Count(); ++start)
     {
       if (seen[start])
@@ -469,6 +470,7 @@ private:
       Index i = start;
       do
       {
+        steps.Add();
         ReportStep(progress, walks.Vertices.size(), this->Borders.size());
         seen[i] = 1;
         walks.Vertices.push_back(this->Borders[i]);

@@ -142,6 +142,7 @@ public:
       {
         ++last;
       }
+      CountWork(last - first);
       if (!this->ProcessEvents(first, last))
       {
         return false;
@@ -172,7 +173,7 @@ private:
     this->Events.reserve(2 * walks.Vertices.size());
     for (Index walk = 0; walk < walks.Count(); ++walk)
     {
-      for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
+      for (const Index* h : Counted(walks.Begin(walk), walks.End(walk)))
       {
         ReportStep(progress, this->Segments.size(), walks.Vertices.size());
         const Point2& origin = this->Surface.PointOf(this->Surface.Origin(*h));
@@ -193,7 +194,7 @@ private:
   {
     const Rings& walks = this->Result.Walks;
     this->Regions.assign(walks.Count(), NotLocated);
-    for (Index walk = 0; walk < walks.Count(); ++walk)
+    for (const Index walk : Counted(walks.Count()))
     {
       ReportStep(progress, walk, walks.Count());
       const Index size = walks.Size(walk);
@@ -475,7 +476,7 @@ Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points
 {
   Mesh mesh;
   IdSet used(points.Count);
-  for (std::size_t i = 0; i < border.size(); ++i)
+  for (const std::size_t i : Counted(border.size()))
   {
     ReportStep(progress, i, 3 * border.size());
     used.Add(border[i].Origin);
@@ -483,14 +484,14 @@ Mesh MeshOfBorder(const std::vector<BorderEdge>& border, const PointView& points
   }
   ids = used.ListAndRank();
   mesh.Points.reserve(ids.size());
-  for (const Index id : ids)
+  for (const Index id : Counted(ids))
   {
     ReportStep(progress, ids.size() + mesh.Points.size(), 3 * ids.size());
     mesh.Points.push_back(points.At(id));
   }
   mesh.Triangles.reserve(3 * border.size());
   mesh.Twins.reserve(3 * border.size());
-  for (std::size_t i = 0; i < border.size(); ++i)
+  for (const std::size_t i : Counted(border.size()))
   {
     ReportStep(progress, 2 * border.size() + i, 3 * border.size());
     const Index origin = used.RankOf(border[i].Origin);

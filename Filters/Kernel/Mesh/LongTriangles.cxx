@@ -110,7 +110,7 @@ private:
     std::vector<char> seen(mesh.NumberOfHalfEdges(), 0);
     this->OnBorder.assign(mesh.NumberOfPoints(), 0);
     this->FirstWalk = this->Result.Walks.Count();
-    for (Index start = 0; start < mesh.NumberOfHalfEdges(); ++start)
+    for (const Index start : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(progress, start, mesh.NumberOfHalfEdges());
       if (seen[start] || !this->IsBorder(start))
@@ -194,7 +194,7 @@ private:
     std::vector<InnerEdge> edges;
     std::vector<char> isJoined(mesh.NumberOfPoints(), 0);
     const Progress collecting = Part(progress, 0.0, 0.5);
-    for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+    for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(collecting, h, mesh.NumberOfHalfEdges());
       const Index a = mesh.Origin(h);

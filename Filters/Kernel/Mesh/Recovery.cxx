@@ -101,8 +101,10 @@ private:
         this->Queue.push_back(static_cast<Index>(h));
       }
     }
+    StepCount steps;
     while (!this->Queue.empty())
     {
+      steps.Add();
       const Index a = this->Queue.back();
       this->Queue.pop_back();
       const Index b = this->Twins[a];
@@ -299,6 +301,7 @@ private:
       }
     }
 
+    CountWork(this->Slots.size());
     std::sort(this->Slots.begin(), this->Slots.end());
     auto slot = this->Slots.begin();
     std::size_t firstOld = 0;
@@ -445,7 +448,7 @@ Index RecoverSegments(Mesh& mesh, VertexStars& stars, const std::vector<Segment>
   constrained.resize(mesh.Triangles.size(), 0);
   Recovery recovery(mesh, stars, constrained);
   Index missing = 0;
-  for (std::size_t i = 0; i < segments.size(); ++i)
+  for (const std::size_t i : Counted(segments.size()))
   {
     ReportStep(progress, i, segments.size(), 256);
     missing += recovery.Recover(segments[i]) ? 1 : 0;

@@ -60,7 +60,7 @@ public:
       return s == across.begin() ? across.end() : std::prev(s);
     };
     auto ending = byEnd.begin();
-    for (std::size_t i = 0; i <= all.size(); ++i)
+    for (const std::size_t i : Counted(all.size() + 1))
     {
       ReportStep(sweeping, i, all.size() + 1, 1024);
       // First remove those that end before segment i begins.
@@ -250,7 +250,7 @@ std::vector<Passage> JoinOverlaps(
   std::vector<SegmentPiece>& pieces, const std::vector<Point2>& places, const Progress& progress)
 {
   std::vector<LinePiece> entries;
-  for (const SegmentPiece& piece : pieces)
+  for (const SegmentPiece& piece : Counted(pieces))
   {
     ReportStep(progress, entries.size(), 4 * pieces.size());
     // A point is on no line.

@@ -314,6 +314,7 @@ public:
     for (std::vector<BorderEdge>& piece : pieces)
     {
       Report(progress, 1.0);
+      CountWork(piece.size());
       border.insert(border.end(), piece.begin(), piece.end());
       piece = std::vector<BorderEdge>();
     }
@@ -337,6 +338,7 @@ private:
 
   static constexpr Index FewestInRange = 1 << 12; ///< triangles
   static constexpr Index AtOnce = 1 << 14;        ///< triangles
+  static constexpr std::size_t WorkPerTriangle = 4;
 
   /** Initialises the vertices. @return whether all elevations of corners are finite */
   bool Read(const Progress& progress)
@@ -370,6 +372,7 @@ private:
     {
       Report(progress, 1.0);
       const Index end = begin + std::min(AtOnce, this->List.Count - begin);
+      CountWork(static_cast<std::size_t>(end - begin));
       if (!this->Exist(3 * static_cast<std::size_t>(begin), 3 * static_cast<std::size_t>(end)))
       {
         return false;
@@ -404,7 +407,7 @@ private:
     };
     std::atomic<bool> isRight{ true };
     InRounds(static_cast<int>(this->Ranges.size()), progress, fraction,
-      [&](Index i, const RoundClock::time_point& end) {
+      [&](Index i, const Round& round) {
         Range& range = this->Ranges[i];
         do
         {
@@ -412,7 +415,7 @@ private:
           {
             isRight = false;
           }
-        } while (isRight && range.Next < range.End && RoundClock::now() < end);
+        } while (isRight && range.Next < range.End && !round.IsOver());
         return isRight && range.Next < range.End;
       });
     return isRight && std::all_of(this->Ranges.begin(), this->Ranges.end(), [](const Range& range) {
@@ -441,6 +444,7 @@ private:
     const std::size_t first = 3 * static_cast<std::size_t>(begin);
     const std::size_t end = 3 * static_cast<std::size_t>(range.Next);
     const bool exist = this->Exist(first, end);
+    CountWork(end - first);
     for (std::size_t h = first; exist && h < end; ++h)
     {
       range.Corners.Add(this->List.Corners[h]);
@@ -476,6 +480,7 @@ private:
   template <typename IsOurs>
   bool SweepTriangles(Index begin, Index end, std::size_t ahead, Range& range, IsOurs&& isOurs)
   {
+    CountWork(WorkPerTriangle * static_cast<std::size_t>(end - begin));
     Vertex* const vertices = this->Vertices;
     OpenEdges<Vertex>& edges = range.Edges;
     Visitor& visitor = range.Seen;

@@ -70,6 +70,7 @@ public:
       goesOn = visit(h);
       return goesOn && --left > 0;
     });
+    CountWork(static_cast<std::size_t>(Few - left));
     if (!goesOn || left > 0)
     {
       return;
@@ -80,7 +81,11 @@ public:
       visit(h);
       return;
     }
-    this->Visit(mesh, vertex, visit);
+    StepCount steps;
+    this->Visit(mesh, vertex, [&](Index leaving) {
+      steps.Add();
+      return visit(leaving);
+    });
   }
 
   /** Enters half-edge h at its origin, in place of one that may no longer exist. */

@@ -614,6 +614,7 @@ private:
     for (Block& block : this->Blocks)
     {
       const auto move = [&](auto& values) {
+        CountWork(static_cast<std::size_t>(block.Count));
         std::copy_n(values.begin() + block.Begin, block.Count, values.begin() + slots);
         Report(progress, 0.0);
       };
@@ -626,7 +627,7 @@ private:
       }
       block.Begin = slots;
       slots += block.Count;
-      for (const Index id : block.Duplicates)
+      for (const Index id : Counted(block.Duplicates))
       {
         ReportStep(progress, listed++, 1);
         duplicates.Add(id);
@@ -667,7 +668,10 @@ private:
   void JoinPiece(Block& block, Index firstNode, std::size_t part, std::size_t parts)
   {
     const auto forEach = [&](std::size_t count, auto&& work) {
-      for (std::size_t k = count * part / parts; k < count * (part + 1) / parts; ++k)
+      const std::size_t end = count * (part + 1) / parts;
+      std::size_t k = count * part / parts;
+      CountWork(end - k);
+      for (; k < end; ++k)
       {
         work(k);
       }

@@ -366,8 +366,10 @@ void BoxTree::Join(std::vector<Child> roots, Index slots, const Progress& progre
 
   this->LeafNodes.Resize((static_cast<std::size_t>(slots) + 7) / 8);
   this->Nodes[this->Nodes.size() - 1].Parent = None;
+  StepCount steps;
   for (std::size_t i = this->Nodes.size(); i-- > 0;)
   {
+    steps.Add();
     if (i % 65536 == 0)
     {
       Report(progress, 1.0);

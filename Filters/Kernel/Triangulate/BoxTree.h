@@ -120,7 +120,9 @@ void ForEachReporting(Index begin, Index end, Tell&& report, Visit&& visit)
   constexpr Index stretch = 1 << 16;
   for (Index i = begin;;)
   {
-    for (const Index stop = i + std::min(end - i, stretch); i < stop; ++i)
+    const Index stop = i + std::min(end - i, stretch);
+    CountWork(static_cast<std::size_t>(stop - i));
+    for (; i < stop; ++i)
     {
       visit(i);
     }

@@ -79,7 +79,7 @@ public:
       return id < this->Points.Count ? this->Points.Elevation(id)
                                      : added[id - this->Points.Count].Elevation;
     };
-    for (std::size_t v = 0; v < this->Vertices.size(); ++v)
+    for (const std::size_t v : Counted(this->Vertices.size()))
     {
       ReportStep(progress, v, this->Vertices.size());
       const Vertex& vertex = this->Vertices[v];
@@ -185,7 +185,7 @@ private:
     std::vector<Index> used;
     for (Index line = 0; line < this->Lines.Count(); ++line)
     {
-      for (Index k = this->Lines.Offsets[line]; k < this->Lines.Offsets[line + 1]; ++k)
+      for (const Index k : Counted(this->Lines.Offsets[line], this->Lines.Offsets[line + 1]))
       {
         ReportStep(progress, k, 2 * this->Lines.Vertices.size());
         used.push_back(PointOfLine(this->Lines, line, k));
@@ -231,7 +231,7 @@ private:
       Part(progress, 0.0, 0.9));
     const Progress joining = Part(progress, 0.9, 1.0);
     std::size_t kept = 0, done = 0;
-    for (const SegmentPiece& piece : this->Pieces)
+    for (const SegmentPiece& piece : Counted(this->Pieces))
     {
       ReportStep(joining, done++, this->Pieces.size());
       if (kept > 0 && this->Pieces[kept - 1].A == piece.A && this->Pieces[kept - 1].B == piece.B)
@@ -447,7 +447,7 @@ private:
       Part(progress, 0.0, 0.8));
     const Progress counting = Part(progress, 0.8, 1.0);
     std::int64_t around = 0, alike = 0; // earlier segments at this vertex; in this direction
-    for (std::size_t i = 1; i < passages.size(); ++i)
+    for (const std::size_t i : Counted(std::size_t(1), passages.size()))
     {
       ReportStep(counting, i, passages.size());
       const Passage &before = passages[i - 1], &passage = passages[i];
@@ -506,7 +506,7 @@ private:
     std::vector<PieceCut>& cuts, const Progress& progress)
   {
     std::vector<Place> places;
-    for (std::size_t i = 0; i < crossings.size(); ++i)
+    for (const std::size_t i : Counted(crossings.size()))
     {
       ReportStep(progress, i, 2 * crossings.size(), 1024);
       const auto [p, q] = crossings[i];
@@ -525,8 +525,10 @@ private:
 
     NewVertices added;
     const Progress naming = Part(progress, 0.7, 1.0);
+    StepCount steps;
     for (std::size_t i = 0, end = 0; i < places.size(); i = end)
     {
+      steps.Add();
       ReportStep(naming, i, places.size());
       for (; end < places.size() && places[end].Position == places[i].Position; ++end)
       {
@@ -875,7 +877,7 @@ std::vector<Index> ListNearLines(
   const CellGrid grid = GridOf(segments, Part(progress, 0.0, 0.2));
   const Progress looking = Part(progress, 0.2, 1.0);
   std::vector<Index> near;
-  for (Index id = 0; id < points.Count; ++id)
+  for (const Index id : Counted(points.Count))
   {
     ReportStep(looking, id, points.Count);
     const Point2 p = points.At(id);

@@ -81,9 +81,10 @@ public:
     } while (spoke != hullSpoke);
 
     const Index number = static_cast<Index>(this->Spokes.size());
-    for (spoke = 0; spoke < number; spoke += 2)
+    for (const Index edge : Counted(number / 2))
     {
-      ReportStep(progress, spoke, number, 2 * ReportStride);
+      spoke = 2 * edge;
+      ReportStep(progress, edge, number / 2, ReportStride);
       // If edges around have been removed before, any vertex of the polygon is on the same circle.
       if (this->Spokes[spoke].Origin != None && !isOnHull[spoke / 2] &&
         this->IsInCircle(this->OriginOf(spoke), this->EndOf(spoke),
@@ -105,7 +106,7 @@ public:
     firsts[0] = hullSpoke;
     firsts[this->Count - 1] = None;
     const Index number = static_cast<Index>(this->Spokes.size());
-    for (Index spoke = 0; spoke < number; ++spoke)
+    for (const Index spoke : Counted(number))
     {
       ReportStep(progress, spoke, 2 * static_cast<std::size_t>(number), 4 * ReportStride);
       const Index origin = this->Spokes[spoke].Origin;
@@ -118,7 +119,7 @@ public:
 
     Buffer<Index> triangles;
     triangles.Reserve(6 * static_cast<std::size_t>(this->Count));
-    for (Index lowest = 0; lowest + 1 < this->Count; ++lowest)
+    for (const Index lowest : Counted(this->Count - 1))
     {
       ReportStep(
         progress, this->Count + lowest, 2 * static_cast<std::size_t>(this->Count), ReportStride);
@@ -320,7 +321,8 @@ private:
   void Step()
   {
     ++this->Steps;
-    if (++this->AllSteps % ReportStride == 0)
+    this->AllSteps.Add();
+    if (this->AllSteps.Count() % ReportStride == 0)
     {
       Report(this->Monitor,
         std::min(1.0, (this->WorkDone + std::min(this->Steps, this->StepsAtMost)) / this->Work));
@@ -338,7 +340,7 @@ private:
   double WorkDone = 0.0; ///< points merged, on all levels
   Index Steps = 0;       ///< of this merge
   Index StepsAtMost = 0; ///< how many of them count as progress
-  std::size_t AllSteps = 0;
+  StepCount AllSteps;
 };
 
 } // namespace

@@ -256,7 +256,7 @@ std::vector<char> FindHindered(
   std::vector<char> isHindered(stretches.size(), 0);
   const CellGrid grid(stretches.size(), endsOf);
   const Progress looking = Part(progress, 0.2, 1.0);
-  for (Index place = 0; place < placed.Count(); ++place)
+  for (const Index place : Counted(placed.Count()))
   {
     ReportStep(looking, place, placed.Count());
     const Point2 p = placed.At(place);
@@ -286,6 +286,7 @@ std::vector<Segment> FewerPieces(const PlacedPoints& placed, const std::vector<S
   {
     for (std::size_t first = 0; first + 1 < chain.size();)
     {
+      CountWork(1);
       ReportStep(straight, fewer.size() + bent.size(), pieces.size());
       const Stretch one = straightening.From(chain, first);
       first = one.Last;

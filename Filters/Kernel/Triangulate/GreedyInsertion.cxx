@@ -56,8 +56,8 @@ void GreedyInsertion::AddSample(std::uint32_t mask, int threads, const Progress&
   ForEachPiece((count + pointsAtOnce - 1) / pointsAtOnce, threads, progress, [&](Index piece) {
     Index face = this->Ordered.front(), known = None;
     Slopes slopes{ 0.0, 0.0 };
-    for (Index place = piece * pointsAtOnce; place < std::min(count, (piece + 1) * pointsAtOnce);
-         ++place)
+    for (const Index place :
+      Counted(piece * pointsAtOnce, std::min(count, (piece + 1) * pointsAtOnce)))
     {
       if (!isNew(place))
       {
@@ -124,7 +124,7 @@ void GreedyInsertion::Refine(double error, double density, std::vector<Insertion
   InRounds(
     threads, progress,
     [&]() { return static_cast<double>(done) / static_cast<double>(strips.size()); },
-    [&](Index thread, const RoundClock::time_point& end) {
+    [&](Index thread, const Round& round) {
       for (std::size_t& at = current[thread];;)
       {
         at = at < strips.size() ? at : next++;
@@ -132,7 +132,7 @@ void GreedyInsertion::Refine(double error, double density, std::vector<Insertion
         {
           return false;
         }
-        if (strips[at].Work(end))
+        if (strips[at].Work(round))
         {
           return true;
         }

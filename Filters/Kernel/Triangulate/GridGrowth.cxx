@@ -42,7 +42,7 @@ public:
     const Buffer<Index>& order = this->Grid.Order;
     Buffer<Point2> places;
     places.Resize(order.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
+    for (const std::size_t i : Counted(order.size()))
     {
       ReportStep(progress, i, order.size());
       places[i] = this->Grid.PointAt(order[i]);
@@ -250,7 +250,7 @@ std::vector<std::unique_ptr<Growth::GridStrip>> Growth::MakeStrips(const Hull& h
   std::vector<std::unique_ptr<GridStrip>> strips;
   for (Index i = 0; i < number; ++i)
   {
-    strips.emplace_back(new GridStrip(*this, hull, at(i), at(i + 1)));
+    strips.push_back(std::make_unique<GridStrip>(*this, hull, at(i), at(i + 1)));
   }
   return strips;
 }

@@ -74,8 +74,8 @@ public:
     this->OutputEnd = triangles.end();
   }
 
-  /** Grows until the strip is done, until about a time, or for some ten thousand fans. */
-  void GoOn(const RoundClock::time_point& end)
+  /** Grows until the strip is done, the round is over, or for some ten thousand fans. */
+  void GoOn(const Round& round)
   {
     constexpr int mostPauses = 128;
     Derived& self = static_cast<Derived&>(*this);
@@ -87,7 +87,7 @@ public:
       {
         self.GrowFans();
       }
-    } while (!self.IsDone() && ++pauses < mostPauses && RoundClock::now() < end);
+    } while (!self.IsDone() && ++pauses < mostPauses && !round.IsOver());
   }
 
   /** Moves the strip's triangles down to the end of those before, which moves up. */
@@ -214,7 +214,7 @@ void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int thread
     return done / vertices;
   };
   InRounds(std::min<int>(threads, number), progress, fraction,
-    [&](Index thread, const RoundClock::time_point& end) {
+    [&](Index thread, const Round& round) {
       for (Index& i = atWork[thread];; i = None)
       {
         i = i == None ? next++ : i;
@@ -222,7 +222,7 @@ void GrowStrips(const std::vector<std::unique_ptr<AnyStrip>>& strips, int thread
         {
           return false;
         }
-        strips[i]->GoOn(end);
+        strips[i]->GoOn(round);
         if (!strips[i]->IsDone())
         {
           return true;
@@ -276,11 +276,11 @@ Buffer<Index> GrowAll(Growth& growth, const Hull& hull, Index vertices,
     growth.Places(Part(progress, 0.0, 0.0)), Part(progress, 0.0, 0.95), growth.Metric);
   const Progress naming = Part(progress, 0.95, 1.0);
   std::size_t kept = 0;
-  for (std::size_t t = 0; t < triangles.size(); t += 3)
+  for (const std::size_t t : Counted(triangles.size() / 3))
   {
-    ReportStep(naming, t, triangles.size(), 49152);
+    ReportStep(naming, t, triangles.size() / 3);
     Index* const triangle = triangles.data() + kept;
-    std::copy_n(triangles.data() + t, 3, triangle);
+    std::copy_n(triangles.data() + 3 * t, 3, triangle);
     kept += growth.ToIds(triangle) ? 3 : 0;
   }
   triangles.Resize(kept);

@@ -19,7 +19,7 @@ Buffer<Index> RowExtremes(const BinGrid& grid, const Progress& progress)
   const Index columns = grid.Bins.Columns;
   const double* const x = grid.X.data();
   Buffer<Index> extremes;
-  for (Index row = 0; row < grid.Bins.Rows; ++row)
+  for (const Index row : Counted(grid.Bins.Rows))
   {
     ReportStep(progress, row, grid.Bins.Rows);
     const auto slots = grid.Slots(row, 0, columns - 1);
@@ -68,14 +68,16 @@ Buffer<Index> HullCandidates(const BinGrid& grid, const Hull& ofExtremes, const 
     bins.HasPlainBins ? 1e-12 * (std::fabs(bins.OriginX) + bins.Columns * bins.BinWidth) : Infinity;
   double left, right; // range of the points well within, in the current row
   Buffer<Index> candidates;
+  StepCount steps;
   const auto add = [&](Index slot) {
+    steps.Add();
     ReportStep(progress, slot, grid.X.size());
     if (!(grid.X[slot] > left && grid.X[slot] < right)) // also if a chain is NaN
     {
       candidates.Append(slot);
     }
   };
-  for (Index row = 0; row < bins.Rows; ++row)
+  for (const Index row : Counted(bins.Rows))
   {
     ReportStep(progress, row, bins.Rows);
     const auto slots = grid.Slots(row, 0, bins.Columns - 1);

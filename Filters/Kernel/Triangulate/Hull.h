@@ -42,7 +42,7 @@ Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress&
   for (const Sign outside : { Negative, Positive }) // the empty side of the right and left chain
   {
     std::vector<Index>& chain = outside == Negative ? hull.RightChain : hull.LeftChain;
-    for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (const std::size_t i : Counted(candidates.size()))
     {
       ReportStep(progress, i, candidates.size());
       while (

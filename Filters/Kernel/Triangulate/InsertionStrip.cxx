@@ -280,6 +280,7 @@ bool InsertionStrip::Insert(Index place, Index face)
       }
     }
   }
+  CountWork(10 * this->Rim.size() + this->Loose.size());
   this->Of.Links[place] = InsertionMesh::Vertex;
   const auto gap = std::find_if(
     this->Rim.begin(), this->Rim.end(), [](const RimEdge& edge) { return edge.Outside == Gap; });
@@ -420,12 +421,12 @@ void InsertionStrip::SetLevels(double error, double mostVertices)
   this->Count = this->Faces.size();
 }
 
-bool InsertionStrip::Work(const RoundClock::time_point& end)
+bool InsertionStrip::Work(const Round& round)
 {
   constexpr int stepsPerLook = 1024;
   for (int step = 1;; ++step)
   {
-    if (step % stepsPerLook == 0 && RoundClock::now() > end)
+    if (step % stepsPerLook == 0 && round.IsOver())
     {
       return true;
     }

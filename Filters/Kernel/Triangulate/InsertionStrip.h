@@ -40,7 +40,7 @@ public:
   }
   void SetLevels(double error, double mostVertices);
   /** @return false when done; it may be called again from there on */
-  bool Work(const RoundClock::time_point& end);
+  bool Work(const Round& round);
   /** @return false if that would change a face that is not of this strip */
   bool Insert(Index place, Index face);
 

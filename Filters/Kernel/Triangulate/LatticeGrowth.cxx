@@ -280,7 +280,7 @@ std::vector<std::unique_ptr<Growth::LatticeStrip>> Growth::MakeStrips(const Hull
       this->PointsPerStrip > 0 ? end - first >= this->PointsPerStrip : work >= perStrip;
     if (end > first && (isFull || end == count))
     {
-      strips.emplace_back(new LatticeStrip(*this, hull, first, end, firstWord, endWord));
+      strips.push_back(std::make_unique<LatticeStrip>(*this, hull, first, end, firstWord, endWord));
       first = end;
       firstWord = endWord;
       work = walk;

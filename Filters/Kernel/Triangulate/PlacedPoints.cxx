@@ -126,7 +126,7 @@ std::vector<Segment> Renumbered(
 {
   std::vector<Segment> renumbered;
   renumbered.reserve(pieces.size());
-  for (const Segment& piece : pieces)
+  for (const Segment& piece : Counted(pieces))
   {
     ReportStep(progress, renumbered.size(), pieces.size());
     renumbered.push_back({ numberOf(piece.A), numberOf(piece.B) });
@@ -159,7 +159,7 @@ bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int
     Index place = placesBefore(row);
     const Index first = nodes.NodeAt(row, 0) / 64;
     const Index words = (nodes.Columns + 63) / 64;
-    for (Index word = 0; word < words; ++word)
+    for (const Index word : Counted(words))
     {
       for (std::uint64_t bits = nodes.Word(first + word); bits != 0; bits &= bits - 1)
       {
@@ -241,7 +241,7 @@ std::vector<Segment> PiecesByPlaces(
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Index> placeOf(ids.size(), None);
   const Progress finding = Part(progress, 0.3, 0.8);
-  for (Index place = 0; !ids.empty() && place < placed.Count(); ++place)
+  for (const Index place : Counted(ids.empty() ? 0 : placed.Count()))
   {
     ReportStep(finding, place, placed.Ids.size());
     const auto at = std::lower_bound(ids.begin(), ids.end(), placed.Ids[place]);

@@ -75,7 +75,7 @@ public:
     std::vector<double> largest(static_cast<std::size_t>(pieces), 0.0);
     std::vector<std::vector<Index>> found(largest.size());
     ForEachPiece(pieces, threads, progress, [&](Index piece) {
-      for (Index i = piece * facesAtOnce; i < std::min(count, (piece + 1) * facesAtOnce); ++i)
+      for (const Index i : Counted(piece * facesAtOnce, std::min(count, (piece + 1) * facesAtOnce)))
       {
         this->MeasureFace(this->Mesh.Order()[i], most, largest[piece], found[piece]);
       }
@@ -205,7 +205,7 @@ Buffer<Index> TrianglesOf(
   const Progress turning = Part(progress, 0.4, 0.6), sorting = Part(progress, 0.6, 1.0);
   std::vector<Turned> faces;
   std::vector<Index> begins(1, 0); // of fans
-  for (const Index number : mesh.Order())
+  for (const Index number : Counted(mesh.Order()))
   {
     ReportStep(turning, faces.size(), mesh.Order().size());
     const Index* const c = mesh.At(number).Corners;
@@ -223,7 +223,7 @@ Buffer<Index> TrianglesOf(
   {
     triangles[ends[ranks[face.Corners[0]]]++] = face;
   }
-  for (std::size_t fan = 0; fan + 1 < begins.size(); ++fan)
+  for (const std::size_t fan : Counted(begins.size() - 1))
   {
     ReportStep(sorting, fan, begins.size());
     std::sort(triangles.begin() + begins[fan], triangles.begin() + begins[fan + 1],

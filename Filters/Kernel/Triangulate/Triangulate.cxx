@@ -33,8 +33,10 @@ void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& 
   reasons.reserve(count);
   auto duplicate = duplicates.begin();
   auto other = notFinite.begin();
+  StepCount steps;
   while (unused.size() < count)
   {
+    steps.Add();
     ReportStep(progress, unused.size(), count);
     const bool isDuplicate =
       other == notFinite.end() || (duplicate != duplicates.end() && *duplicate < *other);

@@ -28,7 +28,7 @@ std::vector<PlacedNode> FindNodes(const PointView& points, const SharedLattice& 
   std::vector<Index>& notFinite, const Progress& progress)
 {
   std::vector<PlacedNode> placed;
-  for (Index id = 0; id < points.Count; ++id)
+  for (const Index id : Counted(points.Count))
   {
     ReportStep(progress, id, points.Count);
     const Point2 p = points.At(id);

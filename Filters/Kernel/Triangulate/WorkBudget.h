@@ -26,13 +26,15 @@ class WorkBudget
 public:
   /**
    * @param most      work per vertex, in the mean over many
-   * @param perPause  work between two looks at the clock
+   * @param perPause  work between two looks at whether the round is over
    */
   WorkBudget(std::int64_t most, Index vertices, std::int64_t perPause)
     : Most(most * (static_cast<std::int64_t>(vertices) + 1000))
     , PerPause(perPause)
   {
   }
+
+  ~WorkBudget() { this->Account(); }
 
   void Spend(std::int64_t work) { this->Spent += work; }
   std::int64_t Work() const { return this->Spent; }
@@ -47,12 +49,23 @@ public:
   }
 
   /** Sets the next pause. */
-  void Resume() { this->Pause = this->Spent + this->PerPause; }
+  void Resume()
+  {
+    this->Account();
+    this->Pause = this->Spent + this->PerPause;
+  }
   bool IsPaused() const { return this->Spent >= this->Pause; }
 
 private:
+  /** What it spends is counted as work: at a pause, and at the end. */
+  void Account()
+  {
+    CountWork(static_cast<std::size_t>(this->Spent - this->Accounted));
+    this->Accounted = this->Spent;
+  }
+
   const std::int64_t Most, PerPause;
-  std::int64_t Spent = 0, Pause = 0;
+  std::int64_t Spent = 0, Pause = 0, Accounted = 0;
 };
 
 } // namespace elevation

@@ -40,7 +40,7 @@ public:
           this->Nodes.push_back({ points[point], point, ring, { node - 1, node + 1 } });
         }
       };
-      for (Index i = rings.Offsets[ring]; i < rings.Offsets[ring + 1]; ++i)
+      for (const Index i : Counted(rings.Offsets[ring], rings.Offsets[ring + 1]))
       {
         ReportStep(walking, i, edges.size(), 256);
         append(rings.Vertices[i]);

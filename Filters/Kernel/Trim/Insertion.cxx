@@ -129,7 +129,7 @@ private:
       }
     });
     const Progress matching = Part(progress, 0.3, 1.0);
-    for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+    for (const Index h : Counted(mesh.NumberOfHalfEdges()))
     {
       ReportStep(matching, h, mesh.Triangles.size());
       const Index vertex = mesh.Origin(h);
@@ -329,6 +329,7 @@ private:
       moving.insert(moving.end(), waiting.begin(), waiting.end());
       waiting.clear();
     }
+    CountWork(1 + moving.size());
     for (const Index point : moving)
     {
       if (point != done)
@@ -484,7 +485,7 @@ private:
     const Mesh& mesh = this->Surface;
     std::vector<BorderCrossing> crossings;
     std::vector<std::size_t> lastSeen(border.Segments.size(), pieces.size());
-    for (std::size_t i = 0; i < pieces.size(); ++i)
+    for (const std::size_t i : Counted(pieces.size()))
     {
       ReportStep(progress, i, pieces.size(), 1024);
       const Ends& edge = pieces[i];

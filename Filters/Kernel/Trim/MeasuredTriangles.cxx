@@ -112,7 +112,7 @@ void AddBorder(
   TriangleSweep<Measurer>& sweep, const Progress& progress, MeasuredTriangles& measured)
 {
   std::size_t done = 0;
-  for (BorderEdge& edge : measured.Border)
+  for (BorderEdge& edge : Counted(measured.Border))
   {
     ReportStep(progress, done++, measured.Border.size());
     Measurer::Vertex& origin = sweep.At(edge.Origin);

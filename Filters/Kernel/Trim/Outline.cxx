@@ -164,8 +164,10 @@ void RestoreSlivers(const Mesh& mesh, const std::vector<Index>& slivers, std::ve
   const Progress& progress)
 {
   std::vector<Index> queue = slivers;
+  StepCount steps;
   for (std::size_t i = 0; i < queue.size(); ++i)
   {
+    steps.Add();
     ReportStep(progress, i, 4 * slivers.size()); // each adds at most its three neighbours
     const Index t = queue[i];
     const Index h = LongestEdge(mesh, t);
@@ -321,7 +323,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
       rings.Vertices.insert(rings.Vertices.end(), path.begin() + first, path.end());
       rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
     };
-    for (const Index* h = walks.Begin(walk); h != walks.End(walk); ++h)
+    for (const Index* h : Counted(walks.Begin(walk), walks.End(walk)))
     {
       ReportStep(cutting, h - walks.Vertices.data(), walks.Vertices.size());
       const Index vertex = mesh.Origin(*h);
@@ -366,7 +368,7 @@ Rings BorderOf(const Mesh& mesh, const std::vector<char>& keep, const Progress& 
   Sort(order.begin(), order.end(), isBefore, Part(progress, 0.8, 0.95));
   Rings result;
   result.Vertices.reserve(rings.Vertices.size());
-  for (const Index ring : order)
+  for (const Index ring : Counted(order))
   {
     ReportStep(progress, 19 * order.size() + result.Count(), 20 * order.size());
     result.Vertices.insert(result.Vertices.end(), rings.Begin(ring), rings.End(ring));

@@ -40,7 +40,7 @@ std::vector<Segment> SegmentsOf(
 {
   std::vector<Segment> segments;
   segments.reserve(rings.Vertices.size());
-  for (std::size_t i = 0; i < rings.Vertices.size(); ++i)
+  for (const std::size_t i : Counted(rings.Vertices.size()))
   {
     ReportStep(progress, i, 2 * rings.Vertices.size(), 256);
     const Segment segment{ rings.Vertices[i], rings.Vertices[rings.After(static_cast<Index>(i))] };
@@ -78,7 +78,7 @@ void MarkEdges(const Mesh& mesh, VertexStars& stars, const std::vector<Segment>&
 {
   isOdd.assign(mesh.Triangles.size(), 0);
   std::size_t done = 0;
-  for (const Segment& segment : segments)
+  for (const Segment& segment : Counted(segments))
   {
     ReportStep(progress, done++, segments.size(), 256);
     Index vertex = segment.A;
@@ -169,10 +169,11 @@ void ApplyInwardNormalTest(const Mesh& mesh, const std::vector<char>& isOnBounda
     }
   });
   const Progress walking = Part(progress, 0.5, 1.0);
-  std::size_t done = 0;
+  StepCount done;
   while (!taken.empty())
   {
-    ReportStep(walking, done++, isOutward.size());
+    ReportStep(walking, done.Count(), isOutward.size());
+    done.Add();
     const Index t = taken.back();
     taken.pop_back();
     edges[t] = isTaken;

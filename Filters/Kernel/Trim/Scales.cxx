@@ -440,13 +440,15 @@ private:
   void FollowEvents(const Progress& progress)
   {
     std::vector<char> isOpen(this->Lengths.size(), 0);
-    std::size_t done = 0;
+    StepCount done;
     for (auto first = this->Events.begin(); first != this->Events.end();)
     {
       auto event = first;
       for (; event != this->Events.end() && event->Length == first->Length; ++event)
       {
-        ReportStep(progress, done++, this->Events.size());
+        CountWork(20); // of the triangle and the parts that it joins
+        ReportStep(progress, done.Count(), this->Events.size());
+        done.Add();
         this->Follow(*event, isOpen);
       }
       for (; first != event; ++first)

@@ -12,7 +12,7 @@
 #include "Kernel/Trim/Trim.h"
 #include "LatticeSurface.h"
 #include "PointSets.h"
-#include "Silence.h"
+#include "WorkOf.h"
 
 #include <gtest/gtest.h>
 
@@ -89,6 +89,31 @@ TEST(Progress, OfPartsDoesNotFallWhereTheyMeet)
   }
 }
 
+TEST(Progress, IsHeardOfEachThousandthAndTwentyTimesASecond)
+{
+  using Clock = ReportPace::Clock;
+  // Of 100,000 reports in some time, which passes here by decree.
+  for (const int seconds : { 0, 1, 60 })
+  {
+    ReportPace pace;
+    int heard = 0;
+    const std::chrono::microseconds step(10 * seconds);
+    for (int i = 0; i <= 100000; ++i)
+    {
+      heard += pace.Admits(1e-5 * i, Clock::time_point() + std::chrono::hours(1) + i * step);
+    }
+    EXPECT_GE(heard, 1 + std::max(990, 19 * seconds)) << seconds;
+    EXPECT_LE(heard, 1 + 1000 + 20 * seconds) << seconds;
+  }
+  // Where nothing is done for long, it is heard that somebody is there; and the end always.
+  ReportPace pace;
+  EXPECT_TRUE(pace.Admits(0.5, Clock::time_point()));
+  EXPECT_FALSE(pace.Admits(0.5, Clock::time_point() + std::chrono::milliseconds(49)));
+  EXPECT_TRUE(pace.Admits(0.5, Clock::time_point() + std::chrono::milliseconds(50)));
+  EXPECT_TRUE(pace.Admits(0.9999, Clock::time_point() + std::chrono::milliseconds(51)));
+  EXPECT_TRUE(pace.Admits(1.0, Clock::time_point() + std::chrono::milliseconds(51)));
+}
+
 TEST(Progress, OfSortingRisesAndStops)
 {
   std::vector<Index> values;
@@ -107,6 +132,65 @@ TEST(Progress, OfSortingRisesAndStops)
   EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
   sorted = values;
   EXPECT_THROW(sort([](double) { return false; }), Aborted);
+}
+
+TEST(Progress, IsTheLastReportWhereItAsksToStop)
+{
+  std::mt19937_64 random(8);
+  testing_points::Cloud cloud;
+  for (int i = 0; i < 100000; ++i)
+  {
+    const double x = testing_points::Uniform(random);
+    cloud.Add(x, testing_points::Uniform(random));
+  }
+  DelaunayOptions triangulating;
+  TrimOptions trimming;
+  FillOptions filling;
+  filling.Spacing = 0.05;
+  const Mesh& sheet = LargeSheet();
+  std::vector<double> coordinates;
+  for (const Point2& p : sheet.Points)
+  {
+    coordinates.insert(coordinates.end(), { p.X, p.Y, 0.1 * p.X * p.Y });
+  }
+  TriangleList list;
+  list.Corners = sheet.Triangles.data();
+  list.Count = sheet.NumberOfTriangles();
+  list.Points.Double = coordinates.data();
+  list.Points.Count = sheet.NumberOfPoints();
+  const Holes holes = FindHoles(sheet);
+  const std::function<void(const Progress&)> computations[] = {
+    [&](const Progress& monitor) {
+      triangulating.Monitor = monitor;
+      Triangulate(cloud.View(), triangulating);
+    },
+    [&](const Progress& monitor) {
+      trimming.Monitor = monitor;
+      Trim(list, nullptr, trimming);
+    },
+    [&](const Progress& monitor) {
+      filling.Monitor = monitor;
+      FillHoles(sheet, list.Points, holes, filling);
+    },
+  };
+  for (const auto& compute : computations)
+  {
+    testing_work::Silence all;
+    compute(all.Monitor());
+    for (const double at : { 0.05, 0.3, 0.55, 0.8, 0.97 })
+    {
+      const int last = std::max(1, static_cast<int>(at * all.Reports));
+      int reports = 0;
+      std::size_t asked = 0;
+      const Progress stop = [&](double) {
+        asked = WorkOfAll();
+        return ++reports < last;
+      };
+      EXPECT_THROW(compute(stop), Aborted);
+      EXPECT_EQ(reports, last);
+      EXPECT_LT(WorkOfAll() - asked, 30000u); // what was done before, and had not been counted yet
+    }
+  }
 }
 
 TEST(Progress, OfConnectingAndTracingAMeshIsNotSilent)
@@ -190,8 +274,8 @@ TEST(Progress, OfTriangulatingPointsThatAreSlowIsNotSilent)
         options.Monitor = monitor;
         Triangulate(cloud->View(), options);
       };
-      EXPECT_LT(testing_time::LongestSilence(0.4, triangulate), 0.4)
-        << (cloud == &circle ? "circle" : "range");
+      const bool isCircle = cloud == &circle; // all takes 30 and 120 million steps
+      EXPECT_LT(testing_work::LongestSilence(triangulate), isCircle ? 1700000u : 15000000u);
     }
   }
 }
@@ -223,8 +307,8 @@ TEST(Progress, OfTriangulatingPointsOnFewPlacesIsNotSilent)
         options.Monitor = monitor;
         EXPECT_GT(Triangulate(cloud->View(), options).NumberOfDuplicates, 3500000);
       };
-      EXPECT_LT(testing_time::LongestSilence(0.1, triangulate), 0.1)
-        << (cloud == &four ? "four" : "crowds");
+      // All takes 170 to 260 million steps.
+      EXPECT_LT(testing_work::LongestSilence(triangulate), cloud == &four ? 1100000u : 4500000u);
     }
   }
 }
@@ -256,7 +340,7 @@ TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
     options.Monitor = monitor;
     EXPECT_EQ(Trim(list, nullptr, options).Boundary.Count(), side * side);
   };
-  EXPECT_LT(testing_time::LongestSilence(0.12, extract), 0.12);
+  EXPECT_LT(testing_work::LongestSilence(extract), 1600000u); // of 424 million
 
   BoundaryLines lines;
   lines.Points = std::vector<Point2>{ { -1.0, -1.0 }, { 500.5, -1.0 }, { 300.5, 700.5 } };
@@ -268,7 +352,7 @@ TEST(Progress, OfTrimmingSeparateTrianglesIsNotSilent)
     options.Monitor = monitor;
     Trim(list, &lines, options);
   };
-  EXPECT_LT(testing_time::LongestSilence(0.12, trim), 0.12);
+  EXPECT_LT(testing_work::LongestSilence(trim), 1600000u); // of 160 million
 }
 
 TEST(Progress, OfConstraintsThatLieOnEachOtherIsNotSilent)
@@ -294,5 +378,5 @@ TEST(Progress, OfConstraintsThatLieOnEachOtherIsNotSilent)
     options.Monitor = monitor;
     EXPECT_EQ(TriangulateConstrained(cloud.View(), lines, options).NumberOfCrossings, 0);
   };
-  EXPECT_LT(testing_time::LongestSilence(0.07, triangulate), 0.07);
+  EXPECT_LT(testing_work::LongestSilence(triangulate), 1600000u); // that of a round of growth
 }

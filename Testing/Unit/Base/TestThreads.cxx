@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Base/Threads.h"
 
+#include "WorkOf.h"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -17,8 +19,9 @@ namespace
 {
 void WorkFor(double milliseconds)
 {
-  const RoundClock::time_point begin = RoundClock::now();
-  while (RoundClock::now() - begin < std::chrono::duration<double, std::milli>(milliseconds))
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  while (Clock::now() - begin < std::chrono::duration<double, std::milli>(milliseconds))
   {
   }
 }
@@ -101,6 +104,85 @@ TEST(Parallel, StopsBetweenRounds)
   }
 }
 
+TEST(Parallel, EndsARoundAfterSomeWorkHoweverFastItIs)
+{
+  constexpr Index pieces = 4000;
+  Index done = 0;
+  testing_work::Silence silence;
+  InRounds(
+    1, silence.Monitor(), [] { return 0.5; },
+    [&](Index, const Round& round) {
+      while (done < pieces && !round.IsOver())
+      {
+        CountWork(1000);
+        ++done;
+      }
+      return done < pieces;
+    });
+  EXPECT_LT(silence.Longest, 1100000u);
+  EXPECT_GE(silence.Reports, 4);
+}
+
+TEST(Parallel, CountsTheWorkOfAllThreads)
+{
+  for (const int threads : { 1, 2, 4 })
+  {
+    const std::size_t work = testing_work::WorkOf([&]() {
+      ForEachPiece(100, threads, [](Index piece) {
+        for (const Index step : Counted(100000))
+        {
+          EXPECT_LT(step, 100000);
+        }
+        CountWork(static_cast<std::size_t>(piece));
+      });
+    });
+    // Of what other threads have done, a part is summed up later.
+    const double later = threads > 1 ? 65536.0 * ResolveNumberOfThreads(0) : 0.0;
+    EXPECT_NEAR(static_cast<double>(work), 10004950.0, later);
+  }
+}
+
+TEST(Work, OfALoopIsItsSteps)
+{
+  const auto workOf = [](const auto& compute) { return testing_work::WorkOf(compute); };
+  const std::vector<int> values(5000, 1);
+  int sum = 0;
+  EXPECT_EQ(workOf([&]() {
+    for (const int value : Counted(values))
+    {
+      sum += value;
+    }
+  }),
+    5000u);
+  EXPECT_EQ(workOf([&]() {
+    for (const Index i : Counted(-3))
+    {
+      sum += i;
+    }
+    for (const Index i : Counted(3, 7))
+    {
+      sum += i;
+    }
+    for (const int* value : Counted(values.data(), values.data() + 10))
+    {
+      sum += *value;
+    }
+  }),
+    14u);
+  EXPECT_EQ(sum, 5000 + 18 + 10);
+  EXPECT_EQ(workOf([&]() {
+    for (const Index i : Counted(100000))
+    {
+      if (i == 2000)
+      {
+        break;
+      }
+    }
+  }),
+    2000u)
+    << "also where it is left";
+}
+
 TEST(Parallel, GoesOnInRoundsUntilNothingIsLeft)
 {
   for (const int threads : { 1, 2, 4 })
@@ -118,7 +200,7 @@ TEST(Parallel, GoesOnInRoundsUntilNothingIsLeft)
     std::atomic<int> calls{ 0 };
     InRounds(
       threads, count, [] { return 0.5; },
-      [&](Index thread, const RoundClock::time_point&) {
+      [&](Index thread, const Round&) {
         ++calls;
         left[thread] = std::max(left[thread] - 1, 0);
         return left[thread] > 0;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Fill/Membrane.h"
 
-#include "Silence.h"
+#include "WorkOf.h"
 
 #include <gtest/gtest.h>
 
@@ -106,9 +106,10 @@ TEST(Membrane, IsNotSilentForLong)
 {
   // The coarsest system has about as many unknowns as are factorised at most.
   const Frame frame(640, 600);
-  testing_time::Silence silence;
+  testing_work::Silence silence;
   const Membrane membrane(frame.Graph, silence.Monitor());
   membrane.Solve(frame.Known(), 1e-4, silence.Monitor());
-  EXPECT_LT(silence.Longest, 0.5);
+  silence.End();
+  EXPECT_LT(silence.Longest, 2900000u);
   EXPECT_GT(silence.Reports, 50);
 }

@@ -22,7 +22,6 @@
 
 using namespace elevation;
 using testing_points::Cloud;
-using testing_points::ReadExtraData;
 using testing_surfaces::ExpectPatchesFit;
 using testing_surfaces::Fill;
 using testing_surfaces::Judge;
@@ -240,12 +239,7 @@ Outcome FillLake(double points, double jitter, double fit, double share)
 
 TEST_P(ExtraVoids, AreFilled)
 {
-  Cloud cloud;
-  const std::string missing = ReadExtraData(GetParam(), cloud);
-  if (!missing.empty())
-  {
-    GTEST_SKIP() << missing;
-  }
+  const Cloud cloud = testing_points::RealCloud(GetParam());
   const double typical = TypicalEdge(Reconstruct(cloud, 0.0));
   for (const double limit : { 1.6, 2.5, 6.0 })
   {
@@ -256,9 +250,7 @@ TEST_P(ExtraVoids, AreFilled)
   EXPECT_GE(ExpectFilled(WithVoids(cloud, 6.0 * typical), 2.5 * typical), 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Voids, ExtraVoids,
-  testing::Values("autzen_trim_ground", "f3_fs6", "f3_truncation", "landlab_nocella",
-    "nankai_channels", "srtm_pyrenees_voids400", "st_helens_after_usgs"));
+INSTANTIATE_TEST_SUITE_P(Voids, ExtraVoids, testing::ValuesIn(testing_points::RealClouds));
 
 TEST(LargeHoles, OnALatticeGetTheirNodesBack)
 {

@@ -461,7 +461,7 @@ TEST(Pieces, TellWhenPointsAreNotOnTheLattice)
 TEST(SharedLattice, HoldsAllPointsOfACircleInItsBox)
 {
   std::mt19937_64 random(97);
-  int found = 0;
+  int found = 0, decided = 0;
   for (int i = 0; i < 2000; ++i)
   {
     const Cloud cloud = TurnedLattice(random, 12, 0.7);
@@ -481,6 +481,7 @@ TEST(SharedLattice, HoldsAllPointsOfACircleInItsBox)
     {
       continue;
     }
+    ++decided;
     const Box box = lattice.BoxOfCircle(a, b, c);
     for (Index k = 0; k < cloud.Count(); ++k)
     {
@@ -501,4 +502,5 @@ TEST(SharedLattice, HoldsAllPointsOfACircleInItsBox)
     }
   }
   EXPECT_GT(found, 1000);
+  EXPECT_GT(decided, 1500);
 }

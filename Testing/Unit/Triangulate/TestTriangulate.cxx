@@ -4,7 +4,7 @@
 #include "Kernel/Base/Threads.h"
 #include "Kernel/Base/Predicates.h"
 #include "PointSets.h"
-#include "Silence.h"
+#include "WorkOf.h"
 
 #include <gtest/gtest.h>
 
@@ -237,7 +237,7 @@ TEST(Delaunay, KeepsEveryRuleOnUnevenDensity)
 TEST(Delaunay, KeepsEveryRuleOnPointsARoundoffApart)
 {
   std::mt19937_64 random(29);
-  for (int i = 0; i < 100; ++i)
+  for (int i = 0; i < 40; ++i)
   {
     Cloud cloud;
     for (int k = 0; k < 60; ++k)
@@ -317,7 +317,7 @@ TEST(Delaunay, KeepsEveryRuleOverTheRangeOfDouble)
   }
   for (const double size : { 1e-305, 1e-150, 1e150, 1.7e308 })
   {
-    Cloud cloud = RandomCloud(random, 500);
+    Cloud cloud = RandomCloud(random, 200);
     for (double& value : cloud.Coordinates)
     {
       value = (value - 0.5) * 2.0 * size;
@@ -497,10 +497,11 @@ TEST(Delaunay, ReportsAsOftenForMoreThreadsThanCores)
   DelaunayOptions options;
   options.Strategy = SearchStrategy::Compactness; // it takes long
   options.NumberOfThreads = 1000;
-  testing_time::Silence silence;
+  testing_work::Silence silence;
   options.Monitor = silence.Monitor();
   elevation::Triangulate(cloud.View(), options);
-  EXPECT_LT(silence.Longest, 0.2 * ResolveNumberOfThreads(0));
+  silence.End();
+  EXPECT_LT(silence.Longest, 12000000u * ResolveNumberOfThreads(0));
 }
 
 TEST(Delaunay, RefusesMorePointsThanAnIndexHolds)
@@ -519,23 +520,13 @@ TEST(Delaunay, RefusesMorePointsThanAnIndexHolds)
   }
 }
 
-/** Real clouds for measuring: little-endian doubles x, y, z, in the folder
- * ELEVATION_SURFACE_EXTRA_DATA. */
 class ExtraData : public testing::TestWithParam<const char*>
 {
 };
 
 TEST_P(ExtraData, KeepsEveryRule)
 {
-  Cloud cloud;
-  const std::string missing = ReadExtraData(GetParam(), cloud);
-  if (!missing.empty())
-  {
-    GTEST_SKIP() << missing;
-  }
-  ExpectValid(cloud, GetParam());
+  ExpectValid(RealCloud(GetParam()), GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Delaunay, ExtraData,
-  testing::Values("autzen_trim_ground", "f3_fs6", "f3_truncation", "landlab_nocella",
-    "nankai_channels", "srtm_pyrenees_voids400", "st_helens_after_usgs"));
+INSTANTIATE_TEST_SUITE_P(Delaunay, ExtraData, testing::ValuesIn(RealClouds));

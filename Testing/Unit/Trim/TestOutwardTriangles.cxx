@@ -285,10 +285,7 @@ TEST(FindOutward, AlongTheExtractedBoundaryKeepsWhatWasFoundAsSurface)
     ExtractOptions options;
     options.GapTolerance = 2.4 + 3 * random.Unit();
     const ExtractedBoundary boundary = ExtractBoundary(mesh, options);
-    if (boundary.Vertices.Count() == 0)
-    {
-      continue;
-    }
+    ASSERT_GT(boundary.Vertices.Count(), 0);
     const OutwardTriangles trimmed = FindOutward(mesh, boundary.Vertices, false);
     double area = 0.0; // around surface counter-clockwise, around lakes clockwise
     for (Index ring = 0; ring < boundary.Vertices.Count(); ++ring)

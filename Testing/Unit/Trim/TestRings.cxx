@@ -240,10 +240,7 @@ TEST(JoinLines, DoesNotLetRingsCrossWhereManyLinesEnd)
         add(p + 5, p);
       }
     }
-    if (edges.empty())
-    {
-      continue;
-    }
+    ASSERT_FALSE(edges.empty());
     random.Shuffle(edges);
     const Rings joined = JoinLines(MakeLines(points, edges, false));
     Mesh cut = mesh;
