@@ -3,7 +3,7 @@
 
 # The rooms of the kernel, in the order in which they may include each other, and the files of each:
 # Kernel/<Room>/<Name>.{h,cxx}, or a header alone. The room's public face is Kernel/<Room>/<Room>.h.
-# The module and the unit tests both compile this list: a new kernel file is one line here.
+# Filters/CMakeLists.txt compiles this list, once: a new kernel file is one line here.
 set(es_kernel_rooms Base Mesh Lattice Triangulate Trim Fill)
 set(es_kernel_Base
   Predicates)

@@ -11,6 +11,7 @@ option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface, beside the 
 option(ES_BENCHMARKS "Build the benchmarks; they compare with CGAL where it is found" OFF)
 option(ES_WARNINGS "Compile with -Wall -Wextra" OFF)
 option(ES_WERROR "Warnings are errors (with ES_WARNINGS)" OFF)
+set(ES_KERNEL "" CACHE FILEPATH "The kernel's library of another build, to use instead of compiling the kernel")
 option(ES_PRECOMPILED_HEADERS "Compile the headers that most filters include once" OFF)
 option(ES_FUZZ "Build the fuzz targets with libFuzzer, which clang++ brings" OFF)
 set(ES_SANITIZE "" CACHE STRING "Sanitizers to compile with, as in -fsanitize=<list>")

@@ -19,9 +19,9 @@ set(wrong)
 # Checks one file; what it may include of the kernel are the faces of the rooms given, and its own
 # room's files, by their names alone.
 function (check_file file own_room)
-  file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]+\"")
+  file(STRINGS "${ROOT}/${file}" lines REGEX "^[ \t]*#[ \t]*include[ \t]+(\"|<vtk)")
   foreach (line IN LISTS lines)
-    string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*" "\\1" included "${line}")
+    string(REGEX REPLACE "^[^\"<]*[\"<]([^\">]*)[\">].*" "\\1" included "${line}")
     get_filename_component(folder "${ROOT}/${file}" DIRECTORY)
     if (included MATCHES "^Kernel/")
       set(is_allowed OFF)

@@ -240,7 +240,7 @@ class Supervised(InFolder):
             "def work():\n"
             "    signal.signal(signal.SIGTERM, signal.SIG_IGN)\n"
             "    os.kill(os.getppid(), signal.SIGINT)\n"
-            "    time.sleep(50)\n"
+            "    time.sleep(300)\n"
             "    open('went-on', 'w').close()\n"
         )
         done = self.supervise(body)

@@ -966,7 +966,7 @@ class Command(Program):
                 "from vtkelevationsurface import command, pieces, supervisor\n"
                 "def stopped(*_):\n"
                 "    os.kill(os.getppid(), signal.SIGTERM)\n"
-                "    time.sleep(50)\n"
+                "    time.sleep(300)\n"
                 "    open('went-on', 'w').close()\n"
                 f"home = pieces if hasattr(pieces, {when!r}) else pieces.Pieces\n"
                 f"setattr(home, {when!r}, stopped)\n"

@@ -136,20 +136,16 @@ inline Cloud CloudLike(const std::string& name)
 
 /**
  * A real cloud: little-endian doubles x, y, z, in the file <name>.f64 of the folder
- * ELEVATION_SURFACE_EXTRA_DATA; where that is not set, a small one of its kind.
+ * ELEVATION_SURFACE_EXTRA_DATA; where it is not there, a small one of its kind.
  */
 inline Cloud RealCloud(const std::string& name)
 {
   const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
-  if (!folder)
+  std::ifstream file(
+    std::string(folder ? folder : "") + "/" + name + ".f64", std::ios::binary | std::ios::ate);
+  if (!folder || !file)
   {
     return CloudLike(name);
-  }
-  const std::string path = std::string(folder) + "/" + name + ".f64";
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file)
-  {
-    throw std::runtime_error(path + " is not there");
   }
   Cloud cloud;
   cloud.Coordinates.resize(static_cast<std::size_t>(file.tellg()) / sizeof(double));
