@@ -74,6 +74,7 @@ Reports Watch(vtkPolyDataAlgorithm* filter, double abortAt = 2.0)
   filter->Modified();
   filter->Update();
   filter->RemoveObserver(tag);
+  filter->SetAbortExecute(0); // newer VTKs keep it
   return reports;
 }
 

@@ -68,8 +68,8 @@ boundary that one rank has        |                            | coast + on one 
 boundary with lakes and an island |                            | coast and lakes              | s  s  s  s  s  s  a
 test exact                        | OutwardTest=0              | coast                        | s  s  s  s  s  s  a
 test by inward normals            | OutwardTest=1              | coast                        | s  s  G  G  r  r  r
-boundary off, edges are there     | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  a
-boundary off, edges are missing   | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  a
+edges not recovered, they are there     | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  a
+edges not recovered, they are missing   | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  a
 boundary found                    |                            | gaps                         | s  s  s  s  -  -  -
 boundary found along tracks       |                            | tracks                       | s  s  s  s  -  -  -
 boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  G  G  -  -  -
