@@ -77,3 +77,9 @@ function (es_find_mpirun variable)
   endif ()
   set("${variable}" "${command}" PARENT_SCOPE)
 endfunction ()
+
+# Where lines are counted, the library can write its counts before its end.
+if (CMAKE_BUILD_TYPE STREQUAL "Coverage")
+  get_target_property(es_target VTK::ElevationSurface ALIASED_TARGET)
+  target_sources("${es_target}" PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}/Testing/Coverage/Dump.cxx")
+endif ()

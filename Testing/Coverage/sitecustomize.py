@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lets every Python that a test starts count the lines of the package; Utilities/test --coverage puts
-this folder on PYTHONPATH.
+"""Lets every Python that a test starts count the lines of the package; Utilities/test --coverage
+puts this folder on PYTHONPATH.
 
-The program's child, and others, end by os._exit(), where neither Python nor a library writes what it
-has counted. So it is written before.
-"""
+The program's child, and others, end by os._exit(), where neither Python nor a library writes what
+it has counted. So it is written before."""
 
 import ctypes
 import os

@@ -21,29 +21,27 @@ public:
     const char* number = std::getenv("ES_FAULT");
     this->On = number ? std::atoi(number) : 0;
   }
-  ~EsFaults()
-  {
-    const char* name = std::getenv("ES_FAULTS_REACHED");
-    std::FILE* file = name ? std::fopen(name, "a") : nullptr;
-    for (int i = 0; file && i < Most; ++i)
-    {
-      if (this->Reached[i])
-      {
-        std::fprintf(file, "%d\n", i);
-      }
-    }
-    if (file)
-    {
-      std::fclose(file);
-    }
-  }
   bool Is(int number)
   {
-    this->Reached[number].store(true, std::memory_order_relaxed);
+    if (!this->Reached[number].load(std::memory_order_relaxed) && !this->Reached[number].exchange(true))
+    {
+      Write(number);
+    }
     return this->On == number;
   }
 
 private:
+  // At once, since not every process ends by itself. Several may write to the file.
+  static void Write(int number)
+  {
+    const char* name = std::getenv("ES_FAULTS_REACHED");
+    if (std::FILE* file = name ? std::fopen(name, "a") : nullptr)
+    {
+      std::fprintf(file, "%d\n", number);
+      std::fclose(file);
+    }
+  }
+
   int On = 0;
   std::atomic<bool> Reached[Most] = {};
 };
