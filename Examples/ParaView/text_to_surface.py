@@ -27,7 +27,8 @@ def show_relief(surface, view):
 def main(points_file, surface_file, picture_file):
     points = simple.ElevationPoints(FileName=points_file)
     surface = simple.ReconstructElevationSurface(Input=points)
-    simple.SaveData(surface_file, surface)
+    # Encoded: ParaView 5.11 with a newer expat, as Debian 12 has it, cannot read its own raw files.
+    simple.SaveData(surface_file, surface, EncodeAppendedData=1)
 
     view = simple.CreateRenderView(ViewSize=[1200, 800], OrientationAxesVisibility=0)
     show_relief(surface, view)
