@@ -27,8 +27,8 @@ def show_relief(surface, view):
 def main(points_file, surface_file, picture_file):
     points = simple.ElevationPoints(FileName=points_file)
     surface = simple.ReconstructElevationSurface(Input=points)
-    # Encoded: ParaView 5.11 with a newer expat, as Debian 12 has it, cannot read its own raw files.
-    simple.SaveData(surface_file, surface, EncodeAppendedData=1)
+    # ParaView 5.11 with the newest expat of Debian 12 cannot read appended data, its default.
+    simple.SaveData(surface_file, surface, DataMode="Binary")
 
     view = simple.CreateRenderView(ViewSize=[1200, 800], OrientationAxesVisibility=0)
     show_relief(surface, view)
