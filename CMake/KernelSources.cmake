@@ -48,6 +48,7 @@ set(es_kernel_Trim
   NearTriangles
   Crossings
   MeshCutter
+  FollowSurface
   Insertion
   OutwardTriangles
   MeasuredTriangles

@@ -186,9 +186,9 @@ void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& 
 void AppendBorder(
   const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges)
 {
-  const auto keyOf = [&](Index point) {
+  const auto numberOf = [&](Index point) {
     const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
-    return points.Keys[at - points.Places.begin()];
+    return static_cast<std::size_t>(at - points.Places.begin());
   };
   for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
   {
@@ -196,7 +196,9 @@ void AppendBorder(
     {
       const Index a = mesh.Origin(h), b = mesh.Destination(h);
       const Point2 p = mesh.PointOf(a), q = mesh.PointOf(b);
-      edges.push_back({ { keyOf(a), keyOf(b) }, { p.X, p.Y, q.X, q.Y }, part, h });
+      const std::size_t from = numberOf(a), to = numberOf(b);
+      edges.push_back({ { points.Keys[from], points.Keys[to] }, { p.X, p.Y, q.X, q.Y },
+        { points.OnBoundary[from], points.OnBoundary[to] }, part, h });
     }
   }
 }
@@ -243,6 +245,7 @@ BorderOfAll::BorderOfAll(std::vector<EdgeOfPart>&& edges)
   std::sort(this->Keys.begin(), this->Keys.end());
   this->Keys.erase(std::unique(this->Keys.begin(), this->Keys.end()), this->Keys.end());
   this->Coordinates.resize(3 * this->Keys.size(), 0.0);
+  this->OnBoundary.resize(this->Keys.size(), 0);
   for (const EdgeOfPart& edge : edges)
   {
     const Index ends[2] = { this->Find(edge.Ends[0]), this->Find(edge.Ends[1]) };
@@ -251,6 +254,7 @@ BorderOfAll::BorderOfAll(std::vector<EdgeOfPart>&& edges)
     for (std::size_t k = 0; k < 2; ++k)
     {
       std::copy_n(edge.Places + 2 * k, 2, this->Coordinates.begin() + 3 * ends[k]);
+      this->OnBoundary[ends[k]] = edge.OnBoundary[k] != 0;
     }
   }
 }

@@ -30,9 +30,10 @@ std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<In
 /** The points of a part that others may have, too. */
 struct SharedPoints
 {
-  std::vector<Index> Places;   ///< increasing: on the border of its triangles, or without any
-  std::vector<PointKey> Keys;  ///< of them
-  std::vector<char> AreCopies; ///< one each: another part's counts
+  std::vector<Index> Places;    ///< increasing: on the border of its triangles, or without any
+  std::vector<PointKey> Keys;   ///< of them
+  std::vector<char> AreCopies;  ///< one each: another part's counts
+  std::vector<char> OnBoundary; ///< one each: marked as of BoundaryMarksOf()
 
   /** The place of the point with a key, or None. */
   Index Find(const PointKey& key) const;
@@ -53,6 +54,7 @@ struct EdgeOfPart
 {
   PointKey Ends[2];
   double Places[4]; ///< x,y of both
+  vtkIdType OnBoundary[2];
   vtkIdType Part, HalfEdge;
 };
 
@@ -63,6 +65,7 @@ struct BorderOfAll
   std::vector<int> PartOfEdge;     ///< one each
   std::vector<PointKey> Keys;      ///< of its points, increasing
   std::vector<double> Coordinates; ///< x, y and 0 of each
+  std::vector<char> OnBoundary;    ///< one each, as in SharedPoints
 
   BorderOfAll() = default;
   explicit BorderOfAll(std::vector<EdgeOfPart>&& edges);

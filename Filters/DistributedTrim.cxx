@@ -210,9 +210,8 @@ TrimCounts Work::Write()
   this->All.Agree([&]() {
     if (this->Input->GetNumberOfPoints() > 0)
     {
-      const int threads = ResolveNumberOfThreads(this->Options.NumberOfThreads);
-      this->Own.Write(this->AreInserted, this->AreMarked, threads, this->Watched(0.88, 0.97),
-        this->Of.Outputs[0], this->Of.Outputs[1]);
+      this->Own.Write(this->AreInserted, this->AreMarked, this->Of.Second ? &this->Lines : nullptr,
+        this->Options, this->Watched(0.88, 0.97), this->Of.Outputs[0], this->Of.Outputs[1]);
       counts.OutwardTriangles = this->Own.CountOfSide(1);
       counts.InsertedPoints = this->Own.CountOfOwnInserted();
     }

@@ -54,11 +54,13 @@ bool FilledPart::ListShared(bool byIds)
       mayBeShared[this->Own.Origin(h)] = mayBeShared[this->Own.Destination(h)] = 1;
     }
   }
+  vtkUnsignedCharArray* const marks = BoundaryMarksOf(this->Input->GetPointData());
   for (std::size_t i = 0; i < mayBeShared.size(); ++i)
   {
     if (mayBeShared[i])
     {
       this->Shared.Places.push_back(static_cast<Index>(i));
+      this->Shared.OnBoundary.push_back(marks && marks->GetValue(static_cast<vtkIdType>(i)) != 0);
     }
   }
   this->Shared.Keys = KeysOf(this->Input, byIds, &this->Shared.Places);

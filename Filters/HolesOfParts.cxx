@@ -31,9 +31,11 @@ bool HolesOfParts::Find(const Progress& progress)
   {
     places.Points.push_back(points.At(i));
   }
+  FillOptions options = this->Options;
+  options.OnBoundary = this->Border.OnBoundary;
   for (Index hole = 0; hole < this->OfAll.Found.Count(); ++hole)
   {
-    this->OfAll.Reports.push_back(MeasureHole(places, this->OfAll.Found, hole, this->Options));
+    this->OfAll.Reports.push_back(MeasureHole(places, this->OfAll.Found, hole, options));
   }
   return this->OfAll.Found.NumberOfContacts == 0;
 }

@@ -41,8 +41,7 @@ struct HolesOfParts
   /** Whether the limits of size and edges admit a hole. */
   bool IsToBeFilled(std::size_t hole) const
   {
-    return this->OfAll.Reports[hole].Status != FillStatus::TooLarge &&
-      this->OfAll.Reports[hole].Status != FillStatus::TooManyEdges;
+    return this->OfAll.Reports[hole].Status == FillStatus::Filled;
   }
   Box BoxOf(Index hole) const { return BoxAround(this->Extents[hole], this->TimesTooFew[hole]); }
   bool NeedLattice() const;

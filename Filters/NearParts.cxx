@@ -38,6 +38,7 @@ Bytes TrimmedPart::Pack() const
   AppendList(bytes, this->IsInserted);
   AppendList(bytes, this->IsOwned);
   AppendList(bytes, this->OfOthers);
+  AppendList(bytes, this->OnBoundary);
   if (!this->IsInserted.empty())
   {
     const Bytes points = PackData(this->NewPoints);
@@ -57,6 +58,7 @@ TrimmedPart::TrimmedPart(const Bytes& bytes)
   TakeList(from, this->IsInserted);
   TakeList(from, this->IsOwned);
   TakeList(from, this->OfOthers);
+  TakeList(from, this->OnBoundary);
   if (!this->IsInserted.empty())
   {
     this->NewPoints =
@@ -330,9 +332,25 @@ void NearParts::PlaceCorners(std::size_t part, std::vector<Index>& places,
       corner = place;
     }
   }
+  const std::vector<Index>& onBoundary = this->Sides.OnBoundary;
+  const auto isOnBoundary = [&](Index point) {
+    return std::binary_search(onBoundary.begin(), onBoundary.end(), point);
+  };
   for (vtkIdType i = 0; i < count; ++i)
   {
-    places[this->Common->Place(part, i)] = None;
+    const Index point = static_cast<Index>(this->Common->Place(part, i));
+    places[point] = None;
+    if (isOnBoundary(point))
+    {
+      split.OnBoundary.push_back(static_cast<Index>(i));
+    }
+  }
+  for (std::size_t i = 0; i < added.size(); ++i)
+  {
+    if (isOnBoundary(added[i]))
+    {
+      split.OnBoundary.push_back(static_cast<Index>(count) + static_cast<Index>(i));
+    }
   }
   for (const Index point : added)
   {

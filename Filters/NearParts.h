@@ -43,6 +43,8 @@ struct TrimmedPart
   std::vector<char> IsInserted; ///< one a new point; else it is another rank's
   std::vector<char> IsOwned;    ///< one a new point
   std::vector<Index> OfOthers;  ///< points of the rank's near part that another rank owns
+  /** Points on a boundary that was given: of the near part, followed by the new points. */
+  std::vector<Index> OnBoundary;
   vtkSmartPointer<vtkPolyData> NewPoints;
 
   Bytes Pack() const;

@@ -4,6 +4,7 @@
 
 #include "KernelCall.h"
 #include "MeshConversion.h"
+#include "TrimmedSurface.h"
 #include "vtkFillElevationHoles.h"
 
 #include "vtkAbstractArray.h"
@@ -30,6 +31,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   options.MaximumHoleEdges =
     static_cast<Index>(std::min<vtkIdType>(filter->GetMaximumHoleEdges(), VTK_INT_MAX));
   options.Spacing = filter->GetSpacing();
+  options.FillCutOuts = filter->GetFillCutOuts();
   options.Method = static_cast<Interpolation>(filter->GetInterpolation());
   const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
   options.MaximumInsertedPoints = static_cast<Index>(
@@ -78,7 +80,7 @@ void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
   PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(),
     Part(progress, 0.3, 1.0), [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
       NewValues values;
-      if (!interpolate || IsIdArray(pointData, array))
+      if (!interpolate || IsIdArray(pointData, array) || array == BoundaryMarksOf(pointData))
       {
         return values;
       }

@@ -283,12 +283,22 @@ TrimmedSide TrimOfPart::SideOf(int side, const Progress& progress) const
   return written;
 }
 
-void TrimOfPart::Write(bool areInserted, bool areMarked, int threads, const Progress& progress,
-  vtkPolyData* kept, vtkPolyData* outward)
+void TrimOfPart::Write(bool areInserted, bool areMarked, const BoundaryLines* boundary,
+  const TrimOptions& options, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
   this->Points.AreMarked = areMarked;
   this->Points.Type = areInserted ? VTK_DOUBLE : this->Input->GetPoints()->GetDataType();
   PassTrimmedPoints(this->Input, this->Points, Part(progress, 0.0, 0.2), kept);
+  if (boundary)
+  {
+    std::vector<Index> onBoundary;
+    const Index sent = static_cast<Index>(this->Sent.size());
+    for (const Index point : this->Back.OnBoundary)
+    {
+      onBoundary.push_back(point < sent ? this->Sent[point] : this->Places[point - sent]);
+    }
+    PassBoundary(*boundary, onBoundary, options, kept);
+  }
   kept->SetVerts(this->Input->GetVerts());
   kept->SetLines(this->Input->GetLines());
   if (outward)
@@ -303,7 +313,8 @@ void TrimOfPart::Write(bool areInserted, bool areMarked, int threads, const Prog
       TrimmedSide written = this->SideOf(side, Part(progress, 0.2, 0.6));
       PassCellData(this->Input, side == 0 ? FirstPolygon(this->Input) : 0, written, areInserted,
         Part(progress, 0.6, 1.0), output);
-      output->SetPolys(ToCellArray(std::move(written.Corners), threads));
+      output->SetPolys(
+        ToCellArray(std::move(written.Corners), ResolveNumberOfThreads(options.NumberOfThreads)));
       output->GetFieldData()->PassData(this->Input->GetFieldData());
     }
   }

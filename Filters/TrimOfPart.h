@@ -61,9 +61,10 @@ public:
   /**
    * Writes the sides to outputs 0 and 1; nullptr: not wanted.
    * @param[in] areInserted, areMarked  whether any part has inserted points, or another part's
+   * @param[in] boundary  nullptr: none was given
    */
-  void Write(bool areInserted, bool areMarked, int threads, const Progress& progress,
-    vtkPolyData* kept, vtkPolyData* outward);
+  void Write(bool areInserted, bool areMarked, const BoundaryLines* boundary,
+    const TrimOptions& options, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward);
 
 private:
   void LeaveOutCopies();

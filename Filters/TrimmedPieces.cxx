@@ -77,9 +77,8 @@ void TrimmedPieces::Pass(int piece, const Progress& progress, vtkPolyData* outpu
   this->Sweep(part, Part(progress, 0.0, 0.4));
   part.NearPart();
   part.Take(TrimmedPart(this->Backs[piece]), Part(progress, 0.4, 0.5));
-  part.Write(this->OfAll.InsertedPoints > 0, true,
-    ResolveNumberOfThreads(this->Options.NumberOfThreads), Part(progress, 0.5, 1.0), output,
-    nullptr);
+  part.Write(this->OfAll.InsertedPoints > 0, true, &this->Lines, this->Options,
+    Part(progress, 0.5, 1.0), output, nullptr);
 }
 
 } // namespace elevation

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <unordered_map>
 
 namespace elevation
 {
@@ -29,23 +30,25 @@ TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter)
   TrimOptions options;
   options.Test = static_cast<OutwardTest>(filter->GetOutwardTest());
   options.RecoverBoundary = filter->GetRecoverBoundary();
+  options.Edges = static_cast<BoundaryEdges>(filter->GetBoundaryEdges());
   options.GapTolerance = filter->GetGapTolerance();
   options.NumberOfThreads = filter->GetNumberOfThreads();
   return options;
 }
 
-BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress)
+BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)
 {
   const PointsOfDataSet points = ViewPoints(boundary);
   BoundaryLines lines;
-  ForEachLine(boundary, "boundary", progress, [&](const LineOfDataSet& line) {
+  ForEachLine(boundary, name, progress, [&](const LineOfDataSet& line) {
     for (vtkIdType i = 0; i < line.Size; ++i)
     {
       const Index id = static_cast<Index>(line.Ids[i]);
       if (!std::isfinite(points.View.Elevation(id)))
       {
-        throw Error("Point " + std::to_string(id) + " of the boundary's cell " +
-          std::to_string(line.Cell) + " is not finite.");
+        throw Error("Point " + std::to_string(id) + " of the " + name +
+          (name.back() == 's' ? "' cell " : "'s cell ") + std::to_string(line.Cell) +
+          " is not finite.");
       }
       lines.Lines.Vertices.push_back(id);
     }
@@ -55,6 +58,27 @@ BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress)
   });
   TakePoints(points.View, lines);
   return lines;
+}
+
+vtkIdType SplitSurface(
+  vtkPolyData* surface, vtkPolyData* constraints, int threads, const Progress& progress)
+{
+  vtkNew<vtkPolyData> before;
+  before->ShallowCopy(surface);
+  const TrianglesOfDataSet triangles = ViewTriangles(before);
+  TrimOptions options;
+  options.TellParents = false;
+  options.NumberOfThreads = threads;
+  options.Monitor = Part(progress, 0.05, 0.9);
+  Trimmed split = SplitAlong(
+    triangles.View, ToLines(constraints, Part(progress, 0.0, 0.05), "constraints"), options);
+  if (!split.Kept.IsWholeList)
+  {
+    surface->SetPolys(ToCellArray(std::move(split.Kept.Corners), ResolveNumberOfThreads(threads)));
+    surface->GetPointData()->Initialize();
+    PassPoints(before, split, Part(progress, 0.9, 1.0), surface);
+  }
+  return static_cast<vtkIdType>(split.Inserted.size());
 }
 
 void PassPoints(
@@ -141,6 +165,56 @@ vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const TrimmedP
   return marks;
 }
 } // namespace
+
+void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
+  const TrimOptions& options, vtkPolyData* output)
+{
+  const vtkIdType count = output->GetNumberOfPoints();
+  vtkNew<vtkUnsignedCharArray> marks;
+  marks->SetName(NameOfBoundaryMarks);
+  SetTuples(count, marks);
+  marks->FillValue(0);
+  vtkPointData* const data = output->GetPointData();
+  if (vtkUnsignedCharArray* const before = BoundaryMarksOf(data))
+  {
+    std::copy_n(before->GetPointer(0), count, marks->GetPointer(0));
+  }
+  for (const Index point : onBoundary)
+  {
+    marks->SetValue(point, 1);
+  }
+  data->AddArray(marks);
+  if (options.Edges != BoundaryEdges::OwnElevations)
+  {
+    return;
+  }
+  std::unordered_map<Point2, double, HashOfPoint> elevations;
+  for (std::size_t i = 0; i < lines.Elevations.size(); ++i)
+  {
+    elevations.emplace(lines.Points.Places[i], lines.Elevations[i]);
+  }
+  vtkNew<vtkPoints> moved;
+  moved->SetDataType(output->GetPoints()->GetDataType());
+  moved->DeepCopy(output->GetPoints());
+  for (const Index point : onBoundary)
+  {
+    double p[3];
+    moved->GetPoint(point, p);
+    const auto own = elevations.find({ p[0], p[1] });
+    if (own != elevations.end())
+    {
+      moved->SetPoint(point, p[0], p[1], own->second);
+    }
+  }
+  output->SetPoints(moved);
+}
+
+vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data)
+{
+  auto* const marks =
+    vtkUnsignedCharArray::SafeDownCast(data->GetAbstractArray(NameOfBoundaryMarks));
+  return marks && marks->GetNumberOfComponents() == 1 ? marks : nullptr;
+}
 
 void PassTrimmedPoints(
   vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output)

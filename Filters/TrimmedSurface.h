@@ -14,9 +14,12 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <string>
 #include <vector>
 
+class vtkPointData;
 class vtkPolyData;
+class vtkUnsignedCharArray;
 class vtkTrimOutwardTriangles;
 
 namespace elevation
@@ -25,12 +28,38 @@ namespace elevation
 /** The kernel's options for the properties of the filter. */
 TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter);
 
-/** The boundary's lines, and the points that they use. @throws Error naming the cell */
-BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress);
+/**
+ * Lines and polygons, and the points that they use.
+ * @param[in] name  what messages call them
+ * @throws Error naming the cell
+ */
+BoundaryLines ToLines(
+  vtkPolyData* boundary, const Progress& progress, const std::string& name = "boundary");
+
+/**
+ * Splits the triangles of a surface along lines, see SplitAlong(): its points, their data and its
+ * polygons are then others.
+ * @return how many points are inserted
+ */
+vtkIdType SplitSurface(
+  vtkPolyData* surface, vtkPolyData* constraints, int threads, const Progress& progress);
 
 /** The points of outputs 0 and 1 with their data: those of the input, then new ones. */
 void PassPoints(
   vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output);
+
+/** The point array that marks points on the edges of a boundary that was given. */
+constexpr const char* NameOfBoundaryMarks = "OnBoundary";
+/** These marks, or nullptr. */
+vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data);
+
+/**
+ * What a given boundary adds to the points of an output: marks beside those that are there, and, if
+ * the options say so, its own elevations.
+ * @param[in] onBoundary  points of the output
+ */
+void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
+  const TrimOptions& options, vtkPolyData* output);
 
 /** What a part has of the points of outputs 0 and 1: all of its input, then others. */
 struct TrimmedPoints

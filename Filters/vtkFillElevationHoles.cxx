@@ -10,12 +10,14 @@
 #include "MeshConversion.h"
 #include "PatchedSurface.h"
 #include "Ranks.h"
+#include "TrimmedSurface.h"
 
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <string>
@@ -28,7 +30,8 @@ static_assert(vtkFillElevationHoles::NEIGHBOR_MEAN == int(elevation::Interpolati
     vtkFillElevationHoles::ADAPTIVE == int(elevation::Interpolation::Adaptive) &&
     vtkFillElevationHoles::CUBIC_SPLINE == int(elevation::Interpolation::Cubic),
   "the kernel's names are those of the filter");
-static_assert(vtkFillElevationHoles::REPLACED == int(elevation::FillStatus::Replaced),
+static_assert(vtkFillElevationHoles::REPLACED == int(elevation::FillStatus::Replaced) &&
+    vtkFillElevationHoles::CUT_OUT == int(elevation::FillStatus::CutOut),
   "the kernel's statuses are those of the filter");
 
 namespace
@@ -119,6 +122,11 @@ int vtkFillElevationHoles::RequestData(
       options.Attributes = elevation::AttributesOf(input->GetPointData());
     }
     options.SinglePrecision = elevation::HasFloatPoints(input);
+    if (vtkUnsignedCharArray* const marks = elevation::BoundaryMarksOf(input->GetPointData()))
+    {
+      options.OnBoundary.assign(
+        marks->GetPointer(0), marks->GetPointer(0) + marks->GetNumberOfTuples());
+    }
     const elevation::Progress filling = Part(progress, 0.55, isToBeFilled ? 0.85 : 0.55);
     options.Monitor = filling;
     const FillResult patches =
@@ -157,6 +165,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";
+  os << indent << "FillCutOuts: " << (this->FillCutOuts ? "On" : "Off") << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";

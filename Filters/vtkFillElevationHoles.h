@@ -13,6 +13,8 @@
  * Holes may be nested, pinched, and may share vertices.
  *
  * Voids that triangles with long edges bridge are no holes: see MaximumEdgeLength, which opens them.
+ * What a boundary given to vtkTrimOutwardTriangles has cut out is a hole that stays open: see
+ * FillCutOuts.
  *
  * @par Output 0, the surface:
  * The points and cells of the input first, with their ids, then the new points and triangles.
@@ -33,6 +35,7 @@
  * - Global ids of new points and triangles go on after the largest. Pedigree ids are -1 there (the
  *   largest number of an unsigned type, NaN, an empty string), as are global ids whose type has no
  *   more numbers, which are no longer marked as such.
+ * - The marks of a point array OnBoundary are 0 at new points.
  * - Points are float or double as in the input. The x,y of new points are rounded to the type
  *   before they are triangulated, so that the result stays exact.
  *
@@ -159,6 +162,7 @@ public:
     TOO_MANY_EDGES = 2, ///< left open because of MaximumHoleEdges
     FAILED = 3,         ///< could not be filled; a warning says why
     REPLACED = 4,       ///< filled: long triangles bridged it, see MaximumEdgeLength
+    CUT_OUT = 5,        ///< left open: a given boundary has cut it out, see FillCutOuts
   };
 
   /** How z of new points is found: the values of Interpolation, and of the array of output 1. */
@@ -278,6 +282,18 @@ public:
 
   ///@{
   /**
+   * Whether to fill holes that a boundary given to vtkTrimOutwardTriangles has cut out: a lake, an
+   * island, a building. Such a hole has an edge, of its rim or of an island, between two points that
+   * are 1 in the input's point array OnBoundary, which that filter makes. Off (default): they stay open,
+   * with status CUT_OUT.
+   */
+  vtkSetMacro(FillCutOuts, bool);
+  vtkGetMacro(FillCutOuts, bool);
+  vtkBooleanMacro(FillCutOuts, bool);
+  ///@}
+
+  ///@{
+  /**
    * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
    * hole the mean length of its boundary edges, see above; negative values are taken as 0.
    */
@@ -331,6 +347,7 @@ protected:
   double MaximumHoleSize = 0.0;
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;
+  bool FillCutOuts = false;
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;

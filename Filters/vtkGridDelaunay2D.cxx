@@ -12,6 +12,7 @@
 #include "KernelCall.h"
 #include "LimitAdvice.h"
 #include "MeshConversion.h"
+#include "TrimmedSurface.h"
 
 #include "vtkCellArray.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -43,6 +44,19 @@ using elevation::Part;
 using elevation::Progress;
 using elevation::ReportStep;
 
+/** The lines of a source, checked to be where the points are; @a own must outlive them. */
+ConstraintLines LinesOf(vtkPolyData* source, const elevation::PointsOfDataSet& own,
+  const elevation::PointView& points, int threads, const Progress& progress,
+  std::vector<std::string>& warnings)
+{
+  const ConstraintLines lines = elevation::ToLines(source, own, Part(progress, 0.0, 0.5));
+  const elevation::Box box =
+    elevation::FindExtent(points, elevation::ResolveNumberOfThreads(threads),
+      Part(progress, 0.5, 1.0), [](Index, const elevation::Point2&) {});
+  elevation::CheckLines(lines, box, warnings);
+  return lines;
+}
+
 /** Triangulates points, with the lines of a source if there is one. */
 elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   const elevation::PointView& points, elevation::DelaunayOptions options, const Progress& progress,
@@ -57,11 +71,8 @@ elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   }
   elevation::CheckPointArrays(source, "The constraints'");
   const elevation::PointsOfDataSet own = elevation::ViewPoints(source);
-  const ConstraintLines lines = elevation::ToLines(source, own, Part(progress, 0.0, 0.01));
-  const elevation::Box box =
-    elevation::FindExtent(points, elevation::ResolveNumberOfThreads(options.NumberOfThreads),
-      Part(progress, 0.01, 0.02), [](Index, const elevation::Point2&) {});
-  elevation::CheckLines(lines, box, warnings);
+  const ConstraintLines lines =
+    LinesOf(source, own, points, options.NumberOfThreads, Part(progress, 0.0, 0.02), warnings);
   options.Monitor = Part(progress, 0.02, 1.0);
   return elevation::TriangulateConstrained(points, lines, options);
 }
@@ -241,12 +252,12 @@ int vtkGridDelaunay2D::RequestData(
   call.Second = "constraints";
   call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
-    &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings,
-    &this->NumberOfAddedPoints, &this->NumberOfLattices };
+    &this->NumberOfRedundantPoints, &this->NumberOfConstraintCrossings, &this->NumberOfAddedPoints,
+    &this->NumberOfLattices };
   call.Maxima = { &this->LargestElevationError };
   const elevation::DelaunayOptions options = elevation::OptionsOf(this);
   call.Spread = [this, options](elevation::Block& block, const elevation::Ranks& ranks) {
-    if (options.MaximumElevationError != 0.0)
+    if (options.MaximumElevationError != 0.0 || this->DrapeConstraints)
     {
       return false;
     }
@@ -265,24 +276,35 @@ int vtkGridDelaunay2D::RequestData(
     elevation::CheckLimits(options);
     elevation::CheckPointArrays(block.Input);
     const elevation::PointsOfDataSet points = elevation::ViewPoints(block.Input);
-    const double told = block.Second ? 0.95 : 1.0;
+    vtkPolyData* const draped = this->DrapeConstraints ? block.Second : nullptr;
+    vtkPolyData* const source = draped ? nullptr : block.Second;
+    const double split = draped ? 0.7 : 1.0;
+    const double told = source ? 0.95 : split;
     // Little, as a limit seldom needs advice.
     const double triangulated = this->MaximumEdgeLength > 0.0 ? told - 0.09 : told;
     elevation::ConstrainedTriangulation constrained = TriangulateWith(
-      block.Second, points.View, options, Part(progress, 0.0, triangulated), block.Warnings);
+      source, points.View, options, Part(progress, 0.0, triangulated), block.Warnings);
     elevation::Triangulation& triangulation = constrained.Result;
-    WarnOfMissing(block.Second, points.View, options, constrained,
-      Part(progress, triangulated, told), block.Warnings);
+    WarnOfMissing(source, points.View, options, constrained, Part(progress, triangulated, told),
+      block.Warnings);
     elevation::PassPoints(
-      block.Input, block.Second, constrained.Added, Part(progress, 0.95, 1.0), output);
+      block.Input, source, constrained.Added, Part(progress, told, split), output);
     output->GetFieldData()->PassData(block.Input->GetFieldData());
+    output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
+      elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
+    if (draped)
+    {
+      elevation::CheckPointArrays(draped, "The constraints'");
+      LinesOf(draped, elevation::ViewPoints(draped), points.View, this->NumberOfThreads,
+        Part(progress, split, split), block.Warnings);
+      constrained.Added.resize(static_cast<std::size_t>(elevation::SplitSurface(
+        output, draped, this->NumberOfThreads, Part(progress, split, 1.0))));
+    }
     elevation::AddReport(constrained, Part(progress, 1.0, 1.0), output->GetFieldData());
     if (this->MaximumElevationError > 0.0)
     {
       elevation::AddSimplification(triangulation, output->GetFieldData());
     }
-    output->SetPolys(elevation::ToCellArray(std::move(triangulation.Triangles),
-      elevation::ResolveNumberOfThreads(this->NumberOfThreads)));
     elevation::Report(progress, 1.0);
     // Added last, as an abort or an error leaves no counts.
     this->NumberOfDuplicatePoints += triangulation.NumberOfDuplicates;
@@ -320,6 +342,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumElevationError: " << this->MaximumElevationError << "\n";
   os << indent << "DataDependentEdges: " << (this->DataDependentEdges ? "On" : "Off") << "\n";
   os << indent << "SimplifyConstraints: " << (this->SimplifyConstraints ? "On" : "Off") << "\n";
+  os << indent << "DrapeConstraints: " << (this->DrapeConstraints ? "On" : "Off") << "\n";
   os << indent << "DuplicatePolicy: " << this->GetDuplicatePolicyAsString() << "\n";
   os << indent << "LatticeMode: " << this->GetLatticeModeAsString() << "\n";
   os << indent << "Lattice:";

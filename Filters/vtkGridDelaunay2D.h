@@ -250,6 +250,20 @@ public:
   vtkBooleanMacro(SimplifyConstraints, bool);
   ///@}
 
+  ///@{
+  /**
+   * Whether the constraints have no elevations of their own, as the lines of a map. On, the points are
+   * triangulated without them; then each line gets a point wherever it crosses an edge, and at each
+   * point of its own, with the z and point data of the surface there. So the lines are edges,
+   * and the surface is as it was; its triangles are no longer Delaunay where they are split. Lines may
+   * cross; parts outside of the surface are left out, and so are lines of one point. Several ranks
+   * gather the block on one of them. Off (default): the points of lines have their own z.
+   */
+  vtkSetMacro(DrapeConstraints, bool);
+  vtkGetMacro(DrapeConstraints, bool);
+  vtkBooleanMacro(DrapeConstraints, bool);
+  ///@}
+
   /** Which of several points with the same x,y becomes the vertex. */
   enum DuplicatePolicyType
   {
@@ -363,6 +377,7 @@ protected:
   double MaximumElevationError = 0.0;
   bool DataDependentEdges = false;
   bool SimplifyConstraints = false;
+  bool DrapeConstraints = false;
   int DuplicatePolicy = KEEP_FIRST;
   int LatticeMode = AUTOMATIC;
   double Lattice[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

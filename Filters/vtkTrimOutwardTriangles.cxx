@@ -52,12 +52,17 @@ void PassTriangles(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles,
 }
 
 /** Outputs 0 and 1. */
-void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles, Trimmed& trimmed,
-  int requestedThreads, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
+void PassSides(vtkPolyData* input, elevation::TrianglesOfDataSet& triangles,
+  const elevation::BoundaryLines* lines, const elevation::TrimOptions& options, Trimmed& trimmed,
+  const Progress& progress, vtkPolyData* kept, vtkPolyData* outward)
 {
-  const int threads = elevation::ResolveNumberOfThreads(requestedThreads);
+  const int threads = elevation::ResolveNumberOfThreads(options.NumberOfThreads);
   const bool arePieces = !trimmed.Inserted.empty();
   elevation::PassPoints(input, trimmed, Part(progress, 0.0, 0.25), kept);
+  if (lines)
+  {
+    elevation::PassBoundary(*lines, trimmed.OnBoundary, options, kept);
+  }
   outward->SetPoints(kept->GetPoints());
   outward->GetPointData()->PassData(kept->GetPointData());
   kept->SetVerts(input->GetVerts());
@@ -117,8 +122,8 @@ vtkPolyData* vtkTrimOutwardTriangles::GetBoundary()
     : nullptr;
 }
 
-int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
-  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+int vtkTrimOutwardTriangles::RequestData(
+  vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   elevation::KernelCall call(this, request, inputVector, outputVector);
   call.Second = "boundary";
@@ -177,11 +182,11 @@ int vtkTrimOutwardTriangles::RequestData(vtkInformation* request,
       block.Warnings.push_back(trimmed.Loss);
     }
 
-    PassSides(input, triangles, trimmed, this->NumberOfThreads, Part(progress, trimmedAt, 0.98),
-      block.Outputs[0], block.Outputs[1]);
+    PassSides(input, triangles, isGiven ? &lines : nullptr, options, trimmed,
+      Part(progress, trimmedAt, 0.98), block.Outputs[0], block.Outputs[1]);
     block.Outputs[2]->GetPointData()->CopyAllOn();
-    elevation::PassRings(trimmed.Boundary, isGiven ? given : input, Part(progress, 0.98, 1.0),
-      block.Outputs[2]);
+    elevation::PassRings(
+      trimmed.Boundary, isGiven ? given : input, Part(progress, 0.98, 1.0), block.Outputs[2]);
     const elevation::TrimCounts counts(trimmed);
     elevation::AddCounts(counts, block.Outputs);
     Report(progress, 1.0);
@@ -194,11 +199,18 @@ const char* vtkTrimOutwardTriangles::GetOutwardTestAsString() const
   return this->OutwardTest == INWARD_NORMAL ? "InwardNormal" : "Exact";
 }
 
+const char* vtkTrimOutwardTriangles::GetBoundaryEdgesAsString() const
+{
+  static const char* const names[] = { "FollowSurface", "Straight", "OwnElevations" };
+  return names[this->BoundaryEdges];
+}
+
 void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "OutwardTest: " << this->GetOutwardTestAsString() << "\n";
   os << indent << "GapTolerance: " << this->GapTolerance << "\n";
+  os << indent << "BoundaryEdges: " << this->GetBoundaryEdgesAsString() << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";

@@ -30,11 +30,15 @@
  *   boundary and in the mesh. Where an edge of the boundary leaves the mesh, a point is
  *   inserted in the border, at the crossing, rounded to double precision. (An edge that follows a
  *   border so closely that rounding folds the border over is an error that names it.)
- * - An edge of the boundary that is not an edge of the mesh is recovered: the triangles that it
- *   crosses are replaced by as many others with the same corners. Their edges are
+ * - An edge of the boundary that is not an edge of the mesh is split where it crosses edges of the
+ *   mesh, at places rounded to double precision: so the surface stays as it was. (In places where
+ *   triangles are too thin for that, some units in the last place, a piece of the edge is recovered as
+ *   one.)
+ * - With BoundaryEdges STRAIGHT it is recovered as one edge instead: the triangles that it crosses are
+ *   replaced by as many others with the same corners. Their edges are
  *   constrained Delaunay on each side of the boundary's edge, and in the whole mesh if it was
  *   Delaunay and no point has been inserted. Only there does the surface change between its points.
- *   An edge that runs through points of the mesh is cut there.
+ * - An edge that runs through points of the mesh, exactly or within rounding, is cut there.
  *
  * @par Without a boundary:
  * Without input 1 the boundary is extracted from the triangulation. A triangle is surface when its
@@ -64,7 +68,10 @@
  *
  * @par Outputs:
  * - 0: the triangles inside. Vertices and lines of the input come first.
- * - 1: the triangles outside.
+ * - 1: the triangles outside. With a given boundary, both have a point array OnBoundary
+ *   (vtkUnsignedCharArray): 1 for points on its edges in the mesh, else 0. A 1 that an input has in
+ *   an array of this name and type stays. By it vtkFillElevationHoles leaves open what the boundary
+ *   has cut out.
  * - 2: the boundary used: one closed line (its last point is its first) for each ring, with the
  *   points and point data of input 1, or of input 0 when it was extracted (counter-clockwise around
  *   surface, clockwise around lakes, starting at the lowest y).
@@ -229,6 +236,41 @@ public:
   vtkBooleanMacro(RecoverBoundary, bool);
   ///@}
 
+  /** What becomes of an edge of the given boundary that is no edge of the mesh. */
+  enum BoundaryEdgesType
+  {
+    FOLLOW_SURFACE = 0, ///< it is split where it crosses edges of the mesh
+    STRAIGHT = 1,       ///< it becomes one edge, straight in z too
+    OWN_ELEVATIONS = 2  ///< the same, and the boundary's points keep the z of input 1
+  };
+
+  ///@{
+  /**
+   * What becomes of an edge of the given boundary that is no edge of the mesh: a BoundaryEdgesType, to
+   * which other numbers are clamped.
+   * - FOLLOW_SURFACE (default): the edge gets a point wherever it crosses an edge of the mesh, with
+   *   z and point data of that place. So the triangles on both sides together are the surface that was
+   *   there, cut. There are as many more points as edges are crossed.
+   * - STRAIGHT: the edge becomes one edge of the mesh (cut only at points of the mesh that it runs
+   *   through), and as few points as the boundary has are inserted. The triangles that it crosses are
+   *   replaced by as many others; so the surface changes there, most where the edge is long beside
+   *   the relief.
+   * - OWN_ELEVATIONS: as STRAIGHT, but a point of the mesh with the x,y of a point of the boundary
+   *   gets the z that it has in input 1: a surveyed shore. Of several points of the boundary with the same
+   *   x,y the first counts. Other point data stay.
+   *
+   * Not used without a boundary, with RecoverBoundary off (but OWN_ELEVATIONS gives its z then, too),
+   * and by INWARD_NORMAL, for which edges are straight: it looks at triangles of three
+   * boundary points.
+   */
+  vtkSetClampMacro(BoundaryEdges, int, FOLLOW_SURFACE, OWN_ELEVATIONS);
+  vtkGetMacro(BoundaryEdges, int);
+  void SetBoundaryEdgesToFollowSurface() { this->SetBoundaryEdges(FOLLOW_SURFACE); }
+  void SetBoundaryEdgesToStraight() { this->SetBoundaryEdges(STRAIGHT); }
+  void SetBoundaryEdgesToOwnElevations() { this->SetBoundaryEdges(OWN_ELEVATIONS); }
+  const char* GetBoundaryEdgesAsString() const;
+  ///@}
+
   ///@{
   /**
    * Threads to use, through vtkSMPTools; 0 (default): one a core, also where VTK itself runs
@@ -252,8 +294,8 @@ public:
   vtkGetMacro(NumberOfOutwardTriangles, vtkIdType);
 
   /**
-   * After Update(): the number of boundary edges that were missing in the mesh. One that leaves the
-   * mesh counts once for each part of it within.
+   * After Update(): the number of boundary edges that were missing in the mesh, whether they follow
+   * the surface or are straight. One that leaves the mesh counts once for each part of it within.
    */
   vtkGetMacro(NumberOfRecoveredEdges, vtkIdType);
 
@@ -265,7 +307,10 @@ public:
    */
   vtkGetMacro(NumberOfPointsLeftOut, vtkIdType);
 
-  /** After Update(): the number of points that were inserted, for the boundary or for crossings. */
+  /**
+   * After Update(): the number of points that were inserted: points of the boundary, and crossings of
+   * its edges with the border and, if they follow the surface, with other edges.
+   */
   vtkGetMacro(NumberOfInsertedPoints, vtkIdType);
 
   /** Also makes the outputs composite where the input is. */
@@ -283,6 +328,7 @@ protected:
   int OutwardTest = EXACT;
   double GapTolerance = 0.0;
   bool RecoverBoundary = true;
+  int BoundaryEdges = FOLLOW_SURFACE;
   int NumberOfThreads = 0;
 
   double EffectiveGapTolerance = 0.0;

@@ -8,7 +8,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .messages import counted
 from .properties import INTERPOLATIONS
 
-STATUS = {0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced"}
+STATUS = {
+    0: "filled", 1: "too large", 2: "too many edges", 3: "failed", 4: "replaced", 5: "cut out",
+}
 
 
 def holes_of(result):
@@ -24,7 +26,9 @@ def report_of_holes(outlines, bridged, fill, why_opened=None):
     fill        the filter
     why_opened  where the length from that of the filter is from
 
-    found, filled  counts of holes, and of voids that triangles bridged and that were filled
+    found, filled  counts of holes, and of voids that triangles bridged and that were filled; a hole
+                   that the boundary has cut out is found only if it is filled
+    cut_out        count of those that stay open
     bridged_left   count of voids whose triangles are left as they are
     """
     cells = outlines.GetCellData()
@@ -52,13 +56,15 @@ def report_of_holes(outlines, bridged, fill, why_opened=None):
     by_status = {}
     for hole in holes:
         by_status[hole["status"]] = by_status.get(hole["status"], 0) + 1
-    found = sum(not hole["bridged"] or hole["status"] == "replaced" for hole in holes)
+    cut_out = by_status.get("cut out", 0)
+    found = sum(not hole["bridged"] or hole["status"] == "replaced" for hole in holes) - cut_out
     return {
         "open_edge_length": fill.GetMaximumEdgeLength(),
         "open_edge_length_is": why_opened,
         "found": found,
         "filled": by_status.get("filled", 0) + by_status.get("replaced", 0),
-        "bridged_left": len(holes) - found,
+        "cut_out": cut_out,
+        "bridged_left": len(holes) - found - cut_out,
         "by_status": by_status,
         "inserted_points": sum(hole["inserted_points"] for hole in holes),
         "list": holes,
@@ -66,9 +72,10 @@ def report_of_holes(outlines, bridged, fill, why_opened=None):
 
 
 def hole_counts(result):
-    """(found, filled) of holes. A void that triangles bridge, and that stays so, is no hole."""
+    """(found, filled) of holes. A void that triangles bridge, and that stays so, is no hole; nor is
+    what the boundary has cut out and stays open."""
     status = vtk_to_numpy(result.holes.GetCellData().GetArray("Status"))
-    left = int(numpy.count_nonzero(are_bridged(result) & (status != 4)))
+    left = int(numpy.count_nonzero((are_bridged(result) & (status != 4)) | (status == 5)))
     return result.fill.GetNumberOfHoles() - left, result.fill.GetNumberOfFilledHoles()
 
 
@@ -133,13 +140,15 @@ def hole_lines(holes, line):
             f"an edge is a bridge above {holes['open_edge_length']:.4g} "
             f"({holes['open_edge_length_is']}); see --open-edge-length",
         )
+    if holes["cut_out"]:
+        line("", f"{holes['cut_out']:,} cut out by the boundary stay open; see --fill-cut-outs")
     for status in holes["by_status"]:
         for bridged, words in (
             (False, f"not filled, {status}: hole"),
             (True, f"bridged by long triangles and left as they are, {status}: void"),
         ):
             listed = [h for h in holes["list"] if (h["status"], h["bridged"]) == (status, bridged)]
-            if listed and status not in ("filled", "replaced"):
+            if listed and status not in ("filled", "replaced", "cut out"):
                 line("", f"{len(listed):,} {words} {', '.join(map(size_of, listed[:5]))}"
                      f"{', ...' if len(listed) > 5 else ''}")
 

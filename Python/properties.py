@@ -67,6 +67,7 @@ def one_of(*names):
 SEARCH_STRATEGIES = ("voxel-traversal", "compactness")
 INTERPOLATIONS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-spline")
 OUTWARD_TESTS = ("exact", "inward-normal")
+BOUNDARY_EDGES = ("follow-surface", "straight", "own-elevations")
 LATTICE_MODES = ("automatic", "off")
 COLOURS = ("elevation", "error")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
@@ -109,9 +110,11 @@ PROPERTIES = {
     "outward_test": _choice("trim", "SetOutwardTest", OUTWARD_TESTS),
     "gap_tolerance": Property("trim", "SetGapTolerance", number_at_least_zero, NUMBER),
     "recover_boundary": Property("trim", "SetRecoverBoundary", yes_or_no, YES_OR_NO),
+    "boundary_edges": _choice("trim", "SetBoundaryEdges", BOUNDARY_EDGES),
     "open_edge_length": Property("fill", "SetMaximumEdgeLength", number_at_least_zero, NUMBER),
     "maximum_hole_size": Property("fill", "SetMaximumHoleSize", number_at_least_zero, NUMBER),
     "maximum_hole_edges": Property("fill", "SetMaximumHoleEdges", count_at_least_zero, COUNT),
+    "fill_cut_outs": Property("fill", "SetFillCutOuts", yes_or_no, YES_OR_NO),
     "spacing": Property("fill", "SetSpacing", number_at_least_zero, NUMBER),
     "interpolation": _choice("fill", "SetInterpolation", INTERPOLATIONS),
     "interpolate_point_data": Property("fill", "SetInterpolatePointData", yes_or_no, YES_OR_NO),

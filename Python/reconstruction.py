@@ -283,8 +283,9 @@ def reconstruct(
     properties  of the filters, named as the options of the command line, with underscores:
               maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
               lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
-              recover_boundary, open_edge_length, maximum_hole_size, maximum_hole_edges, spacing,
-              interpolation, interpolate_point_data, threads. Lengths are in the units of x and y.
+              recover_boundary, boundary_edges, open_edge_length, maximum_hole_size,
+              maximum_hole_edges, fill_cut_outs, spacing, interpolation, interpolate_point_data,
+              threads. Lengths are in the units of x and y.
               The program's --help tells what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface

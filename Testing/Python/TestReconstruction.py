@@ -156,6 +156,8 @@ class Properties(unittest.TestCase):
             "outward_test": ("inward_normal", "trim", "GetOutwardTest", 1),
             "gap_tolerance": (6, "trim", "GetGapTolerance", 6.0),
             "recover_boundary": (False, "trim", "GetRecoverBoundary", 0),
+            "boundary_edges": ("own elevations", "trim", "GetBoundaryEdges", 2),
+            "fill_cut_outs": (True, "fill", "GetFillCutOuts", 1),
             "open_edge_length": (40, "fill", "GetMaximumEdgeLength", 40.0),
             "maximum_hole_size": (5, "fill", "GetMaximumHoleSize", 5.0),
             "maximum_hole_edges": (7, "fill", "GetMaximumHoleEdges", 7),

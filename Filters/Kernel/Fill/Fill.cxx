@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Fill.h"
 
+#include "Kernel/Base/Base.h"
 #include "Neighbours.h"
 #include "Patch.h"
-#include "Kernel/Base/Base.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,9 +75,10 @@ void CheckNumbers(bool isTouched, HoleReport& report)
   }
   else if (!IsMeasurable(report.Size) || report.Spacing < LeastLength)
   {
-    Fail(report, "Its size of " + ToText(report.Size) + " at a spacing of " +
-        ToText(report.Spacing) + " leaves the range of numbers to compute with, " +
-        ToText(LeastLength) + " to " + ToText(LargestLength) + "; scale x and y.");
+    Fail(report,
+      "Its size of " + ToText(report.Size) + " at a spacing of " + ToText(report.Spacing) +
+        " leaves the range of numbers to compute with, " + ToText(LeastLength) + " to " +
+        ToText(LargestLength) + "; scale x and y.");
   }
 }
 
@@ -167,8 +168,7 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
 class HoleFilling
 {
 public:
-  HoleFilling(
-    const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options)
+  HoleFilling(const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options)
     : Surface(mesh)
     , Points(points)
     , Given(std::move(holes))
@@ -243,10 +243,9 @@ private:
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
       this->Given.Count() > 0)
     {
-      lattice = options.KnownLattice
-        ? *options.KnownLattice
-        : FindLattice(
-            this->Points, LatticeTolerance, this->Threads, Part(options.Monitor, 0.0, 0.02));
+      lattice = options.KnownLattice ? *options.KnownLattice
+                                     : FindLattice(this->Points, LatticeTolerance, this->Threads,
+                                         Part(options.Monitor, 0.0, 0.02));
     }
     if (lattice.Found)
     {
@@ -266,8 +265,8 @@ private:
         options.Spacing, lattice.Found ? &lattice.Steps : nullptr);
       report.Spacing = plan.Spacing;
       const Point2& p = this->Surface.PointOf(*this->Given.Walks.Begin(this->Given.Rim(hole)));
-      plan.Precision = StepAt(
-        std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
+      plan.Precision =
+        StepAt(std::max(std::fabs(p.X), std::fabs(p.Y)) + report.Size, options.SinglePrecision);
       plan.SinglePrecision = options.SinglePrecision;
       if (report.Status == FillStatus::Filled)
       {
@@ -298,7 +297,8 @@ private:
         this->AllWork += this->WorkOf(hole);
         continue;
       }
-      Fail(report, "It would take up to " + ToText(points) + " new points at a spacing of " +
+      Fail(report,
+        "It would take up to " + ToText(points) + " new points at a spacing of " +
           ToText(report.Spacing) + ", but " +
           (limit < ofIds
               ? "MaximumNumberOfInsertedPoints, " + std::to_string(limit)
@@ -398,8 +398,7 @@ private:
         report.Status = this->Given.IsRegion(hole) ? FillStatus::Replaced : FillStatus::Filled;
       }
       this->Result.PointOffsets.push_back(static_cast<Index>(this->Result.Points.size() / 3));
-      this->Result.TriangleOffsets.push_back(
-        static_cast<Index>(this->Result.Triangles.size() / 3));
+      this->Result.TriangleOffsets.push_back(static_cast<Index>(this->Result.Triangles.size() / 3));
     }
   }
 
@@ -468,14 +467,12 @@ private:
 };
 } // namespace
 
-HoleReport MeasureHole(
-  const Mesh& mesh, const Holes& holes, Index hole, const FillOptions& options)
+HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const FillOptions& options)
 {
   HoleReport report;
   report.NumberOfEdges = holes.NumberOfEdges(hole);
   const auto visitEdges = [&](auto&& visit) {
-    holes.VisitEdges(
-      hole, [&](Index a, Index b) { visit(mesh.PointOf(a), mesh.PointOf(b)); });
+    holes.VisitEdges(hole, [&](Index a, Index b) { visit(mesh.PointOf(a), mesh.PointOf(b)); });
   };
   const Point2 origin = mesh.PointOf(*holes.Walks.Begin(holes.Rim(hole)));
   Point2 low = origin;
@@ -493,6 +490,13 @@ HoleReport MeasureHole(
   else if (options.MaximumHoleEdges > 0 && report.NumberOfEdges > options.MaximumHoleEdges)
   {
     report.Status = FillStatus::TooManyEdges;
+  }
+  if (!options.FillCutOuts && !options.OnBoundary.empty() && !holes.IsRegion(hole))
+  {
+    holes.VisitEdges(hole, [&](Index a, Index b) {
+      const bool isCut = options.OnBoundary[a] != 0 && options.OnBoundary[b] != 0;
+      report.Status = isCut ? FillStatus::CutOut : report.Status;
+    });
   }
   if (!IsMeasurable(report.Size))
   {

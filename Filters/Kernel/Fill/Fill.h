@@ -44,8 +44,9 @@ enum class FillStatus : unsigned char
   Filled = 0,
   TooLarge = 1,
   TooManyEdges = 2,
-  Failed = 3,  ///< the report's Reason says why
-  Replaced = 4 ///< filled: a region of long triangles (LongTriangles.h), which the patch replaces
+  Failed = 3,   ///< the report's Reason says why
+  Replaced = 4, ///< filled: a region of long triangles (LongTriangles.h), which the patch replaces
+  CutOut = 5    ///< not filled: the boundary that the surface was trimmed along has cut it out
 };
 
 struct FillOptions
@@ -64,6 +65,12 @@ struct FillOptions
   Interpolation Method = Interpolation::Adaptive;
   /** Further values of the surface's points, interpolated in the same way as elevations. */
   std::vector<Values> Attributes;
+  /**
+   * One a point of the surface: whether it is on a boundary that the surface was trimmed along. A
+   * hole with an edge between two such points has been cut out. Empty: none is on a boundary.
+   */
+  std::vector<char> OnBoundary;
+  bool FillCutOuts = false; ///< whether holes that have been cut out are filled
   /** For all holes together. A hole that may need more than smaller ones leave fails. */
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
   /** Whether new points are lattice nodes where the surface's points are. */
@@ -92,7 +99,7 @@ struct HoleReport
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   bool IsBeyondKnown = false; ///< not filled, as triangles were needed outside of Known
-  std::string Reason; ///< if Failed: a sentence without the hole's name
+  std::string Reason;         ///< if Failed: a sentence without the hole's name
 };
 
 /**

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Recovery.h"
 
-#include "Segments.h"
 #include "Kernel/Base/Base.h"
+#include "Segments.h"
 
 #include <algorithm>
 #include <string>
@@ -216,15 +216,7 @@ private:
     const Mesh& mesh = this->Surface;
     const Point2& a = mesh.PointOf(from);
     const Point2& b = mesh.PointOf(segment.B);
-    Index crossed = None;
-    this->Stars.VisitToward(mesh, from, segment.B, [&](Index h) {
-      if (Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
-        Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive)
-      {
-        crossed = Mesh::Next(h);
-      }
-      return crossed == None;
-    });
+    Index crossed = FirstCrossed(mesh, this->Stars, from, segment.B);
     if (crossed == None)
     {
       this->ThrowLeaves(from, segment);
@@ -243,8 +235,7 @@ private:
       if (this->Constrained[crossed])
       {
         throw Error(NameOfSegment(mesh, segment) + " crosses the fixed edge from " +
-          NameOf(mesh, mesh.Origin(crossed)) + " to " +
-          NameOf(mesh, mesh.Destination(crossed)) +
+          NameOf(mesh, mesh.Origin(crossed)) + " to " + NameOf(mesh, mesh.Destination(crossed)) +
           ". Segments may not cross; they may meet in a vertex.");
       }
       const Index beyond = mesh.Twin(crossed);
@@ -433,6 +424,21 @@ SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to
     return step.HalfEdge == None;
   });
   return step;
+}
+
+Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to)
+{
+  const Point2 &a = mesh.PointOf(from), &b = mesh.PointOf(to);
+  Index crossed = None;
+  stars.VisitToward(mesh, from, to, [&](Index h) {
+    if (Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
+      Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive)
+    {
+      crossed = Mesh::Next(h);
+    }
+    return crossed == None;
+  });
+  return crossed;
 }
 
 Index RecoverSegments(Mesh& mesh, const std::vector<Segment>& segments,

@@ -58,6 +58,12 @@ struct SegmentStep
 SegmentStep StepAlong(const Mesh& mesh, VertexStars& stars, Index from, Index to);
 
 /**
+ * The edge that the segment between two vertices crosses first, as the half-edge from its right to
+ * its left; None where the segment does not begin in a triangle. Exact. Cost: as of StepAlong().
+ */
+Index FirstCrossed(const Mesh& mesh, VertexStars& stars, Index from, Index to);
+
+/**
  * Makes every segment an edge of the mesh, or a chain of edges where it runs exactly through other
  * vertices.
  * @param[in,out] mesh         with Twins; the number of triangles does not change

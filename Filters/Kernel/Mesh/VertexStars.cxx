@@ -39,6 +39,22 @@ VertexStars::VertexStars(const Mesh& mesh, const Progress& progress)
   }
 }
 
+void VertexStars::ReplaceCut(const Mesh& mesh, Index after, Index before)
+{
+  this->First.resize(mesh.Points.size(), None);
+  this->OnBorder.resize(mesh.Points.size(), 0);
+  this->Replace(mesh, after);
+  const Index moved = Mesh::Next(after);
+  if (mesh.IsBorder(moved))
+  {
+    this->ReplaceBorder(mesh.Origin(moved), before, moved);
+  }
+  else
+  {
+    this->Replace(mesh, moved);
+  }
+}
+
 void VertexStars::ReplaceBorder(Index vertex, Index before, Index after)
 {
   if (this->First[vertex] == before)

@@ -98,6 +98,13 @@ public:
     }
   }
 
+  /**
+   * Keeps up with an edge that was cut at a new vertex.
+   * @param[in] after   the half-edge from the new vertex to the old destination of a half-edge
+   * @param[in] before  the next one of that half-edge, whose place has changed
+   */
+  void ReplaceCut(const Mesh& mesh, Index after, Index before);
+
   /** Changes the id of a border that leaves the vertex from @a before to @a after. */
   void ReplaceBorder(Index vertex, Index before, Index after);
 

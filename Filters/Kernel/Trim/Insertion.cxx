@@ -3,8 +3,9 @@
 #include "Insertion.h"
 
 #include "Crossings.h"
-#include "Rings.h"
+#include "FollowSurface.h"
 #include "Kernel/Base/Base.h"
+#include "Rings.h"
 
 #include <algorithm>
 #include <array>
@@ -23,11 +24,12 @@ class Insertion
 {
 public:
   Insertion(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
-    InsertedRings& result)
+    Following follow, InsertedRings& result)
     : Surface(mesh)
     , Points(points)
     , Given(rings)
     , MayInsert(insert)
+    , Follow(insert ? follow : Following::None)
     , Result(result)
     , Cutter(mesh, result.Inserted, result.Parents)
   {
@@ -35,7 +37,10 @@ public:
 
   void Run(const Progress& progress)
   {
-    CheckCrossings(this->Points, this->Given, Part(progress, 0.0, 0.1));
+    if (this->Follow != Following::Lines)
+    {
+      CheckCrossings(this->Points, this->Given, Part(progress, 0.0, 0.1));
+    }
     this->MatchCorners(Part(progress, 0.1, 0.5));
     this->LocateOthers(Part(progress, 0.5, 0.75));
     this->InsertLocated(Part(progress, 0.75, 0.8));
@@ -43,7 +48,8 @@ public:
     // An edge or a border that is cut at a rounded place moves slightly: all are tested again. As
     // the move rarely causes a crossing, one more round is usually enough.
     constexpr int mostRounds = 100;
-    bool isCut = this->CutAtBorder(Part(progress, 0.8, 1.0));
+    const double end = this->Follow != Following::None ? 0.9 : 1.0;
+    bool isCut = this->CutAtBorder(Part(progress, 0.8, end));
     for (int round = 1; isCut; ++round)
     {
       if (round == mostRounds)
@@ -52,8 +58,12 @@ public:
           " runs so near the border of the mesh that rounding does not let it be cut there. Let it "
           "pass through points of the mesh.");
       }
-      const Progress again = Part(progress, 1.0, 1.0);
+      const Progress again = Part(progress, end, end);
       isCut = this->CutAtEachOther(again) || this->CutAtBorder(again);
+    }
+    if (this->Follow != Following::None)
+    {
+      this->FollowSurface(Part(progress, 0.9, 1.0));
     }
     this->FinishRings();
   }
@@ -114,7 +124,9 @@ private:
     {
       ++bits;
     }
-    const auto bitOf = [=](const Point2& p) { return static_cast<Index>(HashOfPoint()(p) >> (64 - bits)); };
+    const auto bitOf = [=](const Point2& p) {
+      return static_cast<Index>(HashOfPoint()(p) >> (64 - bits));
+    };
     IdSet sieve(Index(1) << bits);
     for (const auto& entry : this->VertexAt)
     {
@@ -510,8 +522,8 @@ private:
             return;
           }
           const Point2 place = RoundedCrossing(segment[0], segment[1], edge[0], edge[1]);
-          crossings.push_back({ k, place, i,
-            IsBefore(segment[0], segment[1], mesh.PointOf(mesh.Apex(h)), place) });
+          crossings.push_back(
+            { k, place, i, IsBefore(segment[0], segment[1], mesh.PointOf(mesh.Apex(h)), place) });
         }
         else if (IsInside(edge, segment[0]))
         {
@@ -534,8 +546,8 @@ private:
     this->Reserve(crossings.size());
     // Along each border edge from both ends towards the foot of the apex. The part that is cut next
     // is then at the foot, where a place can move outwards however thin the triangle is.
-    std::sort(crossings.begin(), crossings.end(),
-      [&](const BorderCrossing& a, const BorderCrossing& b) {
+    std::sort(
+      crossings.begin(), crossings.end(), [&](const BorderCrossing& a, const BorderCrossing& b) {
         const Ends& ends = border.Segments[a.Border];
         return a.Border != b.Border  ? a.Border < b.Border
           : a.IsBeyond != b.IsBeyond ? b.IsBeyond
@@ -590,7 +602,8 @@ private:
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
       VisitEndsInReach(pieces[j], pieces[i], units, Reach, [&](int end) {
-        const Index at = end == 0 ? static_cast<Index>(j) : this->Result.Vertices.After(static_cast<Index>(j));
+        const Index at =
+          end == 0 ? static_cast<Index>(j) : this->Result.Vertices.After(static_cast<Index>(j));
         this->Stops.push_back({ i, this->Pieces[at].Vertex, true, true });
       });
     };
@@ -606,8 +619,7 @@ private:
   void AddStop(std::size_t piece, const Ends& ends, Index h, Index vertex)
   {
     h = this->Surface.Origin(h) == vertex ? h : Mesh::Next(h);
-    this->Stops.push_back(
-      { piece, vertex, this->IsInFan(h, ends[0]), this->IsInFan(h, ends[1]) });
+    this->Stops.push_back({ piece, vertex, this->IsInFan(h, ends[0]), this->IsInFan(h, ends[1]) });
   }
 
   /** Whether the segment from the origin of h to a point begins in a triangle at the origin. */
@@ -753,6 +765,70 @@ private:
     this->Result.Vertices.Offsets = std::move(offsets);
   }
 
+  /** Splits the pieces within the mesh where they cross its edges. */
+  void FollowSurface(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    const auto segmentOf = [&](Index i) {
+      const Index a = this->Pieces[i].Vertex;
+      const Index b = this->Pieces[this->Result.Vertices.After(i)].Vertex;
+      return IsLower(this->PlaceOf(b), this->PlaceOf(a)) ? Segment{ b, a } : Segment{ a, b };
+    };
+    const auto isBefore = [&](const FollowedSegment& s, const FollowedSegment& t) {
+      return IsLower(mesh, s.Ends, t.Ends) ||
+        (!IsLower(mesh, t.Ends, s.Ends) &&
+          std::tie(s.Ends.A, s.Ends.B) < std::tie(t.Ends.A, t.Ends.B));
+    };
+    const Index count = static_cast<Index>(this->Pieces.size());
+    std::vector<FollowedSegment> segments;
+    for (Index i = 0; i < count; ++i)
+    {
+      const Segment segment = segmentOf(i);
+      if (segment.A >= 0 && segment.B >= 0)
+      {
+        segments.push_back({ segment });
+      }
+    }
+    Sort(segments.begin(), segments.end(), isBefore, Part(progress, 0.0, 0.1));
+    segments.erase(std::unique(segments.begin(), segments.end(),
+                     [](const FollowedSegment& s, const FollowedSegment& t) {
+                       return s.Ends.A == t.Ends.A && s.Ends.B == t.Ends.B;
+                     }),
+      segments.end());
+    elevation::FollowSurface(this->Surface, this->Cutter, segments, Part(progress, 0.1, 0.95));
+    std::vector<Piece> followed;
+    std::vector<Index> offsets{ 0 };
+    for (Index i = 0; i < count; ++i)
+    {
+      const Piece& piece = this->Pieces[i];
+      followed.push_back(piece);
+      const Segment segment = segmentOf(i);
+      if (segment.A >= 0 && segment.B >= 0)
+      {
+        const std::vector<Index>& between =
+          std::lower_bound(segments.begin(), segments.end(), FollowedSegment{ segment }, isBefore)
+            ->Between;
+        const auto add = [&](Index vertex) { followed.push_back({ vertex, piece.Edge }); };
+        if (segment.A == piece.Vertex)
+        {
+          std::for_each(between.begin(), between.end(), add);
+        }
+        else
+        {
+          std::for_each(between.rbegin(), between.rend(), add);
+        }
+      }
+      if (i + 1 == this->Result.Vertices.Offsets[offsets.size()])
+      {
+        offsets.push_back(static_cast<Index>(followed.size()));
+      }
+    }
+    this->Pieces = std::move(followed);
+    this->Result.Vertices.Offsets = std::move(offsets);
+    this->Result.NumberOfFollowedEdges = static_cast<Index>(std::count_if(segments.begin(),
+      segments.end(), [](const FollowedSegment& segment) { return segment.IsMissing; }));
+  }
+
   [[noreturn]] void RefuseDoubleBorder(std::size_t edge, const Point2& p) const
   {
     throw Error("The boundary's edge " + this->NameOfEdge(edge) + " passes " + NameOf(p) +
@@ -783,6 +859,7 @@ private:
   const NamedPoints& Points;
   const Rings& Given;
   const bool MayInsert;
+  const Following Follow;
   InsertedRings& Result;
   MeshCutter Cutter;
   std::unordered_map<Point2, Index, HashOfPoint> VertexAt;
@@ -798,10 +875,10 @@ private:
 } // namespace
 
 InsertedRings InsertRings(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
-  const Progress& progress)
+  const Progress& progress, Following follow)
 {
   InsertedRings result;
-  Insertion(mesh, points, rings, insert, result).Run(progress);
+  Insertion(mesh, points, rings, insert, follow, result).Run(progress);
   return result;
 }
 

@@ -19,6 +19,7 @@
  *      repeated until no edge crosses. Then each edge of the new rings lies inside or outside the
  *      mesh except for its ends. Where borders coincide, the ring steps from a vertex of one to the
  *      vertex of the other at the same place.
+ *   5. If asked for, edges of the rings within the mesh are split where they cross its edges.
  *
  * Guarantees: exact, with two exceptions: crossings are rounded to doubles, and moved by some units
  * in the last place where a triangle is too thin to be cut there; what lies within four such units
@@ -32,19 +33,28 @@
 #ifndef elevation_Trim_Insertion_h
 #define elevation_Trim_Insertion_h
 
-#include "MeshCutter.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "MeshCutter.h"
 
 #include <vector>
 
 namespace elevation
 {
 
+/** Whether edges of the rings within the mesh are split where they cross its edges. */
+enum class Following
+{
+  None,
+  Rings, ///< they are split
+  Lines  ///< the same, and the rings, lines there and back, may cross themselves and each other
+};
+
 struct InsertedRings
 {
   Rings Vertices;                       ///< of the mesh
   std::vector<InsertedVertex> Inserted; ///< one per new vertex
   std::vector<Index> Parents;           ///< one per new triangle: the input triangle it is part of
+  Index NumberOfFollowedEdges = 0;      ///< edges of the rings that were missing and now follow
 };
 
 /**
@@ -54,13 +64,14 @@ struct InsertedRings
  * @param[in]     points  finite
  * @param[in]     rings   ids of the points, at least three per ring
  * @param[in]     insert  off: the mesh stays as it is; an Error if something would be inserted
+ * @param[in]     follow  only with insert; see FollowSurface.h
  * @throws Error naming the points: rings, or parts of one, that cross; a ring's point where two
  *         corners of the mesh lie; a ring along coincident borders; a crossing with a triangle too
  *         thin to be cut there; with insert off, a point or a crossing that the mesh does not have.
  *         Aborted; std::bad_alloc.
  */
 InsertedRings InsertRings(Mesh& mesh, const NamedPoints& points, const Rings& rings, bool insert,
-  const Progress& progress = Progress());
+  const Progress& progress = Progress(), Following follow = Following::None);
 
 } // namespace elevation
 

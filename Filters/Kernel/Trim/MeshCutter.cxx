@@ -44,9 +44,14 @@ bool MeshCutter::Holds(Index t, const Point2& p) const
 
 bool MeshCutter::CanCut(Index h, const Point2& place) const
 {
-  const Point2& apex = this->Surface.PointOf(this->Surface.Apex(h));
-  return Orientation(this->Surface.PointOf(this->Surface.Origin(h)), place, apex) == Positive &&
-    Orientation(place, this->Surface.PointOf(this->Surface.Destination(h)), apex) == Positive;
+  const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
+  const Point2& to = this->Surface.PointOf(this->Surface.Destination(h));
+  const auto isProper = [&](Index half, const Point2& a, const Point2& b) {
+    const Point2& apex = this->Surface.PointOf(this->Surface.Apex(half));
+    return Orientation(a, place, apex) == Positive && Orientation(place, b, apex) == Positive;
+  };
+  return isProper(h, from, to) &&
+    (this->Surface.IsBorder(h) || isProper(this->Surface.Twin(h), to, from));
 }
 
 bool MeshCutter::MoveToCut(Index h, Point2& place) const
@@ -172,8 +177,7 @@ Index MeshCutter::AddVertex(const Point2& p, const InsertedVertex& inserted)
 Index MeshCutter::AddPart(Index t)
 {
   Mesh& mesh = this->Surface;
-  this->Parents.push_back(
-    t < this->TrianglesBefore ? t : this->Parents[t - this->TrianglesBefore]);
+  this->Parents.push_back(t < this->TrianglesBefore ? t : this->Parents[t - this->TrianglesBefore]);
   mesh.Triangles.resize(mesh.Triangles.size() + 3, None);
   mesh.Twins.resize(mesh.Twins.size() + 3, Mesh::Border);
   return mesh.NumberOfHalfEdges() - 3;

@@ -73,12 +73,13 @@ public:
   /** Cuts the triangles of an edge. @return the half-edge from v to the old destination of h */
   Index CutEdge(Index h, Index v);
 
-  /** Whether cutting the edge of h at the place splits the triangle of h into two proper ones. */
+  /** Whether cutting the edge of h at the place splits each triangle of it into two proper ones. */
   bool CanCut(Index h, const Point2& place) const;
 
   /**
-   * Moves a place on a border edge, within rounding, so that the triangle of h can be cut there: a
-   * rounded place may lie beyond a thin triangle. At the foot of the apex there is room outwards.
+   * Moves a place on an edge, within rounding, so that its triangles can be cut there: a rounded
+   * place may lie beyond a thin triangle. On the border, there is room outwards at the foot of the
+   * apex.
    * @return whether such a place was found
    */
   bool MoveToCut(Index h, Point2& place) const;

@@ -2,34 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutwardTriangles.h"
 
+#include "FollowSurface.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "Rings.h"
-
 
 namespace elevation
 {
 
 namespace
 {
-
-/** Whether the segment from a vertex to another begins in a triangle or along an edge. */
-bool BeginsInside(const Mesh& mesh, VertexStars& stars, Index from, Index to)
-{
-  if (StepAlong(mesh, stars, from, to).HalfEdge != None)
-  {
-    return true;
-  }
-  bool isInside = false;
-  const Point2& a = mesh.PointOf(from);
-  const Point2& b = mesh.PointOf(to);
-  stars.VisitToward(mesh, from, to, [&](Index h) {
-    isInside = Orientation(a, b, mesh.PointOf(mesh.Destination(h))) == Negative &&
-      Orientation(a, b, mesh.PointOf(mesh.Apex(h))) == Positive;
-    return !isInside;
-  });
-  return isInside;
-}
 
 /**
  * The edges of rings inside the mesh, in an order that depends on their positions alone: where the
@@ -47,11 +29,7 @@ std::vector<Segment> SegmentsOf(
     const bool isInside = BeginsInside(mesh, stars, segment.A, segment.B);
     if (isInside != BeginsInside(mesh, stars, segment.B, segment.A))
     {
-      throw Error("The boundary's edge from " + NameOf(mesh, segment.A) + " to " +
-        NameOf(mesh, segment.B) +
-        " leaves the mesh on its way, where it crosses a hole or the outside. Let the boundary "
-        "pass through points of the mesh there; or merge points of the mesh, as "
-        "vtkStaticCleanPolyData does, if borders of it lie on each other there.");
+      RefuseLeaving(mesh, segment);
     }
     if (isInside)
     {
@@ -61,11 +39,7 @@ std::vector<Segment> SegmentsOf(
   }
   Sort(
     segments.begin(), segments.end(),
-    [&mesh](const Segment& s, const Segment& t) {
-      const Point2& a = mesh.PointOf(s.A);
-      const Point2& b = mesh.PointOf(t.A);
-      return IsLower(a, b) || (a == b && IsLower(mesh.PointOf(s.B), mesh.PointOf(t.B)));
-    },
+    [&mesh](const Segment& s, const Segment& t) { return IsLower(mesh, s, t); },
     Part(progress, 0.5, 1.0));
   return segments;
 }

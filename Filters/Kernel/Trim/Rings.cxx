@@ -230,6 +230,7 @@ void TakePoints(const PointView& points, BoundaryLines& lines)
   for (const Index id : lines.Points.Ids)
   {
     lines.Points.Places.push_back(points.At(id));
+    lines.Elevations.push_back(points.Elevation(id));
   }
   for (Index& vertex : lines.Lines.Vertices)
   {

@@ -46,6 +46,7 @@ private:
 struct BoundaryLines
 {
   NamedPoints Points;
+  std::vector<double> Elevations; ///< of the points; none unless TakePoints() took them
   Rings Lines;                 ///< numbers of Points; a line is closed if it ends where it starts
   std::vector<char> IsPolygon; ///< one per line; a polygon is closed
   std::vector<Index> Cells;    ///< one per line; the number that messages use

@@ -128,11 +128,53 @@ void CheckEnclosed(const TriangleList& list, const std::vector<char>& isOutward,
           ": are both in the same coordinates?"));
 }
 
+/** The ids of the ends of marked half-edges; increasing. */
+std::vector<Index> VerticesOf(const Mesh& mesh, const std::vector<char>& isMarked)
+{
+  std::vector<Index> ids;
+  for (const Index h : Counted(mesh.NumberOfHalfEdges()))
+  {
+    if (isMarked[h])
+    {
+      ids.push_back(mesh.IdOf(mesh.Origin(h)));
+      ids.push_back(mesh.IdOf(mesh.Destination(h)));
+    }
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+/** Lines as rings that go there and back; without lines of no length. */
+Rings ThereAndBack(const BoundaryLines& lines)
+{
+  Rings rings;
+  for (Index line = 0; line < lines.Lines.Count(); ++line)
+  {
+    std::vector<Index> vertices(lines.Lines.Begin(line), lines.Lines.End(line));
+    if (lines.IsPolygon[line])
+    {
+      vertices.push_back(vertices.front());
+    }
+    const auto isSamePlace = [&](Index a, Index b) { return lines.Points[a] == lines.Points[b]; };
+    vertices.erase(std::unique(vertices.begin(), vertices.end(), isSamePlace), vertices.end());
+    if (vertices.size() > 1)
+    {
+      rings.Vertices.insert(rings.Vertices.end(), vertices.begin(), vertices.end());
+      rings.Vertices.insert(rings.Vertices.end(), vertices.rbegin() + 1, vertices.rend() - 1);
+      rings.Offsets.push_back(static_cast<Index>(rings.Vertices.size()));
+    }
+  }
+  return rings;
+}
+
+/** @param[in] lines  a boundary, or with Following::Lines lines along which triangles are split */
 void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimOptions& options,
-  const Progress& progress, Changes& changes, Trimmed& result)
+  Following follow, const Progress& progress, Changes& changes, Trimmed& result)
 {
   const int threads = options.NumberOfThreads;
-  result.Boundary = JoinLines(lines);
+  const bool areLines = follow == Following::Lines;
+  result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines);
   NearTriangles near;
   if (options.AreNear)
   {
@@ -152,13 +194,21 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   const Progress making = Part(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
   const Index before = mesh.NumberOfPoints();
-  InsertedRings rings = InsertRings(
-    mesh, lines.Points, result.Boundary, options.RecoverBoundary, Part(progress, 0.5, 0.75));
+  InsertedRings rings = InsertRings(mesh, lines.Points, result.Boundary, options.RecoverBoundary,
+    Part(progress, 0.5, 0.75), follow);
   OutwardTriangles outward =
     FindOutward(mesh, rings.Vertices, options.RecoverBoundary, Part(progress, 0.75, 0.95));
-  result.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
+  // An edge that follows the surface is counted once, also where a part of it had to be recovered.
+  result.NumberOfRecoveredEdges =
+    follow != Following::None ? rings.NumberOfFollowedEdges : outward.NumberOfRecoveredEdges;
   result.Places.assign(
     mesh.Points.begin() + before, mesh.Points.begin() + before + rings.Inserted.size());
+  if (areLines)
+  {
+    std::fill(outward.IsOutward.begin(), outward.IsOutward.end(), char(0));
+    std::fill(changes.IsOutward.begin(), changes.IsOutward.end(), char(0));
+  }
+  result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary);
   if (options.Test == OutwardTest::InwardNormal)
   {
     CheckEnclosed(list, outward.IsOutward, lines.Points, result.Boundary);
@@ -372,11 +422,29 @@ Trimmed Trim(
   const Progress finding = Part(options.Monitor, 0.0, 0.95);
   if (boundary)
   {
-    TrimAlong(triangles, *boundary, options, finding, changes, result);
+    const bool isToFollow = options.Test == OutwardTest::Exact && options.RecoverBoundary &&
+      options.Edges == BoundaryEdges::FollowSurface;
+    TrimAlong(triangles, *boundary, options, isToFollow ? Following::Rings : Following::None,
+      finding, changes, result);
   }
   else
   {
     TrimExtracted(triangles, options, finding, changes, result);
+  }
+  WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
+  Report(options.Monitor, 1.0);
+  return result;
+}
+
+Trimmed SplitAlong(
+  const TriangleList& triangles, const BoundaryLines& lines, const TrimOptions& options)
+{
+  Trimmed result;
+  Changes changes;
+  if (triangles.Count > 0)
+  {
+    TrimAlong(triangles, lines, options, Following::Lines, Part(options.Monitor, 0.0, 0.95),
+      changes, result);
   }
   WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
   Report(options.Monitor, 1.0);

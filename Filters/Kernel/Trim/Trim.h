@@ -41,11 +41,21 @@ enum class OutwardTest
   InwardNormal ///< the published test; see ApplyInwardNormalTest()
 };
 
+/** What becomes of an edge of the boundary that is no edge of the mesh. */
+enum class BoundaryEdges
+{
+  FollowSurface, ///< it is split where it crosses edges of the mesh, so that the surface stays as it is
+  Straight,      ///< it becomes one edge; the triangles that it crosses are replaced
+  OwnElevations ///< the same; the caller gives the boundary's points the elevations of the lines
+};
+
 struct TrimOptions
 {
   OutwardTest Test = OutwardTest::Exact;
   /** Insert missing points and recover missing edges; off: one that is missing is an Error. */
   bool RecoverBoundary = true;
+  /** With InwardNormal, which looks at triangles of three boundary points, they are Straight. */
+  BoundaryEdges Edges = BoundaryEdges::FollowSurface;
   /**
    * Whether the triangles are those of a mesh that SweepAlongRings() has found near the boundary,
    * which is given, of all its parts; all are proven, and the boundary may enclose none of these.
@@ -74,6 +84,8 @@ struct Trimmed
   TrimmedSide Kept, Outward;
   std::vector<InsertedVertex> Inserted; ///< one per inserted point
   std::vector<Point2> Places;           ///< of the inserted points
+  /** With lines: the points on their edges in the mesh, as in Corners; increasing. */
+  std::vector<Index> OnBoundary;
   /** Ids of the lines' points, or, if extracted, of the input's. None if nothing is surface. */
   Rings Boundary;
   double GapTolerance = 0.0; ///< as used; 0 with lines
@@ -94,6 +106,16 @@ struct Trimmed
  */
 Trimmed Trim(
   const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options);
+
+/**
+ * Splits triangles where lines cross their edges, so that the lines are edges and the surface is as
+ * it was. All triangles are kept. Lines may cross, be open, and leave the mesh; those of one point
+ * do nothing.
+ * @throws Error naming the cell or point: triangles that are not a mesh or cover a place twice;
+ *         what InsertRings() refuses. Aborted; std::bad_alloc.
+ */
+Trimmed SplitAlong(
+  const TriangleList& triangles, const BoundaryLines& lines, const TrimOptions& options);
 
 /**
  * Trim() along the extracted outline of a mesh, for the triangles that FindPartOfOutline() has taken

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Splits edges of rings where they cross edges of a mesh, so that the rings follow the surface.
+ *
+ * In: a mesh with Twins, and segments between its vertices. Out: the mesh with more vertices, and
+ * each segment as a chain of them. Each segment is walked from its lower end:
+ *   - An edge that is crossed is cut there, at the crossing rounded to doubles. Both triangles of
+ *     it become two.
+ *   - The chain goes through a vertex that the segment runs through or passes within rounding
+ *     (SnapRounding.h), such as one where another segment has been cut.
+ *   - Edges whose triangles are too thin to be cut are left: there the chain lacks an edge, which is
+ *     to be recovered (Recovery.h).
+ *
+ * Guarantees: no edge is flipped, so that interpolated elevations give the same surface as before.
+ * A chain leaves its segment by rounding alone. The result does not depend on the order and
+ * direction of the segments.
+ * Cost: log n for each of n segments, plus the edges that they cross.
+ */
+#ifndef elevation_Trim_FollowSurface_h
+#define elevation_Trim_FollowSurface_h
+
+#include "Kernel/Mesh/Mesh.h"
+#include "MeshCutter.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+struct FollowedSegment
+{
+  Segment Ends;               ///< vertices
+  std::vector<Index> Between; ///< the vertices of the chain between the ends, from A to B
+  bool IsMissing = false;     ///< whether the segment was no chain of edges
+};
+
+/**
+ * @param[in,out] mesh      with Twins
+ * @param[in,out] cutter    of the mesh
+ * @param[in,out] segments  sorted, each once, the lower end first; one that begins outside of the mesh
+ *                          stays as it is
+ * @throws Error naming the two points of a segment that leaves the mesh on its way; one where the
+ *         mesh would exceed the limit of points. Aborted; std::bad_alloc.
+ */
+void FollowSurface(
+  Mesh& mesh, MeshCutter& cutter, std::vector<FollowedSegment>& segments, const Progress& progress);
+
+/** Whether the segment from a vertex to another begins in a triangle or along an edge. */
+bool BeginsInside(const Mesh& mesh, VertexStars& stars, Index from, Index to);
+
+/** The order of segments by the places of their ends, each with its lower end first. */
+bool IsLower(const Mesh& mesh, const Segment& s, const Segment& t);
+
+[[noreturn]] void RefuseLeaving(const Mesh& mesh, const Segment& segment);
+
+} // namespace elevation
+
+#endif
