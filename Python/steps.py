@@ -125,10 +125,12 @@ def triangulate(run, lines, error):
         agreed(ranks, lambda: refuse(points, limit, result.notes))
 
 
-def trim_along(run, boundary):
-    """The second step, along a boundary, or None."""
+def trim_along(run, boundary, edges=None):
+    """The second step, along a boundary, or None; edges: what becomes of its edges, unless given."""
     result = run.result
     trim = run.made("trim", vtkTrimOutwardTriangles())
+    if edges is not None and "boundary_edges" not in run.given:
+        trim.SetBoundaryEdges(edges)
     trim.SetInputData(0, result.delaunay.GetOutput())
     if boundary is not None:
         trim.SetBoundaryData(boundary)
@@ -146,7 +148,8 @@ def trim_few(run, boundary, faults):
     """The first two steps for few points, within an elevation error: the outline is that of all."""
     result, error = run.result, run.given["maximum_elevation_error"]
     triangulate(run, faults, 0.0)
-    trim_along(run, boundary)
+    # Edges that follow the surface would have many points, each of which becomes a vertex.
+    trim_along(run, boundary, vtkTrimOutwardTriangles.STRAIGHT)
     result.outlined, lattice = (result.delaunay, result.trim), result.lattice
     lines = [] if faults is None else [faults]
     if boundary is not None:

@@ -41,6 +41,7 @@ the same, constraints simplified  | MaximumElevationError=0.03, SimplifyConstrai
 constraints                       |                            | breaklines                   | s  s  s  s  r  r  r
 constraints that one rank has     |                            | breaklines + on one          | s  s  s  s  r  r  r
 constraints, values of points     |                            | breaklines + strings + integers | s  s  s  s  r  r  r
+constraints draped                | DrapeConstraints=True      | breaklines                   | s  s  G  G  r  r  r
 duplicates, keep the first        | DuplicatePolicy=0          | duplicates                   | s  s  s  s  s  s  a
 duplicates, keep the last         | DuplicatePolicy=1          | duplicates                   | s  s  s  s  s  s  a
 duplicates, keep the lowest       | DuplicatePolicy=2          | duplicates                   | s  s  s  s  s  s  a
@@ -70,6 +71,9 @@ test exact                        | OutwardTest=0              | coast          
 test by inward normals            | OutwardTest=1              | coast                        | s  s  G  G  r  r  r
 edges not recovered, they are there     | RecoverBoundary=False      | coast along edges            | s  s  s  s  s  s  a
 edges not recovered, they are missing   | RecoverBoundary=False      | coast                        | s  s  s  s  s  s  a
+edges follow the surface, also of a lattice | BoundaryEdges=0        | lattice and lakes            | s  s  s  s  s  s  a
+edges straight                    | BoundaryEdges=1            | coast                        | s  s  s  s  s  s  a
+edges straight, own elevations    | BoundaryEdges=2            | coast                        | s  s  s  s  s  s  a
 boundary found                    |                            | gaps                         | s  s  s  s  -  -  -
 boundary found along tracks       |                            | tracks                       | s  s  s  s  -  -  -
 boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  G  G  -  -  -
@@ -98,6 +102,7 @@ on the nodes of a lattice         |                            | lattice and lak
 long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  G  G  r  r  r
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  a
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  a
+what the boundary cut out stays open | FillCutOuts=False        | coast and lakes              | s  s  s  s  s  s  a
 most points inserted              | MaximumNumberOfInsertedPoints=20 | coast and lakes              | s  s  s  s  s  s  a
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  a
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  a

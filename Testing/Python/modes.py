@@ -368,7 +368,12 @@ def part_of(case, part, parts):
 
 
 def set_properties(row, of):
-    """of(name) -> the filter. A property is of the row's filter, or Filter.Property."""
+    """of(name) -> the filter. A property is of the row's filter, or Filter.Property.
+
+    What is filled are holes that a boundary has cut out, unless the row says otherwise.
+    """
+    if row.filter == "Fill":
+        of("Fill").SetFillCutOuts(True)
     for name, value in row.properties.items():
         name = name if "." in name else row.filter + "." + name
         step, name = name.split(".")
