@@ -4,7 +4,10 @@
 
 #include "Kernel/Base/Base.h"
 
+#include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 
 namespace elevation
 {
@@ -51,7 +54,33 @@ public:
     }
   }
 
+  /** Adds the vertices at which segments that came later have cut the edges of a chain. */
+  void AddLaterCuts(FollowedSegment& segment) const
+  {
+    std::vector<Index> ahead(1, segment.Ends.B);
+    ahead.insert(ahead.end(), segment.Between.rbegin(), segment.Between.rend());
+    segment.Between.clear();
+    Index at = segment.Ends.A;
+    while (!ahead.empty())
+    {
+      const auto cut = this->CutAt.find(EdgeOf(at, ahead.back()));
+      if (cut != this->CutAt.end())
+      {
+        ahead.push_back(cut->second);
+        continue;
+      }
+      at = ahead.back();
+      ahead.pop_back();
+      if (!ahead.empty())
+      {
+        segment.Between.push_back(at);
+      }
+    }
+  }
+
 private:
+  static std::pair<Index, Index> EdgeOf(Index a, Index b) { return std::minmax(a, b); }
+
   /**
    * Goes from a vertex across an edge: to a new vertex on it, or to an end of it in reach. Where the
    * triangles of the edge are too thin to be cut, goes on to the next one; what is between the two
@@ -109,6 +138,7 @@ private:
     const Index twin = mesh.Twin(crossed);
     const Index vertex = this->Cutter.AddVertex(
       place, this->Cutter.WeightsBetween(mesh.Origin(crossed), mesh.Destination(crossed), place));
+    this->CutAt.emplace(EdgeOf(mesh.Origin(crossed), mesh.Destination(crossed)), vertex);
     const Index after = this->Cutter.CutEdge(crossed, vertex);
     this->Stars.ReplaceCut(mesh, after, Mesh::Next(crossed));
     this->Stars.ReplaceCut(mesh, mesh.Twin(crossed), Mesh::Next(twin));
@@ -145,7 +175,8 @@ private:
   Mesh& Surface;
   MeshCutter& Cutter;
   VertexStars Stars;
-  Ends Line; ///< the segment that is followed
+  std::map<std::pair<Index, Index>, Index> CutAt; ///< edges that are no more, and their vertex
+  Ends Line;                                      ///< the segment that is followed
   RoundingUnits Units;
 };
 
@@ -161,6 +192,10 @@ void FollowSurface(
   {
     work.Step(i, segments.size());
     following.Follow(segments[i], work);
+  }
+  for (FollowedSegment& segment : segments)
+  {
+    following.AddLaterCuts(segment);
   }
 }
 

@@ -10,6 +10,7 @@
  *     it become two.
  *   - The chain goes through a vertex that the segment runs through or passes within rounding
  *     (SnapRounding.h), such as one where another segment has been cut.
+ *   - Where segments cross, the later one cuts an edge of the earlier one's chain.
  *   - Edges whose triangles are too thin to be cut are left: there the chain lacks an edge, which is
  *     to be recovered (Recovery.h).
  *
@@ -31,6 +32,11 @@ namespace elevation
 
 struct FollowedSegment
 {
+  explicit FollowedSegment(const Segment& ends)
+    : Ends(ends)
+  {
+  }
+
   Segment Ends;               ///< vertices
   std::vector<Index> Between; ///< the vertices of the chain between the ends, from A to B
   bool IsMissing = false;     ///< whether the segment was no chain of edges

@@ -297,7 +297,7 @@ private:
     }
   }
 
-  /** Cuts a triangle at a vertex inside, or on an edge with its neighbour. @return the parts */
+  /** Cuts a triangle at a vertex inside, or on an edge, with its neighbour. @return the parts */
   std::vector<Index> CutAt(Index t, Index vertex)
   {
     const Mesh& mesh = this->Surface;
@@ -305,7 +305,11 @@ private:
     Index on = None; // the edge that the point is on
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
-      if (Orientation(mesh.PointOf(mesh.Origin(h)), mesh.PointOf(mesh.Destination(h)), p) == Zero)
+      const Point2 &a = mesh.PointOf(mesh.Origin(h)), &b = mesh.PointOf(mesh.Destination(h));
+      // What follows the surface could not be split in the needle beside an edge in reach.
+      const bool isInReach = this->Follow != Following::None && on == None && !mesh.IsBorder(h) &&
+        IsInReach(a, b, UnitsOf(a, b), Reach, p) && this->Cutter.CanCut(h, p);
+      if (isInReach || Orientation(a, b, p) == Zero)
       {
         on = h;
       }
@@ -786,7 +790,7 @@ private:
       const Segment segment = segmentOf(i);
       if (segment.A >= 0 && segment.B >= 0)
       {
-        segments.push_back({ segment });
+        segments.emplace_back(segment);
       }
     }
     Sort(segments.begin(), segments.end(), isBefore, Part(progress, 0.0, 0.1));
@@ -806,7 +810,7 @@ private:
       if (segment.A >= 0 && segment.B >= 0)
       {
         const std::vector<Index>& between =
-          std::lower_bound(segments.begin(), segments.end(), FollowedSegment{ segment }, isBefore)
+          std::lower_bound(segments.begin(), segments.end(), FollowedSegment(segment), isBefore)
             ->Between;
         const auto add = [&](Index vertex) { followed.push_back({ vertex, piece.Edge }); };
         if (segment.A == piece.Vertex)

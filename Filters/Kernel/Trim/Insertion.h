@@ -13,7 +13,8 @@
  *      where two borders are that near: one would move into the other.
  *   3. Locate the other points: they are binned, and one sweep over the triangles looks into the
  *      bins that each triangle touches. A point inside a triangle cuts it in three; a point on an
- *      edge cuts the one or two triangles of the edge.
+ *      edge, or within rounding of it if pass 5 is asked for, cuts the one or two triangles of the
+ *      edge.
  *   4. An edge of the rings gets a vertex where it crosses the border, and at each vertex of the
  *      border that it runs through or passes within rounding. As crossings are rounded, this is
  *      repeated until no edge crosses. Then each edge of the new rings lies inside or outside the

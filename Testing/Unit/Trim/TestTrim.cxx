@@ -145,13 +145,16 @@ Mesh MeshOf(const Surface& surface)
 }
 
 /** Step by step, in a mesh of all triangles. @throws Error */
-Everything TrimStepByStep(const Surface& surface, const Boundary& boundary, bool recover)
+Everything TrimStepByStep(const Surface& surface, const Boundary& boundary, bool recover,
+  BoundaryEdges edges = BoundaryEdges::FollowSurface)
 {
   Mesh mesh = MeshOf(surface);
   const Index points = mesh.NumberOfPoints();
   const Index triangles = mesh.NumberOfTriangles();
   FindHoles(mesh);
-  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, recover);
+  const bool isToFollow = recover && edges == BoundaryEdges::FollowSurface;
+  const InsertedRings rings = InsertRings(mesh, boundary.Points, boundary.Lines, recover,
+    Progress(), isToFollow ? Following::Rings : Following::None);
   const OutwardTriangles outward = FindOutward(mesh, rings.Vertices, recover);
   Everything everything;
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
@@ -161,7 +164,8 @@ Everything TrimStepByStep(const Surface& surface, const Boundary& boundary, bool
       mesh.Triangles.begin() + 3 * t + 3);
     everything.Parents[side].push_back(t < triangles ? t : rings.Parents[t - triangles]);
   }
-  everything.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
+  everything.NumberOfRecoveredEdges =
+    isToFollow ? rings.NumberOfFollowedEdges : outward.NumberOfRecoveredEdges;
   everything.Add(
     rings.Inserted, std::vector<Point2>(mesh.Points.begin() + points, mesh.Points.end()));
   return everything;
@@ -190,11 +194,12 @@ Everything EverythingOf(const Surface& surface, const Trimmed& trimmed)
 }
 
 /** @throws Error */
-Everything TrimAlong(
-  const Surface& surface, const Boundary& boundary, bool recover = true, int threads = 1)
+Everything TrimAlong(const Surface& surface, const Boundary& boundary, bool recover = true,
+  int threads = 1, BoundaryEdges edges = BoundaryEdges::FollowSurface)
 {
   TrimOptions options;
   options.RecoverBoundary = recover;
+  options.Edges = edges;
   options.NumberOfThreads = threads;
   const BoundaryLines lines = LinesOf(boundary.Points, boundary.Lines);
   const Trimmed trimmed = Trim(surface.List(), &lines, options);
@@ -217,6 +222,9 @@ void ExpectSame(const Surface& surface, const Boundary& boundary, Random& random
   const Everything expected = TrimStepByStep(surface, boundary, true);
   EXPECT_FALSE(expected.Corners[1].empty());
   EXPECT_TRUE(TrimAlong(surface, boundary) == expected);
+  constexpr BoundaryEdges straight = BoundaryEdges::Straight;
+  EXPECT_TRUE(TrimAlong(surface, boundary, true, 1, straight) ==
+    TrimStepByStep(surface, boundary, true, straight));
   const int count = surface.List().Count;
   EXPECT_TRUE(TrimAlong(Turned(surface, random.Below(count)), boundary) == expected);
   Surface shuffled = surface;
@@ -426,6 +434,56 @@ TEST(Trim, IsTheSameOnSeveralThreads)
     wrong.Corners[3 * t] = 12000;
     EXPECT_HAS(MessageOf(wrong, boundary, true, 2),
       "Cell " + std::to_string(t) + " names point 12000, but the points are 0 to 11999.");
+  }
+}
+
+TEST(SplitAlong, MakesLinesThatCrossChainsOfEdges)
+{
+  Random random(83);
+  for (int round = 0; round < 30; ++round)
+  {
+    // Every third time on two triangles, whose edge is cut again and again.
+    const Surface surface = round % 3 == 0
+      ? SurfaceOf({ { 0, 0 }, { 1, 0 }, { 1.25, 1 }, { 0, 1 } })
+      : RandomSurface(random, 100 + 20 * round);
+    std::vector<Point2> points;
+    Rings lines;
+    for (int i = 0; i < 25; ++i)
+    {
+      for (int k = 0; k < 3; ++k)
+      {
+        lines.Vertices.push_back(static_cast<Index>(points.size()));
+        points.push_back(
+          { 1.2 * random.Unit() - 0.1, 1.2 * random.Unit() - 0.1 }); // some beyond it
+      }
+      lines.Offsets.push_back(static_cast<Index>(points.size()));
+    }
+    const BoundaryLines boundary = LinesOf(points, lines);
+    const Trimmed split = SplitAlong(surface.List(), boundary, TrimOptions());
+    const Everything everything = EverythingOf(surface, split);
+    EXPECT_TRUE(everything.Corners[1].empty());
+    Mesh mesh = MeshOf(surface);
+    const double area = testing_surfaces::TwiceArea(mesh);
+    mesh.Points.insert(mesh.Points.end(), split.Places.begin(), split.Places.end());
+    mesh.Triangles = everything.Corners[0];
+    mesh.ConnectTwins();
+    ASSERT_EQ(FindingsOf(mesh), "");
+    EXPECT_NEAR(testing_surfaces::TwiceArea(mesh), area, 1e-12);
+    // No edge crosses a line: each has both ends on it, within rounding, or on one side.
+    for (Index h = 0; h < mesh.NumberOfHalfEdges(); ++h)
+    {
+      const Point2 &p = mesh.PointOf(mesh.Origin(h)), &q = mesh.PointOf(mesh.Destination(h));
+      for (std::size_t i = 0; i + 1 < points.size(); ++i)
+      {
+        const Point2 &a = points[i], &b = points[i + 1];
+        const auto distance = [&](const Point2& c) {
+          return ((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X)) /
+            std::hypot(b.X - a.X, b.Y - a.Y);
+        };
+        const bool areAway = std::fabs(distance(p)) > 1e-14 && std::fabs(distance(q)) > 1e-14;
+        ASSERT_FALSE(i % 3 < 2 && areAway && Cross({ { a, b } }, { { p, q } })) << round;
+      }
+    }
   }
 }
 
