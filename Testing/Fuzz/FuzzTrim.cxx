@@ -40,7 +40,12 @@ TrimmedMesh TrimStepByStep(const Surface& surface, const NamedPoints& points, co
   try
   {
     FindHoles(mesh);
-    InsertedRings inserted = InsertRings(mesh, points, rings, options.RecoverBoundary);
+    const Following follow = options.RecoverBoundary && options.Test == OutwardTest::Exact &&
+        options.Edges == BoundaryEdges::FollowSurface
+      ? Following::Rings
+      : Following::None;
+    InsertedRings inserted =
+      InsertRings(mesh, points, rings, options.RecoverBoundary, Progress(), follow);
     OutwardTriangles outward = FindOutward(mesh, inserted.Vertices, options.RecoverBoundary);
     if (std::count(outward.IsOutward.begin(), outward.IsOutward.end(), char(0)) == 0)
     {
@@ -51,7 +56,9 @@ TrimmedMesh TrimStepByStep(const Surface& surface, const NamedPoints& points, co
       ApplyInwardNormalTest(mesh, outward.IsOnBoundary, outward.IsOutward);
     }
     trimmed.IsOutward = std::move(outward.IsOutward);
-    trimmed.NumberOfRecoveredEdges = outward.NumberOfRecoveredEdges;
+    trimmed.NumberOfRecoveredEdges = follow == Following::Rings
+      ? inserted.NumberOfFollowedEdges
+      : outward.NumberOfRecoveredEdges;
     trimmed.Parents = std::move(inserted.Parents);
     trimmed.Inserted = std::move(inserted.Inserted);
   }
@@ -530,6 +537,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   TrimOptions options;
   options.RecoverBoundary = (bits & 1) == 0;
   options.Test = (bits & 48) == 48 ? OutwardTest::InwardNormal : OutwardTest::Exact;
+  options.Edges = (bits & 64) == 0 ? BoundaryEdges::FollowSurface : BoundaryEdges::Straight;
   options.NumberOfThreads = extraction.NumberOfThreads;
   const TrimmedMesh trimmed = TrimStepByStep(surface, lines.Points, rings, options);
   if (trimmed.Message.empty())

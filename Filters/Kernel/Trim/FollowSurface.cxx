@@ -5,6 +5,7 @@
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -14,6 +15,33 @@ namespace elevation
 
 namespace
 {
+
+/** ab - cd, with an error of few units in the last place also where most digits cancel [Kahan]. */
+double DifferenceOfProducts(double a, double b, double c, double d)
+{
+  const double cd = c * d;
+  return std::fma(a, b, -cd) + std::fma(-c, d, cd);
+}
+
+/** Where an edge crosses a line, within rounding of both. */
+Point2 CrossingOf(const Ends& edge, const Ends& line)
+{
+  const double dx = line[1].X - line[0].X, dy = line[1].Y - line[0].Y;
+  const auto sideOf = [&](const Point2& p) {
+    return DifferenceOfProducts(dx, p.Y - line[0].Y, dy, p.X - line[0].X);
+  };
+  const double from = sideOf(edge[0]), to = sideOf(edge[1]);
+  const double part = from / (from - to);
+  const Point2 place{ edge[0].X + part * (edge[1].X - edge[0].X),
+    edge[0].Y + part * (edge[1].Y - edge[0].Y) };
+  // Else products may have left the range of double.
+  constexpr double least = 1e-250, most = 1e250;
+  const auto isUsual = [&](
+                         double side) { return least < std::fabs(side) && std::fabs(side) < most; };
+  return isUsual(from) && isUsual(to) && 0.0 <= part && part <= 1.0
+    ? place
+    : RoundedCrossing(edge[0], edge[1], line[0], line[1]);
+}
 
 class Following
 {
@@ -110,7 +138,7 @@ private:
       const Ends rest{ { mesh.PointOf(from), this->Line[1] } };
       // By the whole segment, so that rounding does not add up, unless it passes the edge.
       const Ends& line = Cross(this->Line, edge) ? this->Line : rest;
-      Point2 place = RoundedCrossing(edge[0], edge[1], line[0], line[1]);
+      Point2 place = CrossingOf(edge, line);
       if (this->IsAhead(from, place) && this->Cutter.MoveToCut(crossed, place))
       {
         return this->Cut(crossed, place);

@@ -56,6 +56,10 @@ bool MeshCutter::CanCut(Index h, const Point2& place) const
 
 bool MeshCutter::MoveToCut(Index h, Point2& place) const
 {
+  if (this->CanCut(h, place))
+  {
+    return true;
+  }
   const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
   const Point2 way = Around(
     from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
