@@ -455,14 +455,16 @@ class Filled(WithFilter):
         add_array(data, "RGB", numpy.column_stack((numpy.arange(len(points)) % 251,) * 3).astype("u1"))
         return data
 
-    def source_of(self, points, rings, count, warnings=0, limit=0.0, **properties):
+    def source_of(self, points, rings, count, warnings=0, limit=0.0, edges=0, **properties):
         source = vtkReconstructPieces()
         source.SetFolder(self.empty_folder())
         source.SetFillHoles(True)
+        source.GetFill().FillCutOutsOn()
         source.GetDelaunay().SetMaximumEdgeLength(limit)
         self.assertTrue(source.AddPoints(self.points_of(points)))
         if rings:
             source.GetTrim().SetBoundaryData(make_lines(rings))
+            source.GetTrim().SetBoundaryEdges(edges)
         for name, value in properties.items():
             getattr(source.GetFill(), "Set" + name)(value)
         with Messages(source, source.GetExecutive()) as told:
@@ -470,20 +472,22 @@ class Filled(WithFilter):
         self.assertEqual((told.errors, len(told.warnings)), ([], warnings))
         return source, parts
 
-    def assert_filled_as_one(self, points, rings, count, limit=0.0, **properties):
+    def assert_filled_as_one(self, points, rings, count, limit=0.0, edges=0, **properties):
         whole, trim, one = vtkGridDelaunay2D(), vtkTrimOutwardTriangles(), vtkFillElevationHoles()
         whole.SetInputData(self.points_of(points))
         whole.SetMaximumEdgeLength(limit)
         trim.SetInputConnection(whole.GetOutputPort())
         if rings:
             trim.SetBoundaryData(make_lines(rings))
+            trim.SetBoundaryEdges(edges)
         one.SetInputConnection((trim if rings else whole).GetOutputPort())
+        one.FillCutOutsOn()
         for name, value in properties.items():
             getattr(one, "Set" + name)(value)
         with Messages(one, one.GetExecutive()) as told:
             one.Update()
         source, parts = self.source_of(
-            points, rings, count, len(told.warnings), limit, **properties)
+            points, rings, count, len(told.warnings), limit, edges, **properties)
         found = sorted_rows(numpy.concatenate([by_places(part) for part in parts]))
         numpy.testing.assert_array_equal(found, by_places(one.GetOutput()))
         self.assertEqual(source.GetNumberOfFilledTriangles(), len(found))
@@ -531,6 +535,7 @@ class Filled(WithFilter):
             sizes = []
             source = self.source(points)
             source.SetFillHoles(True)
+            source.GetFill().FillCutOutsOn()
             source.GetTrim().SetBoundaryData(make_lines(coast + ponds))
             folder = source.GetFolder()
             source.AddObserver("ProgressEvent", lambda *_, folder=folder, sizes=sizes: sizes.append(
@@ -570,10 +575,13 @@ class Filled(WithFilter):
             ("Interpolation", 1, 5),
             ("InterpolatePointData", False, 5),
             ("MaximumNumberOfInsertedPoints", 150, 3),
+            ("FillCutOuts", False, 0),
             ("NumberOfThreads", 2, 5),
         ):
             with self.subTest(property=name):
-                source, _ = self.assert_filled_as_one(points, rings, 5, **{name: value})
+                straight = vtkTrimOutwardTriangles.STRAIGHT
+                source, _ = self.assert_filled_as_one(
+                    points, rings, 5, edges=straight, **{name: value})
                 self.assertEqual(source.GetNumberOfFilledHoles(), filled)
 
     def test_new_points_have_ids_and_one_owner(self):
@@ -605,6 +613,7 @@ class Filled(WithFilter):
         points = clouds()["random"]
         source = self.source(points)
         source.SetFillHoles(True)
+        source.GetFill().FillCutOutsOn()
         source.GetFill().SetMaximumEdgeLength(30.0)
         errors = self.errors_of(source, lambda: source.UpdatePiece(0, 3, 0))
         self.assertEqual(len(errors), 1)
@@ -620,6 +629,7 @@ class Filled(WithFilter):
         for when in (0.5, 0.6, 0.7, 0.75, 0.78, 0.8, 0.82, 0.84, 0.86, 0.9):
             source = self.source(points)
             source.SetFillHoles(True)
+            source.GetFill().FillCutOutsOn()
             source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
             source.AddObserver(
                 "ProgressEvent",
@@ -643,6 +653,7 @@ class Filled(WithFilter):
         for most in (35_000, 70_000, 110_000):
             source = self.source(points)
             source.SetFillHoles(True)
+            source.GetFill().FillCutOutsOn()
             source.GetTrim().SetBoundaryData(make_lines(self.rings(points)))
             try:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (most, before[1]))
@@ -823,7 +834,7 @@ class Command(Program):
         rings = Filled.rings(None, points)
         text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
         self.file("lakes.txt", "\n".join(text_of))
-        options = ("--boundary", "lakes.txt", "--maximum-hole-size", "150", "--report")
+        options = ("--boundary", "lakes.txt", "--fill-cut-outs", "--maximum-hole-size", "150", "--report")
         done = self.call(name, *options, "--no-picture")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         whole = self.json("a_surface.json")
@@ -845,7 +856,7 @@ class Command(Program):
         rings = Filled.rings(None, points)[:3]
         text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
         self.file("lakes.txt", "\n".join(text_of))
-        options = ("--boundary", "lakes.txt", "--spacing", "0.001", "--open-edge-length", "0")
+        options = ("--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "0.001", "--open-edge-length", "0")
         told = []
         for way in ("--no-picture", "--pieces=4"):
             done = self.call(name, *options, way, "--report")
@@ -860,7 +871,7 @@ class Command(Program):
         self.assertEqual(len(told[0]), 2)
         said = []
         for way in ("--no-picture", "--pieces=4"):
-            done = self.call(name, "--boundary", "lakes.txt", "--spacing", "1e-10", way)
+            done = self.call(name, "--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "1e-10", way)
             said.append((done.returncode, done.stderr))
         self.assertEqual(*said)
         self.assertIn("--spacing: 1e-10 is less than x and y of the points can tell apart", said[0][1])

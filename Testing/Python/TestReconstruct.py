@@ -324,9 +324,12 @@ class Report(Program):
     def test_a_boundary_on_the_map_needs_no_points_of_the_file(self):
         name = self.file("sheet.xyz", text_of(SHEET))
         ring = self.file("lease.txt", "2.25 2.5\n20 2.5\n20 8\n2.25 8\n2.25 2.5\n")
-        report = self.report(name, "--boundary", ring)
+        report = self.report(name, "--boundary", ring, "--boundary-edges", "straight")
         # Two corners, and where the boundary leaves the sheet at (11, 2.5).
         self.assertEqual(report["trim"]["inserted_points"], 3)
+        # Else where it crosses 13 edges along the axes, and 14 diagonals.
+        report = self.report(name, "--boundary", ring)
+        self.assertEqual(report["trim"]["inserted_points"], 3 + 13 + 14)
         refused = self.call(name, "--boundary", ring, "--no-recover-boundary")
         self.assertNotEqual(refused.returncode, 0)
         self.assertIn("point 0 (2.25, 2.5)", refused.stderr)
@@ -513,8 +516,9 @@ class Examples(Program):
 
     def test_the_lake_is_cut_along_lines_that_are_no_points(self):
         lines = self.lines_of("lake.py", "lake.png")
-        # All corners of the shores, one of the lease; and where the lease leaves the survey.
-        self.assertEqual(lines[1], "335 points inserted along the boundary")
+        # All corners of the shores, one of the lease; where the lease leaves the survey; and where
+        # they cross edges.
+        self.assertEqual(lines[1], "1439 points inserted along the boundary")
         self.assertGreater(os.path.getsize(self.path("lake.png")), 50000)
 
     def test_the_swath_has_an_outline_and_the_inside_of_its_loop(self):
