@@ -242,6 +242,8 @@ def run_chain(
     if fill:
         filling = run.made("fill", vtkFillElevationHoles())
         filling.SetInputData(last.GetOutput())
+        if boundary is None:
+            filling.FillCutOutsOn()  # an outline of few points is no boundary that is given
         if "open_edge_length" in given:
             result.why_opened = AS_GIVEN
         elif not given.get("maximum_elevation_error"):  # else long edges are no voids

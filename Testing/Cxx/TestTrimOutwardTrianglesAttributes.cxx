@@ -93,6 +93,7 @@ vtkSmartPointer<vtkTrimOutwardTriangles> Trim(const std::vector<std::vector<Plac
   auto trim = vtkSmartPointer<vtkTrimOutwardTriangles>::New();
   trim->SetInputData(MakeSquare());
   trim->SetBoundaryData(boundary);
+  trim->SetBoundaryEdgesToStraight();
   trim->Update();
   for (int port = 0; port < 2; ++port)
   {

@@ -102,8 +102,9 @@ on the nodes of a lattice         |                            | lattice and lak
 long triangles opened             | MaximumEdgeLength=2.5      | coast and lakes              | s  s  G  G  r  r  r
 largest hole                      | MaximumHoleSize=4.0        | coast and lakes              | s  s  s  s  s  s  a
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  a
-what the boundary cut out stays open | FillCutOuts=False        | coast and lakes              | s  s  s  s  s  s  a
-most points inserted              | MaximumNumberOfInsertedPoints=20 | coast and lakes              | s  s  s  s  s  s  a
+what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  a
+what the boundary cut out, filled | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  a
+most points inserted              | MaximumNumberOfInsertedPoints=20, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  a
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  a
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  a
 holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  a

@@ -370,9 +370,9 @@ def part_of(case, part, parts):
 def set_properties(row, of):
     """of(name) -> the filter. A property is of the row's filter, or Filter.Property.
 
-    What is filled are holes that a boundary has cut out, unless the row says otherwise.
+    What is filled are holes that a boundary has cut out, but where a row is about that.
     """
-    if row.filter == "Fill":
+    if row.filter == "Fill" and "cut out" not in row.feature:
         of("Fill").SetFillCutOuts(True)
     for name, value in row.properties.items():
         name = name if "." in name else row.filter + "." + name
