@@ -65,9 +65,9 @@ class Results:
         note_partial_file(partial)
         try:
             return write(partial)
-        except PictureError:
+        except PictureError as error:
             self.take_back()
-            raise
+            raise PictureError(path, error.reason) from None
         except (OSError, FileError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             reason = reason.replace(partial, path)
