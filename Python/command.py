@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from . import reading
 from .clouds import Cloud, merged, notes_on
 from .gdal_common import name_of, reference_of
+from .given_lines import fitted
 from .messages import ElevationSurfaceError, PictureError
 from .options import (
     about,
@@ -91,7 +92,8 @@ class Run:
             if options.depth:
                 cloud.notes.append("z of the faults is turned over too, as --depth says")
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
-        cloud.notes += notes_on(cloud, lines, names)
+        lines, notes = fitted(cloud, lines, names, options.given, options.strict)
+        cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")
 
     def set_crs(self, cloud):

@@ -15,15 +15,8 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import reading
-from .clouds import (
-    Cloud,
-    check_system,
-    corner_flags,
-    crs_of,
-    make_points,
-    set_crs,
-    slices,
-)
+from .clouds import Cloud, corner_flags, make_points, set_crs, slices
+from .given_lines import fitted
 from .holes import report_of_holes
 from .messages import FileError, Messages, plain_message
 from .opening import lattice_of
@@ -47,7 +40,7 @@ BYTES_TO_FILL = 350  # where its holes are filled
 BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
-OF_THE_WHOLE = ("faults", "open_edge_length", "grid", "contours", "outlines", "picture", "view")
+OF_THE_WHOLE = ("faults", "faults_z", "open_edge_length", "grid", "contours", "outlines", "picture", "view")
 OF_THE_WHOLE += ("exaggeration", "colours", "outward_test", "maximum_elevation_error")
 
 
@@ -235,10 +228,12 @@ class Pieces:
             raise WrongOption(f"{options.file}: --{error}") from None
         self.run.set_crs(self.cloud)
         if path:
-            self.cloud.notes += check_system(
-                path, crs_of(boundary), options.files[0], self.cloud.crs
+            names = {"boundary": path, "points": options.files[0]}
+            lines, notes = fitted(
+                self.cloud, {"boundary": boundary}, names, options.given, options.strict
             )
-            self.source.GetTrim().SetBoundaryData(boundary)
+            self.cloud.notes += notes
+            self.source.GetTrim().SetBoundaryData(lines["boundary"])
 
     def update(self, piece, count):
         """The output for a piece. The first one takes the time of the triangulation."""

@@ -69,6 +69,7 @@ INTERPOLATIONS = ("neighbor-mean", "membrane", "thin-plate", "adaptive", "cubic-
 OUTWARD_TESTS = ("exact", "inward-normal")
 LATTICE_MODES = ("automatic", "off")
 COLOURS = ("elevation", "error")
+FAULTS_Z = ("automatic", "given", "drape")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
 
@@ -76,7 +77,7 @@ DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 class Property:
     """A property of the chain: which filter has it, and what it takes."""
 
-    step: str  # delaunay, trim, fill; "" for all three
+    step: str  # delaunay, trim, fill; "" for all three; faults for what is done to them before
     setter: str
     convert: object  # raises ValueError for what the property does not take
     takes: str  # what it takes, in words
@@ -115,6 +116,7 @@ PROPERTIES = {
     "spacing": Property("fill", "SetSpacing", number_at_least_zero, NUMBER),
     "interpolation": _choice("fill", "SetInterpolation", INTERPOLATIONS),
     "interpolate_point_data": Property("fill", "SetInterpolatePointData", yes_or_no, YES_OR_NO),
+    "faults_z": _choice("faults", "", FAULTS_Z),
     "threads": Property("", "SetNumberOfThreads", count_at_least_zero, COUNT),
 }
 

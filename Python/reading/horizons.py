@@ -224,16 +224,19 @@ def read_lines(path, singular, progress):
     """Lines in segments as vtkPolyData. Those of a boundary are closed, as GMT closes polygons."""
     parts = segments(path, progress)
     if singular == "a boundary":
-        parts = [numpy.column_stack((part[:, :2], numpy.zeros(len(part)))) for part in parts]
         parts = [
-            part if (part[0] == part[-1]).all() else numpy.concatenate((part, part[:1]))
+            part if (part[0, :2] == part[-1, :2]).all() else numpy.concatenate((part, part[:1]))
             for part in parts
         ]
         if any(len(part) < 4 for part in parts):
             raise FileError(f"{path}: holds a ring of fewer than three points")
-    elif any(numpy.isnan(part[:, 2]).any() for part in parts):
-        raise FileError(f"{path}: its lines have no z")
-    return make_lines(parts)
+    names = [f"line {i} of the file" for i in range(1, len(parts) + 1)]
+    for name, part in zip(names, parts):
+        flat = numpy.isnan(part[:, 2])
+        if flat.any() and not flat.all() and singular != "a boundary":
+            raise FileError(f"{path}: {name} has z at some of its points only")
+        part[flat.any() :, 2] = numpy.nan if flat.any() else part[:, 2]
+    return make_lines(parts, names)
 
 
 def columns_of_array(path):

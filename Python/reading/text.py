@@ -7,6 +7,7 @@ lines a second. What numpy does not take is parsed line by line, so that an erro
 """
 
 import collections
+import contextlib
 import io
 import math
 import os
@@ -471,6 +472,18 @@ def read_table(path, needed=3, progress=no_progress):
     advice = f"a header line with {', '.join('xyz'[:needed])} tells the columns"
     _, rows, numbers, starts, notes = parse(path, None, needed, advice, progress)
     return rows[:, :needed].copy(), numbers, starts, notes
+
+
+def read_line_table(path, progress):
+    """As read_table() of x, y and z, or of x and y where there are no more columns of numbers."""
+    try:
+        return read_table(path, 3, progress)
+    except FileError:
+        with contextlib.suppress(FileError):
+            table = parse(path, None, 2, "", progress)[0]
+            if len(table.of_numbers) == 2:
+                return read_table(path, 2, progress)
+        raise
 
 
 def read_text(path, options):

@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Boundaries and faults as they come, made fit for the filters, with a note on all that was done."""
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .clouds import crs_of, make_points, parts_of_lines, set_crs
+from .draping import draped
+from .gdal_common import check_system, flat, is_near, name_of, quiet, reference_of, same_system
+from .mending import mended
+from .messages import FileError
+
+
+def fitted(cloud, lines, names, given, strict=False):
+    """(lines, notes): in the coordinate reference system of the points, closed, valid, with z.
+
+    cloud   the points
+    lines   {"boundary": vtkPolyData, "faults": vtkPolyData}, of these what there is
+    names   how messages call the "points" and each of the lines
+    given   properties, see checked()
+    strict  True: what would be changed is an error
+
+    Raises ElevationSurfaceError.
+    """
+    lines, notes = dict(lines), []
+    for name, data in lines.items():
+        lines[name], told = in_system(data, names[name], cloud, names["points"], strict)
+        notes += told
+    if "boundary" in lines:
+        lines["boundary"], told = mended(lines["boundary"], names["boundary"], strict)
+        notes += told
+    if "faults" in lines:
+        lines["faults"], told = draped(cloud, lines["faults"], names["faults"], given, strict)
+        notes += told
+    return lines, notes
+
+
+def in_system(data, name, cloud, points_name, strict):
+    """(data, notes): lines with x and y in the coordinate reference system of a Cloud."""
+    crs = crs_of(data)
+    if strict or same_system(crs, cloud.crs) is not False or is_near(crs, cloud.crs):
+        return data, check_system(name, crs, points_name, cloud.crs)
+    from osgeo import osr
+
+    xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
+    try:
+        with quiet():
+            change = osr.CoordinateTransformation(*(flat(reference_of(one)) for one in (crs, cloud.crs)))
+
+            def places(points):
+                found = numpy.array(change.TransformPoints(points[:, :2].tolist())).reshape(-1, 3)
+                if not numpy.isfinite(found).all():
+                    raise RuntimeError("some points have no place there")
+                return found[:, :2]
+
+            xy = places(xyz)
+            _, parts = parts_of_lines(data)
+            p, q = (numpy.concatenate([part[end] for part in parts]) for end in ENDS)
+            bend = places(0.5 * (p + q)) - 0.5 * (places(p) + places(q))
+    except RuntimeError as error:
+        raise FileError(
+            f"{name}: cannot be reprojected from {name_of(crs)} to {name_of(cloud.crs)}: {error}"
+        ) from None
+    old, new = xyz[0, :2].copy(), xy[0]
+    xyz[:, :2] = xy
+    moved = data.NewInstance()
+    moved.ShallowCopy(data)
+    moved.SetPoints(make_points(xyz).GetPoints())
+    set_crs(moved, cloud.crs)
+    return moved, [
+        f"{name} is in {name_of(crs)}, {points_name} in {name_of(cloud.crs)}: reprojected by OGR, its "
+        f"first point ({old[0]:.10g}, {old[1]:.10g}) to ({new[0]:.10g}, {new[1]:.10g}); edges between "
+        f"points stay straight, up to {numpy.hypot(*bend.T).max(initial=0.0):.3g} beside their places"
+    ]
+
+
+ENDS = (slice(None, -1), slice(1, None))  # of the edges of a line
