@@ -26,6 +26,8 @@ class Cloud:
     lines    for text files, the line of each point in the file, else None
     crs      the coordinate reference system as WKT or AUTHORITY:CODE, or None where it is not known
     largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
+    z_name   what z is called where it is from, with its unit, or ""
+    is_horizon  whether it is of a kind of file or table in which horizons are
     """
 
     def __init__(self, points, notes=(), left_out=None, lines=None, crs=None):
@@ -35,6 +37,7 @@ class Cloud:
         self.lines = lines
         self.crs = crs
         self.largest_cell = 0.0
+        self.z_name, self.is_horizon = "", False
 
 
 def three_columns(columns):
@@ -140,6 +143,8 @@ def parts_of_lines(data):
     """(names, parts) of the lines and polygons of vtkPolyData, as make_lines() takes them."""
     xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
     words = data.GetCellData().GetAbstractArray(LINE_NAMES)
+    is_named = isinstance(words, vtkStringArray)
+    is_named = is_named and words.GetNumberOfValues() == data.GetNumberOfCells()
     first, names, parts = data.GetNumberOfVerts(), [], []
     for cells, kind in ((data.GetLines(), "line"), (data.GetPolys(), "polygon")):
         ids, ends = (
@@ -148,7 +153,6 @@ def parts_of_lines(data):
         for begin, end in zip(ends[:-1], ends[1:]):
             part = xyz[ids[begin:end]]
             if len(part):
-                is_named = isinstance(words, vtkStringArray)
                 names.append(words.GetValue(first) if is_named else f"{kind} (cell {first})")
                 parts.append(numpy.vstack((part, part[:1])) if kind == "polygon" else part)
             first += 1

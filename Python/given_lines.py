@@ -24,12 +24,11 @@ def fitted(cloud, lines, names, given, strict=False):
     Raises ElevationSurfaceError.
     """
     lines, notes = dict(lines), []
+    if "boundary" in lines:  # while places are still those of its file
+        lines["boundary"], notes = mended(lines["boundary"], names["boundary"], strict)
     for name, data in lines.items():
         lines[name], told = in_system(data, names[name], cloud, names["points"], strict)
-        notes += told
-    if "boundary" in lines:
-        lines["boundary"], told = mended(lines["boundary"], names["boundary"], strict)
-        notes += told
+        notes = notes + told
     if "faults" in lines:
         lines["faults"], told = draped(cloud, lines["faults"], names["faults"], given, strict)
         notes += told
@@ -62,6 +61,7 @@ def in_system(data, name, cloud, points_name, strict):
         raise FileError(
             f"{name}: cannot be reprojected from {name_of(crs)} to {name_of(cloud.crs)}: {error}"
         ) from None
+    check_overlap(xy, f"{name} is in {name_of(crs)}", cloud, f"{points_name} in {name_of(cloud.crs)}")
     old, new = xyz[0, :2].copy(), xy[0]
     xyz[:, :2] = xy
     moved = data.NewInstance()
@@ -73,6 +73,20 @@ def in_system(data, name, cloud, points_name, strict):
         f"first point ({old[0]:.10g}, {old[1]:.10g}) to ({new[0]:.10g}, {new[1]:.10g}); edges between "
         f"points stay straight, up to {numpy.hypot(*bend.T).max(initial=0.0):.3g} beside their places"
     ]
+
+
+def check_overlap(xy, this, cloud, that):
+    """Refuses reprojected lines that are nowhere near the points: one of the systems is wrong."""
+    if cloud.points is None:
+        return
+    x0, x1, y0, y1, _, _ = cloud.points.GetBounds()
+    (west, south), (east, north) = xy.min(axis=0), xy.max(axis=0)
+    if west > x1 or east < x0 or south > y1 or north < y0:
+        raise FileError(
+            f"{this}, {that}: reprojected, it is at x {west:.10g} to {east:.10g}, y {south:.10g} to "
+            f"{north:.10g}, away from the points at x {x0:.10g} to {x1:.10g}, y {y0:.10g} to {y1:.10g}; "
+            "is one of the systems wrong? --crs tells that of the points"
+        )
 
 
 ENDS = (slice(None, -1), slice(1, None))  # of the edges of a line

@@ -14,7 +14,7 @@ from .messages import ElevationSurfaceError, counted
 from .outline import places_of, trial
 
 GAP = 0.01  # of the length of a ring: ends of lines no farther apart are joined
-MOVED = 0.01  # of the edges beside them: ends no farther apart are made one point
+MOVED = 0.5  # of the edges beside them: ends no farther apart are made one point
 MOST_NAMED = 20  # mends of a kind that get a note each
 NEIGHBOURS = 8  # ends that may be the other side of a gap
 
@@ -74,14 +74,15 @@ def close_gaps(names, parts, name, strict):
     odd = numpy.flatnonzero(counts % 2)
     if not len(odd):
         return []
-    pairs = odd[nearest_pairs(places[odd])]
+    first_end = numpy.unique(of_end, return_index=True)[1]
+    pairs = numpy.array(
+        sorted((sorted(pair, key=first_end.__getitem__) for pair in odd[nearest_pairs(places[odd])]),
+               key=lambda pair: first_end[pair[0]])
+    )
     lengths = lengths_of_rings(parts, lines, of_end.reshape(-1, 2), pairs, places)
     notes, widest = [], 0.0
     for p, q in pairs:
-        p, q = sorted((p, q), key=lambda place: numpy.flatnonzero(of_end == place)[0])
-        gap, end, other = abs(places[p] - places[q]), *(
-            numpy.flatnonzero(of_end == place)[0] for place in (p, q)
-        )
+        gap, end, other = abs(places[p] - places[q]), first_end[p], first_end[q]
         one, two = names[lines[end // 2]], names[lines[other // 2]]
         share = gap / lengths[p]
         words = f"{name}: " + (

@@ -16,8 +16,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import reading
 from .clouds import Cloud, corner_flags, make_points, set_crs, slices
-from .given_lines import fitted
+from .given_lines import in_system
 from .holes import report_of_holes
+from .mending import mended
 from .messages import FileError, Messages, plain_message
 from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
@@ -214,7 +215,8 @@ class Pieces:
         """Gives all points to the filter, slice by slice."""
         options, reach = self.options, numpy.inf
         path = options.boundary
-        boundary = reading.read_boundary(path) if path else None
+        if path:
+            boundary, notes = mended(reading.read_boundary(path), path, options.strict)
         wanted = self.run.read_options()
         for points in read_files(options.files, self.cloud, **wanted):
             for part in slices(len(points), AT_ONCE):
@@ -228,12 +230,11 @@ class Pieces:
             raise WrongOption(f"{options.file}: --{error}") from None
         self.run.set_crs(self.cloud)
         if path:
-            names = {"boundary": path, "points": options.files[0]}
-            lines, notes = fitted(
-                self.cloud, {"boundary": boundary}, names, options.given, options.strict
+            boundary, told = in_system(
+                boundary, path, self.cloud, options.files[0], options.strict
             )
-            self.cloud.notes += notes
-            self.source.GetTrim().SetBoundaryData(lines["boundary"])
+            self.cloud.notes += notes + told
+            self.source.GetTrim().SetBoundaryData(boundary)
 
     def update(self, piece, count):
         """The output for a piece. The first one takes the time of the triangulation."""

@@ -19,6 +19,7 @@ from ..progress import no_progress, share
 from .nulls import take_out
 from .text import read_line_table, read_table
 from .unpacking import is_plain, unpacked
+from .upwards import notes_on_up
 
 # Options that mean something for some readers only.
 MEANS_SOMETHING = {
@@ -69,6 +70,7 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
         cloud = read_any(local, options)
         options.progress = share(whole, 0.7, 1.0)
         cloud = take_out(cloud, options)
+    cloud.notes += notes_on_up(cloud, options.depth)
     if options.depth:
         turn_over(cloud)
     return cloud

@@ -117,6 +117,8 @@ UNITS = {
     "centimetres": _words("cm centimeter centimeters centimetre centimetres"),
     "millimetres": _words("mm millimeter millimeters millimetre millimetres"),
 }
+UNITS_OF_TIME = _words("s sec secs second seconds ms msec msecs millisecond milliseconds us")
+SEISMIC = _words("inline il iline xline crossline xl trace tr cdp cmp")
 LETTERS_OF_AXES = _words("e oe n h")
 LETTERS = str.maketrans({"ø": "oe", "æ": "ae", "ß": "ss", "ł": "l", "Ø": "Oe", "Ł": "L"})
 
@@ -203,6 +205,17 @@ def unit_of(name):
     outside, inside = in_brackets(name)
     words = plain(inside) or plain(outside)[1:]
     return next((unit for unit, names in UNITS.items() if words and words[-1] in names), "")
+
+
+def direction_of(name):
+    """"depth" or "time" where a name, or its unit in brackets, says that z counts downwards; else ""."""
+    is_time = "".join(plain(in_brackets(name)[1])) in UNITS_OF_TIME
+    return meaning(name).direction or ("time" if is_time else "")
+
+
+def is_seismic(name):
+    """Whether a name is that of a line or trace of a seismic survey."""
+    return "".join(plain(name)) in SEISMIC
 
 
 def is_beside(name):

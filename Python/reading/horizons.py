@@ -62,6 +62,7 @@ def grid_cloud(path, x, y, z, null, note):
     """Nodes of a grid as points. x, y, z: arrays of one shape; null and above is no data."""
     z = numpy.where(z >= null, numpy.nan, z)
     cloud = points_of_raster(path, x, y, z)
+    cloud.is_horizon = True
     cloud.notes.append(f"{note}, {z.shape[1]} x {z.shape[0]} nodes")
     return cloud
 
@@ -146,6 +147,7 @@ def read_table(path, names, first, progress, null=None):
         raise FileError(f"{path}: holds no points")
     keep = numpy.isfinite(rows[:, 2]) & (rows[:, 2] != null if null is not None else True)
     cloud = Cloud(make_points(rows[keep, :3]), [f"columns by the header: {', '.join(names)}"])
+    cloud.z_name, cloud.is_horizon = names[places[2]], True
     if not keep.all():
         cloud.left_out["rows without data"] = int(numpy.count_nonzero(~keep))
     for i, place in enumerate(others, 3):
@@ -235,7 +237,8 @@ def read_lines(path, singular, progress):
         flat = numpy.isnan(part[:, 2])
         if flat.any() and not flat.all() and singular != "a boundary":
             raise FileError(f"{path}: {name} has z at some of its points only")
-        part[flat.any() :, 2] = numpy.nan if flat.any() else part[:, 2]
+        if flat.any():
+            part[:, 2] = numpy.nan
     return make_lines(parts, names)
 
 

@@ -108,7 +108,7 @@ class Table:
     extras           {index: name} of the other columns of numbers
     of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
-    downwards        the note for a z that counts downwards by its name and values, or None
+    z_name, is_horizon  see Choice
     advice           what a user can do where columns are wrong
     has_summaries    whether lines that begin with "Total" or such are no data
     sees_summaries   whether there are such at the start or at the end of the first block
@@ -139,7 +139,8 @@ class Table:
             advice,
         )
         self.indices, self.extras = chosen.indices, chosen.extras
-        self.notes, self.downwards = chosen.notes, chosen.downwards
+        self.notes, self.z_name = chosen.notes, chosen.z_name
+        self.is_horizon = chosen.is_horizon
         self.of_numbers = chosen.of_numbers
         check_marks(path, rows, self.of_numbers)
         if needed == 3:
@@ -492,9 +493,8 @@ def read_text(path, options):
     Returns a Cloud. Ten million lines of x, y and z take some five seconds of one core and 0.8 GB.
     """
     table, rows, numbers, _, notes = parse(path, options.columns, 3, ADVICE, options.progress)
-    if table.downwards and not options.depth:
-        notes.append(table.downwards)
     cloud = Cloud(None, notes, lines=numbers)
+    cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
     if options.no_data is not None:
         cloud.lines = numbers[rows[:, 2] != options.no_data]
         rows = with_data(rows, options.no_data, cloud, "rows without data")
@@ -519,8 +519,7 @@ def text_slices(path, options, cloud):
     if not count:
         raise FileError(f"{path}: all rows are without data")
     cloud.notes += parser.told()
-    if parser.table.downwards and not options.depth:
-        cloud.notes.append(parser.table.downwards)
+    cloud.z_name, cloud.is_horizon = parser.table.z_name, parser.table.is_horizon
     if parser.table.extras:
         cloud.notes.append(f"left out: {', '.join(parser.table.extras.values())}")
 

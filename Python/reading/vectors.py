@@ -81,6 +81,7 @@ class Layer:
     parts     [(kind, (n, 3) array of points)], z NaN where there is none
     features  for each part, the number of its feature from 0
     ids       for each part, the id of its feature
+    z_name    the attribute that z is from, or the layer's name
     fields    {attribute: its value for each feature}
     empty     how many features have no geometry
     labels    how many are texts of a drawing
@@ -89,7 +90,7 @@ class Layer:
     def __init__(self, path, layer, kind, progress):
         self.path = path
         self.parts, self.features, self.empty, self.labels, self.flat = [], [], 0, 0, 0
-        self.ids = []
+        self.ids, self.z_name = [], layer.GetName()
         definition = layer.GetLayerDefn()
         names = [
             definition.GetFieldDefn(i).GetName() for i in range(definition.GetFieldCount())
@@ -158,10 +159,8 @@ class Layer:
         for number, (_, points) in zip(self.features, self.parts):
             if not some or numpy.isnan(points[:, 2]).all():
                 points[:, 2] = values[number]
-        notes = [f"z from attribute {name}" + ", where the geometry has none" * some]
-        if meaning(name).direction:
-            notes.append(f"{name} says that z counts downwards; --depth turns it over")
-        return notes
+        self.z_name = name
+        return [f"z from attribute {name}" + ", where the geometry has none" * some]
 
     def height_attribute(self, columns):
         """The name of the attribute of elevations, or None."""
@@ -242,6 +241,7 @@ def read_points(path, options):
         words = " and ".join({"line": "lines", "ring": "polygons"}[kind] for kind in sorted(kinds))
         notes.append(f"the vertices of {words} are taken as points")
     cloud = Cloud(make_points(coordinates), notes, crs=crs)
+    cloud.z_name = layer.z_name
     repeat = numpy.repeat(layer.features, [len(points) for points in parts])
     for name, values in layer.fields.items():
         if any(isinstance(value, (int, float)) for value in values):
