@@ -53,7 +53,7 @@ def draped(cloud, faults, name, given, strict=False):
         if lost:
             outside.append((title, sum(lost), place))
     if not result:
-        raise ElevationSurfaceError(f"{name}: all lines are outside of the points", "faults")
+        return faults, []  # the filter says where they are, and where the points
     z = numpy.concatenate([one[:, 2] for _, one in result])
     notes = [
         f"{words}: they follow the surface of the points, with {vertices:,} vertices and z from "

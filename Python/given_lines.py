@@ -38,7 +38,8 @@ def fitted(cloud, lines, names, given, strict=False):
 def in_system(data, name, cloud, points_name, strict):
     """(data, notes): lines with x and y in the coordinate reference system of a Cloud."""
     crs = crs_of(data)
-    if strict or same_system(crs, cloud.crs) is not False or is_near(crs, cloud.crs):
+    _, parts = parts_of_lines(data)
+    if not parts or strict or same_system(crs, cloud.crs) is not False or is_near(crs, cloud.crs):
         return data, check_system(name, crs, points_name, cloud.crs)
     from osgeo import osr
 
@@ -54,7 +55,6 @@ def in_system(data, name, cloud, points_name, strict):
                 return found[:, :2]
 
             xy = places(xyz)
-            _, parts = parts_of_lines(data)
             p, q = (numpy.concatenate([part[end] for part in parts]) for end in ENDS)
             bend = places(0.5 * (p + q)) - 0.5 * (places(p) + places(q))
     except RuntimeError as error:

@@ -49,6 +49,10 @@ def at(place):
     return f"({place.real:.10g}, {place.imag:.10g})"
 
 
+def in_words(length):
+    return f"{length:,.0f}" if length >= 1000.0 else f"{length:.4g}"
+
+
 def first_ones(notes, more):
     """The notes, of which the last stands for all others where they are many."""
     if len(notes) <= MOST_NAMED:
@@ -86,10 +90,13 @@ def close_gaps(names, parts, name, strict):
         one, two = names[lines[end // 2]], names[lines[other // 2]]
         share = gap / lengths[p]
         words = f"{name}: " + (
-            f"{one} is not closed: its ends are {gap:.4g} apart"
+            f"{one} is not closed: its ends are {in_words(gap)} apart"
             if one == two
-            else f"{one} and {two} do not meet: they are {gap:.4g} apart"
-        ) + f" at {at(places[p])}, which is {100 * share:.3g} % of the ring's length {lengths[p]:.6g}"
+            else f"{one} and {two} do not meet: they are {in_words(gap)} apart"
+        ) + (
+            f" at {at(places[p])}, which is {100 * share:.3g} % of the ring's length "
+            f"{in_words(lengths[p])}"
+        )
         if share > GAP:
             raise refused(f"{words}; gaps of up to {100 * GAP:g} % are closed", False)
         if strict:
@@ -105,7 +112,7 @@ def close_gaps(names, parts, name, strict):
             names.append(one)
             notes.append(f"{words}: closed by a straight edge")
         widest = max(widest, gap)
-    return first_ones(notes, f"{name}: gaps of up to {widest:.4g}")
+    return first_ones(notes, f"{name}: gaps of up to {in_words(widest)}")
 
 
 def edge_at(part, is_last):
