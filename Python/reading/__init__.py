@@ -157,7 +157,7 @@ def lines_of_text(path, table, what):
     if rows.shape[1] == 2:
         rows = numpy.column_stack((rows, numpy.full(len(rows), numpy.nan)))
     ends = [*starts[1:], len(rows)]
-    names = [f"the line from line {numbers[a]} to {numbers[b - 1]}" for a, b in zip(starts, ends)]
+    names = [f"the part from line {numbers[a]} to {numbers[b - 1]}" for a, b in zip(starts, ends)]
     return make_lines([rows[a:b] for a, b in zip(starts, ends)], names)
 
 

@@ -219,9 +219,9 @@ class Shoreline(Program):
         for name, gaps, ring in (
             (self.write("shore.gpkg", "GPKG"), ("feature 5 and feature 6", "feature 18 and feature 19"),
              "feature 57"),
-            (self.text(), ("the line from line 49 to 59 and the line from line 61 to 71",
-                           "the line from line 205 to 215 and the line from line 217 to 227"),
-             "the line from line 993 to 1013"),
+            (self.text(), ("the part from line 49 to 59 and the part from line 61 to 71",
+                           "the part from line 205 to 215 and the part from line 217 to 227"),
+             "the part from line 993 to 1013"),
         ):
             with self.subTest(name=name):
                 done = self.call("hills.xyz", "--boundary", name, "--no-picture", "--no-fill")

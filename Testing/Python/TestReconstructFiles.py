@@ -452,7 +452,7 @@ class Boundary(InFolder):
     def test_rings_are_named_by_their_lines(self):
         data = reading.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n"))
         names, parts = parts_of_lines(data)
-        self.assertEqual(names, ["the line from line 1 to 5", "the line from line 7 to 9"])
+        self.assertEqual(names, ["the part from line 1 to 5", "the part from line 7 to 9"])
         self.assertEqual([len(part) for part in parts], [5, 3])
 
     def test_a_boundary_point_that_is_not_finite_names_its_line(self):
