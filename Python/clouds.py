@@ -141,6 +141,8 @@ def make_lines(parts, names=None):
 
 def parts_of_lines(data):
     """(names, parts) of the lines and polygons of vtkPolyData, as make_lines() takes them."""
+    if data.GetPoints() is None:
+        return [], []
     xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
     words = data.GetCellData().GetAbstractArray(LINE_NAMES)
     is_named = isinstance(words, vtkStringArray)

@@ -10,7 +10,7 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, merged, notes_on
+from .clouds import Cloud, bare_lines, merged, notes_on
 from .gdal_common import name_of, reference_of
 from .given_lines import fitted
 from .messages import ElevationSurfaceError, PictureError
@@ -89,7 +89,7 @@ class Run:
             lines["boundary"] = reading.read_boundary(options.boundary)
         if options.faults:
             lines["faults"] = reading.read_faults(options.faults, options.depth)
-            if options.depth:
+            if options.depth and not bare_lines(lines["faults"]).all():
                 cloud.notes.append("z of the faults is turned over too, as --depth says")
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
         lines, notes = fitted(cloud, lines, names, options.given, options.strict)

@@ -97,6 +97,8 @@ def close_gaps(names, parts, name, strict):
             f" at {at(places[p])}, which is {100 * share:.3g} % of the ring's length "
             f"{in_words(lengths[p])}"
         )
+        if share > GAP and max(counts[p], counts[q]) > 1:
+            return []  # lines that meet in threes: the filter says where
         if share > GAP:
             raise refused(f"{words}; gaps of up to {100 * GAP:g} % are closed", False)
         if strict:
@@ -172,6 +174,9 @@ def without_crossings(names, parts, name, strict):
             kept.append((title, ring))
             continue
         made = valid(ring, f"{name}: {title} crosses itself: {errors[0]}")
+        if not made:
+            kept.append((title, ring))
+            continue
         where = f"{name}: {title} crosses itself {places_in_words(ring, made)}"
         if strict:
             raise refused(where, True)
@@ -215,7 +220,10 @@ def chained(names, parts):
 
 
 def valid(ring, words):
-    """[(area, [rings])] of the polygons that GEOS makes of a ring."""
+    """[(area, [rings])] of the polygons that GEOS makes of a ring, if it encloses anything.
+
+    words  of the error where GEOS is missing
+    """
     try:
         gdal_module()
         from osgeo import ogr
@@ -230,9 +238,7 @@ def valid(ring, words):
             made = polygon.MakeValid(["METHOD=STRUCTURE"])
     except RuntimeError:
         made = None
-    polygons = [one for one in pieces_of(made) if one.GetGeometryName() == "POLYGON"] if made else []
-    if not polygons:
-        raise refused(f"{words} GEOS can make no polygon of it", False)
+    polygons = pieces_of(made) if made else []
     return [
         (
             one.GetArea(),
@@ -243,9 +249,9 @@ def valid(ring, words):
 
 
 def pieces_of(geometry):
-    """A geometry, or those that it consists of where it is a collection."""
+    """The polygons that a geometry is or consists of."""
     if geometry.GetGeometryName() == "POLYGON":
-        return [geometry]
+        return [] if geometry.IsEmpty() else [geometry]
     return [
         piece for i in range(geometry.GetGeometryCount())
         for piece in pieces_of(geometry.GetGeometryRef(i))

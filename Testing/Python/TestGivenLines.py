@@ -181,6 +181,35 @@ class Crossings(unittest.TestCase):
         with self.assertRaisesRegex(ElevationSurfaceError, "rings of the boundary cross"):
             reconstruct(SHEET, boundary=[circle(4, 4, 2, 20), circle(6, 6, 2, 20)])
 
+    def test_what_cannot_be_mended_is_told_by_the_filter(self):
+        spoke, flatly = flat([(5, 5), (9, 5)]), flat([(2, 2), (9, 2), (5, 2), (7, 2), (2, 2)])
+        for boundary, words in (
+            (make_lines([circle(5, 5, 4, 40)[:21], circle(5, 5, 4, 40)[20:], spoke]), "where 3 lines end"),
+            (make_lines([flatly]), "encloses no triangle"),
+            (vtkPolyData(), "no line and no polygon"),
+        ):
+            with self.subTest(words=words):
+                made, told = mended(boundary, "b")
+                self.assertEqual((made is boundary, told), (True, []))
+                with self.assertRaisesRegex(ElevationSurfaceError, words):
+                    reconstruct(SHEET, boundary=boundary)
+
+    def test_random_rings_become_valid_and_keep_what_they_go_around(self):
+        random = numpy.random.RandomState(1)
+        field = numpy.array([(x, y, 0.0) for x in range(-2, 13) for y in range(-2, 13)])
+        for run in range(60):
+            xy = random.rand(9, 2) * 10.0 if run % 2 else random.randint(0, 10, (9, 2)).astype("f8")
+            ring = flat(numpy.vstack((xy, xy[:1])))
+            with self.subTest(run=run):
+                result, told = quietly(field, boundary=make_lines([ring]))
+                shape = ogr.Geometry(ogr.wkbPolygon)
+                outline = ogr.Geometry(ogr.wkbLinearRing)
+                for x, y, _ in ring.tolist():
+                    outline.AddPoint_2D(x, y)
+                shape.AddGeometry(outline)
+                wanted = shape.MakeValid(["METHOD=STRUCTURE"]).GetArea()
+                self.assertAlmostEqual(area_of(result), wanted, delta=1e-9)
+
     def test_without_gdal_the_error_says_what_to_install(self):
         with mock.patch.dict(sys.modules, {"osgeo": None}):
             with self.assertRaisesRegex(ElevationSurfaceError, "crosses itself: .*[Ii]nstall python3-gdal"):
