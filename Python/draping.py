@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Faults without z: they get that of the surface that the points make without faults, at all places.
+"""Faults without z: they get that of the surface that the points make without faults, everywhere.
 
 Each gets a vertex where it crosses an edge of that surface, as the surface bends there.
 """
@@ -35,7 +35,7 @@ def draped(cloud, faults, name, given, strict=False):
     elif wanted == "automatic" and not bare.all() and is_zero_beside(parts, bare, cloud.points):
         bare[:] = True
         words = (
-            f"{name}: z of its lines is 0 everywhere and that of the points nowhere near, so that they "
+            f"{name}: z of its lines is 0 everywhere and that of the points never, so that they "
             "count as lines without z; --faults-z given takes the 0"
         )
     if not bare.any():
@@ -62,8 +62,9 @@ def draped(cloud, faults, name, given, strict=False):
     if outside:
         title, lost, (x, y, _) = outside[0]
         notes.append(
-            f"{name}: what lies outside of the points is left out of {counted(len(outside), 'line')} "
-            f"without z, a length of {lost:.4g} of {title}, at ({x:.10g}, {y:.10g})"
+            f"{name}: what lies outside of the points is left out of "
+            f"{counted(len(outside), 'line')} without z, a length of {lost:.4g} of {title}, at "
+            f"({x:.10g}, {y:.10g})"
         )
     return make_lines([one for _, one in result], [title for title, _ in result]), notes
 
@@ -109,8 +110,8 @@ class Surface:
         return self.xyz[self.triangles[numpy.unique(found).astype("i8")]]
 
     def drape(self, line):
-        """([(n, 3) parts of a line that lie within the points], [lengths of what does not], the first
-        place of that)."""
+        """([(n, 3) parts of a line that lie within the points], [lengths of what does not], the
+        first place of that)."""
         parts, lost, first, goes_on = [], [], None, False
         for p, q in zip(line[:-1], line[1:]):
             if (p[:2] == q[:2]).all():
@@ -128,8 +129,8 @@ class Surface:
         return [numpy.array(part) for part in parts if len(part) > 1], lost, first
 
     def points_along(self, p, q):
-        """(points, their places from 0 to 1 along pq) where a segment crosses edges of the surface, with
-        its ends where they lie within the points."""
+        """(points, their places from 0 to 1 along pq) where a segment crosses edges of the surface,
+        with its ends where they lie within the points."""
         corners, step = self.near(p, q), (q - p)[:2]
         if not len(corners):
             return numpy.empty((0, 3)), numpy.empty(0)

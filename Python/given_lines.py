@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Boundaries and faults as they come, made fit for the filters, with a note on all that was done."""
+"""Boundaries and faults as they come, made fit for the filters, with a note on all that is done."""
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -46,7 +46,8 @@ def in_system(data, name, cloud, points_name, strict):
     xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
     try:
         with quiet():
-            change = osr.CoordinateTransformation(*(flat(reference_of(one)) for one in (crs, cloud.crs)))
+            pair = (flat(reference_of(one)) for one in (crs, cloud.crs))
+            change = osr.CoordinateTransformation(*pair)
 
             def places(points):
                 found = numpy.array(change.TransformPoints(points[:, :2].tolist())).reshape(-1, 3)
@@ -61,7 +62,8 @@ def in_system(data, name, cloud, points_name, strict):
         raise FileError(
             f"{name}: cannot be reprojected from {name_of(crs)} to {name_of(cloud.crs)}: {error}"
         ) from None
-    check_overlap(xy, f"{name} is in {name_of(crs)}", cloud, f"{points_name} in {name_of(cloud.crs)}")
+    systems = f"{name} is in {name_of(crs)}, {points_name} in {name_of(cloud.crs)}: reprojected"
+    check_overlap(xy, cloud, systems)
     old, new = xyz[0, :2].copy(), xy[0]
     xyz[:, :2] = xy
     moved = data.NewInstance()
@@ -69,13 +71,13 @@ def in_system(data, name, cloud, points_name, strict):
     moved.SetPoints(make_points(xyz).GetPoints())
     set_crs(moved, cloud.crs)
     return moved, [
-        f"{name} is in {name_of(crs)}, {points_name} in {name_of(cloud.crs)}: reprojected by OGR, its "
-        f"first point ({old[0]:.10g}, {old[1]:.10g}) to ({new[0]:.10g}, {new[1]:.10g}); edges between "
-        f"points stay straight, up to {numpy.hypot(*bend.T).max(initial=0.0):.3g} beside their places"
+        f"{systems} by OGR, its first point ({old[0]:.10g}, {old[1]:.10g}) to ({new[0]:.10g}, "
+        f"{new[1]:.10g}); edges between points stay straight, up to "
+        f"{numpy.hypot(*bend.T).max(initial=0.0):.3g} beside their places"
     ]
 
 
-def check_overlap(xy, this, cloud, that):
+def check_overlap(xy, cloud, words):
     """Refuses reprojected lines that are nowhere near the points: one of the systems is wrong."""
     if cloud.points is None:
         return
@@ -83,9 +85,9 @@ def check_overlap(xy, this, cloud, that):
     (west, south), (east, north) = xy.min(axis=0), xy.max(axis=0)
     if west > x1 or east < x0 or south > y1 or north < y0:
         raise FileError(
-            f"{this}, {that}: reprojected, it is at x {west:.10g} to {east:.10g}, y {south:.10g} to "
-            f"{north:.10g}, away from the points at x {x0:.10g} to {x1:.10g}, y {y0:.10g} to {y1:.10g}; "
-            "is one of the systems wrong? --crs tells that of the points"
+            f"{words}, it is at x {west:.10g} to {east:.10g}, y {south:.10g} to {north:.10g}, away "
+            f"from the points at x {x0:.10g} to {x1:.10g}, y {y0:.10g} to {y1:.10g}; is one of the "
+            "systems wrong? --crs tells that of the points"
         )
 
 

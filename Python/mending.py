@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Rings of a boundary as they come: small gaps are closed, and what crosses itself is made valid.
 
-The filters take closed rings that do not cross themselves, and nothing else. GEOS, through OGR, makes
-rings valid: what a ring goes around counts as inside, also where it goes around twice.
+The filters take closed rings that do not cross themselves, and nothing else. GEOS, through OGR,
+makes rings valid: what a ring goes around counts as inside, also where it goes around twice.
 """
 
 import numpy
@@ -25,8 +25,8 @@ def mended(boundary, name, strict=False):
     name    how messages call it
     strict  True: what would be mended is an error
 
-    Rings that need nothing are handed on as they are. Raises ElevationSurfaceError, also for a gap that is
-    too wide, and where GEOS is needed but missing.
+    Rings that need nothing are handed on as they are. Raises ElevationSurfaceError, also for a gap
+    that is too wide, and where GEOS is needed but missing.
     """
     names, parts = parts_of_lines(boundary)
     if not parts or not all(numpy.isfinite(part[:, :2]).all() for part in parts):
@@ -68,7 +68,7 @@ def length_of(part):
 
 
 def close_gaps(names, parts, name, strict):
-    """Joins the ends of lines where no other line goes on. Changes names and parts. Returns notes."""
+    """Joins ends of lines where no other line goes on. Changes names and parts. Returns notes."""
     is_open = [part[0, 0] != part[-1, 0] or part[0, 1] != part[-1, 1] for part in parts]
     lines = numpy.flatnonzero(is_open)
     if not len(lines):
@@ -79,10 +79,8 @@ def close_gaps(names, parts, name, strict):
     if not len(odd):
         return []
     first_end = numpy.unique(of_end, return_index=True)[1]
-    pairs = numpy.array(
-        sorted((sorted(pair, key=first_end.__getitem__) for pair in odd[nearest_pairs(places[odd])]),
-               key=lambda pair: first_end[pair[0]])
-    )
+    pairs = [sorted(pair, key=first_end.__getitem__) for pair in odd[nearest_pairs(places[odd])]]
+    pairs = numpy.array(sorted(pairs, key=lambda pair: first_end[pair[0]]))
     lengths = lengths_of_rings(parts, lines, of_end.reshape(-1, 2), pairs, places)
     notes, widest = [], 0.0
     for p, q in pairs:

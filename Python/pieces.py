@@ -41,8 +41,8 @@ BYTES_TO_FILL = 350  # where its holes are filled
 BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
-OF_THE_WHOLE = ("faults", "faults_z", "open_edge_length", "grid", "contours", "outlines", "picture", "view")
-OF_THE_WHOLE += ("exaggeration", "colours", "outward_test", "maximum_elevation_error")
+OF_THE_WHOLE = ("faults", "faults_z", "open_edge_length", "grid", "contours", "outlines", "picture")
+OF_THE_WHOLE += ("view", "exaggeration", "colours", "outward_test", "maximum_elevation_error")
 
 
 def memory_size(text):

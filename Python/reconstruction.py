@@ -292,8 +292,8 @@ def reconstruct(
               maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
               lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
               recover_boundary, open_edge_length, maximum_hole_size, maximum_hole_edges, spacing,
-              interpolation, interpolate_point_data, faults_z, threads. Lengths are in the units of x and y.
-              The program's --help tells what each does, and its default.
+              interpolation, interpolate_point_data, faults_z, threads. Lengths are in the units
+              of x and y. The program's --help tells what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made, TypeError for unknown properties, ValueError for values that a property does not
@@ -308,9 +308,8 @@ def reconstruct(
         faults = as_lines(faults, "faults", False)
     check_spacing(least_reach(cloud.points), given.get("spacing", 0.0))
     lines = {"boundary": boundary, "faults": faults}
-    lines, notes = fitted(
-        cloud, {name: data for name, data in lines.items() if data is not None}, NAMES, given, strict
-    )
+    lines = {name: data for name, data in lines.items() if data is not None}
+    lines, notes = fitted(cloud, lines, NAMES, given, strict)
     result = run_chain(
         cloud, lines.get("boundary"), lines.get("faults"), given,
         trim=trim, fill=fill, progress=progress, strict=strict,

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A display for drawing where there is no screen: Xvfb, for as long as this program runs.
 
-Where Xvfb does not start or answer, as on a machine that is very busy, it is started again. What did
-not answer keeps its number meanwhile, so that each start has another one.
+Where Xvfb does not start or answer, as on a machine that is very busy, it is started again. What
+did not answer keeps its number meanwhile, so that each start has another one.
 """
 
 import contextlib

@@ -208,7 +208,7 @@ def unit_of(name):
 
 
 def direction_of(name):
-    """"depth" or "time" where a name, or its unit in brackets, says that z counts downwards; else ""."""
+    """"depth" or "time" where a name, or its unit in brackets, says that z counts downwards, or ""."""
     is_time = "".join(plain(in_brackets(name)[1])) in UNITS_OF_TIME
     return meaning(name).direction or ("time" if is_time else "")
 

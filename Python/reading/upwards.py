@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether z counts upwards: what its name, its unit, its sign and the kind of file say together.
 
-All readers ask here. z is never turned over because of it, but a doubt is told, once, with both readings.
+All readers ask here. z is never turned over because of it, but a doubt is told, once, with both
+readings.
 """
 
 import numpy
@@ -14,7 +15,7 @@ WHAT = {"depth": "depths", "time": "times"}
 
 
 def notes_on_up(cloud, depth):
-    """Notes for the user on the z of a Cloud as it was read. depth: it is going to be turned over."""
+    """Notes for the user on the z of a Cloud as it was read. depth: it will be turned over."""
     z = vtk_to_numpy(cloud.points.GetPoints().GetData())[:, 2]
     z = z[numpy.isfinite(z)]
     return notes_on_range(cloud, depth, float(z.min()), float(z.max())) if len(z) else []
@@ -27,8 +28,8 @@ def notes_on_range(cloud, depth, low, high):
         if high > 0.0 or low == 0.0:
             return []
         return [
-            f"z was {values} before --depth turned it over: where it was an elevation below 0, as of a "
-            "lake's bed, hollows are hills now; leave --depth out then"
+            f"z was {values} before --depth turned it over: where it was an elevation below 0, as "
+            "of a lake's bed, hollows are hills now; leave --depth out then"
         ]
     if direction and low >= 0.0 and high > 0.0:
         return [
@@ -37,13 +38,13 @@ def notes_on_range(cloud, depth, low, high):
         ]
     if direction and high > 0.0:
         return [
-            f"z are {WHAT[direction]} by their name, but {values}: taken as they are, upwards; if they "
-            "count downwards, --depth turns it over"
+            f"z are {WHAT[direction]} by their name, but {values}: taken as they are, upwards; if "
+            "they count downwards, --depth turns it over"
         ]
     if cloud.is_horizon and not direction and low > 0.0:
         return [
-            f"z is {values}, and nothing says whether it counts up or down: taken as elevations; if "
-            "these are depths or times, as horizons have, the surface is upside down, and --depth turns "
-            "it over"
+            f"z is {values}, and nothing says whether it counts up or down: taken as elevations; "
+            "if these are depths or times, as horizons have, the surface is upside down, and "
+            "--depth turns it over"
         ]
     return []

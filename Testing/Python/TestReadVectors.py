@@ -376,7 +376,8 @@ class Systems(Vectors, Program):
         points = wkt_of([(612000 + x, 6073000 + y, x) for x in range(9) for y in range(9)])
         self.make("p.gpkg", "GPKG", points)
         lines = ["LINESTRING Z (612001.25 6073001.4 0, 612005.1 6073004.7 5)"]
-        ring = ["POLYGON ((612001.3 6073001.4, 612005.2 6073001.2, 612005.3 6073005.7, 612001.3 6073001.4))"]
+        places = "612001.3 6073001.4, 612005.2 6073001.2, 612005.3 6073005.7, 612001.3 6073001.4"
+        ring = [f"POLYGON (({places}))"]
         change = osr.CoordinateTransformation(*map(reference_of, ("EPSG:25832", "EPSG:25833")))
         for option, shapes in (("--boundary", ring), ("--faults", lines)):
             plain, other, wrong = (f"{option[2:]}-{i}.gpkg" for i in range(3))
@@ -392,21 +393,25 @@ class Systems(Vectors, Program):
                     done = self.call(*run, name)
                     self.assertEqual((done.returncode, done.stderr), (0, ""))
                     surfaces.append(reading.read(self.path("p_surface.vtp")))
-                self.assertRegex(done.stdout, f"note +{other} is in .* zone 33N .*, p.gpkg in .* zone 32N")
-                x, y, _ = moved.GetPoint(0) if option == "--faults" else moved.GetGeometryRef(0).GetPoint(0)
+                self.assertRegex(done.stdout, f"note +{other} is in .*33N .*, p.gpkg in .*32N")
+                x, y, _ = (moved if option == "--faults" else moved.GetGeometryRef(0)).GetPoint(0)
                 self.assertIn(f"first point ({x:.10g}, {y:.10g}) to (612001.", done.stdout)
                 numpy.testing.assert_allclose(*map(coordinates, surfaces), rtol=0.0, atol=1e-3)
                 done = self.call(*run, other, "--strict")
                 self.assertEqual(done.returncode, 1)
-                self.assertRegex(done.stderr, f"{other}: its coord.*33N.*, that of p.gpkg .*32N.*reproject")
+                words = f"{other}: its coord.*33N.*, that of p.gpkg .*32N.*reproject"
+                self.assertRegex(done.stderr, words)
                 done = self.call(*run, wrong)
                 self.assertEqual(done.returncode, 1)
-                self.assertRegex(done.stderr, f"{wrong} is in .*33N.*, p.gpkg in .*32N.* away from the")
+                words = f"{wrong} is in .*33N.*, p.gpkg in .*32N.* away from the"
+                self.assertRegex(done.stderr, words)
 
     def test_what_reprojecting_does_to_long_edges_is_told(self):
-        points = [(x, y, x) for x in range(500000, 600001, 20000) for y in range(5500000, 5600001, 20000)]
+        steps = range(0, 100001, 20000)
+        points = [(500000 + x, 5500000 + y, x) for x in steps for y in steps]
         self.make("p.gpkg", "GPKG", wkt_of(points))
-        self.make("b.gpkg", "GPKG", ["POLYGON ((9.2 49.8, 10.2 49.8, 10.2 50.4, 9.2 49.8))"], epsg=4326)
+        ring = "POLYGON ((9.2 49.8, 10.2 49.8, 10.2 50.4, 9.2 49.8))"
+        self.make("b.gpkg", "GPKG", [ring], epsg=4326)
         done = self.call("p.gpkg", "--boundary", "b.gpkg", "--no-fill", "--no-picture")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertRegex(done.stdout, r"edges between points stay straight, up to \d+ beside")
