@@ -70,7 +70,7 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
         cloud = read_any(local, options)
         options.progress = share(whole, 0.7, 1.0)
         cloud = take_out(cloud, options)
-    cloud.notes += notes_on_up(cloud, options.depth)
+    cloud.notes += notes_on_up(cloud, options.depth, os.fspath(path))
     if options.depth:
         turn_over(cloud)
     return cloud

@@ -58,7 +58,8 @@ def read_slices(path, cloud, **options):
             yield points
         if not count:
             raise FileError(f"{local}: all points have the elevation that marks missing data")
-        cloud.notes += notes_on_range(cloud, options.depth, low, high) if low <= high else []
+        if low <= high:
+            cloud.notes += notes_on_range(cloud, options.depth, low, high, os.fspath(path))
         if options.depth:
             cloud.notes.append("z is turned over, as --depth says")
 

@@ -6,23 +6,26 @@ All readers ask here. z is never turned over because of it, but a doubt is told,
 readings.
 """
 
+import os
+
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .column_names import direction_of
+from .column_names import direction_of, is_of_horizon, says_up
 
 WHAT = {"depth": "depths", "time": "times"}
 
 
-def notes_on_up(cloud, depth):
+def notes_on_up(cloud, depth, path=""):
     """Notes for the user on the z of a Cloud as it was read. depth: it will be turned over."""
     z = vtk_to_numpy(cloud.points.GetPoints().GetData())[:, 2]
     z = z[numpy.isfinite(z)]
-    return notes_on_range(cloud, depth, float(z.min()), float(z.max())) if len(z) else []
+    return notes_on_range(cloud, depth, float(z.min()), float(z.max()), path) if len(z) else []
 
 
-def notes_on_range(cloud, depth, low, high):
+def notes_on_range(cloud, depth, low, high, path=""):
     """The same for z from low to high."""
+    is_horizon = cloud.is_horizon or is_of_horizon(os.path.basename(path))
     direction, values = direction_of(cloud.z_name), f"from {low:,.6g} to {high:,.6g}"
     if depth:
         if high > 0.0 or low == 0.0:
@@ -41,10 +44,10 @@ def notes_on_range(cloud, depth, low, high):
             f"z are {WHAT[direction]} by their name, but {values}: taken as they are, upwards; if "
             "they count downwards, --depth turns it over"
         ]
-    if cloud.is_horizon and not direction and low > 0.0:
+    if is_horizon and not direction and not says_up(cloud.z_name) and low > 0.0:
         return [
-            f"z is {values}, and nothing says whether it counts up or down: taken as elevations; "
-            "if these are depths or times, as horizons have, the surface is upside down, and "
-            "--depth turns it over"
+            f"z is {values}, and it is not certain that it counts upwards: taken as elevations; if "
+            "these are depths or times, as of horizons, the surface is upside down, and --depth "
+            "turns it over"
         ]
     return []

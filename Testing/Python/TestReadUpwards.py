@@ -20,7 +20,7 @@ gdal.UseExceptions()
 ogr.UseExceptions()
 UPSIDE_DOWN = "positive, so the surface is upside down; --depth turns it over"
 BOTH = "taken as they are, upwards; if they count downwards, --depth turns it over"
-DOUBTFUL = "nothing says whether it counts up or down: taken as elevations; if these are depths"
+DOUBTFUL = "it is not certain that it counts upwards: taken as elevations; if these are depths"
 HILLS = "hollows are hills now; leave --depth out then"
 COUNT = 8
 STEPS = 25.0 * numpy.arange(COUNT)
@@ -50,6 +50,7 @@ class Decision(unittest.TestCase):
             ("", False, False, -20, -3, None),
             ("Z", True, False, 1558, 1933, DOUBTFUL),
             ("", True, False, 1558, 1933, "z is from 1,558 to 1,933, and " + DOUBTFUL),
+            ("Elevation", True, False, 1558, 1933, None),
             ("", True, False, -1933, -1558, None),
             ("", True, False, -10, 30, None),
             ("Depth", False, True, 1558, 1933, None),
@@ -140,6 +141,23 @@ class Readers(InFolder):
             f"{x} {y} 5 {z}\n" for x, y, z in zip(X, Y, HORIZON)))
         self.assertIn(UPSIDE_DOWN, "".join(reading.read(path, columns="X,Y,Depth").notes))
         self.assertEqual(told(reading.read(path, columns="X,Y,Top").notes), [])
+
+    def test_the_name_of_a_file_is_a_hint(self):
+        for name, is_hint in (
+            ("Top_horizon_3.xyz", True), ("lake-depth.xyz", True), ("Seetiefen.xyz", False),
+            ("bathymetry.xyz", True), ("survey.xyz", False), ("prof.xyz", False),
+        ):
+            with self.subTest(name=name):
+                notes = told(reading.read(self.file(name, self.xyz(HORIZON))).notes)
+                self.assertEqual([DOUBTFUL in note for note in notes], [True] if is_hint else [])
+        head = "X Y Elevation\n"
+        path = self.file("horizon.xyz", head + self.xyz(HORIZON))
+        self.assertEqual(told(reading.read(path).notes), [])
+        surface = "GOCAD VSet 1\nZPOSITIVE {}\n" + "".join(
+            f"VRTX {i} {x} {y} {z}\n" for i, (x, y, z) in enumerate(zip(X, Y, HORIZON))) + "END\n"
+        for sign in ("Elevation", "Depth"):
+            path = self.file("horizon.vs", surface.format(sign))
+            self.assertEqual(told(reading.read(path).notes), [])
 
     def test_slices_tell_the_same(self):
         for head, z in (("X Y Depth\n", HORIZON), ("X Y Depth\n", -HORIZON), ("X Y Z\n", -HORIZON)):
