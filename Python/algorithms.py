@@ -351,8 +351,7 @@ class ReconstructElevationSurface(TellingAlgorithm):
         cloud = cloud_of(part, self._elevation_array, options)
         drop_elevation(cloud.points)
         cloud.notes += recognised(cloud.points)
-        names = {"points": "the points", "boundary": "the boundary", "faults": "the faults"}
-        cloud.notes += notes_on(cloud, lines, names)
+        cloud.notes += notes_on(cloud, lines)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ElevationSurfaceWarning)  # told by warn()
             result = reconstruct(

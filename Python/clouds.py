@@ -26,6 +26,8 @@ class Cloud:
     lines    for text files, the line of each point in the file, else None
     crs      the coordinate reference system as WKT or AUTHORITY:CODE, or None where it is not known
     largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
+    z_name   what z is called where it is from, with its unit, or ""
+    is_horizon  whether it is of a kind of file or table in which horizons are
     """
 
     def __init__(self, points, notes=(), left_out=None, lines=None, crs=None):
@@ -35,6 +37,7 @@ class Cloud:
         self.lines = lines
         self.crs = crs
         self.largest_cell = 0.0
+        self.z_name, self.is_horizon = "", False
 
 
 def three_columns(columns):
@@ -100,10 +103,21 @@ def cells_of(rows):
     return cells
 
 
-def make_lines(parts):
-    """(n, 3) arrays of the points of lines in order -> vtkPolyData. Closed ones share their ends."""
+LINE_NAMES, WITHOUT_Z = "LineNames", "WithoutZ"  # cell arrays of lines
+
+
+def make_lines(parts, names=None):
+    """(n, 3) arrays of the points of lines in order -> vtkPolyData. Closed ones share their ends.
+
+    parts  lines whose z are NaN become lines of z 0, which bare_lines() knows
+    names  None, or how messages call each line, as "lines 3 to 17"
+    """
     cells, total, coordinates = vtkCellArray(), 0, []
-    for points in parts:
+    bare = [bool(len(points) and numpy.isnan(points[:, 2]).all()) for points in parts]
+    for points, is_bare in zip(parts, bare):
+        if is_bare:
+            points = points * (1.0, 1.0, 0.0)
+            points[:, 2] = 0.0
         ids = list(range(total, total + len(points)))
         if len(points) > 3 and numpy.array_equal(points[0], points[-1]):
             points, ids = points[:-1], ids[:-1] + [total]
@@ -112,7 +126,50 @@ def make_lines(parts):
         total += len(points)
     data = make_points(numpy.concatenate(coordinates))
     data.SetLines(cells)
+    if names is not None:
+        words = vtkStringArray()
+        words.SetName(LINE_NAMES)
+        for name in names:
+            words.InsertNextValue(name)
+        data.GetCellData().AddArray(words)
+    if any(bare):
+        flags = numpy_to_vtk(numpy.array(bare, dtype="u1"), deep=True)
+        flags.SetName(WITHOUT_Z)
+        data.GetCellData().AddArray(flags)
     return data
+
+
+def parts_of_lines(data):
+    """(names, parts) of the lines and polygons of vtkPolyData, as make_lines() takes them."""
+    if data.GetPoints() is None:
+        return [], []
+    xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
+    words = data.GetCellData().GetAbstractArray(LINE_NAMES)
+    is_named = isinstance(words, vtkStringArray)
+    is_named = is_named and words.GetNumberOfValues() == data.GetNumberOfCells()
+    first, names, parts = data.GetNumberOfVerts(), [], []
+    for cells, kind in ((data.GetLines(), "line"), (data.GetPolys(), "polygon")):
+        ids, ends = (
+            vtk_to_numpy(a) for a in (cells.GetConnectivityArray(), cells.GetOffsetsArray())
+        )
+        for begin, end in zip(ends[:-1], ends[1:]):
+            part = xyz[ids[begin:end]]
+            if len(part):
+                names.append(words.GetValue(first) if is_named else f"{kind} (cell {first})")
+                parts.append(numpy.vstack((part, part[:1])) if kind == "polygon" else part)
+            first += 1
+    return names, parts
+
+
+def bare_lines(data):
+    """(n,) of bool: which of the lines of parts_of_lines() have no z of their own."""
+    flags = data.GetCellData().GetArray(WITHOUT_Z)
+    is_bare = numpy.zeros(data.GetNumberOfCells(), dtype=bool)
+    if flags:
+        is_bare = vtk_to_numpy(flags) != 0
+    ends = [vtk_to_numpy(c.GetOffsetsArray()) for c in (data.GetLines(), data.GetPolys())]
+    has_points = numpy.concatenate([numpy.diff(e) > 0 for e in ends])
+    return is_bare[data.GetNumberOfVerts() :][: len(has_points)][has_points].copy()
 
 
 def crs_of(data):
@@ -201,16 +258,12 @@ def system_of(names, clouds):
     return crs, [note for name, other in known for note in check_system(name, other, first, crs)]
 
 
-def notes_on(cloud, lines, names):
+def notes_on(cloud, lines):
     """What looks wrong with points and the lines beside them, one line each.
 
     lines   {"boundary": vtkPolyData, "faults": vtkPolyData}, of these what there is
-    names   how messages call the "points" and each of the lines
-    Raises FileError where coordinate reference systems differ.
     """
     notes = [antimeridian_note(cloud.points)]
-    for name, data in lines.items():
-        notes += check_system(names[name], crs_of(data), names["points"], cloud.crs)
     if "faults" in lines:
         notes.append(faults_note(cloud.points, lines["faults"]))
     return [note for note in notes if note]

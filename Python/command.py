@@ -10,8 +10,9 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, merged, notes_on
+from .clouds import Cloud, bare_lines, merged, notes_on
 from .gdal_common import name_of, reference_of
+from .given_lines import fitted
 from .messages import ElevationSurfaceError, PictureError
 from .options import (
     about,
@@ -26,7 +27,7 @@ from .pieces import Pieces
 from .ranks import by_first, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
-from .results import Failure, Progress, Results, WrongOption, write_report
+from .results import Failure, NoPicture, Progress, Results, WrongOption, write_report
 from .spreading import can_be_dealt
 from .steps import in_options
 from .supervisor import allow_stops
@@ -48,6 +49,7 @@ class Run:
         self.is_first = ranks is None or ranks.GetLocalProcessId() == 0
         self.progress = Progress(self.is_first and sys.stderr.isatty() and not options.quiet)
         self.times = {}
+        self.no_picture = None  # why the picture that was asked for is missing
         if ranks and hasattr(os, "sched_getaffinity"):
             # mpirun may give each of them a core.
             options.given.setdefault("threads", len(os.sched_getaffinity(0)))
@@ -87,10 +89,11 @@ class Run:
             lines["boundary"] = reading.read_boundary(options.boundary)
         if options.faults:
             lines["faults"] = reading.read_faults(options.faults, options.depth)
-            if options.depth:
+            if options.depth and not bare_lines(lines["faults"]).all():
                 cloud.notes.append("z of the faults is turned over too, as --depth says")
         names = {"points": options.files[0], "boundary": options.boundary, "faults": options.faults}
-        cloud.notes += notes_on(cloud, lines, names)
+        lines, notes = fitted(cloud, lines, names, options.given, options.strict)
+        cloud.notes += notes + notes_on(cloud, lines)
         return cloud, lines.get("boundary"), lines.get("faults")
 
     def set_crs(self, cloud):
@@ -178,10 +181,9 @@ class Run:
         """Refuses what could not be read, written or drawn, before any work is done."""
         check_options(self.options)
         if self.options.picture_wanted:
-            from .picture import screen_for
+            from .picture import check_screen
 
-            with screen_for(self.options.picture):
-                pass
+            check_screen(self.options.picture)
 
     def nothing(self):
         """What a rank has that reads nothing: no points, and no lines where others have some."""
@@ -197,12 +199,15 @@ class Run:
         for path, output in files_of(options):
             report["notes"] += self.write(result, path, output)
         if options.picture is not None:
+            self.results.keep_in_a_crash()
             try:
                 self.draw(result)
             except PictureError as error:
-                if options.picture_wanted:
-                    raise
                 report["notes"].append(f"no picture: {error.reason}")
+                self.no_picture = str(error) if options.picture_wanted else None
+            except (Failure, MemoryError) as error:
+                self.results.take_back()
+                self.no_picture = str(error) or f"{options.picture}: there is not enough memory"
         report["times"] = self.times
         report["written"] = [path for _, path in self.results.pending]
         if options.report:
@@ -221,6 +226,11 @@ class Run:
         self.results.publish()
         return report
 
+    def check_picture(self):
+        """Raises NoPicture, on all ranks, once all else is written and told."""
+        if total(self.ranks, self.no_picture is not None):
+            raise NoPicture(f"{self.no_picture or 'no picture'}; all else is written")
+
 
 def run_one(options, ranks):
     """The exit code of one run, the same on all ranks. The first says why, where it fails."""
@@ -233,6 +243,7 @@ def run_one(options, ranks):
         if report and not options.quiet:
             print_report(report)
         sys.stdout.flush()
+        run.check_picture()
         return 0
     except ElevationSurfaceError as error:
         reason, code = str(error), error.code
@@ -241,12 +252,14 @@ def run_one(options, ranks):
     finally:
         results.discard()
     run.progress.clear()
-    print(f"reconstruct: error: {reason}", file=sys.stderr)
+    if run.is_first or code != NoPicture.code:
+        print(f"reconstruct: error: {reason}", file=sys.stderr)
     return code
 
 
 def main(arguments=None, ranks=None):
-    """The exit code: 0, 1 where a file or its points cannot be used, 2 for a wrong option."""
+    """The exit code: 0, 1 where a file or its points cannot be used, 2 for a wrong option, 3 where
+    all but the picture is written."""
     options = parse_arguments(arguments)
     # Numbers near the end of their range make infinities; what these mean is told where it matters.
     numpy.seterr(all="ignore")

@@ -3,6 +3,7 @@
 """What reading rasters and reading vectors by GDAL have in common."""
 
 import functools
+import importlib.util
 import math
 import os
 
@@ -166,11 +167,15 @@ def same_system(one, other):
         return None
     if any(reference.IsLocal() for reference in pair):
         return None
-    for reference in pair:
-        if reference.IsCompound():
-            reference.StripVertical()
-        reference.DemoteTo2D()
-    return bool(pair[0].IsSame(pair[1], SAME_PLACES))
+    return bool(flat(pair[0]).IsSame(flat(pair[1]), SAME_PLACES))
+
+
+def flat(reference):
+    """A spatial reference, for x and y alone from here on."""
+    if reference.IsCompound():
+        reference.StripVertical()
+    reference.DemoteTo2D()
+    return reference
 
 
 NEAR = 5.0  # metres; between ETRS89 and WGS 84, which people mix, there is less than one
@@ -207,7 +212,9 @@ def check_system(path, crs, other_path, other):
     """
     same = same_system(crs, other)
     if same is None and crs and other:
-        return [f"whether {path} has the coordinate reference system of {other_path} is not known"]
+        lacks = "" if importlib.util.find_spec("osgeo") else "; install python3-gdal to compare them"
+        words = f"whether {path} has the coordinate reference system of {other_path} is not known"
+        return [words + lacks]
     if same is False and is_near(crs, other):
         return [
             f"{path} is in {name_of(crs)}, {other_path} in {name_of(other)}: taken as the same, "

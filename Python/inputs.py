@@ -24,6 +24,7 @@ from .reading import leave_out
 from .reading.columns import choose_columns
 from .reading.layouts import MISSING
 from .reading.nulls import take_out
+from .reading.upwards import notes_on_up
 from .reading.vtk_files import hidden_points, points_of_grid
 
 SAMPLE = 3000  # rows of a table that tell its columns
@@ -42,6 +43,7 @@ def cloud_of(data, array="", options=None):
         leave_out("input", cloud, options.no_data)
     if not isinstance(data, vtkPointSet):
         take_out(cloud, options)
+    cloud.notes += notes_on_up(cloud, options.depth)
     if options.depth:
         turn_over(cloud)
     return cloud
@@ -99,6 +101,7 @@ def cloud_of_points(data, array):
         xyz[:, 2] = vtk_to_numpy(data.GetPointData().GetArray(array))
         points.SetPoints(make_points(xyz).GetPoints())
     cloud = Cloud(points, crs=crs_of(data))
+    cloud.z_name = array
     hidden = hidden_points(data)
     if hidden.any():
         cloud.left_out["points marked as hidden"] = int(numpy.count_nonzero(hidden))
@@ -161,8 +164,7 @@ def cloud_of_table(table, options):
     cloud = Cloud(make_points(xyz), choice.notes, crs=crs_of(table))
     for i in range(table.GetNumberOfColumns()):
         cloud.points.GetPointData().AddArray(table.GetColumn(i))
-    if choice.downwards and not options.depth:
-        cloud.notes.append(choice.downwards)
+    cloud.z_name, cloud.is_horizon = choice.z_name, choice.is_horizon
     finite = numpy.isfinite(xyz).all(axis=1)
     if finite.any() and not finite.all():
         cloud.left_out["rows without numbers"] = int(numpy.count_nonzero(~finite))

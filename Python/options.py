@@ -171,6 +171,8 @@ def parse_arguments(arguments):
     of_trim, of_fill = (
         [name for name in options.given if PROPERTIES[name].step == step] for step in ("trim", "fill")
     )
+    if "faults_z" in options.given and not options.faults:
+        parser.error("--faults-z is for the lines of --faults, which is missing")
     if not options.trim and (options.boundary or of_trim):
         parser.error("--no-trim leaves nothing for the trimming options to do")
     if not options.fill and of_fill:

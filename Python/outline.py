@@ -167,17 +167,27 @@ def away_from(p, q, points):
 
 def is_sound(rings):
     """Whether rings cross neither themselves nor each other: a mesh can be trimmed along them."""
+    errors, crossings, triangles = trial(rings, are_edges=True)
+    return not errors and not crossings and triangles > 0
+
+
+def trial(rings, are_edges=False):
+    """Triangulates the points of rings, with these as edges or without, and trims along them.
+
+    Returns (errors of the filters, how often rings cross, the number of triangles).
+    """
     mesh = vtkGridDelaunay2D()
     mesh.SetInputData(rings)
-    mesh.SetSourceData(rings)
+    if are_edges:
+        mesh.SetSourceData(rings)
     trim = vtkTrimOutwardTriangles()
     trim.SetInputConnection(mesh.GetOutputPort())
     trim.SetBoundaryData(rings)
     steps = (mesh, mesh.GetExecutive(), trim, trim.GetExecutive())
     with Messages(*steps) as messages:
         trim.Update()
-    is_bad = messages.errors or mesh.GetNumberOfConstraintCrossings()
-    return not is_bad and trim.GetOutput().GetNumberOfPolys() > 0
+    triangles = (trim if are_edges else mesh).GetOutput().GetNumberOfPolys()
+    return messages.errors, mesh.GetNumberOfConstraintCrossings(), triangles
 
 
 def edges_of(lines):

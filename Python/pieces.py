@@ -15,16 +15,10 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import reading
-from .clouds import (
-    Cloud,
-    check_system,
-    corner_flags,
-    crs_of,
-    make_points,
-    set_crs,
-    slices,
-)
+from .clouds import Cloud, corner_flags, make_points, set_crs, slices
+from .given_lines import in_system
 from .holes import report_of_holes
+from .mending import mended
 from .messages import FileError, Messages, plain_message
 from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
@@ -47,8 +41,8 @@ BYTES_TO_FILL = 350  # where its holes are filled
 BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
 # Options of what is made of the whole surface in memory.
-OF_THE_WHOLE = ("faults", "open_edge_length", "grid", "contours", "outlines", "picture", "view")
-OF_THE_WHOLE += ("exaggeration", "colours", "outward_test", "maximum_elevation_error")
+OF_THE_WHOLE = ("faults", "faults_z", "open_edge_length", "grid", "contours", "outlines", "picture")
+OF_THE_WHOLE += ("view", "exaggeration", "colours", "outward_test", "maximum_elevation_error")
 
 
 def memory_size(text):
@@ -221,7 +215,8 @@ class Pieces:
         """Gives all points to the filter, slice by slice."""
         options, reach = self.options, numpy.inf
         path = options.boundary
-        boundary = reading.read_boundary(path) if path else None
+        if path:
+            boundary, notes = mended(reading.read_boundary(path), path, options.strict)
         wanted = self.run.read_options()
         for points in read_files(options.files, self.cloud, **wanted):
             for part in slices(len(points), AT_ONCE):
@@ -235,9 +230,10 @@ class Pieces:
             raise WrongOption(f"{options.file}: --{error}") from None
         self.run.set_crs(self.cloud)
         if path:
-            self.cloud.notes += check_system(
-                path, crs_of(boundary), options.files[0], self.cloud.crs
+            boundary, told = in_system(
+                boundary, path, self.cloud, options.files[0], options.strict
             )
+            self.cloud.notes += notes + told
             self.source.GetTrim().SetBoundaryData(boundary)
 
     def update(self, piece, count):

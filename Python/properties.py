@@ -70,6 +70,7 @@ OUTWARD_TESTS = ("exact", "inward-normal")
 BOUNDARY_EDGES = ("follow-surface", "straight", "own-elevations")
 LATTICE_MODES = ("automatic", "off")
 COLOURS = ("elevation", "error")
+FAULTS_Z = ("automatic", "given", "drape")
 DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 
 
@@ -77,7 +78,7 @@ DUPLICATES = ("keep-first", "keep-last", "keep-lowest", "keep-highest")
 class Property:
     """A property of the chain: which filter has it, and what it takes."""
 
-    step: str  # delaunay, trim, fill; "" for all three
+    step: str  # delaunay, trim, fill; "" for all three; faults for what is done to them before
     setter: str
     convert: object  # raises ValueError for what the property does not take
     takes: str  # what it takes, in words
@@ -118,6 +119,7 @@ PROPERTIES = {
     "spacing": Property("fill", "SetSpacing", number_at_least_zero, NUMBER),
     "interpolation": _choice("fill", "SetInterpolation", INTERPOLATIONS),
     "interpolate_point_data": Property("fill", "SetInterpolatePointData", yes_or_no, YES_OR_NO),
+    "faults_z": _choice("faults", "", FAULTS_Z),
     "threads": Property("", "SetNumberOfThreads", count_at_least_zero, COUNT),
 }
 

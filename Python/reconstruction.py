@@ -14,6 +14,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
 
 from .clouds import Cloud, make_lines, make_points
+from .given_lines import fitted
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .opening import length_to_open
 from .paths import check_suffix
@@ -59,7 +60,8 @@ def array_of(values, what, widths):
 def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
     """vtkPolyData with lines or polygons, from such data, an array, or a list of arrays.
 
-    An array holds the points of one line in order, (n, 3); of a ring also (n, 2), closed or not.
+    An array holds the points of one line in order, (n, 3) or, without z, (n, 2); a ring is closed or
+    not.
     """
     if isinstance(lines, vtkPolyData):
         return lines
@@ -72,15 +74,16 @@ def as_lines(lines: Lines, what: str, are_rings: bool) -> vtkPolyData:
         raise TypeError(f"{what}: vtkPolyData, an array, or a list of arrays is needed") from None
     parts = []
     for line in [lines] if is_one else lines:
-        line = array_of(line, what, (2, 3) if are_rings else (3,))
+        line = array_of(line, what, (2, 3))
         if line.shape[1] == 2:
-            line = numpy.column_stack((line, numpy.zeros(len(line))))
-        if are_rings and (line[0] != line[-1]).any():
+            line = numpy.column_stack((line, numpy.full(len(line), numpy.nan)))
+        if are_rings and (line[0, :2] != line[-1, :2]).any():
             line = numpy.vstack((line, line[:1]))
         if are_rings and len(line) < 4:
             raise ValueError(f"{what}: a ring has {len(line) - 1} points; 3 are needed")
         parts.append(line)
-    return make_lines(parts)
+    names = ["the line"] if is_one else [f"line {i} of the list" for i in range(len(parts))]
+    return make_lines(parts, names)
 
 
 # ---- the chain --------------------------------------------------------------------------------
@@ -257,6 +260,7 @@ def run_chain(
     return result
 
 
+NAMES = {"points": "the points", "boundary": "the boundary", "faults": "the faults"}
 Points = Union[Cloud, vtkPointSet, numpy.ndarray, Sequence]
 Lines = Union[vtkPolyData, numpy.ndarray, Sequence, None]
 
@@ -269,6 +273,7 @@ def reconstruct(
     trim: bool = True,
     fill: bool = True,
     progress: Optional[Callable[[str, float], None]] = None,
+    strict: bool = False,
     **properties: Any,
 ) -> Reconstruction:
     """Reconstructs an elevation surface z = f(x, y) from points.
@@ -276,19 +281,22 @@ def reconstruct(
     points    (n, 3) array of x, y, z, whose values are taken as they are; a vtkPointSet or PyVista mesh, whose points and point data are
               used; or what read() returns
     boundary  closed lines that bound the surface: vtkPolyData, an (n, 2) or (n, 3) array, or a list
-              of such arrays; None: found from the points
-    faults    lines that become edges: vtkPolyData, an (n, 3) array, or a list of such arrays
+              of such arrays; None: found from the points. Gaps of up to 1 % of a ring's length are
+              closed, and rings that cross themselves made valid (that needs python3-gdal)
+    faults    lines that become edges: vtkPolyData, an (n, 3) array, or a list of such arrays; those
+              of (n, 2), and others without z, follow the surface of the points (see faults_z)
     trim      False keeps all triangles, also those outside the boundary
     fill      False leaves all holes open
     progress  None, or a function that is called with a step's name and its fraction done; what it
               raises stops the filter
+    strict    True: what is mended of boundary and faults, and what the filters warn of, is an error
     properties  of the filters, named as the options of the command line, with underscores:
               maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
               lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
               recover_boundary, boundary_edges, open_edge_length, maximum_hole_size,
               maximum_hole_edges, fill_cut_outs, spacing, interpolation, interpolate_point_data,
-              threads. Lengths are in the units of x and y.
-              The program's --help tells what each does, and its default.
+              faults_z, threads. Lengths are in the units of x and y. The program's --help tells
+              what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made, TypeError for unknown properties, ValueError for values that a property does not
@@ -302,7 +310,14 @@ def reconstruct(
     if faults is not None:
         faults = as_lines(faults, "faults", False)
     check_spacing(least_reach(cloud.points), given.get("spacing", 0.0))
-    result = run_chain(cloud, boundary, faults, given, trim=trim, fill=fill, progress=progress)
+    lines = {"boundary": boundary, "faults": faults}
+    lines = {name: data for name, data in lines.items() if data is not None}
+    lines, notes = fitted(cloud, lines, NAMES, given, strict)
+    result = run_chain(
+        cloud, lines.get("boundary"), lines.get("faults"), given,
+        trim=trim, fill=fill, progress=progress, strict=strict,
+    )
+    result.notes[:0] = notes
     for note in result.notes:
         warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
     return result

@@ -8,7 +8,7 @@ import sys
 
 from .messages import ElevationSurfaceError, FileError, PictureError
 from .paths import partial_path
-from .supervisor import hold_stops, note_finished_file, note_partial_file
+from .supervisor import hold_stops, note_finished_file, note_partial_file, note_whole_file
 
 
 class Failure(ElevationSurfaceError):
@@ -19,6 +19,12 @@ class WrongOption(Failure):
     """A Failure of the command line."""
 
     code = 2
+
+
+class NoPicture(Failure):
+    """The picture that was asked for is missing; all else is written."""
+
+    code = 3
 
 
 class Progress:
@@ -59,13 +65,22 @@ class Results:
         note_partial_file(partial)
         try:
             return write(partial)
-        except PictureError:
-            self.pending.pop()
-            raise
+        except PictureError as error:
+            self.take_back()
+            raise PictureError(path, error.reason) from None
         except (OSError, FileError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             reason = reason.replace(partial, path)
             raise Failure(f"{path}: cannot be written: {reason}") from None
+
+    def take_back(self):
+        """Removes what was added last."""
+        remove(self.pending.pop()[0])
+
+    def keep_in_a_crash(self):
+        """What has been added is whole: it appears, even if a library crashes from here on."""
+        for partial, path in self.pending:
+            note_whole_file(partial, path)
 
     def publish(self):
         """Lets all files appear. From here on the run counts as done: nothing stops it any more."""
@@ -81,11 +96,15 @@ class Results:
 
     def discard(self):
         for partial, _ in self.pending:
-            try:
-                os.remove(partial)
-            except OSError:
-                pass
+            remove(partial)
         self.pending = []
+
+
+def remove(path):
+    try:
+        os.remove(path)
+    except OSError:
+        pass
 
 
 def write_report(path, report):

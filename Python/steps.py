@@ -93,7 +93,7 @@ class Step:
 def in_options(words):
     """A filter's message, with the names of options where it has names of properties."""
     for name, one in PROPERTIES.items():
-        if not one.step or words.startswith(STEPS[one.step]):
+        if one.setter and (not one.step or words.startswith(STEPS[one.step])):
             words = re.sub(rf"\b{one.setter[3:]}\b", option_of(name), words)
         if "_" in name:
             words = words.replace(name, option_of(name))

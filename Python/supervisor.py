@@ -8,7 +8,8 @@ unfinished results and the folder of its temporary files. While finished results
 is not stopped. Nothing here is imported that takes time.
 
 They talk by SIGTERM from the parent, and by files in a folder: the names of unfinished results, the
-names of those that have appeared, and a file that is there while stops are held back.
+names of those that are whole but wait for the picture, the names of those that have appeared, and a
+file that is there while stops are held back.
 """
 
 import ctypes
@@ -28,6 +29,7 @@ NOTHING = "nothing is written"
 MOST_NAMED = 10
 RUN = "ELEVATION_SURFACE_RUN"  # the environment variable that tells the child the folder
 PARTIAL_FILES, FINISHED_FILES, HELD = "partial-files", "finished-files", "held"
+WHOLE_FILES = "whole-files"
 # What Open MPI, and MPICH and its relatives, tell of a process that mpirun has started.
 RANKS = (("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"), ("PMI_RANK", "PMI_SIZE"))
 held_back = []  # stops that were asked for since hold_stops()
@@ -53,6 +55,12 @@ def note_partial_file(path):
     """Tells the parent of a file or folder that is not finished, for it to remove if this process
     cannot."""
     note(PARTIAL_FILES, os.path.abspath(path))
+
+
+def note_whole_file(partial, path):
+    """Tells the parent of a result that only waits for the picture, and its final place."""
+    note(WHOLE_FILES, os.path.abspath(partial))
+    note(WHOLE_FILES, path)
 
 
 def note_finished_file(path):
@@ -109,6 +117,18 @@ def stop(*_):
     raise KeyboardInterrupt
 
 
+def keep_whole_files(folder):
+    """Lets the results appear that only waited for the picture. Returns whether there were some."""
+    names = noted(folder, WHOLE_FILES)
+    waiting = [pair for pair in zip(names[::2], names[1::2]) if os.path.exists(pair[0])]
+    for partial, path in waiting:
+        os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
+        os.replace(partial, path)
+        with open(os.path.join(folder, FINISHED_FILES), "a", encoding="utf-8") as stream:
+            stream.write(path + "\0")
+    return bool(waiting)
+
+
 def remove_leftovers(folder):
     for path in noted(folder, PARTIAL_FILES):
         if os.path.isdir(path):
@@ -129,7 +149,7 @@ def what_is_written(folder):
 
 def supervised(work):
     """Calls work() in a child process. Returns the exit code: work's, 130 if stopped, 1 after a
-    crash.
+    crash, 3 where only the picture was missing then.
 
     Of several processes that mpirun has started, the first alone writes files and is stopped so. The
     others have to outlive it: when one is gone, mpirun ends all by force.
@@ -157,10 +177,12 @@ def supervised(work):
         return 130
     for number in STOPPING:
         signal.signal(number, signal.SIG_IGN)  # too late; Python's own end would reset handlers
+    code = os.WEXITSTATUS(status) if os.WIFEXITED(status) else None
+    has_crashed = code is None and not stops
+    crashed_drawing = has_crashed and keep_whole_files(folder)
     is_done, written = is_held(folder), what_is_written(folder)
     remove_leftovers(folder)
-    code = os.WEXITSTATUS(status) if os.WIFEXITED(status) else None
-    if code == 0 or code in (1, 2) and (is_done or not stops):
+    if code == 0 or code in (1, 2, 3) and (is_done or not stops):
         return code
     if sys.stderr.isatty():
         sys.stderr.write("\r" + " " * 60 + "\r")
@@ -173,8 +195,10 @@ def supervised(work):
         reason = f"crashed in a library ({signal.Signals(os.WTERMSIG(status)).name})"
     else:
         reason = f"ended with code {code}"
+    if crashed_drawing:
+        reason += " while it drew the picture"
     print(f"reconstruct: error: the run {reason}; {written}", file=sys.stderr)
-    return 1
+    return 3 if crashed_drawing else 1
 
 
 def be_child(work, folder):

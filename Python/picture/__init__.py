@@ -30,7 +30,7 @@ from vtkmodules.vtkRenderingCore import (
 )
 
 from ..clouds import cells_of, corner_flags
-from .display import screen
+from .display import screen, why_no_server
 from ..messages import PictureError
 from .signs import (
     BOTTOM,
@@ -80,15 +80,23 @@ def open_window():
 def screen_for(path):
     """A screen to draw a picture on, while the context lasts. Raises PictureError."""
     with screen() as reason:
-        reason = reason or why_no_picture()
-        if reason:
-            raise PictureError(path, reason + "; Utilities/reconstruct sets everything up")
+        refuse(path, reason or why_no_picture())
         try:
             yield
         finally:
             # Before the screen goes: a window without one ends the program.
             while OPEN_WINDOWS:
                 OPEN_WINDOWS.pop().Finalize()
+
+
+def check_screen(path):
+    """Raises PictureError where it is certain, before any work, that no picture can be drawn."""
+    refuse(path, why_no_picture() if os.environ.get("DISPLAY") else why_no_server())
+
+
+def refuse(path, reason):
+    if reason:
+        raise PictureError(path, reason + "; Utilities/reconstruct sets everything up")
 
 
 def why_no_picture():

@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A display for drawing where there is no screen: Xvfb, for as long as this program runs."""
+"""A display for drawing where there is no screen: Xvfb, for as long as this program runs.
+
+Where Xvfb does not start or answer, as on a machine that is very busy, it is started again. What
+did not answer keeps its number meanwhile, so that each start has another one.
+"""
 
 import contextlib
 import ctypes
@@ -12,10 +16,13 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 from ..supervisor import STOPPING, end_with_parent
 
 WAIT = 30.0  # seconds; a busy machine may take long
+STARTS = 3  # of Xvfb, until one answers
+PAUSE = 1.0  # seconds between them
 
 
 class VirtualDisplay:
@@ -27,7 +34,7 @@ class VirtualDisplay:
     """
 
     def __init__(self):
-        self.server = None
+        self.servers = []
         self.folder = None
         self.connection = None
 
@@ -35,19 +42,25 @@ class VirtualDisplay:
         """None, or why there is no display."""
         if not sys.platform.startswith("linux"):
             return None
-        program = shutil.which("Xvfb")
-        if not program:
-            return "Xvfb is not installed"
+        program, reason = shutil.which("Xvfb"), why_no_server()
+        if reason:
+            return reason
         try:
             x11 = ctypes.CDLL("libX11.so.6")
             self.folder = tempfile.mkdtemp(prefix="reconstruct-display-")
-            return self.start(program, x11)
+            key = os.path.join(self.folder, "key")
+            write_key(key)
+            for start in range(STARTS):
+                time.sleep(PAUSE if start else 0.0)
+                reason = self.start(program, x11, key)
+                if not reason:
+                    return None
+            return f"{reason}, asked {STARTS} times"
         except OSError as error:
             return f"Xvfb cannot be used: {error}"
 
-    def start(self, program, x11):
-        key = os.path.join(self.folder, "key")
-        write_key(key)
+    def start(self, program, x11, key):
+        """None, or why this server is none to draw on."""
         reading, writing = os.pipe()
         # A signal that stops this program waits until the server is known, so that it can be ended.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)
@@ -58,7 +71,7 @@ class VirtualDisplay:
 
         try:
             # A session of its own: Ctrl-C on the terminal is for this program to handle.
-            self.server = subprocess.Popen(
+            server = subprocess.Popen(
                 [
                     *(program, "-displayfd", str(writing), "-screen", "0", "1280x1024x24"),
                     *("-auth", key, "-nolisten", "tcp", "-terminate"),
@@ -70,6 +83,7 @@ class VirtualDisplay:
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
             )
+            self.servers.append(server)
         finally:
             os.close(writing)
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
@@ -84,20 +98,28 @@ class VirtualDisplay:
         return None if self.connection else "Xvfb does not answer"
 
     def close(self):
-        if self.server is not None:
-            self.server.send_signal(signal.SIGTERM)
+        for server in self.servers:
+            server.send_signal(signal.SIGTERM)
+        for server in self.servers:
             try:
-                self.server.wait(5)
+                server.wait(5)
             except subprocess.TimeoutExpired:
-                self.server.kill()
-                self.server.wait()
-            self.server = None
+                server.kill()
+                server.wait()
             # Nothing answers there any more.
             os.environ.pop("DISPLAY", None)
             os.environ.pop("XAUTHORITY", None)
+        self.servers = []
         if self.folder is not None:
             shutil.rmtree(self.folder, ignore_errors=True)
             self.folder = None
+
+
+def why_no_server():
+    """Why Xvfb cannot even be tried, or None."""
+    if not sys.platform.startswith("linux") or shutil.which("Xvfb"):
+        return None
+    return "Xvfb is not installed"
 
 
 @contextlib.contextmanager

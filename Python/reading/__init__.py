@@ -17,8 +17,9 @@ from .formats import recognise
 from ..messages import FileError, did_you_mean
 from ..progress import no_progress, share
 from .nulls import take_out
-from .text import read_table
+from .text import read_line_table, read_table
 from .unpacking import is_plain, unpacked
+from .upwards import notes_on_up
 
 # Options that mean something for some readers only.
 MEANS_SOMETHING = {
@@ -69,6 +70,7 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
         cloud = read_any(local, options)
         options.progress = share(whole, 0.7, 1.0)
         cloud = take_out(cloud, options)
+    cloud.notes += notes_on_up(cloud, options.depth, os.fspath(path))
     if options.depth:
         turn_over(cloud)
     return cloud
@@ -116,7 +118,8 @@ def read_faults(path, depth=False, progress=no_progress):
     progress a function that is called with the fraction read; what it raises ends the reading
 
     A text file holds one line after the other, x, y and z in the first columns, a blank line
-    between them. Raises FileError.
+    between them. Lines without z have z 0 and are marked by the cell array WithoutZ; reconstruct()
+    drapes them. Raises FileError.
     """
     faults = Cloud(read_lines(os.fspath(path), "a fault", "faults", text_faults, progress))
     if depth:
@@ -128,8 +131,8 @@ def read_boundary(path, progress=no_progress):
     """The boundary rings of a file as vtkPolyData with lines or polygons. Progress as of faults.
 
     A text file holds one ring after the other, x and y in the first columns, a blank line between
-    rings, and each ring's first point again at its end. Raises FileError, also for a ring that is
-    not closed.
+    rings, and each ring's first point again at its end. Raises FileError. Rings that are not closed
+    are read; reconstruct() closes small gaps.
     """
     return read_lines(os.fspath(path), "a boundary", "a boundary", text_boundary, progress)
 
@@ -145,28 +148,22 @@ def read_lines(path, singular, what, read_text_lines, progress):
         return kind.line_reader()(local, singular, progress)
 
 
-def text_parts(path, needed, what, progress):
-    """The lines of a text file as arrays, and the first and last line number of each."""
-    rows, lines, starts, _ = read_table(path, needed, progress)
+def lines_of_text(path, table, what):
+    """The lines of a text file as vtkPolyData: table is what read_table() gives of it."""
+    rows, numbers, starts, _ = table
     bad = numpy.flatnonzero(~numpy.isfinite(rows).all(axis=1))
     if len(bad):
-        raise FileError(f"{path}, line {lines[bad[0]]}: {what} is not finite")
+        raise FileError(f"{path}, line {numbers[bad[0]]}: {what} is not finite")
+    if rows.shape[1] == 2:
+        rows = numpy.column_stack((rows, numpy.full(len(rows), numpy.nan)))
     ends = [*starts[1:], len(rows)]
-    return [(rows[a:b], lines[a], lines[b - 1]) for a, b in zip(starts, ends)]
+    names = [f"the part from line {numbers[a]} to {numbers[b - 1]}" for a, b in zip(starts, ends)]
+    return make_lines([rows[a:b] for a, b in zip(starts, ends)], names)
 
 
 def text_faults(path, progress):
-    parts = text_parts(path, 3, "a point of a fault", progress)
-    return make_lines([part for part, _, _ in parts])
+    return lines_of_text(path, read_line_table(path, progress), "a point of a fault")
 
 
 def text_boundary(path, progress):
-    rings = []
-    for ring, first, last in text_parts(path, 2, "a boundary point", progress):
-        if len(ring) < 4 or not numpy.array_equal(ring[0], ring[-1]):
-            raise FileError(
-                f"{path}: the boundary from line {first} to line {last} is not closed; its last "
-                "point must repeat its first, after three or more others"
-            )
-        rings.append(numpy.column_stack((ring, numpy.zeros(len(ring)))))
-    return make_lines(rings)
+    return lines_of_text(path, read_table(path, 2, progress), "a boundary point")

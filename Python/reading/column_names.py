@@ -117,6 +117,9 @@ UNITS = {
     "centimetres": _words("cm centimeter centimeters centimetre centimetres"),
     "millimetres": _words("mm millimeter millimeters millimetre millimetres"),
 }
+UNITS_OF_TIME = _words("s sec secs second seconds ms msec msecs millisecond milliseconds us")
+HORIZONS = _words("horizon horizons horizont horizonte horisont orizzonte horyzont hor tvdss")
+SEISMIC = _words("inline il iline xline crossline xl trace tr cdp cmp")
 LETTERS_OF_AXES = _words("e oe n h")
 LETTERS = str.maketrans({"ø": "oe", "æ": "ae", "ß": "ss", "ł": "l", "Ø": "Oe", "Ł": "L"})
 
@@ -203,6 +206,31 @@ def unit_of(name):
     outside, inside = in_brackets(name)
     words = plain(inside) or plain(outside)[1:]
     return next((unit for unit, names in UNITS.items() if words and words[-1] in names), "")
+
+
+def direction_of(name):
+    """"depth" or "time" where a name, or its unit in brackets, says that z counts downwards, or ""."""
+    is_time = "".join(plain(in_brackets(name)[1])) in UNITS_OF_TIME
+    return meaning(name).direction or ("time" if is_time else "")
+
+
+def says_up(name):
+    """Whether a name says that z counts upwards, as "Elevation" does and "Z" does not."""
+    found = meaning(name)
+    return found.axis == "z" and found.rank == 1 and not direction_of(name)
+
+
+def is_of_horizon(name):
+    """Whether the name of a file says that it holds a horizon, or depths."""
+    return any(
+        word in HORIZONS or len(word) > 4 and meaning(word).direction == "depth"
+        for word in plain(name)
+    )
+
+
+def is_seismic(name):
+    """Whether a name is that of a line or trace of a seismic survey."""
+    return "".join(plain(name)) in SEISMIC
 
 
 def is_beside(name):

@@ -12,7 +12,7 @@ import re
 
 import numpy
 
-from .column_names import COLOURS, Meaning, in_brackets, meaning, plain
+from .column_names import COLOURS, Meaning, in_brackets, is_seismic, meaning, plain
 from ..messages import FileError
 
 
@@ -29,7 +29,8 @@ class Choice:
     extras: dict
     of_numbers: list
     notes: list
-    downwards: object = None  # the note for a z that counts downwards by its name and values
+    z_name: str = ""  # what z is called, with its unit
+    is_horizon: bool = False  # whether lines and traces of a seismic survey stand beside
 
 
 @numpy.errstate(all="ignore")
@@ -52,7 +53,9 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     extras = search.extras()
     shares = numpy.isfinite(search.values).mean(axis=0)
     of_numbers = [i for i in range(width) if shares[i] > search.share_of_text[i]]
-    return Choice(search.indices, extras, of_numbers, search.notes, search.downwards)
+    z_name = names[search.indices[-1]] if names and needed == 3 else ""
+    is_horizon = any(map(is_seismic, names)) if names else search.has_line_and_trace
+    return Choice(search.indices, extras, of_numbers, search.notes, z_name, is_horizon)
 
 
 class Search:
@@ -60,7 +63,7 @@ class Search:
 
     def __init__(self, path, rows, consecutive, number, names, width, needed, advice):
         self.path, self.names, self.width, self.needed = path, names, width, needed
-        self.axes, self.advice, self.downwards = "xyz"[:needed], advice, None
+        self.axes, self.advice, self.has_line_and_trace = "xyz"[:needed], advice, False
         self.row = next((row for row in rows if len(row) >= width), rows[0])
         table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
@@ -199,13 +202,6 @@ class Search:
                     f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too "
                     "(see --columns)"
                 )
-            values = self.finite(self.indices[2])
-            if z.direction and len(values) and numpy.median(values) > 0:
-                what = "depths" if z.direction == "depth" else "times"
-                self.downwards = (
-                    f"z are {what} by their name and positive, so the surface is upside down; "
-                    "--depth turns it over"
-                )
         if self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
                 "Y stands before X, as where X is north; x and y are taken as named "
@@ -276,6 +272,7 @@ class Search:
         if self.needed == 3 and len(left) >= 5:
             for i in self.place_in_grid(left):
                 take(i, "a line, trace or place in a grid: others follow from it")
+                self.has_line_and_trace = True
         return left, reasons
 
     def finite(self, i):

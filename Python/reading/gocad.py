@@ -89,6 +89,7 @@ def read_points(path, options):
     """The vertices; properties become point arrays."""
     gocad = Gocad(path, options.progress, turn=not options.depth, no_data=options.no_data)
     cloud = Cloud(make_points(numpy.array(gocad.points)))
+    cloud.z_name = "elevation"  # by ZPOSITIVE, which turns over what is none
     for name, values in gocad.properties.items():
         values = values + [numpy.nan] * (len(gocad.points) - len(values))
         add_array(cloud.points, name, numpy.array(values))

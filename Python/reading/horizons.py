@@ -62,6 +62,7 @@ def grid_cloud(path, x, y, z, null, note):
     """Nodes of a grid as points. x, y, z: arrays of one shape; null and above is no data."""
     z = numpy.where(z >= null, numpy.nan, z)
     cloud = points_of_raster(path, x, y, z)
+    cloud.is_horizon = True
     cloud.notes.append(f"{note}, {z.shape[1]} x {z.shape[0]} nodes")
     return cloud
 
@@ -146,6 +147,7 @@ def read_table(path, names, first, progress, null=None):
         raise FileError(f"{path}: holds no points")
     keep = numpy.isfinite(rows[:, 2]) & (rows[:, 2] != null if null is not None else True)
     cloud = Cloud(make_points(rows[keep, :3]), [f"columns by the header: {', '.join(names)}"])
+    cloud.z_name, cloud.is_horizon = names[places[2]], True
     if not keep.all():
         cloud.left_out["rows without data"] = int(numpy.count_nonzero(~keep))
     for i, place in enumerate(others, 3):
@@ -224,16 +226,20 @@ def read_lines(path, singular, progress):
     """Lines in segments as vtkPolyData. Those of a boundary are closed, as GMT closes polygons."""
     parts = segments(path, progress)
     if singular == "a boundary":
-        parts = [numpy.column_stack((part[:, :2], numpy.zeros(len(part)))) for part in parts]
         parts = [
-            part if (part[0] == part[-1]).all() else numpy.concatenate((part, part[:1]))
+            part if (part[0, :2] == part[-1, :2]).all() else numpy.concatenate((part, part[:1]))
             for part in parts
         ]
         if any(len(part) < 4 for part in parts):
             raise FileError(f"{path}: holds a ring of fewer than three points")
-    elif any(numpy.isnan(part[:, 2]).any() for part in parts):
-        raise FileError(f"{path}: its lines have no z")
-    return make_lines(parts)
+    names = [f"line {i} of the file" for i in range(1, len(parts) + 1)]
+    for name, part in zip(names, parts):
+        flat = numpy.isnan(part[:, 2])
+        if flat.any() and not flat.all() and singular != "a boundary":
+            raise FileError(f"{path}: {name} has z at some of its points only")
+        if flat.any():
+            part[:, 2] = numpy.nan
+    return make_lines(parts, names)
 
 
 def columns_of_array(path):

@@ -7,6 +7,7 @@ import os
 import numpy
 
 from ..clouds import Cloud, make_points
+from .column_names import direction_of
 from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError
@@ -232,10 +233,22 @@ def read_points(path, options):
     if count == 0:
         raise FileError(f"{path}: all {len(points):,} pixels are without data")
     cloud = Cloud(make_points(points[:count], copy=False), notes)
+    cloud.z_name = name_of_z(band)
+    cloud.is_horizon = data.GetDriver().ShortName == "ZMap"
     if count < len(points):
         cloud.left_out["pixels without data"] = len(points) - count
     cloud.crs = reference.ExportToWkt() if reference else None
     return cloud
+
+
+def name_of_z(band):
+    """What a band says that its values are, with their unit."""
+    told = band.GetMetadata()
+    names = [told.get(key, "") for key in ("NETCDF_VARNAME", "standard_name", "long_name")]
+    names = [f"{name} ({band.GetUnitType()})" for name in [*names, band.GetDescription()] if name]
+    if told.get("positive", "").lower() == "down":
+        names.insert(0, "depth")
+    return next((name for name in names if direction_of(name)), "")
 
 
 def blocks(path, data, band, no_data):

@@ -13,6 +13,7 @@ from . import check_use
 from .formats import FORMATS, recognise
 from .nulls import usual_nulls, zero_rows
 from .unpacking import unpacked
+from .upwards import notes_on_range
 
 MOST_SEEN = 20_000  # points of earlier slices that are kept, to tell nulls in later ones
 
@@ -41,7 +42,7 @@ def read_slices(path, cloud, **options):
         check_use(local, kind, options)
         check_sliced(local, kind)
         cloud.notes += notes
-        count, seen = 0, numpy.empty((0, 3))
+        count, seen, low, high = 0, numpy.empty((0, 3)), numpy.inf, -numpy.inf
         for points in kind.slice_reader()(local, options, cloud):
             if options.no_data is not None:
                 points = with_data(points, options.no_data, cloud, "points without data")
@@ -49,12 +50,16 @@ def read_slices(path, cloud, **options):
                 check_nulls(local, numpy.concatenate((seen, points)))
                 seen = numpy.concatenate((seen, points[:: max(1, len(points) // 100)]))
                 seen = seen[:: 1 + len(seen) // MOST_SEEN]
+            z = points[numpy.isfinite(points[:, 2]), 2]
+            low, high = z.min(initial=low), z.max(initial=high)
             if options.depth:
                 points = points * (1.0, 1.0, -1.0)
             count += len(points)
             yield points
         if not count:
             raise FileError(f"{local}: all points have the elevation that marks missing data")
+        if low <= high:
+            cloud.notes += notes_on_range(cloud, options.depth, low, high, os.fspath(path))
         if options.depth:
             cloud.notes.append("z is turned over, as --depth says")
 

@@ -7,6 +7,7 @@ lines a second. What numpy does not take is parsed line by line, so that an erro
 """
 
 import collections
+import contextlib
 import io
 import math
 import os
@@ -107,7 +108,7 @@ class Table:
     extras           {index: name} of the other columns of numbers
     of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
-    downwards        the note for a z that counts downwards by its name and values, or None
+    z_name, is_horizon  see Choice
     advice           what a user can do where columns are wrong
     has_summaries    whether lines that begin with "Total" or such are no data
     sees_summaries   whether there are such at the start or at the end of the first block
@@ -138,7 +139,8 @@ class Table:
             advice,
         )
         self.indices, self.extras = chosen.indices, chosen.extras
-        self.notes, self.downwards = chosen.notes, chosen.downwards
+        self.notes, self.z_name = chosen.notes, chosen.z_name
+        self.is_horizon = chosen.is_horizon
         self.of_numbers = chosen.of_numbers
         check_marks(path, rows, self.of_numbers)
         if needed == 3:
@@ -473,15 +475,26 @@ def read_table(path, needed=3, progress=no_progress):
     return rows[:, :needed].copy(), numbers, starts, notes
 
 
+def read_line_table(path, progress):
+    """As read_table() of x, y and z, or of x and y where there are no more columns of numbers."""
+    try:
+        return read_table(path, 3, progress)
+    except FileError:
+        with contextlib.suppress(FileError):
+            table = parse(path, None, 2, "", progress)[0]
+            if len(table.of_numbers) == 2:
+                return read_table(path, 2, progress)
+        raise
+
+
 def read_text(path, options):
     """The points of a text file; numbers in other columns become point arrays.
 
     Returns a Cloud. Ten million lines of x, y and z take some five seconds of one core and 0.8 GB.
     """
     table, rows, numbers, _, notes = parse(path, options.columns, 3, ADVICE, options.progress)
-    if table.downwards and not options.depth:
-        notes.append(table.downwards)
     cloud = Cloud(None, notes, lines=numbers)
+    cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
     if options.no_data is not None:
         cloud.lines = numbers[rows[:, 2] != options.no_data]
         rows = with_data(rows, options.no_data, cloud, "rows without data")
@@ -506,8 +519,7 @@ def text_slices(path, options, cloud):
     if not count:
         raise FileError(f"{path}: all rows are without data")
     cloud.notes += parser.told()
-    if parser.table.downwards and not options.depth:
-        cloud.notes.append(parser.table.downwards)
+    cloud.z_name, cloud.is_horizon = parser.table.z_name, parser.table.is_horizon
     if parser.table.extras:
         cloud.notes.append(f"left out: {', '.join(parser.table.extras.values())}")
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Points, lines and polygons of vector files. OGR reads them, whatever their format."""
 
+import collections
+
 import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points, set_crs
@@ -78,6 +80,8 @@ class Layer:
 
     parts     [(kind, (n, 3) array of points)], z NaN where there is none
     features  for each part, the number of its feature from 0
+    ids       for each part, the id of its feature
+    z_name    the attribute that z is from, or the layer's name
     fields    {attribute: its value for each feature}
     empty     how many features have no geometry
     labels    how many are texts of a drawing
@@ -86,6 +90,7 @@ class Layer:
     def __init__(self, path, layer, kind, progress):
         self.path = path
         self.parts, self.features, self.empty, self.labels, self.flat = [], [], 0, 0, 0
+        self.ids, self.z_name = [], layer.GetName()
         definition = layer.GetLayerDefn()
         names = [
             definition.GetFieldDefn(i).GetName() for i in range(definition.GetFieldCount())
@@ -124,6 +129,7 @@ class Layer:
                 points = numpy.column_stack((points[:, :2], numpy.full(len(points), numpy.nan)))
             self.parts.append((kind, points))
             self.features.append(number)
+            self.ids.append(feature.GetFID())
 
     def coordinates(self):
         """(n, 3): all points of all parts."""
@@ -153,10 +159,8 @@ class Layer:
         for number, (_, points) in zip(self.features, self.parts):
             if not some or numpy.isnan(points[:, 2]).all():
                 points[:, 2] = values[number]
-        notes = [f"z from attribute {name}" + ", where the geometry has none" * some]
-        if meaning(name).direction:
-            notes.append(f"{name} says that z counts downwards; --depth turns it over")
-        return notes
+        self.z_name = name
+        return [f"z from attribute {name}" + ", where the geometry has none" * some]
 
     def height_attribute(self, columns):
         """The name of the attribute of elevations, or None."""
@@ -237,6 +241,7 @@ def read_points(path, options):
         words = " and ".join({"line": "lines", "ring": "polygons"}[kind] for kind in sorted(kinds))
         notes.append(f"the vertices of {words} are taken as points")
     cloud = Cloud(make_points(coordinates), notes, crs=crs)
+    cloud.z_name = layer.z_name
     repeat = numpy.repeat(layer.features, [len(points) for points in parts])
     for name, values in layer.fields.items():
         if any(isinstance(value, (int, float)) for value in values):
@@ -252,18 +257,16 @@ def read_points(path, options):
 def read_lines(path, singular, progress):
     """Lines and polygons with their holes, as vtkPolyData with lines and the field array CRS."""
     layer, _, crs = read_layer(path, None, None, progress)
-    parts = [points for kind, points in layer.parts if kind != "point"]
+    names, parts, count = [], [], collections.Counter()
+    for feature, (kind, points) in zip(layer.ids, layer.parts):
+        if kind != "point":
+            count[feature] += 1
+            part = f", part {count[feature]}" if count[feature] > 1 else ""
+            names.append(f"feature {feature}{part}")
+            parts.append(points)
     if not parts:
         raise FileError(f"{path}: holds no line and no polygon that could be {singular}")
-    is_flat = numpy.isnan(numpy.concatenate(parts)[:, 2])
-    if singular == "a boundary":
-        for kind, points in layer.parts:
-            if kind == "line" and not numpy.array_equal(points[0, :2], points[-1, :2]):
-                raise FileError(f"{path}: holds a line that is not closed, so it is no boundary")
-            points[:, 2] = numpy.nan_to_num(points[:, 2])
-    elif is_flat.any():
-        raise FileError(f"{path}: its lines have no z, neither themselves nor as an attribute")
-    data = make_lines(parts)
+    data = make_lines(parts, names)
     if crs:
         set_crs(data, crs)
     return data

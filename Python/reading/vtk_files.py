@@ -223,6 +223,7 @@ def points_of_grid(path, grid):
     if hidden.any():
         z = numpy.where(hidden, numpy.nan, z)
     cloud = points_of_raster(path, x, y, z)
+    cloud.z_name = scalars.GetName() or ""
     cloud.notes.insert(0, f"elevation: point array {scalars.GetName() or '(unnamed)'}")
     if isinstance(grid, vtkRectilinearGrid) and rows > 1 and columns > 1:
         cloud.largest_cell = float(numpy.hypot(*(abs(numpy.diff(v)).max() for v in (x[0], y[:, 0]))))

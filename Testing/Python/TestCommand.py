@@ -214,7 +214,7 @@ class Supervised(InFolder):
         )
 
     def test_codes_are_handed_on(self):
-        for code in (0, 1, 2):
+        for code in (0, 1, 2, 3):
             self.assertEqual(self.supervise(f"def work(): return {code}").returncode, code)
         self.assertEqual(self.supervise("def work(): sys.exit(2)").returncode, 2)
 
@@ -234,6 +234,22 @@ class Supervised(InFolder):
                 self.assertTrue(line.startswith("reconstruct: error: the run "), done.stderr)
                 self.assertIn(words, line)
                 self.assertEqual(os.listdir(self.folder), [])
+
+    def test_what_only_waits_for_the_picture_appears_after_a_crash(self):
+        body = (
+            "from vtkelevationsurface.results import Results\n"
+            "def work():\n"
+            "    results = Results()\n"
+            "    results.add('a', lambda path: open(path, 'w').close())\n"
+            "    results.keep_in_a_crash()\n"
+            "    results.add('b', lambda path: open(path, 'w').close())\n"
+            "    os.kill(os.getpid(), signal.SIGSEGV)\n"
+        )
+        done = self.supervise(body)
+        line = done.stderr.splitlines()[-1]
+        self.assertIn("crashed in a library (SIGSEGV) while it drew the picture", line)
+        self.assertIn("; written before: a", line)
+        self.assertEqual((done.returncode, os.listdir(self.folder)), (3, ["a"]))
 
     def test_a_child_that_does_not_listen_is_ended(self):
         body = (

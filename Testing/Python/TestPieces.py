@@ -820,10 +820,10 @@ class Command(Program):
         self.assertGreater(report["unused_reasons"]["outside the boundary"], 100)
         self.file("open.txt", "1 1\n2 2\n3 1\n4 4\n")
         done = self.call(name, "--pieces", "4", "--boundary", "open.txt", "--no-fill")
-        self.assertIn("open.txt: the boundary from line 1 to line 4 is not closed", done.stderr)
+        self.assertIn("open.txt: the part from line 1 to 4 is not closed", done.stderr)
         self.file("nulls.xyz", "".join(f"{i % 40} {i // 40} {-9999 if i > 700 else i % 7}\n" for i in range(1000)))
         done = self.call("nulls.xyz", "--pieces", "4", "--boundary", "open.txt")  # read first
-        self.assertIn("open.txt: the boundary from line 1", done.stderr)
+        self.assertIn("open.txt: the part from line 1", done.stderr)
         self.file("far.txt", "1 1\n2 2\n3 1\n1 1\n")
         done = self.call(name, "--pieces", "4", "--boundary", "far.txt", "--no-fill")
         self.assertIn("far.txt: trimming: The boundary", done.stderr)

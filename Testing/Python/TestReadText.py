@@ -18,6 +18,7 @@ from vtkelevationsurface.reading.column_names import meaning
 from vtkelevationsurface.messages import FileError
 from vtkelevationsurface.reading.nulls import take_out
 from vtkelevationsurface.reading.text import BLOCK, read_table, read_text
+from vtkelevationsurface.reading.upwards import notes_on_up
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 COUNT = 60
@@ -189,7 +190,9 @@ class Tables(unittest.TestCase):
         return path
 
     def read(self, content, **options):
-        return read_text(self.file(content), ReadOptions(**options))
+        cloud = read_text(self.file(content), ReadOptions(**options))
+        cloud.notes += notes_on_up(cloud, options.get("depth", False))
+        return cloud
 
     def refusal(self, content, **options):
         with self.assertRaises(FileError) as caught:

@@ -11,8 +11,10 @@ import numpy
 from in_folder import InFolder, Program, coordinates
 from osgeo import gdal, ogr, osr
 from vtkelevationsurface import reading
-from vtkelevationsurface.clouds import Cloud, crs_of, faults_note, make_points, merged
-from vtkelevationsurface.gdal_common import check_system, same_system
+from vtkelevationsurface.clouds import (
+    Cloud, bare_lines, crs_of, faults_note, make_points, merged, parts_of_lines,
+)
+from vtkelevationsurface.gdal_common import check_system, reference_of, same_system
 from vtkelevationsurface.messages import FileError
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -176,6 +178,8 @@ class Points(Vectors):
     def test_depth_by_name_is_told(self):
         cloud = reading.read(self.gpkg(wkt_of(MAP, True), {"depth": [1.0, 2.0, 3.0]}))
         self.assertTrue(any("--depth turns it over" in note for note in cloud.notes))
+        cloud = reading.read(self.gpkg(wkt_of(MAP, True), {"depth": [-1.0, -2.0, -3.0]}))
+        self.assertFalse(any("--depth" in note for note in cloud.notes))
 
     def test_vertices_of_lines_and_polygons_are_points(self):
         path = self.gpkg(
@@ -301,9 +305,12 @@ class Lines(Vectors):
         self.assertEqual(data.GetNumberOfLines(), 2)
         self.assertEqual(data.GetNumberOfPoints(), 6)
 
-    def test_an_open_line_is_no_boundary(self):
-        with self.assertRaisesRegex(reading.FileError, "holds a line that is not closed"):
-            reading.read_boundary(self.gpkg(["LINESTRING (1 1, 2 1, 2 2)"]))
+    def test_lines_are_named_by_their_features(self):
+        polygons = "MULTIPOLYGON (((0 0, 9 0, 9 9, 0 0)), ((20 0, 29 0, 29 9, 20 0)))"
+        path = self.gpkg(["LINESTRING (1 1, 2 1, 2 2)", polygons])
+        names, parts = parts_of_lines(reading.read_boundary(path))
+        self.assertEqual(names, ["feature 1", "feature 2", "feature 2, part 2"])
+        self.assertEqual([len(part) for part in parts], [3, 4, 4])
 
     def test_faults_keep_their_elevations(self):
         several = "MULTILINESTRING Z ((1 1 3, 2 2 4), (5 5 5, 6 6 6))"
@@ -314,11 +321,15 @@ class Lines(Vectors):
         path = self.gpkg(["LINESTRING (0 0, 5 0)"], {"elevation": [7.5]}, layer="b")
         self.assertEqual(self.cells(reading.read_faults(path)), [[(0, 0, 7.5), (5, 0, 7.5)]])
 
-    def test_what_holds_no_lines_or_no_z_is_refused(self):
+    def test_what_holds_no_lines_is_refused(self):
         with self.assertRaisesRegex(reading.FileError, "no polygon that could be a fault"):
             reading.read_faults(self.gpkg(wkt_of(MAP)))
-        with self.assertRaisesRegex(reading.FileError, "its lines have no z"):
-            reading.read_faults(self.make("b.gpkg", "GPKG", ["LINESTRING (0 0, 5 0)"]))
+
+    def test_lines_without_z_are_known_and_have_0(self):
+        path = self.gpkg(["LINESTRING (0 0, 5 0)", "LINESTRING Z (0 1 7, 5 1 8)"])
+        faults = reading.read_faults(path)
+        self.assertEqual(bare_lines(faults).tolist(), [True, False])
+        self.assertEqual(self.cells(faults), [[(0, 0, 0), (5, 0, 0)], [(0, 1, 7), (5, 1, 8)]])
 
 
 class Systems(Vectors, Program):
@@ -361,22 +372,49 @@ class Systems(Vectors, Program):
                     with self.assertRaises(FileError):
                         check_system("a", one, "b", other)
 
-    def test_a_boundary_and_faults_in_another_system_are_refused(self):
+    def test_a_boundary_and_faults_in_another_system_are_reprojected_or_refused(self):
         points = wkt_of([(612000 + x, 6073000 + y, x) for x in range(9) for y in range(9)])
         self.make("p.gpkg", "GPKG", points)
-        lines = ["LINESTRING Z (612001 6073001 0, 612005 6073005 5)"]
-        ring = ["POLYGON ((612001 6073001, 612005 6073001, 612005 6073005, 612001 6073001))"]
+        lines = ["LINESTRING Z (612001.25 6073001.4 0, 612005.1 6073004.7 5)"]
+        places = "612001.3 6073001.4, 612005.2 6073001.2, 612005.3 6073005.7, 612001.3 6073001.4"
+        ring = [f"POLYGON (({places}))"]
+        change = osr.CoordinateTransformation(*map(reference_of, ("EPSG:25832", "EPSG:25833")))
         for option, shapes in (("--boundary", ring), ("--faults", lines)):
-            for epsg, options in ((25833, ()), (25832, ("--crs", "EPSG:25833"))):
-                with self.subTest(option=option, epsg=epsg):
-                    name = f"{option[2:]}-{epsg}.gpkg"
-                    self.make(name, "GPKG", shapes, epsg=epsg)
-                    done = self.call("p.gpkg", option, name, "--no-picture", *options)
-                    self.assertEqual(done.returncode, 1, done.stderr)
-                    self.assertRegex(done.stderr, f"{name}: its coord.*zone 3[23]N.*, that of p.gp")
-                    self.assertRegex(done.stderr, "zone 3[23]N.*reproject one of them first")
-        done = self.call("p.gpkg", "--boundary", "boundary-25832.gpkg", "--no-picture")
+            plain, other, wrong = (f"{option[2:]}-{i}.gpkg" for i in range(3))
+            moved = ogr.CreateGeometryFromWkt(shapes[0])
+            moved.Transform(change)
+            self.make(plain, "GPKG", shapes)
+            self.make(other, "GPKG", [moved.ExportToWkt()], epsg=25833)
+            self.make(wrong, "GPKG", shapes, epsg=25833)
+            run = ("p.gpkg", "--no-fill", "--no-picture", option)
+            with self.subTest(option=option):
+                surfaces = []
+                for name in (plain, other):
+                    done = self.call(*run, name)
+                    self.assertEqual((done.returncode, done.stderr), (0, ""))
+                    surfaces.append(reading.read(self.path("p_surface.vtp")))
+                self.assertRegex(done.stdout, f"note +{other} is in .*33N .*, p.gpkg in .*32N")
+                x, y, _ = (moved if option == "--faults" else moved.GetGeometryRef(0)).GetPoint(0)
+                self.assertIn(f"first point ({x:.10g}, {y:.10g}) to (612001.", done.stdout)
+                numpy.testing.assert_allclose(*map(coordinates, surfaces), rtol=0.0, atol=1e-3)
+                done = self.call(*run, other, "--strict")
+                self.assertEqual(done.returncode, 1)
+                words = f"{other}: its coord.*33N.*, that of p.gpkg .*32N.*reproject"
+                self.assertRegex(done.stderr, words)
+                done = self.call(*run, wrong)
+                self.assertEqual(done.returncode, 1)
+                words = f"{wrong} is in .*33N.*, p.gpkg in .*32N.* away from the"
+                self.assertRegex(done.stderr, words)
+
+    def test_what_reprojecting_does_to_long_edges_is_told(self):
+        steps = range(0, 100001, 20000)
+        points = [(500000 + x, 5500000 + y, x) for x in steps for y in steps]
+        self.make("p.gpkg", "GPKG", wkt_of(points))
+        ring = "POLYGON ((9.2 49.8, 10.2 49.8, 10.2 50.4, 9.2 49.8))"
+        self.make("b.gpkg", "GPKG", [ring], epsg=4326)
+        done = self.call("p.gpkg", "--boundary", "b.gpkg", "--no-fill", "--no-picture")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"edges between points stay straight, up to \d+ beside")
 
     def test_faults_far_from_the_points_are_told(self):
         points = make_points([(0.0, 0.0, 100.0), (1.0, 0.0, 150.0), (0.0, 1.0, 400.0)])
@@ -389,7 +427,7 @@ class Systems(Vectors, Program):
                 self.assertEqual(note is not None, told)
         self.make("p.gpkg", "GPKG", wkt_of([(x, y, 100 + x) for x in range(9) for y in range(9)]))
         self.make("f.gpkg", "GPKG", ["LINESTRING Z (1.5 1 0, 5.5 5 0)"])
-        done = self.call("p.gpkg", "--faults", "f.gpkg", "--no-picture")
+        done = self.call("p.gpkg", "--faults", "f.gpkg", "--no-picture", "--faults-z", "given")
         self.assertIn("z of the faults is 0, far from z of the points, 100 to 108", done.stdout)
 
     def test_points_of_several_systems_are_not_merged(self):

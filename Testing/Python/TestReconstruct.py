@@ -641,9 +641,60 @@ class Pictures(Program):
 class VirtualDisplay(Program):
     """Where there is no display, the program starts one of its own, and leaves nothing of it."""
 
-    def start(self):
+    # Tells that it serves a display, but does not, the first so many times.
+    DEAF = """#!/bin/bash
+        echo x >>"{folder}/starts"
+        [ $(wc -l <"{folder}/starts") -gt {times} ] && exec {program} "$@"
+        eval "echo 4242 >&$2"
+        exec sleep 300
+        """
+
+    def environment(self):
         environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "XAUTHORITY")}
         environment["TMPDIR"] = self.folder
+        return environment
+
+    def call_with_deaf_server(self, times, *arguments):
+        """(the run, how often the server was started, the files that are left)"""
+        tools = self.path("tools")
+        os.makedirs(tools, exist_ok=True)
+        words = {"folder": tools, "times": times, "program": shutil.which("Xvfb")}
+        with open(os.path.join(tools, "Xvfb"), "w", encoding="utf-8") as stream:
+            stream.write(self.DEAF.format(**words))
+        os.chmod(stream.name, 0o755)
+        environment = self.environment()
+        environment["PATH"] = tools + os.pathsep + environment["PATH"]
+        done = self.call(*arguments, env=environment)
+        starts = os.path.join(tools, "starts")
+        with open(starts, encoding="utf-8") as stream:
+            count = len(stream.readlines())
+        os.remove(starts)
+        made = sorted(set(os.listdir(self.folder)) - {"tools", "sheet.xyz"})
+        for name in made:
+            os.remove(self.path(name))
+        return done, count, made
+
+    def test_a_server_that_does_not_answer_is_started_again(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        done, count, made = self.call_with_deaf_server(1, name, "--picture")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual((count, made), (2, ["sheet_surface.png", "sheet_surface.vtp"]))
+
+    def test_a_picture_that_fails_does_not_lose_the_surface(self):
+        name = self.file("sheet.xyz", text_of(SHEET))
+        done, count, made = self.call_with_deaf_server(99, name, "--report", "r.json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("no picture: Xvfb does not answer, asked 3 times", done.stdout)
+        self.assertEqual((count, made), (3, ["r.json", "sheet_surface.vtp"]))
+        done, _, made = self.call_with_deaf_server(99, name, "--picture", "--report", "r.json")
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (3, 1), done.stderr)
+        self.assertIn("sheet_surface.png: cannot be drawn: Xvfb does not answer", done.stderr)
+        self.assertIn("all else is written", done.stderr)
+        self.assertIn("no picture: Xvfb does not answer", done.stdout)
+        self.assertEqual(made, ["r.json", "sheet_surface.vtp"])
+
+    def start(self):
+        environment = self.environment()
         rows = "".join(f"{i % 300} {i // 300} {i % 7}\n" for i in range(90000))
         name = self.file("sheet.xyz", rows)
         return subprocess.Popen(

@@ -12,7 +12,7 @@ import numpy
 from in_folder import InFolder, coordinates
 from vtkelevationsurface import paths, reading, writing
 from vtkelevationsurface.reading import vtk_checks, vtk_files
-from vtkelevationsurface.clouds import make_points
+from vtkelevationsurface.clouds import make_points, parts_of_lines
 from vtkelevationsurface.messages import FileError, Messages, plain_message
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject
@@ -449,11 +449,11 @@ class Boundary(InFolder):
         line = data.GetCell(1).GetPointIds()
         self.assertEqual(line.GetId(0), line.GetId(line.GetNumberOfIds() - 1))
 
-    def test_an_open_ring_names_its_lines(self):
-        with self.assertRaisesRegex(
-            FileError, "b.txt: .* from line 1 to line 4 is not closed"
-        ):
-            reading.read_boundary(self.file("b.txt", "0 0\n10 0\n10 10\n0 10\n"))
+    def test_rings_are_named_by_their_lines(self):
+        data = reading.read_boundary(self.file("b.txt", self.RING + "\n2 2\n4 2\n4 4\n"))
+        names, parts = parts_of_lines(data)
+        self.assertEqual(names, ["the part from line 1 to 5", "the part from line 7 to 9"])
+        self.assertEqual([len(part) for part in parts], [5, 3])
 
     def test_a_boundary_point_that_is_not_finite_names_its_line(self):
         with self.assertRaisesRegex(FileError, "line 2: a boundary point is not finite"):

@@ -1,0 +1,94 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Boundaries and faults as they come, made fit for the filters, with a note on all that is done."""
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .clouds import crs_of, make_points, parts_of_lines, set_crs
+from .draping import draped
+from .gdal_common import check_system, flat, is_near, name_of, quiet, reference_of, same_system
+from .mending import mended
+from .messages import FileError
+
+
+def fitted(cloud, lines, names, given, strict=False):
+    """(lines, notes): in the coordinate reference system of the points, closed, valid, with z.
+
+    cloud   the points
+    lines   {"boundary": vtkPolyData, "faults": vtkPolyData}, of these what there is
+    names   how messages call the "points" and each of the lines
+    given   properties, see checked()
+    strict  True: what would be changed is an error
+
+    Raises ElevationSurfaceError.
+    """
+    lines, notes = dict(lines), []
+    if "boundary" in lines:  # while places are still those of its file
+        lines["boundary"], notes = mended(lines["boundary"], names["boundary"], strict)
+    for name, data in lines.items():
+        lines[name], told = in_system(data, names[name], cloud, names["points"], strict)
+        notes = notes + told
+    if "faults" in lines:
+        lines["faults"], told = draped(cloud, lines["faults"], names["faults"], given, strict)
+        notes += told
+    return lines, notes
+
+
+def in_system(data, name, cloud, points_name, strict):
+    """(data, notes): lines with x and y in the coordinate reference system of a Cloud."""
+    crs = crs_of(data)
+    _, parts = parts_of_lines(data)
+    if not parts or strict or same_system(crs, cloud.crs) is not False or is_near(crs, cloud.crs):
+        return data, check_system(name, crs, points_name, cloud.crs)
+    from osgeo import osr
+
+    xyz = vtk_to_numpy(data.GetPoints().GetData()).astype("f8")
+    try:
+        with quiet():
+            pair = (flat(reference_of(one)) for one in (crs, cloud.crs))
+            change = osr.CoordinateTransformation(*pair)
+
+            def places(points):
+                found = numpy.array(change.TransformPoints(points[:, :2].tolist())).reshape(-1, 3)
+                if not numpy.isfinite(found).all():
+                    raise RuntimeError("some points have no place there")
+                return found[:, :2]
+
+            xy = places(xyz)
+            p, q = (numpy.concatenate([part[end] for part in parts]) for end in ENDS)
+            bend = places(0.5 * (p + q)) - 0.5 * (places(p) + places(q))
+    except RuntimeError as error:
+        raise FileError(
+            f"{name}: cannot be reprojected from {name_of(crs)} to {name_of(cloud.crs)}: {error}"
+        ) from None
+    systems = f"{name} is in {name_of(crs)}, {points_name} in {name_of(cloud.crs)}: reprojected"
+    check_overlap(xy, cloud, systems)
+    old, new = xyz[0, :2].copy(), xy[0]
+    xyz[:, :2] = xy
+    moved = data.NewInstance()
+    moved.ShallowCopy(data)
+    moved.SetPoints(make_points(xyz).GetPoints())
+    set_crs(moved, cloud.crs)
+    return moved, [
+        f"{systems} by OGR, its first point ({old[0]:.10g}, {old[1]:.10g}) to ({new[0]:.10g}, "
+        f"{new[1]:.10g}); edges between points stay straight, up to "
+        f"{numpy.hypot(*bend.T).max(initial=0.0):.3g} beside their places"
+    ]
+
+
+def check_overlap(xy, cloud, words):
+    """Refuses reprojected lines that are nowhere near the points: one of the systems is wrong."""
+    if cloud.points is None:
+        return
+    x0, x1, y0, y1, _, _ = cloud.points.GetBounds()
+    (west, south), (east, north) = xy.min(axis=0), xy.max(axis=0)
+    if west > x1 or east < x0 or south > y1 or north < y0:
+        raise FileError(
+            f"{words}, it is at x {west:.10g} to {east:.10g}, y {south:.10g} to {north:.10g}, away "
+            f"from the points at x {x0:.10g} to {x1:.10g}, y {y0:.10g} to {y1:.10g}; is one of the "
+            "systems wrong? --crs tells that of the points"
+        )
+
+
+ENDS = (slice(None, -1), slice(1, None))  # of the edges of a line

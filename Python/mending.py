@@ -1,0 +1,270 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rings of a boundary as they come: small gaps are closed, and what crosses itself is made valid.
+
+The filters take closed rings that do not cross themselves, and nothing else. GEOS, through OGR,
+makes rings valid: what a ring goes around counts as inside, also where it goes around twice.
+"""
+
+import numpy
+
+from .clouds import make_lines, parts_of_lines
+from .gdal_common import gdal_module, quiet
+from .messages import ElevationSurfaceError, counted
+from .outline import places_of, trial
+
+GAP = 0.01  # of the length of a ring: ends of lines no farther apart are joined
+MOVED = 0.5  # of the edges beside them: ends no farther apart are made one point
+MOST_NAMED = 20  # mends of a kind that get a note each
+NEIGHBOURS = 8  # ends that may be the other side of a gap
+
+
+def mended(boundary, name, strict=False):
+    """(rings, notes): a boundary whose rings are closed and do not cross themselves.
+
+    name    how messages call it
+    strict  True: what would be mended is an error
+
+    Rings that need nothing are handed on as they are. Raises ElevationSurfaceError, also for a gap
+    that is too wide, and where GEOS is needed but missing.
+    """
+    names, parts = parts_of_lines(boundary)
+    if not parts or not all(numpy.isfinite(part[:, :2]).all() for part in parts):
+        return boundary, []  # the filter says what is wrong
+    told = close_gaps(names, parts, name, strict)
+    rings = make_lines(parts, names) if told else boundary
+    if trial(rings)[0]:
+        names, parts, valid = without_crossings(names, parts, name, strict)
+        if valid:
+            told, rings = told + valid, make_lines(parts, names)
+    return rings, told
+
+
+def refused(words, strict):
+    """The error for what would be mended, or could not be."""
+    return ElevationSurfaceError(words + "; without --strict it is mended" * strict, "boundary")
+
+
+def at(place):
+    return f"({place.real:.10g}, {place.imag:.10g})"
+
+
+def in_words(length):
+    return f"{length:,.0f}" if length >= 1000.0 else f"{length:.4g}"
+
+
+def first_ones(notes, more):
+    """The notes, of which the last stands for all others where they are many."""
+    if len(notes) <= MOST_NAMED:
+        return notes
+    return notes[:MOST_NAMED] + [f"{more}, and {len(notes) - MOST_NAMED:,} more like these"]
+
+
+# ---- gaps -------------------------------------------------------------------------------------
+
+
+def length_of(part):
+    return float(numpy.hypot(*numpy.diff(part[:, :2], axis=0).T).sum())
+
+
+def close_gaps(names, parts, name, strict):
+    """Joins ends of lines where no other line goes on. Changes names and parts. Returns notes."""
+    is_open = [part[0, 0] != part[-1, 0] or part[0, 1] != part[-1, 1] for part in parts]
+    lines = numpy.flatnonzero(is_open)
+    if not len(lines):
+        return []
+    ends = places_of(numpy.concatenate([parts[i][[0, -1]] for i in lines]))
+    places, of_end, counts = numpy.unique(ends, return_inverse=True, return_counts=True)
+    odd = numpy.flatnonzero(counts % 2)
+    if not len(odd):
+        return []
+    first_end = numpy.unique(of_end, return_index=True)[1]
+    pairs = [sorted(pair, key=first_end.__getitem__) for pair in odd[nearest_pairs(places[odd])]]
+    pairs = numpy.array(sorted(pairs, key=lambda pair: first_end[pair[0]]))
+    lengths = lengths_of_rings(parts, lines, of_end.reshape(-1, 2), pairs, places)
+    notes, widest = [], 0.0
+    for p, q in pairs:
+        gap, end, other = abs(places[p] - places[q]), first_end[p], first_end[q]
+        one, two = names[lines[end // 2]], names[lines[other // 2]]
+        share = gap / lengths[p]
+        words = f"{name}: " + (
+            f"{one} is not closed: its ends are {in_words(gap)} apart"
+            if one == two
+            else f"{one} and {two} do not meet: they are {in_words(gap)} apart"
+        ) + (
+            f" at {at(places[p])}, which is {100 * share:.3g} % of the ring's length "
+            f"{in_words(lengths[p])}"
+        )
+        if share > GAP and max(counts[p], counts[q]) > 1:
+            return []  # lines that meet in threes: the filter says where
+        if share > GAP:
+            raise refused(f"{words}; gaps of up to {100 * GAP:g} % are closed", False)
+        if strict:
+            raise refused(words, True)
+        beside = min(edge_at(parts[lines[e // 2]], e % 2) for e in (end, other))
+        if gap <= MOVED * beside:
+            for e in numpy.flatnonzero(of_end == q):
+                parts[lines[e // 2]] = parts[lines[e // 2]].copy()
+                parts[lines[e // 2]][-(e % 2), :2] = places[p].real, places[p].imag
+            notes.append(f"{words}: the second is moved onto the first")
+        else:
+            parts.append(numpy.array([parts[lines[e // 2]][-(e % 2)] for e in (end, other)]))
+            names.append(one)
+            notes.append(f"{words}: closed by a straight edge")
+        widest = max(widest, gap)
+    return first_ones(notes, f"{name}: gaps of up to {in_words(widest)}")
+
+
+def edge_at(part, is_last):
+    """The length of the edge at an end of a line."""
+    p, q = part[-2:] if is_last else part[:2]
+    return float(numpy.hypot(*(p - q)[:2]))
+
+
+def nearest_pairs(places):
+    """(m, 2): the places in pairs, those that are nearest to each other first."""
+    candidates = []
+    for i, place in enumerate(places):
+        away = abs(places - place)
+        away[i] = numpy.inf
+        for j in numpy.argsort(away, kind="stable")[: min(NEIGHBOURS, len(places) - 1)].tolist():
+            candidates.append((float(away[j]), min(i, j), max(i, j)))
+    partner = {}
+    for _, i, j in sorted(set(candidates)):
+        if i not in partner and j not in partner:
+            partner[i], partner[j] = j, i
+    # Where all that are near have found another, any place is the other side of a gap, too wide.
+    alone = [i for i in range(len(places)) if i not in partner]
+    partner.update(zip(alone[::2], alone[1::2]))
+    return numpy.array([(i, j) for i, j in partner.items() if i < j])
+
+
+def lengths_of_rings(parts, lines, ends, pairs, places):
+    """(n,): for each place the length of all lines that hang together with it, gaps closed."""
+    parents = list(range(len(places)))
+
+    def root(place):
+        while parents[place] != place:
+            parents[place] = place = parents[parents[place]]
+        return place
+
+    for p, q in [*ends.tolist(), *pairs.tolist()]:
+        parents[root(p)] = root(q)
+    lengths = numpy.zeros(len(places))
+    for line, (p, _) in zip(lines, ends.tolist()):
+        lengths[root(p)] += length_of(parts[line])
+    for p, q in pairs.tolist():
+        lengths[root(p)] += abs(places[p] - places[q])
+    return lengths[[root(place) for place in range(len(places))]]
+
+
+# ---- crossings --------------------------------------------------------------------------------
+
+
+def without_crossings(names, parts, name, strict):
+    """(names, parts, notes), each ring that crosses itself being made valid. The others stay."""
+    names, parts = chained(names, parts)
+    kept, notes = [], []
+    for title, ring in zip(names, parts):
+        is_ring = len(ring) > 3 and (ring[0, :2] == ring[-1, :2]).all()
+        errors, _, triangles = trial(make_lines([ring])) if is_ring else ([], 0, 0)
+        if not errors or not triangles:  # of none that it encloses, the filter tells
+            kept.append((title, ring))
+            continue
+        made = valid(ring, f"{name}: {title} crosses itself: {errors[0]}")
+        if not made:
+            kept.append((title, ring))
+            continue
+        where = f"{name}: {title} crosses itself {places_in_words(ring, made)}"
+        if strict:
+            raise refused(where, True)
+        areas = sorted((area for area, _ in made), reverse=True)
+        share = f", the largest with {100 * areas[0] / sum(areas):.4g} % of the area"
+        notes.append(
+            f"{where}: made valid by GEOS, {counted(len(areas), 'polygon')}"
+            + (share if len(areas) > 1 else f" of area {areas[0]:.6g}")
+        )
+        kept += [(title, part) for _, rings in made for part in rings]
+    return (
+        [title for title, _ in kept],
+        [ring for _, ring in kept],
+        first_ones(notes, f"{name}: rings that cross themselves"),
+    )
+
+
+def chained(names, parts):
+    """(names, parts), lines that follow each other from end to end being one."""
+    ends, done, chains = {}, set(), []
+    for i, part in enumerate(parts):
+        for end in (0, -1):
+            ends.setdefault(tuple(part[end, :2]), []).append((i, end))
+    for first, part in enumerate(parts):
+        if first in done:
+            continue
+        ring, members, here = part, [first], tuple(part[-1, :2])
+        done.add(first)
+        while here != tuple(ring[0, :2]) and len(ends[here]) == 2:
+            i, end = next((one for one in ends[here] if one[0] not in done), (None, 0))
+            if i is None:
+                break
+            done.add(i)
+            members.append(i)
+            ring = numpy.concatenate((ring, (parts[i] if end == 0 else parts[i][::-1])[1:]))
+            here = tuple(ring[-1, :2])
+        title = list(dict.fromkeys(names[i] for i in members))
+        more = f" and {counted(len(title) - 1, 'more line')} of its ring" if len(title) > 1 else ""
+        chains.append((title[0] + more, ring))
+    return [title for title, _ in chains], [ring for _, ring in chains]
+
+
+def valid(ring, words):
+    """[(area, [rings])] of the polygons that GEOS makes of a ring, if it encloses anything.
+
+    words  of the error where GEOS is missing
+    """
+    try:
+        gdal_module()
+        from osgeo import ogr
+    except ImportError:
+        raise refused(f"{words} Install python3-gdal, which makes it valid", False) from None
+    outline, polygon = ogr.Geometry(ogr.wkbLinearRing), ogr.Geometry(ogr.wkbPolygon25D)
+    for point in ring.tolist():
+        outline.AddPoint(*point)
+    polygon.AddGeometry(outline)
+    try:
+        with quiet():
+            made = polygon.MakeValid(["METHOD=STRUCTURE"])
+    except RuntimeError:
+        made = None
+    polygons = pieces_of(made) if made else []
+    return [
+        (
+            one.GetArea(),
+            [numpy.array(one.GetGeometryRef(i).GetPoints()) for i in range(one.GetGeometryCount())],
+        )
+        for one in polygons
+    ]
+
+
+def pieces_of(geometry):
+    """The polygons that a geometry is or consists of."""
+    if geometry.GetGeometryName() == "POLYGON":
+        return [] if geometry.IsEmpty() else [geometry]
+    return [
+        piece for i in range(geometry.GetGeometryCount())
+        for piece in pieces_of(geometry.GetGeometryRef(i))
+    ]
+
+
+def places_in_words(ring, made):
+    """Where a ring crosses itself: at points that are new, or at those that it comes to again."""
+    old = places_of(ring[:-1])
+    new = places_of(numpy.concatenate([part for _, rings in made for part in rings]))
+    found = numpy.unique(new[~numpy.isin(new, old)])
+    if not len(found):
+        found, counts = numpy.unique(old, return_counts=True)
+        found = found[counts > 1]
+    if not len(found):
+        return "where it runs along itself"
+    more = f" and {counted(len(found) - 1, 'more place')}" if len(found) > 1 else ""
+    return f"at {at(found[0])}{more}"

@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether z counts upwards: what its name, its unit, its sign and the kind of file say together.
+
+All readers ask here. z is never turned over because of it, but a doubt is told, once, with both
+readings.
+"""
+
+import os
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .column_names import direction_of, is_of_horizon, says_up
+
+WHAT = {"depth": "depths", "time": "times"}
+
+
+def notes_on_up(cloud, depth, path=""):
+    """Notes for the user on the z of a Cloud as it was read. depth: it will be turned over."""
+    z = vtk_to_numpy(cloud.points.GetPoints().GetData())[:, 2]
+    z = z[numpy.isfinite(z)]
+    return notes_on_range(cloud, depth, float(z.min()), float(z.max()), path) if len(z) else []
+
+
+def notes_on_range(cloud, depth, low, high, path=""):
+    """The same for z from low to high."""
+    is_horizon = cloud.is_horizon or is_of_horizon(os.path.basename(path))
+    direction, values = direction_of(cloud.z_name), f"from {low:,.6g} to {high:,.6g}"
+    if depth:
+        if high > 0.0 or low == 0.0:
+            return []
+        return [
+            f"z was {values} before --depth turned it over: where it was an elevation below 0, as "
+            "of a lake's bed, hollows are hills now; leave --depth out then"
+        ]
+    if direction and low >= 0.0 and high > 0.0:
+        return [
+            f"z are {WHAT[direction]} by their name and positive, so the surface is upside down; "
+            "--depth turns it over"
+        ]
+    if direction and high > 0.0:
+        return [
+            f"z are {WHAT[direction]} by their name, but {values}: taken as they are, upwards; if "
+            "they count downwards, --depth turns it over"
+        ]
+    if is_horizon and not direction and not says_up(cloud.z_name) and low > 0.0:
+        return [
+            f"z is {values}, and it is not certain that it counts upwards: taken as elevations; if "
+            "these are depths or times, as of horizons, the surface is upside down, and --depth "
+            "turns it over"
+        ]
+    return []
