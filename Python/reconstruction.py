@@ -14,11 +14,12 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
 
 from .clouds import Cloud, make_lines, make_points
+from .heights import check_heights
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .opening import length_to_open
 from .paths import check_suffix
 from .properties import COLOURS, checked, number_above_zero, view_angles
-from .ranks import total
+from .ranks import agreed, total
 from .spreading import whole_lines, whole_surface
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
@@ -99,6 +100,8 @@ class Reconstruction:
               them is trimmed; else None
     cloud     the points and what their reader found out
     triangles {"delaunay": count, "trimmed": count, "filled": count} after each step
+    several   {"places", "of", "largest"}: how many of all places have several heights, and the largest
+              difference; None where none has
     reasons   (n,) numbers: 0 for points in triangles of the triangulation, or why they are in none,
               as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
     lattice   that of the triangulation, see lattice_of(), or None
@@ -117,6 +120,7 @@ class Reconstruction:
         self.boundary_name = None  # where a given boundary is from
         self.faults_name = None
         self.why_opened = None
+        self.several = None
 
     @property
     def crs(self) -> Optional[str]:
@@ -230,6 +234,8 @@ def run_chain(
     result.progress = progress
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
+    note, result.several = agreed(ranks, lambda: check_heights(cloud, given.get("duplicates")))
+    result.notes += [note] if note else []
     run = Step(result, given, progress, strict, ranks)
     if given.get("maximum_elevation_error") and trim:
         trim_few(run, boundary, faults)

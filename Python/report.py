@@ -49,6 +49,8 @@ def make_report(result):
         "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
         "triangles": result.triangles,
     }
+    if result.several:
+        report["several_heights"] = result.several
     if delaunay.GetMaximumElevationError():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),

@@ -22,6 +22,7 @@ class Choice:
 
     indices     of x, y and z
     extras      {index: name} of the other columns of numbers
+    texts       {index: name} of the columns of text
     of_numbers  indices of all columns that hold more numbers than text
     """
 
@@ -30,6 +31,7 @@ class Choice:
     of_numbers: list
     notes: list
     downwards: object = None  # the note for a z that counts downwards by its name and values
+    texts: dict = dataclasses.field(default_factory=dict)
 
 
 @numpy.errstate(all="ignore")
@@ -52,7 +54,9 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     extras = search.extras()
     shares = numpy.isfinite(search.values).mean(axis=0)
     of_numbers = [i for i in range(width) if shares[i] > search.share_of_text[i]]
-    return Choice(search.indices, extras, of_numbers, search.notes, search.downwards)
+    return Choice(
+        search.indices, extras, of_numbers, search.notes, search.downwards, search.texts
+    )
 
 
 class Search:
@@ -84,7 +88,7 @@ class Search:
             self.meanings = [
                 finnish.get("".join(plain(name)), m) for name, m in zip(names, self.meanings)
             ]
-        self.indices, self.notes = None, []
+        self.indices, self.notes, self.texts = None, [], {}
 
     # -- what the user said
 
@@ -520,11 +524,15 @@ class Search:
             name = (self.names[i].strip() if self.names else "") or f"column {i + 1}"
             if not len(self.finite(i)) or self.share_of_text[i] > 0.1:
                 text.append(name)
+                if self.share_of_text[i] > 0:
+                    known = name in (*result.values(), *self.texts.values())
+                    self.texts[i] = f"{name} (column {i + 1})" if known else name
                 continue
             for colour, words in COLOURS.items():
                 if "".join(plain(name)) in words:
                     name = colour if colour not in result.values() else name
-            result[i] = name if name not in result.values() else f"{name} (column {i + 1})"
+            known = name in (*result.values(), *self.texts.values())
+            result[i] = f"{name} (column {i + 1})" if known else name
         if text:
             self.notes.append(f"columns without numbers are left out: {', '.join(text)}")
         return result

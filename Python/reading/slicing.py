@@ -9,6 +9,7 @@ import numpy
 from ..clouds import Cloud, ReadOptions, system_of, with_data
 from ..messages import FileError, counted
 from ..progress import share
+from ..selecting import NONE_CHOSEN, NothingChosen
 from . import check_use
 from .formats import FORMATS, recognise
 from .nulls import usual_nulls, zero_rows
@@ -85,9 +86,16 @@ def read_files(paths, cloud, **options):
     reference systems differ."""
     clouds = [Cloud(None) for _ in paths]
     progress = options["progress"]
+    unused = []
     for i, (path, own) in enumerate(zip(paths, clouds)):
         options["progress"] = share(progress, i / len(paths), (i + 1) / len(paths))
-        yield from read_slices(path, own, **options)
+        try:
+            yield from read_slices(path, own, **options)
+        except NothingChosen as error:
+            unused.append(error)
+            own.notes.append(NONE_CHOSEN)
+            if len(unused) == len(paths):
+                raise unused[0] from None
         cloud.notes += [f"{path}: {note}" for note in own.notes] if len(paths) > 1 else own.notes
         for reason, count in own.left_out.items():
             cloud.left_out[reason] = cloud.left_out.get(reason, 0) + count
