@@ -20,6 +20,7 @@ from .opening import length_to_open
 from .paths import check_suffix
 from .properties import COLOURS, checked, number_above_zero, view_angles
 from .ranks import agreed, total
+from .reading.facing import faces_of, notes_on_faces
 from .spreading import whole_lines, whole_surface
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
@@ -34,12 +35,23 @@ def as_cloud(points: Points) -> Cloud:
     if isinstance(points, vtkPointSet):
         if points.GetNumberOfPoints() == 0:
             raise ElevationSurfaceError("points: there are none")
-        return Cloud(points)
+        return cloud_of_mesh(points)
     if isinstance(points, (str, os.PathLike)):
         raise TypeError(f"points: a file's name; use reconstruct(read({os.fspath(points)!r}))")
     if isinstance(points, vtkDataSet):
         raise TypeError(f"points: {points.GetClassName()} has no elevations; a vtkPointSet has")
     return Cloud(make_points(array_of(points, "points", (3,))))
+
+
+def cloud_of_mesh(points):
+    """The points of a vtkPointSet. Raises ElevationSurfaceError for faces of no elevation surface."""
+    faces = faces_of(points)
+    try:
+        return Cloud(points, notes_on_faces(faces) if faces else ())
+    except ElevationSurfaceError as error:
+        raise ElevationSurfaceError(
+            f"points: the mesh {error}, or give its points alone, as an array"
+        ) from None
 
 
 def array_of(values, what, widths):
@@ -294,7 +306,8 @@ def reconstruct(
               The program's --help tells what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
-    can be made, TypeError for unknown properties, ValueError for values that a property does not
+    can be made; where places have the heights of several surfaces, unless duplicates says which to
+    take; and where faces of a mesh are those of no elevation surface. Raises TypeError for unknown properties, ValueError for values that a property does not
     take. What a filter warns of is an ElevationSurfaceWarning and in the notes. Takes about a second
     for a million points.
     """

@@ -11,6 +11,7 @@ from ..clouds import Cloud, add_array, make_points
 from ..messages import FileError
 from ..progress import told_lines
 from ..selecting import words_of
+from .facing import check_faces, made_of
 
 KINDS = ("TSurf", "VSet", "PLine")
 NAME = re.compile(r'(?:HEADER *\{)? *name: *"?([^"}]*)')
@@ -105,6 +106,9 @@ def read_points(path, options):
     names, counts = zip(*gocad.objects)
     if any(names):
         cloud.words["name"] = words_of(names).some(numpy.repeat(numpy.arange(len(names)), counts))
+    if gocad.triangles:
+        faces = made_of(numpy.array(gocad.points), numpy.array(gocad.triangles))
+        cloud.notes += check_faces(path, faces, options)
     if gocad.segments or gocad.triangles:
         cloud.notes.append("only the points are used, not the file's cells")
     if gocad.turned:
