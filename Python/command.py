@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from . import reading
 from .clouds import Cloud, ReadOptions, merged, notes_on
 from .gdal_common import name_of, reference_of
-from .messages import ElevationSurfaceError, PictureError
+from .messages import ElevationSurfaceError, PictureError, counted
 from .options import (
     about,
     check_options,
@@ -79,16 +79,19 @@ class Run:
 
     def values(self):
         """The name of the column of --each-value and its values, on all ranks. What is read is kept."""
+        options = self.options
+
         def find():
             self.check()
-            files = self.options.files
-            self.options.clouds = self.read_whole()
-            columns = columns_in(merged(files, self.options.clouds))
-            name, values = values_to_make(self.options.file, self.options.each_value, columns)
-            return [name, *values]
+            options.clouds = self.read_whole()
+            columns = columns_in(merged(options.files, options.clouds))
+            name, missing, values = values_to_make(options.file, options.each_value, columns)
+            return [name, missing, *values]
 
         found = by_first(self.ranks, find) or []
-        name, *values = together(self.ranks, lambda: found)
+        name, missing, *values = together(self.ranks, lambda: found)
+        if missing:
+            options.without_value = missing
         return name, values
 
     def read_clouds(self):
@@ -105,6 +108,9 @@ class Run:
             raise unused[0][1]
         cloud = merged(names, made)
         cloud.notes += [f"{path}: {NONE_CHOSEN}" for path, _ in unused]
+        if self.options.without_value:
+            words = counted(self.options.without_value, "point has", "points have")
+            cloud.notes.append(f"{words} no {self.options.each_value}: of no surface")
         return cloud
 
     def read(self):
@@ -275,7 +281,7 @@ def run_each_value(options, ranks):
     def work(run):
         parsed = copy.copy(options.parsed)
         parsed.each_value, values = run.values()
-        parsed.clouds = options.clouds
+        parsed.clouds, parsed.without_value = options.clouds, options.without_value
         runs.extend(options_of(parsed, options.files, value) for value in values)
         outputs = [one.output for one in runs]
         for value, output in zip(values, outputs):

@@ -7,9 +7,9 @@ others. That is right for a few, and wrong for two horizons in one table. The se
 the user says which height to take.
 
 Heights are clearly apart where they differ by more than CLEAR_OF_RANGE of the range that holds 98 % of
-all z, and by more than CLEAR_STEPS usual differences from one place to the next, for each height that
-the place has, up to MOST_STEPS: noise and slopes make both differences about the same, and the more
-heights, the farther apart noise makes the outer ones. They are many at more than MANY of the places.
+all z, and by more than CLEAR_STEPS times the step that is usual from one place to the next, for each
+height that the place has, up to MOST_STEPS times: noise and slopes make both about the same, and the
+more heights, the farther apart noise makes the outer ones. They are many at more than MANY of the places.
 
 A column tells heights apart where, at almost all places, each of its values has one height. Its values
 are surfaces where, of two that share places, one is almost always above the other: so the lines of a
@@ -32,7 +32,8 @@ MANY = 0.01  # of all places
 MANY_BY_NAME = 0.001
 LEAST = 3  # places; fewer are never many
 CLEAR_OF_RANGE = 0.02
-CLEAR_STEPS, MOST_STEPS = 3.0, 12.0
+CLEAR_STEPS, MOST_STEPS = 1.5, 6.0
+USUAL = 90  # per cent of steps are no larger than the usual one: a plain may have steep banks
 ALMOST = 0.95  # of the places
 ALWAYS = 0.9  # of pairs of heights at a place
 MIXER = numpy.uint64(0x9E3779B97F4A7C15)
@@ -107,9 +108,9 @@ def several_heights(xyz):
 
 
 def usual_step(xyz, several):
-    """The usual difference of z between places beside each other: the median of those in one cell of a
-    grid of some two places a cell. Of several heights at a place the lowest count, or the highest, which
-    ever gives less: the ends of wells are uneven, the ground is not."""
+    """The usual difference of z between places beside each other: those in one cell of a grid of some two
+    places a cell. Of several heights at a place the lowest count, or the highest, whichever gives less:
+    the ends of wells are uneven, the ground is not."""
     ends = several.starts + several.lengths() - 1
     return min(step_between(xyz, several, ends_of) for ends_of in (several.starts, ends))
 
@@ -129,7 +130,7 @@ def step_between(xyz, several, chosen):
     order = numpy.lexsort(cell.T)
     near = (numpy.diff(cell[order], axis=0) == 0).all(axis=1)
     steps = numpy.abs(numpy.diff(places[order, 2]))[near]
-    return float(numpy.median(steps)) if len(steps) else 0.0
+    return float(numpy.percentile(steps, USUAL)) if len(steps) else 0.0
 
 
 class Column:

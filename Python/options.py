@@ -165,6 +165,7 @@ def parse_arguments(arguments):
         parser.error("no file is given")
     options.command = ["reconstruct", *arguments]
     options.clouds = None  # those of the files, where they are read already
+    options.without_value = 0  # how many points have none in the column of --each-value
     options.given = {
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }

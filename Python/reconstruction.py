@@ -119,12 +119,13 @@ class Reconstruction:
     lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
     notes     what filters warned of, one line each
+    decided   notes on what the user has decided
     """
 
     def __init__(self, cloud):
         self.cloud = cloud
         self.times = {}
-        self.notes = []
+        self.notes, self.decided = [], []
         self.delaunay = self.trim = self.fill = self.outlined = None
         self.surface = self.boundary = self.holes = None
         self.triangles, self.reasons, self.lattice = {}, None, None
@@ -247,7 +248,7 @@ def run_chain(
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
     note, result.several = agreed(ranks, lambda: check_heights(cloud, given.get("duplicates")))
-    result.notes += [note] if note else []
+    (result.decided if "duplicates" in given else result.notes).extend([note] if note else [])
     run = Step(result, given, progress, strict, ranks)
     if given.get("maximum_elevation_error") and trim:
         trim_few(run, boundary, faults)

@@ -36,7 +36,7 @@ def make_report(result):
     reasons = reasons_unused(result)
     counts, listed = list_unused(reasons, cloud.lines)
     report = {
-        "notes": cloud.notes + result.notes,
+        "notes": cloud.notes + result.decided + result.notes,
         "left_out": cloud.left_out,
         "bounds": bounds_of(surface),
         "crs": result.crs,

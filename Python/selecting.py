@@ -263,9 +263,10 @@ def condition_of_layer(path, name, columns):
 
 
 def values_to_make(path, name, columns):
-    """(name of the column, its values as text), for a surface each. Raises FileError."""
+    """(name of the column, how many points have no value in it, the values as text), for a surface each.
+    Raises FileError."""
     name = column_of(path, name, columns)
-    values = coded(columns[name])[1]
+    codes, values = coded(columns[name])
     if not values:
         raise FileError(f"{path}: column {name} is empty")
     if len(values) > MOST_VALUES:
@@ -274,4 +275,4 @@ def values_to_make(path, name, columns):
             f"surface of each, at most {MOST_VALUES:,}: choose a column that names surfaces, or some "
             "values by --where"
         )
-    return name, values
+    return name, int(numpy.count_nonzero(codes < 0)), values
