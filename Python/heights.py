@@ -11,8 +11,8 @@ all z, and by more than CLEAR_STEPS times the step that is usual from one place 
 height that the place has, up to MOST_STEPS times: noise and slopes make both about the same, and the
 more heights, the farther apart noise makes the outer ones. They are many at more than MANY of the places.
 
-A column tells heights apart where, at almost all places, each of its values has one height. Its values
-are surfaces where, of two that share places, one is almost always above the other: so the lines of a
+A column tells heights apart where, at almost all places, each of its values has one height, and values
+come again from place to place. Its values are surfaces where, of two that share places, one is almost always above the other: so the lines of a
 survey that cross are none. Then the second condition of clearly apart is not asked for, and of text, which
 names things, MANY_BY_NAME of the places is enough.
 """
@@ -147,7 +147,7 @@ class Column:
         self.share, self.in_order, self.count = 0.0, False, 0
         codes, values = coded(column.some(several.ids) if is_text else column[several.ids])
         self.count = len(values)
-        if not 1 < self.count <= MOST_VALUES:
+        if not 1 < self.count <= min(MOST_VALUES, len(codes) / LEAST):
             return
         place = numpy.repeat(numpy.arange(several.count()), several.lengths())
         self.share = 1.0 - len(numpy.unique(place[self.mixed(place, codes, z)])) / several.count()
