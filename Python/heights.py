@@ -271,8 +271,9 @@ def way_out(told):
     if name is None:
         return f"the files tell them apart: --each makes a surface of each; {POLICIES}"
     value = coded(column)[1][0]
+    called = name if name.startswith("column ") else f"column {name}"
     return (
-        f"column {name} tells them apart: {shown_values(column)}; --each-value {shlex.quote(name)} makes "
+        f"{called} tells them apart: {shown_values(column)}; --each-value {shlex.quote(name)} makes "
         f"a surface of each value, {as_option(name, value)} one of this; {POLICIES}"
     )
 

@@ -534,5 +534,6 @@ class Search:
             known = name in (*result.values(), *self.texts.values())
             result[i] = f"{name} (column {i + 1})" if known else name
         if text:
-            self.notes.append(f"columns without numbers are left out: {', '.join(text)}")
+            chosen = "; --where chooses points by them" if self.texts else ""
+            self.notes.append(f"columns without numbers are left out: {', '.join(text)}{chosen}")
         return result

@@ -9,8 +9,8 @@ import numpy
 from ..clouds import Cloud, ReadOptions, system_of, with_data
 from ..messages import FileError, counted
 from ..progress import share
-from ..selecting import NONE_CHOSEN, NothingChosen
-from . import check_use
+from ..selecting import NONE_CHOSEN, NothingChosen, as_option
+from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
 from .nulls import usual_nulls, zero_rows
 from .unpacking import unpacked
@@ -41,6 +41,11 @@ def read_slices(path, cloud, **options):
         kind, notes = recognise(local)
         check_use(local, kind, options)
         check_sliced(local, kind)
+        if options.layer and kind.module in NAMES_IN_COLUMNS:
+            raise FileError(
+                f"{local}: --layer of {kind.name} needs all points in memory: in pieces, "
+                f"{as_option('COLUMN', options.layer)} takes those of a name"
+            )
         cloud.notes += notes
         count, seen = 0, numpy.empty((0, 3))
         for points in kind.slice_reader()(local, options, cloud):

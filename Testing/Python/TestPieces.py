@@ -694,6 +694,15 @@ class Slices(InFolder):
             self.assertIn("left out: Depth", cloud.notes)
             self.assert_as_whole(path, no_data=5.0, depth=True)
             self.assert_as_whole(path, columns=("1", "2", "4"))
+            self.assert_as_whole(path, where={"depth": list(range(100, 4000, 7))})
+            with self.assertRaisesRegex(FileError, "there is no column name beside x, y and z; columns: Depth"):
+                list(read_slices(path, Cloud(None), where="name=a"))
+        rows = [f"{i % 70},{i // 70},{i % 11},{'abc'[i % 3]}" for i in range(5000)]
+        path = self.file("words.csv", "\n".join(["X,Y,Z,name", *rows]))
+        with mock.patch.object(text, "BLOCK", 3000):
+            self.assert_as_whole(path, where="name=b")
+            with self.assertRaisesRegex(FileError, "no point has name = d; values: a "):
+                list(read_slices(path, Cloud(None), where="name=d"))
         packed = self.path("b.csv.gz")
         with gzip.open(packed, "wb") as stream:
             stream.write(b"1 2 3\n4 5 6\n7 7 7\n")
@@ -712,6 +721,9 @@ class Slices(InFolder):
             with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 70):
                 self.assert_as_whole(path)
                 self.assert_as_whole(path, no_data=7.0)
+        with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 70):
+            self.assert_as_whole(self.path("0.npy"), where={"column 4": [3, 7]})
+            self.assert_as_whole(self.path("2.npy"), where="name=0")
 
     def test_las(self):
         rng = numpy.random.default_rng(4)
@@ -727,6 +739,7 @@ class Slices(InFolder):
         with mock.patch("vtkelevationsurface.reading.las.AT_ONCE", 60):
             self.assert_as_whole(path)
             self.assert_as_whole(path, classes=(1, 2))
+            self.assert_as_whole(path, where={"Classification": [0, 2]})
             with self.assertRaisesRegex(FileError, "holds no point of class 9"):
                 list(read_slices(path, Cloud(None), classes=(9,)))
 

@@ -500,6 +500,8 @@ class OfProgram(Program):
         self.assertIn("576 read; 1,728 points of other values left out",
                       self.run_of(name, *ways, "--where", "Horizon name=Base"))
         self.assertIn("no point has code = 9", self.run_of(name, *ways, "--where", "code=9", code=1))
+        self.assertIn("h.csv: --layer of a text table needs all points in memory: in pieces, --where "
+                      "COLUMN=Base takes", self.run_of(name, *ways, "--layer", "Base", code=1))
         self.run_of(name, *ways, "--duplicates", "keep-last")
 
 
