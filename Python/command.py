@@ -202,7 +202,7 @@ class Run:
                 lambda path: picture.draw(
                     result.surface,
                     path,
-                    os.path.basename(options.file),
+                    options.title,
                     picture_subtitle(result),
                     result.holes,
                     view=options.view,

@@ -216,6 +216,7 @@ def options_of(options, files, value=None):
     options.parsed = parsed
     options.files = files
     options.file = " + ".join(files)
+    options.title = os.path.basename(options.file)
     name = os.path.basename(files[0])
     name = "points" if name == "-" else name[:-3] if name.lower().endswith(".gz") else name
     stem = os.path.splitext(name)[0]
@@ -223,6 +224,7 @@ def options_of(options, files, value=None):
         column = options.each_value
         options.where = [*(options.where or ()), (column, value)]
         options.file += f", {column} = {value}"
+        options.title += f", {column} = {value}"
         stem += "_" + (re.sub(r"[^\w.+-]+", "_", value).strip("_.") or "value")
     if options.output is None:
         options.output = stem + "_surface.vtp" + "d" * options.in_pieces
