@@ -136,11 +136,20 @@ def coded(column):
     return place[codes.ravel()], [values[i] for i in order]
 
 
-def shown_values(column):
-    """The values of a column with the number of points of each, in words."""
+def value_counts(column):
+    """{value: number of points that have it}"""
     codes, values = coded(column)
     counts = numpy.bincount(codes[codes >= 0], minlength=len(values)).tolist()
-    words = [f"{value} ({count:,})" for value, count in zip(values, counts)]
+    return dict(zip(values, counts))
+
+
+def shown_values(column):
+    """The values of a column with the number of points of each, in words."""
+    return shown_counts(value_counts(column))
+
+
+def shown_counts(counts):
+    words = [f"{value} ({count:,})" for value, count in counts.items()]
     more = f", and {len(words) - SHOWN:,} more" if len(words) > SHOWN else ""
     return (", ".join(words[:SHOWN]) or "none") + more
 
@@ -192,7 +201,7 @@ class Selection:
         self.path, self.wanted, self.count = path, {}, 0
         for name, value in conditions:
             self.wanted.setdefault(name, []).append(value)
-        self.found, self.last = set(), {}
+        self.found, self.values, self.known = set(), {}, {}
 
     def keep(self, columns):
         """(n,) of bool for the points of a cloud, or of a part of it, with these columns."""
@@ -205,23 +214,35 @@ class Selection:
                 if equal.any():
                     self.found.add((name, value))
                 here = here | equal
-            self.last[name] = (values, columns[name])
+            self.values[name] = values
+            if self.missing(name):
+                self.note_values(name, columns[name])
             keep = keep & here
         self.count += int(numpy.count_nonzero(~keep))
         return keep
 
+    def missing(self, name):
+        """The wanted values of a column that no point has had so far."""
+        return [value for value in self.values[name] if (name, value) not in self.found]
+
+    def note_values(self, name, column):
+        """Remembers what values there are, for an error."""
+        known = self.known.setdefault(name, {})
+        for value, count in value_counts(column).items():
+            if value in known or len(known) < MOST_VALUES:
+                known[value] = known.get(value, 0) + count
+
     def check(self, any_left):
         """Notes on values that no point has. Raises NothingChosen where that leaves no point."""
         notes = []
-        for name, (values, column) in self.last.items():
-            for value in values:
-                if (name, value) not in self.found:
-                    known = coded(column)[1][:MOST_VALUES]
-                    notes.append(
-                        f"no point has {name} = {value or 'nothing'}"
-                        f"{did_you_mean(value, known) if value else ''}; values: {shown_values(column)}"
-                    )
-        if not any_left and self.last:
+        for name in self.values:
+            known = self.known.get(name, {})
+            for value in self.missing(name):
+                notes.append(
+                    f"no point has {name} = {value or 'nothing'}"
+                    f"{did_you_mean(value, known) if value else ''}; values: {shown_counts(known)}"
+                )
+        if not any_left and self.values:
             words = " and ".join(as_option(*pair) for pair in sorted(self.found))
             words = notes[0] if notes else f"no point is left by {words} together"
             raise NothingChosen(f"{self.path}: {words}")

@@ -701,7 +701,7 @@ class Slices(InFolder):
         path = self.file("words.csv", "\n".join(["X,Y,Z,name", *rows]))
         with mock.patch.object(text, "BLOCK", 3000):
             self.assert_as_whole(path, where="name=b")
-            with self.assertRaisesRegex(FileError, "no point has name = d; values: a "):
+            with self.assertRaisesRegex(FileError, r"name = d; values: a \(1,667\), b \(1,667\), c"):
                 list(read_slices(path, Cloud(None), where="name=d"))
         packed = self.path("b.csv.gz")
         with gzip.open(packed, "wb") as stream:
