@@ -23,7 +23,8 @@ def recognised(points):
 
 def account_of(part, result):
     """The account of a Part that became a Reconstruction."""
-    notes = [in_panel(note) for note in result.notes]
+    # A panel always says which of several heights is taken, so that nobody has decided it.
+    notes = [in_panel(note) for note in result.decided + result.notes]
     return {
         "place": part.place,
         "name": part.name,

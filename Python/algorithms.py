@@ -73,7 +73,8 @@ class ElevationPoints(TellingAlgorithm):
     def __init__(self):
         super().__init__(0, 1)
         self._file = self._columns = self._no_data = self._layer = self._classes = ""
-        self._keep_nulls = self._depth = False
+        self._where = ""
+        self._keep_nulls = self._depth = self._points_only = False
         self._band = self._contents = 0
 
     def SetFileName(self, name):
@@ -111,6 +112,14 @@ class ElevationPoints(TellingAlgorithm):
         """The classes of a LAS file to read, as "2,8"; empty: all."""
         self.change("_classes", numbers or "")
 
+    def SetWhere(self, condition):
+        """Which points to read, as COLUMN=VALUE; empty: all."""
+        self.change("_where", condition or "")
+
+    def SetPointsOnly(self, points_only):
+        """Whether the points of a mesh that is no elevation surface are read."""
+        self.change("_points_only", bool(points_only))
+
     def GetRecognised(self):
         """What was found out about the file, one line each."""
         return self._text
@@ -128,6 +137,10 @@ class ElevationPoints(TellingAlgorithm):
             options["layer"] = self._layer.strip()
         if self._classes.strip():
             options["classes"] = self._classes
+        if self._where.strip():
+            options["where"] = self._where
+        if self._points_only:
+            options["points_only"] = True
         return options
 
     def lines(self):

@@ -13,6 +13,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .messages import counted
 from .progress import no_progress
+from .selecting import Words, conditions_of, joined_words
 
 AT_ONCE = 2_000_000  # rows worked on at a time: what bounds the memory taken
 
@@ -28,6 +29,8 @@ class Cloud:
     largest_cell  of points from a grid of unequal steps: the diagonal of its largest cell, else 0
     z_name   what z is called where it is from, with its unit, or ""
     is_horizon  whether it is of a kind of file or table in which horizons are
+    words    {name: Words} of columns of text
+    files    of merged files, Words with the file of each point, else None
     """
 
     def __init__(self, points, notes=(), left_out=None, lines=None, crs=None):
@@ -38,6 +41,15 @@ class Cloud:
         self.crs = crs
         self.largest_cell = 0.0
         self.z_name, self.is_horizon = "", False
+        self.words, self.files = {}, None
+
+    def copy(self):
+        """One that can be changed; the points themselves are shared, as nothing changes them."""
+        copied = Cloud(self.points, self.notes, self.left_out, self.lines, self.crs)
+        copied.largest_cell, copied.files = self.largest_cell, self.files
+        copied.z_name, copied.is_horizon = self.z_name, self.is_horizon
+        copied.words = dict(self.words)
+        return copied
 
 
 def three_columns(columns):
@@ -73,6 +85,8 @@ class ReadOptions:
     band: object = None  # None, or the number from 1 of a raster's band of elevations
     layer: object = None  # None, or the name of a layer or variable, of files that hold several
     classes: object = None  # None, or the numbers of the classes of a LAS file to read
+    where: object = None  # None, or what conditions_of() takes: which points to read, by columns
+    points_only: bool = False  # points of a mesh are wanted, whatever its triangles are
 
     def __post_init__(self):
         if self.columns is not None:
@@ -81,6 +95,8 @@ class ReadOptions:
             self.classes = class_numbers(self.classes)
         if self.band is not None and self.band < 1:
             raise ValueError(f"band takes a number from 1, not {self.band}")
+        if self.where is not None:
+            self.where = conditions_of(self.where)
 
 
 def make_points(coordinates, copy=True):
@@ -240,6 +256,11 @@ def merged(names, clouds):
     kept = result.points.GetPointData().GetNumberOfArrays()
     if any(cloud.points.GetPointData().GetNumberOfArrays() > kept for cloud in clouds):
         result.notes.append("point arrays that not all files have are left out")
+    for title in clouds[0].words:
+        if all(title in cloud.words for cloud in clouds):
+            result.words[title] = joined_words([cloud.words[title] for cloud in clouds])
+    counts = [cloud.points.GetNumberOfPoints() for cloud in clouds]
+    result.files = Words(numpy.repeat(numpy.arange(len(clouds), dtype="i4"), counts), list(names))
     for name, cloud in zip(names, clouds):
         count = cloud.points.GetNumberOfPoints()
         result.notes.append(f"{name}: {counted(count, 'point')}")
@@ -326,6 +347,8 @@ def keep_points(cloud, keep):
     cloud.points = some_points(cloud.points, keep)
     if cloud.lines is not None:
         cloud.lines = numpy.asarray(cloud.lines)[keep]
+    cloud.words = {name: column.some(keep) for name, column in cloud.words.items()}
+    cloud.files = cloud.files and cloud.files.some(keep)
 
 
 def turn_over(cloud):

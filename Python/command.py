@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line: python3 -m vtkelevationsurface FILE, which Utilities/reconstruct runs."""
 
+import copy
 import os
 import sys
 import time
@@ -10,10 +11,10 @@ import numpy
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from . import reading
-from .clouds import Cloud, bare_lines, merged, notes_on
+from .clouds import Cloud, ReadOptions, bare_lines, merged, notes_on
 from .gdal_common import name_of, reference_of
 from .given_lines import fitted
-from .messages import ElevationSurfaceError, PictureError
+from .messages import ElevationSurfaceError, PictureError, counted
 from .options import (
     about,
     check_options,
@@ -24,10 +25,11 @@ from .options import (
     read_options,
 )
 from .pieces import Pieces
-from .ranks import by_first, total
+from .ranks import by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, NoPicture, Progress, Results, WrongOption, write_report
+from .selecting import NONE_CHOSEN, NothingChosen, columns_in, values_to_make
 from .spreading import can_be_dealt
 from .steps import in_options
 from .supervisor import allow_stops
@@ -70,15 +72,52 @@ class Run:
     def about(self):
         return about(self.options)
 
+    def read_whole(self):
+        """The Clouds of the files as reading.read_whole() gives them."""
+        wanted = ReadOptions(**self.read_options())
+        if self.options.each_value:
+            wanted.where = [*(wanted.where or ()), (self.options.each_value, "")]  # is read, too
+        return [reading.read_whole(path, wanted) for path in self.options.files]
+
+    def values(self):
+        """The name of the column of --each-value and its values, on all ranks. What is read is kept."""
+        options = self.options
+
+        def find():
+            self.check()
+            options.clouds = self.read_whole()
+            columns = columns_in(merged(options.files, options.clouds))
+            name, missing, values = values_to_make(options.file, options.each_value, columns)
+            return [name, missing, *values]
+
+        found = by_first(self.ranks, find) or []
+        name, missing, *values = together(self.ranks, lambda: found)
+        if missing:
+            options.without_value = missing
+        return name, values
+
+    def read_clouds(self):
+        """The Cloud of the files."""
+        wanted, files = ReadOptions(**self.read_options()), self.options.files
+        names, made, unused = [], [], []
+        for path, cloud in zip(files, self.options.clouds or self.read_whole()):
+            try:
+                made.append(reading.finished(path, cloud.copy(), wanted))
+                names.append(path)
+            except NothingChosen as error:
+                unused.append((path, error))
+        if not made:
+            raise unused[0][1]
+        cloud = merged(names, made)
+        cloud.notes += [f"{path}: {NONE_CHOSEN}" for path, _ in unused]
+        if self.options.without_value:
+            words = counted(self.options.without_value, "point has", "points have")
+            cloud.notes.append(f"{words} no {self.options.each_value}: of no surface")
+        return cloud
+
     def read(self):
-        options, wanted = self.options, self.read_options()
-        cloud = self.timed(
-            "read",
-            "reading",
-            lambda: merged(
-                options.files, [reading.read(path, **wanted) for path in options.files]
-            ),
-        )
+        options = self.options
+        cloud = self.timed("read", "reading", self.read_clouds)
         try:
             check_spacing(least_reach(cloud.points), options.given.get("spacing", 0.0))
         except ValueError as error:
@@ -166,7 +205,7 @@ class Run:
                 lambda path: picture.draw(
                     result.surface,
                     path,
-                    os.path.basename(options.file),
+                    options.title,
                     picture_subtitle(result),
                     result.holes,
                     view=options.view,
@@ -234,16 +273,45 @@ class Run:
 
 def run_one(options, ranks):
     """The exit code of one run, the same on all ranks. The first says why, where it fails."""
-    allow_stops()  # those that were held back while results of the run before appeared
-    results = Results()
-    run = Run(options, results, ranks)
-    try:
+
+    def work(run):
         report = run()
         run.progress.clear()
         if report and not options.quiet:
             print_report(report)
         sys.stdout.flush()
         run.check_picture()
+
+    return attempt(options, ranks, work)
+
+
+def run_each_value(options, ranks):
+    """The exit code of a run for each value of a column, as that of run_one()."""
+    runs = []
+
+    def work(run):
+        parsed = copy.copy(options.parsed)
+        parsed.each_value, values = run.values()
+        parsed.clouds, parsed.without_value = options.clouds, options.without_value
+        runs.extend(options_of(parsed, options.files, value) for value in values)
+        outputs = [one.output for one in runs]
+        for value, output in zip(values, outputs):
+            if outputs.count(output) > 1:
+                raise WrongOption(
+                    f"{options.file}: --each-value would write {output} twice; '{value}' is one of the "
+                    "values: take them one by one, by --where, with names by --output"
+                )
+
+    return attempt(options, ranks, work) or max(run_one(one, ranks) for one in runs)
+
+
+def attempt(options, ranks, work):
+    """Calls work(a Run). The exit code, the same on all ranks; the first says why, where it fails."""
+    allow_stops()  # those that were held back while results of the run before appeared
+    results = Results()
+    run = Run(options, results, ranks)
+    try:
+        work(run)
         return 0
     except ElevationSurfaceError as error:
         reason, code = str(error), error.code
@@ -270,7 +338,8 @@ def main(arguments=None, ranks=None):
         if outputs.count(output) > 1:
             make_parser().error(f"--each would write {one.output} twice; {one.file} is one of the files")
     try:
-        return max(run_one(one, ranks) for one in runs)
+        run = run_each_value if options.each_value else run_one
+        return max(run(one, ranks) for one in runs)
     except BrokenPipeError:
         # Nobody reads the report any more. What was asked for is done; Python must not try again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -25,6 +25,7 @@ from .properties import (
     view_angles,
 )
 from .results import WrongOption
+from .selecting import as_option, condition
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name
 
 HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "help.txt")
@@ -44,6 +45,8 @@ TAKES = {
     "--band": "a whole number from 1",
     "--layer": "a name",
     "--classes": "numbers from 0 to 255, as 2,8",
+    "--where": "COLUMN=VALUE, as horizon=Top",
+    "--each-value": "a column",
     "--faults": "a file",
     "--boundary": "a file",
     "--crs": "a coordinate reference system, as EPSG:25832",
@@ -121,6 +124,9 @@ def make_parser():
     add("--band", type=whole_number)
     add("--layer")
     add("--classes", type=class_numbers)
+    add("--where", type=condition, action="append")
+    add("--each-value")
+    add("--points-only", action="store_true")
     add("--faults", "--breaklines", dest="faults")
     add("--boundary")
     for name, one in PROPERTIES.items():
@@ -158,6 +164,8 @@ def parse_arguments(arguments):
     if not options.files:
         parser.error("no file is given")
     options.command = ["reconstruct", *arguments]
+    options.clouds = None  # those of the files, where they are read already
+    options.without_value = 0  # how many points have none in the column of --each-value
     options.given = {
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
@@ -189,20 +197,39 @@ def parse_arguments(arguments):
     if options.outlines is not None and not (options.trim or options.fill):
         parser.error("--no-trim and --no-fill leave no outlines")
     names = [getattr(options, one.name) for one in OUTPUTS]
-    if options.each and (any(names) or options.picture or options.report):
-        parser.error("--each names the results of each file itself: leave out the names of results")
+    for each, of in (("each", "file"), ("each_value", "value")):
+        if getattr(options, each) and (any(names) or options.picture or options.report):
+            each = option_of(each)
+            parser.error(f"{each} names the results of each {of} itself: leave out the names of results")
+    if options.each_value and options.in_pieces:
+        parser.error(
+            f"--each-value needs all points in memory: in pieces, {as_option('COLUMN', 'VALUE')} takes one "
+            "value"
+        )
     return options
 
 
-def options_of(options, files):
-    """The options of one run, with the names of all results, for files that are merged."""
-    options = copy.copy(options)
+def options_of(options, files, value=None):
+    """The options of one run, with the names of all results, for files that are merged.
+
+    value  of --each-value, the one of this run, which the names of results hold
+    """
+    options, parsed = copy.copy(options), options
+    options.parsed = parsed
     options.files = files
     options.file = " + ".join(files)
+    options.title = os.path.basename(options.file)
     name = os.path.basename(files[0])
     name = "points" if name == "-" else name[:-3] if name.lower().endswith(".gz") else name
+    stem = os.path.splitext(name)[0]
+    if value is not None:
+        column = options.each_value
+        options.where = [*(options.where or ()), (column, value)]
+        options.file += f", {column} = {value}"
+        options.title += f", {column} = {value}"
+        stem += "_" + (re.sub(r"[^\w.+-]+", "_", value).strip("_.") or "value")
     if options.output is None:
-        options.output = os.path.splitext(name)[0] + "_surface.vtp" + "d" * options.in_pieces
+        options.output = stem + "_surface.vtp" + "d" * options.in_pieces
     for one in OUTPUTS:
         wanted = getattr(options, one.step) if one.step else getattr(options, one.name) is not None
         if wanted and not getattr(options, one.name):

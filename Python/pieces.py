@@ -17,9 +17,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from . import reading
 from .clouds import Cloud, corner_flags, make_points, set_crs, slices
 from .given_lines import in_system
+from .heights import HeightsOfPieces
 from .holes import report_of_holes
 from .mending import mended
-from .messages import FileError, Messages, plain_message
+from .messages import ElevationSurfaceError, FileError, Messages, plain_message
 from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
 from .reading.formats import recognise
@@ -171,6 +172,7 @@ class Pieces:
         self.unused = {number: numpy.empty(0, "i8") for number in (1, 2)}  # of REASONS
         self.low, self.high = numpy.full(3, numpy.inf), numpy.full(3, -numpy.inf)
         self.lattice = self.told_of = self.holes = None
+        self.heights, self.several = HeightsOfPieces(), None
 
     def __call__(self):
         options, source, run = self.options, self.source, self.run
@@ -223,6 +225,7 @@ class Pieces:
                 given = make_points(points[part], copy=False)
                 reach = min(reach, least_reach(given))
                 self.source.AddPoints(given)
+                self.heights.see(points[part])
                 self.check()
         try:
             check_spacing(reach, options.given.get("spacing", 0.0))
@@ -265,7 +268,18 @@ class Pieces:
                 )
                 names.append(f"{os.path.basename(final)}/{name}")
             self.run.progress("writing", (piece + 1) / count)
+        self.check_heights()
         return names
+
+    def check_heights(self):
+        source, options = self.source, self.options
+        unused = source.GetNumberOfDuplicatePoints() + source.GetNumberOfNonFinitePoints()
+        places, policy = source.GetNumberOfPoints() - unused, options.given.get("duplicates")
+        try:
+            note, self.several = self.heights.check(places, policy)
+        except ElevationSurfaceError as error:
+            raise Failure(f"{options.file}: {error}") from None
+        self.cloud.notes += [note] if note else []
 
     def look_at(self, data):
         """Takes from a piece what the report tells."""
@@ -281,6 +295,8 @@ class Pieces:
         gone = ids[vtk_to_numpy(fields.GetArray("UnusedPointIds"))]
         reasons = vtk_to_numpy(fields.GetArray("UnusedPointReasons"))
         self.told_of.add(gone)
+        if (reasons == 1).any():
+            self.heights.add(vtk_to_numpy(points.GetData()))
         for number, known in self.unused.items():
             all_known = numpy.concatenate((known, gone[reasons == number]))
             self.unused[number] = numpy.sort(all_known)[:MOST_LISTED]
@@ -344,6 +360,8 @@ class Pieces:
                 "boundary_rings": source.GetNumberOfBoundaryRings(),
             }
             report["triangles"]["trimmed"] = source.GetNumberOfTrimmedTriangles()
+        if self.several:
+            report["several_heights"] = self.several
         if options.fill:
             report["triangles"]["filled"] = source.GetNumberOfFilledTriangles()
             report["holes"] = self.holes

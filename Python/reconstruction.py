@@ -15,11 +15,13 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
 
 from .clouds import Cloud, make_lines, make_points
 from .given_lines import fitted
+from .heights import check_heights
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .opening import length_to_open
 from .paths import check_suffix
 from .properties import COLOURS, checked, number_above_zero, view_angles
-from .ranks import total
+from .ranks import agreed, total
+from .reading.facing import faces_of, notes_on_faces
 from .spreading import whole_lines, whole_surface
 from .steps import Step, triangulate, trim_along, trim_few
 from .vtkElevationSurface import vtkFillElevationHoles
@@ -34,12 +36,23 @@ def as_cloud(points: Points) -> Cloud:
     if isinstance(points, vtkPointSet):
         if points.GetNumberOfPoints() == 0:
             raise ElevationSurfaceError("points: there are none")
-        return Cloud(points)
+        return cloud_of_mesh(points)
     if isinstance(points, (str, os.PathLike)):
         raise TypeError(f"points: a file's name; use reconstruct(read({os.fspath(points)!r}))")
     if isinstance(points, vtkDataSet):
         raise TypeError(f"points: {points.GetClassName()} has no elevations; a vtkPointSet has")
     return Cloud(make_points(array_of(points, "points", (3,))))
+
+
+def cloud_of_mesh(points):
+    """The points of a vtkPointSet. Raises ElevationSurfaceError for faces of no elevation surface."""
+    faces = faces_of(points)
+    try:
+        return Cloud(points, notes_on_faces(faces) if faces else ())
+    except ElevationSurfaceError as error:
+        raise ElevationSurfaceError(
+            f"points: the mesh {error}, or give its points alone, as an array"
+        ) from None
 
 
 def array_of(values, what, widths):
@@ -102,17 +115,20 @@ class Reconstruction:
               them is trimmed; else None
     cloud     the points and what their reader found out
     triangles {"delaunay": count, "trimmed": count, "filled": count} after each step
+    several   {"places", "of", "largest"}: how many of all places have several heights, and the largest
+              difference; None where none has
     reasons   (n,) numbers: 0 for points in triangles of the triangulation, or why they are in none,
               as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
     lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
     notes     what filters warned of, one line each
+    decided   notes on what the user has decided
     """
 
     def __init__(self, cloud):
         self.cloud = cloud
         self.times = {}
-        self.notes = []
+        self.notes, self.decided = [], []
         self.delaunay = self.trim = self.fill = self.outlined = None
         self.surface = self.boundary = self.holes = None
         self.triangles, self.reasons, self.lattice = {}, None, None
@@ -120,6 +136,7 @@ class Reconstruction:
         self.boundary_name = None  # where a given boundary is from
         self.faults_name = None
         self.why_opened = None
+        self.several = None
 
     @property
     def crs(self) -> Optional[str]:
@@ -233,6 +250,8 @@ def run_chain(
     result.progress = progress
     result.boundary_name = "given" if boundary is not None else None
     result.faults_name = "given" if faults is not None else None
+    note, result.several = agreed(ranks, lambda: check_heights(cloud, given.get("duplicates")))
+    (result.decided if "duplicates" in given else result.notes).extend([note] if note else [])
     run = Step(result, given, progress, strict, ranks)
     if given.get("maximum_elevation_error") and trim:
         trim_few(run, boundary, faults)
@@ -299,7 +318,8 @@ def reconstruct(
               what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
-    can be made, TypeError for unknown properties, ValueError for values that a property does not
+    can be made; where places have the heights of several surfaces, unless duplicates says which to
+    take; and where faces of a mesh are those of no elevation surface. Raises TypeError for unknown properties, ValueError for values that a property does not
     take. What a filter warns of is an ElevationSurfaceWarning and in the notes. Takes about a second
     for a million points.
     """

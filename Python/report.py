@@ -36,7 +36,7 @@ def make_report(result):
     reasons = reasons_unused(result)
     counts, listed = list_unused(reasons, cloud.lines)
     report = {
-        "notes": cloud.notes + result.notes,
+        "notes": cloud.notes + result.decided + result.notes,
         "left_out": cloud.left_out,
         "bounds": bounds_of(surface),
         "crs": result.crs,
@@ -49,6 +49,8 @@ def make_report(result):
         "lattice_mode": LATTICE_MODES[delaunay.GetLatticeMode()],
         "triangles": result.triangles,
     }
+    if result.several:
+        report["several_heights"] = result.several
     if delaunay.GetMaximumElevationError():
         report["simplified"] = {
             "maximum_elevation_error": delaunay.GetMaximumElevationError(),

@@ -16,20 +16,24 @@ from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
 from .formats import recognise
 from ..messages import FileError, did_you_mean
 from ..progress import no_progress, share
+from ..selecting import columns_in, condition_of_layer, select
 from .nulls import take_out
 from .text import read_line_table, read_table
-from .unpacking import is_plain, unpacked
+from .unpacking import STANDARD_INPUT, is_plain, unpacked
 from .upwards import notes_on_up
 
 # Options that mean something for some readers only.
 MEANS_SOMETHING = {
     "columns": ("text", "vectors"),
     "band": ("rasters",),
-    "layer": ("rasters", "vectors"),
+    "layer": ("rasters", "vectors", "text", "gocad"),
     "classes": ("las",),
 }
 MAY_HAVE_Y_UP = ("a PLY file", "an STL file", "an OBJ file")
-NAMES = {"text": "text files", "vectors": "vector files", "las": "LAS files"}
+NAMES = {
+    "text": "text files", "vectors": "vector files", "las": "LAS files", "gocad": "GOCAD files",
+}
+NAMES_IN_COLUMNS = ("text.read_text", "gocad")  # modules of formats without layers of their own
 
 
 def check_options(path, **options):
@@ -54,6 +58,8 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     keep_nulls, depth   True as --keep-nulls and --depth of the program
     progress  a function that is called with the fraction read; what it raises ends the reading
     band, layer, classes   which of a raster's bands, a file's layers, a LAS file's classes
+    where    which points, by columns: {"horizon": "Top", "line": [3, 4]}, or as --where of the program
+    points_only  True takes the points of a mesh that is no elevation surface
     A misspelt option is a TypeError.
 
     Returns a Cloud. Raises FileError. Takes about a second for a million rows of text, less for
@@ -64,13 +70,29 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
             known = did_you_mean(name, ReadOptions.__dataclass_fields__)
             raise TypeError(f"read() has no option {name}{known}")
     options = ReadOptions(**options)
+    return finished(path, read_whole(path, options), options)
+
+
+def read_whole(path, options):
+    """The Cloud of all points of a file, with its nulls. Options are ReadOptions."""
     whole = options.progress
     with unpacked(os.fspath(path), whole) as (local, begun):
         options.progress = share(whole, begun, 0.7)
         cloud = read_any(local, options)
-        options.progress = share(whole, 0.7, 1.0)
-        cloud = take_out(cloud, options)
-    cloud.notes += notes_on_up(cloud, options.depth, os.fspath(path))
+    options.progress = whole
+    return cloud
+
+
+def finished(path, cloud, options):
+    """What read() makes of the Cloud of read_whole(), which it changes: points that are chosen, without
+    nulls, and turned over."""
+    name = STANDARD_INPUT if path == "-" else os.fspath(path)
+    if options.where:
+        select(name, cloud, options.where)
+    whole, options.progress = options.progress, share(options.progress, 0.7, 1.0)
+    cloud = take_out(cloud, options)
+    cloud.notes += notes_on_up(cloud, options.depth, name)
+    options.progress = whole
     if options.depth:
         turn_over(cloud)
     return cloud
@@ -81,6 +103,9 @@ def read_any(path, options):
     kind, notes = recognise(path)
     check_use(path, kind, options)
     cloud = kind.reader()(path, options)
+    if options.layer and kind.module in NAMES_IN_COLUMNS:
+        named = condition_of_layer(path, options.layer, columns_in(cloud))
+        select(path, cloud, [named], "points of other layers")
     if options.no_data is not None and kind.module not in ("text.read_text", "rasters"):
         leave_out(path, cloud, options.no_data)
     if kind.name in MAY_HAVE_Y_UP:

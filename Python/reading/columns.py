@@ -22,6 +22,7 @@ class Choice:
 
     indices     of x, y and z
     extras      {index: name} of the other columns of numbers
+    texts       {index: name} of the columns of text
     of_numbers  indices of all columns that hold more numbers than text
     """
 
@@ -31,6 +32,7 @@ class Choice:
     notes: list
     z_name: str = ""  # what z is called, with its unit
     is_horizon: bool = False  # whether lines and traces of a seismic survey stand beside
+    texts: dict = dataclasses.field(default_factory=dict)
 
 
 @numpy.errstate(all="ignore")
@@ -55,7 +57,9 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     of_numbers = [i for i in range(width) if shares[i] > search.share_of_text[i]]
     z_name = names[search.indices[-1]] if names and needed == 3 else ""
     is_horizon = any(map(is_seismic, names)) if names else search.has_line_and_trace
-    return Choice(search.indices, extras, of_numbers, search.notes, z_name, is_horizon)
+    return Choice(
+        search.indices, extras, of_numbers, search.notes, z_name, is_horizon, search.texts
+    )
 
 
 class Search:
@@ -87,7 +91,7 @@ class Search:
             self.meanings = [
                 finnish.get("".join(plain(name)), m) for name, m in zip(names, self.meanings)
             ]
-        self.indices, self.notes = None, []
+        self.indices, self.notes, self.texts = None, [], {}
 
     # -- what the user said
 
@@ -517,11 +521,16 @@ class Search:
             name = (self.names[i].strip() if self.names else "") or f"column {i + 1}"
             if not len(self.finite(i)) or self.share_of_text[i] > 0.1:
                 text.append(name)
+                if self.share_of_text[i] > 0:
+                    known = name in (*result.values(), *self.texts.values())
+                    self.texts[i] = f"{name} (column {i + 1})" if known else name
                 continue
             for colour, words in COLOURS.items():
                 if "".join(plain(name)) in words:
                     name = colour if colour not in result.values() else name
-            result[i] = name if name not in result.values() else f"{name} (column {i + 1})"
+            known = name in (*result.values(), *self.texts.values())
+            result[i] = f"{name} (column {i + 1})" if known else name
         if text:
-            self.notes.append(f"columns without numbers are left out: {', '.join(text)}")
+            chosen = "; --where chooses points by them" if self.texts else ""
+            self.notes.append(f"columns without numbers are left out: {', '.join(text)}{chosen}")
         return result

@@ -2,14 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Vertices, lines and triangles of GOCAD files: TSurf, VSet and PLine."""
 
+import re
+
 import numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from ..clouds import Cloud, add_array, make_points
 from ..messages import FileError
 from ..progress import told_lines
+from ..selecting import words_of
+from .facing import check_faces, made_of
 
 KINDS = ("TSurf", "VSet", "PLine")
+NAME = re.compile(r'(?:HEADER *\{)? *name: *"?([^"}]*)')
 
 
 class Gocad:
@@ -21,6 +26,7 @@ class Gocad:
     turned      whether z of an object is turned over, as it says that it counts downwards
     turn        False to leave z as it is
     no_data     the z that marks missing data, which is left as it is, or None
+    objects     [[name, number of its points]]
     """
 
     def __init__(self, path, progress, turn=True, no_data=None):
@@ -28,6 +34,7 @@ class Gocad:
         self.no_data = no_data
         self.points, self.properties, self.segments, self.triangles = [], {}, [], []
         self.ids, self.names, self.sizes, self.missing = {}, [], [], []
+        self.objects = []
         key = ""
         with open(path, encoding="latin-1") as stream:
             for number, line in enumerate(told_lines(stream, progress), 1):
@@ -51,6 +58,7 @@ class Gocad:
                 raise FileError(f"{self.path}: holds a {words[1]}; {', '.join(KINDS)} are read")
             self.ids, self.names, self.sizes, self.missing = {}, [], [], []
             self.sign = 1.0
+            self.objects.append(["", 0])
         elif key == "ZPOSITIVE":
             self.sign = -1.0 if self.turn and words[1].lower() == "depth" else 1.0
         elif key == "PROPERTIES":
@@ -70,6 +78,8 @@ class Gocad:
             self.segments.append((self.ids[words[1]], self.ids[words[2]]))
         elif key == "TRGL":
             self.triangles.append(tuple(self.ids[word] for word in words[1:4]))
+        elif found := NAME.match(" ".join(words)):
+            self.objects[-1][0] = self.objects[-1][0] or found.group(1).strip()
 
     def add(self, name, point, values):
         self.ids[name] = len(self.points)
@@ -83,6 +93,7 @@ class Gocad:
                 column += [numpy.nan] * (len(self.points) - len(column)) + [value]
             at += size
         self.points.append(point)
+        self.objects[-1][1] += 1
 
 
 def read_points(path, options):
@@ -93,6 +104,12 @@ def read_points(path, options):
     for name, values in gocad.properties.items():
         values = values + [numpy.nan] * (len(gocad.points) - len(values))
         add_array(cloud.points, name, numpy.array(values))
+    names, counts = zip(*gocad.objects)
+    if any(names):
+        cloud.words["name"] = words_of(names).some(numpy.repeat(numpy.arange(len(names)), counts))
+    if gocad.triangles:
+        faces = made_of(numpy.array(gocad.points), numpy.array(gocad.triangles))
+        cloud.notes += check_faces(path, faces, options)
     if gocad.segments or gocad.triangles:
         cloud.notes.append("only the points are used, not the file's cells")
     if gocad.turned:

@@ -12,6 +12,7 @@ from ..clouds import Cloud, add_array, make_lines, make_points, slices
 from .columns import meaning
 from ..messages import FileError, counted
 from ..progress import no_progress, told_lines
+from ..selecting import Selection
 from .rasters import points_of_raster
 
 AT_ONCE = 1 << 22  # bytes
@@ -282,6 +283,7 @@ def read_array(path, options):
 def array_slices(path, options, cloud):
     """Yields x, y and z of an array of numpy, slice by slice. The cloud gets what is told."""
     columns, notes = columns_of_array(path)
+    selection, left = Selection(path, options.where or ()), 0
     cloud.notes += notes
     others = [name for name in columns if name not in "xyz"]
     if others:
@@ -290,5 +292,11 @@ def array_slices(path, options, cloud):
     for part in slices(count):
         # Opened anew, as what has been read through a mapped file counts as memory in use.
         columns = columns_of_array(path)[0]
-        yield numpy.column_stack([columns[axis][part].astype("f8") for axis in "xyz"])
+        points = numpy.column_stack([columns[axis][part].astype("f8") for axis in "xyz"])
+        if options.where:
+            points = points[selection.keep({name: columns[name][part] for name in others})]
+            left += len(points)
+        yield points
         options.progress(part.stop / count)
+    cloud.notes += selection.check(left)
+    selection.tell(cloud.left_out)

@@ -9,6 +9,7 @@ import numpy
 
 from ..clouds import Cloud, add_array, make_points, slices
 from ..messages import FileError
+from ..selecting import Selection
 
 # Bytes of a record, GPS time and colours in it, by point format.
 SIZES = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)
@@ -168,6 +169,10 @@ class Chosen:
                 f"{self.path}: holds no point of class {wanted}; classes: {self.shown() or 'none'}"
             )
 
+    def returns(self, rows):
+        """The number of the return of each point."""
+        return rows["returns"] & (15 if self.header.kind >= 6 else 7)
+
     def shown(self):
         """The classes and how many points each has, in words."""
         return ", ".join(
@@ -193,9 +198,17 @@ class Chosen:
 
 def las_slices(path, options, cloud):
     """Yields x, y and z of the chosen points, slice by slice. The cloud gets what is told."""
-    chosen = Chosen(path, Header(path), options)
-    for _, _, points in chosen:
+    chosen, left = Chosen(path, Header(path), options), 0
+    selection = Selection(path, options.where or ())
+    for rows, classes, points in chosen:
+        if options.where:
+            columns = {"Classification": classes, "ReturnNumber": chosen.returns(rows)}
+            columns.update({name: rows[name] for name in ("Intensity", "GpsTime") if name in rows.dtype.names})
+            points = points[selection.keep(columns)]
+            left += len(points)
         yield points
+    cloud.notes += selection.check(left)
+    selection.tell(cloud.left_out)
     chosen.tell(cloud)
     cloud.notes.append("left out: point arrays, as intensity")
 
@@ -222,7 +235,7 @@ def read_points(path, options):
     for rows, classes, xyz in chosen:
         here = slice(chosen.count - len(rows), chosen.count)
         points[here] = xyz
-        arrays["ReturnNumber"][here] = rows["returns"] & (15 if header.kind >= 6 else 7)
+        arrays["ReturnNumber"][here] = chosen.returns(rows)
         arrays["Classification"][here] = classes
         for name in ("Intensity", "GpsTime", "RGB"):
             if name in arrays:

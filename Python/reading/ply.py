@@ -7,11 +7,14 @@ import itertools
 import os
 
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray
 
 from ..clouds import Cloud, ReadOptions, add_array, make_points, rounding_note
-from ..messages import FileError
+from ..messages import FileError, Messages
 from ..progress import share, told_items
+from .facing import check_faces, made_of
+from .vtk_checks import survives
 
 TYPES = {
     name: code
@@ -136,15 +139,34 @@ def read_points(path, options):
     add_arrays(cloud.points, rows)
     if any(element.count for element in elements if element.name != "vertex"):
         cloud.notes.append("only the points are used, not the file's cells")
+        if not options.points_only:
+            cloud.notes += check_faces(path, faces_of(path, coordinates, options.progress), options)
     if rows["x"].dtype == "f4":
         note = rounding_note(coordinates, "the file is")
         cloud.notes += [note] if note else []
     return cloud
 
 
+def faces_of(path, coordinates, progress):
+    """The faces as vtkPolyData, as VTK reads them, with exact points; None where it cannot."""
+    from vtkmodules.vtkIOPLY import vtkPLYReader
+
+    reader = vtkPLYReader()
+    reader.SetFileName(path)
+    with Messages():
+        if not survives(reader.Update, lambda: progress(1.0)):
+            return None
+        reader.Update()
+    cells = reader.GetOutput().GetPolys()
+    ids = vtk_to_numpy(cells.GetConnectivityArray())
+    if not len(ids) or ids.min() < 0 or ids.max() >= len(coordinates):
+        return None
+    return made_of(coordinates, cells)
+
+
 def read_lines(path, singular, progress):
     """The faces, or edges where there are none, as vtkPolyData. Takes seconds for 100,000 faces."""
-    points = read_points(path, ReadOptions(progress=share(progress, 0.0, 0.3))).points
+    points = read_points(path, ReadOptions(progress=share(progress, 0.0, 0.3), points_only=True)).points
     progress = share(progress, 0.3, 1.0)
     with open(path, "rb") as stream:
         order, elements, _, number = open_vertices(path, stream)

@@ -9,7 +9,8 @@ import numpy
 from ..clouds import Cloud, ReadOptions, system_of, with_data
 from ..messages import FileError, counted
 from ..progress import share
-from . import check_use
+from ..selecting import NONE_CHOSEN, NothingChosen, as_option
+from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
 from .nulls import usual_nulls, zero_rows
 from .unpacking import unpacked
@@ -41,6 +42,11 @@ def read_slices(path, cloud, **options):
         kind, notes = recognise(local)
         check_use(local, kind, options)
         check_sliced(local, kind)
+        if options.layer and kind.module in NAMES_IN_COLUMNS:
+            raise FileError(
+                f"{local}: --layer of {kind.name} needs all points in memory: in pieces, "
+                f"{as_option('COLUMN', options.layer)} takes those of a name"
+            )
         cloud.notes += notes
         count, seen, low, high = 0, numpy.empty((0, 3)), numpy.inf, -numpy.inf
         for points in kind.slice_reader()(local, options, cloud):
@@ -90,9 +96,16 @@ def read_files(paths, cloud, **options):
     reference systems differ."""
     clouds = [Cloud(None) for _ in paths]
     progress = options["progress"]
+    unused = []
     for i, (path, own) in enumerate(zip(paths, clouds)):
         options["progress"] = share(progress, i / len(paths), (i + 1) / len(paths))
-        yield from read_slices(path, own, **options)
+        try:
+            yield from read_slices(path, own, **options)
+        except NothingChosen as error:
+            unused.append(error)
+            own.notes.append(NONE_CHOSEN)
+            if len(unused) == len(paths):
+                raise unused[0] from None
         cloud.notes += [f"{path}: {note}" for note in own.notes] if len(paths) > 1 else own.notes
         for reason, count in own.left_out.items():
             cloud.left_out[reason] = cloud.left_out.get(reason, 0) + count

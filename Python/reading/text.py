@@ -31,6 +31,7 @@ from .layouts import (
 )
 from ..messages import FileError, counted
 from ..progress import no_progress, told_items
+from ..selecting import MOST_VALUES, Selection, WordReader
 
 END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
@@ -106,6 +107,7 @@ class Table:
     names            of the columns, or None
     indices          of the columns that are x, y and z
     extras           {index: name} of the other columns of numbers
+    texts            {index: name} of the columns of text
     of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
     z_name, is_horizon  see Choice
@@ -141,7 +143,7 @@ class Table:
         self.indices, self.extras = chosen.indices, chosen.extras
         self.notes, self.z_name = chosen.notes, chosen.z_name
         self.is_horizon = chosen.is_horizon
-        self.of_numbers = chosen.of_numbers
+        self.of_numbers, self.texts = chosen.of_numbers, chosen.texts
         check_marks(path, rows, self.of_numbers)
         if needed == 3:
             self.notes += doubtful_marks(rows, *self.indices)
@@ -235,10 +237,13 @@ class Parser:
     """Turns blocks of lines into rows of numbers: those of the axes first, then the extras.
 
     alive    is called now and then where a block takes long
+    named    whether all columns of text are wanted; else those with more than MOST_VALUES words are
+             given up
     """
 
-    def __init__(self, table, alive):
-        self.table, self.alive = table, alive
+    def __init__(self, table, alive, named=False):
+        self.table, self.alive, self.named = table, alive, named
+        self.words = {index: WordReader() for index in table.texts}
         self.used = list(table.indices) + list(table.extras)
         self.parts, self.numbers, self.starts = [], [], []
         self.count = self.line = self.comments = self.repeated = 0
@@ -254,7 +259,7 @@ class Parser:
             plain = False
         rows = self.load(lines, b'"' in block) if plain else None
         if rows is not None and len(rows) == len(lines):
-            self.keep(rows, numpy.arange(self.line + 1, self.line + 1 + len(lines)))
+            self.keep(rows, numpy.arange(self.line + 1, self.line + 1 + len(lines)), lines)
             if self.after_blank:
                 self.starts.append(self.count - len(rows))
                 self.after_blank = False
@@ -263,10 +268,26 @@ class Parser:
         self.check_widths(block, lines, skip)
         self.line += len(lines)
 
-    def keep(self, rows, numbers):
+    def keep(self, rows, numbers, lines):
+        if self.words:
+            self.keep_words(lines)
         self.parts.append(rows)
         self.numbers.append(numbers)
         self.count += len(rows)
+
+    def keep_words(self, lines):
+        """The words of the columns of text."""
+        layout = self.table.layout
+        plain = not any('"' in line for line in lines)
+        rows = [line.split(layout.separator) if plain else layout.words(line) for line in lines]
+        for index, reader in list(self.words.items()):
+            reader.add(row[index].strip() if index < len(row) else "" for row in rows)
+            if len(reader.known) > MOST_VALUES and not self.named:
+                del self.words[index]
+
+    def take_words(self):
+        """{name: Words} since the last call."""
+        return {self.table.texts[index]: reader.take() for index, reader in self.words.items()}
 
     def load(self, lines, quoted):
         """numpy's rows of some lines, or None where a word is no number."""
@@ -309,7 +330,7 @@ class Parser:
             rows = self.load([lines[i] for i in some], quoted)
             if rows is None or len(rows) < len(some):
                 rows = numpy.array([self.row(lines[i], i) for i in some])
-            self.keep(rows, self.line + 1 + numpy.array(some))
+            self.keep(rows, self.line + 1 + numpy.array(some), [lines[i] for i in some])
             self.alive(0.0)
 
     def row(self, line, i):
@@ -439,7 +460,7 @@ class Parser:
         return notes
 
 
-def parsed(path, columns, needed, advice, progress):
+def parsed(path, columns, needed, advice, progress, named=False):
     """Yields the Parser of a text file after each block of lines."""
     parser, done = None, 0.0
 
@@ -448,7 +469,7 @@ def parsed(path, columns, needed, advice, progress):
             lines, skip = lines_of(block), 0
             if parser is None:
                 table = Table(path, lines, columns, needed, advice)
-                parser, skip = Parser(table, lambda _: progress(done)), table.first
+                parser, skip = Parser(table, lambda _: progress(done), named), table.first
             parser.add(block, lines, skip)
             done = read
             progress(done)
@@ -457,11 +478,11 @@ def parsed(path, columns, needed, advice, progress):
         raise FileError(f"{path}: is empty")
 
 
-def parse(path, columns, needed, advice, progress):
-    """(table, rows, line numbers, starts, notes) of a text file."""
-    for parser in parsed(path, columns, needed, advice, progress):
+def parse(path, columns, needed, advice, progress, named=False):
+    """(parser, rows, line numbers, notes) of a text file."""
+    for parser in parsed(path, columns, needed, advice, progress, named):
         pass
-    return (parser.table, *parser.take(), parser.starts, parser.told())
+    return (parser, *parser.take(), parser.told())
 
 
 def read_table(path, needed=3, progress=no_progress):
@@ -471,8 +492,8 @@ def read_table(path, needed=3, progress=no_progress):
     the index of a row that follows a blank line or one that begins with ">".
     """
     advice = f"a header line with {', '.join('xyz'[:needed])} tells the columns"
-    _, rows, numbers, starts, notes = parse(path, None, needed, advice, progress)
-    return rows[:, :needed].copy(), numbers, starts, notes
+    parser, rows, numbers, notes = parse(path, None, needed, advice, progress)
+    return rows[:, :needed].copy(), numbers, parser.starts, notes
 
 
 def read_line_table(path, progress):
@@ -481,22 +502,29 @@ def read_line_table(path, progress):
         return read_table(path, 3, progress)
     except FileError:
         with contextlib.suppress(FileError):
-            table = parse(path, None, 2, "", progress)[0]
+            table = parse(path, None, 2, "", progress)[0].table
             if len(table.of_numbers) == 2:
                 return read_table(path, 2, progress)
         raise
 
 
 def read_text(path, options):
-    """The points of a text file; numbers in other columns become point arrays.
+    """The points of a text file; numbers in other columns become point arrays, text becomes Words.
 
     Returns a Cloud. Ten million lines of x, y and z take some five seconds of one core and 0.8 GB.
     """
-    table, rows, numbers, _, notes = parse(path, options.columns, 3, ADVICE, options.progress)
+    named = bool(options.where or options.layer)
+    parser, rows, numbers, notes = parse(
+        path, options.columns, 3, ADVICE, options.progress, named
+    )
+    table = parser.table
     cloud = Cloud(None, notes, lines=numbers)
     cloud.z_name, cloud.is_horizon = table.z_name, table.is_horizon
+    cloud.words = parser.take_words()
     if options.no_data is not None:
-        cloud.lines = numbers[rows[:, 2] != options.no_data]
+        keep = rows[:, 2] != options.no_data
+        cloud.lines = numbers[keep]
+        cloud.words = {name: words.some(keep) for name, words in cloud.words.items()}
         rows = with_data(rows, options.no_data, cloud, "rows without data")
         if not len(rows):
             raise FileError(f"{path}: all rows are without data")
@@ -507,15 +535,22 @@ def read_text(path, options):
 
 def text_slices(path, options, cloud):
     """Yields x, y and z of the rows of a text file, block by block. The cloud gets what is told."""
-    count = 0
-    for parser in parsed(path, options.columns, 3, ADVICE, options.progress):
+    count, selection = 0, Selection(path, options.where or ())
+    named = bool(options.where)
+    for parser in parsed(path, options.columns, 3, ADVICE, options.progress, named):
         if not parser.parts:
             continue
-        rows = parser.take()[0][:, :3]
+        rows, words = parser.take()[0], parser.take_words()
+        if options.where:
+            numbers = zip(parser.table.extras.values(), rows[:, 3:].T)
+            rows = rows[selection.keep({**words, **dict(numbers)})]
+        rows = rows[:, :3]
         if options.no_data is not None:
             rows = with_data(rows, options.no_data, cloud, "rows without data")
         count += len(rows)
         yield rows
+    cloud.notes += selection.check(count)
+    selection.tell(cloud.left_out)
     if not count:
         raise FileError(f"{path}: all rows are without data")
     cloud.notes += parser.told()

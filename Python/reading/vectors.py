@@ -12,6 +12,7 @@ from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
 from ..messages import FileError
 from ..progress import share, told_items
+from ..selecting import words_of
 
 OPEN_OPTIONS = {
     "CSV": ["AUTODETECT_TYPE=YES", "GEOM_POSSIBLE_NAMES=WKT,*wkt*,*geom*,shape"],
@@ -220,7 +221,8 @@ def read_layer(path, wanted, columns, progress):
 
 
 def read_points(path, options):
-    """Points, and the vertices of lines and polygons; attributes of numbers become point arrays.
+    """Points, and the vertices of lines and polygons; attributes of numbers become point arrays,
+    those of text Words.
 
     Takes about 20 seconds for a million features.
     """
@@ -248,6 +250,8 @@ def read_points(path, options):
             numbers = layer.numbers(name)
             if numbers is not None:
                 add_array(cloud.points, name, numbers[repeat])
+        elif any(isinstance(value, str) for value in values):
+            cloud.words[name] = words_of(values).some(repeat)
     for count, reason in ((layer.empty, "features without geometry"), (layer.labels, "texts")):
         if count:
             cloud.left_out[reason] = count

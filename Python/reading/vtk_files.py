@@ -21,6 +21,7 @@ from .formats import FORMATS, HEAD
 from ..messages import FileError, Messages
 from ..paths import suffix_of
 from ..progress import no_progress, share, told_lines
+from .facing import check_faces, made_of
 from .rasters import points_of_raster
 from .vtk_checks import check, survives
 
@@ -138,6 +139,8 @@ def read_points(path, options):
         check(path, suffix, options.progress)
         data = make_points(vertices_of_text(path, VERTEX[suffix], options.progress))
         cloud = Cloud(data, ["only the points are used, not the file's cells"])
+        if not options.points_only:
+            cloud.notes += check_faces(path, faces_of_text(path, suffix), options)
     else:
         data = run_vtk_reader(path, options.progress)
         if isinstance(data, (vtkImageData, vtkRectilinearGrid)):
@@ -148,6 +151,7 @@ def read_points(path, options):
         vertices = data.GetNumberOfVerts() if isinstance(data, vtkPolyData) else 0
         if data.GetNumberOfCells() > vertices:
             cloud.notes.append("only the points are used, not the file's cells")
+            cloud.notes += check_faces(path, data, options)
     if data.GetNumberOfPoints() == 0:
         raise FileError(f"{path}: holds no points")
     if suffix in (".vtk", ".obj") and is_text(path) and not ends_with_line(path):
@@ -157,6 +161,15 @@ def read_points(path, options):
         if note:
             cloud.notes.append(note)
     return cloud
+
+
+def faces_of_text(path, suffix):
+    """The faces of an STL or OBJ file of text, as exact as it tells them; VTK rounds to floats."""
+    points = vertices_of_text(path, VERTEX[suffix], no_progress, once=False)
+    if suffix == ".stl":
+        return made_of(points, numpy.arange(len(points) // 3 * 3).reshape(-1, 3))
+    data = run_vtk_reader(path)
+    return made_of(points, data.GetPolys()) if data.GetNumberOfPoints() == len(points) else data
 
 
 # The word before a vertex in text.

@@ -200,6 +200,28 @@ class Algorithms(unittest.TestCase):
                 self.assertIn(told, " ".join(errors_of(reader)))
                 getattr(reader, "Set" + name)(type(value)())
 
+    def test_several_heights_are_told_and_chosen_by_a_column(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "horizons.csv")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("name,x,y,z\n")
+                file.writelines(f"{name},{x},{y},{z}\n" for name, z in (("Top", 1), ("Base", 90))
+                                for x in range(6) for y in range(6))
+            reader = ElevationPoints()
+            reader.SetFileName(path)
+            chain = ReconstructElevationSurface()
+            chain.SetInputConnection(0, reader.GetOutputPort())
+            self.assertIn("36 of 36 places have several heights, up to 89 apart", " ".join(errors_of(chain)))
+            chain.SetDuplicates("keep-highest")  # as a panel does, which has always one of them
+            self.assertEqual(errors_of(chain), [])
+            self.assertIn("36 places have several heights, up to 89 apart: the highest", chain.GetReport())
+            reader.SetWhere("name=Base")
+            self.assertEqual(errors_of(chain), [])
+            self.assertNotIn("several heights", chain.GetReport())
+            self.assertEqual(set(points(reader.GetOutputDataObject(0))[:, 2]), {90.0})
+            reader.SetWhere("Base")
+            self.assertIn("Where takes COLUMN=VALUE", " ".join(errors_of(reader)))
+
     def test_columns_are_of_tables_and_arrays_of_others(self):
         x, y = GRID
         chain = ReconstructElevationSurface()

@@ -705,6 +705,15 @@ class Slices(InFolder):
             self.assertIn("left out: Depth", cloud.notes)
             self.assert_as_whole(path, no_data=5.0, depth=True)
             self.assert_as_whole(path, columns=("1", "2", "4"))
+            self.assert_as_whole(path, where={"depth": list(range(100, 4000, 7))})
+            with self.assertRaisesRegex(FileError, "there is no column name beside x, y and z; columns: Depth"):
+                list(read_slices(path, Cloud(None), where="name=a"))
+        rows = [f"{i % 70},{i // 70},{i % 11},{'abc'[i % 3]}" for i in range(5000)]
+        path = self.file("words.csv", "\n".join(["X,Y,Z,name", *rows]))
+        with mock.patch.object(text, "BLOCK", 3000):
+            self.assert_as_whole(path, where="name=b")
+            with self.assertRaisesRegex(FileError, r"name = d; values: a \(1,667\), b \(1,667\), c"):
+                list(read_slices(path, Cloud(None), where="name=d"))
         packed = self.path("b.csv.gz")
         with gzip.open(packed, "wb") as stream:
             stream.write(b"1 2 3\n4 5 6\n7 7 7\n")
@@ -723,6 +732,9 @@ class Slices(InFolder):
             with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 70):
                 self.assert_as_whole(path)
                 self.assert_as_whole(path, no_data=7.0)
+        with mock.patch("vtkelevationsurface.clouds.AT_ONCE", 70):
+            self.assert_as_whole(self.path("0.npy"), where={"column 4": [3, 7]})
+            self.assert_as_whole(self.path("2.npy"), where="name=0")
 
     def test_las(self):
         rng = numpy.random.default_rng(4)
@@ -738,6 +750,7 @@ class Slices(InFolder):
         with mock.patch("vtkelevationsurface.reading.las.AT_ONCE", 60):
             self.assert_as_whole(path)
             self.assert_as_whole(path, classes=(1, 2))
+            self.assert_as_whole(path, where={"Classification": [0, 2]})
             with self.assertRaisesRegex(FileError, "holds no point of class 9"):
                 list(read_slices(path, Cloud(None), classes=(9,)))
 
@@ -868,7 +881,7 @@ class Command(Program):
             self.assertEqual((strict.returncode, len(strict.stderr.splitlines())), (1, 1))
             self.assertIn("a.npy: filling holes: Hole 0 (", strict.stderr)
         self.assertEqual(told[:2], told[2:])
-        self.assertEqual(len(told[0]), 2)
+        self.assertEqual(len(told[0]), 3)  # two holes that fail, and places with several heights
         said = []
         for way in ("--no-picture", "--pieces=4"):
             done = self.call(name, "--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "1e-10", way)

@@ -106,6 +106,28 @@ class OnRanks(Program):
         self.file("a.txt", cloud(1500))
         self.check_same(3, "a.txt", "--duplicates", "keep-highest")
 
+    def test_several_surfaces_in_a_table(self):
+        rows = "".join(f"{name},{x},{y},{z + x * y}\n" for name, z in (("Top, a", 0), ("Base", -900))
+                       for x in range(30) for y in range(20))
+        self.file("h.csv", "name,x,y,z\n" + rows)
+        alone, together = (self.on(ranks, "h.csv", "--no-picture") for ranks in (0, 3))
+        self.assertIn("600 of 600 places have several heights, up to 900 apart", alone.stderr)
+        self.assertEqual(together.returncode, 1)
+        self.assertIn(alone.stderr.strip(), together.stderr)
+        self.check_same(3, "h.csv", "--where", "name=Base")
+        self.check_same(3, "h.csv", "--duplicates", "keep-lowest")
+        done = self.on(3, "h.csv", "--no-picture", "--each-value", "name")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)),
+                         ["h.csv", "h_Base_surface.vtp", "h_Top_a_surface.vtp"])
+        for arguments, code, told in (
+            (("--each-value", "horizon"), 1, "there is no column horizon"),
+            (("--each-value", "y", "--report", "a.json"), 2, "--each-value names the results"),
+        ):
+            done = self.on(3, "h.csv", "--no-picture", *arguments)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(told, done.stderr)
+
     def test_a_grid_with_missing_nodes(self):
         self.file("a.txt", grid())
         self.check_same(2, "a.txt")

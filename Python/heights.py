@@ -1,0 +1,316 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Several heights at one place: how many, how far apart, and whether a column tells them apart.
+
+An elevation surface has one height at a place. Of several, vtkGridDelaunay2D takes one and counts the
+others. That is right for a few, and wrong for two horizons in one table. The second is refused, unless
+the user says which height to take.
+
+Heights are clearly apart where they differ by more than CLEAR_OF_RANGE of the range that holds 98 % of
+all z, and by more than CLEAR_STEPS times the step that is usual from one place to the next, for each
+height that the place has, up to MOST_STEPS times: noise and slopes make both about the same, and the
+more heights, the farther apart noise makes the outer ones. They are many at more than MANY of the places.
+
+A column tells heights apart where, at almost all places, each of its values has one height, and values
+come again from place to place. Its values are surfaces where, of two that share places, one is almost always above the other: so the lines of a
+survey that cross are none. Then the second condition of clearly apart is not asked for, and of text, which
+names things, MANY_BY_NAME of the places is enough.
+"""
+
+import dataclasses
+import shlex
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from .messages import ElevationSurfaceError, counted
+from .properties import DUPLICATES
+from .reading.nulls import body
+from .selecting import MOST_VALUES, Words, as_option, coded, columns_in, shown_values
+
+MANY = 0.01  # of all places
+MANY_BY_NAME = 0.001
+LEAST = 3  # places; fewer are never many
+CLEAR_OF_RANGE = 0.02
+CLEAR_STEPS, MOST_STEPS = 1.5, 6.0
+USUAL = 90  # per cent of steps are no larger than the usual one: a plain may have steep banks
+ALMOST = 0.95  # of the places
+ALWAYS = 0.9  # of pairs of heights at a place
+MIXER = numpy.uint64(0x9E3779B97F4A7C15)
+
+
+@dataclasses.dataclass
+class Several:
+    """The places with several heights.
+
+    ids      (k,) the points there, by place, each from the lowest to the highest
+    starts   (p,) where in ids the points of each place begin
+    spans    (p,) how far the highest is above the lowest
+    places   how many distinct places all points have
+    """
+
+    ids: numpy.ndarray
+    starts: numpy.ndarray
+    spans: numpy.ndarray
+    places: int
+
+    def count(self):
+        return len(self.starts)
+
+    def largest(self):
+        return float(self.spans.max())
+
+    def lengths(self):
+        return numpy.diff(self.starts, append=len(self.ids))
+
+
+@numpy.errstate(over="ignore")
+def shared_places(xyz):
+    """(ids of the points that share x,y with others, by place and z; where places begin; how many
+    distinct places there are). xyz: (n, 3), finite.
+
+    A number is made of x and y that is the same for equal ones. What has it alone shares no place, so
+    that almost always one sort of these numbers is all the work: a second for six million points.
+    """
+    x, y, z = (numpy.ascontiguousarray(xyz[:, i], dtype="f8") + 0.0 for i in range(3))
+    key = x.view("u8") * MIXER
+    key ^= key >> numpy.uint64(32)
+    key = (key + y.view("u8")) * MIXER
+    key ^= key >> numpy.uint64(29)
+    ordered = numpy.sort(key)
+    again = numpy.unique(ordered[1:][ordered[1:] == ordered[:-1]])
+    if not len(again):
+        return numpy.empty(0, "i8"), numpy.empty(0, "i8"), len(x)
+    near = numpy.minimum(numpy.searchsorted(again, key), len(again) - 1)
+    ids = numpy.flatnonzero(again[near] == key)
+    ids = ids[numpy.lexsort((z[ids], y[ids], x[ids]))]
+    differs = (numpy.diff(x[ids]) != 0) | (numpy.diff(y[ids]) != 0)
+    starts = numpy.concatenate(([0], 1 + numpy.flatnonzero(differs)))
+    return ids, starts, len(x) - len(ids) + len(starts)
+
+
+def several_heights(xyz):
+    """The Several of (n, 3) points, or None where each place has one height."""
+    finite = numpy.flatnonzero(numpy.isfinite(xyz).all(axis=1))
+    ids, starts, places = shared_places(xyz[finite])
+    if not len(ids):
+        return None
+    ids = finite[ids]
+    lengths = numpy.diff(starts, append=len(ids))
+    z = xyz[ids, 2].astype("f8")
+    spans = z[starts + lengths - 1] - z[starts]
+    kept = spans > 0
+    if not kept.any():
+        return None
+    points = numpy.repeat(kept, lengths)
+    starts = numpy.cumsum(lengths[kept]) - lengths[kept]
+    return Several(ids[points], starts, spans[kept], places)
+
+
+def usual_step(xyz, several):
+    """The usual difference of z between places beside each other: those in one cell of a grid of some two
+    places a cell. Of several heights at a place the lowest count, or the highest, whichever gives less:
+    the ends of wells are uneven, the ground is not."""
+    ends = several.starts + several.lengths() - 1
+    return min(step_between(xyz, several, ends_of) for ends_of in (several.starts, ends))
+
+
+def step_between(xyz, several, chosen):
+    """That of usual_step(), of several heights those chosen."""
+    alone = numpy.isfinite(xyz).all(axis=1)
+    alone[several.ids] = False
+    alone[several.ids[chosen]] = True
+    places = xyz[alone].astype("f8")
+    extent = numpy.ptp(places[:, :2], axis=0)
+    side = float(numpy.sqrt(2.0 * max(extent.prod(), 0.0) / len(places)))
+    side = side or 2.0 * float(extent.max()) / len(places)
+    if not 0.0 < side < numpy.inf:
+        return 0.0
+    cell = numpy.floor((places[:, :2] - places[:, :2].min(axis=0)) / side)
+    order = numpy.lexsort(cell.T)
+    near = (numpy.diff(cell[order], axis=0) == 0).all(axis=1)
+    steps = numpy.abs(numpy.diff(places[order, 2]))[near]
+    return float(numpy.percentile(steps, USUAL)) if len(steps) else 0.0
+
+
+class Column:
+    """Whether a column tells apart the heights of Several.
+
+    share     of the places at which each of its values has one height
+    in_order  whether of two of its values that share places one is almost always above the other
+    count     how many values it has there
+    """
+
+    def __init__(self, column, several, z):
+        is_text = isinstance(column, Words)
+        self.least = MANY_BY_NAME if is_text else MANY
+        self.share, self.in_order, self.count = 0.0, False, 0
+        codes, values = coded(column.some(several.ids) if is_text else column[several.ids])
+        self.count = len(values)
+        if not 1 < self.count <= min(MOST_VALUES, len(codes) / LEAST):
+            return
+        place = numpy.repeat(numpy.arange(several.count()), several.lengths())
+        self.share = 1.0 - len(numpy.unique(place[self.mixed(place, codes, z)])) / several.count()
+        if self.share >= ALMOST:
+            self.in_order = self.are_in_order(place, codes, z)
+
+    @staticmethod
+    def mixed(place, codes, z):
+        """Which points have no value, or one that has another height at the same place."""
+        order = numpy.lexsort((z, codes, place))
+        same = (numpy.diff(place[order]) == 0) & (numpy.diff(codes[order]) == 0)
+        bad = codes < 0
+        bad[order[1:]] |= same & (numpy.diff(z[order]) != 0)
+        return bad
+
+    @staticmethod
+    def are_in_order(place, codes, z):
+        above = (numpy.diff(place) == 0) & (numpy.diff(z) > 0)
+        low, high = codes[:-1][above].astype("i8"), codes[1:][above].astype("i8")
+        pairs = numpy.minimum(low, high) * (codes.max() + 1) + numpy.maximum(low, high)
+        _, which = numpy.unique(pairs, return_inverse=True)
+        total = numpy.bincount(which)
+        rising = numpy.bincount(which, low < high)
+        often = total >= LEAST
+        agreed = numpy.maximum(rising, total - rising)[often].sum()
+        return total[often].sum() >= ALWAYS * len(pairs) and agreed >= ALWAYS * total[often].sum()
+
+    def rank(self):
+        """The least is the best."""
+        return not self.in_order, self.least, self.count
+
+
+def telling_column(cloud, several, z):
+    """(name, column, Column) that tells the heights apart best, or None. The name of the files that are
+    merged is None."""
+    columns = dict(columns_in(cloud))
+    if cloud.files is not None:
+        columns[None] = cloud.files
+    found = [(name, column, Column(column, several, z)) for name, column in columns.items()]
+    found = [one for one in found if one[2].share >= ALMOST]
+    return min(found, key=lambda one: one[2].rank(), default=None)
+
+
+def check_heights(cloud, policy=None):
+    """(note, facts for the report) on places of a Cloud with several heights; (None, None) where there
+    are none.
+
+    policy  the number of the user's choice among DUPLICATES, or None: then ElevationSurfaceError is
+            raised where heights are those of several surfaces
+    """
+    if not cloud.points.GetNumberOfPoints():
+        return None, None
+    xyz = vtk_to_numpy(cloud.points.GetPoints().GetData())
+    several = several_heights(xyz)
+    if several is None:
+        return None, None
+    if policy is None:
+        refuse_surfaces(cloud, xyz, several)
+    return note_on(several.count(), several.largest(), policy), facts_of(several)
+
+
+def facts_of(several):
+    return {"places": several.count(), "of": several.places, "largest": several.largest()}
+
+
+def note_on(count, largest, policy):
+    """What is told of so many places with several heights."""
+    taken = DUPLICATES[policy or 0].split("-")[1]
+    return (
+        f"{counted(count, 'place has', 'places have')} several heights, up to {largest:.7g} apart: the "
+        f"{taken} is taken (see --duplicates)"
+    )
+
+
+def refuse_surfaces(cloud, xyz, several):
+    """Raises ElevationSurfaceError where heights are those of several surfaces."""
+    most = max(LEAST, MANY_BY_NAME * several.places)
+    if several.count() < most:
+        return
+    clear = several.spans > CLEAR_OF_RANGE * body(xyz[:, 2].astype("f8"))
+    numbers = in_numbers(several.count(), several.places, several.largest())
+    told = telling_column(cloud, several, xyz[several.ids, 2].astype("f8"))
+    if told and told[2].in_order:
+        most = max(LEAST, told[2].least * several.places)
+        if numpy.count_nonzero(clear) >= most:
+            raise ElevationSurfaceError(f"{numbers}; {way_out(told)}")
+    if are_many(numpy.count_nonzero(clear), several.places):
+        clear &= several.spans > least_span(xyz, several)
+        if are_many(numpy.count_nonzero(clear), several.places):
+            raise ElevationSurfaceError(f"{numbers}; {way_out(told)}")
+
+
+def are_many(count, places):
+    return count > max(LEAST - 1, MANY * places)
+
+
+def least_span(xyz, several):
+    """(p,) how far heights have to be apart to be more than noise and slopes."""
+    steps = numpy.minimum(CLEAR_STEPS * several.lengths(), MOST_STEPS)
+    return steps * usual_step(xyz, several)
+
+
+def in_numbers(count, places, largest):
+    return (
+        f"{count:,} of {counted(places, 'place')} have several heights, up to {largest:.7g} apart, so "
+        "this is no one surface"
+    )
+
+
+POLICIES = "--duplicates keep-highest (or lowest, first, last) takes one height at each place"
+
+
+def way_out(told):
+    """What the user can do, by the column that tells heights apart, or None."""
+    if told is None:
+        return (
+            "no column tells them apart; give each surface a file, or a column with its name; "
+            f"{POLICIES}"
+        )
+    name, column, _ = told
+    if name is None:
+        return f"the files tell them apart: --each makes a surface of each; {POLICIES}"
+    value = coded(column)[1][0]
+    called = name if name.startswith("column ") else f"column {name}"
+    return (
+        f"{called} tells them apart: {shown_values(column)}; --each-value {shlex.quote(name)} makes "
+        f"a surface of each value, {as_option(name, value)} one of this; {POLICIES}"
+    )
+
+
+class HeightsOfPieces:
+    """Places with several heights of a surface that is made piece by piece, without columns. A place is
+    in one piece, with all its points."""
+
+    def __init__(self):
+        self.count = self.clear = 0
+        self.largest, self.sample = 0.0, [numpy.empty(0)]
+
+    def see(self, xyz):
+        """Takes some z of points that are read, before there are pieces."""
+        self.sample.append(xyz[:: 1 + len(xyz) // 1000, 2].astype("f8"))
+
+    def add(self, xyz):
+        """Takes the points of a piece, used or not."""
+        several = several_heights(xyz)
+        if several is None:
+            return
+        self.count += several.count()
+        self.largest = max(self.largest, several.largest())
+        clear = several.spans > CLEAR_OF_RANGE * body(numpy.concatenate(self.sample))
+        if clear.any():
+            clear &= several.spans > least_span(xyz, several)
+        self.clear += int(numpy.count_nonzero(clear))
+
+    def check(self, places, policy):
+        """As check_heights(), once all pieces are known; places: how many distinct ones there are."""
+        if not self.count:
+            return None, None
+        if policy is None and are_many(self.clear, places):
+            raise ElevationSurfaceError(
+                f"{in_numbers(self.count, places, self.largest)}; a run in pieces looks at no columns: "
+                f"if one tells the heights apart, {as_option('COLUMN', 'VALUE')} takes those of one value; "
+                f"{POLICIES}"
+            )
+        facts = {"places": self.count, "of": places, "largest": self.largest}
+        return note_on(self.count, self.largest, policy), facts
