@@ -14,6 +14,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <string>
 #include <vector>
 
 class vtkPolyData;
@@ -24,6 +25,9 @@ namespace elevation
 
 /** The kernel's options for the properties of the filter. */
 TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter);
+
+/** What is wrong with options of an outline; empty: nothing. */
+std::string WrongOption(const TrimOptions& options);
 
 /** The boundary's lines, and the points that they use. @throws Error naming the cell */
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress);

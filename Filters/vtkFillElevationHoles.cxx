@@ -157,6 +157,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumHoleSize: " << this->MaximumHoleSize << "\n";
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";
+  os << indent << "MaximumNumberOfExpectedPoints: " << this->MaximumNumberOfExpectedPoints << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";

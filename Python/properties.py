@@ -112,6 +112,9 @@ PROPERTIES = {
     "open_edge_length": Property("fill", "SetMaximumEdgeLength", number_at_least_zero, NUMBER),
     "maximum_hole_size": Property("fill", "SetMaximumHoleSize", number_at_least_zero, NUMBER),
     "maximum_hole_edges": Property("fill", "SetMaximumHoleEdges", count_at_least_zero, COUNT),
+    "maximum_expected_points": Property(
+        "fill", "SetMaximumNumberOfExpectedPoints", count_at_least_zero, COUNT
+    ),
     "spacing": Property("fill", "SetSpacing", number_at_least_zero, NUMBER),
     "interpolation": _choice("fill", "SetInterpolation", INTERPOLATIONS),
     "interpolate_point_data": Property("fill", "SetInterpolatePointData", yes_or_no, YES_OR_NO),

@@ -11,7 +11,13 @@ from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
+from vtkmodules.vtkCommonDataModel import (
+    vtkDataSet,
+    vtkImageData,
+    vtkPointSet,
+    vtkPolyData,
+    vtkRectilinearGrid,
+)
 
 from .clouds import Cloud, make_lines, make_points
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
@@ -36,6 +42,10 @@ def as_cloud(points: Points) -> Cloud:
         return Cloud(points)
     if isinstance(points, (str, os.PathLike)):
         raise TypeError(f"points: a file's name; use reconstruct(read({os.fspath(points)!r}))")
+    if isinstance(points, (vtkImageData, vtkRectilinearGrid)) and points.GetNumberOfPoints():
+        from .reading.vtk_files import points_of_grid
+
+        return points_of_grid("points", points)
     if isinstance(points, vtkDataSet):
         raise TypeError(f"points: {points.GetClassName()} has no elevations; a vtkPointSet has")
     return Cloud(make_points(array_of(points, "points", (3,))))
@@ -272,7 +282,8 @@ def reconstruct(
     """Reconstructs an elevation surface z = f(x, y) from points.
 
     points    (n, 3) array of x, y, z, whose values are taken as they are; a vtkPointSet or PyVista mesh, whose points and point data are
-              used; or what read() returns
+              used; a flat vtkImageData or vtkRectilinearGrid, whose active point scalars are
+              elevations, NaN where there is none; or what read() returns
     boundary  closed lines that bound the surface: vtkPolyData, an (n, 2) or (n, 3) array, or a list
               of such arrays; None: found from the points
     faults    lines that become edges: vtkPolyData, an (n, 3) array, or a list of such arrays
@@ -283,8 +294,8 @@ def reconstruct(
     properties  of the filters, named as the options of the command line, with underscores:
               maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
               lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
-              recover_boundary, open_edge_length, maximum_hole_size, maximum_hole_edges, spacing,
-              interpolation, interpolate_point_data, threads. Lengths are in the units of x and y.
+              recover_boundary, open_edge_length, maximum_hole_size, maximum_hole_edges,
+              maximum_expected_points, spacing, interpolation, interpolate_point_data, threads. Lengths are in the units of x and y.
               The program's --help tells what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface

@@ -27,6 +27,7 @@ OTHER_VALUES = {
     "TrimOutwardTriangles": {
         "OutwardTest": "Inward Normal",
         "GapTolerance": 3.5,
+        "GridSteps": [5.0, 0.0, 0.0, 5.0],
         "RecoverBoundary": 0,
         "NumberOfThreads": 2,
     },
@@ -35,6 +36,7 @@ OTHER_VALUES = {
         "MaximumHoleSize": 12.5,
         "MaximumHoleEdges": 40,
         "MaximumNumberOfInsertedPoints": 5000,
+        "MaximumNumberOfExpectedPoints": 4000,
         "Spacing": 0.25,
         "Interpolation": "Thin Plate",
         "InterpolatePointData": 0,
