@@ -16,7 +16,6 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -199,29 +198,35 @@ void Work::TakeSurroundings(std::vector<Bytes>&& packed)
   this->Part.Filled.Surround(parts, this->Whole.ByIds, this->Watched(0.35, 0.38));
 }
 
-/** What each hole may take is known where all needs are. */
+/** What each hole may take, and whether all take too much, is known where all needs are. */
 void Work::ShareRooms()
 {
-  std::vector<double> rows; // hole, need
+  constexpr std::size_t width = 4;
+  std::vector<double> rows; // hole, and its need
   this->All.Agree([&]() {
     const std::vector<Index>& own = this->Part.Filled.Numbers;
     if (own.empty())
     {
       return;
     }
-    const std::vector<double> needs =
+    const std::vector<HoleNeed> needs =
       this->Part.Filled.Needs(this->Whole, this->Watched(0.38, 0.4));
     for (std::size_t i = 0; i < own.size(); ++i)
     {
-      rows.insert(rows.end(), { static_cast<double>(own[i]), needs[i] });
+      rows.insert(rows.end(),
+        { static_cast<double>(own[i]), needs[i].Most, needs[i].Expected, needs[i].Area });
     }
   });
   rows = this->All.CollectReals(rows);
-  std::vector<double> needs(this->Whole.Extents.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < rows.size(); i += 2)
+  std::vector<HoleNeed> needs(this->Whole.Extents.size());
+  for (std::size_t i = 0; i < rows.size(); i += width)
   {
-    needs[static_cast<std::size_t>(rows[i])] = rows[i + 1];
+    needs[static_cast<std::size_t>(rows[i])] = { rows[i + 1], rows[i + 2], rows[i + 3] };
   }
+  std::vector<vtkIdType> points = { this->HavePoints() ? this->Part.CountOfOwn() : 0 };
+  this->All.Sum(points);
+  this->All.Agree(
+    [&]() { CheckEffort(needs, static_cast<double>(points[0]), this->Whole.Options); });
   this->Whole.Rooms = RoomsOfNeeds(needs, this->Whole.Options.MaximumInsertedPoints);
 }
 

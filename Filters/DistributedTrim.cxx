@@ -238,7 +238,7 @@ TrimCounts Work::Write()
 
 bool TrimOnRanks(const Ranks& ranks, const TrimOptions& options, Block& block, TrimCounts& counts)
 {
-  if (options.Test != OutwardTest::Exact || !(options.GapTolerance >= 0.0))
+  if (options.Test != OutwardTest::Exact || !WrongOption(options).empty())
   {
     return false; // on all ranks
   }

@@ -67,10 +67,10 @@ bool FilledPart::ListShared(bool byIds)
   return this->Shared.Sort(this->AreUsed);
 }
 
-PointView FilledPart::OwnPoints(Buffer<double>& kept) const
+/** One flag a point: 1 if it is another part's. */
+std::vector<char> FilledPart::AreOthers() const
 {
-  const PointsOfDataSet points = ViewPoints(this->Input);
-  std::vector<char> areOthers(static_cast<std::size_t>(points.View.Count), 0);
+  std::vector<char> areOthers(static_cast<std::size_t>(this->Input->GetNumberOfPoints()), 0);
   if (vtkUnsignedCharArray* const marks = GhostsOf(this->Input->GetPointData()))
   {
     for (std::size_t i = 0; i < areOthers.size(); ++i)
@@ -83,6 +83,19 @@ PointView FilledPart::OwnPoints(Buffer<double>& kept) const
   {
     areOthers[this->Shared.Places[i]] = this->Shared.AreCopies[i];
   }
+  return areOthers;
+}
+
+vtkIdType FilledPart::CountOfOwn() const
+{
+  const std::vector<char> areOthers = this->AreOthers();
+  return std::count(areOthers.begin(), areOthers.end(), char(0));
+}
+
+PointView FilledPart::OwnPoints(Buffer<double>& kept) const
+{
+  const PointsOfDataSet points = ViewPoints(this->Input);
+  const std::vector<char> areOthers = this->AreOthers();
   for (Index i = 0; i < points.View.Count; ++i)
   {
     const Point2 p = points.View.At(i);

@@ -35,6 +35,7 @@ struct FilledPart
 
   /** The points that no other part counts. @param[out] kept  holds them */
   PointView OwnPoints(Buffer<double>& kept) const;
+  vtkIdType CountOfOwn() const; ///< of these
 
   /** Corners of the patches that the part does not have; then PlaceOf is known. */
   void FindCorners();
@@ -57,6 +58,7 @@ struct FilledPart
   vtkSmartPointer<vtkPolyData> PointsOnBorder(const BorderOfAll& border) const;
 
 private:
+  std::vector<char> AreOthers() const;
   vtkSmartPointer<vtkPolyData> WithCorners(bool areMarked, const Progress& progress) const;
   FillResult PlacedPatches(const HolesOfParts& all, vtkPolyData* input) const;
   void PlaceAttributes(vtkPolyData* input, FillResult& placed) const;

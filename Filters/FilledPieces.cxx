@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 namespace elevation
@@ -245,17 +244,18 @@ SurroundedHoles FilledPieces::HolesOf(const Group& group, const Progress& progre
 /** What each hole may take is known where all needs are. */
 void FilledPieces::FindRooms()
 {
-  std::vector<double> needs(this->Whole.Extents.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<HoleNeed> needs(this->Whole.Extents.size());
   for (const Group& group : this->Groups)
   {
     Report(this->Whole.Options.Monitor, 0.6);
-    const std::vector<double> ofGroup =
+    const std::vector<HoleNeed> ofGroup =
       this->HolesOf(group, Progress()).Needs(this->Whole, Progress());
     for (std::size_t i = 0; i < ofGroup.size(); ++i)
     {
       needs[group.Holes[i]] = ofGroup[i];
     }
   }
+  CheckEffort(needs, static_cast<double>(this->NumberOfPoints), this->Whole.Options);
   this->Whole.Rooms = RoomsOfNeeds(needs, this->Whole.Options.MaximumInsertedPoints);
 }
 

@@ -132,7 +132,8 @@ FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all) const
   return options;
 }
 
-std::vector<double> SurroundedHoles::Needs(const HolesOfParts& all, const Progress& progress) const
+std::vector<HoleNeed> SurroundedHoles::Needs(
+  const HolesOfParts& all, const Progress& progress) const
 {
   FillOptions options = this->OptionsFor(all);
   options.Monitor = progress;

@@ -60,7 +60,7 @@ struct SurroundedHoles
 
   /** Joins what parts have around the holes. */
   void Surround(const Parts& parts, bool byIds, const Progress& progress);
-  std::vector<double> Needs(const HolesOfParts& all, const Progress& progress) const;
+  std::vector<HoleNeed> Needs(const HolesOfParts& all, const Progress& progress) const;
   /** @return the holes that need triangles beyond their boxes */
   std::vector<Index> Fill(const HolesOfParts& all, const Progress& progress);
   /** Keeps only those points of the surrounding that patches have. */

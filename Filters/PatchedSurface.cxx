@@ -36,6 +36,8 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
   const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
   options.MaximumInsertedPoints = static_cast<Index>(
     most > 0 ? std::min<vtkIdType>(most, MaximumNumberOfPoints) : MaximumNumberOfPoints);
+  options.MaximumExpectedPoints = static_cast<Index>(
+    std::min<vtkIdType>(filter->GetMaximumNumberOfExpectedPoints(), MaximumNumberOfPoints));
   options.NumberOfThreads = filter->GetNumberOfThreads();
   return options;
 }

@@ -90,6 +90,7 @@ bool TrimOfPart::SweepForOutline(int margin, const TrimOptions& options, const P
 {
   ExtractOptions extraction;
   extraction.GapTolerance = options.GapTolerance;
+  extraction.Grid = options.Grid;
   extraction.NumberOfThreads = options.NumberOfThreads;
   extraction.Monitor = progress;
   const bool isProven = FindPartOfOutline(this->List, margin, extraction, this->Outline);

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <unordered_map>
 
@@ -32,8 +33,25 @@ TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter)
   options.RecoverBoundary = filter->GetRecoverBoundary();
   options.Edges = static_cast<BoundaryEdges>(filter->GetBoundaryEdges());
   options.GapTolerance = filter->GetGapTolerance();
+  const double* const steps = filter->GetGridSteps();
+  options.Grid.StepU = { steps[0], steps[1] };
+  options.Grid.StepV = { steps[2], steps[3] };
   options.NumberOfThreads = filter->GetNumberOfThreads();
   return options;
+}
+
+std::string WrongOption(const TrimOptions& options)
+{
+  if (!(options.GapTolerance >= 0.0))
+  {
+    return "GapTolerance is " + std::to_string(options.GapTolerance) +
+      ". It must be a number of spacings above 0, or 0 to choose it from the data.";
+  }
+  const double cell = std::fabs(options.Grid.Area());
+  return options.Grid.IsSet() && !(cell > 0.0 && cell < std::numeric_limits<double>::infinity())
+    ? "GridSteps span no cell: x and y of one step and of another are needed, or four zeros for no "
+      "grid."
+    : "";
 }
 
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)

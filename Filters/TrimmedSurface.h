@@ -28,6 +28,9 @@ namespace elevation
 /** The kernel's options for the properties of the filter. */
 TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter);
 
+/** What is wrong with options of an outline; empty: nothing. */
+std::string WrongOption(const TrimOptions& options);
+
 /**
  * Lines and polygons, and the points that they use.
  * @param[in] name  what messages call them

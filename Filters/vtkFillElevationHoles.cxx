@@ -166,6 +166,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MaximumHoleEdges: " << this->MaximumHoleEdges << "\n";
   os << indent << "MaximumNumberOfInsertedPoints: " << this->MaximumNumberOfInsertedPoints << "\n";
   os << indent << "FillCutOuts: " << (this->FillCutOuts ? "On" : "Off") << "\n";
+  os << indent << "MaximumNumberOfExpectedPoints: " << this->MaximumNumberOfExpectedPoints << "\n";
   os << indent << "Spacing: " << this->Spacing << "\n";
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";

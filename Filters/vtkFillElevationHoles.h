@@ -92,8 +92,8 @@
  * An input that is not an elevation surface gives empty output, and an error that names the cell:
  * cells other than triangles, triangles that are flat in x,y, an edge with more than two triangles,
  * cells that overlap in x,y. So does an invalid vtkCellArray, and a point or cell array whose
- * number of tuples is not that of the points or cells; the error names the array. A surface without
- * holes passes; an input without triangles passes with a warning (none where it has no points, or
+ * number of tuples is not that of the points or cells; the error names the array. So do more new points than
+ * MaximumNumberOfExpectedPoints. A surface without holes passes; an input without triangles passes with a warning (none where it has no points, or
  * vtkGridDelaunay2D has made it and told why). An abort also leaves empty output, which counts
  * as up to date: call Modified() to start again.
  *
@@ -232,7 +232,10 @@ public:
    * - Where the surface's points lie on a lattice, the nodes of a region are filled as those of a
    *   hole; edges that are kept inside are then those between nodes. Without Spacing, the default
    *   is the mean length of all edges of a region, on its rim and inside, that are not long (if
-   *   there are none: MaximumEdgeLength). As in holes, points are graded where lengths differ more
+   *   there are none: MaximumEdgeLength). In a region of lines, which has more such edges inside
+   *   than on its rim, each of them counts as at least a tenth of the gap beside it: where lines are
+   *   more than ten times as far apart as their points, as contour lines are, the spacing follows
+   *   the gaps. As in holes, points are graded where lengths differ more
    *   than threefold, long edges of the rim included: they become sparser away from lines and
    *   towards a border with long edges. So their number stays in proportion to the points of the
    *   input, however far apart lines are.
@@ -294,6 +297,19 @@ public:
 
   ///@{
   /**
+   * The most new points that may be expected of all holes together; if there are more, nothing is
+   * filled, and an error tells how many, their memory, and a Spacing that would do. The estimate
+   * takes no time: it follows from areas and spacings of the holes that MaximumHoleSize and
+   * MaximumHoleEdges admit. 0 (default): ten times the points of the input, but at least a million;
+   * negative values are taken as 0. Where MaximumNumberOfInsertedPoints is no larger, it leaves the
+   * largest holes open instead.
+   */
+  vtkSetClampMacro(MaximumNumberOfExpectedPoints, vtkIdType, 0, VTK_ID_MAX);
+  vtkGetMacro(MaximumNumberOfExpectedPoints, vtkIdType);
+  ///@}
+
+  ///@{
+  /**
    * Distance of new points in x,y, in input units. 0 (default): that of the lattice, or for each
    * hole the mean length of its boundary edges, see above; negative values are taken as 0.
    */
@@ -348,6 +364,7 @@ protected:
   vtkIdType MaximumHoleEdges = 0;
   vtkIdType MaximumNumberOfInsertedPoints = 100000000;
   bool FillCutOuts = false;
+  vtkIdType MaximumNumberOfExpectedPoints = 0;
   double Spacing = 0.0;
   int Interpolation = ADAPTIVE;
   bool InterpolatePointData = true;

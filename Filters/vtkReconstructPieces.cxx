@@ -80,6 +80,16 @@ void vtkReconstructPieces::SetFillHoles(bool fill)
   }
 }
 
+void vtkReconstructPieces::SetMemoryOfHole(double bytes)
+{
+  bytes = bytes > 0.0 ? bytes : 0.0;
+  if (this->MemoryOfHole != bytes)
+  {
+    this->MemoryOfHole = bytes;
+    this->Fill->Modified(); // the same
+  }
+}
+
 /** Reports what the work throws. */
 bool vtkReconstructPieces::Try(const std::function<void()>& work)
 {
@@ -304,6 +314,7 @@ void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progres
 {
   this->SetProgressText("filling holes");
   elevation::FillOptions options = elevation::OptionsOf(this->Fill);
+  options.MemoryOfHole = this->MemoryOfHole;
   options.Monitor = progress;
   const auto make = [this](int piece, const elevation::Progress& ofPiece) {
     return this->MakeTrimmed(piece, ofPiece);
@@ -442,6 +453,7 @@ void vtkReconstructPieces::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfInsertedPoints: " << this->GetNumberOfInsertedPoints() << "\n";
   os << indent << "NumberOfBoundaryRings: " << this->GetNumberOfBoundaryRings() << "\n";
   os << indent << "FillHoles: " << (this->FillHoles ? "On" : "Off") << "\n";
+  os << indent << "MemoryOfHole: " << this->MemoryOfHole << "\n";
   os << indent << "NumberOfHoles: " << this->GetNumberOfHoles() << "\n";
   os << indent << "NumberOfFilledHoles: " << this->GetNumberOfFilledHoles() << "\n";
   os << indent << "NumberOfFilledTriangles: " << this->GetNumberOfFilledTriangles() << "\n";

@@ -113,6 +113,16 @@ public:
   vtkBooleanMacro(FillHoles, bool);
   ///@}
 
+  ///@{
+  /**
+   * The memory, in bytes, that filling may take for one hole. Where more is expected for one, an error
+   * names a Spacing that would do, before any is filled. 0 (default): no limit; negative values are taken
+   * as 0.
+   */
+  virtual void SetMemoryOfHole(double bytes);
+  virtual double GetMemoryOfHole() { return this->MemoryOfHole; }
+  ///@}
+
   /**
    * Adds points, with their point arrays; all parts need the same arrays, without global ids.
    * @return whether it could be done; else there is an error
@@ -173,6 +183,7 @@ private:
   vtkNew<vtkTrimOutwardTriangles> Trim;
   vtkNew<vtkFillElevationHoles> Fill;
   bool FillHoles = false;
+  double MemoryOfHole = 0.0;
   std::unique_ptr<elevation::CellByCell> Work;
   std::unique_ptr<elevation::TrimmedPieces> Trimmed;
   std::unique_ptr<elevation::FilledPieces> Filled;

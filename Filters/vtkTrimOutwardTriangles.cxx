@@ -151,10 +151,10 @@ int vtkTrimOutwardTriangles::RequestData(
     vtkPolyData* const given = block.Second;
     Report(progress, 0.0);
     elevation::CheckArrays(input);
-    if (!(this->GapTolerance >= 0.0))
+    const std::string wrong = elevation::WrongOption(options);
+    if (!wrong.empty())
     {
-      throw elevation::Error("GapTolerance is " + std::to_string(this->GapTolerance) +
-        ". It must be a number of spacings above 0, or 0 to choose it from the data.");
+      throw elevation::Error(wrong);
     }
     if (given)
     {
@@ -211,6 +211,8 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "OutwardTest: " << this->GetOutwardTestAsString() << "\n";
   os << indent << "GapTolerance: " << this->GapTolerance << "\n";
   os << indent << "BoundaryEdges: " << this->GetBoundaryEdgesAsString() << "\n";
+  os << indent << "GridSteps: " << this->GridSteps[0] << ", " << this->GridSteps[1] << ", "
+     << this->GridSteps[2] << ", " << this->GridSteps[3] << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";

@@ -64,6 +64,7 @@
  *   spacings. A smaller one is surface. So is a bay as small, whose edges are at most 1.6 times
  *   as long as those of other triangles may be: the outline does not follow each point inwards.
  * - A piece of six points or fewer is not surface (unless all pieces are as small).
+ * - On a grid, missing nodes that touch the outside are outside: see GridSteps.
  * - The input should be a Delaunay triangulation. Its holes stay open and are part of the boundary.
  *
  * @par Outputs:
@@ -227,6 +228,21 @@ public:
 
   ///@{
   /**
+   * For the extracted boundary of points on a grid, some of whose nodes are missing, as pixels
+   * outside of a country: the grid's two steps, x and y of the first, then of the second. Edges that
+   * go more than one step along either bridge missing nodes. What is reached from the border of the
+   * triangulation across such edges is outward, however narrow or wide a bay is; no piece
+   * that this leaves is too small to be surface. Missing nodes that the surface encloses are judged as
+   * without this. Where steps differ from row to row, give the largest. Four zeros (default): no
+   * grid. Steps that are not finite, or along one line, are an error. Not used when a boundary is
+   * given.
+   */
+  vtkSetVector4Macro(GridSteps, double);
+  vtkGetVector4Macro(GridSteps, double);
+  ///@}
+
+  ///@{
+  /**
    * Whether a boundary edge that is missing in the mesh is recovered, and a boundary point that is
    * not a corner of the mesh inserted (default on). Off: such an edge or point is an error that
    * names it, and no triangle is ever changed.
@@ -327,6 +343,7 @@ protected:
 
   int OutwardTest = EXACT;
   double GapTolerance = 0.0;
+  double GridSteps[4] = { 0.0, 0.0, 0.0, 0.0 };
   bool RecoverBoundary = true;
   int BoundaryEdges = FOLLOW_SURFACE;
   int NumberOfThreads = 0;

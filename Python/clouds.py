@@ -31,6 +31,7 @@ class Cloud:
     is_horizon  whether it is of a kind of file or table in which horizons are
     words    {name: Words} of columns of text
     files    of merged files, Words with the file of each point, else None
+    grid     the PixelGrid of points from a raster, or None
     """
 
     def __init__(self, points, notes=(), left_out=None, lines=None, crs=None):
@@ -42,14 +43,57 @@ class Cloud:
         self.largest_cell = 0.0
         self.z_name, self.is_horizon = "", False
         self.words, self.files = {}, None
+        self.grid = None
 
     def copy(self):
         """One that can be changed; the points themselves are shared, as nothing changes them."""
         copied = Cloud(self.points, self.notes, self.left_out, self.lines, self.crs)
+        copied.grid = self.grid
         copied.largest_cell, copied.files = self.largest_cell, self.files
         copied.z_name, copied.is_horizon = self.z_name, self.is_horizon
         copied.words = dict(self.words)
         return copied
+
+
+@dataclasses.dataclass
+class PixelGrid:
+    """Where the pixels of a raster are."""
+
+    origin: object  # x and y of one; None where steps differ
+    steps: tuple  # x and y of one step, then of another; the largest where they differ
+
+    def continues(self, other):
+        """Whether the pixels of both rasters are on one grid."""
+        if self.origin is None or other.origin is None:
+            return False
+        steps = numpy.reshape(other.steps, (2, 2))
+        between = numpy.linalg.solve(steps.T, numpy.subtract(self.origin, other.origin))
+        return bool(
+            numpy.allclose(self.steps, other.steps, atol=1e-6 * abs(steps).max())
+            and (abs(between - numpy.round(between)) < 0.01).all()
+        )
+
+
+def pixel_grid(valid, row, column):
+    """The PixelGrid of a raster; None where most pixels lack neighbours, as of a thinned one.
+
+    valid        (rows, columns) of bool
+    row, column  (n, 2) x and y of the pixels of the first row and column
+    """
+    if min(valid.shape) < 2:
+        return None
+    by_row = valid[1:].astype("u1") + valid[:-1]
+    corners = by_row[:, 1:] + by_row[:, :-1]
+    # Of about two triangles a pixel, those of half a cell are at least half.
+    if 2 * (corners == 4).sum() + (corners == 3).sum() < valid.sum():
+        return None
+    steps, even = [], True
+    for line in (row, column):
+        away = numpy.diff(line, axis=0)
+        lengths = numpy.hypot(*away.T)
+        steps += away[lengths.argmax()].tolist()
+        even = even and numpy.ptp(lengths) <= 1e-6 * lengths.max()
+    return PixelGrid(tuple(row[0]) if even else None, tuple(steps))
 
 
 def three_columns(columns):
@@ -253,6 +297,9 @@ def merged(names, clouds):
     append.SetOutputPointsPrecision(append.DOUBLE_PRECISION)
     append.Update()
     result = Cloud(append.GetOutput(), notes, crs=crs)
+    first = clouds[0].grid
+    if first and all(cloud.grid and cloud.grid.continues(first) for cloud in clouds):
+        result.grid = first
     kept = result.points.GetPointData().GetNumberOfArrays()
     if any(cloud.points.GetPointData().GetNumberOfArrays() > kept for cloud in clouds):
         result.notes.append("point arrays that not all files have are left out")

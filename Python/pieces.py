@@ -195,6 +195,8 @@ class Pieces:
                 count = options.pieces or pieces_within(
                     options.memory, source.GetNumberOfPoints(), options.fill
                 )
+                if options.memory is not None:
+                    source.SetMemoryOfHole(options.memory - BYTES_BESIDES)
                 run.timed("triangulate", STEPS["delaunay"], lambda: self.update(0, count))
                 names = run.timed("write", "writing", lambda: self.write(folder, count))
             run.results.add(options.output, lambda path: write_vtpd(names, path))

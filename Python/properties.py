@@ -116,6 +116,9 @@ PROPERTIES = {
     "maximum_hole_size": Property("fill", "SetMaximumHoleSize", number_at_least_zero, NUMBER),
     "maximum_hole_edges": Property("fill", "SetMaximumHoleEdges", count_at_least_zero, COUNT),
     "fill_cut_outs": Property("fill", "SetFillCutOuts", yes_or_no, YES_OR_NO),
+    "maximum_expected_points": Property(
+        "fill", "SetMaximumNumberOfExpectedPoints", count_at_least_zero, COUNT
+    ),
     "spacing": Property("fill", "SetSpacing", number_at_least_zero, NUMBER),
     "interpolation": _choice("fill", "SetInterpolation", INTERPOLATIONS),
     "interpolate_point_data": Property("fill", "SetInterpolatePointData", yes_or_no, YES_OR_NO),

@@ -11,7 +11,13 @@ from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkPointSet, vtkPolyData
+from vtkmodules.vtkCommonDataModel import (
+    vtkDataSet,
+    vtkImageData,
+    vtkPointSet,
+    vtkPolyData,
+    vtkRectilinearGrid,
+)
 
 from .clouds import Cloud, make_lines, make_points
 from .given_lines import fitted
@@ -39,6 +45,10 @@ def as_cloud(points: Points) -> Cloud:
         return cloud_of_mesh(points)
     if isinstance(points, (str, os.PathLike)):
         raise TypeError(f"points: a file's name; use reconstruct(read({os.fspath(points)!r}))")
+    if isinstance(points, (vtkImageData, vtkRectilinearGrid)) and points.GetNumberOfPoints():
+        from .reading.vtk_files import points_of_grid
+
+        return points_of_grid("points", points)
     if isinstance(points, vtkDataSet):
         raise TypeError(f"points: {points.GetClassName()} has no elevations; a vtkPointSet has")
     return Cloud(make_points(array_of(points, "points", (3,))))
@@ -298,7 +308,8 @@ def reconstruct(
     """Reconstructs an elevation surface z = f(x, y) from points.
 
     points    (n, 3) array of x, y, z, whose values are taken as they are; a vtkPointSet or PyVista mesh, whose points and point data are
-              used; or what read() returns
+              used; a flat vtkImageData or vtkRectilinearGrid, whose active point scalars are
+              elevations, NaN where there is none; or what read() returns
     boundary  closed lines that bound the surface: vtkPolyData, an (n, 2) or (n, 3) array, or a list
               of such arrays; None: found from the points. Gaps of up to 1 % of a ring's length are
               closed, and rings that cross themselves made valid (that needs python3-gdal)
@@ -313,9 +324,9 @@ def reconstruct(
               maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
               lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
               recover_boundary, boundary_edges, open_edge_length, maximum_hole_size,
-              maximum_hole_edges, fill_cut_outs, spacing, interpolation, interpolate_point_data,
-              faults_z, threads. Lengths are in the units of x and y. The program's --help tells
-              what each does, and its default.
+              maximum_hole_edges, maximum_expected_points, fill_cut_outs, spacing, interpolation,
+              interpolate_point_data, faults_z, threads. Lengths are in the units of x and y.
+              The program's --help tells what each does, and its default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made; where places have the heights of several surfaces, unless duplicates says which to

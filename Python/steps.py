@@ -22,7 +22,7 @@ from .outline import (
     spacing_of,
 )
 from .properties import PROPERTIES, option_of
-from .ranks import agreed, total
+from .ranks import agreed, together, total
 from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, dealt, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
 
@@ -134,6 +134,11 @@ def trim_along(run, boundary, edges=None):
     trim.SetInputData(0, result.delaunay.GetOutput())
     if boundary is not None:
         trim.SetBoundaryData(boundary)
+    elif not run.given.get("gap_tolerance"):
+        # Of a raster, missing pixels that touch the outside are outside.
+        grid = result.cloud.grid
+        steps = together(run.ranks, lambda: list(grid.steps) if grid else [])
+        trim.SetGridSteps((steps or [0.0] * 4)[:4])
     result.trim = run("trim", trim)
     result.triangles["trimmed"] = total(run.ranks, trim.GetOutput().GetNumberOfPolys())
     if result.triangles["trimmed"] == 0:

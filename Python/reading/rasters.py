@@ -6,7 +6,7 @@ import os
 
 import numpy
 
-from ..clouds import Cloud, make_points
+from ..clouds import Cloud, make_points, pixel_grid
 from .column_names import direction_of
 from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
@@ -211,7 +211,7 @@ def notes_of_raster(path, data, band, options):
 def read_points(path, options):
     """The centres of the pixels that hold an elevation, row by row.
 
-    Takes 24 bytes for each point, and about 100 MB.
+    Takes 24 bytes for each point, 3 for each pixel, and about 100 MB.
     """
     with quiet():
         data, notes = open_raster(path, options)
@@ -221,6 +221,8 @@ def read_points(path, options):
         begun = WORDS if data.GetDriver().ShortName in TEXT_KINDS else 0.0
         progress = share(options.progress, begun, 1.0)
         points, count = numpy.empty((data.RasterYSize * data.RasterXSize, 3)), 0
+        mask = numpy.empty((data.RasterYSize, data.RasterXSize), dtype=bool)
+        column = numpy.empty((data.RasterYSize, 2))
         for first, z, valid in blocks(path, data, band, options.no_data):
             for row, (values, keep) in enumerate(zip(z, valid), first):
                 here = points[count : count + int(numpy.count_nonzero(keep))]
@@ -228,8 +230,10 @@ def read_points(path, options):
                 here[:, 0], here[:, 1] = x[keep], y[keep]
                 here[:, 2] = values[keep]
                 count += len(here)
+                mask[row], column[row] = keep, (x[0], y[0])
             progress((first + len(z)) / len(points) * data.RasterXSize)
         reference = data.GetSpatialRef()
+        grid = pixel_grid(mask, numpy.column_stack(place(0)), column)
     if count == 0:
         raise FileError(f"{path}: all {len(points):,} pixels are without data")
     cloud = Cloud(make_points(points[:count], copy=False), notes)
@@ -238,6 +242,7 @@ def read_points(path, options):
     if count < len(points):
         cloud.left_out["pixels without data"] = len(points) - count
     cloud.crs = reference.ExportToWkt() if reference else None
+    cloud.grid = grid
     return cloud
 
 
@@ -294,4 +299,6 @@ def points_of_raster(path, x, y, z):
     cloud = Cloud(make_points(numpy.column_stack((x[valid], y[valid], z[valid]))))
     if count < valid.size:
         cloud.left_out["pixels without data"] = valid.size - count
+    row, column = (numpy.column_stack(ends) for ends in ((x[0], y[0]), (x[:, 0], y[:, 0])))
+    cloud.grid = pixel_grid(valid, row, column)
     return cloud

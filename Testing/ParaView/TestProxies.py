@@ -28,6 +28,7 @@ OTHER_VALUES = {
     "TrimOutwardTriangles": {
         "OutwardTest": "Inward Normal",
         "GapTolerance": 3.5,
+        "GridSteps": [5.0, 0.0, 0.0, 5.0],
         "RecoverBoundary": 0,
         "BoundaryEdges": "Straight",
         "NumberOfThreads": 2,
@@ -38,6 +39,7 @@ OTHER_VALUES = {
         "MaximumHoleEdges": 40,
         "FillCutOuts": 1,
         "MaximumNumberOfInsertedPoints": 5000,
+        "MaximumNumberOfExpectedPoints": 4000,
         "Spacing": 0.25,
         "Interpolation": "Thin Plate",
         "InterpolatePointData": 0,

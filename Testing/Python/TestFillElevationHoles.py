@@ -52,6 +52,7 @@ class TestFillElevationHoles(unittest.TestCase):
         self.assertEqual(fill.GetMaximumHoleSize(), 0.0)
         self.assertEqual(fill.GetMaximumHoleEdges(), 0)
         self.assertEqual(fill.GetMaximumNumberOfInsertedPoints(), 100_000_000)
+        self.assertEqual(fill.GetMaximumNumberOfExpectedPoints(), 0)
         self.assertEqual(fill.GetSpacing(), 0.0)
         self.assertEqual(fill.GetInterpolation(), fill.ADAPTIVE)
         self.assertEqual(fill.GetInterpolationAsString(), "Adaptive")
@@ -62,7 +63,8 @@ class TestFillElevationHoles(unittest.TestCase):
 
     def test_every_property_is_printed(self):
         text = str(vtkFillElevationHoles())
-        for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints", "Spacing", "Interpolation", "InterpolatePointData",
+        for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints",
+                     "MaximumNumberOfExpectedPoints", "Spacing", "Interpolation", "InterpolatePointData",
                      "NumberOfThreads", "NumberOfHoles", "NumberOfFilledHoles", "MaximumEdgeLength"):
             self.assertIn(name + ":", text)
 

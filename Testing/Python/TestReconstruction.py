@@ -3,6 +3,7 @@
 """reconstruct() as scripts call it: arrays and VTK data in, a Reconstruction out."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -26,7 +27,7 @@ from vtkelevationsurface.steps import in_options
 from vtkelevationsurface.writing.xml_writer import named_arrays
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkRectilinearGrid
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
 SIZE = 12
@@ -129,6 +130,24 @@ class Input(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "a ring has 2 points"):
             reconstruct(SHEET, boundary=RING[:2])
 
+    def test_images_and_grids_are_rasters_of_their_scalars(self):
+        image, grid = vtkImageData(), vtkRectilinearGrid()
+        image.SetDimensions(SIZE, SIZE, 1)
+        grid.SetDimensions(SIZE, SIZE, 1)
+        for axis in "XY":
+            getattr(grid, f"Set{axis}Coordinates")(numpy_to_vtk(numpy.arange(SIZE, dtype="f8"), deep=True))
+        z = SHEET[:, 2].copy()
+        z[[5, 5 * SIZE + 5, 5 * SIZE + 6]] = numpy.nan
+        expected = None
+        for data in (image, grid):
+            data.GetPointData().SetScalars(numpy_to_vtk(z, deep=True))
+            result = reconstruct(data)
+            self.assertEqual(result.cloud.points.GetNumberOfPoints(), SIZE * SIZE - 3)
+            # The missing pixel at the border is outside: one cell and a half less on each side of it.
+            self.assertEqual(result.triangles["delaunay"] - result.triangles["trimmed"], 1)
+            expected = expected or result.to_numpy()[1].tolist()
+            self.assertEqual(result.to_numpy()[1].tolist(), expected)
+
     def test_masked_values_are_not_finite(self):
         masked = numpy.ma.masked_array(SHEET, SHEET[:, 2:] * [1, 1, 1] == SHEET[5, 2])
         report = reconstruct(masked).report
@@ -161,6 +180,7 @@ class Properties(unittest.TestCase):
             "open_edge_length": (40, "fill", "GetMaximumEdgeLength", 40.0),
             "maximum_hole_size": (5, "fill", "GetMaximumHoleSize", 5.0),
             "maximum_hole_edges": (7, "fill", "GetMaximumHoleEdges", 7),
+            "maximum_expected_points": (900, "fill", "GetMaximumNumberOfExpectedPoints", 900),
             "spacing": (0.5, "fill", "GetSpacing", 0.5),
             "interpolation": ("thin plate", "fill", "GetInterpolation", 2),
             "interpolate_point_data": (False, "fill", "GetInterpolatePointData", 0),
@@ -224,6 +244,19 @@ class Properties(unittest.TestCase):
         self.assertIn("leaves out 80 points", str(told[0].message))
         self.assertEqual(told[0].filename, __file__)
         self.assertEqual(len(result.notes), 1)
+
+    def test_more_effort_than_is_expected_is_refused_with_a_way_out(self):
+        sheet = SHEET[numpy.hypot(SHEET[:, 0] - 5.5, SHEET[:, 1] - 5.5) > 3.0]
+        for given, limit in ({"spacing": 1e-4}, 1e6), ({"maximum_expected_points": 9}, 9):
+            with self.subTest(given=given):
+                with self.assertRaisesRegex(ElevationSurfaceError, "would do, or a larger") as raised:
+                    reconstruct(sheet, maximum_edge_length=3.0, trim=False, **given)
+                spacing = float(re.search(r"A Spacing of (\S+) would", str(raised.exception)).group(1))
+                result = reconstruct(
+                    sheet, maximum_edge_length=3.0, trim=False, **{**given, "spacing": spacing})
+                inserted = result.surface.GetNumberOfPoints() - len(sheet)
+                self.assertLessEqual(inserted, limit)
+                self.assertGreater(inserted, 0)
 
     def test_progress_is_told_and_can_stop_the_run(self):
         steps = []

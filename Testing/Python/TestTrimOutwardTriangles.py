@@ -88,6 +88,7 @@ class TestTrimOutwardTriangles(unittest.TestCase):
     def test_defaults(self):
         trim = vtkTrimOutwardTriangles()
         self.assertEqual(trim.GetGapTolerance(), 0.0)
+        self.assertEqual(trim.GetGridSteps(), (0.0, 0.0, 0.0, 0.0))
         self.assertTrue(trim.GetRecoverBoundary())
         self.assertEqual(trim.GetNumberOfThreads(), 0)
         self.assertEqual(trim.GetOutwardTest(), vtkTrimOutwardTriangles.EXACT)
@@ -103,7 +104,7 @@ class TestTrimOutwardTriangles(unittest.TestCase):
 
     def test_every_property_is_printed(self):
         text = str(vtkTrimOutwardTriangles())
-        for name in ("OutwardTest", "GapTolerance", "RecoverBoundary", "NumberOfThreads",
+        for name in ("OutwardTest", "GapTolerance", "GridSteps", "RecoverBoundary", "NumberOfThreads",
                      "EffectiveGapTolerance", "NumberOfOutwardTriangles", "NumberOfRecoveredEdges",
                      "NumberOfPointsLeftOut", "NumberOfInsertedPoints"):
             self.assertIn(name, text)

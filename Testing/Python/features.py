@@ -78,6 +78,7 @@ boundary found                    |                            | gaps           
 boundary found along tracks       |                            | tracks                       | s  s  s  s  -  -  -
 boundary found by inward normals  | OutwardTest=1              | gaps                         | s  s  G  G  -  -  -
 gap tolerance                     | GapTolerance=2.5           | gaps                         | s  s  s  s  -  -  -
+steps of a grid                   | GridSteps=(2.0, 1.5, -0.9, 1.2) | lattice                      | s  s  s  s  -  -  -
 points of floats                  |                            | coast + float                | s  s  s  s  s  s  a
 point data: float, double         |                            | coast + float array + double array | s  s  s  s  s  s  a
 point data: integers, strings     |                            | coast + integers + strings   | s  s  s  s  s  s  a
@@ -105,6 +106,7 @@ most edges of a hole              | MaximumHoleEdges=13        | coast and lakes
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  a
 what the boundary cut out, filled | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  a
 most points inserted              | MaximumNumberOfInsertedPoints=20, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  a
+most points expected              | MaximumNumberOfExpectedPoints=2000 | coast and lakes              | s  s  s  s  s  s  a
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  a
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  a
 holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  a

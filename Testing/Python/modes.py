@@ -442,6 +442,7 @@ def in_pieces(row, case, parts, pieces, count):
     if case.rings:
         of["Trim"].SetBoundaryData(meshes.rings(case.rings))
     source.SetFillHoles(row.filter == "Fill")
+    source.SetMemoryOfHole(1e9)
     set_properties(row, of.get)
     messages, made = noted(source), []
     with tempfile.TemporaryDirectory() as folder:

@@ -32,6 +32,12 @@ constexpr double PointsTogether = 50000.0;
 constexpr double PointsPerPatch = 10.0;
 constexpr double PointsPerTrial = 150.0;
 
+/** What is refused by default: more points than this, and this many for each of the surface. */
+constexpr double LeastPointsRefused = 1e6;
+constexpr double MostPointsPerPoint = 10.0;
+
+constexpr double BytesPerPoint = 500.0; // of memory, while and after it is inserted
+
 /** What a thread takes at a time: patches of about this many points in all, or a larger one. */
 constexpr double PointsPerPiece = 250.0;
 
@@ -58,6 +64,24 @@ std::string ToText(double value)
   std::ostringstream text;
   text << value;
   return text.str();
+}
+
+std::string CountToText(double value)
+{
+  return value < 1e15 ? std::to_string(std::llround(value)) : ToText(value);
+}
+
+/** What so many points take. */
+std::string ToGigabytes(double points)
+{
+  return ToText(std::ceil(points * BytesPerPoint / 1e8) / 10.0) + " GB";
+}
+
+/** To two digits. */
+double RoundedUp(double value)
+{
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::ceil(value / step) * step;
 }
 
 void Fail(HoleReport& report, const std::string& reason)
@@ -210,23 +234,26 @@ public:
   }
 
   /** See NeedsOfHoles(). */
-  std::vector<double> PlanAndTellNeeds()
+  std::vector<HoleNeed> PlanAndTellNeeds()
   {
     this->PlanAll();
     return this->Needs();
   }
 
 private:
-  std::vector<double> Needs() const
+  std::vector<HoleNeed> Needs() const
   {
-    std::vector<double> needs;
+    std::vector<HoleNeed> needs(this->Given.Count());
     for (Index hole = 0; hole < this->Given.Count(); ++hole)
     {
       // Rows of points count as points: a long thin hole has many rows, though few points.
       const PatchPlan& plan = this->Plans[hole];
-      const bool isPlanned = this->Result.Reports[hole].Status == FillStatus::Filled;
-      needs.push_back(isPlanned ? std::max(plan.MostRows, plan.MostPoints)
-                                : std::numeric_limits<double>::quiet_NaN());
+      const HoleReport& report = this->Result.Reports[hole];
+      if (report.Status == FillStatus::Filled)
+      {
+        needs[hole] = { std::max(plan.MostRows, plan.MostPoints), plan.ExpectedPoints,
+          report.Area };
+      }
     }
     return needs;
   }
@@ -280,13 +307,16 @@ private:
   {
     const Index limit = this->Options.MaximumInsertedPoints;
     const Index ofIds = MaximumNumberOfPoints - this->Surface.NumberOfPoints();
-    const std::vector<double> needs = this->Needs();
-    const std::vector<double> rooms = this->Options.Rooms.empty()
-      ? RoomsOfNeeds(needs, std::min(limit, ofIds))
-      : this->Options.Rooms;
+    const std::vector<HoleNeed> needs = this->Needs();
+    std::vector<double> rooms = this->Options.Rooms;
+    if (rooms.empty())
+    {
+      CheckEffort(needs, this->Surface.NumberOfPoints(), this->Options);
+      rooms = RoomsOfNeeds(needs, std::min(limit, ofIds));
+    }
     for (Index hole = 0; hole < this->Given.Count(); ++hole)
     {
-      const double points = needs[hole], left = rooms[hole];
+      const double points = needs[hole].Most, left = rooms[hole];
       HoleReport& report = this->Result.Reports[hole];
       if (std::isnan(points))
       {
@@ -511,20 +541,57 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   return report;
 }
 
-std::vector<double> NeedsOfHoles(
+std::vector<HoleNeed> NeedsOfHoles(
   const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options)
 {
   return HoleFilling(mesh, points, holes, options).PlanAndTellNeeds();
 }
 
-std::vector<double> RoomsOfNeeds(const std::vector<double>& needs, Index limit)
+void CheckEffort(
+  const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options)
+{
+  double expected = 0.0, area = 0.0, ofOne = 0.0, largest = 0.0;
+  for (const HoleNeed& need : needs)
+  {
+    if (!std::isnan(need.Most))
+    {
+      expected += need.Expected;
+      area += need.Area;
+      ofOne = std::max(ofOne, need.Expected);
+      largest = std::max(largest, need.Area);
+    }
+  }
+  const double room = options.MemoryOfHole / BytesPerPoint;
+  if (options.MemoryOfHole > 0.0 && ofOne > room)
+  {
+    throw Error("Filling one hole is expected to insert about " + CountToText(ofOne) +
+      " points, which take some " + ToGigabytes(ofOne) + ", more than the memory for it, " +
+      ToGigabytes(room) + ". A Spacing of " + ToText(RoundedUp(SpacingOfPoints(largest, room))) +
+      " would do, or a MaximumHoleSize that leaves it open, or more memory.");
+  }
+  const double chosen = static_cast<double>(options.MaximumExpectedPoints);
+  const double limit =
+    chosen > 0.0 ? chosen : std::max(LeastPointsRefused, MostPointsPerPoint * numberOfPoints);
+  if (!(expected > limit) || static_cast<double>(options.MaximumInsertedPoints) <= limit)
+  {
+    return;
+  }
+  throw Error("Filling is expected to insert about " + CountToText(expected) +
+    " points, which take some " + ToGigabytes(expected) +
+    ", more than MaximumNumberOfExpectedPoints, " + CountToText(limit) +
+    (chosen > 0.0 ? "" : " by default for the " + CountToText(numberOfPoints) + " of the input") +
+    ". A Spacing of " + ToText(RoundedUp(SpacingOfPoints(area, limit))) +
+    " would do, or a larger MaximumNumberOfExpectedPoints.");
+}
+
+std::vector<double> RoomsOfNeeds(const std::vector<HoleNeed>& needs, Index limit)
 {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t hole = 0; hole < needs.size(); ++hole)
   {
-    if (!std::isnan(needs[hole]))
+    if (!std::isnan(needs[hole].Most))
     {
-      order.emplace_back(needs[hole], hole);
+      order.emplace_back(needs[hole].Most, hole);
     }
   }
   std::sort(order.begin(), order.end());

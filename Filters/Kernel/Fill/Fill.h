@@ -6,7 +6,7 @@
  *
  * In: a surface, its elevations, other attributes of its points, and its holes (Holes.h). Out: the
  * points and triangles to append, their values, and a report for every hole. For each hole:
- *   1. Measure it and compare with the limits.
+ *   1. Measure it and compare with the limits; then compare what is expected of all.
  *   2. Place points and triangulate them (Patch.h).
  *   3. Find elevations, and other attributes in the same way (Heights.h).
  * Where a hole is a region of long triangles, the patch replaces them; of a region that is not
@@ -32,6 +32,7 @@
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Triangulate/Triangulate.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,9 @@ struct FillOptions
   bool FillCutOuts = false; ///< whether holes that have been cut out are filled
   /** For all holes together. A hole that may need more than smaller ones leave fails. */
   Index MaximumInsertedPoints = MaximumNumberOfPoints;
+  /** More new points expected of all holes together are an Error; 0: see CheckEffort(). */
+  Index MaximumExpectedPoints = 0;
+  double MemoryOfHole = 0.0; ///< in bytes; more expected for one hole are an Error; 0: no limit
   /** Whether new points are lattice nodes where the surface's points are. */
   LatticeMode UseLattice = LatticeMode::Automatic;
   /** Threads to use; 0: one per core. The result is the same, byte for byte. */
@@ -83,7 +87,7 @@ struct FillOptions
   const LatticeSearch* KnownLattice = nullptr; ///< that of the whole, found or not
   /** One a hole, in which all triangles that meet it are there. It contains the rim. */
   std::vector<Box> Known;
-  std::vector<double> Rooms; ///< one a hole: RoomsOfNeeds() of all holes of the whole
+  std::vector<double> Rooms; ///< one a hole: RoomsOfNeeds() of all, after CheckEffort()
   /** @} */
 };
 
@@ -131,7 +135,8 @@ struct FillResult
  *                    returns it
  * @param[in] points  the same points with their elevations
  * @param[in] holes   from FindHoles(), OpenLongTriangles(); FillResult::Found replaces them
- * @throws Aborted, std::bad_alloc: which holes fail does not depend on the free memory
+ * @throws Error of CheckEffort(), before any hole is filled; Aborted; std::bad_alloc: which holes fail
+ *         does not depend on the free memory
  */
 FillResult FillHoles(
   const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options);
@@ -144,15 +149,33 @@ FillResult FillHoles(
 HoleReport MeasureHole(
   const Mesh& mesh, const Holes& holes, Index hole, const FillOptions& options);
 
-/**
- * What each hole of a part may take of MaximumInsertedPoints; NaN for those that the limits refuse.
- * Options as for FillHoles(), without Rooms.
- */
-std::vector<double> NeedsOfHoles(
+/** The new points of a hole. */
+struct HoleNeed
+{
+  /** What it may take of MaximumInsertedPoints; NaN if the limits refuse the hole. */
+  double Most = std::numeric_limits<double>::quiet_NaN();
+  double Expected = 0.0; ///< about how many there will be
+  double Area = 0.0;
+};
+
+/** Of each hole of a part. Options as for FillHoles(), without Rooms. */
+std::vector<HoleNeed> NeedsOfHoles(
   const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options);
 
+/**
+ * Refuses what would take too much time and memory, before any hole is filled.
+ * @param[in] needs           of all holes of the whole surface
+ * @param[in] numberOfPoints  of the whole surface
+ * @throws Error if more new points are expected than MaximumExpectedPoints; if this is 0, than ten
+ *         times the surface's points and more than a million. It names a spacing that would do. No error
+ *         if MaximumInsertedPoints is no larger: then large holes fail. The same if one hole takes
+ *         more than MemoryOfHole.
+ */
+void CheckEffort(
+  const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options);
+
 /** How many points smaller holes leave for each hole. */
-std::vector<double> RoomsOfNeeds(const std::vector<double>& needs, Index limit);
+std::vector<double> RoomsOfNeeds(const std::vector<HoleNeed>& needs, Index limit);
 
 } // namespace elevation
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <sstream>
 #include <unordered_map>
@@ -43,6 +44,9 @@ constexpr Index EdgesAround = 8;
 constexpr double LargestRatioOfSpacings = 3.0;
 
 constexpr double Growth = 0.2; // of the spacing, per distance
+
+/** A line needs no closer points than this part of the gap beside it. */
+constexpr double LeastSpacingInGap = 0.1;
 
 /**
  * Largest median triangle, in cells, for which the nodes are used. It is half a cell where the
@@ -830,28 +834,32 @@ void AddInnerSpacings(const Holes& holes, Index hole, const std::vector<double>&
   });
 }
 
-/** The mean of those lengths that are not above a limit; the limit if all are. */
-double MeanWithin(double limit, const std::vector<double>& lengths)
-{
-  double sum = 0.0;
-  double number = 0.0;
-  for (const double length : lengths)
-  {
-    if (length > 0.0 && length <= limit)
-    {
-      sum += length;
-      number += 1.0;
-    }
-  }
-  return number > 0.0 ? sum / number : limit;
-}
-
 /** The lengths of a hole's edges, then those of its inner edges. */
 struct EdgeLengths
 {
   std::vector<double> Boundary;
   std::vector<double> Inner;
 };
+
+/** The mean spacing of those edges that are not longer than a limit; the limit if all are. */
+double MeanWithin(double limit, const EdgeLengths& lengths, const EdgeLengths& spacings)
+{
+  double sum = 0.0;
+  double number = 0.0;
+  const auto add = [&](const std::vector<double>& ofEdges, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < ofEdges.size(); ++i)
+    {
+      if (ofEdges[i] > 0.0 && ofEdges[i] <= limit)
+      {
+        sum += values[i];
+        number += 1.0;
+      }
+    }
+  };
+  add(lengths.Boundary, spacings.Boundary);
+  add(lengths.Inner, spacings.Inner);
+  return number > 0.0 ? sum / number : limit;
+}
 
 EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
 {
@@ -868,23 +876,52 @@ EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
 }
 
 /**
- * An upper bound of the number of graded points, which does not grow with the distance of lines. As
- * the spacing grows with the distance from an edge, there are 1 / Growth points at each of its
- * sides, twice to be safe; and around a lone point as many as the integral over rings tells. Far
- * from all of these, the spacing is the largest.
+ * The spacing that each edge asks for: its length. In a region of lines, whose points are mostly
+ * inside, it follows the gaps beside them, where these are wide.
  */
-double MostGradedPoints(const EdgeLengths& lengths, double area, double mean, double largest)
+EdgeLengths SpacingsOfEdges(const Holes& holes, Index hole, const EdgeLengths& lengths)
 {
-  constexpr double perSide = 2.0 / Growth;
-  const double reach = Growth * std::sqrt(area) / mean;
-  const double perPoint = 2.0 * 6.3 / (Growth * Growth) * std::log1p(reach);
-  double most = 2.0 * area / largest / largest / RowHeight;
-  most += perSide * static_cast<double>(lengths.Boundary.size());
-  for (const double length : lengths.Inner)
+  EdgeLengths spacings = lengths;
+  if (lengths.Inner.size() <= lengths.Boundary.size())
   {
-    most += length > 0.0 ? 2.0 * perSide : perPoint;
+    return spacings;
   }
-  return most;
+  double* next = spacings.Boundary.data();
+  const auto raise = [&](Index a, Index b) {
+    if (*next > 0.0 && *next <= holes.LongestEdge)
+    {
+      *next = std::max(*next, LeastSpacingInGap * std::min(holes.Gaps[a], holes.Gaps[b]));
+    }
+    ++next;
+  };
+  holes.VisitEdges(hole, raise);
+  next = spacings.Inner.data();
+  holes.VisitInnerEdges(hole, raise);
+  return spacings;
+}
+
+/**
+ * About how many graded points there will be, which does not grow with the distance of lines. As
+ * the spacing grows with the distance from an edge, there are 1 / Growth points at each of its
+ * sides, if it asks for its length; and around a lone point as many as the integral over rings
+ * tells. Far from all of these, the spacing is the largest.
+ */
+double GradedPoints(
+  const EdgeLengths& lengths, const EdgeLengths& spacings, double area, double mean, double largest)
+{
+  constexpr double perSide = 1.0 / Growth;
+  const double reach = Growth * std::sqrt(area) / mean;
+  const double perPoint = 6.3 / (Growth * Growth) * std::log1p(reach);
+  double points = area / largest / largest / RowHeight;
+  points += perSide *
+    std::inner_product(lengths.Boundary.begin(), lengths.Boundary.end(), spacings.Boundary.begin(),
+      0.0, std::plus<double>(), std::divides<double>());
+  for (std::size_t i = 0; i < lengths.Inner.size(); ++i)
+  {
+    const double length = lengths.Inner[i];
+    points += length > 0.0 ? 2.0 * perSide * (length / spacings.Inner[i]) : perPoint;
+  }
+  return points;
 }
 
 /** Whether all known points of a hole are nodes, and the ends of its edges are different ones. */
@@ -907,6 +944,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
 {
   PatchPlan plan;
   const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
+  const EdgeLengths spacings = SpacingsOfEdges(holes, hole, lengths);
   const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
   const double perimeter = std::accumulate(lengths.Boundary.begin(), lengths.Boundary.end(), 0.0);
   if (spacing > 0.0)
@@ -915,9 +953,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   }
   else if (holes.IsRegion(hole))
   {
-    std::vector<double> all = lengths.Boundary;
-    all.insert(all.end(), lengths.Inner.begin(), lengths.Inner.end());
-    plan.Spacing = MeanWithin(holes.LongestEdge, all);
+    plan.Spacing = MeanWithin(holes.LongestEdge, lengths, spacings);
   }
   else
   {
@@ -925,7 +961,7 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   }
   const double length = std::accumulate(lengths.Inner.begin(), lengths.Inner.end(), perimeter);
   plan.MostRows = length / plan.Spacing - edges;
-  plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
+  plan.ExpectedPoints = plan.MostPoints = area / plan.Spacing / plan.Spacing / RowHeight;
   if (spacing > 0.0)
   {
     return plan;
@@ -938,12 +974,12 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
   {
     plan.Kind = Arrangement::Nodes;
     plan.Steps = *lattice;
-    plan.MostPoints = area / lattice->Area();
+    plan.ExpectedPoints = plan.MostPoints = area / lattice->Area();
     return plan;
   }
 
-  plan.Spacings = SpacingsAlong(holes, hole, lengths.Boundary);
-  AddInnerSpacings(holes, hole, lengths.Inner, plan.Spacing, plan.Spacings);
+  plan.Spacings = SpacingsAlong(holes, hole, spacings.Boundary);
+  AddInnerSpacings(holes, hole, spacings.Inner, plan.Spacing, plan.Spacings);
   const auto range = std::minmax_element(plan.Spacings.begin(), plan.Spacings.end());
   if (*range.second > LargestRatioOfSpacings * *range.first)
   {
@@ -951,17 +987,23 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
     constexpr double morePerEdgeWhenGraded = 8.0;
     plan.Kind = Arrangement::Graded;
     plan.MostPoints += morePerEdgeWhenGraded * edges;
+    const double points = GradedPoints(lengths, spacings, area, plan.Spacing, *range.second);
     if (holes.IsRegion(hole))
     {
-      plan.MostPoints = std::min(
-        plan.MostPoints, MostGradedPoints(lengths, area, plan.Spacing, *range.second));
+      plan.MostPoints = std::min(plan.MostPoints, 2.0 * points); // to be safe
     }
+    plan.ExpectedPoints = std::min(plan.MostPoints, points);
   }
   else
   {
     plan.Spacings = std::vector<double>();
   }
   return plan;
+}
+
+double SpacingOfPoints(double area, double points)
+{
+  return std::sqrt(area / RowHeight / points);
 }
 
 Error BordersTouch()

@@ -18,7 +18,9 @@
  *           one shifted by half a step, so that triangles are nearly equilateral. The default
  *           spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
  * In a region, the mean is that of all edges, of the boundary and inside, that are not long: those
- * along the surface's own border may be. (It is the limit where all are.) Long edges count in
+ * along the surface's own border may be. (It is the limit where all are.) In a region of lines, which
+ * has more inner edges than boundary edges, an edge counts as at least a tenth of the gap beside it
+ * (Holes::Gaps): the spacing follows the gap, not the distance of points along lines. Long edges count in
  * Graded, which so makes points sparser towards a long border, and away from lines; the spacing at
  * a point inside is the mean length of the inner edges there. With Nodes, inner edges are not kept
  * as such: those between neighbouring nodes come by themselves, longer ones get a node inside.
@@ -83,6 +85,7 @@ struct PatchPlan
   std::vector<double> Spacings;
   /** An upper bound of the number of new points; above 0, not a whole number. */
   double MostPoints = 0.0;
+  double ExpectedPoints = 0.0; ///< about how many there will be
   double MostRows = 0.0; ///< how many more rows than edges the edges can meet
   Lattice Steps;         ///< for Nodes
   /** The distance between neighbouring numbers at the largest coordinate of the hole. */
@@ -117,6 +120,9 @@ struct PatchPlan
  */
 PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& holes, Index hole,
   double area, double spacing, const Lattice* lattice);
+
+/** The spacing at which so many points, in rows, fill an area. */
+double SpacingOfPoints(double area, double points);
 
 /**
  * A hole with vertices numbered from 0: first those of the boundary, then new ones. Points of the

@@ -61,6 +61,11 @@ struct Holes
   std::vector<Index> InnerEnds;
   std::vector<Index> RegionOf; ///< one a triangle: its region's number as a hole, or None
   double LongestEdge = 0.0;    ///< the length above which edges are long
+  /**
+   * One a vertex: how far regions reach from the edges there that are not long, as the space beside a
+   * line does: the largest height over such an edge of a long triangle; 0 without any.
+   */
+  std::vector<double> Gaps;
 
   Index NumberOfContacts = 0;         ///< vertices that touch a border without sharing a vertex
   std::vector<Index> ContactVertices; ///< the first few of them

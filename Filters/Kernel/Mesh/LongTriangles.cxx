@@ -5,6 +5,7 @@
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -34,6 +35,7 @@ public:
     }
     this->TraceBorders(Part(progress, 0.5, 0.7));
     this->FindRims();
+    this->MeasureGaps();
     this->CollectInnerEdges(Part(progress, 0.7, 1.0));
     return true;
   }
@@ -177,6 +179,30 @@ private:
       }
       holes.Offsets.push_back(static_cast<Index>(holes.Loops.size()));
       holes.Touched.push_back(0);
+    }
+  }
+
+  /** The largest of heights does not depend on the order of triangles. */
+  void MeasureGaps()
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<double>& gaps = this->Result.Gaps;
+    gaps.assign(mesh.NumberOfPoints(), 0.0);
+    for (const Index h : Counted(mesh.NumberOfHalfEdges()))
+    {
+      const Point2& a = mesh.PointOf(mesh.Origin(h));
+      const Point2& b = mesh.PointOf(mesh.Destination(h));
+      if (this->RegionAt(h) == None || !this->Limit.IsShort(a, b))
+      {
+        continue;
+      }
+      const Point2& c = mesh.PointOf(mesh.Apex(h));
+      const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+      const double height = (b.X - a.X) / length * (c.Y - a.Y) - (b.Y - a.Y) / length * (c.X - a.X);
+      for (const Index end : { mesh.Origin(h), mesh.Destination(h) })
+      {
+        gaps[end] = std::max(gaps[end], height);
+      }
     }
   }
 

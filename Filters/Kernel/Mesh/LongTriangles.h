@@ -17,7 +17,8 @@
  * A vertex of a region that is not on its border is a point inside: all of its triangles are long,
  * as those of survey lines far apart. The inner edges of a region keep these points: the edges
  * inside that are not long and end in such a point, as those along a survey line; and an edge from
- * the point to itself where there are none. They are sorted by position.
+ * the point to itself where there are none. They are sorted by position. The gaps tell how far the
+ * next line is.
  *
  * Regions are in the order of their first triangles. Nothing else depends on the order of points
  * and triangles. Lengths are compared as in EdgeLimit.h.

@@ -173,6 +173,7 @@ MeasuredTriangles Measure(const Mesh& mesh, const Progress& progress)
   const double scale =
     largest > LargestUnscaled || largest < LeastUnscaled ? ScaleToOne(largest) : 1.0;
   MeasuredTriangles measured;
+  measured.Scale = scale;
   measured.Coordinates.Reserve(3 * mesh.Points.size());
   for (const Point2& p : mesh.Points)
   {

@@ -80,6 +80,7 @@ struct MeasuredTriangles
   }
 
   TriangleList List;
+  double Scale = 1.0;            ///< of its coordinates, in those of the input
   Buffer<Index> Corners;         ///< owns List's corners, if renumbered
   Buffer<double> Coordinates;    ///< owns List's points
   Buffer<Index> Ids;             ///< one per vertex: its id in the input; empty if not renumbered

@@ -498,12 +498,14 @@ struct BorderOfMesh
  * border of the rest.
  * @param[in]     spacingOf  spacingOf(t): of triangles that are not yet surface
  * @param[in]     near       the corners at the border of the surface found so far
+ * @param[in]     dropSmall  whether to drop small pieces
  * @param[in,out] result     in: a Flag for each triangle; out: Outside or Surface, and the rings
  * @return false if the triangles are a part of a mesh that does not tell which pieces are small
  */
 template <typename SpacingOfTriangle>
 bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
-  SpacingOfTriangle&& spacingOf, IdSet near, const Progress& progress, ExtractedBoundary& result)
+  SpacingOfTriangle&& spacingOf, IdSet near, bool dropSmall, const Progress& progress,
+  ExtractedBoundary& result)
 {
   const TriangleList& list = measured.List;
   std::vector<char>& keep = result.IsSurface;
@@ -558,8 +560,9 @@ bool TraceSurface(const MeasuredTriangles& measured, const BorderOfMesh& border,
     }
     CloseSmallLakes(mesh.Surface, shareOf, keepHere, Part(round, 0.4, 0.48));
     CloseSmallBays(mesh.Surface, shareOf, keepHere, Part(round, 0.48, 0.55));
-    const std::vector<Index> unknown =
-      DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.55, 0.8));
+    const std::vector<Index> unknown = dropSmall
+      ? DropSmallPieces(mesh.Surface, keepHere, Part(round, 0.55, 0.8))
+      : std::vector<Index>();
     if (unknown.empty())
     {
       mesh.PutFlags(keepHere, keep);
@@ -587,6 +590,7 @@ public:
     , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
     , IsAutomatic(!(options.GapTolerance > 0.0))
     , Tolerance(this->IsAutomatic ? DefaultTolerance : options.GapTolerance)
+    , Grid(options.Grid)
     , Border{ this->Measured.Border, IdSet(this->Measured.List.Points.Count), false }
   {
     this->Result.GapTolerance = this->Tolerance;
@@ -626,7 +630,7 @@ public:
       this->Spacings.Resize(list.Points.Count);
     }
     this->KeepCertainTriangles(Part(progress, 0.15, 0.2));
-    const std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.2, 0.32));
+    std::vector<Index> doubtful = this->FindDoubtful(Part(progress, 0.2, 0.32));
     Report(progress, 0.32);
     // How long the next steps take depends on how many are doubtful. Where these are few, no step has
     // so large a share that progress jumps.
@@ -649,14 +653,23 @@ public:
           this->Threads, Part(progress, 0.32, scaled), this->Spacings.data());
       this->Result.GapTolerance *= this->TypicalScale();
     }
+    const std::vector<Index> outside = this->FindOutsideOfGrid(Part(progress, scaled, scaled));
+    const auto middle = doubtful.insert(doubtful.end(), outside.begin(), outside.end());
+    std::inplace_merge(doubtful.begin(), middle, doubtful.end());
+    doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
     if (!this->FindSpacingsOf(doubtful, neighbors, Part(progress, scaled, decided - 0.03)))
     {
       return std::nullopt;
     }
     this->Decide(doubtful, Part(progress, decided - 0.03, decided));
+    for (const Index t : outside)
+    {
+      this->Result.IsSurface[t] = Outside;
+    }
     if (!TraceSurface(
           this->Measured, this->Border, [&](Index t) { return this->ToleranceOf(t); },
-          this->CornersNear(doubtful), Part(progress, decided, 0.97), this->Result))
+          this->CornersNear(doubtful), !this->Grid.IsSet(), Part(progress, decided, 0.97),
+          this->Result))
     {
       return std::nullopt;
     }
@@ -713,6 +726,10 @@ public:
       {
         near.AddAll(list.CornersOf(t));
       }
+    }
+    for (const Index t : this->FindBridges(Part(progress, 0.65, 0.65)))
+    {
+      near.AddAll(list.CornersOf(t)); // the border of the mesh may be in another part
     }
     return this->PartNear(near, margin, states, Part(progress, 0.65, 1.0));
   }
@@ -930,6 +947,91 @@ private:
     return doubtful;
   }
 
+  /** Whether an edge goes more than one step along either axis of the grid. */
+  bool BridgesNodes(const Point2& p, const Point2& q) const
+  {
+    const Point2& u = this->Grid.StepU;
+    const Point2& v = this->Grid.StepV;
+    const double x = (q.X - p.X) / this->Measured.Scale, y = (q.Y - p.Y) / this->Measured.Scale;
+    constexpr double most = 1.5; // the next is two steps
+    const double cell = std::fabs(this->Grid.Area());
+    return std::fabs(x * v.Y - y * v.X) > most * cell || std::fabs(u.X * y - u.Y * x) > most * cell;
+  }
+
+  /** The triangles with an edge that bridges missing nodes of the grid; increasing. */
+  std::vector<Index> FindBridges(const Progress& progress) const
+  {
+    const TriangleList& list = this->Measured.List;
+    std::vector<Index> bridges;
+    ForEachStretch(this->Grid.IsSet() ? list.Count : 0, progress, [&](Index begin, Index end) {
+      for (Index t = begin; t < end; ++t)
+      {
+        const Index* const corners = list.CornersOf(t);
+        const Point2 p = list.Points.At(corners[0]), q = list.Points.At(corners[1]),
+                     r = list.Points.At(corners[2]);
+        if (this->BridgesNodes(p, q) || this->BridgesNodes(q, r) || this->BridgesNodes(r, p))
+        {
+          bridges.push_back(t);
+        }
+      }
+    });
+    return bridges;
+  }
+
+  /** The triangles that are reached from the border of the mesh across such edges; increasing. */
+  std::vector<Index> FindOutsideOfGrid(const Progress& progress) const
+  {
+    std::vector<Index> bridges = this->FindBridges(progress);
+    if (bridges.empty())
+    {
+      return bridges;
+    }
+    const PartialMesh mesh(this->Measured.List, this->Border.Edges, this->Border.Vertices,
+      std::move(bridges), progress, this->Border.IsPart);
+    const Mesh& surface = mesh.Surface;
+    std::vector<char> isOutside(surface.NumberOfTriangles(), 0);
+    std::vector<Index> stack;
+    const auto enter = [&](Index h, Index t) {
+      if (!isOutside[t] &&
+        this->BridgesNodes(
+          surface.PointOf(surface.Origin(h)), surface.PointOf(surface.Destination(h))))
+      {
+        isOutside[t] = 1;
+        stack.push_back(t);
+      }
+    };
+    for (const Index h : Counted(surface.NumberOfHalfEdges()))
+    {
+      if (surface.IsBorder(h))
+      {
+        enter(h, Mesh::Triangle(h));
+      }
+    }
+    while (!stack.empty())
+    {
+      CountWork(1);
+      const Index t = stack.back();
+      stack.pop_back();
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        // A neighbour that is left out is behind a short edge.
+        if (!surface.IsBorder(h) && surface.Twin(h) != h)
+        {
+          enter(h, Mesh::Triangle(surface.Twin(h)));
+        }
+      }
+    }
+    std::vector<Index> outside;
+    for (Index t = 0; t < surface.NumberOfTriangles(); ++t)
+    {
+      if (isOutside[t])
+      {
+        outside.push_back(mesh.Triangles[t]);
+      }
+    }
+    return outside;
+  }
+
   /** The corners of triangles that are not surface, and those at the border. */
   IdSet CornersNear(const std::vector<Index>& triangles) const
   {
@@ -1024,6 +1126,7 @@ private:
   const int Threads;
   const bool IsAutomatic;
   const double Tolerance; ///< at scale 1
+  const Lattice Grid;
   BorderOfMesh Border;
   const Known* States = nullptr;   ///< one per triangle, if they are a part of a mesh
   std::int64_t NumberOfPoints = 0; ///< of that mesh

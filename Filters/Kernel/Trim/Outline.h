@@ -10,6 +10,7 @@
 #ifndef elevation_Trim_Outline_h
 #define elevation_Trim_Outline_h
 
+#include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Mesh/Mesh.h"
 #include "MeasuredTriangles.h"
 
@@ -26,6 +27,8 @@ struct ExtractOptions
    * The largest gap that is still surface, in local spacings; 0: from the data.
    */
   double GapTolerance = 0.0;
+  /** The steps of a grid, some of whose nodes are missing; not set: none. Its origin plays no part. */
+  Lattice Grid;
   /** Threads to use; 0: one per core. The result is the same. */
   int NumberOfThreads = 1;
   Progress Monitor;
@@ -135,6 +138,9 @@ ExtractedBoundary FindOutline(MeasuredTriangles measured, const ExtractOptions& 
  *     at least half of its border. So the outline does not follow each point inwards.
  *   - A piece with 6 vertices or fewer, too few for spacings of their own, is not surface, unless
  *     all pieces are as small.
+ *   - With a Grid, triangles that are reached from the border of the mesh across edges of more than
+ *     one step along either axis (they bridge missing nodes) are not surface, whatever the other
+ *     rules say. Pieces that this separates stay, however small.
  * The result does not depend on the order of points or triangles. Rings are simple, start at their
  * lowest vertex, and are sorted by it.
  * Cost: linear, plus a sort of the rings, plus that of Scales.h. About 20 neighbours are looked at for

@@ -260,6 +260,7 @@ ExtractOptions ExtractionOf(const TrimOptions& options, const Progress& progress
 {
   ExtractOptions extraction;
   extraction.GapTolerance = options.GapTolerance;
+  extraction.Grid = options.Grid;
   extraction.NumberOfThreads = options.NumberOfThreads;
   extraction.Monitor = progress;
   return extraction;

@@ -63,6 +63,7 @@ struct TrimOptions
   bool AreNear = false;
   /** For a boundary that is extracted; 0: from the data. See ExtractOptions. */
   double GapTolerance = 0.0;
+  Lattice Grid; ///< the same
   /** Whether to return the parents of triangles. */
   bool TellParents = true;
   /** Threads to use; 0: one per core. The result is the same. */

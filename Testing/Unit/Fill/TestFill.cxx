@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Fill/Fill.h"
 
+#include "ErrorMessage.h"
 #include "FilledSurface.h"
 #include "LatticeSurface.h"
 
@@ -13,6 +14,7 @@
 #include <limits>
 
 using namespace elevation;
+using testing_errors::MessageFrom;
 using testing_surfaces::Draw;
 using testing_surfaces::ExpectPatchesFit;
 using testing_surfaces::Fill;
@@ -609,5 +611,88 @@ TEST(Fill, ReportsProgressFromZeroToOne)
 TEST(Fill, LeavesRoomFromTheSmallestHoleOn)
 {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(RoomsOfNeeds({ 5.0, none, 3.0, 9.0 }, 9), (std::vector<double>{ 6.0, 0.0, 9.0, 1.0 }));
+  EXPECT_EQ(RoomsOfNeeds({ { 5.0 }, { none }, { 3.0 }, { 9.0 } }, 9),
+    (std::vector<double>{ 6.0, 0.0, 9.0, 1.0 }));
+}
+
+namespace
+{
+/** The error of CheckEffort(). */
+std::string RefusalOf(
+  const std::vector<HoleNeed>& needs, double points, Index most, Index mostInserted = 100000000)
+{
+  FillOptions options;
+  options.MaximumExpectedPoints = most;
+  options.MaximumInsertedPoints = mostInserted;
+  return MessageFrom([&] { CheckEffort(needs, points, options); });
+}
+
+/** The number after some words of a message; 0 without them. */
+double NumberAfter(const std::string& words, const std::string& message)
+{
+  const std::size_t at = message.find(words);
+  return at == std::string::npos ? 0.0 : std::stod(message.substr(at + words.size()));
+}
+} // namespace
+
+TEST(Fill, RefusesMoreThanTenTimesThePointsOfTheInput)
+{
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto needs = [&](double expected) {
+    return std::vector<HoleNeed>{ { 3.0 * expected, 0.5 * expected, 100.0 },
+      { none, 1e9, 1e9 }, // refused, so that it takes nothing
+      { 3.0 * expected, 0.5 * expected, 100.0 } };
+  };
+  EXPECT_EQ(RefusalOf(needs(2e6), 2e5, 0), "no error");
+  const std::string refused = RefusalOf(needs(2.1e6), 2e5, 0);
+  EXPECT_HAS(refused, "about 2100000 points");
+  EXPECT_HAS(refused, "some 1.1 GB");
+  EXPECT_HAS(
+    refused, "MaximumNumberOfExpectedPoints, 2000000 by default for the 200000 of the input");
+  // A million points are no effort, however few there are.
+  EXPECT_EQ(RefusalOf(needs(1e6), 4.0, 0), "no error");
+  EXPECT_NE(RefusalOf(needs(1.1e6), 4.0, 0), "no error");
+  EXPECT_EQ(RefusalOf(needs(500.0), 4.0, 500), "no error");
+  EXPECT_NE(RefusalOf(needs(501.0), 4.0, 500), "no error");
+  // Where no more may be inserted, the largest holes fail instead.
+  EXPECT_EQ(RefusalOf(needs(2.1e6), 2e5, 0, 2000000), "no error");
+}
+
+TEST(Fill, NamesASpacingThatWouldDo)
+{
+  const Mesh mesh = Draw({ "########", "# ##   #", "####   #", "########" });
+  for (const Index most : { 7, 40, 1000, 30000 })
+  {
+    FillOptions options;
+    options.Spacing = 1e-4;
+    options.MaximumExpectedPoints = most;
+    const std::string message = MessageFrom([&] { Fill(mesh, options); });
+    options.Spacing = NumberAfter("A Spacing of ", message);
+    ASSERT_GT(options.Spacing, 0.0) << message;
+    const Outcome run = Fill(mesh, options);
+    EXPECT_LE(run.Patches.NumberOfPoints(), most);
+    EXPECT_GT(run.Patches.NumberOfPoints(), most / 3) << options.Spacing;
+    // It is not much larger than it must be.
+    options.Spacing *= 0.85;
+    EXPECT_NE(MessageFrom([&] { Fill(mesh, options); }), "no error");
+  }
+}
+
+TEST(Fill, ExpectsAboutAsManyPointsAsItInserts)
+{
+  // On nodes, and in rows.
+  const std::vector<std::string> picture{ "##############", "#            #", "#            #",
+    "#            #", "#            #", "#            #", "##############" };
+  const Mesh onNodes = Draw(picture);
+  for (const double spacing : { 0.0, 0.05 })
+  {
+    FillOptions options;
+    options.Spacing = spacing;
+    const Outcome run = Fill(onNodes, options);
+    const std::vector<HoleNeed> needs = NeedsOfHoles(run.Surface, run.Points(), run.Found, options);
+    ASSERT_EQ(needs.size(), 1u);
+    const double expected = needs[0].Expected;
+    EXPECT_GT(expected, 0.8 * run.Patches.NumberOfPoints());
+    EXPECT_LT(expected, 1.5 * run.Patches.NumberOfPoints());
+  }
 }

@@ -189,6 +189,52 @@ TEST(Regions, OfLinesKeepEveryPointAndTrack)
   }
 }
 
+TEST(Regions, BetweenLinesAreFilledByTheGapsNotByThePointsAlongThem)
+{
+  // 100 and 400 times as far apart as their points: the new points are as many as gaps ask for.
+  const Mesh sparse = Delaunay(Lines(5, 6, 400, 100.0, 0.2));
+  const Outcome some = Fill(sparse, FillOptions(), Slope, 1.5);
+  ExpectRegionsFit(some);
+  EXPECT_LT(some.Patches.NumberOfPoints(), 3 * sparse.NumberOfPoints());
+  EXPECT_GT(some.Patches.NumberOfPoints(), 5 * 400 / 4); // no fewer than triangles of half a gap
+  EXPECT_NEAR(some.Patches.Reports[0].Spacing, 10.0, 1.0);
+  const Mesh sparser = Delaunay(Lines(5, 6, 1600, 400.0, 0.2));
+  const Outcome fewer = Fill(sparser, FillOptions(), Slope, 1.5);
+  ExpectRegionsFit(fewer);
+  EXPECT_NEAR(fewer.Patches.Reports[0].Spacing, 40.0, 4.0);
+  // Four times the gaps and four times the length: about as many.
+  EXPECT_LT(fewer.Patches.NumberOfPoints(), 2 * some.Patches.NumberOfPoints());
+}
+
+TEST(Regions, OfLinesCloseTogetherKeepTheSpacingAlongThem)
+{
+  for (const double across : { 3.0, 6.0, 9.0 })
+  {
+    const Mesh mesh = Delaunay(Lines(5, 6, 100, across, 0.2));
+    const Outcome run = Fill(mesh, FillOptions(), Slope, 1.5);
+    EXPECT_NEAR(run.Patches.Reports[0].Spacing, 1.0, 0.05);
+  }
+}
+
+TEST(Regions, OfVoidsKeepTheSpacingOfTheirRim)
+{
+  // A void 60 spacings wide in a cloud: its rim knows what the surface is like there.
+  Random random(9);
+  std::vector<Point2> points;
+  while (points.size() < 10000)
+  {
+    const Point2 p{ 100.0 * random.Unit(), 100.0 * random.Unit() };
+    if (std::hypot(p.X - 50.0, p.Y - 50.0) > 30.0)
+    {
+      points.push_back(p);
+    }
+  }
+  const Outcome run = Fill(Delaunay(points), FillOptions(), Slope, 5.0);
+  ASSERT_EQ(run.Found.NumberOfRegions(), 1);
+  EXPECT_LT(run.Patches.Reports[0].Spacing, 1.5);
+  EXPECT_GT(run.Patches.NumberOfPoints(), 1500);
+}
+
 TEST(Regions, CountPointsInside)
 {
   // Of 5 lines of 40 points those at the border are 2 * 40 + 3 * 2.

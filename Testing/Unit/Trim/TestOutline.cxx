@@ -446,6 +446,152 @@ TEST(ExtractBoundary, FollowsItsRuleToTheLetter)
   EXPECT_GT(numberInBays, 100);
 }
 
+namespace
+{
+/** Which nodes of a masked lattice are missing and joined to its outside by missing ones. */
+std::set<std::pair<int, int>> OutsideNodes(int width, int height, const Mask& mask)
+{
+  std::set<std::pair<int, int>> outside{ { -1, -1 } };
+  std::vector<std::pair<int, int>> stack{ { -1, -1 } };
+  while (!stack.empty())
+  {
+    const auto [x, y] = stack.back();
+    stack.pop_back();
+    for (const auto& [i, j] :
+      { std::pair<int, int>{ x - 1, y }, { x + 1, y }, { x, y - 1 }, { x, y + 1 } })
+    {
+      const bool isFrame = i < 0 || j < 0 || i >= width || j >= height;
+      if (i >= -1 && j >= -1 && i <= width && j <= height && (isFrame || !mask(i, j)) &&
+        outside.insert({ i, j }).second)
+      {
+        stack.emplace_back(i, j);
+      }
+    }
+  }
+  return outside;
+}
+
+/** Whether a triangle, or its border, has a place. */
+bool Covers(const Mesh& mesh, Index t, const Point2& place)
+{
+  return Orientation(mesh.PointOf(mesh.Origin(3 * t)), mesh.PointOf(mesh.Origin(3 * t + 1)),
+           place) != Negative &&
+    Orientation(mesh.PointOf(mesh.Origin(3 * t + 1)), mesh.PointOf(mesh.Origin(3 * t + 2)),
+      place) != Negative &&
+    Orientation(mesh.PointOf(mesh.Origin(3 * t + 2)), mesh.PointOf(mesh.Origin(3 * t)), place) !=
+    Negative;
+}
+
+Lattice Steps(const Point2& u, const Point2& v)
+{
+  Lattice steps;
+  steps.StepU = u;
+  steps.StepV = v;
+  return steps;
+}
+} // namespace
+
+TEST(ExtractBoundary, OnAGridLeavesOutWhatIsMissingAtTheOutsideHoweverNarrow)
+{
+  Random random(17);
+  int bays = 0, voids = 0;
+  for (int round = 0; round < 40; ++round)
+  {
+    SCOPED_TRACE(round);
+    const int width = 8 + random.Below(30), height = 8 + random.Below(30);
+    std::set<std::pair<int, int>> missing;
+    for (int i = random.Below(12); i >= 0; --i)
+    {
+      // A worm of missing nodes, one or more wide.
+      int x = random.Below(width), y = random.Below(height);
+      for (int k = random.Below(20), wide = 1 + random.Below(2); k >= 0; --k)
+      {
+        missing.insert({ x, y });
+        missing.insert({ x + wide - 1, y });
+        (random.Below(2) ? x : y) += random.Below(2) ? 1 : -1;
+      }
+    }
+    const Mask mask = [&](double x, double y) {
+      return missing.count({ static_cast<int>(x), static_cast<int>(y) }) == 0;
+    };
+    const std::set<std::pair<int, int>> outside = OutsideNodes(width, height, mask);
+    // Cells may be long, and turned.
+    const double along = 1.0 + round % 4;
+    const Point2 u = round % 3 == 0 ? Point2{ 5.0, 0.0 } : Point2{ 3.0, 4.0 };
+    const Point2 v{ -along * u.Y, along * u.X };
+    const auto place = [&](int x, int y) { return Point2{ x * u.X + y * v.X, x * u.Y + y * v.Y }; };
+    std::vector<Point2> points;
+    std::vector<std::pair<int, int>> nodes;
+    for (int y = 0; y < height; ++y)
+    {
+      for (int x = 0; x < width; ++x)
+      {
+        if (mask(x, y))
+        {
+          points.push_back(place(x, y));
+          nodes.emplace_back(x, y);
+        }
+      }
+    }
+    const Mesh mesh = Delaunay(points);
+    ExtractOptions options;
+    const ExtractedBoundary without = ExtractBoundary(mesh, options);
+    options.Grid = Steps(u, v);
+    const ExtractedBoundary found = ExtractBoundary(mesh, options);
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      int low[2] = { width, height }, high[2] = { 0, 0 };
+      for (Index h = 3 * t; h < 3 * t + 3; ++h)
+      {
+        const auto& [x, y] = nodes[mesh.Origin(h)];
+        low[0] = std::min(low[0], x), high[0] = std::max(high[0], x);
+        low[1] = std::min(low[1], y), high[1] = std::max(high[1], y);
+      }
+      if (high[0] - low[0] <= 1 && high[1] - low[1] <= 1)
+      {
+        EXPECT_TRUE(found.IsSurface[t]) << "a triangle of a cell";
+        continue;
+      }
+      bool hasOutside = false, hasVoid = false;
+      for (int y = low[1]; y <= high[1]; ++y)
+      {
+        for (int x = low[0]; x <= high[0]; ++x)
+        {
+          if (!mask(x, y) && Covers(mesh, t, place(x, y)))
+          {
+            (outside.count({ x, y }) ? hasOutside : hasVoid) = true;
+          }
+        }
+      }
+      EXPECT_FALSE(hasOutside && hasVoid);
+      bays += hasOutside && without.IsSurface[t];
+      voids += hasVoid;
+      EXPECT_FALSE(hasOutside && found.IsSurface[t]);
+      EXPECT_TRUE(!hasVoid || found.IsSurface[t] || !without.IsSurface[t]);
+    }
+  }
+  EXPECT_GT(bays, 500);
+  EXPECT_GT(voids, 500);
+}
+
+TEST(ExtractBoundary, OnAGridTakesCoordinatesOfAnySize)
+{
+  // A bay one node wide, three deep.
+  const Mask mask = [](double x, double y) { return x != 4.0 || y > 3.0; };
+  for (const double scale : { 1.0, 1e20, 1e-20 })
+  {
+    std::vector<Point2> points = MaskedLattice(10, 10, mask);
+    for (Point2& p : points)
+    {
+      p = { scale * p.X, scale * p.Y };
+    }
+    ExtractOptions options;
+    options.Grid = Steps({ scale, 0.0 }, { 0.0, scale });
+    const ExtractedBoundary found = ExtractBoundary(Delaunay(points), options);
+    EXPECT_EQ(std::count(found.IsSurface.begin(), found.IsSurface.end(), char(0)), 7) << scale;
+  }
+}
+
 TEST(ExtractBoundary, IsTheSameForAnyNumberOfThreads)
 {
   std::mt19937_64 random(71);

@@ -103,7 +103,7 @@ struct Joined
 
 /** What is taken of all parts. */
 Joined Join(const Surface& surface, const std::vector<std::vector<Index>>& parts, double tolerance,
-  int margin = 4)
+  int margin = 4, const Lattice& grid = Lattice())
 {
   Joined joined;
   joined.Spacings.assign(surface.Coordinates.size() / 3, std::nan(""));
@@ -112,6 +112,7 @@ Joined Join(const Surface& surface, const std::vector<std::vector<Index>>& parts
   std::set<Index> atBorders;
   ExtractOptions options;
   options.GapTolerance = tolerance;
+  options.Grid = grid;
   for (const std::vector<Index>& triangles : parts)
   {
     Surface own;
@@ -161,15 +162,23 @@ Joined Join(const Surface& surface, const std::vector<std::vector<Index>>& parts
 TEST(OutlineOfParts, IsThatOfTheWhole)
 {
   Random random(41);
-  int found = 0, smaller = 0;
+  int found = 0, smaller = 0, ofGrids = 0;
   for (int round = 0; round < 60; ++round)
   {
     const int count = 100 + 200 * round % 15000;
     const Surface surface = SurfaceOf(Delaunay(Torn(random, Cloud(random, round % 4, count))));
     TrimOptions options;
     options.GapTolerance = round % 5 == 0 ? 3.0 : 0.0;
+    if (round % 4 == 1)
+    {
+      const double step = 1.0 / static_cast<int>(std::sqrt(count));
+      options.Grid.StepU = { step, 0.0 };
+      options.Grid.StepV = { 0.0, step };
+      ofGrids += 1;
+    }
     const TriangleList list = surface.List();
-    Joined parts = Join(surface, Split(random, surface, round % 7 % 3), options.GapTolerance);
+    Joined parts =
+      Join(surface, Split(random, surface, round % 7 % 3), options.GapTolerance, 4, options.Grid);
     const std::int64_t triangles = list.Count;
     if (!parts.IsProven)
     {
@@ -203,6 +212,7 @@ TEST(OutlineOfParts, IsThatOfTheWhole)
   }
   EXPECT_GE(found, 45);
   EXPECT_GE(smaller, 8);
+  EXPECT_GE(ofGrids, 10);
   std::cout << found << " found, of " << smaller << " less than two thirds of the triangles\n";
 }
 
