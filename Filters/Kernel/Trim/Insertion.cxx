@@ -20,6 +20,16 @@ namespace elevation
 namespace
 {
 
+/** The order of edges by the places of their ends. */
+bool IsLowerEdge(const Mesh& mesh, Index h, Index k)
+{
+  const auto segmentOf = [&](Index half) {
+    const Index a = mesh.Origin(half), b = mesh.Destination(half);
+    return IsLower(mesh.PointOf(b), mesh.PointOf(a)) ? Segment{ b, a } : Segment{ a, b };
+  };
+  return IsLower(mesh, segmentOf(h), segmentOf(k));
+}
+
 class Insertion
 {
 public:
@@ -250,50 +260,29 @@ private:
 
   void InsertLocated(const Progress& progress)
   {
-    // In an order that depends only on the places, and is random within a triangle: each cut then
-    // divides the points that wait there about evenly.
+    // In an order that depends only on the places, not on the numbers of triangles, and is random:
+    // each cut then divides the points that wait in a triangle about evenly.
     std::sort(this->Located.begin(), this->Located.end(), [&](const Place& a, const Place& b) {
       const Point2& p = this->Points[a.Point];
       const Point2& q = this->Points[b.Point];
       const std::uint64_t mixedP = HashOfPoint()(p);
       const std::uint64_t mixedQ = HashOfPoint()(q);
-      return std::tie(a.Triangle, mixedP, p.X, p.Y) < std::tie(b.Triangle, mixedQ, q.X, q.Y);
+      return std::tie(mixedP, p.X, p.Y) < std::tie(mixedQ, q.X, q.Y);
     });
     // Weights in the triangles before they are cut.
-    std::unordered_map<Index, InsertedVertex> weights;
-    std::vector<Index> work;
+    std::vector<InsertedVertex> weights;
     for (const Place& place : this->Located)
     {
-      weights[place.Point] = this->Cutter.WeightsIn(place.Triangle, this->Points[place.Point]);
-      std::vector<Index>& waiting = this->Waiting[place.Triangle];
-      if (waiting.empty())
-      {
-        work.push_back(place.Triangle);
-      }
-      waiting.push_back(place.Point);
+      weights.push_back(this->Cutter.WeightsIn(place.Triangle, this->Points[place.Point]));
+      this->Waiting[place.Triangle].push_back(static_cast<Index>(weights.size()) - 1);
     }
-    std::reverse(work.begin(), work.end());
-    std::size_t done = 0;
-    while (!work.empty())
+    for (std::size_t i = 0; i < this->Located.size(); ++i)
     {
-      const Index t = work.back();
-      const auto found = this->Waiting.find(t);
-      if (found == this->Waiting.end() || found->second.empty())
-      {
-        work.pop_back();
-        continue;
-      }
-      ReportStep(progress, done++, this->Located.size(), 1024);
-      const Index point = found->second.front();
-      const Point2& p = this->Points[point];
-      const Index vertex = this->Cutter.AddVertex(p, weights.at(point));
+      ReportStep(progress, i, this->Located.size(), 1024);
+      const Point2& p = this->Points[this->Located[i].Point];
+      const Index vertex = this->Cutter.AddVertex(p, weights[i]);
       this->VertexAt.at(p) = vertex;
-      const std::vector<Index> parts = this->CutAt(t, vertex);
-      this->Redistribute(point, parts);
-      for (const Index part : parts) // g++ 14 warns of an overflow where they are inserted at once
-      {
-        work.push_back(part);
-      }
+      this->Redistribute(static_cast<Index>(i), this->CutAt(this->Located[i].Triangle, vertex));
     }
   }
 
@@ -303,17 +292,20 @@ private:
     const Mesh& mesh = this->Surface;
     const Point2 p = mesh.PointOf(vertex);
     Index on = None; // the edge that the point is on
+    Index inReach = None;
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
       const Point2 &a = mesh.PointOf(mesh.Origin(h)), &b = mesh.PointOf(mesh.Destination(h));
+      on = Orientation(a, b, p) == Zero ? h : on;
       // What follows the surface could not be split in the needle beside an edge in reach.
-      const bool isInReach = this->Follow != Following::None && on == None && !mesh.IsBorder(h) &&
-        IsInReach(a, b, UnitsOf(a, b), Reach, p) && this->Cutter.CanCut(h, p);
-      if (isInReach || Orientation(a, b, p) == Zero)
+      if (this->Follow != Following::None && !mesh.IsBorder(h) &&
+        IsInReach(a, b, UnitsOf(a, b), Reach, p) && this->Cutter.CanCut(h, p) &&
+        (inReach == None || IsLowerEdge(mesh, h, inReach)))
       {
-        on = h;
+        inReach = h;
       }
     }
+    on = on == None ? inReach : on;
     std::vector<Index> parts{ t };
     Index next = mesh.NumberOfTriangles();
     if (on == None)
@@ -335,7 +327,7 @@ private:
     return parts;
   }
 
-  /** After a cut, hands the points that wait in the parts to those that contain them. */
+  /** After a cut at a located point, hands the points that wait in the parts to those that hold them. */
   void Redistribute(Index done, const std::vector<Index>& parts)
   {
     std::vector<Index> moving;
@@ -346,13 +338,14 @@ private:
       waiting.clear();
     }
     CountWork(1 + moving.size());
-    for (const Index point : moving)
+    for (const Index i : moving)
     {
-      if (point != done)
+      if (i != done)
       {
-        const Index part = *std::find_if(parts.begin(), parts.end(),
-          [&](Index candidate) { return this->Cutter.Holds(candidate, this->Points[point]); });
-        this->Waiting[part].push_back(point);
+        Place& place = this->Located[i];
+        place.Triangle = *std::find_if(parts.begin(), parts.end(),
+          [&](Index part) { return this->Cutter.Holds(part, this->Points[place.Point]); });
+        this->Waiting[place.Triangle].push_back(i);
       }
     }
   }
@@ -868,7 +861,7 @@ private:
   MeshCutter Cutter;
   std::unordered_map<Point2, Index, HashOfPoint> VertexAt;
   std::vector<Place> Located;
-  std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: points to insert
+  std::unordered_map<Index, std::vector<Index>> Waiting; ///< by triangle: indices in Located
   std::vector<Point2> OutsidePoints;
   std::vector<Piece> Pieces; ///< along each ring
   std::vector<Stop> Stops;

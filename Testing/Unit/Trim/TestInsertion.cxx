@@ -25,6 +25,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 using namespace elevation;
@@ -1292,9 +1293,14 @@ TEST(InsertRings, InterpolatesAlikeAtAnyScale)
     };
     Mesh mesh = before;
     mesh.Points = scaled(mesh.Points);
-    const std::vector<InsertedVertex> inserted =
+    std::vector<InsertedVertex> inserted =
       InsertRings(mesh, scaled(boundary.Points), boundary.Lines, true).Inserted;
     ASSERT_EQ(inserted.size(), 5u);
+    std::sort(
+      inserted.begin(), inserted.end(), [](const InsertedVertex& a, const InsertedVertex& b) {
+        return std::make_tuple(a.Corners[0], a.Corners[1], a.Corners[2], a.Weights[0]) <
+          std::make_tuple(b.Corners[0], b.Corners[1], b.Corners[2], b.Weights[0]);
+      });
     expected = expected.empty() ? inserted : expected;
     for (std::size_t i = 0; i < inserted.size(); ++i)
     {
@@ -1643,4 +1649,68 @@ TEST(InsertRings, RecoversWhereTrianglesAreTooThinToBeSplit)
     kept += trimmed.IsOutward[t] ? 0.0 : 0.5 * testing_surfaces::TwiceArea(mesh, t);
   }
   EXPECT_NEAR(kept, 20.0, 1e-6);
+}
+
+TEST(InsertRings, DoesNotDependOnTheOrderOfTriangles)
+{
+  // Corners of rings on edges and in the triangles beside them: whichever comes first cuts differently.
+  Random random(38);
+  for (int round = 0; round < 200; ++round)
+  {
+    const int size = 6;
+    const Mesh first = LatticeMesh(size);
+    Boundary boundary;
+    std::vector<Point2> ring = Star(random, { 2.5, 2.5 }, 0.4, 2.2, 16, false);
+    for (Point2& p : ring)
+    {
+      const int kind = random.Below(3); // on an edge along x or y, or anywhere
+      p = { kind == 0 ? std::round(p.X) : p.X, kind == 1 ? std::round(p.Y) : p.Y };
+    }
+    boundary.Add(ring);
+    std::set<std::array<std::pair<double, double>, 3>> expected;
+    for (int order = 0; order < 3; ++order)
+    {
+      std::vector<std::array<Index, 3>> triangles;
+      for (Index t = 0; t < first.NumberOfTriangles(); ++t)
+      {
+        const Index* const of = &first.Triangles[3 * t];
+        const int turn = order == 0 ? 0 : random.Below(3);
+        triangles.push_back({ { of[turn], of[(turn + 1) % 3], of[(turn + 2) % 3] } });
+      }
+      if (order > 0)
+      {
+        random.Shuffle(triangles);
+      }
+      std::vector<Index> corners;
+      for (const std::array<Index, 3>& t : triangles)
+      {
+        corners.insert(corners.end(), t.begin(), t.end());
+      }
+      Mesh mesh = MeshOf(first.Points, corners);
+      try
+      {
+        InsertRings(mesh, boundary.Points, boundary.Lines, true, Progress(),
+          round % 2 ? Following::Rings : Following::None);
+      }
+      catch (const Error& error)
+      {
+        EXPECT_HAS(std::string(error.what()), "crosses its edge"); // after snapping
+        break;
+      }
+      std::set<std::array<std::pair<double, double>, 3>> found;
+      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+      {
+        std::array<std::pair<double, double>, 3> places;
+        for (int k = 0; k < 3; ++k)
+        {
+          const Point2& p = mesh.PointOf(mesh.Origin(3 * t + k));
+          places[k] = { p.X, p.Y };
+        }
+        std::sort(places.begin(), places.end());
+        found.insert(places);
+      }
+      expected = order == 0 ? found : expected;
+      ASSERT_EQ(found, expected) << round;
+    }
+  }
 }
