@@ -109,9 +109,9 @@ def close_gaps(names, parts, name, strict):
 
 def gap_in_words(one, two, gap, place, length):
     """What is open, between lines of these names, by how much and where."""
-    words = (
-        f"{one} is not closed: its ends are" if one == two else f"{one} and {two} do not meet: they are"
-    )
+    words = f"{one} is not closed: its ends are"
+    if one != two:
+        words = f"{one} and {two} do not meet: they are"
     return (
         f"{words} {in_words(gap)} apart at {at(place)}, which is {100 * gap / length:.3g} % of the "
         f"ring's length {in_words(length)}"
