@@ -82,22 +82,15 @@ def close_gaps(names, parts, name, strict):
     pairs = [sorted(pair, key=first_end.__getitem__) for pair in odd[nearest_pairs(places[odd])]]
     pairs = numpy.array(sorted(pairs, key=lambda pair: first_end[pair[0]]))
     lengths = lengths_of_rings(parts, lines, of_end.reshape(-1, 2), pairs, places)
-    notes, widest = [], 0.0
-    for p, q in pairs:
-        gap, end, other = abs(places[p] - places[q]), first_end[p], first_end[q]
+    gaps = [abs(places[p] - places[q]) for p, q in pairs]
+    if any(g > GAP * lengths[p] and counts[[p, q]].max() > 1 for g, (p, q) in zip(gaps, pairs)):
+        return []  # lines that meet in threes: the filter says where
+    notes = []
+    for gap, (p, q) in zip(gaps, pairs):
+        end, other = first_end[p], first_end[q]
         one, two = names[lines[end // 2]], names[lines[other // 2]]
-        share = gap / lengths[p]
-        words = f"{name}: " + (
-            f"{one} is not closed: its ends are {in_words(gap)} apart"
-            if one == two
-            else f"{one} and {two} do not meet: they are {in_words(gap)} apart"
-        ) + (
-            f" at {at(places[p])}, which is {100 * share:.3g} % of the ring's length "
-            f"{in_words(lengths[p])}"
-        )
-        if share > GAP and max(counts[p], counts[q]) > 1:
-            return []  # lines that meet in threes: the filter says where
-        if share > GAP:
+        words = f"{name}: {gap_in_words(one, two, gap, places[p], lengths[p])}"
+        if gap > GAP * lengths[p]:
             raise refused(f"{words}; gaps of up to {100 * GAP:g} % are closed", False)
         if strict:
             raise refused(words, True)
@@ -111,8 +104,18 @@ def close_gaps(names, parts, name, strict):
             parts.append(numpy.array([parts[lines[e // 2]][-(e % 2)] for e in (end, other)]))
             names.append(one)
             notes.append(f"{words}: closed by a straight edge")
-        widest = max(widest, gap)
-    return first_ones(notes, f"{name}: gaps of up to {in_words(widest)}")
+    return first_ones(notes, f"{name}: gaps of up to {in_words(max(gaps))}")
+
+
+def gap_in_words(one, two, gap, place, length):
+    """What is open, between lines of these names, by how much and where."""
+    words = f"{one} is not closed: its ends are"
+    if one != two:
+        words = f"{one} and {two} do not meet: they are"
+    return (
+        f"{words} {in_words(gap)} apart at {at(place)}, which is {100 * gap / length:.3g} % of the "
+        f"ring's length {in_words(length)}"
+    )
 
 
 def edge_at(part, is_last):
