@@ -39,8 +39,10 @@ class WordReader:
 
     def add(self, words):
         known = self.known
-        codes = [known.setdefault(word, len(known)) for word in words]
-        self.parts.append(numpy.array(codes, dtype="i4"))
+        for word in dict.fromkeys(words):
+            known.setdefault(word, len(known))
+        codes = map(known.__getitem__, words)
+        self.parts.append(numpy.fromiter(codes, "i4", len(words)))
 
     def take(self):
         """Words since the last call."""
@@ -51,7 +53,7 @@ class WordReader:
 def words_of(values):
     """Words of a list of words, or of None where there is none."""
     reader = WordReader()
-    reader.add("" if value is None else str(value) for value in values)
+    reader.add(["" if value is None else str(value) for value in values])
     return reader.take()
 
 
