@@ -594,6 +594,17 @@ class Meshes(InFolder):
                 cloud = reading.read(bad, points_only=True)
                 self.assertEqual(cloud.points.GetNumberOfPoints(), len(FOLD[0]))
 
+    def test_objects_of_gocad_are_looked_at_one_by_one(self):
+        texts = []
+        for name, case in (("Fold", FOLD), ("Flat", FLAT)):
+            with open(self.written(name + ".ts", case), encoding="utf-8") as stream:
+                texts.append(stream.read())
+        self.assert_refused("a.ts, Fold: is no elevation surface: of 1,682 faces", "".join(texts), "a.ts")
+        for options in ({"where": "name=Flat"}, {"layer": "Flat"}):
+            cloud = self.read("".join(texts), "a.ts", **options)
+            self.assertEqual(cloud.points.GetNumberOfPoints(), len(FLAT[0]))
+        self.assert_refused("a.ts, Fold: is no", "".join(texts), "a.ts", layer="Fold")
+
     def test_texts_of_large_coordinates_are_looked_at_as_they_are(self):
         points, triangles = FLAT
         x, y, z = 0.05 * points.T  # a float in the north is in steps of 0.5
