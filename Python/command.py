@@ -80,7 +80,8 @@ class Run:
         return [reading.read_whole(path, wanted) for path in self.options.files]
 
     def values(self):
-        """The name of the column of --each-value and its values, on all ranks. What is read is kept."""
+        """The name of the column of --each-value and its values, on all ranks. What is read is
+        kept."""
         options = self.options
 
         def find():
@@ -298,15 +299,15 @@ def run_each_value(options, ranks):
         for value, output in zip(values, outputs):
             if outputs.count(output) > 1:
                 raise WrongOption(
-                    f"{options.file}: --each-value would write {output} twice; '{value}' is one of the "
-                    "values: take them one by one, by --where, with names by --output"
+                    f"{options.file}: --each-value would write {output} twice; '{value}' is one of "
+                    "the values: take them one by one, by --where, with names by --output"
                 )
 
     return attempt(options, ranks, work) or max(run_one(one, ranks) for one in runs)
 
 
 def attempt(options, ranks, work):
-    """Calls work(a Run). The exit code, the same on all ranks; the first says why, where it fails."""
+    """Calls work(a Run). The exit code, the same on all ranks; the first says why it fails."""
     allow_stops()  # those that were held back while results of the run before appeared
     results = Results()
     run = Run(options, results, ranks)

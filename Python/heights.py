@@ -2,19 +2,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Several heights at one place: how many, how far apart, and whether a column tells them apart.
 
-An elevation surface has one height at a place. Of several, vtkGridDelaunay2D takes one and counts the
-others. That is right for a few, and wrong for two horizons in one table. The second is refused, unless
-the user says which height to take.
+An elevation surface has one height at a place. Of several, vtkGridDelaunay2D takes one and counts
+the others. That is right for a few, and wrong for two horizons in one table. The second is refused,
+unless the user says which height to take.
 
-Heights are clearly apart where they differ by more than CLEAR_OF_RANGE of the range that holds 98 % of
-all z, and by more than CLEAR_STEPS times the step that is usual from one place to the next, for each
-height that the place has, up to MOST_STEPS times: noise and slopes make both about the same, and the
-more heights, the farther apart noise makes the outer ones. They are many at more than MANY of the places.
+Heights are clearly apart where they differ by more than CLEAR_OF_RANGE of the range that holds 98 %
+of all z, and by more than CLEAR_STEPS times the step that is usual from one place to the next, for
+each height that the place has, up to MOST_STEPS times: noise and slopes make both about the same,
+and the more heights, the farther apart noise makes the outer ones. They are many at more than MANY
+of the places.
 
-A column tells heights apart where, at almost all places, each of its values has one height, and values
-come again from place to place. Its values are surfaces where, of two that share places, one is almost always above the other: so the lines of a
-survey that cross are none. Then the second condition of clearly apart is not asked for, and of text, which
-names things, MANY_BY_NAME of the places is enough.
+A column tells heights apart where, at almost all places, each of its values has one height, and
+values come again from place to place. Its values are surfaces where, of two that share places, one
+is almost always above the other: so the lines of a survey that cross are none. Then the second
+condition of clearly apart is not asked for, and of text, which names things, MANY_BY_NAME of the
+places is enough.
 """
 
 import dataclasses
@@ -69,8 +71,8 @@ def shared_places(xyz):
     """(ids of the points that share x,y with others, by place and z; where places begin; how many
     distinct places there are). xyz: (n, 3), finite.
 
-    A number is made of x and y that is the same for equal ones. What has it alone shares no place, so
-    that almost always one sort of these numbers is all the work: a second for six million points.
+    A number is made of x and y that is the same for equal ones. What has it alone shares no place,
+    so that almost always one sort of these numbers is all the work: a second for 6 million points.
     """
     x, y, z = (numpy.ascontiguousarray(xyz[:, i], dtype="f8") + 0.0 for i in range(3))
     key = x.view("u8") * MIXER
@@ -108,9 +110,9 @@ def several_heights(xyz):
 
 
 def usual_step(xyz, several):
-    """The usual difference of z between places beside each other: those in one cell of a grid of some two
-    places a cell. Of several heights at a place the lowest count, or the highest, whichever gives less:
-    the ends of wells are uneven, the ground is not."""
+    """The usual difference of z between places beside each other: those in one cell of a grid of
+    some two places a cell. Of several heights at a place the lowest count, or the highest, whichever
+    gives less: the ends of wells are uneven, the ground is not."""
     ends = several.starts + several.lengths() - 1
     return min(step_between(xyz, several, ends_of) for ends_of in (several.starts, ends))
 
@@ -181,8 +183,8 @@ class Column:
 
 
 def telling_column(cloud, several, z):
-    """(name, column, Column) that tells the heights apart best, or None. The name of the files that are
-    merged is None."""
+    """(name, column, Column) that tells the heights apart best, or None. The name of the files that
+    are merged is None."""
     columns = dict(columns_in(cloud))
     if cloud.files is not None:
         columns[None] = cloud.files
@@ -192,8 +194,8 @@ def telling_column(cloud, several, z):
 
 
 def check_heights(cloud, policy=None):
-    """(note, facts for the report) on places of a Cloud with several heights; (None, None) where there
-    are none.
+    """(note, facts for the report) on places of a Cloud with several heights; (None, None) where
+    there are none.
 
     policy  the number of the user's choice among DUPLICATES, or None: then ElevationSurfaceError is
             raised where heights are those of several surfaces
@@ -217,8 +219,8 @@ def note_on(count, largest, policy):
     """What is told of so many places with several heights."""
     taken = DUPLICATES[policy or 0].split("-")[1]
     return (
-        f"{counted(count, 'place has', 'places have')} several heights, up to {largest:.7g} apart: the "
-        f"{taken} is taken (see --duplicates)"
+        f"{counted(count, 'place has', 'places have')} several heights, up to {largest:.7g} apart: "
+        f"the {taken} is taken (see --duplicates)"
     )
 
 
@@ -252,8 +254,8 @@ def least_span(xyz, several):
 
 def in_numbers(count, places, largest):
     return (
-        f"{count:,} of {counted(places, 'place')} have several heights, up to {largest:.7g} apart, so "
-        "this is no one surface"
+        f"{count:,} of {counted(places, 'place')} have several heights, up to {largest:.7g} apart, "
+        "so this is no one surface"
     )
 
 
@@ -273,14 +275,14 @@ def way_out(told):
     value = coded(column)[1][0]
     called = name if name.startswith("column ") else f"column {name}"
     return (
-        f"{called} tells them apart: {shown_values(column)}; --each-value {shlex.quote(name)} makes "
-        f"a surface of each value, {as_option(name, value)} one of this; {POLICIES}"
+        f"{called} tells them apart: {shown_values(column)}; --each-value {shlex.quote(name)} "
+        f"makes a surface of each value, {as_option(name, value)} one of this; {POLICIES}"
     )
 
 
 class HeightsOfPieces:
-    """Places with several heights of a surface that is made piece by piece, without columns. A place is
-    in one piece, with all its points."""
+    """Places with several heights of a surface that is made piece by piece, without columns. A
+    place is in one piece, with all its points."""
 
     def __init__(self):
         self.count = self.clear = 0
@@ -303,14 +305,15 @@ class HeightsOfPieces:
         self.clear += int(numpy.count_nonzero(clear))
 
     def check(self, places, policy):
-        """As check_heights(), once all pieces are known; places: how many distinct ones there are."""
+        """As check_heights(), once all pieces are known; places: how many distinct ones there are.
+        """
         if not self.count:
             return None, None
         if policy is None and are_many(self.clear, places):
+            one = as_option("COLUMN", "VALUE")
             raise ElevationSurfaceError(
-                f"{in_numbers(self.count, places, self.largest)}; a run in pieces looks at no columns: "
-                f"if one tells the heights apart, {as_option('COLUMN', 'VALUE')} takes those of one value; "
-                f"{POLICIES}"
+                f"{in_numbers(self.count, places, self.largest)}; a run in pieces looks at no "
+                f"columns: if one tells the heights apart, {one} takes those of one value; {POLICIES}"
             )
         facts = {"places": self.count, "of": places, "largest": self.largest}
         return note_on(self.count, self.largest, policy), facts

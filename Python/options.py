@@ -199,13 +199,13 @@ def parse_arguments(arguments):
     names = [getattr(options, one.name) for one in OUTPUTS]
     for each, of in (("each", "file"), ("each_value", "value")):
         if getattr(options, each) and (any(names) or options.picture or options.report):
-            each = option_of(each)
-            parser.error(f"{each} names the results of each {of} itself: leave out the names of results")
+            parser.error(
+                f"{option_of(each)} names the results of each {of} itself: "
+                "leave out the names of results"
+            )
     if options.each_value and options.in_pieces:
-        parser.error(
-            f"--each-value needs all points in memory: in pieces, {as_option('COLUMN', 'VALUE')} takes one "
-            "value"
-        )
+        one = as_option("COLUMN", "VALUE")
+        parser.error(f"--each-value needs all points in memory: in pieces, {one} takes one value")
     return options
 
 

@@ -55,7 +55,8 @@ def as_cloud(points: Points) -> Cloud:
 
 
 def cloud_of_mesh(points):
-    """The points of a vtkPointSet. Raises ElevationSurfaceError for faces of no elevation surface."""
+    """The points of a vtkPointSet. Raises ElevationSurfaceError for faces of no elevation surface.
+    """
     faces = faces_of(points)
     try:
         return Cloud(points, notes_on_faces(faces) if faces else ())
@@ -125,8 +126,8 @@ class Reconstruction:
               them is trimmed; else None
     cloud     the points and what their reader found out
     triangles {"delaunay": count, "trimmed": count, "filled": count} after each step
-    several   {"places", "of", "largest"}: how many of all places have several heights, and the largest
-              difference; None where none has
+    several   {"places", "of", "largest"}: how many of all places have several heights, and the
+              largest difference; None where none has
     reasons   (n,) numbers: 0 for points in triangles of the triangulation, or why they are in none,
               as vtkGridDelaunay2D counts reasons; IN_NO_TRIANGLE where it has none
     lattice   that of the triangulation, see lattice_of(), or None
@@ -330,9 +331,9 @@ def reconstruct(
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made; where places have the heights of several surfaces, unless duplicates says which to
-    take; and where faces of a mesh are those of no elevation surface. Raises TypeError for unknown properties, ValueError for values that a property does not
-    take. What a filter warns of is an ElevationSurfaceWarning and in the notes. Takes about a second
-    for a million points.
+    take; and where faces of a mesh are those of no elevation surface. Raises TypeError for
+    unknown properties, ValueError for values that a property does not take. What a filter warns of
+    is an ElevationSurfaceWarning and in the notes. Takes about a second for a million points.
     """
     given = checked(properties)
     cloud = as_cloud(points)

@@ -39,8 +39,10 @@ class WordReader:
 
     def add(self, words):
         known = self.known
-        codes = [known.setdefault(word, len(known)) for word in words]
-        self.parts.append(numpy.array(codes, dtype="i4"))
+        for word in dict.fromkeys(words):
+            known.setdefault(word, len(known))
+        codes = map(known.__getitem__, words)
+        self.parts.append(numpy.fromiter(codes, "i4", len(words)))
 
     def take(self):
         """Words since the last call."""
@@ -51,7 +53,7 @@ class WordReader:
 def words_of(values):
     """Words of a list of words, or of None where there is none."""
     reader = WordReader()
-    reader.add("" if value is None else str(value) for value in values)
+    reader.add(["" if value is None else str(value) for value in values])
     return reader.take()
 
 
@@ -85,9 +87,9 @@ def columns_in(cloud):
 
 
 def conditions_of(where):
-    """[(column, value)] of "COLUMN=VALUE", of a list of such, or of {column: value or list of these}.
+    """[(column, value)] of "COLUMN=VALUE", of a list of such, or of {column: value or values}.
 
-    Values are text. Raises ValueError.
+    Values become text. Raises ValueError.
     """
     if isinstance(where, dict):
         where = [
@@ -155,7 +157,7 @@ def shown_counts(counts):
 
 
 def column_of(path, name, columns):
-    """The name of the column that is meant, which may be written with other capitals. Raises FileError."""
+    """The name of the column that is meant, which may have other capitals. Raises FileError."""
     if name in columns:
         return name
     alike = [known for known in columns if known.strip().lower() == name.strip().lower()]
@@ -284,8 +286,8 @@ def condition_of_layer(path, name, columns):
 
 
 def values_to_make(path, name, columns):
-    """(name of the column, how many points have no value in it, the values as text), for a surface each.
-    Raises FileError."""
+    """(name of the column, how many points have no value in it, the values as text), for a surface
+    each. Raises FileError."""
     name = column_of(path, name, columns)
     codes, values = coded(columns[name])
     if not values:
@@ -293,7 +295,7 @@ def values_to_make(path, name, columns):
     if len(values) > MOST_VALUES:
         raise FileError(
             f"{path}: column {name} has {counted(len(values), 'value')}, and --each-value makes a "
-            f"surface of each, at most {MOST_VALUES:,}: choose a column that names surfaces, or some "
-            "values by --where"
+            f"surface of each, at most {MOST_VALUES:,}: choose a column that names surfaces, or "
+            "some values by --where"
         )
     return name, int(numpy.count_nonzero(codes < 0)), values

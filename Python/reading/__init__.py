@@ -58,7 +58,8 @@ def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     keep_nulls, depth   True as --keep-nulls and --depth of the program
     progress  a function that is called with the fraction read; what it raises ends the reading
     band, layer, classes   which of a raster's bands, a file's layers, a LAS file's classes
-    where    which points, by columns: {"horizon": "Top", "line": [3, 4]}, or as --where of the program
+    where    which points, by columns: {"horizon": "Top", "line": [3, 4]}, or as --where of the
+             program
     points_only  True takes the points of a mesh that is no elevation surface
     A misspelt option is a TypeError.
 
@@ -84,8 +85,8 @@ def read_whole(path, options):
 
 
 def finished(path, cloud, options):
-    """What read() makes of the Cloud of read_whole(), which it changes: points that are chosen, without
-    nulls, and turned over."""
+    """What read() makes of the Cloud of read_whole(), which it changes: points that are chosen,
+    without nulls, and turned over."""
     name = STANDARD_INPUT if path == "-" else os.fspath(path)
     if options.where:
         select(name, cloud, options.where)

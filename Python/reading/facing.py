@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether a mesh is an elevation surface: seen from above, each place once.
 
-Only the points of a mesh are read, and points of a folded or closed one make a woven surface. Its faces
-tell: some face down where their neighbours face up, or are vertical. Which side a face turns up depends
-on the order of its corners, and whole files are in the other order, or in none. So where faces differ,
-VTK first makes the order of neighbours the same, and of each part of the mesh the rarer side counts.
+Only the points of a mesh are read, and points of a folded or closed one make a woven surface. Its
+faces tell: some face down where their neighbours face up, or are vertical. Which side a face turns
+up depends on the order of its corners, and whole files are in the other order, or in none. So where
+faces differ, VTK first makes the order of neighbours the same, and of each part of the mesh the
+rarer side counts.
 """
 
 import numpy
@@ -20,8 +21,8 @@ FLAT_CELLS = range(10)  # VTK's numbers of cells without volume, up to VTK_QUAD
 
 
 def check_faces(path, data, options):
-    """Notes on the faces of a data set, of which only the points are used. Raises FileError where it is
-    no elevation surface, unless options say that the points are wanted all the same."""
+    """Notes on the faces of a data set, of which only the points are used. Raises FileError where
+    it is no elevation surface, unless options say that the points are wanted all the same."""
     if options.points_only or data is None:
         return []
     faces = faces_of(data)
@@ -51,8 +52,8 @@ def notes_on_faces(faces):
     if share <= FEW:
         return [f"{words}: the mesh folds there, and only its points are used"]
     raise ElevationSurfaceError(
-        f"is no elevation surface: {words} ({100 * share:.0f} %), so it is closed, or folds; split it into "
-        "parts that do not"
+        f"is no elevation surface: {words} ({100 * share:.0f} %), so it is closed, or folds; "
+        "split it into parts that do not"
     )
 
 
@@ -89,7 +90,7 @@ def made_of(points, corners):
 
 
 def signed_areas(faces):
-    """(areas of the faces in x,y, below 0 where corners go clockwise; how much each extends upright)."""
+    """(areas of the faces in x,y, below 0 where corners go clockwise; how far each is upright)."""
     points = vtk_to_numpy(faces.GetPoints().GetData()).astype("f8")
     points = points - numpy.nan_to_num(points[:1])
     begin = vtk_to_numpy(faces.GetPolys().GetConnectivityArray())
@@ -108,9 +109,13 @@ def signed_areas(faces):
 
 
 def facing_down(faces):
-    """How many faces lie upside down in their part of the mesh, which has the order of corners that most
-    of its faces have."""
-    from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkConnectivityFilter, vtkPolyDataNormals
+    """How many faces lie upside down in their part of the mesh, which has the order of corners that
+    most of its faces have."""
+    from vtkmodules.vtkFiltersCore import (
+        vtkCleanPolyData,
+        vtkConnectivityFilter,
+        vtkPolyDataNormals,
+    )
 
     clean, alike, parts = vtkCleanPolyData(), vtkPolyDataNormals(), vtkConnectivityFilter()
     clean.SetInputData(faces)

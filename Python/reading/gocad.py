@@ -108,13 +108,28 @@ def read_points(path, options):
     if any(names):
         cloud.words["name"] = words_of(names).some(numpy.repeat(numpy.arange(len(names)), counts))
     if gocad.triangles:
-        faces = made_of(numpy.array(gocad.points), numpy.array(gocad.triangles))
-        cloud.notes += check_faces(path, faces, options)
+        cloud.notes += check_objects(gocad, options)
     if gocad.segments or gocad.triangles:
         cloud.notes.append("only the points are used, not the file's cells")
     if gocad.turned:
         cloud.notes.append("z is turned over: the file says that it is depth (ZPOSITIVE Depth)")
     return cloud
+
+
+def check_objects(gocad, options):
+    """Notes on the faces of each object, of those that are chosen by name. Raises FileError."""
+    wanted = [value for column, value in options.where or () if column.lower() == "name" and value]
+    wanted += [options.layer] if options.layer else []
+    points, triangles = numpy.array(gocad.points), numpy.array(gocad.triangles)
+    ends = numpy.cumsum([count for _, count in gocad.objects])
+    owner = numpy.searchsorted(ends, triangles[:, 0], side="right")
+    notes = []
+    for i in numpy.unique(owner).tolist():
+        name = gocad.objects[i][0]
+        if not wanted or name in wanted:
+            called = f"{gocad.path}, {name}" if name and len(gocad.objects) > 1 else gocad.path
+            notes += check_faces(called, made_of(points, triangles[owner == i]), options)
+    return notes
 
 
 def read_lines(path, singular, progress):

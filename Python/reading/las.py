@@ -202,8 +202,9 @@ def las_slices(path, options, cloud):
     selection = Selection(path, options.where or ())
     for rows, classes, points in chosen:
         if options.where:
-            columns = {"Classification": classes, "ReturnNumber": chosen.returns(rows)}
-            columns.update({name: rows[name] for name in ("Intensity", "GpsTime") if name in rows.dtype.names})
+            names = [name for name in ("Intensity", "GpsTime") if name in rows.dtype.names]
+            columns = {name: rows[name] for name in names}
+            columns.update(Classification=classes, ReturnNumber=chosen.returns(rows))
             points = points[selection.keep(columns)]
             left += len(points)
         yield points

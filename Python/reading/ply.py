@@ -166,7 +166,8 @@ def faces_of(path, coordinates, progress):
 
 def read_lines(path, singular, progress):
     """The faces, or edges where there are none, as vtkPolyData. Takes seconds for 100,000 faces."""
-    points = read_points(path, ReadOptions(progress=share(progress, 0.0, 0.3), points_only=True)).points
+    options = ReadOptions(progress=share(progress, 0.0, 0.3), points_only=True)
+    points = read_points(path, options).points
     progress = share(progress, 0.3, 1.0)
     with open(path, "rb") as stream:
         order, elements, _, number = open_vertices(path, stream)

@@ -277,13 +277,21 @@ class Parser:
 
     def keep_words(self, lines):
         """The words of the columns of text."""
-        layout = self.table.layout
-        plain = not any('"' in line for line in lines)
-        rows = [line.split(layout.separator) if plain else layout.words(line) for line in lines]
         for index, reader in list(self.words.items()):
-            reader.add(row[index].strip() if index < len(row) else "" for row in rows)
+            reader.add(self.words_in(lines, index))
             if len(reader.known) > MOST_VALUES and not self.named:
                 del self.words[index]
+
+    def words_in(self, lines, index):
+        """The words of a column; "" in lines that end before it."""
+        layout = self.table.layout
+        if not any('"' in line for line in lines):
+            try:
+                return [line.split(layout.separator, index + 1)[index].strip() for line in lines]
+            except IndexError:
+                pass
+        rows = map(layout.words, lines)
+        return [row[index] if index < len(row) else "" for row in rows]
 
     def take_words(self):
         """{name: Words} since the last call."""

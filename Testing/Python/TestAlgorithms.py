@@ -211,10 +211,12 @@ class Algorithms(unittest.TestCase):
             reader.SetFileName(path)
             chain = ReconstructElevationSurface()
             chain.SetInputConnection(0, reader.GetOutputPort())
-            self.assertIn("36 of 36 places have several heights, up to 89 apart", " ".join(errors_of(chain)))
+            errors = " ".join(errors_of(chain))
+            self.assertIn("36 of 36 places have several heights, up to 89 apart", errors)
             chain.SetDuplicates("keep-highest")  # as a panel does, which has always one of them
             self.assertEqual(errors_of(chain), [])
-            self.assertIn("36 places have several heights, up to 89 apart: the highest", chain.GetReport())
+            told = "36 places have several heights, up to 89 apart: the highest"
+            self.assertIn(told, chain.GetReport())
             reader.SetWhere("name=Base")
             self.assertEqual(errors_of(chain), [])
             self.assertNotIn("several heights", chain.GetReport())

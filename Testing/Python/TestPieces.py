@@ -706,13 +706,13 @@ class Slices(InFolder):
             self.assert_as_whole(path, no_data=5.0, depth=True)
             self.assert_as_whole(path, columns=("1", "2", "4"))
             self.assert_as_whole(path, where={"depth": list(range(100, 4000, 7))})
-            with self.assertRaisesRegex(FileError, "there is no column name beside x, y and z; columns: Depth"):
+            with self.assertRaisesRegex(FileError, "no column name beside x, y and z; columns: D"):
                 list(read_slices(path, Cloud(None), where="name=a"))
         rows = [f"{i % 70},{i // 70},{i % 11},{'abc'[i % 3]}" for i in range(5000)]
         path = self.file("words.csv", "\n".join(["X,Y,Z,name", *rows]))
         with mock.patch.object(text, "BLOCK", 3000):
             self.assert_as_whole(path, where="name=b")
-            with self.assertRaisesRegex(FileError, r"name = d; values: a \(1,667\), b \(1,667\), c"):
+            with self.assertRaisesRegex(FileError, r"name = d; values: a \(1,667\), b \(1,667"):
                 list(read_slices(path, Cloud(None), where="name=d"))
         packed = self.path("b.csv.gz")
         with gzip.open(packed, "wb") as stream:
