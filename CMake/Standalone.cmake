@@ -58,14 +58,11 @@ if (UNIX AND NOT APPLE)
 endif ()
 if (NOT DEFINED BUILD_TESTING)
   find_package(GTest QUIET)
-  if (GTest_FOUND AND (ES_XVFB_RUN OR NOT "$ENV{DISPLAY}" STREQUAL "" OR APPLE OR NOT UNIX))
-    set(es_testing_default ON)
-  else ()
-    set(es_testing_default OFF)
-    message(STATUS "The tests are not built: they need GoogleTest and a display or xvfb-run "
-      "(Debian, Ubuntu: packages libgtest-dev, xvfb, xauth; then -DBUILD_TESTING=ON)")
+  if (NOT GTest_FOUND)
+    message(STATUS "The tests are not built: they need GoogleTest "
+      "(Debian, Ubuntu: package libgtest-dev; then -DBUILD_TESTING=ON)")
   endif ()
-  option(BUILD_TESTING "Build the tests" "${es_testing_default}")
+  option(BUILD_TESTING "Build the tests" "${GTest_FOUND}")
 endif ()
 include(CTest)
 
@@ -142,6 +139,9 @@ function (es_build_module)
     TEST_DIRECTORY_NAME   "NONE")
 endfunction ()
 es_build_module()
+if (NOT ES_KERNEL AND NOT es_multi_config) # what another build may take over as its ES_KERNEL
+  file(GENERATE OUTPUT "${CMAKE_BINARY_DIR}/ES_KERNEL" CONTENT "$<TARGET_FILE:ElevationKernel>\n")
+endif ()
 
 # ---- the CMake package -------------------------------------------------------------------------
 include(CMakePackageConfigHelpers)

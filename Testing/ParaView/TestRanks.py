@@ -6,13 +6,11 @@ and each looks at its own outputs and messages. A rank that waits in vain ends b
 """
 import numpy
 from paraview import simple
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import (
-    vtkCellArray, vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData)
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData
 
-from on_ranks import COUNT, LAST, RANK, given, update
-from plugin_testing import check, check_equal, finish, start
+from plugin_testing import alone, given, information, start, update
+import meshes
+from on_ranks import COUNT, LAST, RANK, check, check_equal, end
 
 start()
 CLOUD = numpy.random.default_rng(7).uniform(0.0, 30.0, (700, 3))
@@ -23,19 +21,11 @@ RING[-1] = RING[0]
 
 
 def cloud(coordinates=CLOUD):
-    data, points = vtkPolyData(), vtkPoints()
-    points.SetData(numpy_to_vtk(coordinates, deep=True))
-    data.SetPoints(points)
-    return data
+    return meshes.cloud(coordinates)
 
 
 def line(coordinates):
-    data, cells = cloud(coordinates), vtkCellArray()
-    cells.InsertNextCell(len(coordinates))
-    for i in range(len(coordinates)):
-        cells.InsertCellPoint(i)
-    data.SetLines(cells)
-    return data
+    return meshes.lines(coordinates, [range(len(coordinates))])
 
 
 def blocks(*parts):
@@ -50,7 +40,7 @@ def blocks(*parts):
 
 
 def check_silent(messages, claim):
-    check_equal(messages, [], "rank %d, messages, %s" % (RANK, claim))
+    check_equal(messages, [], "messages, " + claim)
 
 
 def check_refused(source, part, claim, teller=0):
@@ -58,25 +48,15 @@ def check_refused(source, part, claim, teller=0):
     messages, outputs = update(source)
     if teller in (None, RANK):
         check(len(messages) == 1 and messages[0][0] == "ErrorEvent" and part in messages[0][1],
-              "rank %d, %s, one error with %r: %s" % (RANK, claim, part, messages))
+              "%s, one error with %r: %s" % (claim, part, messages))
     else:
         check_silent(messages, claim)
     for output in outputs:
         cells = output.GetNumberOfElements(1)
-        check_equal(cells, 0, "rank %d, cells after an error, %s" % (RANK, claim))
+        check_equal(cells, 0, "cells after an error, " + claim)
 
 
-def surface(data):
-    """Triangles of a cloud, made by this rank alone: a piece of 1 asks no other rank."""
-    source = simple.GridDelaunay2D(Input=given(data))
-    algorithm = source.SMProxy.GetClientSideObject()
-    algorithm.UpdatePiece(0, 1, 0)
-    made = vtkPolyData()
-    made.DeepCopy(algorithm.GetOutputDataObject(0))
-    return made
-
-
-WHOLE = surface(cloud())  # on every rank, though each makes it for itself
+WHOLE = alone(simple.GridDelaunay2D(Input=given(cloud())))[0]  # on every rank, though each makes it for itself
 check(WHOLE.GetNumberOfPolys() > 1000, "each rank for itself makes a surface")
 EMPTY = vtkPolyData()
 FILTERS = (
@@ -91,18 +71,16 @@ for name, make, data in FILTERS:
         messages, outputs = update(make(Input=given(data if RANK == full else EMPTY)))
         check_silent(messages, "%s, points on rank %d" % (name, full))
         check_equal(outputs[0].GetNumberOfPolys() > 900, RANK == full,
-                    "rank %d, %s: triangles where the points are" % (RANK, name))
+                    "%s: triangles where the points are" % (name))
     messages, outputs = update(make(Input=given(EMPTY)))
     is_first = name in ("reconstruct", "delaunay")  # the others come after a filter that has told
     check_equal(len(messages), 1 if RANK == 0 and is_first else 0,
-                "rank %d, %s, warnings of no points at all" % (RANK, name))
+                "%s, warnings of no points at all" % (name))
 
 # Results are those of all ranks, on all ranks.
 twice = simple.GridDelaunay2D(Input=given(cloud(numpy.vstack((CLOUD, CLOUD[:5]))) if RANK == LAST else EMPTY))
 update(twice)
-twice.SMProxy.UpdatePropertyInformation()
-check_equal(twice.SMProxy.GetProperty("NumberOfDuplicatePoints").GetElement(0), 5,
-            "rank %d, the count of duplicates" % RANK)
+check_equal(information(twice, "NumberOfDuplicatePoints"), 5, "the count of duplicates")
 
 
 def trimmed(boundary, mesh):
@@ -121,17 +99,17 @@ for claim, boundary in (("on the last rank", line(RING) if RANK == LAST else EMP
     messages, outputs = update(trimmed(boundary, whole_here))
     check_silent(messages, "boundary " + claim)
     check_equal((outputs[0].GetNumberOfPolys(), outputs[1].GetNumberOfPolys()), kept,
-                "rank %d, triangles with the boundary %s" % (RANK, claim))
+                "triangles with the boundary %s" % claim)
 check_equal(update(simple.GridDelaunay2D(Input=given(cloud() if RANK == 0 else EMPTY),
                                          Constraints=given(line(PIECE))))[1][0].GetNumberOfPoints(),
-            len(CLOUD) + len(RING) - 1 if RANK == 0 else 0, "rank %d, points with lines in pieces" % RANK)
+            len(CLOUD) + len(RING) - 1 if RANK == 0 else 0, "points with lines in pieces")
 whole_chain = [
     update(simple.ReconstructElevationSurface(Input=given(cloud() if RANK == 0 else EMPTY), Boundary=given(ring)))[1]
     for ring in (line(RING) if RANK == 0 else EMPTY, line(PIECE), line(RING))]
 for claim, outputs in zip(("in pieces", "on each rank"), whole_chain[1:]):
     check_equal(outputs[0].GetNumberOfPolys(), whole_chain[0][0].GetNumberOfPolys(),
-                "rank %d, triangles of the whole chain with the boundary %s" % (RANK, claim))
-check_equal(whole_chain[1][0].GetNumberOfPolys() > 100, RANK == 0, "rank %d, the whole chain has triangles" % RANK)
+                "triangles of the whole chain with the boundary %s" % claim)
+check_equal(whole_chain[1][0].GetNumberOfPolys() > 100, RANK == 0, "the whole chain has triangles")
 # What is wrong with the second input of one rank is an error on all.
 table = blocks(vtkImageData()) if RANK == LAST else EMPTY
 check_refused(trimmed(table, whole_here), "vtkImageData", "a boundary that is an image")
@@ -144,7 +122,7 @@ mine = blocks(*[cloud() if RANK == i else None for i in range(RANK + 1)])
 messages, outputs = update(simple.GridDelaunay2D(Input=given(mine)))
 check_silent(messages, "a block on each rank")
 check_equal(outputs[0].GetBlock(RANK).GetNumberOfPolys(), WHOLE.GetNumberOfPolys(),
-            "rank %d, triangles of its block" % RANK)
+            "triangles of its block")
 none = blocks(cloud()) if RANK == 0 else blocks()
 check_silent(update(simple.GridDelaunay2D(Input=given(none)))[0], "a block on one rank, none on others")
 
@@ -156,15 +134,13 @@ def check_report(source, told, missing, messages, claim):
     found = [text for _, text in found]
     for part in messages if RANK == 0 else []:
         check(any(part in text for text in found), "%s: no message %r: %s" % (claim, part, found))
-    check_equal(len(found), len(messages) if RANK == 0 else 0, "rank %d, messages, %s" % (RANK, claim))
-    source.SMProxy.UpdatePropertyInformation()
-    report = source.SMProxy.GetProperty("Report").GetElement(0).split("\n")
+    check_equal(len(found), len(messages) if RANK == 0 else 0, "messages, " + claim)
+    report = information(source, "Report").split("\n")
     for line in told:
-        check_equal(report.count(line), 1, "rank %d, %s: %r in the report %s" % (RANK, claim, line, report))
+        check_equal(report.count(line), 1, "%s: %r in the report %s" % (claim, line, report))
     for part in missing:
-        check(part not in "".join(report), "rank %d, %s: %r is in the report" % (RANK, claim, part))
-    check_equal(outputs[3].GetNumberOfRows() > 8, RANK == 0 and bool(told),
-                "rank %d, rows of the report, %s" % (RANK, claim))
+        check(part not in "".join(report), "%s: %r is in the report" % (claim, part))
+    check_equal(outputs[3].GetNumberOfRows() > 8, RANK == 0 and bool(told), "rows of the report, " + claim)
     return outputs
 
 
@@ -181,7 +157,7 @@ outputs = check_report(
     simple.ReconstructElevationSurface(Input=given(blocks(*mine[:RANK], far, *mine[RANK + 1:]))),
     [names[0], names[LAST]], [], [names[LAST]], "a block of two points on the last rank")
 check_equal(outputs[0].GetBlock(RANK).GetNumberOfPolys() > 900, RANK < LAST,
-            "rank %d, triangles beside a block of two points" % RANK)
+            "triangles beside a block of two points")
 check_report(simple.ReconstructElevationSurface(Input=given(blocks(*mine)), Spacing=-1), [], ["Block"],
              ["Spacing takes"], "a wrong property")
 check_report(simple.ReconstructElevationSurface(Input=given(blocks(*mine)), GapTolerance=1),
@@ -204,20 +180,20 @@ for make, data in ((simple.ReconstructElevationSurface, blocks(*mine)), (simple.
         algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
     _, outputs = update(source)
     check_equal([output.GetNumberOfElements(1) for output in outputs], [0] * len(outputs),
-                "rank %d, cells after a stop on the last rank" % RANK)
+                "cells after a stop on the last rank")
 
 messages, _ = update(simple.GridDelaunay2D(Input=given(blocks(None, None))))
-check_equal(len(messages), 1 if RANK == 0 else 0, "rank %d, warnings of blocks without data sets" % RANK)
+check_equal(len(messages), 1 if RANK == 0 else 0, "warnings of blocks without data sets")
 
 # What is wrong on any rank is told by the first, and does not hold up the others.
 whole_there = WHOLE if RANK == LAST else EMPTY
 messages, _ = update(simple.TrimOutwardTriangles(Input=given(whole_there), GapTolerance=-1.0))
-check_equal(len(messages), 1 if RANK == 0 else 0, "rank %d, errors of a wrong property" % RANK)
+check_equal(len(messages), 1 if RANK == 0 else 0, "errors of a wrong property")
 
 wrong = vtkPolyData()
 wrong.DeepCopy(WHOLE)
 wrong.GetPolys().ReplaceCellAtId(3, 3, [0, 1, 100000])
 messages, outputs = update(simple.TrimOutwardTriangles(Input=given(wrong if RANK == LAST else EMPTY)))
-check_equal(len(messages), 1 if RANK == 0 else 0, "rank %d, errors of a wrong cell" % RANK)
+check_equal(len(messages), 1 if RANK == 0 else 0, "errors of a wrong cell")
 
-finish()
+end("blocks, boundaries and reports")

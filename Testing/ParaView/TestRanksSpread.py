@@ -7,123 +7,78 @@ import resource
 
 import numpy
 from paraview import simple
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdTypeArray, vtkPoints, vtkStringArray
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import (
-    vtkCellArray, vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData,
-    vtkRectilinearGrid, vtkTable, vtkUnstructuredGrid)
+    vtkImageData, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPolyData, vtkRectilinearGrid, vtkTable,
+    vtkUnstructuredGrid)
 
-from on_ranks import COUNT, LAST, RANK, alone, everywhere, given, update
-from plugin_testing import check, check_equal, finish, start
+from plugin_testing import alone, given, information, start, update
+import meshes
+from meshes import array_of
+from on_ranks import COUNT, LAST, RANK, check, check_equal, end, gather
 
 start()
-DUPLICATE = 1  # the flag of ghost points and cells
 EMPTY = vtkPolyData()
 random = numpy.random.default_rng(11)
 XYZ = random.uniform(0.0, 30.0, (600, 3))
 XYZ = XYZ[numpy.hypot(XYZ[:, 0] - 12, XYZ[:, 1] - 14) > 4]
 XYZ = numpy.vstack((XYZ, XYZ[:3] + [0, 0, 1], [[numpy.nan, 1, 1]]))  # three duplicates, one not finite
-ANGLES = numpy.linspace(0.0, 2.0 * numpy.pi, 9)
-RING = numpy.stack((15 + 11 * numpy.cos(ANGLES), 15 + 11 * numpy.sin(ANGLES), 0 * ANGLES), axis=1)
+ANGLES = numpy.linspace(0.0, 2.0 * numpy.pi, 8, endpoint=False)
+RING = meshes.rings([numpy.stack((15 + 11 * numpy.cos(ANGLES), 15 + 11 * numpy.sin(ANGLES)), axis=1)])
 
 
-def named(array, name):
-    array.SetName(name)
-    return array
+def arrays_of(rows):
+    return (("Amplitude", 2.0 * XYZ[rows, 2]), ("Name", numpy.array(["p%d" % row for row in rows], dtype="U")))
 
 
 def cloud(rows, ids=True, kind=vtkPolyData):
     """Some of the points, with an array of numbers and one of names."""
     rows = numpy.asarray(rows, dtype=int)
-    data, points, names = kind(), vtkPoints(), vtkStringArray()
-    points.SetData(numpy_to_vtk(XYZ[rows], deep=True))
-    data.SetPoints(points)
-    data.GetPointData().AddArray(named(numpy_to_vtk(2.0 * XYZ[rows, 2], deep=True), "Amplitude"))
-    for row in rows:
-        names.InsertNextValue("p%d" % row)
-    data.GetPointData().AddArray(named(names, "Name"))
-    if ids:
-        data.GetPointData().SetGlobalIds(named(numpy_to_vtkIdTypeArray(rows, deep=True), "Id"))
-    return data
+    return meshes.cloud(XYZ[rows], rows if ids else None, arrays_of(rows), kind)
 
 
 def piece(mesh, triangles, ids=True, ghosts=()):
     """Some triangles of a mesh with the points that they use; ghosts: triangles of other ranks."""
     triangles = numpy.append(triangles, ghosts).astype(int)
-    corners = corners_of(mesh)[triangles]
+    corners = meshes.triangles_of(mesh)[triangles]
     rows = numpy.unique(corners)
-    data = cloud(rows, ids)
-    cells = vtkCellArray()
-    for triangle in numpy.searchsorted(rows, corners):
-        cells.InsertNextCell(3, triangle.tolist())
-    data.SetPolys(cells)
-    data.GetCellData().AddArray(named(numpy_to_vtk(triangles, deep=True), "Triangle"))
+    data = meshes.mesh(XYZ[rows], numpy.searchsorted(rows, corners), rows if ids else None, arrays_of(rows),
+                       [("Triangle", triangles)])
     if len(ghosts):
         own = len(triangles) - len(ghosts)
-        marks = numpy.arange(len(triangles)) >= own
-        data.GetCellData().AddArray(named(numpy_to_vtk(marks.astype("u1"), deep=True), "vtkGhostType"))
-        marks = ~numpy.isin(rows, corners[:own])
-        data.GetPointData().AddArray(named(numpy_to_vtk(marks.astype("u1"), deep=True), "vtkGhostType"))
+        for attributes, marks in ((data.GetCellData(), numpy.arange(len(triangles)) >= own),
+                                  (data.GetPointData(), ~numpy.isin(rows, corners[:own]))):
+            attributes.AddArray(array_of(marks.astype("u1") * meshes.DUPLICATE, meshes.GHOSTS))
     return data
-
-
-def corners_of(mesh):
-    ids = vtkIdTypeArray()
-    mesh.GetPolys().ExportLegacyFormat(ids)
-    return vtk_to_numpy(ids).reshape(-1, 4)[:, 1:]
-
-
-def ring():
-    data, points, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
-    points.SetData(numpy_to_vtk(RING[:-1], deep=True))
-    data.SetPoints(points)
-    cells.InsertNextCell(9, [*range(8), 0])
-    data.SetLines(cells)
-    return data
-
-
-def triangles_of(mesh):
-    """The corners' coordinates, nine for each triangle, in one order."""
-    if mesh.GetNumberOfPolys() == 0:
-        return numpy.zeros((0, 9))
-    xyz = vtk_to_numpy(mesh.GetPoints().GetData()).round(9)[corners_of(mesh)]
-    order = numpy.lexsort((xyz[:, :, 2], xyz[:, :, 1], xyz[:, :, 0]))
-    return numpy.take_along_axis(xyz, order[:, :, None], 1).reshape(-1, 9)
 
 
 def check_same(mesh, expected, claim):
     """The triangles of all ranks together are those of one, each once, and so are the points."""
-    found, wanted = everywhere(triangles_of(mesh)), triangles_of(expected)
-    check_equal(found.shape, wanted.shape, "rank %d, triangles, %s" % (RANK, claim))
-    found, wanted = (rows[numpy.lexsort(rows.T)] for rows in (found, wanted))
-    check(numpy.array_equal(found, wanted), "rank %d, the same triangles, %s" % (RANK, claim))
-    marks = mesh.GetPointData().GetArray("vtkGhostType")
-    owned = mesh.GetNumberOfPoints() - (numpy.count_nonzero(vtk_to_numpy(marks)) if marks else 0)
-    check_equal(everywhere([owned]).sum(), expected.GetNumberOfPoints(), "rank %d, points, %s" % (RANK, claim))
+    found = meshes.sorted_rows(numpy.vstack(gather(meshes.by_places(mesh))))
+    wanted = meshes.by_places(expected)
+    check_equal(found.shape, wanted.shape, "triangles, " + claim)
+    check(found.shape == wanted.shape and numpy.allclose(found, wanted, 0, 1e-9), "the same triangles, " + claim)
+    owned = int(numpy.count_nonzero(~meshes.ghosts_of(mesh)))
+    check_equal(sum(gather(owned)), expected.GetNumberOfPoints(), "points, " + claim)
 
 
 def check_points(mesh, ids, claim):
     """Values of the points stay with them; on ranks without points, arrays are empty."""
     data, names = mesh.GetPointData(), mesh.GetPointData().GetAbstractArray("Name")
     check(names and data.HasArray("Amplitude") and (not ids or data.GetGlobalIds()),
-          "rank %d, arrays, %s" % (RANK, claim))
+          "arrays, " + claim)
     for i in range(0, mesh.GetNumberOfPoints(), 7):
         row = int(names.GetValue(i)[1:])
         check(numpy.array_equal(mesh.GetPoint(i), XYZ[row], equal_nan=True)
               and numpy.array_equal(data.GetArray("Amplitude").GetValue(i), 2 * XYZ[row, 2])
               and (not ids or data.GetGlobalIds().GetValue(i) == row),
-              "rank %d, values of point %d, %s" % (RANK, i, claim))
+              "values of point %d, %s" % (i, claim))
 
 
 def check_told(messages, part, claim):
     """One message of all ranks, which the first tells."""
-    check_equal(len(messages), 1 if part and RANK == 0 else 0, "rank %d, messages %s, %s" % (RANK, messages, claim))
+    check_equal(len(messages), 1 if part and RANK == 0 else 0, "messages %s, %s" % (messages, claim))
     check(not messages or part in messages[0][1], "%s: %r in %s" % (claim, part, messages))
-
-
-def value(source, name):
-    source.SMProxy.UpdatePropertyInformation()
-    return source.SMProxy.GetProperty(name).GetElement(0)
 
 
 ALL = numpy.arange(len(XYZ))
@@ -145,26 +100,26 @@ for claim, rows in spreads.items():
         check_told(messages, "", claim)
         check_same(mesh, WHOLE, claim)
         check_points(mesh, ids, claim)
-        check_equal((value(source, "NumberOfDuplicatePoints"), value(source, "NumberOfNonFinitePoints")), (3, 1),
-                    "rank %d, counts, %s" % (RANK, claim))
+        counts = [information(source, "NumberOf%sPoints" % kind) for kind in ("Duplicate", "NonFinite")]
+        check_equal(counts, [3, 1], "counts, " + claim)
         unused = mesh.GetFieldData().GetArray("UnusedPointIds")
         unused = [int(mesh.GetPointData().GetAbstractArray("Name").GetValue(unused.GetValue(i))[1:])
                   for i in range(unused.GetNumberOfTuples())]
-        check_equal(sorted(everywhere(unused)), list(ALL[-4:]), "rank %d, unused points, %s" % (RANK, claim))
+        check_equal(sorted(sum(gather(unused), [])), list(ALL[-4:]), "unused points, " + claim)
 
 # Points that other ranks have, too: each counts once.
 for ids in (True, False):
     rows = numpy.array_split(ALL[:-4], COUNT)
     mine = cloud(numpy.append(rows[RANK], rows[RANK - 1][:9]), ids)
     marks = numpy.arange(mine.GetNumberOfPoints()) >= len(rows[RANK])
-    mine.GetPointData().AddArray(named(numpy_to_vtk(marks.astype("u1") * DUPLICATE, deep=True), "vtkGhostType"))
+    mine.GetPointData().AddArray(array_of(marks.astype("u1") * meshes.DUPLICATE, meshes.GHOSTS))
     source = simple.GridDelaunay2D(Input=given(mine))
     messages, (mesh,) = update(source)
     check_same(mesh, alone(simple.GridDelaunay2D(Input=given(cloud(ALL[:-4]))))[0], "points of other ranks")
-    check_equal(value(source, "NumberOfDuplicatePoints"), 0, "rank %d, points of other ranks are no duplicates" % RANK)
+    check_equal(information(source, "NumberOfDuplicatePoints"), 0, "points of other ranks are no duplicates")
 
 # Triangles: the common points of ranks are one. Ghosts are left out.
-used = numpy.unique(corners_of(WHOLE))
+used = numpy.unique(meshes.triangles_of(WHOLE))
 BARE = piece(WHOLE, numpy.arange(WHOLE.GetNumberOfPolys()))
 owner = random.integers(0, COUNT, WHOLE.GetNumberOfPolys())
 owner[: len(owner) // 2] = 0  # which has most
@@ -174,17 +129,17 @@ for ids in (True, False):
     for ghosts in ((), beside):
         claim = "%s, %d ghosts" % ("ids" if ids else "no ids", len(ghosts))
         mine = piece(WHOLE, here, ids, ghosts)
-        trim = simple.TrimOutwardTriangles(Input=given(mine), Boundary=given(ring() if RANK == LAST else EMPTY))
-        alike = simple.TrimOutwardTriangles(Input=given(BARE), Boundary=given(ring()))
+        trim = simple.TrimOutwardTriangles(Input=given(mine), Boundary=given(RING if RANK == LAST else EMPTY))
+        alike = simple.TrimOutwardTriangles(Input=given(BARE), Boundary=given(RING))
         messages, outputs = update(trim)
         expected = alone(alike)
         check_told(messages, "", "trim, " + claim)
         for port in range(3):
             check_same(outputs[port], expected[port], "trim, output %d, %s" % (port, claim))
-        check_equal((value(trim, "NumberOfOutwardTriangles"), value(trim, "NumberOfInsertedPoints")),
+        check_equal((information(trim, "NumberOfOutwardTriangles"), information(trim, "NumberOfInsertedPoints")),
                     (expected[1].GetNumberOfPolys(),
                      expected[0].GetFieldData().GetArray("NumberOfInsertedPoints").GetValue(0)),
-                    "rank %d, counts of trim, %s" % (RANK, claim))
+                    "counts of trim, " + claim)
         long = 3.0  # of the triangles over the gap
         fill = simple.FillElevationHoles(Input=given(mine), MaximumEdgeLength=long, Interpolation="Membrane")
         messages, outputs = update(fill)
@@ -193,8 +148,8 @@ for ids in (True, False):
         check_told(messages, "", "fill, " + claim)
         for port in range(2):
             check_same(outputs[port], expected[port], "fill, output %d, %s" % (port, claim))
-        check_equal((value(fill, "NumberOfHoles"), value(fill, "NumberOfFilledHoles")),
-                    (expected[1].GetNumberOfLines(),) * 2, "rank %d, counts of fill, %s" % (RANK, claim))
+        check_equal((information(fill, "NumberOfHoles"), information(fill, "NumberOfFilledHoles")),
+                    (expected[1].GetNumberOfLines(),) * 2, "counts of fill, " + claim)
         check(RANK > 0 or outputs[0].GetCellData().HasArray("Triangle"), "cell data stay, " + claim)
         if ids and RANK == 0:
             found = vtk_to_numpy(outputs[0].GetPointData().GetGlobalIds())
@@ -216,7 +171,7 @@ check_same(outputs[0], alone(expected)[0], "filters in a row")
 def table(rows):
     data = vtkTable()
     for i, name in enumerate(("easting", "northing", "z")):
-        data.AddColumn(named(numpy_to_vtk(XYZ[rows, i], deep=True), name))
+        data.AddColumn(array_of(XYZ[rows, i], name))
     return data
 
 
@@ -231,7 +186,7 @@ def grid(kind, first, last):
         data.SetZCoordinates(numpy_to_vtk(numpy.zeros(1), deep=True))
     z = numpy.hypot(x, y[:, None])
     z[(z > 20) & (z < 24)] = -9999
-    data.GetPointData().SetScalars(named(numpy_to_vtk(z.ravel(), deep=True), "Depth"))
+    data.GetPointData().SetScalars(array_of(z.ravel(), "Depth"))
     return data
 
 
@@ -251,15 +206,15 @@ for claim, mine, whole in (
     check_same(outputs[0], expected[0], "chain, " + claim)
     check_equal([outputs[0].GetPointData().HasArray(expected[0].GetPointData().GetArrayName(i))
                  for i in range(expected[0].GetPointData().GetNumberOfArrays())
-                 if outputs[0].GetNumberOfPoints()].count(0), 0, "rank %d, arrays, chain, %s" % (RANK, claim))
-    check_equal(value(source, "Report"), value(alike, "Report"), "rank %d, report, %s" % (RANK, claim))
+                 if outputs[0].GetNumberOfPoints()].count(0), 0, "arrays, chain, " + claim)
+    check_equal(information(source, "Report"), information(alike, "Report"), "report, " + claim)
     check_equal(outputs[3].GetNumberOfRows(), expected[3].GetNumberOfRows() if RANK == 0 else 0,
-                "rank %d, rows of the report, %s" % (RANK, claim))
+                "rows of the report, " + claim)
 messages, outputs = update(simple.ReconstructElevationSurface(
     Input=given(table(slice_of_mine) if RANK == LAST else cloud(slice_of_mine))))
 check(len(messages) == 1 and "different kinds of it: points and tables" in messages[0][1],
-      "rank %d, kinds: %s" % (RANK, messages))
-check_equal(outputs[0].GetNumberOfPoints(), 0, "rank %d, points of different kinds" % RANK)
+      "kinds: %s" % messages)
+check_equal(outputs[0].GetNumberOfPoints(), 0, "points of different kinds")
 
 # Blocks and partitions.
 whole = cloud(ALL) if RANK == LAST else EMPTY
@@ -280,7 +235,7 @@ for i, rows in enumerate(numpy.array_split(spreads["in no order"][RANK], 2)):
 messages, (parts,) = update(simple.GridDelaunay2D(Input=given(parts)))
 check_told(messages, "", "partitions")
 check_same(parts.GetPartition(0), WHOLE, "partitions of all ranks are one surface")
-check_equal(parts.GetPartition(1).GetNumberOfPolys(), 0, "rank %d, triangles of the second partition" % RANK)
+check_equal(parts.GetPartition(1).GetNumberOfPolys(), 0, "triangles of the second partition")
 
 # What is wrong on one rank is told by the first, and leaves nothing on any.
 wrong = piece(WHOLE, here)
@@ -295,13 +250,13 @@ for make, data, part in (
     messages, outputs = update(make(Input=given(data)))
     check_told(messages, part, "wrong input")
     check_equal([output.GetNumberOfPoints() for output in outputs], [0] * len(outputs),
-                "rank %d, points after an error" % RANK)
+                "points after an error")
 bare = cloud(spreads["slices"][RANK])
 if RANK == LAST:
     bare.GetPointData().RemoveArray("Amplitude")
 messages, (mesh,) = update(simple.GridDelaunay2D(Input=given(bare)))
 check_told(messages, 'the point array "Amplitude"', "an array that one rank lacks")
-check_equal(everywhere([mesh.GetNumberOfPolys()]).sum(), WHOLE.GetNumberOfPolys(), "triangles without an array")
+check_equal(sum(gather(mesh.GetNumberOfPolys())), WHOLE.GetNumberOfPolys(), "triangles without an array")
 
 # A stop on one rank stops all of them.
 for make, data in ((simple.GridDelaunay2D, cloud(spreads["slices"][RANK])), (simple.FillElevationHoles, piece(WHOLE, here))):
@@ -313,6 +268,6 @@ for make, data in ((simple.GridDelaunay2D, cloud(spreads["slices"][RANK])), (sim
         messages, outputs = update(source)
         check_told(messages, "Stopped", "a stop on rank %d of %s" % (stopped, source.SMProxy.GetXMLName()))
         check_equal([output.GetNumberOfPoints() for output in outputs], [0] * len(outputs),
-                    "rank %d, points after a stop" % RANK)
+                    "points after a stop")
 
-finish()
+end("spread points and triangles")

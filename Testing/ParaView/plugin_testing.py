@@ -16,8 +16,10 @@ import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "Python"))
 from mesh_rules import findings, number_of_border_edges  # noqa: E402,F401
+from outcomes import noted  # noqa: E402
 
 FAILURES = []
+KEPT = []  # the data of sources
 
 
 def start(place=lambda plugin, folder: plugin, remote=False):
@@ -79,17 +81,35 @@ def fetch(source, port=0):
 
 def messages_of(source, event="ErrorEvent"):
     """Updates a source and returns the errors that it reported, or another event's messages."""
-    messages = []
+    return [text for kind, text in update(source)[0] if kind == event]
 
-    def note(_caller, _event, text):
-        messages.append(text)
 
-    note.CallDataType = "string0"
+def given(data):
+    """A source of the pipeline with these data."""
+    source = simple.TrivialProducer()
+    source.GetClientSideObject().SetOutput(data)
+    KEPT.append(data)
+    return source
+
+
+def update(source):
+    """Updates. Returns the messages and outputs of this process."""
     algorithm = source.SMProxy.GetClientSideObject()
-    tag = algorithm.AddObserver(event, note)
+    messages = noted(algorithm)
     source.UpdatePipeline()
-    algorithm.RemoveObserver(tag)
-    return messages
+    return messages, [algorithm.GetOutputDataObject(i) for i in range(algorithm.GetNumberOfOutputPorts())]
+
+
+def alone(source):
+    """Updates on this rank, which asks no other: a piece of 1. Returns the outputs."""
+    algorithm = source.SMProxy.GetClientSideObject()
+    algorithm.UpdatePiece(0, 1, 0)
+    outputs = []
+    for i in range(algorithm.GetNumberOfOutputPorts()):
+        data = algorithm.GetOutputDataObject(i)
+        outputs.append(data.NewInstance())
+        outputs[-1].DeepCopy(data)
+    return outputs
 
 
 def information(source, name):

@@ -12,7 +12,7 @@ import time
 import unittest
 
 import numpy
-from in_folder import Program
+from in_folder import Program, draws
 from vtkelevationsurface import clouds
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
@@ -151,6 +151,7 @@ class SeveralFiles(InFolder):
         self.assertIn("point arrays that not all files have are left out", one.notes)
 
 
+@draws
 class Interrupts(InFolder):
     def start(self, *arguments):
         return subprocess.Popen(
@@ -163,7 +164,7 @@ class Interrupts(InFolder):
         self.temporary = os.path.join(self.folder, "temporary")
         os.mkdir(self.temporary)
         random_numbers = numpy.random.RandomState(5)
-        xyz = random_numbers.rand(60000, 3) * (1000.0, 1000.0, 1.0)
+        xyz = random_numbers.rand(30000, 3) * (1000.0, 1000.0, 1.0)
         numpy.savetxt(os.path.join(self.folder, "a.xyz"), xyz, "%.3f")
 
     def test_at_any_time_it_ends_cleanly(self):
@@ -175,8 +176,8 @@ class Interrupts(InFolder):
             os.remove(os.path.join(self.folder, name))
         moments = random.Random(7)
         stopped = 0
-        for run in range(60):
-            if stopped == 15:
+        for run in range(40):
+            if stopped == 8:
                 break
             number = moments.choice((signal.SIGINT, signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
             moment = moments.uniform(0.0, 0.9) * whole
@@ -199,7 +200,7 @@ class Interrupts(InFolder):
                     self.assertEqual(program.returncode, 130)
                     self.assertEqual((errors, made), (STOPPED, []))
         # A program that went on until it was done would never have stopped.
-        self.assertEqual(stopped, 15)
+        self.assertEqual(stopped, 8)
 
 
 class Supervised(InFolder):

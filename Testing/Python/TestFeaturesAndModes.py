@@ -193,8 +193,10 @@ def main():
     if not options.ranks and not options.only:
         vain = {(row.filter, name) for row in rows for name in row.properties} - EFFECTIVE - WITHOUT_EFFECT
         check(not vain, "in no row it changes anything: %s" % sorted(vain))
+    for claim in FAILURES:
+        print("rank %d: FAILED: %s" % (rank, claim[:1000]), flush=True)
     if rank == 0:
-        print(*("FAILED: " + claim[:1000] for claim in FAILURES), "%d cells are as expected" % right, sep="\n")
+        print("%d cells are as expected" % right)
     sys.exit(1 if FAILURES else 0)
 
 

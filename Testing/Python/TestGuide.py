@@ -9,6 +9,7 @@ import unittest
 
 import numpy
 from documented import PICTURE, ROOT, examples_of, make_folder, run, run_commands, text_of
+from in_folder import draws
 from vtkelevationsurface import read, reconstruct
 from vtkelevationsurface.writing.grids import grid_of
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -63,6 +64,7 @@ class Gaps(unittest.TestCase):
         self.assertGreater(many, 5 * few)  # as dense as around, and coarser
 
 
+@draws
 class Guide(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

@@ -16,7 +16,7 @@ import time
 import unittest
 
 import numpy
-from in_folder import Program
+from in_folder import Program, draws
 from meshes import by_places as triangles
 from vtkelevationsurface.reading import vtk_files
 from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
@@ -163,6 +163,7 @@ class OnRanks(Program):
             os.path.join(DATA, f"horizon_synthetic{part}.vtp") for part in ("", "_faults", "_boundary"))
         self.check_same(2, horizon, "--faults", faults, "--boundary", boundary, "--depth")
 
+    @draws
     def test_a_surface_for_each_file_with_its_picture(self):
         self.file("a.txt", cloud(1200))
         self.file("b.txt", grid())
@@ -190,8 +191,9 @@ class OnRanks(Program):
                 self.assertEqual(plain(together.stdout), [])
                 self.assertEqual(sorted(os.listdir(self.folder)), ["a.txt", "two.txt"])
 
+    @draws
     def test_a_stop_ends_all_ranks_and_leaves_nothing(self):
-        self.file("a.txt", cloud(30000))
+        self.file("a.txt", cloud(12000))
         moments = random.Random(7)
         began = time.monotonic()
         self.assertEqual(self.on(3, "a.txt", "--report").returncode, 0)
@@ -200,7 +202,10 @@ class OnRanks(Program):
         # That of Open MPI 6 ends all ranks by force before the first has removed what is not finished.
         version = subprocess.run([MPIRUN[0], "--version"], capture_output=True, text=True, check=False)
         gives_time = not re.search(r"Open MPI\) [6-9]", version.stdout)
-        for run in range(3):
+        stopped = 0
+        for run in range(20):
+            if stopped == 2:
+                break
             for name in results & set(os.listdir(self.folder)):
                 os.remove(self.path(name))
             program = subprocess.Popen(
@@ -215,8 +220,12 @@ class OnRanks(Program):
             with self.subTest(run=run):
                 self.assertIn(made, (set(), results))
                 self.assertLessEqual(errors.count("reconstruct:"), 1)
-                if not made:
+                if made:
+                    whole *= 0.8  # it runs faster than before, when the machine was busier
+                else:
+                    stopped += 1
                     self.assertNotEqual(program.returncode, 0)
+        self.assertEqual(stopped, 2)
 
 
 class Example(Program):

@@ -500,6 +500,7 @@ class ShortExample(Program):
         self.assertEqual(surface.GetNumberOfPolys(), report["triangles"]["filled"])
 
 
+@in_folder.draws
 class Examples(Program):
     def lines_of(self, name, *arguments):
         script = os.path.join(EXAMPLES, name)
@@ -533,13 +534,12 @@ class Examples(Program):
         self.assertGreater(os.path.getsize(self.path("outline.png")), 100000)
         surface = vtk_files.run_vtk_reader(buildings)
         vtk_to_numpy(surface.GetPoints().GetData()).astype("<f8").tofile(self.path("plain.f64"))
-        for cloud in (buildings, "plain.f64"):
-            lines = self.lines_of(
-                "from_above.py", "voids", cloud, "voids.png", "--maximum-edge-length", "2",
-                "--interpolation", "membrane", "--window", "596650,596730,243620,243730",
-                "--title", "Buildings")
-            self.assertEqual(lines, ["after: 21 of 21 holes filled"])
-            self.assertGreater(os.path.getsize(self.path("voids.png")), 100000)
+        lines = self.lines_of(
+            "from_above.py", "voids", "plain.f64", "voids.png", "--maximum-edge-length", "2",
+            "--interpolation", "membrane", "--window", "596650,596730,243620,243730",
+            "--title", "Buildings")
+        self.assertEqual(lines, ["after: 21 of 21 holes filled"])
+        self.assertGreater(os.path.getsize(self.path("voids.png")), 100000)
 
 
 class Pictures(Program):
@@ -557,9 +557,7 @@ class Pictures(Program):
         columns, rows, _ = image.GetDimensions()
         return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, -1)
 
-    @unittest.skipIf(
-        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
-    )
+    @in_folder.draws
     def test_the_picture_shows_the_surface_in_colours_on_white(self):
         pixels = self.picture().astype(int)
         self.assertEqual(pixels[0, 0].tolist(), [255, 255, 255])
@@ -569,28 +567,18 @@ class Pictures(Program):
         red = (pixels[:, :, 0] > 150) & (pixels[:, :, 1] < 60) & (pixels[:, :, 2] < 120)
         self.assertGreater(red.sum(), 200)
 
-    @unittest.skipIf(
-        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
-    )
-    def test_the_view_can_be_chosen(self):
-        views = [self.picture("--view", v) for v in ("top", "200,30", "20,30")]
-        self.assertTrue(any(v.shape != views[0].shape or (v != views[0]).any() for v in views[1:]))
-
-    @unittest.skipIf(
-        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
-    )
-    def test_colours_can_tell_the_errors_of_what_is_filled(self):
-        # Points of the file have none, and are the palest colour; the filled hole is not.
-        usual = self.picture("--view", "top").astype(int)
+    @in_folder.draws
+    def test_the_view_and_colours_can_be_chosen(self):
+        usual, aside = (self.picture("--view", view).astype(int) for view in ("top", "200,30"))
+        self.assertTrue(aside.shape != usual.shape or (aside != usual).any())
+        # Points of the file have no errors, and are the palest colour; the filled hole is not.
         errors = self.picture("--view", "top", "--colours", "error").astype(int)
         self.assertEqual(usual.shape, errors.shape)
         pale = errors.max(axis=2) - errors.min(axis=2) < 25
         self.assertGreater(pale.mean(), 0.6)
         self.assertGreater((errors != usual).any(axis=2).mean(), 0.1)
 
-    @unittest.skipIf(
-        sys.platform.startswith("linux") and not os.environ.get("DISPLAY"), "no display"
-    )
+    @in_folder.draws
     def test_outliers_strips_and_odd_names_leave_something_to_see(self):
         import numpy
         from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -693,9 +681,9 @@ class VirtualDisplay(Program):
         self.assertIn("no picture: Xvfb does not answer", done.stdout)
         self.assertEqual(made, ["r.json", "sheet_surface.vtp"])
 
-    def start(self):
+    def start(self, side=300):
         environment = self.environment()
-        rows = "".join(f"{i % 300} {i // 300} {i % 7}\n" for i in range(90000))
+        rows = "".join(f"{i % side} {i // side} {i % 7}\n" for i in range(side * side))
         name = self.file("sheet.xyz", rows)
         return subprocess.Popen(
             [*self.PROGRAM, name, "--picture"],
@@ -729,7 +717,7 @@ class VirtualDisplay(Program):
         return [n for n in os.listdir(self.folder) if n.startswith("reconstruct-display-")]
 
     def test_a_picture_is_drawn_and_the_server_ends(self):
-        process = self.start()
+        process = self.start(50)
         self.wait_until(self.servers)
         self.assertEqual(process.wait(300), 0)
         self.assertIn("sheet_surface.png", os.listdir(self.folder))

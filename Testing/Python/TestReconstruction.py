@@ -12,6 +12,7 @@ import warnings
 
 import numpy
 
+from in_folder import draws
 import vtkelevationsurface
 from vtkelevationsurface import (
     ElevationSurfaceError,
@@ -287,6 +288,7 @@ class Result(unittest.TestCase):
         self.assertIsNone(result.holes)
         self.assertNotIn("trim", result.report)
 
+    @draws
     def test_it_is_written_and_drawn(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "a")

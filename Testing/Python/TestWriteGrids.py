@@ -275,12 +275,12 @@ class CommandLine(Program):
 
     def test_a_full_disk_leaves_nothing_behind(self):
         for arguments in (
-            ("--grid", "0.1"),
+            ("--grid", "0.25"),
             ("--grid", "0.5", "--grid-output", "g.asc"),
             ("--grid", "0.5", "--grid-output", "g.zmap"),
-            ("--contours", "0.01"),
-            ("--contours", "0.01", "--contours-output", "c.geojson"),
-            ("--contours", "0.01", "--contours-output", "c.dxf"),
+            ("--contours", "0.05"),
+            ("--contours", "0.05", "--contours-output", "c.geojson"),
+            ("--contours", "0.05", "--contours-output", "c.dxf"),
         ):
             with self.subTest(arguments=arguments):
                 done = self.call(self.name, *arguments, largest_file=100_000)

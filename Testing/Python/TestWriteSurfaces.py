@@ -4,7 +4,6 @@
 
 import json
 import os
-import shutil
 import struct
 import sys
 import tempfile
@@ -12,7 +11,7 @@ import unittest
 from unittest import mock
 
 import numpy
-from in_folder import InFolder
+from in_folder import InFolder, draws
 from vtkelevationsurface import distance, reconstruct, writing
 from vtkelevationsurface.picture import screen_mesh
 from vtkelevationsurface.writing import xml_writer
@@ -256,7 +255,7 @@ class LargeSurfaces(unittest.TestCase):
             self.assertAlmostEqual(told["mean"], 1.5)
             self.assertAlmostEqual(told["rms"], 4.5**0.5)
 
-    @unittest.skipUnless(shutil.which("Xvfb"), "Xvfb is not installed")
+    @draws
     def test_the_picture_of_fewer_triangles_looks_the_same(self):
         from vtkelevationsurface import picture
         from vtkmodules.vtkIOImage import vtkPNGReader

@@ -15,7 +15,7 @@ import unittest
 
 def name_skipped(result, test, reason, add=unittest.TextTestResult.addSkip):
     """What Utilities/test lists at its end."""
-    print(f"SKIPPED {test.id()}: {reason}", flush=True)
+    print(f"\nSKIPPED {test.id()}: {reason}", flush=True)  # on a line of its own: dots come before
     add(result, test, reason)
 
 

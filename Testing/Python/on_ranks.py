@@ -7,6 +7,7 @@ python3 starts MPI here; pvbatch --symmetric has done so.
 
 import argparse
 import io
+import os
 import pickle
 import sys
 
@@ -50,12 +51,18 @@ def check(is_true, claim):
         print("rank %d: FAILED: %s" % (RANK, claim), flush=True)
 
 
+def check_equal(value, expected, claim):
+    check(value == expected, "%s: %r instead of %r" % (claim, value, expected))
+
+
 def end(done):
     """Ends the test of all ranks."""
     failures = sum(gather(len(FAILURES)))
     if RANK == 0:
-        print("%d ranks, %s: %d failures" % (COUNT, done, failures), flush=True)
-    sys.exit(1 if failures else 0)
+        print("%d ranks, %s: %d failures" % (COUNT, done, failures))
+    if failures:
+        sys.stdout.flush()
+        os._exit(1)  # pvbatch would make nothing of sys.exit()
 
 
 def options_of():

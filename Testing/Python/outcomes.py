@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What filters have made, in one part or several, as plain arrays; and how two of these differ."""
 
+import re
 import zlib
 
 import numpy
@@ -18,7 +19,7 @@ def noted(*algorithms):
     messages = []
 
     def note(_caller, event, text):
-        messages.append((event, text.split("): ", 1)[-1].strip()))
+        messages.append((event, re.split(r"\((?:0x)?[0-9A-Fa-f]+\): ", text, maxsplit=1)[-1].strip()))
 
     note.CallDataType = "string0"
     for algorithm in algorithms:

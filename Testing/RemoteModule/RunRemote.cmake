@@ -41,8 +41,9 @@ step("Configuring"
   "-DCMAKE_CXX_STANDARD=11"
   "-DCMAKE_BUILD_TYPE="
   "-DBUILD_SHARED_LIBS=ON"
-  "-DES_KERNEL=${KERNEL}"
   "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=${build}/bin")
+step("Configuring with the kernel that is built already"
+  "${CMAKE_COMMAND}" "-DES_KERNEL=${KERNEL}" "${build}")
 step("Building"
   "${CMAKE_COMMAND}" --build "${build}" --config "${CONFIG}" --target LinkCheck)
 
