@@ -61,7 +61,7 @@ endfunction ()
 
 # es_find_mpirun(<variable>)
 # What starts a program on several ranks, up to the option for their number; empty if it was not found.
-# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 300 s.
+# The ranks outlive an mpirun that is killed, so it ends by itself before a test's time-out of 1200 s.
 function (es_find_mpirun variable)
   find_program(ES_MPIRUN NAMES mpirun mpiexec DOC "Starts a program on several ranks")
   set(command)
@@ -70,7 +70,7 @@ function (es_find_mpirun variable)
     execute_process(COMMAND "${ES_MPIRUN}" --version OUTPUT_VARIABLE version ERROR_QUIET)
     if (version MATCHES "Open MPI|OpenRTE")
       # As root and on one core too; a rank that waits leaves its core to others.
-      list(APPEND command --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 --timeout 290)
+      list(APPEND command --allow-run-as-root --oversubscribe --mca mpi_yield_when_idle 1 --timeout 1190)
     endif ()
     list(APPEND command -n)
   endif ()
