@@ -882,7 +882,7 @@ EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
 EdgeLengths SpacingsOfEdges(const Holes& holes, Index hole, const EdgeLengths& lengths)
 {
   EdgeLengths spacings = lengths;
-  if (lengths.Inner.size() <= lengths.Boundary.size())
+  if (!holes.IsOfLines(hole))
   {
     return spacings;
   }
