@@ -62,8 +62,8 @@ struct Holes
   std::vector<Index> RegionOf; ///< one a triangle: its region's number as a hole, or None
   double LongestEdge = 0.0;    ///< the length above which edges are long
   /**
-   * One a vertex, if a region is of lines, else empty: how far the next line is, by the largest height
-   * of the long triangles there, over their shortest edges; less twice the distance from where it is.
+   * One a vertex, if a region is of lines, else empty: how far the next line is, by the largest
+   * height of the long triangles there, over their shortest edges, less twice the way from there.
    */
   std::vector<double> Gaps;
 

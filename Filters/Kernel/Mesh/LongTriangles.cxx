@@ -16,7 +16,7 @@ namespace elevation
 
 namespace
 {
-/** Of a gap, by the distance from the point that has it: twice, as spacings grow by 0.2 (Patch.h). */
+/** Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h). */
 constexpr double DecayOfGaps = 2.0;
 
 /** One run; the members carry data between its passes. */
@@ -241,7 +241,7 @@ private:
     }
   }
 
-  /** Only where lines need them. The largest of values does not depend on the order of triangles. */
+  /** Only if there are lines. The largest of values does not depend on the order of triangles. */
   void MeasureGaps(const Progress& progress)
   {
     bool areLines = false;

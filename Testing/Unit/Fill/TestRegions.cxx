@@ -198,11 +198,11 @@ TEST(Regions, BetweenLinesAreFilledByTheGapsNotByThePointsAlongThem)
   EXPECT_LT(some.Patches.NumberOfPoints(), 3 * sparse.NumberOfPoints());
   EXPECT_GT(some.Patches.NumberOfPoints(), 5 * 400 / 4); // no fewer than triangles of half a gap
   EXPECT_NEAR(some.Patches.Reports[0].Spacing, 10.0, 1.0);
-  const Mesh sparser = Delaunay(Lines(5, 6, 400, 400.0, 0.2));
+  const Mesh sparser = Delaunay(Lines(5, 6, 800, 400.0, 0.2));
   const Outcome fewer = Fill(sparser, FillOptions(), Slope, 1.5);
   ExpectRegionsFit(fewer);
   EXPECT_NEAR(fewer.Patches.Reports[0].Spacing, 40.0, 4.0);
-  // Four times the area, at four times the spacing.
+  // Eight times the area, at four times the spacing.
   EXPECT_LT(fewer.Patches.NumberOfPoints(), some.Patches.NumberOfPoints());
 }
 
