@@ -92,10 +92,10 @@
  * An input that is not an elevation surface gives empty output, and an error that names the cell:
  * cells other than triangles, triangles that are flat in x,y, an edge with more than two triangles,
  * cells that overlap in x,y. So does an invalid vtkCellArray, and a point or cell array whose
- * number of tuples is not that of the points or cells; the error names the array. So do more new points than
- * MaximumNumberOfExpectedPoints. A surface without holes passes; an input without triangles passes with a warning (none where it has no points, or
- * vtkGridDelaunay2D has made it and told why). An abort also leaves empty output, which counts
- * as up to date: call Modified() to start again.
+ * number of tuples is not that of the points or cells; the error names the array. So do more new
+ * points than MaximumNumberOfExpectedPoints. A surface without holes passes; an input without triangles
+ * passes with a warning (none where it has no points, or vtkGridDelaunay2D has made it and told why).
+ * An abort also leaves empty output, which counts as up to date: call Modified() to start again.
  *
  * @par Composite input:
  * A composite input (vtkMultiBlockDataSet, vtkPartitionedDataSet and its collection) gives outputs

@@ -115,9 +115,9 @@ public:
 
   ///@{
   /**
-   * The memory, in bytes, that filling may take for one hole. Where more is expected for one, an error
-   * names a Spacing that would do, before any is filled. 0 (default): no limit; negative values are taken
-   * as 0.
+   * The memory, in bytes, that filling may take for one hole. Where more is expected for one, an
+   * error names a Spacing that would do, before any is filled. 0 (default): no limit; negative values
+   * are taken as 0.
    */
   virtual void SetMemoryOfHole(double bytes);
   virtual double GetMemoryOfHole() { return this->MemoryOfHole; }

@@ -106,7 +106,7 @@ most edges of a hole              | MaximumHoleEdges=13        | coast and lakes
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  a
 what the boundary cut out, filled | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  a
 most points inserted              | MaximumNumberOfInsertedPoints=20, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  a
-most points expected              | MaximumNumberOfExpectedPoints=2000 | coast and lakes              | s  s  s  s  s  s  a
+most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  a
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  a
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  a
 holes of an edge limit            | Delaunay.MaximumEdgeLength=2.2 | points                       | s  s  s  s  s  s  a

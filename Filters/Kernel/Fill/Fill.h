@@ -135,8 +135,8 @@ struct FillResult
  *                    returns it
  * @param[in] points  the same points with their elevations
  * @param[in] holes   from FindHoles(), OpenLongTriangles(); FillResult::Found replaces them
- * @throws Error of CheckEffort(), before any hole is filled; Aborted; std::bad_alloc: which holes fail
- *         does not depend on the free memory
+ * @throws Error of CheckEffort(), before any hole is filled; Aborted; std::bad_alloc: which holes
+ *         fail does not depend on the free memory
  */
 FillResult FillHoles(
   const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options);
@@ -167,8 +167,8 @@ std::vector<HoleNeed> NeedsOfHoles(
  * @param[in] needs           of all holes of the whole surface
  * @param[in] numberOfPoints  of the whole surface
  * @throws Error if more new points are expected than MaximumExpectedPoints; if this is 0, than ten
- *         times the surface's points and more than a million. It names a spacing that would do. No error
- *         if MaximumInsertedPoints is no larger: then large holes fail. The same if one hole takes
+ *         times the surface's points and more than a million. It names a spacing that would do. No
+ *         error if MaximumInsertedPoints is no larger: then large holes fail. The same if one hole takes
  *         more than MemoryOfHole.
  */
 void CheckEffort(

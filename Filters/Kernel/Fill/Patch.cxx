@@ -877,12 +877,13 @@ EdgeLengths MeasureEdges(const Mesh& mesh, const Holes& holes, Index hole)
 
 /**
  * The spacing that each edge asks for: its length. In a region of lines, whose points are mostly
- * inside, it follows the gaps beside them, where these are wide.
+ * inside, it follows the gaps beside them, where these are wide; but not wider than the region is.
  */
-EdgeLengths SpacingsOfEdges(const Holes& holes, Index hole, const EdgeLengths& lengths)
+EdgeLengths SpacingsOfEdges(
+  const Holes& holes, Index hole, const EdgeLengths& lengths, double widthOfRegion)
 {
   EdgeLengths spacings = lengths;
-  if (lengths.Inner.size() <= lengths.Boundary.size())
+  if (!holes.IsOfLines(hole))
   {
     return spacings;
   }
@@ -890,7 +891,8 @@ EdgeLengths SpacingsOfEdges(const Holes& holes, Index hole, const EdgeLengths& l
   const auto raise = [&](Index a, Index b) {
     if (*next > 0.0 && *next <= holes.LongestEdge)
     {
-      *next = std::max(*next, LeastSpacingInGap * std::min(holes.Gaps[a], holes.Gaps[b]));
+      const double gap = std::min({ holes.Gaps[a], holes.Gaps[b], widthOfRegion });
+      *next = std::max(*next, LeastSpacingInGap * gap);
     }
     ++next;
   };
@@ -944,9 +946,9 @@ PatchPlan PlanPatch(const Mesh& mesh, const VertexStars* stars, const Holes& hol
 {
   PatchPlan plan;
   const EdgeLengths lengths = MeasureEdges(mesh, holes, hole);
-  const EdgeLengths spacings = SpacingsOfEdges(holes, hole, lengths);
   const double edges = static_cast<double>(lengths.Boundary.size() + lengths.Inner.size());
   const double perimeter = std::accumulate(lengths.Boundary.begin(), lengths.Boundary.end(), 0.0);
+  const EdgeLengths spacings = SpacingsOfEdges(holes, hole, lengths, 2.0 * area / perimeter);
   if (spacing > 0.0)
   {
     plan.Spacing = spacing;

@@ -18,12 +18,13 @@
  *           one shifted by half a step, so that triangles are nearly equilateral. The default
  *           spacing is the mean length of the boundary's edges [Nguyen, eq. 1].
  * In a region, the mean is that of all edges, of the boundary and inside, that are not long: those
- * along the surface's own border may be. (It is the limit where all are.) In a region of lines, which
- * has more inner edges than boundary edges, an edge counts as at least a tenth of the gap beside it
- * (Holes::Gaps): the spacing follows the gap, not the distance of points along lines. Long edges count in
- * Graded, which so makes points sparser towards a long border, and away from lines; the spacing at
- * a point inside is the mean length of the inner edges there. With Nodes, inner edges are not kept
- * as such: those between neighbouring nodes come by themselves, longer ones get a node inside.
+ * along the surface's own border may be. (It is the limit where all are.) In a region of lines,
+ * which has more inner edges than boundary edges, an edge counts as at least a tenth of the gap beside it
+ * (Holes::Gaps; no more than the region's mean width): the spacing follows the gap, not the
+ * distance of points along lines. Long edges count in Graded, which so makes points sparser towards a long
+ * border, and away from lines; the spacing at a point inside is the mean length of the inner edges
+ * there. With Nodes, inner edges are not kept as such: those between neighbouring nodes come by
+ * themselves, longer ones get a node inside.
  *
  * The passes:
  *   1. Nodes and Even: place the points, at least 0.6 spacings, or 0.4 lattice steps, from the

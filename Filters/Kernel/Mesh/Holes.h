@@ -62,8 +62,8 @@ struct Holes
   std::vector<Index> RegionOf; ///< one a triangle: its region's number as a hole, or None
   double LongestEdge = 0.0;    ///< the length above which edges are long
   /**
-   * One a vertex: how far regions reach from the edges there that are not long, as the space beside a
-   * line does: the largest height over such an edge of a long triangle; 0 without any.
+   * One a vertex, if a region is of lines, else empty: how far the next line is, by the largest
+   * height of the long triangles there, over their shortest edges, less twice the way from there.
    */
   std::vector<double> Gaps;
 
@@ -98,6 +98,13 @@ struct Holes
 
   Index NumberOfRegions() const { return static_cast<Index>(this->InnerOffsets.size()) - 1; }
   bool IsRegion(Index hole) const { return hole >= this->Count() - this->NumberOfRegions(); }
+  /** Whether a hole is a region with more inner edges than edges of its border, as of lines. */
+  bool IsOfLines(Index hole) const
+  {
+    const Index region = hole - (this->Count() - this->NumberOfRegions());
+    return region >= 0 &&
+      this->InnerOffsets[region + 1] - this->InnerOffsets[region] > this->NumberOfEdges(hole);
+  }
   /** Calls visit(a, b) for the inner edges of a hole that is a region, else not at all. */
   template <typename Visitor>
   void VisitInnerEdges(Index hole, Visitor&& visit) const

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LongTriangles.h"
 
+#include "VertexStars.h"
 #include "Kernel/Base/Base.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <queue>
 #include <utility>
 
 namespace elevation
@@ -14,6 +16,9 @@ namespace elevation
 
 namespace
 {
+/** Of a gap, per distance from the point that has it: ten times the growth of spacings (Patch.h). */
+constexpr double DecayOfGaps = 2.0;
+
 /** One run; the members carry data between its passes. */
 class RegionFinder
 {
@@ -35,8 +40,8 @@ public:
     }
     this->TraceBorders(Part(progress, 0.5, 0.7));
     this->FindRims();
-    this->MeasureGaps();
-    this->CollectInnerEdges(Part(progress, 0.7, 1.0));
+    this->CollectInnerEdges(Part(progress, 0.7, 0.9));
+    this->MeasureGaps(Part(progress, 0.9, 1.0));
     return true;
   }
 
@@ -182,30 +187,6 @@ private:
     }
   }
 
-  /** The largest of heights does not depend on the order of triangles. */
-  void MeasureGaps()
-  {
-    const Mesh& mesh = this->Surface;
-    std::vector<double>& gaps = this->Result.Gaps;
-    gaps.assign(mesh.NumberOfPoints(), 0.0);
-    for (const Index h : Counted(mesh.NumberOfHalfEdges()))
-    {
-      const Point2& a = mesh.PointOf(mesh.Origin(h));
-      const Point2& b = mesh.PointOf(mesh.Destination(h));
-      if (this->RegionAt(h) == None || !this->Limit.IsShort(a, b))
-      {
-        continue;
-      }
-      const Point2& c = mesh.PointOf(mesh.Apex(h));
-      const double length = std::hypot(b.X - a.X, b.Y - a.Y);
-      const double height = (b.X - a.X) / length * (c.Y - a.Y) - (b.Y - a.Y) / length * (c.X - a.X);
-      for (const Index end : { mesh.Origin(h), mesh.Destination(h) })
-      {
-        gaps[end] = std::max(gaps[end], height);
-      }
-    }
-  }
-
   struct InnerEdge
   {
     Index Region;
@@ -257,6 +238,91 @@ private:
         this->Result.InnerEnds.push_back(edges[i].High);
       }
       this->Result.InnerOffsets.push_back(static_cast<Index>(i));
+    }
+  }
+
+  /** Only if there are lines. The largest of values does not depend on the order of triangles. */
+  void MeasureGaps(const Progress& progress)
+  {
+    bool areLines = false;
+    for (Index region = 0; region < this->NumberOfRegions; ++region)
+    {
+      areLines = areLines || this->Result.IsOfLines(this->FirstRegion + region);
+    }
+    if (!areLines)
+    {
+      return;
+    }
+    this->Result.Gaps.assign(this->Surface.NumberOfPoints(), 0.0);
+    for (const Index t : Counted(this->Surface.NumberOfTriangles()))
+    {
+      if (this->Result.RegionOf[t] != None)
+      {
+        const double height = this->LargestHeight(t);
+        for (Index h = 3 * t; h < 3 * t + 3; ++h)
+        {
+          double& gap = this->Result.Gaps[this->Surface.Origin(h)];
+          gap = std::max(gap, height);
+        }
+      }
+    }
+    this->SpreadGaps(progress);
+  }
+
+  /** Over the shortest edge of a triangle. */
+  double LargestHeight(Index t) const
+  {
+    double height = 0.0;
+    for (Index h = 3 * t; h < 3 * t + 3; ++h)
+    {
+      const Point2& a = this->Surface.PointOf(this->Surface.Origin(h));
+      const Point2& b = this->Surface.PointOf(this->Surface.Destination(h));
+      const Point2& c = this->Surface.PointOf(this->Surface.Apex(h));
+      const double length = std::hypot(b.X - a.X, b.Y - a.Y);
+      height =
+        std::max(height, (b.X - a.X) / length * (c.Y - a.Y) - (b.Y - a.Y) / length * (c.X - a.X));
+    }
+    return height;
+  }
+
+  /** Of a line that wavers, many points have flat triangles only: they take the gap from others. */
+  void SpreadGaps(const Progress& progress)
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<double>& gaps = this->Result.Gaps;
+    const VertexStars stars(mesh, progress);
+    std::priority_queue<std::pair<double, Index>> queue;
+    for (Index v = 0; v < mesh.NumberOfPoints(); ++v)
+    {
+      if (gaps[v] > 0.0)
+      {
+        queue.emplace(gaps[v], v);
+      }
+    }
+    StepCount steps;
+    while (!queue.empty())
+    {
+      steps.Add();
+      ReportStep(progress, steps.Count(), 8 * gaps.size());
+      const auto [gap, v] = queue.top();
+      queue.pop();
+      const auto spread = [&, from = gap, p = mesh.PointOf(v)](Index w) {
+        const Point2& q = mesh.PointOf(w);
+        const double left = from - DecayOfGaps * std::hypot(q.X - p.X, q.Y - p.Y);
+        if (left > gaps[w])
+        {
+          gaps[w] = left;
+          queue.emplace(left, w);
+        }
+      };
+      if (gap == gaps[v])
+      {
+        stars.Visit(mesh, v, [&](Index h) {
+          spread(mesh.Destination(h));
+          spread(mesh.Apex(h));
+          return true;
+        });
+      }
     }
   }
 

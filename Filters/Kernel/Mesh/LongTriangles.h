@@ -23,7 +23,7 @@
  * Regions are in the order of their first triangles. Nothing else depends on the order of points
  * and triangles. Lengths are compared as in EdgeLimit.h.
  *
- * Cost: linear, apart from sorting the inner edges.
+ * Cost: linear, apart from sorting the inner edges and the gaps.
  */
 #ifndef elevation_Mesh_LongTriangles_h
 #define elevation_Mesh_LongTriangles_h

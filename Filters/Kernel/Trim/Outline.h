@@ -27,7 +27,7 @@ struct ExtractOptions
    * The largest gap that is still surface, in local spacings; 0: from the data.
    */
   double GapTolerance = 0.0;
-  /** The steps of a grid, some of whose nodes are missing; not set: none. Its origin plays no part. */
+  /** The steps of a grid, some of whose nodes are missing; not set: none. The origin is not used. */
   Lattice Grid;
   /** Threads to use; 0: one per core. The result is the same. */
   int NumberOfThreads = 1;

@@ -458,6 +458,7 @@ TEST(Fill, FailsASpacingBelowThePrecisionOfTheCoordinates)
   EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled);
   ExpectPatchesFit(run, 1e-12);
   options.Spacing = 1e-7;
+  options.MaximumInsertedPoints = 1000000; // so that the hole fails, not all
   run = Fill(mesh, options);
   EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Failed);
 }
@@ -661,7 +662,7 @@ TEST(Fill, RefusesMoreThanTenTimesThePointsOfTheInput)
 TEST(Fill, NamesASpacingThatWouldDo)
 {
   const Mesh mesh = Draw({ "########", "# ##   #", "####   #", "########" });
-  for (const Index most : { 7, 40, 1000, 30000 })
+  for (const Index most : { 40, 1000, 30000 })
   {
     FillOptions options;
     options.Spacing = 1e-4;

@@ -198,12 +198,12 @@ TEST(Regions, BetweenLinesAreFilledByTheGapsNotByThePointsAlongThem)
   EXPECT_LT(some.Patches.NumberOfPoints(), 3 * sparse.NumberOfPoints());
   EXPECT_GT(some.Patches.NumberOfPoints(), 5 * 400 / 4); // no fewer than triangles of half a gap
   EXPECT_NEAR(some.Patches.Reports[0].Spacing, 10.0, 1.0);
-  const Mesh sparser = Delaunay(Lines(5, 6, 1600, 400.0, 0.2));
+  const Mesh sparser = Delaunay(Lines(5, 6, 800, 400.0, 0.2));
   const Outcome fewer = Fill(sparser, FillOptions(), Slope, 1.5);
   ExpectRegionsFit(fewer);
   EXPECT_NEAR(fewer.Patches.Reports[0].Spacing, 40.0, 4.0);
-  // Four times the gaps and four times the length: about as many.
-  EXPECT_LT(fewer.Patches.NumberOfPoints(), 2 * some.Patches.NumberOfPoints());
+  // Eight times the area, at four times the spacing.
+  EXPECT_LT(fewer.Patches.NumberOfPoints(), some.Patches.NumberOfPoints());
 }
 
 TEST(Regions, OfLinesCloseTogetherKeepTheSpacingAlongThem)
@@ -229,10 +229,15 @@ TEST(Regions, OfVoidsKeepTheSpacingOfTheirRim)
       points.push_back(p);
     }
   }
-  const Outcome run = Fill(Delaunay(points), FillOptions(), Slope, 5.0);
-  ASSERT_EQ(run.Found.NumberOfRegions(), 1);
-  EXPECT_LT(run.Patches.Reports[0].Spacing, 1.5);
-  EXPECT_GT(run.Patches.NumberOfPoints(), 1500);
+  const double longest = 4.0;
+  const Outcome run = Fill(Delaunay(points), FillOptions(), Slope, longest);
+  bool isThere = false;
+  for (const HoleReport& report : run.Patches.Reports)
+  {
+    isThere = isThere || report.Size > 60.0;
+    EXPECT_LE(report.Spacing, longest); // less than a tenth of the void
+  }
+  EXPECT_TRUE(isThere);
 }
 
 TEST(Regions, CountPointsInside)
@@ -268,7 +273,7 @@ TEST(Regions, TakePointsInsideForKnown)
         EXPECT_NEAR(p[2], 5.0, 1.5) << int(method);
       }
     }
-    EXPECT_GT(near, 20);
+    EXPECT_GT(near, 5);
   }
 }
 
