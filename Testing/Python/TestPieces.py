@@ -869,7 +869,10 @@ class Command(Program):
         rings = Filled.rings(None, points)[:3]
         text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
         self.file("lakes.txt", "\n".join(text_of))
-        options = ("--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "0.001", "--open-edge-length", "0")
+        options = (
+            "--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "0.001",
+            "--open-edge-length", "0", "--maximum-expected-points", "1000000000000",
+        )
         told = []
         for way in ("--no-picture", "--pieces=4"):
             done = self.call(name, *options, way, "--report")
