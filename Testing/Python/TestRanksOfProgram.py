@@ -107,7 +107,8 @@ class OnRanks(Program):
         self.check_same(3, "a.txt", "--duplicates", "keep-highest")
 
     def test_several_surfaces_in_a_table(self):
-        rows = "".join(f"{name},{x},{y},{z + x * y}\n" for name, z in (("Top, a", 0), ("Base", -900))
+        rows = "".join(f"\"{name}\",{x},{y},{z + x * y}\n"
+                       for name, z in (("Top, a", 0), ("Base", -900))
                        for x in range(30) for y in range(20))
         self.file("h.csv", "name,x,y,z\n" + rows)
         alone, together = (self.on(ranks, "h.csv", "--no-picture") for ranks in (0, 3))
