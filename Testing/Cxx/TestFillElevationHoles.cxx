@@ -413,7 +413,15 @@ void TestUnlimitedSpacing()
     fill->SetInputData(input);
     fill->SetSpacing(spacing);
     fill->Update();
-    Check(!observer->GetError(), "an extreme spacing is no error");
+    // One that leaves the range of numbers fails each hole, whatever it would take.
+    const bool isRefused = spacing < 1.0 && spacing > 1e-150;
+    Check(observer->GetError() == isRefused, "a spacing that takes too much is refused");
+    Check(!isRefused || observer->GetErrorMessage().find("A Spacing of ") != std::string::npos,
+      "with one that would do");
+    observer->Clear();
+    fill->SetMaximumNumberOfInsertedPoints(1000000); // no more than what is refused: holes fail
+    fill->Update();
+    Check(!observer->GetError(), "with few points to insert, an extreme spacing is no error");
     Check(observer->GetWarning() == (spacing < 1.0), "holes that take too much warn");
     Check(fill->GetNumberOfHoles() == 3, "all holes are listed");
     Check(fill->GetNumberOfFilledHoles() == (spacing < 1.0 ? 0 : 3), "and those possible filled");
