@@ -4,6 +4,7 @@
 // Composite inputs: each block is a surface of its own, the outputs have the structure of the
 // input, counts are sums, messages name the block, and progress only rises.
 #include "Check.h"
+#include "Inputs.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -55,25 +56,6 @@ vtkSmartPointer<vtkPolyData> MakeCloud(double x0, int duplicates)
   place->InsertNextValue(static_cast<vtkIdType>(x0));
   cloud->GetFieldData()->AddArray(place);
   return cloud;
-}
-
-/** A closed ring around a place. */
-vtkSmartPointer<vtkPolyData> MakeRing(double x, double radius)
-{
-  auto ring = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> polygons;
-  constexpr int count = 9;
-  polygons->InsertNextCell(count);
-  for (int i = 0; i < count; ++i)
-  {
-    const double angle = 2.0 * 3.14159265358979 * i / count;
-    polygons->InsertCellPoint(points->InsertNextPoint(
-      x + radius * std::cos(angle), 9.0 + radius * std::sin(angle), 1.0));
-  }
-  ring->SetPoints(points);
-  ring->SetPolys(polygons);
-  return ring;
 }
 
 vtkPolyData* BlockOf(vtkAlgorithm* filter, unsigned int i, int port = 0)
@@ -182,19 +164,19 @@ void TestSecondInput()
   vtkNew<vtkGridDelaunay2D> delaunay;
   delaunay->SetInputData(MakeCloud(0.0, 0));
   vtkNew<vtkMultiBlockDataSet> rings;
-  rings->SetBlock(0, MakeRing(8.0, 7.0));
+  rings->SetBlock(0, RingAround(8.0, 9.0, 9, [](double) { return 7.0; }));
   vtkNew<vtkTrimOutwardTriangles> trim;
   trim->SetInputConnection(delaunay->GetOutputPort());
   trim->SetInputDataObject(1, rings);
   trim->Update();
   vtkNew<vtkTrimOutwardTriangles> plain;
   plain->SetInputConnection(delaunay->GetOutputPort());
-  plain->SetBoundaryData(MakeRing(8.0, 7.0));
+  plain->SetBoundaryData(RingAround(8.0, 9.0, 9, [](double) { return 7.0; }));
   plain->Update();
   Check(trim->GetNumberOfOutwardTriangles() == plain->GetNumberOfOutwardTriangles() &&
       trim->GetOutput(2)->GetNumberOfLines() == 1 && trim->GetOutput()->GetNumberOfPolys() > 0,
     "a block is a boundary");
-  rings->SetBlock(2, MakeRing(8.0, 3.0));
+  rings->SetBlock(2, RingAround(8.0, 9.0, 9, [](double) { return 3.0; }));
   trim->Update();
   Check(trim->GetOutput(2)->GetNumberOfLines() == 2 &&
       trim->GetNumberOfOutwardTriangles() > plain->GetNumberOfOutwardTriangles(),
@@ -221,7 +203,7 @@ void TestMessages()
   blocks->CopyStructure(vtkMultiBlockDataSet::SafeDownCast(delaunay->GetOutputDataObject(0)));
   blocks->SetBlock(0, BlockOf(delaunay, 0));
   blocks->SetBlock(1, MakeCloud(50.0, 0));
-  blocks->SetBlock(2, MakeRing(8.0, 3.0)); // a polygon of nine points
+  blocks->SetBlock(2, RingAround(8.0, 9.0, 9, [](double) { return 3.0; })); // of nine points
   vtkNew<vtkTest::ErrorObserver> observer;
   vtkNew<vtkFillElevationHoles> fill;
   fill->AddObserver(vtkCommand::ErrorEvent, observer);

@@ -6,6 +6,7 @@
 // not needed; nothing leaks, and the next run has the usual result.
 #include "Check.h"
 #include "FailingMemory.h"
+#include "Inputs.h"
 #include "SameMesh.h"
 #include "SheetOfSquares.h"
 
@@ -15,7 +16,6 @@
 #include "vtkFieldData.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
-#include "vtkMinimalStandardRandomSequence.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -51,25 +51,13 @@ vtkSmartPointer<vtkDoubleArray> MakeValues(vtkIdType count)
 /** Some scattered points; one is there twice, one is not finite. */
 vtkSmartPointer<vtkPolyData> MakeCloud()
 {
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  random->SetSeed(41);
-  const auto next = [&random]() {
-    random->Next();
-    return random->GetRangeValue(0.0, 10.0);
-  };
-  vtkNew<vtkPoints> points;
-  points->SetDataType(VTK_DOUBLE);
-  for (int i = 0; i < 40; ++i)
-  {
-    const double x = next(), y = next();
-    points->InsertNextPoint(x, y, 0.1 * x * y);
-  }
+  auto cloud =
+    RandomCloud(41, 40, 10.0, VTK_DOUBLE, [](double x, double y) { return 0.1 * x * y; });
+  vtkPoints* const points = cloud->GetPoints();
   double p[3];
   points->GetPoint(7, p);
   points->InsertNextPoint(p);
   points->InsertNextPoint(1.0, std::numeric_limits<double>::infinity(), 0.0);
-  auto cloud = vtkSmartPointer<vtkPolyData>::New();
-  cloud->SetPoints(points);
   cloud->GetPointData()->SetScalars(MakeValues(points->GetNumberOfPoints()));
   return cloud;
 }

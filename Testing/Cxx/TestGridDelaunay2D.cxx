@@ -4,6 +4,7 @@
 // The pipeline side of vtkGridDelaunay2D, by numbers: what passes, what is counted and listed, what
 // errors and aborts leave behind, and that the input is never written.
 #include "Check.h"
+#include "Inputs.h"
 #include "MeshRules.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -13,7 +14,6 @@
 #include "vtkIdList.h"
 #include "vtkIdTypeArray.h"
 #include "vtkIntArray.h"
-#include "vtkMinimalStandardRandomSequence.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -177,19 +177,7 @@ void TestTooFewPoints()
 
 vtkSmartPointer<vtkPolyData> RandomPoints(int count)
 {
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  random->SetSeed(5);
-  vtkNew<vtkPoints> points;
-  for (int i = 0; i < count; ++i)
-  {
-    const double x = random->GetValue();
-    random->Next();
-    points->InsertNextPoint(x, random->GetValue(), 0.0);
-    random->Next();
-  }
-  auto input = vtkSmartPointer<vtkPolyData>::New();
-  input->SetPoints(points);
-  return input;
+  return RandomCloud(5, count, 1.0, VTK_FLOAT, [](double, double) { return 0.0; });
 }
 
 std::vector<vtkIdType> Corners(vtkPolyData* surface)

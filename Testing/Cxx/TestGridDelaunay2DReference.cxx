@@ -5,11 +5,11 @@
 // same set of triangles wherever vtkDelaunay2D is right. Where it is not, the test says so: it
 // leaves out thin triangles along the convex hull, even with a large Offset, and parts of a lattice
 // with a concave outline. Ours must then have all of its triangles, and cover the hull.
+#include "Inputs.h"
 #include "MeshRules.h"
 #include "vtkCellArray.h"
 #include "vtkDelaunay2D.h"
 #include "vtkGridDelaunay2D.h"
-#include "vtkMinimalStandardRandomSequence.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -64,25 +64,9 @@ double AreaOf(vtkPolyData* mesh)
 int TestGridDelaunay2DReference(int, char*[])
 {
   int failures = 0;
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  random->SetSeed(11);
-  const auto next = [&random]() {
-    const double value = random->GetValue();
-    random->Next();
-    return value;
-  };
-
   for (const int count : { 4, 20, 300, 3000 })
   {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    for (int i = 0; i < count; ++i)
-    {
-      const double x = next();
-      points->InsertNextPoint(x, next(), 0.0);
-    }
-    vtkNew<vtkPolyData> input;
-    input->SetPoints(points);
+    const auto input = RandomCloud(11, count, 1.0, VTK_DOUBLE, [](double, double) { return 0.0; });
     vtkNew<vtkGridDelaunay2D> ours;
     ours->SetLatticeModeToOff(); // the rules are checked by the coordinates
     ours->SetInputData(input);

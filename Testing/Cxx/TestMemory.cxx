@@ -5,11 +5,10 @@
 #include "Check.h"
 #include "FailingMemory.h"
 
+#include "Inputs.h"
 #include "vtkCallbackCommand.h"
 #include "vtkGridDelaunay2D.h"
-#include "vtkMinimalStandardRandomSequence.h"
 #include "vtkNew.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTestErrorObserver.h"
 
@@ -17,20 +16,7 @@
 
 int TestMemory(int, char*[])
 {
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  random->SetSeed(23);
-  const auto next = [&random]() {
-    random->Next();
-    return random->GetRangeValue(0.0, 100.0);
-  };
-  while (points->GetNumberOfPoints() < 20000)
-  {
-    const double x = next();
-    points->InsertNextPoint(x, next(), 1.0);
-  }
-  vtkNew<vtkPolyData> cloud;
-  cloud->SetPoints(points);
+  const auto cloud = RandomCloud(23, 20000, 100.0, VTK_FLOAT, [](double, double) { return 1.0; });
   vtkNew<vtkGridDelaunay2D> delaunay;
   delaunay->SetInputData(cloud);
   delaunay->SetMaximumEdgeLength(0.5); // leaves some triangles

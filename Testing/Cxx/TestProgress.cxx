@@ -7,13 +7,11 @@
 // that takes, and a stop, is told by BenchmarkProgress.
 #include "Check.h"
 
+#include "Inputs.h"
 #include "vtkCallbackCommand.h"
-#include "vtkCellArray.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
-#include "vtkMinimalStandardRandomSequence.h"
 #include "vtkNew.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkTrimOutwardTriangles.h"
@@ -101,46 +99,13 @@ void CheckAborts(vtkPolyDataAlgorithm* filter, const std::string& name)
   }
 }
 
-vtkSmartPointer<vtkPolyData> MakeCloud(int count)
+vtkSmartPointer<vtkPolyData> MakeCloud(vtkIdType count)
 {
-  auto cloud = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkMinimalStandardRandomSequence> random;
-  random->SetSeed(19);
-  const auto next = [&random]() {
-    random->Next();
-    return random->GetRangeValue(0.0, 1000.0);
-  };
-  while (points->GetNumberOfPoints() < count)
-  {
-    const double x = next(), y = next();
-    if (std::hypot(x - 400.0, y - 600.0) > 30.0)
-    {
-      points->InsertNextPoint(x, y, std::sin(0.01 * x));
-    }
-  }
-  cloud->SetPoints(points);
-  return cloud;
+  return RandomCloud(19, count, 1000.0, VTK_FLOAT, [](double x, double y) {
+    return std::hypot(x - 400.0, y - 600.0) > 30.0 ? std::sin(0.01 * x) : std::nan("");
+  });
 }
 
-vtkSmartPointer<vtkPolyData> MakeRing()
-{
-  auto ring = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> polygons;
-  constexpr int count = 2000;
-  polygons->InsertNextCell(count);
-  for (int i = 0; i < count; ++i)
-  {
-    const double angle = 2.0 * 3.14159265358979 * i / count;
-    const double radius = 450.0 + 40.0 * std::sin(9.0 * angle);
-    polygons->InsertCellPoint(points->InsertNextPoint(
-      500.0 + radius * std::cos(angle), 500.0 + radius * std::sin(angle), 0.0));
-  }
-  ring->SetPoints(points);
-  ring->SetPolys(polygons);
-  return ring;
-}
 /** A limit that leaves nothing: the advice, for which all is triangulated again, has its share. */
 void CheckAdvice()
 {
@@ -171,7 +136,8 @@ void CheckAdvice()
 int TestProgress(int, char*[])
 {
   CheckAdvice();
-  const auto ring = MakeRing();
+  const auto ring = RingAround(
+    500.0, 500.0, 2000, [](double angle) { return 450.0 + 40.0 * std::sin(9.0 * angle); });
   vtkNew<vtkGridDelaunay2D> delaunay;
   delaunay->SetInputData(MakeCloud(400000));
   delaunay->SetNumberOfThreads(1);

@@ -12,9 +12,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -125,36 +128,86 @@ private:
   std::vector<std::pair<std::string, double>> Rows;
 };
 
-/**
- * Reads a command line.
- * @param isFlag     isFlag(option): takes an option without a value; false if it is none
- * @param takeValue  takeValue(option, value): the same with one
- * @return false when the help was asked for
- */
-template <typename IsFlag, typename TakeValue>
-bool ReadArguments(int argc, char* argv[], const IsFlag& isFlag, const TakeValue& takeValue)
+/** The options of a command line, each with the variable that it sets. */
+class OptionTable
 {
-  for (int i = 1; i < argc; ++i)
+public:
+  using Take = std::function<void(const std::string& value)>;
+
+  void Value(const std::string& option, const Take& take) { this->Rows[option] = { true, take }; }
+  void Flag(const std::string& option, const Take& take) { this->Rows[option] = { false, take }; }
+  void Flag(const std::string& option, bool& variable, bool value = true)
   {
-    const std::string option = argv[i];
-    if (option == "--help" || option == "-h")
-    {
-      return false;
-    }
-    if (isFlag(option))
-    {
-      continue;
-    }
-    if (i + 1 >= argc)
-    {
-      throw UsageError(option + " is no option, or needs a value; --help lists them");
-    }
-    if (!takeValue(option, std::string(argv[++i])))
-    {
-      throw UsageError("there is no option \"" + option + "\"; --help lists them");
-    }
+    this->Flag(option, [&variable, value](const std::string&) { variable = value; });
   }
-  return true;
+  void Text(const std::string& option, std::string& variable)
+  {
+    this->Value(option, [&variable](const std::string& value) { variable = value; });
+  }
+  template <typename T>
+  void Number(const std::string& option, T& variable, std::uint64_t least, std::uint64_t most)
+  {
+    this->Value(option, [=, &variable](const std::string& value) {
+      variable = static_cast<T>(ToNumber(option, value, least, most));
+    });
+  }
+  /** A list of them. */
+  template <typename T>
+  void Number(
+    const std::string& option, std::vector<T>& variable, std::uint64_t least, std::uint64_t most)
+  {
+    this->Value(option, [=, &variable](const std::string& value) {
+      variable.clear();
+      for (const std::string& part : Split(value))
+      {
+        variable.push_back(static_cast<T>(ToNumber(option, part, least, most)));
+      }
+    });
+  }
+
+  /** @return false when the help was asked for */
+  bool Read(int argc, char* argv[]) const
+  {
+    for (int i = 1; i < argc; ++i)
+    {
+      const std::string option = argv[i];
+      if (option == "--help" || option == "-h")
+      {
+        return false;
+      }
+      const auto row = this->Rows.find(option);
+      if (row == this->Rows.end())
+      {
+        throw UsageError("there is no option \"" + option + "\"; --help lists them");
+      }
+      const auto& [needsValue, take] = row->second;
+      if (needsValue && i + 1 >= argc)
+      {
+        throw UsageError(option + " needs a value; --help tells which");
+      }
+      take(needsValue ? argv[++i] : "");
+    }
+    return true;
+  }
+
+private:
+  std::map<std::string, std::pair<bool, Take>> Rows;
+};
+
+/** The larger data sets of this machine. */
+inline std::vector<std::string> ExtraFiles()
+{
+  const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
+  if (!folder || !*folder)
+  {
+    throw UsageError("--extra: ELEVATION_SURFACE_EXTRA_DATA is not set");
+  }
+  const std::vector<std::string> files = FilesOf(folder);
+  if (files.empty())
+  {
+    throw UsageError(std::string("--extra: there is no data set in ") + folder);
+  }
+  return files;
 }
 
 /** The exit code of a program: that of run(), 2 after a wrong option, 1 after another error. */

@@ -58,7 +58,7 @@ other.
                     so are N copies of it, at once: what the machine gives to so many threads
   --seed N          seed of the generators; default 1
   --file FILE       a .f64 (little-endian doubles x y z) or .vtp file; may be given several times
-  --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA, where that is set
+  --extra           all such files of the folder ELEVATION_SURFACE_EXTRA_DATA
   --repeats N       timed runs of each code; default 5
   --time-limit S    seconds a code may take for its trial, and for all its timed runs together (it
                     is then left out of further rounds); default 60, 0 is no limit
@@ -108,18 +108,6 @@ struct Options
   std::string JSONFile;
 };
 
-void AddExtraFiles(std::vector<std::string>& files)
-{
-  const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
-  if (!folder || !*folder)
-  {
-    std::fprintf(stderr, "--extra: skipped, ELEVATION_SURFACE_EXTRA_DATA is not set\n");
-    return;
-  }
-  const std::vector<std::string> found = FilesOf(folder);
-  files.insert(files.end(), found.begin(), found.end());
-}
-
 /** @throws UsageError when there is no such set, or the processor lacks it */
 elevation::InstructionSet ToInstructions(const std::string& name)
 {
@@ -141,106 +129,39 @@ elevation::InstructionSet ToInstructions(const std::string& name)
 bool ReadOptions(int argc, char* argv[], Options& options)
 {
   constexpr std::uint64_t any = 1000000000000000000u;
-  bool isExtra = false;
-  for (int i = 1; i < argc; ++i)
-  {
-    const std::string option = argv[i];
-    const auto value = [&]() {
-      if (i + 1 >= argc)
-      {
-        throw UsageError(option + " needs a value");
-      }
-      return std::string(argv[++i]);
-    };
-    if (option == "--help" || option == "-h")
+  OptionTable table;
+  table.Value("--sets", [&](const std::string& list) { AddSets(list, options.Sets); });
+  table.Number("--points", options.Points, 10, elevation::MaximumNumberOfPoints);
+  table.Number("--threads", options.Threads, 0, 1024);
+  table.Number("--seed", options.Seed, 0, any);
+  table.Value("--file", [&](const std::string& file) { options.Files.push_back(file); });
+  table.Flag("--extra", [&](const std::string&) {
+    const std::vector<std::string> files = ExtraFiles();
+    options.Files.insert(options.Files.end(), files.begin(), files.end());
+  });
+  table.Number("--repeats", options.Repeats, 1, MaximumRepeats);
+  table.Number("--time-limit", options.TimeLimit, 0, 1000000);
+  table.Flag("--searches", options.UseSearches);
+  table.Value("--instructions", [&](const std::string& list) {
+    options.Instructions = Split(list);
+    std::for_each(options.Instructions.begin(), options.Instructions.end(), ToInstructions);
+    if (options.Instructions.size() > 3)
     {
-      return false;
+      throw UsageError("--instructions takes each set once");
     }
-    else if (option == "--sets")
-    {
-      AddSets(value(), options.Sets);
-    }
-    else if (option == "--points")
-    {
-      options.Points.clear();
-      for (const std::string& count : Split(value()))
-      {
-        options.Points.push_back(
-          static_cast<Index>(ToNumber(option, count, 10, elevation::MaximumNumberOfPoints)));
-      }
-    }
-    else if (option == "--threads")
-    {
-      options.Threads = static_cast<int>(ToNumber(option, value(), 0, 1024));
-    }
-    else if (option == "--seed")
-    {
-      options.Seed = ToNumber(option, value(), 0, any);
-    }
-    else if (option == "--file")
-    {
-      options.Files.push_back(value());
-    }
-    else if (option == "--extra")
-    {
-      isExtra = true;
-      AddExtraFiles(options.Files);
-    }
-    else if (option == "--repeats")
-    {
-      options.Repeats = static_cast<int>(ToNumber(option, value(), 1, MaximumRepeats));
-    }
-    else if (option == "--time-limit")
-    {
-      options.TimeLimit = static_cast<unsigned>(ToNumber(option, value(), 0, 1000000));
-    }
-    else if (option == "--searches")
-    {
-      options.UseSearches = true;
-    }
-    else if (option == "--instructions")
-    {
-      options.Instructions = Split(value());
-      std::for_each(options.Instructions.begin(), options.Instructions.end(), ToInstructions);
-      if (options.Instructions.size() > 3)
-      {
-        throw UsageError(option + " takes each set once");
-      }
-    }
-    else if (option == "--no-cgal")
-    {
-      options.UseCGAL = false;
-    }
-    else if (option == "--no-delaunay32")
-    {
-      options.UseDelaunay32 = false;
-    }
-    else if (option == "--vtk")
-    {
-      options.UseVTKAlways = true;
-    }
-    else if (option == "--no-vtk")
-    {
-      options.UseVTK = false;
-    }
-    else if (option == "--no-check")
-    {
-      options.Check = false;
-    }
-    else if (option == "--json")
-    {
-      options.JSONFile = value();
-    }
-    else
-    {
-      throw UsageError("there is no option \"" + option + "\"; --help lists them");
-    }
-  }
-  if (options.Sets.empty() && options.Files.empty() && !isExtra)
+  });
+  table.Flag("--no-cgal", options.UseCGAL, false);
+  table.Flag("--no-delaunay32", options.UseDelaunay32, false);
+  table.Flag("--vtk", options.UseVTKAlways);
+  table.Flag("--no-vtk", options.UseVTK, false);
+  table.Flag("--no-check", options.Check, false);
+  table.Text("--json", options.JSONFile);
+  const bool isToRun = table.Read(argc, argv);
+  if (options.Sets.empty() && options.Files.empty())
   {
     AddSets("L,D,U", options.Sets);
   }
-  return true;
+  return isToRun;
 }
 
 std::vector<PointSource> SourcesOf(const Options& options)
@@ -749,10 +670,6 @@ void WriteSet(std::ostream& json, const std::string& set, const Competitors& com
 int Run(const Options& options)
 {
   const std::vector<PointSource> sources = SourcesOf(options);
-  if (sources.empty()) // --extra alone, without a folder
-  {
-    return 0;
-  }
   const Competitors competitors = MakeCompetitors(options);
   std::ofstream json;
   if (!options.JSONFile.empty())

@@ -71,62 +71,23 @@ struct Options
 
 bool ReadOptions(int argc, char* argv[], Options& options)
 {
-  const auto isFlag = [&options](const std::string& option) {
-    options.Lattice = options.Lattice || option == "--lattice";
-    options.CGAL = options.CGAL && option != "--no-cgal";
-    return option == "--lattice" || option == "--no-cgal";
-  };
-  const auto takeValue = [&options](const std::string& option, const std::string& value) {
-    const auto number = [&](std::uint64_t least, std::uint64_t most) {
-      return static_cast<int>(ToNumber(option, value, least, most));
-    };
-    if (option == "--holes")
-    {
-      options.Holes = number(1, 1000000);
-    }
-    else if (option == "--least")
-    {
-      options.Least = number(1, 10000000);
-    }
-    else if (option == "--most")
-    {
-      options.Most = number(1, 10000000);
-    }
-    else if (option == "--points")
-    {
-      options.Points = number(0, 100000000);
-    }
-    else if (option == "--threads")
-    {
-      options.Threads = number(0, 1024);
-    }
-    else if (option == "--repeats")
-    {
-      options.Repeats = number(1, 101);
-    }
-    else if (option == "--seed")
-    {
-      options.Seed = ToNumber(option, value, 0, 1000000000);
-    }
-    else if (option == "--json")
-    {
-      options.JSONFile = value;
-    }
-    else
-    {
-      return false;
-    }
-    return true;
-  };
-  if (!ReadArguments(argc, argv, isFlag, takeValue))
-  {
-    return false;
-  }
+  OptionTable table;
+  table.Flag("--lattice", options.Lattice);
+  table.Flag("--no-cgal", options.CGAL, false);
+  table.Number("--holes", options.Holes, 1, 1000000);
+  table.Number("--least", options.Least, 1, 10000000);
+  table.Number("--most", options.Most, 1, 10000000);
+  table.Number("--points", options.Points, 0, 100000000);
+  table.Number("--threads", options.Threads, 0, 1024);
+  table.Number("--repeats", options.Repeats, 1, 101);
+  table.Number("--seed", options.Seed, 0, 1000000000);
+  table.Text("--json", options.JSONFile);
+  const bool isToRun = table.Read(argc, argv);
   if (options.Most < options.Least)
   {
     throw UsageError("--most must not be less than --least");
   }
-  return true;
+  return isToRun;
 }
 
 struct Disc

@@ -79,88 +79,33 @@ struct Options
 
 bool ReadOptions(int argc, char* argv[], Options& options)
 {
-  for (int i = 1; i < argc; ++i)
-  {
-    const std::string option = argv[i];
-    if (option == "--help" || option == "-h")
+  OptionTable table;
+  table.Flag("--made", options.Made);
+  table.Flag("--details", options.Details);
+  table.Flag("--extra", [&](const std::string&) {
+    const std::vector<std::string> files = ExtraFiles();
+    options.Files.insert(options.Files.end(), files.begin(), files.end());
+  });
+  table.Value("--file", [&](const std::string& file) { options.Files.push_back(file); });
+  table.Text("--csv", options.Csv);
+  table.Text("--reliability", options.Reliability);
+  table.Value("--shapes", [&](const std::string& list) {
+    const std::vector<std::string> all = Options().Shapes;
+    options.Shapes = Split(list);
+    for (const std::string& shape : options.Shapes)
     {
-      return false;
-    }
-    if (option == "--made")
-    {
-      options.Made = true;
-      continue;
-    }
-    if (option == "--details")
-    {
-      options.Details = true;
-      continue;
-    }
-    if (option == "--extra")
-    {
-      const char* folder = std::getenv("ELEVATION_SURFACE_EXTRA_DATA");
-      if (!folder || !*folder)
+      if (std::find(all.begin(), all.end(), shape) == all.end())
       {
-        throw UsageError("--extra: ELEVATION_SURFACE_EXTRA_DATA is not set");
-      }
-      for (const std::string& file : FilesOf(folder))
-      {
-        options.Files.push_back(file);
-      }
-      continue;
-    }
-    if (i + 1 >= argc)
-    {
-      throw UsageError(option + " is no option, or needs a value; --help lists them");
-    }
-    const std::string value = argv[++i];
-    if (option == "--file")
-    {
-      options.Files.push_back(value);
-    }
-    else if (option == "--csv")
-    {
-      options.Csv = value;
-    }
-    else if (option == "--reliability")
-    {
-      options.Reliability = value;
-    }
-    else if (option == "--shapes")
-    {
-      options.Shapes = Split(value);
-      for (const std::string& shape : options.Shapes)
-      {
-        if (shape != "disc" && shape != "strip" && shape != "blob" && shape != "island")
-        {
-          throw UsageError(
-            "there is no shape \"" + shape + "\"; there are: disc strip blob island");
-        }
+        throw UsageError("there is no shape \"" + shape + "\"; there are: disc strip blob island");
       }
     }
-    else if (option == "--points")
-    {
-      options.Points.clear();
-      for (const std::string& count : Split(value))
-      {
-        options.Points.push_back(static_cast<Index>(ToNumber(option, count, 1, 1000000)));
-      }
-    }
-    else if (option == "--holes")
-    {
-      options.Holes = static_cast<int>(ToNumber(option, value, 1, 10000));
-    }
-    else if (option == "--seed")
-    {
-      options.Seed = ToNumber(option, value, 0, 1000000000);
-    }
-    else
-    {
-      throw UsageError("there is no option \"" + option + "\"; --help lists them");
-    }
-  }
+  });
+  table.Number("--points", options.Points, 1, 1000000);
+  table.Number("--holes", options.Holes, 1, 10000);
+  table.Number("--seed", options.Seed, 0, 1000000000);
+  const bool isToRun = table.Read(argc, argv);
   options.Made = options.Made || options.Files.empty();
-  return true;
+  return isToRun;
 }
 
 /** Numbers in [0, 1), the same with every library. */
@@ -1246,8 +1191,7 @@ void Close(std::FILE* file, const std::string& path)
 
 int main(int argc, char* argv[])
 {
-  try
-  {
+  return ExitCode("BenchmarkFillAccuracy", [&]() {
     Options options;
     if (!ReadOptions(argc, argv, options))
     {
@@ -1293,15 +1237,5 @@ int main(int argc, char* argv[])
       std::printf("Better than Adaptive: %s\n", better.c_str());
     }
     return summary.IsWhole ? 0 : 1;
-  }
-  catch (const UsageError& error)
-  {
-    std::fprintf(stderr, "BenchmarkFillAccuracy: %s\n", error.what());
-    return 2;
-  }
-  catch (const std::exception& error)
-  {
-    std::fprintf(stderr, "BenchmarkFillAccuracy: %s\n", error.what());
-    return 1;
-  }
+  });
 }

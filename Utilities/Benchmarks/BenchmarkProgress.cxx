@@ -3,6 +3,7 @@
 //
 // How long the three filters are silent, and how long they take to stop. See README.md.
 #include "Arguments.h"
+#include "Inputs.h"
 #include "PolyDataOf.h"
 
 #include "vtkFillElevationHoles.h"
@@ -10,9 +11,7 @@
 #include "vtkTrimOutwardTriangles.h"
 
 #include "vtkCallbackCommand.h"
-#include "vtkCellArray.h"
 #include "vtkNew.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
@@ -117,26 +116,6 @@ void Measure(vtkPolyDataAlgorithm* filter, const std::string& name, int repeats,
   std::fflush(stdout);
 }
 
-/** A wavy coast in the unit square. */
-vtkSmartPointer<vtkPolyData> MakeCoast()
-{
-  auto coast = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> polygons;
-  constexpr int count = 2000;
-  polygons->InsertNextCell(count);
-  for (int i = 0; i < count; ++i)
-  {
-    const double angle = 2.0 * 3.14159265358979 * i / count;
-    const double radius = 0.45 + 0.04 * std::sin(9.0 * angle);
-    polygons->InsertCellPoint(
-      points->InsertNextPoint(0.5 + radius * std::cos(angle), 0.5 + radius * std::sin(angle), 0.0));
-  }
-  coast->SetPoints(points);
-  coast->SetPolys(polygons);
-  return coast;
-}
-
 void Run(const Options& options)
 {
   const auto generator = std::find_if(Generators().begin(), Generators().end(),
@@ -151,7 +130,8 @@ void Run(const Options& options)
     trim->SetInputConnection(delaunay->GetOutputPort());
     trim->SetNumberOfThreads(1);
   }
-  given->SetBoundaryData(MakeCoast());
+  given->SetBoundaryData(
+    RingAround(0.5, 0.5, 2000, [](double angle) { return 0.45 + 0.04 * std::sin(9.0 * angle); }));
   vtkNew<vtkFillElevationHoles> fill;
   fill->SetInputConnection(extracted->GetOutputPort());
   fill->SetNumberOfThreads(1);
@@ -173,33 +153,12 @@ int main(int argc, char* argv[])
 {
   return ExitCode("BenchmarkProgress", [&]() {
     Options options;
-    const bool isToRun = ReadArguments(
-      argc, argv, [](const std::string&) { return false; },
-      [&](const std::string& option, const std::string& value) {
-        if (option == "--points")
-        {
-          options.Points =
-            static_cast<Index>(ToNumber(option, value, 1000, elevation::MaximumNumberOfPoints));
-        }
-        else if (option == "--repeats")
-        {
-          options.Repeats = static_cast<int>(ToNumber(option, value, 1, 101));
-        }
-        else if (option == "--seed")
-        {
-          options.Seed = ToNumber(option, value, 0, 1000000000);
-        }
-        else if (option == "--json")
-        {
-          options.JSONFile = value;
-        }
-        else
-        {
-          return false;
-        }
-        return true;
-      });
-    if (!isToRun)
+    OptionTable table;
+    table.Number("--points", options.Points, 1000, elevation::MaximumNumberOfPoints);
+    table.Number("--repeats", options.Repeats, 1, 101);
+    table.Number("--seed", options.Seed, 0, 1000000000);
+    table.Text("--json", options.JSONFile);
+    if (!table.Read(argc, argv))
     {
       std::fputs(Usage, stdout);
       return 0;

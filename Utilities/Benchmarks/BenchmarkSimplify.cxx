@@ -76,63 +76,21 @@ std::vector<double> ToErrors(const std::string& list)
   return errors;
 }
 
-/** @return whether the option is known */
-bool ReadOption(const std::string& option, const std::string& value, Options& options)
-{
-  const auto number = [&](std::uint64_t least, std::uint64_t most) {
-    return static_cast<int>(ToNumber(option, value, least, most));
-  };
-  if (option == "--files")
-  {
-    options.Files = Split(value);
-  }
-  else if (option == "--random")
-  {
-    options.Random = number(4, elevation::MaximumNumberOfPoints);
-  }
-  else if (option == "--lattice")
-  {
-    options.Lattice = number(4, elevation::MaximumNumberOfPoints);
-  }
-  else if (option == "--errors")
-  {
-    options.Errors = ToErrors(value);
-  }
-  else if (option == "--threads")
-  {
-    options.Threads.clear();
-    for (const std::string& threads : Split(value))
-    {
-      options.Threads.push_back(static_cast<int>(ToNumber(option, threads, 0, 1024)));
-    }
-  }
-  else if (option == "--repeats")
-  {
-    options.Repeats = number(1, 101);
-  }
-  else if (option == "--json")
-  {
-    options.JSONFile = value;
-  }
-  else
-  {
-    return false;
-  }
-  return true;
-}
-
 /** @return false when the help was asked for */
 bool ReadOptions(int argc, char* argv[], Options& options)
 {
-  const auto isFlag = [&options](const std::string& option) {
-    options.Peers = options.Peers && option != "--no-peers";
-    options.Decimation = options.Decimation && option != "--no-decimation";
-    options.DataDependent = options.DataDependent || option == "--data-dependent";
-    return option == "--no-peers" || option == "--no-decimation" || option == "--data-dependent";
-  };
-  if (!ReadArguments(argc, argv, isFlag, [&options](const auto& option, const auto& value) {
-        return ReadOption(option, value, options);
-      }))
+  OptionTable table;
+  table.Flag("--no-peers", options.Peers, false);
+  table.Flag("--no-decimation", options.Decimation, false);
+  table.Flag("--data-dependent", options.DataDependent);
+  table.Value("--files", [&](const std::string& list) { options.Files = Split(list); });
+  table.Number("--random", options.Random, 4, elevation::MaximumNumberOfPoints);
+  table.Number("--lattice", options.Lattice, 4, elevation::MaximumNumberOfPoints);
+  table.Value("--errors", [&](const std::string& list) { options.Errors = ToErrors(list); });
+  table.Number("--threads", options.Threads, 0, 1024);
+  table.Number("--repeats", options.Repeats, 1, 101);
+  table.Text("--json", options.JSONFile);
+  if (!table.Read(argc, argv))
   {
     return false;
   }

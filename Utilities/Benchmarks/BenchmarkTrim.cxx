@@ -58,57 +58,19 @@ struct Options
 /** @return false when the help was asked for */
 bool ReadOptions(int argc, char* argv[], Options& options)
 {
-  for (int i = 1; i < argc; ++i)
-  {
-    const std::string option = argv[i];
-    if (option == "--help" || option == "-h")
-    {
-      return false;
-    }
-    if (i + 1 >= argc)
-    {
-      throw UsageError(option + " is no option, or needs a value; --help lists them");
-    }
-    const std::string value = argv[++i];
-    if (option == "--sets")
-    {
-      AddSets(value, options.Sets);
-    }
-    else if (option == "--points")
-    {
-      options.Points.clear();
-      for (const std::string& count : Split(value))
-      {
-        options.Points.push_back(
-          static_cast<Index>(ToNumber(option, count, 1000, elevation::MaximumNumberOfPoints)));
-      }
-    }
-    else if (option == "--threads")
-    {
-      options.Threads = static_cast<int>(ToNumber(option, value, 0, 1024));
-    }
-    else if (option == "--repeats")
-    {
-      options.Repeats = static_cast<int>(ToNumber(option, value, 1, 101));
-    }
-    else if (option == "--seed")
-    {
-      options.Seed = ToNumber(option, value, 0, 1000000000);
-    }
-    else if (option == "--json")
-    {
-      options.JSONFile = value;
-    }
-    else
-    {
-      throw UsageError("there is no option \"" + option + "\"; --help lists them");
-    }
-  }
+  OptionTable table;
+  table.Value("--sets", [&](const std::string& list) { AddSets(list, options.Sets); });
+  table.Number("--points", options.Points, 1000, elevation::MaximumNumberOfPoints);
+  table.Number("--threads", options.Threads, 0, 1024);
+  table.Number("--repeats", options.Repeats, 1, 101);
+  table.Number("--seed", options.Seed, 0, 1000000000);
+  table.Text("--json", options.JSONFile);
+  const bool isToRun = table.Read(argc, argv);
   if (options.Sets.empty())
   {
     AddSets("L,D,U", options.Sets);
   }
-  return true;
+  return isToRun;
 }
 
 /** Where a place of the unit square is inside the coast and outside the lakes. */

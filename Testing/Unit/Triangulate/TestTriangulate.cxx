@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Base/Predicates.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Base/Threads.h"
-#include "Kernel/Base/Predicates.h"
 #include "PointSets.h"
 #include "WorkOf.h"
 
@@ -501,6 +501,7 @@ TEST(Delaunay, ReportsAsOftenForMoreThreadsThanCores)
   options.Monitor = silence.Monitor();
   elevation::Triangulate(cloud.View(), options);
   silence.End();
+  // Each core does its part of a round; 1000 threads at once would do as many parts.
   EXPECT_LT(silence.Longest, 12000000u * ResolveNumberOfThreads(0));
 }
 
