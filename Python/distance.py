@@ -103,7 +103,8 @@ def near(corners, is_corner, triangles, away, progress=None):
     high = numpy.array([corners[ids, i].max() for i in (0, 1)])
 
     def bins(xy):
-        return numpy.clip((xy - low) / (high - low) * BINS, 0, BINS - 1).astype("i2").T
+        places = numpy.nan_to_num((xy - low) / (high - low) * BINS)  # no corners, but in the first bin
+        return numpy.clip(places, 0, BINS - 1).astype("i2").T
 
     # How many squares lie over each bin, and then over all bins before it: sums of differences.
     over = numpy.zeros((BINS + 1, BINS + 1), dtype="i4")

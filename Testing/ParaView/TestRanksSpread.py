@@ -202,7 +202,8 @@ for claim, mine, whole in (
     alike = simple.ReconstructElevationSurface(Input=given(whole))
     messages, outputs = update(source)
     expected = alone(alike)
-    check_told(messages, "", "chain, " + claim)
+    twice = "3 places have several heights" if claim.startswith(("points", "table")) else ""
+    check_told(messages, twice, "chain, " + claim)
     check_same(outputs[0], expected[0], "chain, " + claim)
     check_equal([outputs[0].GetPointData().HasArray(expected[0].GetPointData().GetArrayName(i))
                  for i in range(expected[0].GetPointData().GetNumberOfArrays())

@@ -154,6 +154,13 @@ class Input(unittest.TestCase):
         report = reconstruct(masked).report
         self.assertEqual(list(report["unused_reasons"]), ["not finite"])
 
+    def test_points_left_out_are_measured_beside_those_that_are_not_finite(self):
+        points = numpy.vstack((SHEET, SHEET[:3] + (0, 0, 1), [(numpy.nan, 1.0, 1.0)]))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", RuntimeWarning)
+            report = reconstruct(points, duplicates="keep-first").report
+        self.assertEqual(report["distance"]["maximum"], 1.0)
+
     def test_faults_become_edges(self):
         fault = numpy.array([(2.0, 2.5, 9.0), (8.0, 2.5, 9.0)])
         result = reconstruct(SHEET, faults=fault, trim=False, fill=False)
