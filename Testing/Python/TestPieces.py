@@ -871,8 +871,13 @@ class Command(Program):
         self.file("lakes.txt", "\n".join(text_of))
         options = (
             "--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "0.001",
-            "--open-edge-length", "0", "--maximum-expected-points", "1000000000000",
+            "--open-edge-length", "0",
         )
+        refused = [self.call(name, *options, way).stderr for way in ("--no-picture", "--pieces=4")]
+        self.assertRegex(refused[0], r"a.npy: filling holes: .* A --spacing of 0\.\d+ would do")
+        self.assertEqual(*refused)
+        # With as many as may be inserted, holes fail one by one.
+        options += ("--maximum-expected-points", "100000000")
         told = []
         for way in ("--no-picture", "--pieces=4"):
             done = self.call(name, *options, way, "--report")
@@ -891,6 +896,23 @@ class Command(Program):
             said.append((done.returncode, done.stderr))
         self.assertEqual(*said)
         self.assertIn("--spacing: 1e-10 is less than x and y of the points can tell apart", said[0][1])
+
+    def test_a_hole_may_not_take_more_than_the_memory(self):
+        points = clouds()["random"]
+        name = self.npy("a.npy", points)
+        rings = Filled.rings(None, points)[:3]
+        text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
+        self.file("lakes.txt", "\n".join(text_of))
+        options = ("--boundary", "lakes.txt", "--memory", "450M", "--maximum-expected-points", "99999999")
+        done = self.call(name, *options, "--spacing", "0.2")
+        self.assertEqual(done.returncode, 1)
+        found = re.search(r"more than the memory for it, 0.2 GB. A --spacing of (\S+) would do", done.stderr)
+        self.assertTrue(found, done.stderr)
+        source = vtkReconstructPieces()
+        self.assertEqual(source.GetMemoryOfHole(), 0.0)
+        source.SetMemoryOfHole(-1.0)
+        self.assertEqual(source.GetMemoryOfHole(), 0.0)
+        self.assertGreater(float(found.group(1)), 0.2)
 
     def test_points_in_no_triangle_below_the_limit_are_told(self):
         points = clouds()["random"]

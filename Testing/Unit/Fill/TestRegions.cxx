@@ -364,7 +364,7 @@ TEST(Regions, MayTakePointsInProportionToThoseOfLines)
   options.MaximumInsertedPoints = 60 * mesh.NumberOfPoints();
   const Outcome run = Fill(mesh, options, Slope, 1.5);
   ExpectRegionsFit(run);
-  EXPECT_GT(run.Patches.NumberOfPoints(), mesh.NumberOfPoints());
+  EXPECT_GT(run.Patches.NumberOfPoints(), mesh.NumberOfPoints() / 2);
 }
 
 TEST(Regions, BeyondALimitKeepTheirTriangles)
