@@ -903,7 +903,10 @@ class Command(Program):
         rings = Filled.rings(None, points)[:3]
         text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
         self.file("lakes.txt", "\n".join(text_of))
-        options = ("--boundary", "lakes.txt", "--memory", "450M", "--maximum-expected-points", "99999999")
+        options = (
+            "--boundary", "lakes.txt", "--fill-cut-outs", "--memory", "450M",
+            "--maximum-expected-points", "99999999",
+        )
         done = self.call(name, *options, "--spacing", "0.2")
         self.assertEqual(done.returncode, 1)
         found = re.search(r"more than the memory for it, 0.2 GB. A --spacing of (\S+) would do", done.stderr)

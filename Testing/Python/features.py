@@ -85,7 +85,7 @@ point data: integers, strings     |                            | coast + integer
 point data: vectors               |                            | coast + vectors              | s  s  s  s  s  s  a
 point data: normals               |                            | coast + normals              | s  s  s  s  s  s  a
 point data: pedigree ids          |                            | coast + pedigree ids         | s  s  s  s  s  s  a
-point data: global ids            |                            | coast + global ids           | s  s  s  d2 r  r  r
+point data: global ids            |                            | coast + global ids           | s  s  s  s  r  r  r
 composite: multiblock             |                            | coast + multiblock           | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface and coast            | s  s  s  s  -  -  -
 the same, clockwise               |                            | surface and coast + clockwise | s  s  G  G  -  -  -
@@ -105,7 +105,7 @@ largest hole                      | MaximumHoleSize=4.0        | coast and lakes
 most edges of a hole              | MaximumHoleEdges=13        | coast and lakes              | s  s  s  s  s  s  a
 what the boundary cut out, open   |                            | coast and lakes              | s  s  s  s  s  s  a
 what the boundary cut out, filled | FillCutOuts=True           | coast and lakes              | s  s  s  s  s  s  a
-most points inserted              | MaximumNumberOfInsertedPoints=20, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  a
+most points inserted              | MaximumNumberOfInsertedPoints=50, Trim.BoundaryEdges=1 | coast and lakes              | s  s  s  s  s  s  a
 most points expected              | MaximumNumberOfExpectedPoints=20 | coast and lakes              | s  s  s  s  s  s  a
 spacing                           | Spacing=0.5                | coast and lakes              | s  s  s  s  s  s  a
 point data not interpolated       | InterpolatePointData=False | coast and lakes              | s  s  s  s  s  s  a
@@ -116,7 +116,7 @@ point data: integers, strings     |                            | coast and lakes
 point data: vectors               |                            | coast and lakes + vectors    | s  s  s  s  s  s  a
 point data: normals               |                            | coast and lakes + normals    | s  s  s  s  s  s  a
 point data: pedigree ids          |                            | coast and lakes + pedigree ids | s  s  s  s  s  s  a
-point data: global ids            |                            | coast and lakes + global ids | s  s  d2 d2 r  r  r
+point data: global ids            |                            | coast and lakes + global ids | s  s  s  d2 r  r  r
 composite: multiblock             |                            | coast and lakes + multiblock | s  s  s  s  -  -  -
 triangles from elsewhere, cell data|                            | surface                      | s  s  s  s  -  -  -
 the same, clockwise               |                            | surface + clockwise          | s  s  s  s  -  -  -
