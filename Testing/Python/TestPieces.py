@@ -841,12 +841,16 @@ class Command(Program):
         done = self.call(name, "--pieces", "4", "--boundary", "far.txt", "--no-fill")
         self.assertIn("far.txt: trimming: The boundary", done.stderr)
 
-    def test_the_report_of_filled_pieces_is_that_of_one_run(self):
+    def cloud_with_lakes(self, count):
+        """The name of a file of points; a coast and so many lakes are in lakes.txt."""
         points = clouds()["random"]
-        name = self.npy("a.npy", points)
-        rings = Filled.rings(None, points)
+        rings = Filled.rings(None, points)[: 1 + count]
         text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
         self.file("lakes.txt", "\n".join(text_of))
+        return self.npy("a.npy", points)
+
+    def test_the_report_of_filled_pieces_is_that_of_one_run(self):
+        name = self.cloud_with_lakes(5)
         options = ("--boundary", "lakes.txt", "--fill-cut-outs", "--maximum-hole-size", "150", "--report")
         done = self.call(name, *options, "--no-picture")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -864,11 +868,7 @@ class Command(Program):
             self.assertEqual(report[key], whole[key], key)
 
     def test_holes_that_fail_are_told_as_by_one_run(self):
-        points = clouds()["random"]
-        name = self.npy("a.npy", points)
-        rings = Filled.rings(None, points)[:3]
-        text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
-        self.file("lakes.txt", "\n".join(text_of))
+        name = self.cloud_with_lakes(2)
         options = (
             "--boundary", "lakes.txt", "--fill-cut-outs", "--spacing", "0.001",
             "--open-edge-length", "0",
@@ -898,11 +898,7 @@ class Command(Program):
         self.assertIn("--spacing: 1e-10 is less than x and y of the points can tell apart", said[0][1])
 
     def test_a_hole_may_not_take_more_than_the_memory(self):
-        points = clouds()["random"]
-        name = self.npy("a.npy", points)
-        rings = Filled.rings(None, points)[:3]
-        text_of = ["".join(f"{x!r} {y!r}\n" for x, y, _ in ring.tolist()) for ring in rings]
-        self.file("lakes.txt", "\n".join(text_of))
+        name = self.cloud_with_lakes(2)
         options = (
             "--boundary", "lakes.txt", "--fill-cut-outs", "--memory", "450M",
             "--maximum-expected-points", "99999999",
