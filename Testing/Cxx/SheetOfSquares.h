@@ -77,14 +77,13 @@ inline double ProjectedArea(vtkPolyData* surface)
   for (vtkIdType cell = 0; cell < surface->GetPolys()->GetNumberOfCells(); ++cell)
   {
     surface->GetPolys()->GetCellAtId(cell, ids);
-    double twice = 0.0;
-    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+    double twice = 0.0, o[3], a[3], b[3];
+    surface->GetPoint(ids->GetId(0), o); // from there, for map coordinates
+    for (vtkIdType i = 2; i < ids->GetNumberOfIds(); ++i)
     {
-      double a[3];
-      double b[3];
-      surface->GetPoint(ids->GetId(i), a);
-      surface->GetPoint(ids->GetId((i + 1) % ids->GetNumberOfIds()), b);
-      twice += a[0] * b[1] - a[1] * b[0];
+      surface->GetPoint(ids->GetId(i - 1), a);
+      surface->GetPoint(ids->GetId(i), b);
+      twice += (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
     }
     area += 0.5 * (twice < 0.0 ? -twice : twice);
   }

@@ -7,6 +7,7 @@
 // with a concave outline. Ours must then have all of its triangles, and cover the hull.
 #include "Inputs.h"
 #include "MeshRules.h"
+#include "SheetOfSquares.h"
 #include "vtkCellArray.h"
 #include "vtkDelaunay2D.h"
 #include "vtkGridDelaunay2D.h"
@@ -39,26 +40,6 @@ std::set<Triangle> TrianglesOf(vtkPolyData* mesh)
   }
   return triangles;
 }
-
-double AreaOf(vtkPolyData* mesh)
-{
-  double area = 0.0;
-  vtkIdType size = 0;
-  const vtkIdType* ids = nullptr;
-  for (vtkIdType cell = 0; cell < mesh->GetNumberOfPolys(); ++cell)
-  {
-    mesh->GetPolys()->GetCellAtId(cell, size, ids);
-    double p[3][3];
-    for (int i = 0; i < 3; ++i)
-    {
-      mesh->GetPoint(ids[i], p[i]);
-    }
-    area += 0.5 *
-      std::fabs(
-        (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
-  }
-  return area;
-}
 } // namespace
 
 int TestGridDelaunay2DReference(int, char*[])
@@ -80,8 +61,8 @@ int TestGridDelaunay2DReference(int, char*[])
     failures += NumberOfFindings(ours->GetOutput(), elevation::ValidateOptions());
     const auto triangles = TrianglesOf(ours->GetOutput());
     const auto expected = TrianglesOf(reference->GetOutput());
-    const double area = AreaOf(ours->GetOutput());
-    const double missing = (area - AreaOf(reference->GetOutput())) / area;
+    const double area = ProjectedArea(ours->GetOutput());
+    const double missing = (area - ProjectedArea(reference->GetOutput())) / area;
     std::cout << count << " random points: " << triangles.size() << " triangles, vtkDelaunay2D has "
               << expected.size() << " and misses " << missing << " of the area\n";
     const bool isReferenceRight = missing < 1e-12;
@@ -127,8 +108,8 @@ int TestGridDelaunay2DReference(int, char*[])
   reference->Update();
   failures += NumberOfFindings(ours->GetOutput(), elevation::ValidateOptions());
   const double hull = 2500.0 * 2500.0;
-  const double error = std::fabs(AreaOf(ours->GetOutput()) - hull) / hull;
-  const double referenceError = std::fabs(AreaOf(reference->GetOutput()) - hull) / hull;
+  const double error = std::fabs(ProjectedArea(ours->GetOutput()) - hull) / hull;
+  const double referenceError = std::fabs(ProjectedArea(reference->GetOutput()) - hull) / hull;
   std::cout << "Lattice with a wavy outline: the area differs from the hull's by " << error
             << " of it, vtkDelaunay2D's by " << referenceError << "\n";
   if (error > 1e-9)

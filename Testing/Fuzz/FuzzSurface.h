@@ -8,6 +8,7 @@
 #define FuzzSurface_h
 
 #include "FuzzInput.h"
+#include "MeshRules.h"
 
 #include "Kernel/Mesh/Mesh.h"
 #include "Kernel/Triangulate/Triangulate.h"
@@ -158,24 +159,6 @@ inline Surface MakeSurface(Input& input, const Cloud& cloud)
   return surface;
 }
 
-inline double AreaOf(const Mesh& mesh, Index t)
-{
-  const Point2& a = mesh.PointOf(mesh.Triangles[3 * t]);
-  const Point2& b = mesh.PointOf(mesh.Triangles[3 * t + 1]);
-  const Point2& c = mesh.PointOf(mesh.Triangles[3 * t + 2]);
-  return 0.5 * ((b.X - a.X) * (c.Y - a.Y) - (b.Y - a.Y) * (c.X - a.X));
-}
-
-inline double AreaOf(const Mesh& mesh)
-{
-  double area = 0.0;
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    area += AreaOf(mesh, t);
-  }
-  return area;
-}
-
 /** The least height of a triangle; 0 without triangles. */
 inline double LeastHeight(const Mesh& mesh)
 {
@@ -188,7 +171,7 @@ inline double LeastHeight(const Mesh& mesh)
       const Point2 &p = mesh.PointOf(mesh.Origin(h)), &q = mesh.PointOf(mesh.Destination(h));
       longest = std::max(longest, std::hypot(q.X - p.X, q.Y - p.Y));
     }
-    least = std::min(least, 2.0 * AreaOf(mesh, t) / longest);
+    least = std::min(least, testing_surfaces::TwiceArea(mesh, t) / longest);
   }
   return least;
 }

@@ -419,8 +419,9 @@ void RequireTrimmed(const Surface& surface, const std::vector<Point2>& points, c
   const double ofAreas = 16.0 * 0x1p-53 * largest * largest / height;
   RequireInsertedFits(surface, trimmed, isThick ? std::max(rounding, ofAreas) : surface.Largest);
   RequireInside(trimmed, points, rings, rounding, options.Test == OutwardTest::Exact);
-  Require(std::fabs(AreaOf(mesh) - AreaOf(surface.Triangles)) <=
-      rounding * surface.Largest * mesh.NumberOfTriangles(),
+  using testing_surfaces::TwiceArea;
+  Require(std::fabs(TwiceArea(mesh) - TwiceArea(surface.Triangles)) <=
+      2.0 * rounding * surface.Largest * mesh.NumberOfTriangles(),
     "the surface covers what it covered");
 }
 

@@ -17,11 +17,6 @@ using namespace testing_points;
 
 namespace
 {
-double Unit(std::mt19937_64& random)
-{
-  return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 /** Four corners far around, so that nothing else is a corner of the hull. */
 Cloud Around()
 {
@@ -82,22 +77,22 @@ Network MakeNetwork(std::mt19937_64& random)
   const Index count = static_cast<Index>(random() % 400);
   for (Index i = 0; i < count; ++i)
   {
-    cloud.Add(10.0 * Unit(random), 10.0 * Unit(random), Unit(random));
+    cloud.Add(10.0 * Uniform(random), 10.0 * Uniform(random), Uniform(random));
   }
   ConstraintLines lines;
   for (int line = 0; line < 8; ++line)
   {
     const bool isOnGrid = line % 2 == 0;
-    double x = std::floor(10.0 * Unit(random)), y = std::floor(10.0 * Unit(random));
+    double x = std::floor(10.0 * Uniform(random)), y = std::floor(10.0 * Uniform(random));
     double direction = 0.5 * 3.141592653589793 * static_cast<double>(random() % 4);
     const double wind = random() % 2 ? 0.001 : 0.1;
     for (int k = 0; k < 20; ++k)
     {
-      direction += isOnGrid ? 0.0 : wind * (Unit(random) - 0.5);
-      const double step = isOnGrid ? 0.5 : 0.1 + Unit(random);
+      direction += isOnGrid ? 0.0 : wind * (Uniform(random) - 0.5);
+      const double step = isOnGrid ? 0.5 : 0.1 + Uniform(random);
       x += std::round(step * std::cos(direction) * 65536.0) / 65536.0;
       y += std::round(step * std::sin(direction) * 65536.0) / 65536.0;
-      ofLines.Add(x, y, 0.3 * Unit(random));
+      ofLines.Add(x, y, 0.3 * Uniform(random));
       lines.Vertices.push_back(ofLines.Count() - 1);
     }
     lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
@@ -215,7 +210,7 @@ TEST(FewerPieces, AreApartAndNearTheLinesWhateverTheirOrder)
   {
     SCOPED_TRACE(trial);
     Network network = MakeNetwork(random);
-    const double error = 0.05 + 0.3 * Unit(random);
+    const double error = 0.05 + 0.3 * Uniform(random);
     const std::set<std::pair<Place, Place>> fewer = Fewer(network.Points, network.Pieces, error);
     all += network.Pieces.size();
     left += fewer.size();

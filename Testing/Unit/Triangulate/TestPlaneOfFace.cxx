@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Triangulate/PlaneOfFace.h"
+#include "PointSets.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <random>
 
 using namespace elevation;
+using testing_points::Uniform;
 
 namespace
 {
@@ -48,22 +50,17 @@ long double LeastDistance(const Case& of)
     : 0.0L;
 }
 
-double Unit(std::mt19937_64& random)
-{
-  return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 /** Of any size between two powers of two. */
 double AnyBetween(std::mt19937_64& random, int low, int high)
 {
   const int exponent = low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1));
-  return std::ldexp(random() % 2 ? 1.0 + Unit(random) : -1.0 - Unit(random), exponent);
+  return std::ldexp(random() % 2 ? 1.0 + Uniform(random) : -1.0 - Uniform(random), exponent);
 }
 
 /** Somewhere in the triangle, but for rounding. */
 Place InsideOf(const Case& of, std::mt19937_64& random)
 {
-  double b = Unit(random), c = Unit(random);
+  double b = Uniform(random), c = Uniform(random);
   if (b + c > 1.0)
   {
     b = 1.0 - b;
@@ -119,7 +116,7 @@ TEST(PlaneOfFace, BoundsTheDistanceForCoordinatesAndElevationsOfAnySize)
     }
     if (trial % 3) // thin
     {
-      const double along = Unit(random);
+      const double along = Uniform(random);
       for (int k = 0; k < 2; ++k)
       {
         one.C[k] = one.A[k] + along * (one.B[k] - one.A[k]) + thinness * one.C[k];

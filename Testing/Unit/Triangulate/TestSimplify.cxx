@@ -19,11 +19,6 @@ using namespace testing_points;
 
 namespace
 {
-double Unit(std::mt19937_64& random)
-{
-  return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 /** Hills and a cliff. */
 double Terrain(double x, double y)
 {
@@ -40,8 +35,8 @@ Cloud CloudOf(int kind, Index count, std::mt19937_64& random)
   const Index side = static_cast<Index>(std::sqrt(static_cast<double>(count)));
   for (Index i = 0; i < count; ++i)
   {
-    double x = Unit(random), y = Unit(random);
-    const double along = y, noise = 6.0 * Unit(random);
+    double x = Uniform(random), y = Uniform(random);
+    const double along = y, noise = 6.0 * Uniform(random);
     switch (kind)
     {
       case 1: // a lattice, with rounded coordinates
@@ -390,8 +385,8 @@ TEST(Simplify, ALatticeWhosePointsLieBesideTheirNodesIsMeasuredByCoordinates)
     Cloud cloud;
     for (int i = 0; i < 4000; ++i)
     {
-      const double x = i % 80 + 0.009 * (2.0 * Unit(random) - 1.0);
-      const double y = i / 80 + 0.009 * (2.0 * Unit(random) - 1.0);
+      const double x = i % 80 + 0.009 * (2.0 * Uniform(random) - 1.0);
+      const double y = i / 80 + 0.009 * (2.0 * Uniform(random) - 1.0);
       cloud.Add(x, y, Terrain(x / 80.0, y / 80.0));
     }
     const DelaunayOptions options = WithError(1.0);
@@ -443,14 +438,14 @@ TEST(Simplify, LinesStayEdgesAndTheTrianglesAreThoseOfTheChosenWithThem)
     ConstraintLines lines;
     for (int line = 0; line < 4; ++line)
     {
-      const double x = 4e5 - 500.0 + 1500.0 * Unit(random), y = 5e6 + 900.0 * Unit(random);
+      const double x = 4e5 - 500.0 + 1500.0 * Uniform(random), y = 5e6 + 900.0 * Uniform(random);
       for (int k = 0; k < 6; ++k)
       {
         const Index id = static_cast<Index>(random() % static_cast<unsigned>(cloud.Count()));
         const Point2 p = cloud.View().At(id);
         const bool isOfCloud = k % 2 == 0;
-        ends.Add(isOfCloud ? p.X : x + 100.0 * k, isOfCloud ? p.Y : y + 40.0 * k * Unit(random),
-          20.0 * Unit(random));
+        ends.Add(isOfCloud ? p.X : x + 100.0 * k, isOfCloud ? p.Y : y + 40.0 * k * Uniform(random),
+          20.0 * Uniform(random));
         lines.Vertices.push_back(ends.Count() - 1);
       }
       lines.Offsets.push_back(static_cast<Index>(lines.Vertices.size()));
@@ -553,8 +548,8 @@ TEST(Simplify, WithDataDependentEdgesLinesStayEdges)
     {
       const Index id = static_cast<Index>(random() % static_cast<unsigned>(cloud.Count()));
       const Point2 p = cloud.View().At(id);
-      ends.Add(k % 3 ? p.X : 4e5 + 1000.0 * Unit(random), k % 3 ? p.Y : 5e6 + 1000.0 * Unit(random),
-        20.0 * Unit(random));
+      ends.Add(k % 3 ? p.X : 4e5 + 1000.0 * Uniform(random),
+        k % 3 ? p.Y : 5e6 + 1000.0 * Uniform(random), 20.0 * Uniform(random));
       lines.Vertices.push_back(k);
     }
     lines.Offsets.push_back(8);
@@ -592,7 +587,7 @@ TEST(Simplify, EndsWithElevationsAndErrorsBeyondTheRangeOfFloat)
       Cloud cloud;
       for (int i = 0; i < 400; ++i)
       {
-        const double x = Unit(random), y = Unit(random);
+        const double x = Uniform(random), y = Uniform(random);
         cloud.Add(x, y, relief * std::sin(9.0 * x * y));
       }
       for (const double error : { 0.1 * relief, 5e-324 })
@@ -620,7 +615,7 @@ TEST(Simplify, EveryPointIsWithinTheErrorWhereProductsOfCoordinatesLeaveTheRange
     Cloud cloud;
     for (int i = 0; i < 400; ++i)
     {
-      const double x = Unit(random), y = Unit(random);
+      const double x = Uniform(random), y = Uniform(random);
       cloud.Add(size * x, size * y, 10.0 * std::sin(9.0 * x * y));
     }
     for (const EdgeCriterion edges : { EdgeCriterion::Delaunay, EdgeCriterion::DataDependent })
@@ -659,7 +654,8 @@ TEST(Simplify, PointsFarFromTheNodesOfAGivenLatticeAreTriangulatedByCoordinates)
   Cloud cloud;
   for (int i = 0; i < 3600; ++i)
   {
-    const double x = i % 60 + 0.48 * (Unit(random) - 0.5), y = i / 60 + 0.48 * (Unit(random) - 0.5);
+    const double x = i % 60 + 0.48 * (Uniform(random) - 0.5),
+                 y = i / 60 + 0.48 * (Uniform(random) - 0.5);
     cloud.Add(x, y, Terrain(x / 60.0, y / 60.0));
   }
   DelaunayOptions options = WithError(1.0);
@@ -682,7 +678,7 @@ TEST(Simplify, StopsWhileLinesBecomeEdges)
   std::vector<Segment> pieces;
   for (Index i = 0; i < 60000; ++i)
   {
-    cloud.Add(i % 300 + 0.5 * Unit(random), i / 300 + 0.5 * Unit(random));
+    cloud.Add(i % 300 + 0.5 * Uniform(random), i / 300 + 0.5 * Uniform(random));
     if (i % 300 > 0)
     {
       pieces.push_back({ i - 1, i });
