@@ -298,7 +298,7 @@ public:
   ///@{
   /**
    * The most new points that may be expected of all holes together; if there are more, nothing is
-   * filled, and an error tells how many, their memory, and a Spacing that would do. The estimate
+   * filled, and an error reports how many, their memory, and a Spacing that would do. The estimate
    * takes no time: it follows from areas and spacings of the holes that MaximumHoleSize and
    * MaximumHoleEdges admit. 0 (default): ten times the points of the input, but at least a million;
    * negative values are taken as 0. Where MaximumNumberOfInsertedPoints is no larger, it leaves the
