@@ -50,6 +50,7 @@ public:
     : Surface(mesh)
     , Cutter(cutter)
     , Stars(mesh, Part(progress, 0.0, 0.3))
+    , Fixed(mesh.Triangles.size(), 0)
   {
   }
 
@@ -72,8 +73,10 @@ public:
           return; // it begins outside
         }
         segment.IsMissing = true;
-        next = this->Pass(vertex, crossed, ends, work);
+        next = crossed == None ? this->NextToBorder(vertex, ends)
+                               : this->Pass(vertex, crossed, ends, work);
       }
+      this->Link(vertex, next);
       vertex = next;
       if (vertex != ends.B)
       {
@@ -109,21 +112,24 @@ public:
 private:
   static std::pair<Index, Index> EdgeOf(Index a, Index b) { return std::minmax(a, b); }
 
+  /** Makes an edge between two vertices of a chain, if there is none, and fixes it. */
+  void Link(Index from, Index to)
+  {
+    RecoverSegments(this->Surface, this->Stars, { { from, to } }, this->Fixed);
+  }
+
   /**
-   * Goes from a vertex across an edge: to a new vertex on it, or to an end of it in reach. Where the
-   * triangles of the edge are too thin to be cut, goes on to the next one; what is between the two
-   * vertices is then recovered as one edge.
+   * Goes from a vertex across edges to the first that has to be cut, which gets a vertex, or to an end
+   * of one of them in reach. Edges within one original triangle need no vertex, as it is flat. Where
+   * the triangles of an edge are too thin to be cut, goes on to the next one.
    */
   Index Pass(Index from, Index crossed, const Segment& segment, WorkReporter& work)
   {
     const Mesh& mesh = this->Surface;
     for (;; work.Tick())
     {
-      if (crossed == None)
-      {
-        RefuseLeaving(mesh, segment);
-      }
-      const Index reached = this->FirstReached(from, crossed);
+      const Index reached =
+        this->FirstReached(from, segment, { mesh.Origin(crossed), mesh.Destination(crossed) });
       if (reached != None)
       {
         return reached;
@@ -136,12 +142,17 @@ private:
       const Ends edge{ { mesh.PointOf(mesh.Origin(crossed)),
         mesh.PointOf(mesh.Destination(crossed)) } };
       const Ends rest{ { mesh.PointOf(from), this->Line[1] } };
-      // By the whole segment, so that rounding does not add up, unless it passes the edge.
-      const Ends& line = Cross(this->Line, edge) ? this->Line : rest;
-      Point2 place = CrossingOf(edge, line);
-      if (this->IsAhead(from, place) && this->Cutter.MoveToCut(crossed, place))
+      if (this->Fixed[crossed] ||
+        this->Cutter.Parent(Mesh::Triangle(crossed)) != this->Cutter.Parent(Mesh::Triangle(beyond)))
       {
-        return this->Cut(crossed, place);
+        // By the whole segment, so that rounding does not add up, unless it passes the edge.
+        const Ends& line = Cross(this->Line, edge) ? this->Line : rest;
+        Point2 place = CrossingOf(edge, line);
+        if (this->Cutter.MoveToCut(
+              crossed, place, [&](const Point2& p) { return this->IsAhead(from, p); }))
+        {
+          return this->Cut(crossed, place);
+        }
       }
       const Index apex = mesh.Apex(beyond);
       const Sign side = Orientation(rest[0], rest[1], mesh.PointOf(apex));
@@ -151,6 +162,23 @@ private:
       }
       crossed = side == Positive ? Mesh::Next(beyond) : Mesh::Previous(beyond);
     }
+  }
+
+  /** Where the rest of a segment leaves the mesh by rounding alone: to the next vertex in reach. */
+  Index NextToBorder(Index from, const Segment& segment)
+  {
+    const Mesh& mesh = this->Surface;
+    std::vector<Index> around;
+    this->Stars.Visit(mesh, from, [&](Index h) {
+      around.insert(around.end(), { mesh.Destination(h), mesh.Apex(h) });
+      return true;
+    });
+    const Index next = this->FirstReached(from, segment, around);
+    if (next == None)
+    {
+      RefuseLeaving(mesh, segment);
+    }
+    return next;
   }
 
   Index Cut(Index crossed, const Point2& place)
@@ -168,9 +196,19 @@ private:
       place, this->Cutter.WeightsBetween(mesh.Origin(crossed), mesh.Destination(crossed), place));
     this->CutAt.emplace(EdgeOf(mesh.Origin(crossed), mesh.Destination(crossed)), vertex);
     const Index after = this->Cutter.CutEdge(crossed, vertex);
-    this->Stars.ReplaceCut(mesh, after, Mesh::Next(crossed));
-    this->Stars.ReplaceCut(mesh, mesh.Twin(crossed), Mesh::Next(twin));
+    this->Fixed.resize(mesh.Triangles.size(), 0);
+    this->KeepUp(crossed, after);
+    this->KeepUp(twin, mesh.Twin(crossed));
     return vertex;
+  }
+
+  /** After half-edge h was cut, with its second half in a new triangle. */
+  void KeepUp(Index h, Index after)
+  {
+    const Index before = Mesh::Next(h);
+    this->Stars.ReplaceCut(this->Surface, after, before);
+    this->Fixed[after] = this->Fixed[h];
+    this->Fixed[Mesh::Next(after)] = std::exchange(this->Fixed[before], char(0));
   }
 
   /** Whether a place is before another one on the way, and the other before the end. */
@@ -180,17 +218,19 @@ private:
       IsBefore(this->Line[0], this->Line[1], place, this->Line[1]);
   }
 
-  /** The first on the way of the ends of an edge that are in reach and ahead; or None. */
-  Index FirstReached(Index from, Index edge) const
+  /** The first on the way of those vertices that are in reach and ahead, or the end; or None. */
+  Index FirstReached(Index from, const Segment& segment, const std::vector<Index>& vertices) const
   {
-    const Mesh& mesh = this->Surface;
     Index first = None;
-    for (const Index vertex : { mesh.Origin(edge), mesh.Destination(edge) })
+    for (const Index vertex : vertices)
     {
-      const Point2& place = mesh.PointOf(vertex);
-      if (IsInReach(this->Line[0], this->Line[1], this->Units, Reach, place) &&
-        this->IsAhead(from, place) &&
-        (first == None || IsBefore(this->Line[0], this->Line[1], place, mesh.PointOf(first))))
+      const Point2& place = this->Surface.PointOf(vertex);
+      const bool isReached = vertex == segment.B ||
+        (IsInReach(this->Line[0], this->Line[1], this->Units, Reach, place) &&
+          this->IsAhead(from, place));
+      if (isReached &&
+        (first == None ||
+          IsBefore(this->Line[0], this->Line[1], place, this->Surface.PointOf(first))))
       {
         first = vertex;
       }
@@ -203,6 +243,7 @@ private:
   Mesh& Surface;
   MeshCutter& Cutter;
   VertexStars Stars;
+  std::vector<char> Fixed; ///< one a half-edge: whether it is an edge of a chain
   std::map<std::pair<Index, Index>, Index> CutAt; ///< edges that are no more, and their vertex
   Ends Line;                                      ///< the segment that is followed
   RoundingUnits Units;

@@ -5,19 +5,23 @@
  * Splits edges of rings where they cross edges of a mesh, so that the rings follow the surface.
  *
  * In: a mesh with Twins, and segments between its vertices. Out: the mesh with more vertices, and
- * each segment as a chain of them. Each segment is walked from its lower end:
- *   - An edge that is crossed is cut there, at the crossing rounded to doubles. Both triangles of
- *     it become two.
+ * each segment as a chain of its edges. Each segment is walked from its lower end:
+ *   - An edge between two original triangles, or of another chain, is cut where it is crossed, at the
+ *     crossing rounded to doubles. Each triangle beside it becomes two.
+ *   - Edges within one original triangle, which is flat, need no vertex: the next edge of the chain is
+ *     recovered across them (Recovery.h).
  *   - The chain goes through a vertex that the segment runs through or passes within rounding
- *     (SnapRounding.h), such as one where another segment has been cut.
+ *     (SnapRounding.h), such as one where another segment has been cut; along a border that rounding
+ *     puts before it.
  *   - Where segments cross, the later one cuts an edge of the earlier one's chain.
- *   - Edges whose triangles are too thin to be cut are left: there the chain lacks an edge, which is
- *     to be recovered (Recovery.h).
+ *   - Triangles too thin to be cut are replaced, too.
  *
- * Guarantees: no edge is flipped, so that interpolated elevations give the same surface as before.
+ * Guarantees: but for triangles too thin to be cut, interpolated elevations give the same surface as
+ * before.
  * A chain leaves its segment by rounding alone. The result does not depend on the order and
  * direction of the segments.
- * Cost: log n for each of n segments, plus the edges that they cross.
+ * Cost: log n for each of n segments, plus the edges that they cross, plus those that earlier chains
+ * have made in the same triangles.
  */
 #ifndef elevation_Trim_FollowSurface_h
 #define elevation_Trim_FollowSurface_h

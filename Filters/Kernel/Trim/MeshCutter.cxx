@@ -54,9 +54,13 @@ bool MeshCutter::CanCut(Index h, const Point2& place) const
     (this->Surface.IsBorder(h) || isProper(this->Surface.Twin(h), to, from));
 }
 
-bool MeshCutter::MoveToCut(Index h, Point2& place) const
+bool MeshCutter::MoveToCut(
+  Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const
 {
-  if (this->CanCut(h, place))
+  const auto isPlace = [&](const Point2& p) {
+    return (!isUsable || isUsable(p)) && this->CanCut(h, p);
+  };
+  if (isPlace(place))
   {
     return true;
   }
@@ -70,7 +74,7 @@ bool MeshCutter::MoveToCut(Index h, Point2& place) const
   const Point2 first = place;
   const auto isFound = [&](double dx, double dy) {
     place = { first.X + dx, first.Y + dy };
-    return std::isfinite(place.X) && std::isfinite(place.Y) && this->CanCut(h, place);
+    return std::isfinite(place.X) && std::isfinite(place.Y) && isPlace(place);
   };
   // The nearest places in rings around it, then places further outwards.
   for (int ring = 0; ring <= 3; ++ring)

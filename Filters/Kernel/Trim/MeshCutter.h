@@ -13,6 +13,7 @@
 #include "Kernel/Mesh/Mesh.h"
 
 #include <array>
+#include <functional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -55,6 +56,12 @@ public:
       this->Surface.PointOf(corners[2]) } };
   }
 
+  /** The original triangle that a triangle is part of. */
+  Index Parent(Index t) const
+  {
+    return t < this->TrianglesBefore ? t : this->Parents[t - this->TrianglesBefore];
+  }
+
   /** Whether the point is in the triangle or on an edge of it. */
   bool Holds(Index t, const Point2& p) const;
 
@@ -80,9 +87,11 @@ public:
    * Moves a place on an edge, within rounding, so that its triangles can be cut there: a rounded
    * place may lie beyond a thin triangle. On the border, there is room outwards at the foot of the
    * apex.
+   * @param[in] isUsable  what else is asked of the place; may be empty
    * @return whether such a place was found
    */
-  bool MoveToCut(Index h, Point2& place) const;
+  bool MoveToCut(
+    Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable = {}) const;
 
   /** The number, after the cuts, of a border half-edge; if it was cut, of its first part. */
   Index CurrentHalfEdge(Index h) const;

@@ -1435,10 +1435,11 @@ namespace
 
 /**
  * How far the elevations of all parts are from those of the triangles that they are parts of. Needles
- * along the hull of a turned lattice, which only rounding makes, have no plane to compare with.
+ * along the hull of a turned lattice, which only rounding makes, have no plane to compare with; and
+ * where they had to be replaced, their neighbours may have one of them as parent.
  */
 double LargestDeviation(const Mesh& before, const Mesh& mesh, const InsertedRings& rings,
-  const std::function<double(Index)>& elevationOf)
+  const std::function<double(Index)>& elevationOf, int& strays)
 {
   const auto elevationAt = [&](Index v) {
     if (v < before.NumberOfPoints())
@@ -1467,6 +1468,8 @@ double LargestDeviation(const Mesh& before, const Mesh& mesh, const InsertedRing
     }
     const double uz = elevationOf(of[1]) - elevationOf(of[0]);
     const double vz = elevationOf(of[2]) - elevationOf(of[0]);
+    double ofTriangle = 0.0;
+    bool isInside = true;
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
       const Index v = mesh.Origin(h);
@@ -1474,8 +1477,11 @@ double LargestDeviation(const Mesh& before, const Mesh& mesh, const InsertedRing
       const double s = (p.X * vy - p.Y * vx) / (ux * vy - uy * vx);
       const double r = (ux * p.Y - uy * p.X) / (ux * vy - uy * vx);
       const double z = elevationOf(of[0]) + s * uz + r * vz;
-      largest = std::max(largest, std::fabs(z - elevationAt(v)));
+      ofTriangle = std::max(ofTriangle, std::fabs(z - elevationAt(v)));
+      isInside = isInside && s > -1e-6 && r > -1e-6 && s + r < 1.0 + 1e-6;
     }
+    strays += isInside ? 0 : 1;
+    largest = std::max(largest, isInside ? ofTriangle : 0.0);
   }
   return largest;
 }
@@ -1487,7 +1493,7 @@ TEST(InsertRings, SplitsEdgesSoThatTheSurfaceStaysAsItWas)
   // Random points, and lattices turned and not; rings anywhere, along rows of a lattice, through its
   // nodes, within a unit in the last place of them, and parcels with edges in common.
   Random random(36);
-  int crossings = 0;
+  int crossings = 0, strays = 0, straysBefore = 0, besideNeedles = 0;
   for (int round = 0; round < 1000; ++round)
   {
     const int size = 6 + random.Below(12);
@@ -1521,8 +1527,12 @@ TEST(InsertRings, SplitsEdgesSoThatTheSurfaceStaysAsItWas)
       }
       boundary.Add(placed);
     };
-    switch (round % 4)
+    switch (round % 5)
     {
+      case 4: // along the border, and through its corners
+        add({ { 0.0, 0.0 }, { size - 1.0, 0.0 }, { size - 1.0, size - 1.0 }, { 0.0, size - 1.0 } });
+        add({ { 2.0, 2.0 }, { 3.0, 2.0 }, { 3.0, 3.0 } });
+        break;
       case 0: // anywhere, with a lake
         add(Star(random, { middle, middle }, 0.8 * radius, radius, 12 + random.Below(9), false));
         add(Star(random, { middle, middle }, 0.3 * radius, 0.6 * radius, 12, false));
@@ -1553,13 +1563,14 @@ TEST(InsertRings, SplitsEdgesSoThatTheSurfaceStaysAsItWas)
     crossings += static_cast<int>(rings.Inserted.size() - boundary.Points.size());
     const double extent = isScattered ? 1.0 : isTurned ? 25.0 * size : size;
     ExpectWeightsFit(before, mesh, rings, isTurned ? 1e7 : extent);
-    ASSERT_LE(LargestDeviation(before, mesh, rings, [&](Index v) { return heights[v]; }),
-      isTurned ? 2e-8 : 1e-9);
+    const double deviation = LargestDeviation(
+      before, mesh, rings, [&](Index v) { return heights[v]; }, strays);
+    ASSERT_TRUE(isTurned || deviation < 1e-9) << deviation;
+    besideNeedles += deviation > 2e-8;
     const OutwardTriangles trimmed = FindOutward(mesh, rings.Vertices, true);
-    if (!isTurned) // whose needles are too thin to be split
-    {
-      ASSERT_EQ(trimmed.NumberOfRecoveredEdges, 0);
-    }
+    ASSERT_EQ(trimmed.NumberOfRecoveredEdges, 0);
+    ASSERT_TRUE(isTurned || strays == straysBefore); // only there are needles
+    straysBefore = strays;
     double all = 0.0;
     for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
     {
@@ -1574,6 +1585,9 @@ TEST(InsertRings, SplitsEdgesSoThatTheSurfaceStaysAsItWas)
     ASSERT_NEAR(all, 0.5 * testing_surfaces::TwiceArea(before), 1e-7 * extent * extent);
   }
   EXPECT_GT(crossings, 20000);
+  EXPECT_LT(strays, 40); // of some 200,000 triangles
+  // Where a ring crosses the hull of a turned lattice at needles, one triangle beside may change.
+  EXPECT_LE(besideNeedles, 10);
 }
 
 TEST(InsertRings, SplitsEdgesAlikeWhateverTheirOrderAndDirection)
@@ -1716,4 +1730,26 @@ TEST(InsertRings, DoesNotDependOnTheOrderOfTriangles)
     }
   }
   EXPECT_GT(compared, 300);
+}
+
+TEST(InsertRings, TakesAsManyPointsAsEdgesAreCrossed)
+{
+  // A comb in two triangles: its teeth cross the diagonal between them, and nothing else.
+  const Mesh before = MeshOf({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, { 0, 1, 2, 0, 2, 3 });
+  for (const int teeth : { 10, 100, 1000 })
+  {
+    std::vector<Point2> ring{ { 0.97, 0.01 }, { 0.97, 0.99 } };
+    for (int i = teeth; i > 0; --i)
+    {
+      const double x = 0.9 * i / (teeth + 1.0);
+      ring.insert(ring.end(), { { x + 0.4 / teeth, 0.97 }, { x, 0.02 } });
+    }
+    Boundary boundary;
+    boundary.Add(ring);
+    Mesh mesh = before;
+    const InsertedRings rings =
+      InsertRings(mesh, boundary.Points, boundary.Lines, true, Progress(), Following::Rings);
+    EXPECT_EQ(FindingsOf(mesh), "");
+    EXPECT_LE(rings.Inserted.size(), 2 * ring.size());
+  }
 }
