@@ -287,7 +287,8 @@ public:
   /**
    * Whether to fill holes that a boundary given to vtkTrimOutwardTriangles has cut out: a lake, an
    * island, a building. Such a hole has an edge, of its rim or of an island, between two points that
-   * are 1 in the input's point array OnBoundary, which that filter makes. Off (default): they stay open,
+   * are 1 in the input's point array OnBoundary, which that filter makes; so a gap in the data that the
+   * boundary touches at two neighbouring points counts, too. Off (default): they stay open,
    * with status CUT_OUT.
    */
   vtkSetMacro(FillCutOuts, bool);

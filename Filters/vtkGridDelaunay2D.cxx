@@ -295,8 +295,14 @@ int vtkGridDelaunay2D::RequestData(
     if (draped)
     {
       elevation::CheckPointArrays(draped, "The constraints'");
+      std::vector<std::string> ofOwnElevations;
       LinesOf(draped, elevation::ViewPoints(draped), points.View, this->NumberOfThreads,
-        Part(progress, split, split), block.Warnings);
+        Part(progress, split, split), ofOwnElevations);
+      if (!ofOwnElevations.empty())
+      {
+        block.Warnings.push_back("Most of the constraints lie outside of the points. These parts "
+                                 "are left out, as there is no surface to drape them on.");
+      }
       constrained.Added.resize(static_cast<std::size_t>(elevation::SplitSurface(
         output, draped, this->NumberOfThreads, Part(progress, split, 1.0))));
     }
