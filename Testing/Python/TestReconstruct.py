@@ -519,7 +519,7 @@ class Examples(Program):
         lines = self.lines_of("lake.py", "lake.png")
         # All corners of the shores, one of the lease; where the lease leaves the survey; and where
         # they cross edges.
-        self.assertEqual(lines[1], "1439 points inserted along the boundary")
+        self.assertEqual(lines[1], "1098 points inserted along the boundary")
         self.assertGreater(os.path.getsize(self.path("lake.png")), 50000)
 
     def test_the_swath_has_an_outline_and_the_inside_of_its_loop(self):
