@@ -193,10 +193,16 @@ def make_lines(parts, names=None):
             words.InsertNextValue(name)
         data.GetCellData().AddArray(words)
     if any(bare):
-        flags = numpy_to_vtk(numpy.array(bare, dtype="u1"), deep=True)
-        flags.SetName(WITHOUT_Z)
-        data.GetCellData().AddArray(flags)
+        mark_bare(data, bare)
     return data
+
+
+def mark_bare(data, bare=None):
+    """Marks lines, or all, as having no z of their own, for bare_lines()."""
+    flags = numpy.ones(data.GetNumberOfCells()) if bare is None else numpy.array(bare)
+    flags = numpy_to_vtk(flags.astype("u1"), deep=True)
+    flags.SetName(WITHOUT_Z)
+    data.GetCellData().AddArray(flags)
 
 
 def parts_of_lines(data):

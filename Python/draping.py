@@ -8,7 +8,7 @@ Each gets a vertex where it crosses an edge of that surface, as the surface bend
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from .clouds import bare_lines, make_lines, parts_of_lines
+from .clouds import bare_lines, make_lines, mark_bare, parts_of_lines
 from .messages import ElevationSurfaceError, Messages, counted
 from .outline import between, places_of
 from .properties import FAULTS_Z
@@ -68,7 +68,10 @@ def draped(cloud, faults, name, given, strict=False):
             f"{counted(len(outside), 'line')} without z, a length of {lost:.4g} of {title}, at "
             f"({x:.10g}, {y:.10g})"
         )
-    return make_lines([one for _, one in result], [title for title, _ in result]), notes
+    lines = make_lines([one for _, one in result], [title for title, _ in result])
+    if bare.all():
+        mark_bare(lines)  # where the filter can, it drapes them itself
+    return lines, notes
 
 
 def is_zero_beside(parts, bare, points):

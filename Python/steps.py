@@ -8,6 +8,7 @@ import time
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from .clouds import bare_lines
 from .inputs import joined
 from .messages import ElevationSurfaceError, Messages
 from .opening import lattice_of
@@ -115,6 +116,9 @@ def triangulate(run, lines, error):
     delaunay.SetInputData(dealt(ranks, points))
     if lines is not None:
         delaunay.SetSourceData(lines)
+        # Several ranks take z of the lines as they are, else one rank would have all points.
+        delaunay.SetDrapeConstraints(
+            not error and run.ranks is None and bool(bare_lines(lines).all()))
     result.delaunay = run("delaunay", delaunay)
     surface = delaunay.GetOutput()
     result.triangles["delaunay"] = total(ranks, surface.GetNumberOfPolys())
