@@ -90,7 +90,7 @@ bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
     return false;
   }
   TrimOptions ofNear = options;
-  ofNear.AreNear = true;
+  ofNear.Border = &this->Border;
   ofNear.TellParents = true;
   ofNear.Monitor = Part(options.Monitor, 0.4, 0.9);
   this->Sides = elevation::Trim(list, &boundary, ofNear);
@@ -172,10 +172,16 @@ bool NearParts::IsProven(
   const TriangleList& list, const BoundaryLines& boundary, const Progress& progress)
 {
   // Joined points may have other places than the points had.
-  return this->AreSamePlaces() &&
-    SweepAlongRings(
-      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, Part(progress, 0.0, 0.5)) &&
+  if (!this->AreSamePlaces() ||
+    !SweepAlongRings(
+      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, Part(progress, 0.0, 0.5)))
+  {
+    return false;
+  }
+  std::optional<std::vector<BorderEdge>> border =
     this->ProvenBorder(list.Points, Part(progress, 0.5, 1.0));
+  this->Border = border ? std::move(*border) : std::vector<BorderEdge>();
+  return border.has_value();
 }
 
 bool NearParts::AreSamePlaces() const

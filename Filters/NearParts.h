@@ -104,6 +104,7 @@ private:
   vtkSmartPointer<vtkPolyData> Whole;
   TrianglesOfDataSet Triangles; // of the whole
   vtkNew<vtkPolyData> Points;   // of the whole, and those inserted
+  std::vector<BorderEdge> Border; // of the mesh, if a boundary is given
   Trimmed Sides;
   bool IsOutline = false;
 };

@@ -70,9 +70,10 @@
  * @par Outputs:
  * - 0: the triangles inside. Vertices and lines of the input come first.
  * - 1: the triangles outside. With a given boundary, both have a point array OnBoundary
- *   (vtkUnsignedCharArray): 1 for points on its edges in the mesh, else 0. A 1 that an input has in
+ *   (vtkUnsignedCharArray): 1 for points on its edges, else 0. A 1 that an input has in
  *   an array of this name and type stays. By it vtkFillElevationHoles leaves open what the boundary
- *   has cut out. A ring wholly in a hole of the mesh has no edges there, and marks nothing.
+ *   has cut out. Where a ring is in a hole of the mesh, an edge of this hole is marked, too, so that
+ *   it stays open.
  * - 2: the boundary used: one closed line (its last point is its first) for each ring, with the
  *   points and point data of input 1, or of input 0 when it was extracted (counter-clockwise around
  *   surface, clockwise around lakes, starting at the lowest y).

@@ -195,6 +195,12 @@ class CutOut(unittest.TestCase):
             fill = filled(surface.GetOutput(0))
             self.assertEqual((fill.GetNumberOfHoles(), fill.GetNumberOfFilledHoles()), (1, 0))
 
+    def test_a_lake_in_a_gap_of_the_data_leaves_the_gap_open(self):
+        inner = numpy.array([(11.0, 32.0), (13.0, 32.0), (12.0, 34.0)])
+        for rings, filled_holes in (([RECTANGLE], 1), ([RECTANGLE, inner], 0)):
+            fill = filled(trimmed(self.with_a_gap(), rings).GetOutput(0))
+            self.assertEqual((fill.GetNumberOfHoles(), fill.GetNumberOfFilledHoles()), (1, filled_holes))
+
     def test_other_arrays_of_that_name_mean_nothing(self):
         surface = vtkPolyData()
         surface.DeepCopy(self.with_a_gap())

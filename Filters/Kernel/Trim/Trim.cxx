@@ -12,6 +12,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace elevation
@@ -145,6 +146,83 @@ std::vector<Index> VerticesOf(const Mesh& mesh, const std::vector<char>& isMarke
   return ids;
 }
 
+/**
+ * Marks the borders that rings have around them where they are outside of the mesh: of each stretch of
+ * points outside, the edge on the right of the first. So a ring wholly in a hole marks the hole.
+ * @param[in]     firstOutside  the first vertex of rings that no triangle uses
+ * @param[in,out] onBoundary    increasing
+ */
+void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
+  const TriangleList& list, const std::vector<BorderEdge>& border, std::vector<Index>& onBoundary)
+{
+  const auto endsOf = [&](std::size_t i) {
+    return Ends{ { list.Points.At(border[i].Origin), list.Points.At(border[i].Destination) } };
+  };
+  std::vector<Point2> outside;
+  for (Index ring = 0; ring < rings.Count(); ++ring)
+  {
+    bool wasOutside = false;
+    std::for_each(rings.Begin(ring), rings.End(ring), [&](Index vertex) {
+      const bool isOutside = vertex >= firstOutside;
+      if (isOutside && !wasOutside)
+      {
+        outside.push_back(mesh.PointOf(vertex));
+      }
+      wasOutside = isOutside;
+    });
+  }
+  if (outside.empty())
+  {
+    return;
+  }
+  const CellGrid byHeight(border.size(), [&](std::size_t i) {
+    const Ends ends = endsOf(i);
+    return Ends{ { { 0.0, ends[0].Y }, { 0.0, ends[1].Y } } };
+  });
+  for (const Point2& p : outside)
+  {
+    Index nearest = None;
+    double nearestX = 0.0;
+    byHeight.Visit(Point2{ 0.0, p.Y }, [&](Index i) {
+      const Ends ends = endsOf(i);
+      if ((ends[0].Y <= p.Y) != (ends[1].Y <= p.Y))
+      {
+        const double part = (p.Y - ends[0].Y) / (ends[1].Y - ends[0].Y);
+        const double x = ends[0].X + part * (ends[1].X - ends[0].X);
+        // Of edges that meet there, the same in any order.
+        const auto keyOf = [](double at, const Ends& e) {
+          return std::make_tuple(at, e[0].X, e[0].Y, e[1].X, e[1].Y);
+        };
+        if (x > p.X && (nearest == None || keyOf(x, ends) < keyOf(nearestX, endsOf(nearest))))
+        {
+          nearest = i;
+          nearestX = x;
+        }
+      }
+    });
+    if (nearest != None)
+    {
+      onBoundary.insert(onBoundary.end(), { border[nearest].Origin, border[nearest].Destination });
+    }
+  }
+  std::sort(onBoundary.begin(), onBoundary.end());
+  onBoundary.erase(std::unique(onBoundary.begin(), onBoundary.end()), onBoundary.end());
+}
+
+/** The border of a mesh of all triangles of a list. */
+std::vector<BorderEdge> BorderOf(const Mesh& mesh)
+{
+  std::vector<BorderEdge> border;
+  for (const Index h : Counted(mesh.NumberOfHalfEdges()))
+  {
+    if (mesh.IsBorder(h))
+    {
+      border.push_back({ mesh.IdOf(mesh.Origin(h)), mesh.IdOf(mesh.Destination(h)) });
+    }
+  }
+  return border;
+}
+
 /** Lines as rings that go there and back; without lines of no length. */
 Rings ThereAndBack(const BoundaryLines& lines)
 {
@@ -176,9 +254,11 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   const bool areLines = follow == Following::Lines;
   result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines);
   NearTriangles near;
-  if (options.AreNear)
+  std::vector<BorderEdge> border;
+  if (options.Border)
   {
     near = AllTriangles(list);
+    border = *options.Border;
   }
   else if (options.Test == OutwardTest::Exact)
   {
@@ -187,12 +267,14 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
     if (swept)
     {
       near = std::move(swept->Near);
+      border = std::move(swept->Border);
       changes.IsOutward = std::move(swept->IsOutward);
     }
   }
   changes.IsOutward.resize(list.Count);
   const Progress making = Part(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
+  border = near ? std::move(border) : BorderOf(mesh);
   const Index before = mesh.NumberOfPoints();
   InsertedRings rings = InsertRings(mesh, lines.Points, result.Boundary, options.RecoverBoundary,
     Part(progress, 0.5, 0.75), follow);
@@ -209,6 +291,8 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
     std::fill(changes.IsOutward.begin(), changes.IsOutward.end(), char(0));
   }
   result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary);
+  MarkBordersAround(mesh, rings.Vertices, before + static_cast<Index>(rings.Inserted.size()), list,
+    border, result.OnBoundary);
   if (options.Test == OutwardTest::InwardNormal)
   {
     CheckEnclosed(list, outward.IsOutward, lines.Points, result.Boundary);
@@ -218,7 +302,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   PutBack(list, near, mesh, Part(progress, 0.97, 1.0), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
   PutBackInserted(near, mesh, rings, changes, result);
-  if (!options.AreNear)
+  if (!options.Border)
   {
     CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
   }
@@ -415,7 +499,7 @@ Trimmed Trim(
   const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options)
 {
   Trimmed result;
-  if (triangles.Count == 0 && !options.AreNear)
+  if (triangles.Count == 0 && !options.Border)
   {
     return result;
   }

@@ -57,10 +57,10 @@ struct TrimOptions
   /** With InwardNormal, which looks at triangles of three boundary points, they are Straight. */
   BoundaryEdges Edges = BoundaryEdges::FollowSurface;
   /**
-   * Whether the triangles are those of a mesh that SweepAlongRings() has found near the boundary,
+   * The border of a mesh, if the triangles are those that SweepAlongRings() has found near the boundary,
    * which is given, of all its parts; all are proven, and the boundary may enclose none of these.
    */
-  bool AreNear = false;
+  const std::vector<BorderEdge>* Border = nullptr;
   /** For a boundary that is extracted; 0: from the data. See ExtractOptions. */
   double GapTolerance = 0.0;
   Lattice Grid; ///< the same
@@ -85,7 +85,10 @@ struct Trimmed
   TrimmedSide Kept, Outward;
   std::vector<InsertedVertex> Inserted; ///< one per inserted point
   std::vector<Point2> Places;           ///< of the inserted points
-  /** With lines: the points on their edges in the mesh, as in Corners; increasing. */
+  /**
+   * With lines: the points on their edges in the mesh, and the ends of one border edge beside each
+   * stretch outside of it; as in Corners, increasing.
+   */
   std::vector<Index> OnBoundary;
   /** Ids of the lines' points, or, if extracted, of the input's. None if nothing is surface. */
   Rings Boundary;

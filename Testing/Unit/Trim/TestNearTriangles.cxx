@@ -155,7 +155,8 @@ TEST(NearTriangles, AreTrimmedAloneAsInTheWholeMesh)
     const Surface near = Chosen(whole, swept->Near);
     TrimOptions options;
     const Trimmed all = Trim(list, &lines, options);
-    options.AreNear = true;
+    const std::vector<BorderEdge> border; // its marks are not compared
+    options.Border = &border;
     const Trimmed some = Trim(near.List(), &lines, options);
     EXPECT_EQ(some.NumberOfRecoveredEdges, all.NumberOfRecoveredEdges);
     EXPECT_EQ(some.Inserted.size(), all.Inserted.size());
@@ -195,7 +196,8 @@ TEST(NearTriangles, MayAllBeOutward)
   drawn.Add(random, 0.3, 9);
   const BoundaryLines lines = LinesOf(drawn.Points, drawn.Lines);
   TrimOptions options;
-  options.AreNear = true;
+  const std::vector<BorderEdge> border;
+  options.Border = &border;
   const Trimmed trimmed = Trim(none.List(), &lines, options);
   EXPECT_EQ(trimmed.Boundary.Vertices, drawn.Lines.Vertices);
   EXPECT_EQ(trimmed.NumberOfOutwardTriangles, 0);
@@ -207,7 +209,7 @@ TEST(NearTriangles, MayAllBeOutward)
   const Surface surface = RandomSurface(random, 20);
   const BoundaryLines far = LinesOf(beside.Points, beside.Lines);
   EXPECT_EQ(Trim(surface.List(), &far, options).NumberOfOutwardTriangles, surface.List().Count);
-  options.AreNear = false;
+  options.Border = nullptr;
   EXPECT_HAS(testing_errors::MessageFrom([&] { Trim(surface.List(), &far, options); }),
     "encloses no triangle");
 }
