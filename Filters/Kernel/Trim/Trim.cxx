@@ -130,17 +130,20 @@ void CheckEnclosed(const TriangleList& list, const std::vector<char>& isOutward,
 }
 
 /** The ids of the ends of marked half-edges; increasing. */
-std::vector<Index> VerticesOf(const Mesh& mesh, const std::vector<char>& isMarked)
+std::vector<Index> VerticesOf(
+  const Mesh& mesh, const std::vector<char>& isMarked, const Progress& progress)
 {
   std::vector<Index> ids;
-  for (const Index h : Counted(mesh.NumberOfHalfEdges()))
-  {
-    if (isMarked[h])
+  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
+    for (Index h = begin; h < end; ++h)
     {
-      ids.push_back(mesh.IdOf(mesh.Origin(h)));
-      ids.push_back(mesh.IdOf(mesh.Destination(h)));
+      if (isMarked[h])
+      {
+        ids.push_back(mesh.IdOf(mesh.Origin(h)));
+        ids.push_back(mesh.IdOf(mesh.Destination(h)));
+      }
     }
-  }
+  });
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   return ids;
@@ -153,7 +156,8 @@ std::vector<Index> VerticesOf(const Mesh& mesh, const std::vector<char>& isMarke
  * @param[in,out] onBoundary    increasing
  */
 void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
-  const TriangleList& list, const std::vector<BorderEdge>& border, std::vector<Index>& onBoundary)
+  const TriangleList& list, const std::vector<BorderEdge>& border, const Progress& progress,
+  std::vector<Index>& onBoundary)
 {
   const auto endsOf = [&](std::size_t i) {
     return Ends{ { list.Points.At(border[i].Origin), list.Points.At(border[i].Destination) } };
@@ -175,15 +179,20 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
   {
     return;
   }
-  const CellGrid byHeight(border.size(), [&](std::size_t i) {
+  const auto heightsOf = [&](std::size_t i) {
     const Ends ends = endsOf(i);
     return Ends{ { { 0.0, ends[0].Y }, { 0.0, ends[1].Y } } };
-  });
-  for (const Point2& p : outside)
+  };
+  const CellGrid byHeight(border.size(), heightsOf, Part(progress, 0.0, 0.5));
+  WorkReporter work(progress);
+  for (std::size_t k = 0; k < outside.size(); ++k)
   {
+    work.Step(outside.size() + k, 2 * outside.size());
+    const Point2& p = outside[k];
     Index nearest = None;
     double nearestX = 0.0;
     byHeight.Visit(Point2{ 0.0, p.Y }, [&](Index i) {
+      work.Tick();
       const Ends ends = endsOf(i);
       if ((ends[0].Y <= p.Y) != (ends[1].Y <= p.Y))
       {
@@ -210,16 +219,18 @@ void MarkBordersAround(const Mesh& mesh, const Rings& rings, Index firstOutside,
 }
 
 /** The border of a mesh of all triangles of a list. */
-std::vector<BorderEdge> BorderOf(const Mesh& mesh)
+std::vector<BorderEdge> BorderOf(const Mesh& mesh, const Progress& progress)
 {
   std::vector<BorderEdge> border;
-  for (const Index h : Counted(mesh.NumberOfHalfEdges()))
-  {
-    if (mesh.IsBorder(h))
+  ForEachStretch(mesh.NumberOfHalfEdges(), progress, [&](Index begin, Index end) {
+    for (Index h = begin; h < end; ++h)
     {
-      border.push_back({ mesh.IdOf(mesh.Origin(h)), mesh.IdOf(mesh.Destination(h)) });
+      if (mesh.IsBorder(h))
+      {
+        border.push_back({ mesh.IdOf(mesh.Origin(h)), mesh.IdOf(mesh.Destination(h)) });
+      }
     }
-  }
+  });
   return border;
 }
 
@@ -274,7 +285,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   changes.IsOutward.resize(list.Count);
   const Progress making = Part(progress, options.Test == OutwardTest::Exact ? 0.3 : 0.0, 0.5);
   Mesh mesh = near ? NearMesh(list, *near, making) : ProvenMesh(list, threads, making);
-  border = near ? std::move(border) : BorderOf(mesh);
+  border = near ? std::move(border) : BorderOf(mesh, Part(progress, 0.5, 0.5));
   const Index before = mesh.NumberOfPoints();
   InsertedRings rings = InsertRings(mesh, lines.Points, result.Boundary, options.RecoverBoundary,
     Part(progress, 0.5, 0.75), follow);
@@ -290,14 +301,14 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
     std::fill(outward.IsOutward.begin(), outward.IsOutward.end(), char(0));
     std::fill(changes.IsOutward.begin(), changes.IsOutward.end(), char(0));
   }
-  result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary);
+  result.OnBoundary = VerticesOf(mesh, outward.IsOnBoundary, Part(progress, 0.95, 0.955));
   MarkBordersAround(mesh, rings.Vertices, before + static_cast<Index>(rings.Inserted.size()), list,
-    border, result.OnBoundary);
+    border, Part(progress, 0.955, 0.96), result.OnBoundary);
   if (options.Test == OutwardTest::InwardNormal)
   {
     CheckEnclosed(list, outward.IsOutward, lines.Points, result.Boundary);
     ApplyInwardNormalTest(
-      mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.95, 0.97));
+      mesh, outward.IsOnBoundary, outward.IsOutward, Part(progress, 0.96, 0.97));
   }
   PutBack(list, near, mesh, Part(progress, 0.97, 1.0), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
