@@ -226,7 +226,7 @@ private:
     {
       const Point2& place = this->Surface.PointOf(vertex);
       const bool isReached = vertex == segment.B ||
-        (IsInReach(this->Line[0], this->Line[1], this->Units, Reach, place) &&
+        (IsInReach(this->Line[0], this->Line[1], this->Units, SnappingReach, place) &&
           this->IsAhead(from, place));
       if (isReached &&
         (first == None ||
@@ -237,8 +237,6 @@ private:
     }
     return first;
   }
-
-  static constexpr double Reach = 4.0; ///< as in Insertion.cxx
 
   Mesh& Surface;
   MeshCutter& Cutter;

@@ -34,6 +34,9 @@
 namespace elevation
 {
 
+/** In units in the last place: within it, segments and borders snap to each other's vertices. */
+constexpr double SnappingReach = 4.0;
+
 struct FollowedSegment
 {
   explicit FollowedSegment(const Segment& ends)

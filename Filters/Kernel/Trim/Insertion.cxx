@@ -299,7 +299,7 @@ private:
       on = Orientation(a, b, p) == Zero ? h : on;
       // What follows the surface could not be split in the needle beside an edge in reach.
       if (this->Follow != Following::None && !mesh.IsBorder(h) &&
-        IsInReach(a, b, UnitsOf(a, b), Reach, p) && this->Cutter.CanCut(h, p) &&
+        IsInReach(a, b, UnitsOf(a, b), SnappingReach, p) && this->Cutter.CanCut(h, p) &&
         (inReach == None || IsLowerEdge(mesh, h, inReach)))
       {
         inReach = h;
@@ -408,7 +408,7 @@ private:
     for (const Ends& segment : border.Segments)
     {
       const RoundingUnits units = UnitsOf(segment[0], segment[1]);
-      reach = std::max({ reach, 2.0 * Reach * units.X, 2.0 * Reach * units.Y });
+      reach = std::max({ reach, 2.0 * SnappingReach * units.X, 2.0 * SnappingReach * units.Y });
     }
     std::vector<PieceCut> taken; // pieces are border edges
     std::vector<Index> others;
@@ -421,7 +421,7 @@ private:
         Ends{ { { p.X - reach, p.Y - reach }, { p.X + reach, p.Y + reach } } }, [&](Index i) {
           const Ends& segment = border.Segments[i];
           if (i != nearest &&
-            IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), Reach, p))
+            IsInReach(segment[0], segment[1], UnitsOf(segment[0], segment[1]), SnappingReach, p))
           {
             isAlone = isAlone && nearest == None;
             nearest = i;
@@ -510,7 +510,7 @@ private:
         {
           // Through an end of the border edge instead, if one is in reach.
           const bool isInReach =
-            VisitEndsInReach(segment, edge, UnitsOf(edge[0], edge[1]), Reach, [&](int end) {
+            VisitEndsInReach(segment, edge, UnitsOf(edge[0], edge[1]), SnappingReach, [&](int end) {
               this->AddStop(i, edge, h, end == 0 ? mesh.Origin(h) : mesh.Destination(h));
             });
           if (isInReach)
@@ -598,7 +598,7 @@ private:
     this->Stops.clear();
     const auto cut = [&](std::size_t i, std::size_t j) {
       const RoundingUnits units = UnitsOf(pieces[i][0], pieces[i][1]);
-      VisitEndsInReach(pieces[j], pieces[i], units, Reach, [&](int end) {
+      VisitEndsInReach(pieces[j], pieces[i], units, SnappingReach, [&](int end) {
         const Index at =
           end == 0 ? static_cast<Index>(j) : this->Result.Vertices.After(static_cast<Index>(j));
         this->Stops.push_back({ i, this->Pieces[at].Vertex, true, true });
@@ -845,9 +845,6 @@ private:
         piece.Vertex >= 0 ? piece.Vertex : first + (FirstOutside - piece.Vertex));
     }
   }
-
-  /** In units in the last place: within it, the border and rings snap to each other's vertices. */
-  static constexpr double Reach = 4.0;
 
   static constexpr Index Outside = -2;      ///< in place of a vertex: the point is outside the mesh
   static constexpr Index FirstOutside = -3; ///< the first number of points outside

@@ -57,6 +57,26 @@ std::string MessageOf(const Mesh& mesh, const Boundary& boundary, bool insert = 
   return MessageOfTrim(SurfaceOf(mesh), boundary.Points, boundary.Lines, insert);
 }
 
+/** The places of the corners of each triangle, sorted. */
+using PlacesOfTriangles = std::set<std::array<std::pair<double, double>, 3>>;
+
+PlacesOfTriangles PlacesOf(const Mesh& mesh)
+{
+  PlacesOfTriangles triangles;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    std::array<std::pair<double, double>, 3> corners;
+    for (int k = 0; k < 3; ++k)
+    {
+      const Point2& p = mesh.PointOf(mesh.Origin(3 * t + k));
+      corners[k] = { p.X, p.Y };
+    }
+    std::sort(corners.begin(), corners.end());
+    triangles.insert(corners);
+  }
+  return triangles;
+}
+
 /** A lattice with steps of 25, turned at random, in map coordinates. */
 struct TurnedLattice
 {
@@ -1606,7 +1626,7 @@ TEST(InsertRings, SplitsEdgesAlikeWhateverTheirOrderAndDirection)
         star.begin(), star.end(), star.begin(), [&](const Point2& p) { return turned(p.X, p.Y); });
       stars.push_back(star);
     }
-    std::set<std::array<std::pair<double, double>, 3>> expected;
+    PlacesOfTriangles expected;
     for (int order = 0; order < 3; ++order)
     {
       Boundary boundary;
@@ -1622,18 +1642,7 @@ TEST(InsertRings, SplitsEdgesAlikeWhateverTheirOrderAndDirection)
       random.Shuffle(stars);
       Mesh mesh = before;
       InsertRings(mesh, boundary.Points, boundary.Lines, true, Progress(), Following::Rings);
-      std::set<std::array<std::pair<double, double>, 3>> triangles;
-      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-      {
-        std::array<std::pair<double, double>, 3> corners;
-        for (int k = 0; k < 3; ++k)
-        {
-          const Point2& p = mesh.PointOf(mesh.Origin(3 * t + k));
-          corners[k] = { p.X, p.Y };
-        }
-        std::sort(corners.begin(), corners.end());
-        triangles.insert(corners);
-      }
+      const PlacesOfTriangles triangles = PlacesOf(mesh);
       expected = order == 0 ? triangles : expected;
       ASSERT_EQ(triangles, expected) << round;
     }
@@ -1682,7 +1691,7 @@ TEST(InsertRings, DoesNotDependOnTheOrderOfTriangles)
       p = { kind == 0 ? std::round(p.X) : p.X, kind == 1 ? std::round(p.Y) : p.Y };
     }
     boundary.Add(ring);
-    std::set<std::array<std::pair<double, double>, 3>> expected;
+    PlacesOfTriangles expected;
     for (int order = 0; order < 3; ++order)
     {
       std::vector<std::array<Index, 3>> triangles;
@@ -1712,18 +1721,7 @@ TEST(InsertRings, DoesNotDependOnTheOrderOfTriangles)
         EXPECT_HAS(std::string(error.what()), "crosses it"); // itself, or its edge, after snapping
         break;
       }
-      std::set<std::array<std::pair<double, double>, 3>> found;
-      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-      {
-        std::array<std::pair<double, double>, 3> places;
-        for (int k = 0; k < 3; ++k)
-        {
-          const Point2& p = mesh.PointOf(mesh.Origin(3 * t + k));
-          places[k] = { p.X, p.Y };
-        }
-        std::sort(places.begin(), places.end());
-        found.insert(places);
-      }
+      const PlacesOfTriangles found = PlacesOf(mesh);
       expected = order == 0 ? found : expected;
       ASSERT_EQ(found, expected) << round;
       ++compared;
