@@ -2,15 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkFillElevationHoles.h"
 
-#include "Blocks.h"
-#include "DistributedFill.h"
+#include "Adapt/Adapt.h"
+#include "FilterOptions.h"
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Mesh/Mesh.h"
-#include "KernelCall.h"
-#include "MeshConversion.h"
-#include "PatchedSurface.h"
-#include "Ranks.h"
-#include "TrimmedSurface.h"
+#include "Parts/Parts.h"
 
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
@@ -21,6 +17,29 @@
 
 #include <algorithm>
 #include <string>
+
+namespace elevation
+{
+
+FillOptions OptionsOf(vtkFillElevationHoles* filter)
+{
+  FillOptions options;
+  options.MaximumHoleSize = filter->GetMaximumHoleSize();
+  options.MaximumHoleEdges =
+    static_cast<Index>(std::min<vtkIdType>(filter->GetMaximumHoleEdges(), VTK_INT_MAX));
+  options.Spacing = filter->GetSpacing();
+  options.FillCutOuts = filter->GetFillCutOuts();
+  options.Method = static_cast<Interpolation>(filter->GetInterpolation());
+  const vtkIdType most = filter->GetMaximumNumberOfInsertedPoints();
+  options.MaximumInsertedPoints = static_cast<Index>(
+    most > 0 ? std::min<vtkIdType>(most, MaximumNumberOfPoints) : MaximumNumberOfPoints);
+  options.MaximumExpectedPoints = static_cast<Index>(
+    std::min<vtkIdType>(filter->GetMaximumNumberOfExpectedPoints(), MaximumNumberOfPoints));
+  options.NumberOfThreads = filter->GetNumberOfThreads();
+  return options;
+}
+
+} // namespace elevation
 
 vtkStandardNewMacro(vtkFillElevationHoles);
 
@@ -75,7 +94,7 @@ vtkTypeBool vtkFillElevationHoles::ProcessRequest(
 int vtkFillElevationHoles::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::KernelCall call(this, request, inputVector, outputVector);
+  elevation::FilterRun call(this, request, inputVector, outputVector);
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;

@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkGridDelaunay2D.h"
 
-#include "Blocks.h"
-#include "Constraints.h"
-#include "DelaunayReport.h"
-#include "DistributedDelaunay.h"
-#include "Joining.h"
+#include "Adapt/Adapt.h"
+#include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
-#include "Kernel/Triangulate/Triangulate.h"
-#include "KernelCall.h"
-#include "LimitAdvice.h"
-#include "MeshConversion.h"
-#include "TrimmedSurface.h"
+#include "Kernel/Constrain/Constrain.h"
+#include "Parts/Parts.h"
 
 #include "vtkCellArray.h"
 #include "vtkDemandDrivenPipeline.h"
@@ -33,6 +27,30 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace elevation
+{
+
+DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
+{
+  DelaunayOptions options;
+  options.Strategy = static_cast<SearchStrategy>(filter->GetSearchStrategy());
+  options.MaximumEdgeLength = filter->GetMaximumEdgeLength();
+  options.MaximumElevationError = filter->GetMaximumElevationError();
+  options.SimplifyConstraints = filter->GetSimplifyConstraints();
+  options.Edges =
+    filter->GetDataDependentEdges() ? EdgeCriterion::DataDependent : EdgeCriterion::Delaunay;
+  options.Duplicates = static_cast<DuplicatePolicy>(filter->GetDuplicatePolicy());
+  options.UseLattice = static_cast<LatticeMode>(filter->GetLatticeMode());
+  const double* const lattice = filter->GetLattice();
+  options.GivenLattice = { { lattice[0], lattice[1] }, { lattice[2], lattice[3] },
+    { lattice[4], lattice[5] } };
+  options.LatticeTolerance = filter->GetLatticeTolerance();
+  options.NumberOfThreads = filter->GetNumberOfThreads();
+  return options;
+}
+
+} // namespace elevation
 
 vtkStandardNewMacro(vtkGridDelaunay2D);
 
@@ -248,7 +266,7 @@ vtkPolyData* vtkGridDelaunay2D::GetSource()
 int vtkGridDelaunay2D::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::KernelCall call(this, request, inputVector, outputVector);
+  elevation::FilterRun call(this, request, inputVector, outputVector);
   call.Second = "constraints";
   call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,

@@ -2,15 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkReconstructPieces.h"
 
-#include "CellByCell.h"
-#include "DelaunayReport.h"
-#include "FilledPieces.h"
+#include "Adapt/Adapt.h"
+#include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
-#include "KernelCall.h"
-#include "LimitAdvice.h"
-#include "PatchedSurface.h"
-#include "Ranks.h"
-#include "TrimmedPieces.h"
+#include "Parts/Parts.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
 #include "vtkTrimOutwardTriangles.h"

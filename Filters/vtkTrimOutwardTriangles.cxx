@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTrimOutwardTriangles.h"
 
-#include "Blocks.h"
-#include "DistributedTrim.h"
+#include "Adapt/Adapt.h"
+#include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Trim/Trim.h"
-#include "KernelCall.h"
-#include "MeshConversion.h"
-#include "TrimmedSurface.h"
+#include "Parts/Parts.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -26,6 +24,25 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace elevation
+{
+
+TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter)
+{
+  TrimOptions options;
+  options.Test = static_cast<OutwardTest>(filter->GetOutwardTest());
+  options.RecoverBoundary = filter->GetRecoverBoundary();
+  options.Edges = static_cast<BoundaryEdges>(filter->GetBoundaryEdges());
+  options.GapTolerance = filter->GetGapTolerance();
+  const double* const steps = filter->GetGridSteps();
+  options.Grid.StepU = { steps[0], steps[1] };
+  options.Grid.StepV = { steps[2], steps[3] };
+  options.NumberOfThreads = filter->GetNumberOfThreads();
+  return options;
+}
+
+} // namespace elevation
 
 vtkStandardNewMacro(vtkTrimOutwardTriangles);
 
@@ -125,7 +142,7 @@ vtkPolyData* vtkTrimOutwardTriangles::GetBoundary()
 int vtkTrimOutwardTriangles::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::KernelCall call(this, request, inputVector, outputVector);
+  elevation::FilterRun call(this, request, inputVector, outputVector);
   call.Second = "boundary";
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };

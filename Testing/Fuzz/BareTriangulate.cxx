@@ -20,9 +20,9 @@
  */
 #include "FuzzInput.h"
 
-#include "Kernel/Triangulate/BinGrid.h"
-#include "Kernel/Triangulate/GridGrowth.h"
-#include "Kernel/Triangulate/Hull.h"
+#include "Kernel/Bins/BinGrid.h"
+#include "Kernel/Bins/Hull.h"
+#include "Kernel/Grow/GridGrowth.h"
 
 #include <chrono>
 #include <csignal>

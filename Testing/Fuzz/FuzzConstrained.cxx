@@ -8,6 +8,7 @@
 #include "ConstrainedMesh.h"
 #include "FuzzLines.h"
 
+#include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Triangulate/Triangulate.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 
 #include "FuzzInput.h"
 
-#include "Kernel/Triangulate/Constrained.h"
+#include "Kernel/Constrain/Constrain.h"
 
 #include <algorithm>
 #include <vector>

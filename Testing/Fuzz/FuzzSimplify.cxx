@@ -10,6 +10,7 @@
 #include "FuzzLines.h"
 
 #include "Kernel/Mesh/Validate.h"
+#include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Triangulate/Triangulate.h"
 
 #include <algorithm>

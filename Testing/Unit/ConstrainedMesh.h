@@ -9,8 +9,8 @@
 
 #include "PointSets.h"
 
+#include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Mesh/Recovery.h"
-#include "Kernel/Triangulate/Constrained.h"
 
 #include <string>
 #include <vector>

@@ -8,7 +8,7 @@
 #define Competitor_h
 
 #include "Kernel/Base/Memory.h"
-#include "Kernel/Triangulate/Instructions.h"
+#include "Kernel/Bins/Instructions.h"
 
 #include <cstddef>
 #include <memory>

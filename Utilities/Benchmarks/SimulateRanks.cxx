@@ -7,7 +7,7 @@
  * they may be larger than memory.
  */
 #include "Arguments.h"
-#include "Kernel/Triangulate/Cuts.h"
+#include "Kernel/Cells/Cuts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,48 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Triangulate.h"
 
-#include "BinGrid.h"
-#include "GridGrowth.h"
-#include "Hull.h"
 #include "Kernel/Base/Base.h"
-#include "LatticeGrowth.h"
-#include "Simplify.h"
-#include "TriangulateNodes.h"
+#include "Kernel/Bins/Bins.h"
+#include "Kernel/Grow/Grow.h"
+#include "Kernel/Simplify/Simplify.h"
 
 #include <algorithm>
 
 namespace elevation
 {
-
-void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& notFinite,
-  const Progress& progress, Triangulation& triangulation)
-{
-  triangulation.NumberOfDuplicates = static_cast<Index>(duplicates.size());
-  triangulation.NumberOfNotFinite = static_cast<Index>(notFinite.size());
-  std::vector<Index>& unused = triangulation.UnusedPoints;
-  std::vector<UnusedReason>& reasons = triangulation.UnusedReasons;
-  if (notFinite.empty())
-  {
-    unused = std::move(duplicates);
-    reasons.assign(unused.size(), UnusedReason::Duplicate);
-    return;
-  }
-  const std::size_t count = duplicates.size() + notFinite.size();
-  unused.reserve(count);
-  reasons.reserve(count);
-  auto duplicate = duplicates.begin();
-  auto other = notFinite.begin();
-  StepCount steps;
-  while (unused.size() < count)
-  {
-    steps.Add();
-    ReportStep(progress, unused.size(), count);
-    const bool isDuplicate =
-      other == notFinite.end() || (duplicate != duplicates.end() && *duplicate < *other);
-    unused.push_back(isDuplicate ? *duplicate++ : *other++);
-    reasons.push_back(isDuplicate ? UnusedReason::Duplicate : UnusedReason::NotFinite);
-  }
-}
 
 Triangulation Triangulate(const PointView& points, const DelaunayOptions& asked)
 {

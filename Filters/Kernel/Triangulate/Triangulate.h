@@ -35,10 +35,7 @@
 #ifndef elevation_Triangulate_Triangulate_h
 #define elevation_Triangulate_Triangulate_h
 
-#include "Constrained.h"
-#include "Cuts.h"
-#include "Options.h"
-#include "Pieces.h"
+#include "Kernel/Bins/Bins.h"
 
 namespace elevation
 {

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Progress rises, and no step of a long computation is silent, so that an abort is heard soon.
-#include "Kernel/Triangulate/Constrained.h"
-#include "Kernel/Mesh/Recovery.h"
-#include "Kernel/Triangulate/Triangulate.h"
+#include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Mesh/Holes.h"
+#include "Kernel/Mesh/Recovery.h"
+#include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Trim/Outline.h"
 #include "Kernel/Trim/OutwardTriangles.h"
 #include "Kernel/Trim/Trim.h"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Triangulate/LatticeGrowth.h"
-#include "Kernel/Lattice/Nodes.h"
 #include "Kernel/Base/Predicates.h"
+#include "Kernel/Grow/LatticeGrowth.h"
+#include "Kernel/Lattice/Nodes.h"
 #include "LatticeRules.h"
 #include "PointSets.h"
 #include "WorkOf.h"

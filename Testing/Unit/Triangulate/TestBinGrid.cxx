@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Triangulate/BinGrid.h"
+#include "Kernel/Bins/BinGrid.h"
 #include "PointSets.h"
 
 #include <gtest/gtest.h>

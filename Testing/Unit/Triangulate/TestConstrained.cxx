@@ -8,7 +8,7 @@
 #include "ErrorMessage.h"
 
 #include "Kernel/Base/Predicates.h"
-#include "Kernel/Triangulate/Constrained.h"
+#include "Kernel/Constrain/Constrain.h"
 #include "PointSets.h"
 
 #ifdef ES_TEST_CGAL

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Kernel/Grow/DivideAndConquer.h"
 #include "Kernel/Triangulate/Triangulate.h"
-#include "Kernel/Triangulate/DivideAndConquer.h"
 #include "PointSets.h"
 #include "WorkOf.h"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Kernel/Triangulate/Constrained.h"
-#include "Kernel/Triangulate/FewerPieces.h"
+#include "Kernel/Constrain/Constrain.h"
+#include "Kernel/Simplify/FewerPieces.h"
 #include "PointSets.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Base/Predicates.h"
+#include "Kernel/Cells/Pieces.h"
 #include "Kernel/Lattice/Lattice.h"
-#include "Kernel/Triangulate/Pieces.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 

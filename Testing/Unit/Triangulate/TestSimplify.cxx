@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Mesh/Mesh.h"
-#include "Kernel/Triangulate/FewerPieces.h"
-#include "Kernel/Triangulate/Simplify.h"
+#include "Kernel/Simplify/FewerPieces.h"
+#include "Kernel/Simplify/Simplify.h"
+#include "Kernel/Constrain/Constrain.h"
 #include "Kernel/Triangulate/Triangulate.h"
 #include "PointSets.h"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Kernel/Base/Predicates.h"
-#include "Kernel/Triangulate/WideApexSearch.h"
+#include "Kernel/Grow/WideApexSearch.h"
 #include "PointSets.h"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,191 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+# The rooms, in the order in which they may include each other, and the files of each:
+# <Room>/<Name>.{h,cxx} in Filters, or a header alone. A room's public face is <Room>/<Room>.h.
+# Filters/CMakeLists.txt compiles these lists, the kernel's once: a new file is one line here.
+set(es_kernel_rooms Base Mesh Lattice Bins Grow Simplify Triangulate Constrain Cells Trim Fill)
+set(es_kernel_Base
+  Predicates)
+set(es_kernel_Mesh
+  HalfEdgeMesh
+  VertexStars
+  Segments
+  Recovery
+  Holes
+  LongTriangles
+  TriangleList
+  Validate)
+set(es_kernel_Lattice
+  FindLattice
+  Nodes
+  Metric
+  SharedLattice)
+set(es_kernel_Bins
+  BoxTree
+  BinGrid
+  Hull
+  Options)
+set(es_kernel_Grow
+  PointWindows
+  WideApexSearch
+  ApexSearch
+  DivideAndConquer
+  GridGrowth
+  LatticeApexes
+  LatticeGrowth
+  TriangulateNodes)
+set(es_kernel_Simplify
+  PlacedPoints
+  FewerPieces
+  InsertionMesh
+  InsertionStrip
+  GreedyInsertion
+  Simplify)
+set(es_kernel_Triangulate
+  Triangulate)
+set(es_kernel_Constrain
+  Constrain)
+set(es_kernel_Cells
+  Pieces
+  Cuts)
+set(es_kernel_Trim
+  Rings
+  NearTriangles
+  Crossings
+  MeshCutter
+  FollowSurface
+  Insertion
+  OutwardTriangles
+  MeasuredTriangles
+  Spacings
+  PartialMesh
+  Scales
+  Outline
+  Trim)
+set(es_kernel_Fill
+  Multigrid
+  Membrane
+  Spline
+  Patch
+  Neighbours
+  Heights
+  Fill)
+
+# Headers without a source file.
+set(es_kernel_headers_Base
+  Base CellGrid Duplicates EdgeLimit Extent IdSet Memory Points Progress SnapRounding Threads
+  UnionFind Work)
+set(es_kernel_headers_Mesh
+  Mesh TriangleSweep)
+set(es_kernel_headers_Lattice
+  Lattice NodeOfPoint)
+set(es_kernel_headers_Bins
+  Bins Instructions WorkBudget)
+set(es_kernel_headers_Grow
+  Grow Growth)
+set(es_kernel_headers_Simplify
+  PlaneOfFace)
+set(es_kernel_headers_Triangulate)
+set(es_kernel_headers_Constrain)
+set(es_kernel_headers_Cells
+  Cells)
+set(es_kernel_headers_Trim)
+set(es_kernel_headers_Fill
+  Trials Walk)
+
+# The rooms around the kernel.
+set(es_outer_rooms Adapt Parts)
+set(es_Adapt
+  Blocks
+  Constraints
+  DelaunayReport
+  LimitAdvice
+  MeshConversion
+  PatchedSurface
+  Requests
+  TrimmedSurface)
+set(es_headers_Adapt
+  Adapt VTKVersions)
+set(es_Parts
+  BorderOfParts
+  CellByCell
+  CommonPoints
+  ConstraintsOfRanks
+  DistributedDelaunay
+  DistributedFill
+  DistributedTrim
+  FailureNotes
+  FilledPart
+  FilledPieces
+  FilterRun
+  Gathering
+  HolesOfParts
+  Joining
+  LatticeOfRanks
+  NearParts
+  PackedData
+  PointOwners
+  PointRows
+  Ranks
+  SpoolFile
+  SpreadBlocks
+  SurfacePart
+  SurroundingBoxes
+  TrimOfPart
+  TrimmedPieces)
+set(es_headers_Parts
+  Bytes Parts)
+
+# Lists the files of a room, whose names are in variables with a prefix.
+macro (es_list_room prefix folder room)
+  foreach (es_name IN LISTS es_${prefix}${room})
+    list(APPEND es_${prefix}sources "${folder}${room}/${es_name}.cxx")
+  endforeach ()
+  foreach (es_name IN LISTS es_${prefix}${room} es_${prefix}headers_${room})
+    list(APPEND es_${prefix}headers "${folder}${room}/${es_name}.h")
+  endforeach ()
+  unset(es_name)
+endmacro ()
+
+foreach (es_list IN ITEMS kernel_sources kernel_headers sources headers)
+  set(es_${es_list})
+endforeach ()
+foreach (es_room IN LISTS es_kernel_rooms)
+  es_list_room(kernel_ Kernel/ "${es_room}")
+endforeach ()
+foreach (es_room IN LISTS es_outer_rooms)
+  es_list_room("" "" "${es_room}")
+endforeach ()
+unset(es_list)
+unset(es_room)
+
+# What the kernel needs, wherever it is compiled.
+function (es_kernel_compile_options target)
+  target_compile_features("${target}" PRIVATE cxx_std_17)
+  # Headers alone, for linear algebra. Who uses an installed library needs none of it.
+  target_link_libraries("${target}" PRIVATE "$<BUILD_INTERFACE:VTK::eigen>")
+  # The error bounds of the predicates hold for IEEE arithmetic, one rounding per operation. A fused
+  # multiply-add or reordered sums would make the signs wrong, so a global -ffast-math is undone here.
+  # Nothing reads errno: without it a square root is one instruction, also in loops.
+  if (CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    target_compile_options("${target}" PRIVATE -fno-fast-math -ffp-contract=off -fno-math-errno)
+  elseif (MSVC AND MSVC_VERSION LESS 1930)
+    # Before Visual Studio 2022, /fp:precise still allows contraction.
+    target_compile_options("${target}" PRIVATE /fp:strict)
+  elseif (MSVC)
+    target_compile_options("${target}" PRIVATE /fp:precise)
+  endif ()
+
+  # ES_WARNINGS and ES_WERROR are options of the stand-alone project; inside VTK its own flags rule.
+  if (ES_WARNINGS)
+    if (MSVC)
+      target_compile_options("${target}" PRIVATE /W4)
+    else ()
+      target_compile_options("${target}" PRIVATE -Wall -Wextra)
+    endif ()
+    if (ES_WERROR)
+      target_compile_options("${target}" PRIVATE $<IF:$<BOOL:${MSVC}>,/WX,-Werror>)
+    endif ()
+  endif ()
+endfunction ()

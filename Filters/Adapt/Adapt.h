@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * VTK's data as the kernel reads and writes them, in one process. Private to the module.
+ */
+#ifndef Adapt_h
+#define Adapt_h
+
+#include "Blocks.h"
+#include "Constraints.h"
+#include "DelaunayReport.h"
+#include "LimitAdvice.h"
+#include "MeshConversion.h"
+#include "PatchedSurface.h"
+#include "Requests.h"
+#include "TrimmedSurface.h"
+#include "VTKVersions.h"
+
+#endif

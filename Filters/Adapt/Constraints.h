@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The constraints of vtkGridDelaunay2D: the lines of a vtkPolyData, and the values of arrays at the
+ * points that they add. Private to the module.
+ */
+#ifndef Constraints_h
+#define Constraints_h
+
+#include "Kernel/Constrain/Constrain.h"
+#include "MeshConversion.h"
+
+#include <string>
+#include <vector>
+
+class vtkPointSet;
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** The lines and polygons of the constraints; @a points must outlive them. */
+ConstraintLines ToLines(
+  vtkPolyData* source, const PointsOfDataSet& points, const Progress& progress);
+
+/**
+ * Checks that lines and points are in the same place.
+ * @param[in] box  of the finite points
+ * @param[out] warnings  one is added when most of the lines lie outside
+ * @throws Error if there is no line, or all are elsewhere
+ */
+void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<std::string>& warnings);
+
+/** The input's points and arrays, followed by the added points with their values. */
+void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<AddedPoint>& added,
+  const Progress& progress, vtkPolyData* output);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DelaunayReport.h"
+
+#include "Requests.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <cmath>
+#include <sstream>
+
+namespace elevation
+{
+
+void CheckLimits(const DelaunayOptions& options)
+{
+  CheckMaximumEdgeLength(options.MaximumEdgeLength);
+  const double error = options.MaximumElevationError;
+  if (!(error >= 0.0) || std::isinf(error))
+  {
+    std::ostringstream text;
+    text << "MaximumElevationError is " << error << "; it must be 0 (off) or a distance in z.";
+    throw Error(text.str());
+  }
+  if (error > 0.0 && options.MaximumEdgeLength > 0.0)
+  {
+    throw Error("MaximumEdgeLength and MaximumElevationError are both set, but fewer points make "
+                "longer edges: set one of them to 0, and trim the surface instead.");
+  }
+}
+
+namespace
+{
+void AddUnusedPoints(
+  const Triangulation& triangulation, const Progress& progress, vtkFieldData* fieldData)
+{
+  const std::size_t count = triangulation.UnusedPoints.size();
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("UnusedPointIds");
+  ids->SetNumberOfValues(static_cast<vtkIdType>(count));
+  vtkNew<vtkUnsignedCharArray> reasons;
+  reasons->SetName("UnusedPointReasons");
+  reasons->SetNumberOfValues(static_cast<vtkIdType>(count));
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    ReportStep(progress, i, count, 1 << 18);
+    const vtkIdType at = static_cast<vtkIdType>(i);
+    ids->SetValue(at, triangulation.UnusedPoints[i]);
+    reasons->SetValue(at, static_cast<unsigned char>(triangulation.UnusedReasons[i]));
+  }
+  fieldData->AddArray(ids);
+  fieldData->AddArray(reasons);
+}
+
+} // namespace
+
+void AddReport(
+  const ConstrainedTriangulation& constrained, const Progress& progress, vtkFieldData* fieldData)
+{
+  const Triangulation& triangulation = constrained.Result;
+  AddUnusedPoints(triangulation, progress, fieldData);
+  const auto add = [fieldData](const char* name, auto count) {
+    AddCount(fieldData, name, static_cast<vtkIdType>(count));
+  };
+  add("NumberOfDuplicatePoints", triangulation.NumberOfDuplicates);
+  add("NumberOfNonFinitePoints", triangulation.NumberOfNotFinite);
+  add("NumberOfConstraintCrossings", constrained.NumberOfCrossings);
+  add("NumberOfAddedPoints", constrained.Added.size());
+  for (const char* const name : { "Lattice", "NumberOfRedundantPoints", "LargestElevationError" })
+  {
+    fieldData->RemoveArray(name); // passed from the input, of other points
+  }
+  if (triangulation.LatticeFound)
+  {
+    const Lattice& lattice = triangulation.Steps;
+    vtkNew<vtkDoubleArray> array;
+    array->SetName("Lattice");
+    array->SetNumberOfComponents(6);
+    const double values[] = { lattice.Origin.X, lattice.Origin.Y, lattice.StepU.X, lattice.StepU.Y,
+      lattice.StepV.X, lattice.StepV.Y };
+    array->InsertNextTuple(values);
+    fieldData->AddArray(array);
+  }
+}
+
+void AddSimplification(const Triangulation& triangulation, vtkFieldData* fieldData)
+{
+  AddCount(fieldData, "NumberOfRedundantPoints", triangulation.NumberOfRedundant);
+  vtkNew<vtkDoubleArray> largest;
+  largest->SetName("LargestElevationError");
+  largest->InsertNextValue(triangulation.LargestElevationError);
+  fieldData->AddArray(largest);
+}
+
+} // namespace elevation

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What vtkGridDelaunay2D is told by its properties, and tells in the field data of its output.
+ * Private to the module.
+ */
+#ifndef DelaunayReport_h
+#define DelaunayReport_h
+
+#include "Kernel/Constrain/Constrain.h"
+
+class vtkFieldData;
+
+namespace elevation
+{
+
+/** @throws Error if MaximumEdgeLength or MaximumElevationError is wrong, or both are set */
+void CheckLimits(const DelaunayOptions& options);
+
+/** Adds the field data on points, lines and lattice. */
+void AddReport(
+  const ConstrainedTriangulation& constrained, const Progress& progress, vtkFieldData* fieldData);
+
+/** Adds what MaximumElevationError has come to. */
+void AddSimplification(const Triangulation& triangulation, vtkFieldData* fieldData);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,264 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PatchedSurface.h"
+
+#include "MeshConversion.h"
+#include "Requests.h"
+#include "TrimmedSurface.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace elevation
+{
+
+bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array)
+{
+  return IsFloatingPoint(array) && !IsGhostArray(array) && !IsIdArray(pointData, array);
+}
+
+std::vector<Values> AttributesOf(vtkPointData* pointData)
+{
+  std::vector<Values> attributes;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* numbers = pointData->GetArray(i);
+    const int count =
+      numbers && IsInterpolated(pointData, numbers) ? numbers->GetNumberOfComponents() : 0;
+    for (int c = 0; c < count; ++c)
+    {
+      attributes.push_back([numbers, c](Index id) { return numbers->GetComponent(id, c); });
+    }
+  }
+  return attributes;
+}
+
+bool HasFloatPoints(vtkPolyData* input)
+{
+  return input->GetPoints() && input->GetPoints()->GetDataType() == VTK_FLOAT;
+}
+
+namespace
+{
+/** The points of output 0 with their data: those of the input, then new ones. */
+void PassPoints(vtkPolyData* input, const FillResult& patches, bool interpolate,
+  const Progress& progress, vtkPolyData* output)
+{
+  output->SetPoints(AppendPoints(input->GetPoints(), patches.NumberOfPoints(),
+    HasFloatPoints(input) ? VTK_FLOAT : VTK_DOUBLE, Part(progress, 0.0, 0.3),
+    [&](vtkIdType i, double* xyz) { std::copy_n(patches.Points.data() + 3 * i, 3, xyz); }));
+  vtkPointData* pointData = input->GetPointData();
+  std::size_t next = 0; // of the attributes, which are in the order of the arrays
+  PassExtended(pointData, patches.NumberOfPoints(), output->GetPointData(),
+    Part(progress, 0.3, 1.0), [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
+      NewValues values;
+      if (!interpolate || IsIdArray(pointData, array) || array == BoundaryMarksOf(pointData))
+      {
+        return values;
+      }
+      values.Interpolated = [&patches, first = next](
+                              vtkIdType i, int c) { return patches.Attributes[first + c][i]; };
+      values.Nearest = [&patches](vtkIdType i) { return patches.NearestBoundaryPoints[i]; };
+      next += IsInterpolated(pointData, array) ? array->GetNumberOfComponents() : 0;
+      return values;
+    });
+}
+
+/** The triangles of the input that no patch replaces, in order. */
+std::vector<Index> ListKept(const Mesh& mesh, const FillResult& patches)
+{
+  const std::vector<Index>& regionOf = patches.Found.RegionOf;
+  std::vector<Index> kept;
+  kept.reserve(mesh.NumberOfTriangles());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Index region = regionOf.empty() ? None : regionOf[t];
+    if (region == None || patches.Reports[region].Status != FillStatus::Replaced)
+    {
+      kept.push_back(t);
+    }
+  }
+  return kept;
+}
+
+/** The cells of output 0 with their data: those of the input that are kept, then new ones. */
+void PassCells(vtkPolyData* input, const Mesh& mesh, const std::vector<Index>& kept,
+  const FillResult& patches, const Progress& progress, vtkPolyData* output)
+{
+  output->SetVerts(input->GetVerts());
+  output->SetLines(input->GetLines());
+  Buffer<Index> triangles;
+  triangles.Resize(3 * kept.size() + patches.Triangles.size());
+  auto end = triangles.begin();
+  for (const Index t : kept)
+  {
+    end = std::copy_n(mesh.Triangles.begin() + 3 * std::ptrdiff_t(t), 3, end);
+  }
+  std::copy(patches.Triangles.begin(), patches.Triangles.end(), end);
+  output->SetPolys(ToCellArray(std::move(triangles)));
+
+  vtkCellData* cellData = input->GetCellData();
+  vtkNew<vtkCellData> ofKept;
+  const vtkIdType first = FirstPolygon(input);
+  if (static_cast<Index>(kept.size()) < mesh.NumberOfTriangles())
+  {
+    const auto sourceOf = [&](vtkIdType cell) {
+      return cell < first ? cell : first + kept[cell - first];
+    };
+    CopyTuples(cellData, first + static_cast<vtkIdType>(kept.size()), sourceOf,
+      Part(progress, 0.0, 0.5), ofKept);
+    cellData = ofKept;
+  }
+  PassExtended(cellData, patches.NumberOfTriangles(), output->GetCellData(),
+    Part(progress, 0.5, 1.0), nullptr);
+}
+} // namespace
+
+void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,
+  const Progress& progress, vtkPolyData* output)
+{
+  Report(progress, 0.0);
+  const bool isExtended = patches.NumberOfPoints() > 0;
+  PassPoints(input, patches, interpolate, Part(progress, 0.0, isExtended ? 0.6 : 0.0), output);
+  Report(progress, isExtended ? 0.6 : 0.15);
+  vtkNew<vtkUnsignedCharArray> isNew;
+  isNew->SetName("FilledPoint");
+  isNew->SetNumberOfTuples(output->GetNumberOfPoints());
+  std::fill_n(isNew->GetPointer(0), input->GetNumberOfPoints(), 0);
+  std::fill_n(isNew->GetPointer(0) + input->GetNumberOfPoints(), patches.NumberOfPoints(), 1);
+  // An array of the input that it replaces may be the active scalars, say; this one is not.
+  output->GetPointData()->RemoveArray(isNew->GetName());
+  output->GetPointData()->AddArray(isNew);
+  Report(progress, isExtended ? 0.62 : 0.3);
+  vtkNew<vtkDoubleArray> errors;
+  errors->SetName("FilledError");
+  errors->SetNumberOfTuples(output->GetNumberOfPoints());
+  std::fill_n(errors->GetPointer(0), input->GetNumberOfPoints(), 0.0);
+  std::copy(patches.StandardErrors.begin(), patches.StandardErrors.end(),
+    errors->GetPointer(0) + input->GetNumberOfPoints());
+  output->GetPointData()->RemoveArray(errors->GetName());
+  output->GetPointData()->AddArray(errors);
+
+  Report(progress, isExtended ? 0.64 : 0.5);
+  const std::vector<Index> kept = ListKept(mesh, patches);
+  PassCells(input, mesh, kept, patches, Part(progress, 0.7, 0.9), output);
+  Report(progress, 0.9);
+  vtkNew<vtkIdTypeArray> holeIds;
+  holeIds->SetName("HoleId");
+  const vtkIdType ofInput = FirstPolygon(input) + static_cast<vtkIdType>(kept.size());
+  holeIds->SetNumberOfTuples(ofInput + patches.NumberOfTriangles());
+  vtkIdType* holeId = holeIds->GetPointer(0);
+  holeId = std::fill_n(holeId, ofInput, -1);
+  for (std::size_t hole = 0; hole < patches.Reports.size(); ++hole)
+  {
+    holeId = std::fill_n(holeId, patches.TriangleOffsets[hole + 1] - patches.TriangleOffsets[hole],
+      static_cast<vtkIdType>(hole));
+  }
+  output->GetCellData()->RemoveArray(holeIds->GetName());
+  output->GetCellData()->AddArray(holeIds);
+  output->GetFieldData()->PassData(input->GetFieldData());
+}
+
+void MakeReport(
+  vtkPolyData* input, const FillResult& patches, const Progress& progress, vtkPolyData* output)
+{
+  const auto add = [&](const char* name, auto* array, auto&& valueOf) {
+    array->SetName(name);
+    for (const HoleReport& report : patches.Reports)
+    {
+      array->InsertNextValue(valueOf(report));
+    }
+    output->GetCellData()->AddArray(array);
+  };
+  vtkIdType id = 0;
+  add("HoleId", vtkNew<vtkIdTypeArray>().Get(), [&id](const HoleReport&) { return id++; });
+  add("Status", vtkNew<vtkUnsignedCharArray>().Get(),
+    [](const HoleReport& report) { return static_cast<unsigned char>(report.Status); });
+  add("NumberOfEdges", vtkNew<vtkIdTypeArray>().Get(),
+    [](const HoleReport& report) { return report.NumberOfEdges; });
+  add("Perimeter", vtkNew<vtkDoubleArray>().Get(),
+    [](const HoleReport& report) { return report.Perimeter; });
+  add("Area", vtkNew<vtkDoubleArray>().Get(), [](const HoleReport& report) { return report.Area; });
+  add("NumberOfInsertedPoints", vtkNew<vtkIdTypeArray>().Get(),
+    [](const HoleReport& report) { return report.NumberOfInsertedPoints; });
+  add("Interpolation", vtkNew<vtkUnsignedCharArray>().Get(),
+    [](const HoleReport& report) { return static_cast<unsigned char>(report.Method); });
+
+  const Holes& holes = patches.Found;
+  Rings rims;
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    // A rim runs clockwise; reversed, it has the hole on its left.
+    const Index rim = holes.Rim(hole);
+    for (const Index* v = holes.Walks.End(rim); v != holes.Walks.Begin(rim); --v)
+    {
+      rims.Vertices.push_back(v[-1]);
+    }
+    rims.Offsets.push_back(static_cast<Index>(rims.Vertices.size()));
+  }
+  PassRings(rims, input, progress, output);
+}
+
+vtkIdType CountOfFilled(const FillResult& patches)
+{
+  return std::count_if(patches.Reports.begin(), patches.Reports.end(), [](const HoleReport& hole) {
+    return hole.Status == FillStatus::Filled || hole.Status == FillStatus::Replaced;
+  });
+}
+
+void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& outputs)
+{
+  for (vtkPolyData* output : outputs)
+  {
+    AddCount(output->GetFieldData(), "NumberOfHoles", patches.Found.Count());
+    AddCount(output->GetFieldData(), "NumberOfFilledHoles", CountOfFilled(patches));
+  }
+}
+
+std::string Complaint(const FillResult& patches)
+{
+  const Holes& holes = patches.Found;
+  constexpr int listed = 5;
+  std::ostringstream text;
+  int failed = 0;
+  for (Index hole = 0; hole < holes.Count(); ++hole)
+  {
+    const HoleReport& report = patches.Reports[hole];
+    if (report.Status == FillStatus::Failed && ++failed <= listed)
+    {
+      text << "Hole " << hole << " (" << report.NumberOfEdges << " edges) was not filled. "
+           << report.Reason << (holes.IsRegion(hole) ? " It keeps its triangles." : "") << "\n";
+    }
+  }
+  if (failed > listed)
+  {
+    text << "And " << failed - listed << " more holes were not filled; see Status in output 1.\n";
+  }
+  if (holes.NumberOfContacts > 0)
+  {
+    text << "At " << holes.NumberOfContacts
+         << " places a point lies inside a border edge or on another point, the first at point "
+         << holes.ContactVertices.front()
+         << "; there the surface is not connected, so that an enclosed region may not be a hole. "
+            "vtkCleanPolyData merges points.\n";
+  }
+  std::string complaint = text.str();
+  if (!complaint.empty())
+  {
+    complaint.pop_back();
+  }
+  return complaint;
+}
+
+} // namespace elevation

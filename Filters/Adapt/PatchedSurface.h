@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What vtkFillElevationHoles hands to the kernel and makes of its result, on one rank or several.
+ * Private to the module.
+ */
+#ifndef PatchedSurface_h
+#define PatchedSurface_h
+
+#include "Kernel/Fill/Fill.h"
+#include "Kernel/Mesh/Mesh.h"
+
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class vtkAbstractArray;
+class vtkPointData;
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** Whether the values of an array at new points are interpolated as z is. */
+bool IsInterpolated(vtkPointData* pointData, vtkAbstractArray* array);
+
+/** The components of all interpolated arrays, one after another. */
+std::vector<Values> AttributesOf(vtkPointData* pointData);
+
+/** Whether the output has float points, so that new points must be rounded to float. */
+bool HasFloatPoints(vtkPolyData* input);
+
+/** Output 0. */
+void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches, bool interpolate,
+  const Progress& progress, vtkPolyData* output);
+
+/** Output 1: rims with points of their own, and the report as cell data. */
+void MakeReport(
+  vtkPolyData* input, const FillResult& patches, const Progress& progress, vtkPolyData* output);
+
+/** A warning about holes that failed, and about contacts; empty if there are none. */
+std::string Complaint(const FillResult& patches);
+
+/** How many holes are filled. */
+vtkIdType CountOfFilled(const FillResult& patches);
+
+/** Adds the counts to the field data of all outputs. */
+void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& outputs);
+
+} // namespace elevation
+
+#endif

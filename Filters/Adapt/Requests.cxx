@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Requests.h"
+
+#include "VTKVersions.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+#include "vtkSetGet.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace elevation
+{
+
+Progress ProgressOf(vtkAlgorithm* filter)
+{
+  return [filter, last = 0.0, pace = ReportPace()](double fraction) mutable {
+    last = std::max(fraction, last); // where work begins anew, as ranks gather after all
+    if (pace.Admits(last, ReportPace::Clock::now()))
+    {
+      filter->UpdateProgress(last);
+    }
+    return !IsAbortRequested(filter);
+  };
+}
+
+void EndWithError(
+  vtkAlgorithm* filter, vtkInformationVector* outputs, const std::exception& failure)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    if (vtkDataObject* const output = vtkDataObject::GetData(outputs, port))
+    {
+      output->Initialize();
+    }
+  }
+  vtkErrorWithObjectMacro(filter, << MessageOf(failure));
+}
+
+bool IsToBeTold(vtkPolyData* meshWithoutTriangles)
+{
+  return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
+    !meshWithoutTriangles->GetFieldData()->HasArray("UnusedPointIds");
+}
+
+void CheckMaximumEdgeLength(double length)
+{
+  if (!(length >= 0.0))
+  {
+    std::ostringstream text;
+    text << "MaximumEdgeLength is " << length << "; it must be 0 (off) or a length in x,y.";
+    throw Error(text.str());
+  }
+}
+
+void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count)
+{
+  vtkNew<vtkIdTypeArray> array;
+  array->SetName(name);
+  array->InsertNextValue(count);
+  fieldData->AddArray(array);
+}
+
+} // namespace elevation

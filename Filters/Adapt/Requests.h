@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * A filter's answer to a request of the pipeline: its progress, abort and errors, and counts in the
+ * field data. Private to the module.
+ */
+#ifndef Requests_h
+#define Requests_h
+
+#include "Kernel/Base/Base.h"
+
+#include "vtkType.h"
+
+#include <exception>
+#include <new>
+
+class vtkAlgorithm;
+class vtkFieldData;
+class vtkInformationVector;
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** What is told where memory has run out. */
+constexpr const char* NotEnoughMemory = "There is not enough memory for this input.";
+
+/** What is told of a failure. */
+inline const char* MessageOf(const std::exception& failure)
+{
+  return dynamic_cast<const std::bad_alloc*>(&failure) ? NotEnoughMemory : failure.what();
+}
+
+/** Reports a failure of a request as an error of the filter, and empties the outputs. */
+void EndWithError(
+  vtkAlgorithm* filter, vtkInformationVector* outputs, const std::exception& failure);
+
+/**
+ * Answers a request of the pipeline. An exception that would leave the filter, as when there is no
+ * memory even for what surrounds FilterRun::Run(), becomes an error: after an exception VTK takes
+ * the filter to be at work for ever, and runs it no more.
+ * @param[in] answer  returns what ProcessRequest returns; after an error that is 1, as Run() says
+ */
+template <typename Answer>
+int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, Answer&& answer)
+{
+  try
+  {
+    return answer();
+  }
+  catch (const std::exception& error)
+  {
+    EndWithError(filter, outputs, error);
+  }
+  return 1;
+}
+
+/**
+ * The kernel's Progress for a filter: its progress and abort flag. The kernel reports as often as
+ * suits its loops; observers, which may be slow, are called at each thousandth of the work, and at
+ * least every 50 ms.
+ */
+Progress ProgressOf(vtkAlgorithm* filter);
+
+/**
+ * Whether a mesh without triangles needs a warning. It needs none where the filter before has told
+ * why: a mesh without points comes of an error, and vtkGridDelaunay2D leaves its counts.
+ */
+bool IsToBeTold(vtkPolyData* meshWithoutTriangles);
+
+/** @throws Error if the limit is no length */
+void CheckMaximumEdgeLength(double length);
+
+/** Adds a count to the field data, as an array of one value. */
+void AddCount(vtkFieldData* fieldData, const char* name, vtkIdType count);
+
+} // namespace elevation
+
+#endif

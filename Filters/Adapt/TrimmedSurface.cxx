@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TrimmedSurface.h"
+
+#include "MeshConversion.h"
+#include "Requests.h"
+
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <unordered_map>
+
+namespace elevation
+{
+
+std::string WrongOption(const TrimOptions& options)
+{
+  if (!(options.GapTolerance >= 0.0))
+  {
+    return "GapTolerance is " + std::to_string(options.GapTolerance) +
+      ". It must be a number of spacings above 0, or 0 to choose it from the data.";
+  }
+  const double cell = std::fabs(options.Grid.Area());
+  return options.Grid.IsSet() && !(cell > 0.0 && cell < std::numeric_limits<double>::infinity())
+    ? "GridSteps span no cell: x and y of one step and of another are needed, or four zeros for no "
+      "grid."
+    : "";
+}
+
+BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)
+{
+  const PointsOfDataSet points = ViewPoints(boundary);
+  BoundaryLines lines;
+  ForEachLine(boundary, name, progress, [&](const LineOfDataSet& line) {
+    for (vtkIdType i = 0; i < line.Size; ++i)
+    {
+      const Index id = static_cast<Index>(line.Ids[i]);
+      if (!std::isfinite(points.View.Elevation(id)))
+      {
+        throw Error("Point " + std::to_string(id) + " of the " + name +
+          (name.back() == 's' ? "' cell " : "'s cell ") + std::to_string(line.Cell) +
+          " is not finite.");
+      }
+      lines.Lines.Vertices.push_back(id);
+    }
+    lines.Lines.Offsets.push_back(static_cast<Index>(lines.Lines.Vertices.size()));
+    lines.IsPolygon.push_back(line.IsPolygon);
+    lines.Cells.push_back(static_cast<Index>(line.Cell));
+  });
+  TakePoints(points.View, lines);
+  return lines;
+}
+
+vtkIdType SplitSurface(
+  vtkPolyData* surface, vtkPolyData* constraints, int threads, const Progress& progress)
+{
+  vtkNew<vtkPolyData> before;
+  before->ShallowCopy(surface);
+  const TrianglesOfDataSet triangles = ViewTriangles(before);
+  TrimOptions options;
+  options.TellParents = false;
+  options.NumberOfThreads = threads;
+  options.Monitor = Part(progress, 0.05, 0.9);
+  Trimmed split = SplitAlong(
+    triangles.View, ToLines(constraints, Part(progress, 0.0, 0.05), "constraints"), options);
+  if (!split.Kept.IsWholeList)
+  {
+    surface->SetPolys(ToCellArray(std::move(split.Kept.Corners), ResolveNumberOfThreads(threads)));
+    surface->GetPointData()->Initialize();
+    PassPoints(before, split, Part(progress, 0.9, 1.0), surface);
+  }
+  return static_cast<vtkIdType>(split.Inserted.size());
+}
+
+void PassPoints(
+  vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output)
+{
+  const std::vector<InsertedVertex>& inserted = trimmed.Inserted;
+  const vtkIdType count = static_cast<vtkIdType>(inserted.size());
+  // In double precision; otherwise rounding would move new points off the boundary.
+  output->SetPoints(AppendPoints(
+    input->GetPoints(), count, VTK_DOUBLE, Part(progress, 0.0, 0.4), [&](vtkIdType i, double* xyz) {
+      xyz[0] = trimmed.Places[i].X;
+      xyz[1] = trimmed.Places[i].Y;
+      xyz[2] = 0.0;
+      for (int k = 0; k < 3; ++k)
+      {
+        xyz[2] += inserted[i].Weights[k] * input->GetPoint(inserted[i].Corners[k])[2];
+      }
+    }));
+  PassExtended(input->GetPointData(), count, output->GetPointData(), Part(progress, 0.4, 1.0),
+    [&](vtkAbstractArray* array, vtkAbstractArray*, const Progress&) {
+      NewValues values;
+      values.Interpolated = [&inserted, numbers = vtkArrayDownCast<vtkDataArray>(array)](
+                              vtkIdType i, int c) {
+        double value = 0.0;
+        for (int k = 0; k < 3; ++k)
+        {
+          // For a point on an edge, the value at the opposite corner may be NaN.
+          const double weight = inserted[i].Weights[k];
+          value += weight > 0.0 ? weight * numbers->GetComponent(inserted[i].Corners[k], c) : 0.0;
+        }
+        return value;
+      };
+      values.Nearest = [&inserted](vtkIdType i) {
+        const InsertedVertex& vertex = inserted[i];
+        int best = 0;
+        for (int k = 1; k < 3; ++k) // of equally near ones, the first point
+        {
+          const double ahead = vertex.Weights[k] - vertex.Weights[best];
+          const bool isFirst = vertex.Corners[k] < vertex.Corners[best];
+          best = ahead > 0.0 || (ahead == 0.0 && isFirst) ? k : best;
+        }
+        return vertex.Corners[best];
+      };
+      return values;
+    });
+}
+
+namespace
+{
+/** An array followed by the values of added points. */
+vtkSmartPointer<vtkAbstractArray> Extended(vtkAbstractArray* array, const TrimmedPoints& points)
+{
+  const vtkIdType own = array->GetNumberOfTuples();
+  const vtkIdType added = static_cast<vtkIdType>(points.Added.size());
+  const vtkSmartPointer<vtkAbstractArray> extended = NewLike(array);
+  SetTuples(own + added, extended);
+  extended->InsertTuples(0, own, 0, array);
+  vtkNew<vtkIdList> from, to;
+  for (vtkIdType i = 0; i < added; ++i)
+  {
+    from->InsertNextId(points.Added[i]);
+    to->InsertNextId(own + i);
+  }
+  extended->InsertTuples(to, from, points.New->GetPointData()->GetAbstractArray(array->GetName()));
+  return extended;
+}
+
+/** The flags of ghosts of the input, and of the points that another rank owns. */
+vtkSmartPointer<vtkUnsignedCharArray> MarksOf(vtkPolyData* input, const TrimmedPoints& points)
+{
+  const vtkIdType own = input->GetNumberOfPoints();
+  auto marks = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  marks->SetName(vtkDataSetAttributes::GhostArrayName());
+  SetTuples(own + static_cast<vtkIdType>(points.Added.size()), marks);
+  marks->FillValue(0);
+  if (vtkUnsignedCharArray* const before = GhostsOf(input->GetPointData()))
+  {
+    marks->InsertTuples(0, own, 0, before);
+  }
+  for (const Index i : points.OfOthers)
+  {
+    marks->SetValue(i, marks->GetValue(i) | vtkDataSetAttributes::DUPLICATEPOINT);
+  }
+  return marks;
+}
+} // namespace
+
+void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
+  const TrimOptions& options, vtkPolyData* output)
+{
+  const vtkIdType count = output->GetNumberOfPoints();
+  vtkNew<vtkUnsignedCharArray> marks;
+  marks->SetName(NameOfBoundaryMarks);
+  SetTuples(count, marks);
+  marks->FillValue(0);
+  vtkPointData* const data = output->GetPointData();
+  if (vtkUnsignedCharArray* const before = BoundaryMarksOf(data))
+  {
+    std::copy_n(before->GetPointer(0), count, marks->GetPointer(0));
+  }
+  for (const Index point : onBoundary)
+  {
+    marks->SetValue(point, 1);
+  }
+  data->AddArray(marks);
+  if (options.Edges != BoundaryEdges::OwnElevations)
+  {
+    return;
+  }
+  std::unordered_map<Point2, double, HashOfPoint> elevations;
+  for (std::size_t i = 0; i < lines.Elevations.size(); ++i)
+  {
+    elevations.emplace(lines.Points.Places[i], lines.Elevations[i]);
+  }
+  vtkNew<vtkPoints> moved;
+  moved->SetDataType(output->GetPoints()->GetDataType());
+  moved->DeepCopy(output->GetPoints());
+  for (const Index point : onBoundary)
+  {
+    double p[3];
+    moved->GetPoint(point, p);
+    const auto own = elevations.find({ p[0], p[1] });
+    if (own != elevations.end())
+    {
+      moved->SetPoint(point, p[0], p[1], own->second);
+    }
+  }
+  output->SetPoints(moved);
+}
+
+vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data)
+{
+  auto* const marks =
+    vtkUnsignedCharArray::SafeDownCast(data->GetAbstractArray(NameOfBoundaryMarks));
+  return marks && marks->GetNumberOfComponents() == 1 ? marks : nullptr;
+}
+
+void PassTrimmedPoints(
+  vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output)
+{
+  vtkPoints* const given = input->GetPoints();
+  const vtkIdType added = static_cast<vtkIdType>(points.Added.size());
+  vtkSmartPointer<vtkPoints> passed = AppendPoints(given, added, points.Type, progress,
+    [&points](vtkIdType i, double* xyz) { points.New->GetPoint(points.Added[i], xyz); });
+  if (passed->GetDataType() != points.Type)
+  {
+    passed = vtkSmartPointer<vtkPoints>::New();
+    passed->SetDataType(points.Type);
+    passed->DeepCopy(given);
+  }
+  output->SetPoints(passed);
+  vtkPointData* const before = input->GetPointData();
+  vtkPointData* const after = output->GetPointData();
+  after->PassData(before);
+  for (int i = 0; i < before->GetNumberOfArrays() && added > 0; ++i)
+  {
+    vtkAbstractArray* const array = before->GetAbstractArray(i);
+    if (!IsGhostArray(array))
+    {
+      after->AddArray(Extended(array, points)); // in place of the input's
+    }
+  }
+  if (points.AreMarked || (added > 0 && GhostsOf(before)))
+  {
+    after->AddArray(MarksOf(input, points));
+  }
+}
+
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
+  const Progress& progress, vtkPolyData* output)
+{
+  const vtkIdType count = firstCells + static_cast<vtkIdType>(side.Parents.size());
+  const vtkIdType firstTriangle = FirstPolygon(input);
+  const auto sourceOf = [&](vtkIdType cell) -> vtkIdType {
+    return cell < firstCells ? cell : firstTriangle + side.Parents[cell - firstCells];
+  };
+  CopyTuples(input->GetCellData(), count, sourceOf, progress, output->GetCellData());
+  if (arePieces)
+  {
+    // Parts of a triangle have its values, which are no longer global ids then.
+    output->GetCellData()->SetActiveAttribute(-1, vtkDataSetAttributes::GLOBALIDS);
+  }
+}
+
+TrimCounts::TrimCounts(const Trimmed& trimmed)
+  : OutwardTriangles(trimmed.NumberOfOutwardTriangles)
+  , RecoveredEdges(trimmed.NumberOfRecoveredEdges)
+  , PointsLeftOut(trimmed.NumberOfPointsLeftOut)
+  , InsertedPoints(static_cast<vtkIdType>(trimmed.Inserted.size()))
+  , GapTolerance(trimmed.GapTolerance)
+{
+}
+
+void AddCounts(const TrimCounts& counts, const std::vector<vtkPolyData*>& outputs)
+{
+  for (vtkPolyData* output : outputs)
+  {
+    vtkFieldData* fieldData = output->GetFieldData();
+    AddCount(fieldData, "NumberOfOutwardTriangles", counts.OutwardTriangles);
+    AddCount(fieldData, "NumberOfRecoveredEdges", counts.RecoveredEdges);
+    AddCount(fieldData, "NumberOfPointsLeftOut", counts.PointsLeftOut);
+    AddCount(fieldData, "NumberOfInsertedPoints", counts.InsertedPoints);
+    vtkNew<vtkDoubleArray> tolerance;
+    tolerance->SetName("EffectiveGapTolerance");
+    tolerance->InsertNextValue(counts.GapTolerance);
+    fieldData->AddArray(tolerance);
+  }
+}
+
+} // namespace elevation

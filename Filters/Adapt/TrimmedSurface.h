@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * What vtkTrimOutwardTriangles hands to the kernel and makes of its result, on one rank or several.
+ * Private to the module.
+ */
+#ifndef TrimmedSurface_h
+#define TrimmedSurface_h
+
+#include "Kernel/Base/Base.h"
+#include "Kernel/Trim/Trim.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class vtkPointData;
+class vtkPolyData;
+class vtkUnsignedCharArray;
+
+namespace elevation
+{
+
+/** What is wrong with options of an outline; empty: nothing. */
+std::string WrongOption(const TrimOptions& options);
+
+/**
+ * Lines and polygons, and the points that they use.
+ * @param[in] name  what messages call them
+ * @throws Error naming the cell
+ */
+BoundaryLines ToLines(
+  vtkPolyData* boundary, const Progress& progress, const std::string& name = "boundary");
+
+/**
+ * Splits the triangles of a surface along lines, see SplitAlong(): its points, their data and its
+ * polygons are then others.
+ * @return how many points are inserted
+ */
+vtkIdType SplitSurface(
+  vtkPolyData* surface, vtkPolyData* constraints, int threads, const Progress& progress);
+
+/** The points of outputs 0 and 1 with their data: those of the input, then new ones. */
+void PassPoints(
+  vtkPolyData* input, const Trimmed& trimmed, const Progress& progress, vtkPolyData* output);
+
+/** The point array that marks points on the edges of a boundary that was given. */
+constexpr const char* NameOfBoundaryMarks = "OnBoundary";
+/** These marks, or nullptr. */
+vtkUnsignedCharArray* BoundaryMarksOf(vtkPointData* data);
+
+/**
+ * What a given boundary adds to the points of an output: marks beside those that are there, and, if
+ * the options say so, its own elevations.
+ * @param[in] onBoundary  points of the output
+ */
+void PassBoundary(const BoundaryLines& lines, const std::vector<Index>& onBoundary,
+  const TrimOptions& options, vtkPolyData* output);
+
+/** What a part has of the points of outputs 0 and 1: all of its input, then others. */
+struct TrimmedPoints
+{
+  vtkSmartPointer<vtkPolyData> New; ///< with the arrays of the input
+  std::vector<vtkIdType> Added;     ///< the new points that it gets
+  std::vector<Index> OfOthers;      ///< of the output: points that another part owns
+  bool AreMarked = false;           ///< points of any part: all have the flags of ghosts then
+  int Type = 0;                     ///< VTK_FLOAT or VTK_DOUBLE, the same for all parts with points
+};
+
+void PassTrimmedPoints(
+  vtkPolyData* input, const TrimmedPoints& points, const Progress& progress, vtkPolyData* output);
+
+/**
+ * The cell data of the input's first cells, and of the triangles of one side.
+ * @param[in] firstCells  the number of first cells
+ * @param[in] arePieces   whether triangles may be parts of the input's
+ */
+void PassCellData(vtkPolyData* input, vtkIdType firstCells, const TrimmedSide& side, bool arePieces,
+  const Progress& progress, vtkPolyData* output);
+
+/** What the filter tells of its work. */
+struct TrimCounts
+{
+  TrimCounts() = default;
+  explicit TrimCounts(const Trimmed& trimmed);
+
+  vtkIdType OutwardTriangles = 0;
+  vtkIdType RecoveredEdges = 0;
+  vtkIdType PointsLeftOut = 0;
+  vtkIdType InsertedPoints = 0;
+  double GapTolerance = 0.0;
+};
+
+/** Adds the counts to the field data of all outputs. */
+void AddCounts(const TrimCounts& counts, const std::vector<vtkPolyData*>& outputs);
+
+} // namespace elevation
+
+#endif

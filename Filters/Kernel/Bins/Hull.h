@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The convex hull, from which growth starts. Linear in the points of a grid.
+ *
+ * [Andrew 1979] Another efficient algorithm for convex hulls in two dimensions, Information
+ * Processing Letters 9(5):216-219.
+ */
+#ifndef elevation_Bins_Hull_h
+#define elevation_Bins_Hull_h
+
+#include "BinGrid.h"
+#include "Kernel/Base/Base.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/** Both chains of the convex hull from its lowest to its highest point, with collinear points. */
+struct Hull
+{
+  std::vector<Index> RightChain, LeftChain;
+
+  bool IsLine() const { return this->RightChain == this->LeftChain; }
+  std::size_t NumberOfPoints() const
+  {
+    return this->RightChain.size() + this->LeftChain.size() - 2;
+  }
+};
+
+/**
+ * The hull of sorted points, in linear time [Andrew 1979].
+ * @param candidates  by increasing (y, x); at least one, including all on the hull
+ * @param turn        turn(p, q, r): the Sign of r's side of the line from p to q
+ */
+template <typename Turn>
+Hull FindHull(const Buffer<Index>& candidates, const Turn& turn, const Progress& progress)
+{
+  Hull hull;
+  for (const Sign outside : { Negative, Positive }) // the empty side of the right and left chain
+  {
+    std::vector<Index>& chain = outside == Negative ? hull.RightChain : hull.LeftChain;
+    for (const std::size_t i : Counted(candidates.size()))
+    {
+      ReportStep(progress, i, candidates.size());
+      while (
+        chain.size() > 1 && turn(chain[chain.size() - 2], chain.back(), candidates[i]) == outside)
+      {
+        chain.pop_back();
+      }
+      chain.push_back(candidates[i]);
+    }
+  }
+  return hull;
+}
+
+/** The hull of the points of a grid, at least one, as slots. */
+Hull FindHull(const BinGrid& grid, const Progress& progress);
+
+} // namespace elevation
+
+#endif

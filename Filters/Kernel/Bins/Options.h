@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Options and result of a triangulation.
+ */
+#ifndef elevation_Bins_Options_h
+#define elevation_Bins_Options_h
+
+#include "Instructions.h"
+#include "Kernel/Lattice/Lattice.h"
+
+#include <vector>
+
+namespace elevation
+{
+
+/** Why a point is not a vertex. Users see these values in the output. */
+enum class UnusedReason : unsigned char
+{
+  Duplicate = 1,
+  NotFinite = 2,
+  WithinError = 3 ///< within MaximumElevationError of the surface
+};
+
+/** Whether points on a lattice are triangulated in the metric of its steps. */
+enum class LatticeMode
+{
+  Automatic, ///< if there is a lattice that all points fit
+  Off        ///< never: by their coordinates
+};
+
+/** Which edges a triangulation of few points has (MaximumElevationError). */
+enum class EdgeCriterion
+{
+  Delaunay,     ///< those of the chosen points: unique
+  DataDependent ///< those that are nearer to the other points, unless triangles become much narrower
+};
+
+/** How the apex over an edge is searched for. Both find the same one. */
+enum class SearchStrategy
+{
+  /** Bins from the edge outwards, only as far as the best apex's circle reaches. */
+  VoxelTraversal,
+  /** Of all points in a box around the edge, the one with the largest angle to its ends; the box
+     grows until it contains the circle. */
+  Compactness
+};
+
+struct DelaunayOptions
+{
+  SearchStrategy Strategy = SearchStrategy::VoxelTraversal;
+  /** Triangles with a longer edge (in x,y) are left out; 0: no limit. */
+  double MaximumEdgeLength = 0.0;
+  /**
+   * As few points become vertices as are needed for the others to be within this vertical distance of
+   * the surface; 0: all points do.
+   */
+  double MaximumElevationError = 0.0;
+  /** With it: points of lines go, too, where the lines stay nearly the same (FewerPieces.h). */
+  bool SimplifyConstraints = false;
+  EdgeCriterion Edges = EdgeCriterion::Delaunay; ///< with it
+  DuplicatePolicy Duplicates = DuplicatePolicy::KeepFirst;
+  Progress Monitor;
+  /** Off by default: other parts of the kernel need the triangulation by coordinates. */
+  LatticeMode UseLattice = LatticeMode::Off;
+  /** With Automatic: the lattice that all points must fit; steps of 0: it is looked for. */
+  Lattice GivenLattice;
+  /** How far a point may lie from its node along each step, in steps; at most 0.25. */
+  double LatticeTolerance = 0.01;
+  /** Threads to use; 0: one per core. The result is the same, byte for byte. */
+  int NumberOfThreads = 1;
+  /** For tests: points per strip (Growth.h); 0: automatic. */
+  Index PointsPerStrip = 0;
+  /** For tests and benchmarks: the widest instructions to use. The result is the same. */
+  InstructionSet Instructions = InstructionSet::AVX512;
+  /** For tests: divide and conquer from the start, without growth. The result is the same. */
+  bool DivideAtOnce = false;
+};
+
+struct Triangulation
+{
+  Buffer<Index> Triangles;         ///< three point ids per triangle, counter-clockwise
+  Index NumberOfHullPoints = 0;    ///< on the border of the convex hull, with collinear points
+  std::vector<Index> UnusedPoints; ///< ids, increasing
+  std::vector<UnusedReason> UnusedReasons; ///< one per unused point
+  Index NumberOfDuplicates = 0;
+  Index NumberOfNotFinite = 0;
+  Index NumberOfRedundant = 0; ///< points within MaximumElevationError
+  /** No vertical distance of such a point is larger; it is no larger than MaximumElevationError. */
+  double LargestElevationError = 0.0;
+  bool LatticeFound = false; ///< whether the triangles are those of a lattice (LatticeGrowth.h)
+  Lattice Steps;             ///< if found; Origin is the lowest occupied node
+};
+
+/** Merges both kinds of unused points, each increasing, into a triangulation's lists. */
+void SetUnusedPoints(std::vector<Index>&& duplicates, const std::vector<Index>& notFinite,
+  const Progress& progress, Triangulation& triangulation);
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Windows of points: the points around a vertex, in single precision relative to it, so that wide
+ * instructions handle eight or sixteen at a time. Bins and tree would be searched for the same
+ * points again for each triangle around the vertex.
+ *
+ * In: a grid and a vertex. Out: the points of six columns and four rows of bins around the vertex;
+ * if these are too many, of three columns and fewer rows; in full bins, of a box that is expected
+ * to contain about eighteen points by the local density. For windows of bins, the coordinates of
+ * the four rows are rounded to multiples of a unit that is small compared with the bins, so that
+ * differences are exact. Boxes are taken from the points around a leaf of the tree, its
+ * neighborhood. These are gathered once for all vertices of the leaf, and kept while the sweep
+ * passes it.
+ *
+ * Cost: constant per vertex; memory proportional to a row of bins and to the square root of the
+ * number of points.
+ */
+#ifndef elevation_Grow_PointWindows_h
+#define elevation_Grow_PointWindows_h
+
+#include "Kernel/Bins/Bins.h"
+
+namespace elevation
+{
+
+class PointWindows
+{
+public:
+  static constexpr int Capacity = 56;       ///< points of a window
+  static constexpr int Room = Capacity + 8; ///< as whole vectors are written
+  static constexpr int WidestVectors = 4, EvenVectors = 5, MostVectors = Capacity / 8;
+  static constexpr int MostAround = 120;      ///< points of a neighborhood
+  static constexpr double Roundoff = 0x1p-24; ///< of single precision
+
+  /** Error bounds for a size of windows; lengths in the window's unit. See WideApexSearch.h. */
+  struct Bounds
+  {
+    float ReachSquared = 0.0f;    ///< R^2
+    float CoordinateError = 0.0f; ///< e
+    float CrossError = 0.0f, DotError = 0.0f, ComparisonError = 0.0f;
+    float Margin = 0.0f; ///< what a disc must keep from the window's border
+
+    void Set(double reach, double error, double margin);
+  };
+
+  /** The points around a vertex, relative to it; lanes with NaN are empty. */
+  struct Window
+  {
+    alignas(64) float X[Room];
+    alignas(64) float Y[Room];
+    alignas(64) float Square[Room]; ///< x^2 + y^2
+    alignas(64) Index Slots[Room];
+    Index Origin = None;
+    int Vectors = 0; ///< how many vectors of eight are in use; 0 if there is no window
+    int OriginLane = 0;
+    // How far the window certainly reaches from the vertex, up to the margin.
+    float Left = 0.0f, Right = 0.0f, Top = 0.0f;
+    const Bounds* Errors = nullptr;
+    bool IsBox = false;
+    double PerSide = 0.0; ///< units of the box per unit of the grid
+
+    /** Ends the lists after count points. */
+    void Close(int count, bool isWidest);
+    /** The lanes of a slot, as bits. */
+    template <int Vectors>
+    std::uint64_t LanesOf(Index slot) const;
+  };
+
+  /**
+   * The points around a leaf of the tree: those in the boxes of all its points, relative to its
+   * middle. Vertices of a full bin come in the order of y, so several leaves alternate.
+   */
+  struct Neighborhood
+  {
+    Index First = 0, End = 0;         ///< slots of the leaf
+    int Count = 0;                    ///< 0 if they are too many
+    double CenterX, CenterY, PerSide; ///< box sides per unit of the grid
+    float X[MostAround + 8], Y[MostAround + 8];
+    Index Slots[MostAround + 8];
+  };
+
+  /** @param isWidest  for instructions on sixteen points at a time */
+  PointWindows(const BinGrid& grid, bool isWidest);
+
+  /**
+   * Gathers the window of a vertex. Cheapest when vertices come row by row.
+   * @param[in] next  the vertex of the next call, or None. Its window is gathered as well, while
+   *                  the processor waits for results that the first one's fan depends on.
+   * @return false if there are too many points in each window that was tried
+   */
+  bool Gather(Index origin, Index next);
+
+  const Window& Current() const { return *this->InUse; }
+
+  /** The position of a grid point relative to the window's vertex, in the window's units. */
+  void Place(Index slot, float& x, float& y) const;
+
+private:
+  static constexpr int NumberOfShapes = 3; ///< of windows of bins
+  static constexpr Index MostRows = 4;
+  static constexpr int RowRoom = 40;            // as whole vectors are read
+  static constexpr std::size_t MostPerBin = 32; // mean in rows for which windows are made
+
+  /** The points of a row of bins in units from the grid's corner. */
+  struct Row
+  {
+    Index Number = None;
+    Index FirstSlot = 0;
+    const Index* Starts = nullptr;  ///< the first slot of each bin, and the end of the last
+    std::vector<std::int32_t> X, Y; ///< with RowRoom to spare
+    bool IsRead = false;            ///< false if there are too many points: most bins are full
+  };
+
+  void EnterRow(Index number);
+  void ReadRow(Row& row);
+  void GatherInto(Window& window);
+  void SetBounds(Window& window, int shape, Index firstColumn, Index endColumn,
+    std::int32_t originX, std::int32_t originY) const;
+  bool GatherWidest(Window& window, Index firstColumn);
+  bool GatherEven(Window& window, Index firstColumn);
+  void AddBeyondEight(Window& window, Index firstColumn, const Index* counts) const;
+  bool GatherBins(Window& window, Index column, int shape);
+  bool GatherBox(Window& window);
+  const Neighborhood& Around(Index slot);
+  void GatherNeighborhood(Neighborhood& around, Index slot);
+
+  const BinGrid& Grid;
+  const bool IsWidest;
+  Window Windows[2];
+  Window* InUse = Windows; ///< the other one is for the next vertex
+
+  // Windows of bins; none when PerUnit is 0.
+  double PerUnit = 0.0; ///< units of windows per unit of the grid
+  Bounds OfShapes[NumberOfShapes];
+  std::vector<std::int32_t> ColumnBounds; ///< left bounds of the columns
+  std::vector<Index> Nothing;             ///< the starts of a row beyond the last
+  Row Rows[MostRows];                     ///< by their number modulo MostRows
+  Row* Near[MostRows];                    ///< from the current row upwards
+  Index CurrentRow = None;
+  bool AreNearRead = false;
+  std::int32_t TopBounds[NumberOfShapes]; ///< of windows of vertices in the current row
+  Bounds OfBox;                           ///< of all boxes; their unit is their side
+  std::vector<Neighborhood> Neighborhoods;
+  /** A cache: for slot / 8, modulo the size, the index of a neighborhood. */
+  std::vector<Index> Known;
+  std::size_t Oldest = 0;
+};
+
+#ifdef ELEVATION_HAS_AVX2
+template <int Vectors>
+ELEVATION_WIDE_INLINE std::uint64_t PointWindows::Window::LanesOf(Index slot) const
+{
+  std::uint64_t lanes = 0;
+  for (int i = 0; i < Vectors; ++i)
+  {
+    const __m256i isSlot = _mm256_cmpeq_epi32(_mm256_set1_epi32(slot),
+      _mm256_load_si256(reinterpret_cast<const __m256i*>(this->Slots + 8 * i)));
+    lanes |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(isSlot))) << (8 * i);
+  }
+  return lanes;
+}
+#endif
+
+} // namespace elevation
+
+#endif

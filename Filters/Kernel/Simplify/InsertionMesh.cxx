@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "InsertionMesh.h"
+
+#include "Kernel/Grow/Grow.h"
+
+#include <algorithm>
+#include <limits>
+#include <new>
+
+namespace elevation
+{
+
+InsertionMesh::InsertionMesh(const Buffer<ElevatedPlace>& places, const LatticeMetric* metric,
+  const Mesh& first, const std::vector<char>& fixed, std::size_t spare)
+  : Places(places)
+  , Metric(metric)
+{
+  this->Links.Resize(places.size());
+  std::fill(this->Links.begin(), this->Links.end(), Unassigned);
+  const std::size_t most = 2 * places.size() + spare;
+  if (most > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+  {
+    throw std::bad_alloc();
+  }
+  this->Faces.Resize(most);
+  for (Index face = 0; face < first.NumberOfTriangles(); ++face)
+  {
+    Face& made = this->Faces[face];
+    made = { {}, {}, None, None, 0.0f, false, 0 };
+    for (int k = 0; k < 3; ++k)
+    {
+      const Index h = 3 * face + k;
+      made.Corners[k] = first.Origin(h);
+      made.Neighbors[k] = first.IsBorder(h) ? None : Mesh::Triangle(first.Twin(h));
+      made.Fixed |= static_cast<unsigned char>((!fixed.empty() && fixed[h] ? 1 : 0) << k);
+      this->Links[made.Corners[k]] = Vertex;
+    }
+  }
+  this->NumberOfFaces = first.NumberOfTriangles();
+  if (metric)
+  {
+    double width = 1.0;
+    for (const ElevatedPlace& place : places)
+    {
+      width = std::max({ width, std::fabs(place.X), std::fabs(place.Y) });
+    }
+    const double largest = static_cast<double>(std::max(metric->A, metric->C));
+    this->HasSmallProducts = 64.0 * largest * width * width * width * width < 9e18;
+  }
+}
+
+/** On which side of the line between two places a third one is. */
+Sign InsertionMesh::SideOf(Index from, Index to, Index place) const
+{
+  const Point2 a = this->PointOf(from), b = this->PointOf(to), p = this->PointOf(place);
+  if (!this->Metric)
+  {
+    return Orientation(a, b, p);
+  }
+  const double side = (a.X - p.X) * (b.Y - p.Y) - (a.Y - p.Y) * (b.X - p.X); // of integers
+  return side > 0.0 ? Positive : side < 0.0 ? Negative : Zero;
+}
+
+Sign InsertionMesh::IsInCircle(const Face& face, Index place) const
+{
+  const Point2 a = this->PointOf(face.Corners[0]), b = this->PointOf(face.Corners[1]),
+               c = this->PointOf(face.Corners[2]), p = this->PointOf(place);
+  if (!this->Metric)
+  {
+    return InCircle(a, b, c, p);
+  }
+  if (!this->HasSmallProducts)
+  {
+    return InCircleOfNodes(*this->Metric, a, b, c, p);
+  }
+  struct Offset
+  {
+    std::int64_t X, Y, Lift;
+  };
+  const auto from = [&](const Point2& q) {
+    const std::int64_t x = static_cast<std::int64_t>(q.X - p.X);
+    const std::int64_t y = static_cast<std::int64_t>(q.Y - p.Y);
+    return Offset{ x, y, this->Metric->Dot(x, y, x, y) };
+  };
+  const Offset u = from(a), v = from(b), w = from(c);
+  const std::int64_t in = u.Lift * (v.X * w.Y - w.X * v.Y) + v.Lift * (w.X * u.Y - u.X * w.Y) +
+    w.Lift * (u.X * v.Y - v.X * u.Y);
+  return in > 0 ? Positive : in < 0 ? Negative : Zero;
+}
+
+/**
+ * Whether a place that lies beyond an edge of a face takes it away. Of four points on a circle, the
+ * lowest is joined to the one opposite.
+ */
+bool InsertionMesh::IsInConflict(const Face& face, Index place, int edge) const
+{
+  const Sign side = this->IsInCircle(face, place);
+  if (side != Zero)
+  {
+    return side == Positive;
+  }
+  const Point2 from = this->PointOf(face.Corners[edge]),
+               to = this->PointOf(face.Corners[(edge + 1) % 3]),
+               apex = this->PointOf(face.Corners[(edge + 2) % 3]), p = this->PointOf(place);
+  const Point2& ofEdge = IsLower(from, to) ? from : to;
+  return IsLower(apex, ofEdge) || IsLower(p, ofEdge);
+}
+
+double InsertionMesh::ShapeOf(Index a, Index b, Index c) const
+{
+  const auto square = [this](Index p, Index q) {
+    const double x = this->Places[q].X - this->Places[p].X;
+    const double y = this->Places[q].Y - this->Places[p].Y;
+    return this->Metric
+      ? static_cast<double>(this->Metric->Dot(static_cast<std::int64_t>(x),
+          static_cast<std::int64_t>(y), static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)))
+      : x * x + y * y;
+  };
+  const ElevatedPlace &p = this->Places[a], &q = this->Places[b], &r = this->Places[c];
+  const double area = (q.X - p.X) * (r.Y - p.Y) - (q.Y - p.Y) * (r.X - p.X);
+  return area / (square(a, b) + square(b, c) + square(c, a));
+}
+
+void InsertionMesh::AddTo(Face& face, Index place, float error)
+{
+  this->Links[place] = face.First;
+  face.First = place;
+  if (error > face.Error || face.Worst == None || (error == face.Error && place < face.Worst))
+  {
+    face.Error = error;
+    face.Worst = place;
+  }
+}
+
+bool InsertionMesh::IsIn(Index face, Index place) const
+{
+  Index point = face == None ? None : this->Faces[face].First;
+  while (point != None && point != place)
+  {
+    point = this->Links[point];
+  }
+  return point != None;
+}
+
+} // namespace elevation

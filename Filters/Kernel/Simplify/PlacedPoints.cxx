@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PlacedPoints.h"
+
+#include "Kernel/Bins/Bins.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** Keeps the strict corners of a hull, which has candidates by increasing (y, x). */
+std::vector<Index> CornersOf(const PlacedPoints& placed, const Buffer<Index>& candidates)
+{
+  const auto turn = [&placed](Index p, Index q, Index r) {
+    return Orientation(placed.At(p), placed.At(q), placed.At(r));
+  };
+  const Hull hull = FindHull(candidates, turn, Progress());
+  std::vector<Index> corners;
+  for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
+  {
+    for (std::size_t i = 0; i < chain->size(); ++i)
+    {
+      const bool isEnd = i == 0 || i + 1 == chain->size();
+      if (isEnd || turn((*chain)[i - 1], (*chain)[i], (*chain)[i + 1]) != Zero)
+      {
+        corners.push_back((*chain)[i]);
+      }
+    }
+  }
+  std::sort(corners.begin(), corners.end(),
+    [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); });
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+/** Puts the points of a bin in order, from the lowest up. */
+void SortBin(BinGrid& grid, Index bin)
+{
+  Index slot = grid.Starts[bin];
+  const Index last = grid.Starts[bin + 1];
+  if (last - slot < 2)
+  {
+    return;
+  }
+  std::vector<std::pair<Point2, Index>> sorted;
+  sorted.reserve(static_cast<std::size_t>(last - slot));
+  for (Index of = slot; of < last; ++of)
+  {
+    sorted.emplace_back(grid.PointAt(of), grid.Ids[of]);
+  }
+  std::sort(sorted.begin(), sorted.end(),
+    [](const auto& a, const auto& b) { return IsLower(a.first, b.first); });
+  for (const auto& [point, id] : sorted)
+  {
+    grid.X[slot] = point.X;
+    grid.Y[slot] = point.Y;
+    grid.Ids[slot++] = id;
+  }
+}
+
+void SortBins(BinGrid& grid, int threads, const Progress& progress)
+{
+  constexpr Index binsAtOnce = 2048;
+  ForEachRange(
+    static_cast<Index>(grid.Starts.size()) - 1, threads, progress,
+    [&grid](Index, Index begin, Index end) {
+      for (Index bin = begin; bin < end; ++bin)
+      {
+        SortBin(grid, bin);
+      }
+    },
+    binsAtOnce);
+}
+
+/** The slot of a point after SortBins(). */
+Index SlotOf(const BinGrid& grid, const Point2& point)
+{
+  const Index column = grid.Bins.Column(point.X);
+  auto [first, last] = grid.Slots(grid.Bins.Row(point.Y), column, column);
+  while (last - first > 1)
+  {
+    const Index middle = first + (last - first) / 2;
+    (IsLower(point, grid.PointAt(middle)) ? last : first) = middle;
+  }
+  return first;
+}
+
+/** Sorts the bins. @return the slots that may be corners of the convex hull, from the lowest up */
+Buffer<Index> SortedCandidates(BinGrid& grid, int threads, const Progress& progress)
+{
+  std::vector<Point2> corners;
+  const Hull hull = FindHull(grid, Progress());
+  for (const std::vector<Index>* chain : { &hull.RightChain, &hull.LeftChain })
+  {
+    for (const Index slot : *chain)
+    {
+      corners.push_back(grid.PointAt(slot));
+    }
+  }
+  std::sort(corners.begin(), corners.end(), IsLower);
+  SortBins(grid, threads, progress);
+  Buffer<Index> candidates;
+  for (const Point2& corner : corners)
+  {
+    const Index slot = SlotOf(grid, corner);
+    if (candidates.size() == 0 || candidates[candidates.size() - 1] != slot)
+    {
+      candidates.Append(slot);
+    }
+  }
+  return candidates;
+}
+
+/** Pieces with another number for each end. */
+template <typename NumberOf>
+std::vector<Segment> Renumbered(
+  const std::vector<Segment>& pieces, const NumberOf& numberOf, const Progress& progress)
+{
+  std::vector<Segment> renumbered;
+  renumbered.reserve(pieces.size());
+  for (const Segment& piece : Counted(pieces))
+  {
+    ReportStep(progress, renumbered.size(), pieces.size());
+    renumbered.push_back({ numberOf(piece.A), numberOf(piece.B) });
+  }
+  return renumbered;
+}
+} // namespace
+
+bool PlaceOnLattice(const PointView& points, const DelaunayOptions& options, int threads,
+  const Progress& progress, PlacedPoints& placed)
+{
+  const double tolerance = std::min(std::max(options.LatticeTolerance, 0.0), 0.25);
+  LatticeSearch search = options.GivenLattice.IsSet()
+    ? GivenLattice(points, options.GivenLattice, tolerance, threads, Part(progress, 0.0, 0.4))
+    : FindLattice(points, tolerance, threads, Part(progress, 0.0, 0.4));
+  LatticeNodes nodes;
+  LatticeMetric metric;
+  if (!search.Found || !metric.Set(search.Steps) ||
+    !nodes.Place(
+      points, search, tolerance, options.Duplicates, threads, Part(progress, 0.4, 0.8)) ||
+    (!options.GivenLattice.IsSet() && IsLatticeByChance(nodes.NumberOfPoints(), tolerance)))
+  {
+    return false;
+  }
+  const auto placesBefore = [&nodes](Index row) {
+    return row < nodes.Rows ? nodes.RankOf(nodes.NodeAt(row, 0)) : nodes.NumberOfPoints();
+  };
+  placed.Places.Resize(static_cast<std::size_t>(nodes.NumberOfPoints()));
+  ForEachPiece(nodes.Rows, threads, Part(progress, 0.8, 1.0), [&](Index row) {
+    Index place = placesBefore(row);
+    const Index first = nodes.NodeAt(row, 0) / 64;
+    const Index words = (nodes.Columns + 63) / 64;
+    for (const Index word : Counted(words))
+    {
+      for (std::uint64_t bits = nodes.Word(first + word); bits != 0; bits &= bits - 1)
+      {
+        placed.Places[place] = { static_cast<double>(64 * word + LowestBit(bits)),
+          static_cast<double>(row), points.Elevation(nodes.Ids[place]) };
+        ++place;
+      }
+    }
+  });
+  Buffer<Index> candidates;
+  for (Index row = 0; row <= nodes.Rows; ++row)
+  {
+    placed.Rows.Append(placesBefore(row));
+    const Index begin = row > 0 ? placed.Rows[row - 1] : 0;
+    if (placed.Rows[row] > begin)
+    {
+      candidates.Append(begin);
+    }
+    if (placed.Rows[row] > begin + 1)
+    {
+      candidates.Append(placed.Rows[row] - 1);
+    }
+  }
+  placed.Ids = std::move(nodes.Ids);
+  placed.Duplicates = std::move(nodes.Duplicates);
+  placed.NotFinite = std::move(search.NotFinite);
+  placed.Metric = metric;
+  placed.Steps = nodes.Steps;
+  placed.Corners = CornersOf(placed, candidates);
+  return true;
+}
+
+PlacedPoints PlaceInBins(
+  const PointView& points, const DelaunayOptions& options, int threads, const Progress& progress)
+{
+  PlacedPoints placed;
+  BinGrid grid(points, options.Duplicates, Part(progress, 0.0, 0.7), threads);
+  placed.Duplicates = std::move(grid.Duplicates);
+  placed.NotFinite = std::move(grid.NotFinite);
+  if (grid.NumberOfPoints() == 0)
+  {
+    return placed;
+  }
+  // As much memory as all places need.
+  grid.Scratch = Buffer<Index>();
+  grid.Tree = BoxTree();
+  const Buffer<Index> candidates = SortedCandidates(grid, threads, Part(progress, 0.7, 0.85));
+  grid.Order = Buffer<Index>();
+  grid.X = Buffer<double>();
+  grid.Y = Buffer<double>();
+  for (Index row = 0; row <= grid.Bins.Rows; ++row)
+  {
+    placed.Rows.Append(grid.Starts[static_cast<std::size_t>(row) * grid.Bins.Columns]);
+  }
+  placed.Ids = std::move(grid.Ids);
+  placed.Places.Resize(placed.Ids.size());
+  ForEachRange(
+    placed.Count(), threads, Part(progress, 0.85, 1.0), [&](Index, Index begin, Index end) {
+      for (Index place = begin; place < end; ++place)
+      {
+        const Index id = placed.Ids[place];
+        const Point2 p = points.At(id);
+        placed.Places[place] = { p.X, p.Y, points.Elevation(id) };
+      }
+    });
+  placed.Corners = CornersOf(placed, candidates);
+  return placed;
+}
+
+std::vector<Segment> PiecesByPlaces(
+  const std::vector<Segment>& pieces, const PlacedPoints& placed, const Progress& progress)
+{
+  std::vector<Index> ids;
+  for (const Segment& piece : pieces)
+  {
+    ids.insert(ids.end(), { piece.A, piece.B });
+  }
+  Sort(ids.begin(), ids.end(), std::less<Index>(), Part(progress, 0.0, 0.3));
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  std::vector<Index> placeOf(ids.size(), None);
+  const Progress finding = Part(progress, 0.3, 0.8);
+  for (const Index place : Counted(ids.empty() ? 0 : placed.Count()))
+  {
+    ReportStep(finding, place, placed.Ids.size());
+    const auto at = std::lower_bound(ids.begin(), ids.end(), placed.Ids[place]);
+    if (at != ids.end() && *at == placed.Ids[place])
+    {
+      placeOf[at - ids.begin()] = place;
+    }
+  }
+  const auto find = [&](Index id) {
+    return placeOf[std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()];
+  };
+  return Renumbered(pieces, find, Part(progress, 0.8, 1.0));
+}
+
+std::vector<Segment> AddEnds(
+  const std::vector<Segment>& pieces, PlacedPoints& placed, const Progress& progress)
+{
+  std::vector<Index>& corners = placed.Corners;
+  for (const Segment& piece : pieces)
+  {
+    corners.insert(corners.end(), { piece.A, piece.B });
+  }
+  const auto isLower = [&placed](Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
+  Sort(corners.begin(), corners.end(), isLower, Part(progress, 0.0, 0.6));
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  const auto cornerOf = [&](Index place) {
+    return static_cast<Index>(
+      std::lower_bound(corners.begin(), corners.end(), place, isLower) - corners.begin());
+  };
+  return Renumbered(pieces, cornerOf, Part(progress, 0.6, 1.0));
+}
+
+} // namespace elevation

@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Simplify.h"
+
+#include "FewerPieces.h"
+#include "GreedyInsertion.h"
+#include "Kernel/Grow/Grow.h"
+#include "PlacedPoints.h"
+#include "PlaneOfFace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/**
+ * The triangulation of the corners, with Twins, by places.
+ * @param[in] pieces  by corners
+ * @param[out] fixed  one flag a half-edge: of pieces
+ */
+Mesh FirstMesh(const PlacedPoints& placed, const std::vector<Segment>& pieces,
+  std::vector<char>& fixed, const Progress& progress)
+{
+  Mesh mesh;
+  Buffer<Point2> corners;
+  for (const Index place : placed.Corners)
+  {
+    corners.Append(placed.At(place));
+  }
+  const Buffer<Index> triangles =
+    DivideAndConquer(corners, Part(progress, 0.0, 0.5), placed.Metric ? &*placed.Metric : nullptr);
+  mesh.Triangles.assign(triangles.begin(), triangles.end());
+  mesh.Points.assign(corners.begin(), corners.end());
+  mesh.ConnectTwins(0, Part(progress, 0.5, 0.6));
+  if (!pieces.empty() && mesh.NumberOfTriangles() > 0)
+  {
+    RecoverSegments(mesh, pieces, fixed, Part(progress, 0.6, 1.0));
+  }
+  for (Index& corner : mesh.Triangles)
+  {
+    corner = placed.Corners[corner];
+  }
+  return mesh;
+}
+
+/** Measures the points that are left out, by their coordinates. */
+class Measurement
+{
+public:
+  Measurement(const PointView& points, const PlacedPoints& placed, const GreedyInsertion& mesh)
+    : Points(points)
+    , Placed(placed)
+    , Mesh(mesh)
+  {
+  }
+
+  /**
+   * Measures all.
+   * @param[out] beyond  places that may be too far, increasing
+   * @return the largest distance of the others
+   * @throws NotOnLattice if a triangle is flat or inverted
+   */
+  double Run(double most, int threads, const Progress& progress, std::vector<Index>& beyond) const
+  {
+    constexpr Index facesAtOnce = 4096;
+    const Index count = static_cast<Index>(this->Mesh.Order().size());
+    const Index pieces = (count + facesAtOnce - 1) / facesAtOnce;
+    std::vector<double> largest(static_cast<std::size_t>(pieces), 0.0);
+    std::vector<std::vector<Index>> found(largest.size());
+    ForEachPiece(pieces, threads, progress, [&](Index piece) {
+      for (const Index i : Counted(piece * facesAtOnce, std::min(count, (piece + 1) * facesAtOnce)))
+      {
+        this->MeasureFace(this->Mesh.Order()[i], most, largest[piece], found[piece]);
+      }
+    });
+    for (const std::vector<Index>& some : found)
+    {
+      beyond.insert(beyond.end(), some.begin(), some.end());
+    }
+    std::sort(beyond.begin(), beyond.end());
+    return largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
+  }
+
+private:
+  Point2 At(Index place) const
+  {
+    return this->Placed.Metric ? this->Points.At(this->Placed.Ids[place]) : this->Placed.At(place);
+  }
+  double ElevationOf(Index place) const { return this->Placed.Places[place].Z; }
+  PlaneOfFace PlaneOf(const Face& face) const
+  {
+    const Index* const c = face.Corners;
+    return { this->At(c[0]), this->ElevationOf(c[0]), this->At(c[1]), this->ElevationOf(c[1]),
+      this->At(c[2]), this->ElevationOf(c[2]) };
+  }
+
+  void MeasureFace(Index number, double most, double& largest, std::vector<Index>& beyond) const
+  {
+    const Face& face = this->Mesh.At(number);
+    const Point2 a = this->At(face.Corners[0]), b = this->At(face.Corners[1]),
+                 c = this->At(face.Corners[2]);
+    if (Orientation(a, b, c) != Positive)
+    {
+      throw NotOnLattice();
+    }
+    if (face.First == None)
+    {
+      return; // no plane is needed
+    }
+    const PlaneOfFace plane = this->PlaneOf(face);
+    for (Index place = face.First; place != None; place = this->Mesh.Next(place))
+    {
+      const Point2 p = this->At(place);
+      const bool isInside = Orientation(a, b, p) != Negative && Orientation(b, c, p) != Negative &&
+        Orientation(c, a, p) != Negative;
+      const double distance =
+        isInside ? plane.BoundAt(p, this->ElevationOf(place)) : this->DistanceFrom(number, place);
+      if (distance <= most)
+      {
+        largest = std::max(largest, distance);
+      }
+      else
+      {
+        beyond.push_back(place);
+      }
+    }
+  }
+
+  /** Of a point that is not in its face, but in one nearby, or just outside of the hull. */
+  double DistanceFrom(Index face, Index place) const
+  {
+    const Point2 p = this->At(place);
+    for (int step = 0; step < 16; ++step)
+    {
+      const Face& at = this->Mesh.At(face);
+      int k = 0;
+      while (k < 3 &&
+        (at.Neighbors[k] == None ||
+          Orientation(this->At(at.Corners[k]), this->At(at.Corners[(k + 1) % 3]), p) != Negative))
+      {
+        ++k;
+      }
+      if (k == 3)
+      {
+        return this->PlaneOf(at).BoundAt(p, this->ElevationOf(place));
+      }
+      face = at.Neighbors[k];
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
+  const PointView& Points;
+  const PlacedPoints& Placed;
+  const GreedyInsertion& Mesh;
+};
+
+/** The rank of each vertex, from the lowest up, by places; what others have is not set. */
+Buffer<Index> RanksOf(
+  const PlacedPoints& placed, const GreedyInsertion& mesh, const Progress& progress)
+{
+  std::vector<Index> vertices;
+  ForEachStretch(placed.Count(), Part(progress, 0.0, 0.2), [&](Index begin, Index end) {
+    for (Index place = begin; place < end; ++place)
+    {
+      if (mesh.IsVertex(place))
+      {
+        vertices.push_back(place);
+      }
+    }
+  });
+  if (!placed.Metric) // on a lattice, places are in this order
+  {
+    const auto isLower = [&placed](
+                           Index a, Index b) { return IsLower(placed.At(a), placed.At(b)); };
+    Sort(vertices.begin(), vertices.end(), isLower, Part(progress, 0.2, 0.8));
+  }
+  Buffer<Index> ranks;
+  ranks.Resize(placed.Ids.size());
+  const Index count = static_cast<Index>(vertices.size());
+  ForEachStretch(count, Part(progress, 0.8, 1.0), [&](Index begin, Index end) {
+    for (Index i = begin; i < end; ++i)
+    {
+      ranks[vertices[i]] = i;
+    }
+  });
+  return ranks;
+}
+
+/** The triangles by ids, in the order of Triangulate.h: fans of their lowest vertices. */
+Buffer<Index> TrianglesOf(
+  const PlacedPoints& placed, const GreedyInsertion& mesh, const Progress& progress)
+{
+  struct Turned
+  {
+    Index Corners[3]; // from the lowest on
+  };
+  const Buffer<Index> ranks = RanksOf(placed, mesh, Part(progress, 0.0, 0.4));
+  const Progress turning = Part(progress, 0.4, 0.6), sorting = Part(progress, 0.6, 1.0);
+  std::vector<Turned> faces;
+  std::vector<Index> begins(1, 0); // of fans
+  for (const Index number : Counted(mesh.Order()))
+  {
+    ReportStep(turning, faces.size(), mesh.Order().size());
+    const Index* const c = mesh.At(number).Corners;
+    int low = ranks[c[1]] < ranks[c[0]] ? 1 : 0;
+    low = ranks[c[2]] < ranks[c[low]] ? 2 : low;
+    faces.push_back({ { c[low], c[(low + 1) % 3], c[(low + 2) % 3] } });
+    const std::size_t fan = static_cast<std::size_t>(ranks[c[low]]);
+    begins.resize(std::max(begins.size(), fan + 2), 0);
+    ++begins[fan + 1];
+  }
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<Index> ends(begins);
+  std::vector<Turned> triangles(faces.size());
+  for (const Turned& face : faces)
+  {
+    triangles[ends[ranks[face.Corners[0]]]++] = face;
+  }
+  for (const std::size_t fan : Counted(begins.size() - 1))
+  {
+    ReportStep(sorting, fan, begins.size());
+    std::sort(triangles.begin() + begins[fan], triangles.begin() + begins[fan + 1],
+      [&placed](const Turned& s, const Turned& t) {
+        return Orientation(placed.At(s.Corners[0]), placed.At(s.Corners[1]),
+                 placed.At(t.Corners[1])) == Positive;
+      });
+  }
+  Buffer<Index> corners;
+  corners.Reserve(3 * triangles.size());
+  for (const Turned& triangle : triangles)
+  {
+    for (const Index place : triangle.Corners)
+    {
+      corners.Append(placed.Ids[place]);
+    }
+  }
+  return corners;
+}
+
+/** Lists all points that are no vertices. @param[in] mesh  nullptr: there are no triangles */
+void ListUnused(Index count, const PlacedPoints& placed, const GreedyInsertion* mesh,
+  const Progress& progress, Triangulation& result)
+{
+  std::vector<unsigned char> reasons(static_cast<std::size_t>(count), 0);
+  const auto set = [&reasons](Index id, UnusedReason reason) {
+    reasons[id] = static_cast<unsigned char>(reason);
+  };
+  for (const Index id : placed.Duplicates)
+  {
+    set(id, UnusedReason::Duplicate);
+  }
+  for (const Index id : placed.NotFinite)
+  {
+    set(id, UnusedReason::NotFinite);
+  }
+  const Index candidates = mesh ? placed.Count() : 0;
+  ForEachStretch(candidates, Part(progress, 0.0, 0.5), [&](Index begin, Index end) {
+    for (Index place = begin; place < end; ++place)
+    {
+      if (!mesh->IsVertex(place))
+      {
+        set(placed.Ids[place], UnusedReason::WithinError);
+        ++result.NumberOfRedundant;
+      }
+    }
+  });
+  result.NumberOfDuplicates = static_cast<Index>(placed.Duplicates.size());
+  result.NumberOfNotFinite = static_cast<Index>(placed.NotFinite.size());
+  const std::size_t unused =
+    placed.Duplicates.size() + placed.NotFinite.size() + result.NumberOfRedundant;
+  result.UnusedPoints.reserve(unused);
+  result.UnusedReasons.reserve(unused);
+  ForEachStretch(count, Part(progress, 0.5, 1.0), [&](Index begin, Index end) {
+    for (Index id = begin; id < end; ++id)
+    {
+      if (reasons[id] != 0)
+      {
+        result.UnusedPoints.push_back(id);
+        result.UnusedReasons.push_back(static_cast<UnusedReason>(reasons[id]));
+      }
+    }
+  });
+}
+
+Triangulation Simplified(const PointView& points, PlacedPoints&& placed,
+  const std::vector<Segment>& pieces, const DelaunayOptions& options, int threads,
+  const Progress& progress)
+{
+  Triangulation result;
+  result.LatticeFound = placed.Metric.has_value();
+  result.Steps = placed.Steps;
+  std::vector<Segment> lines = PiecesByPlaces(pieces, placed, Part(progress, 0.0, 0.01));
+  if (options.SimplifyConstraints && !lines.empty())
+  {
+    lines = FewerPieces(placed, lines, options.MaximumElevationError, Part(progress, 0.01, 0.02));
+  }
+  const std::vector<Segment> byCorners = AddEnds(lines, placed, Part(progress, 0.02, 0.03));
+  std::vector<char> fixed;
+  const Mesh first = FirstMesh(placed, byCorners, fixed, Part(progress, 0.03, 0.05));
+  if (first.NumberOfTriangles() == 0)
+  {
+    ListUnused(points.Count, placed, nullptr, Part(progress, 0.05, 1.0), result);
+    return result;
+  }
+  GreedyInsertion mesh(placed.Places, placed.Rows, placed.Metric ? &*placed.Metric : nullptr, first,
+    fixed, options.Edges);
+  const Measurement measurement(points, placed, mesh);
+  std::vector<Index> beyond;
+  Progress ofRound = Part(progress, 0.05, 0.8);
+  do
+  {
+    if (!beyond.empty())
+    {
+      mesh.Insert(beyond);
+      beyond.clear();
+      ofRound = Part(progress, 0.8, 0.8);
+    }
+    mesh.Run(options.MaximumElevationError, threads, ofRound);
+    result.LargestElevationError =
+      measurement.Run(options.MaximumElevationError, threads, Part(progress, 0.8, 0.9), beyond);
+  } while (!beyond.empty());
+  result.Triangles = TrianglesOf(placed, mesh, Part(progress, 0.9, 0.98));
+  ListUnused(points.Count, placed, &mesh, Part(progress, 0.98, 1.0), result);
+  result.NumberOfHullPoints = 2 * (placed.Count() - result.NumberOfRedundant) - 2 -
+    static_cast<Index>(result.Triangles.size() / 3);
+  Report(progress, 1.0);
+  return result;
+}
+} // namespace
+
+Triangulation TriangulateFew(
+  const PointView& points, const DelaunayOptions& options, const std::vector<Segment>& pieces)
+{
+  const int threads = ThreadsAtOnce(options.NumberOfThreads);
+  const Progress placing = Part(options.Monitor, 0.0, 0.2),
+                 working = Part(options.Monitor, 0.2, 1.0);
+  if (options.UseLattice == LatticeMode::Automatic && pieces.empty())
+  {
+    PlacedPoints placed;
+    if (PlaceOnLattice(points, options, threads, placing, placed))
+    {
+      try
+      {
+        return Simplified(points, std::move(placed), pieces, options, threads, working);
+      }
+      catch (const NotOnLattice&)
+      {
+        // by coordinates
+      }
+    }
+    else if (options.GivenLattice.IsSet())
+    {
+      throw GivenLatticeUnfit();
+    }
+  }
+  try
+  {
+    return Simplified(
+      points, PlaceInBins(points, options, threads, placing), pieces, options, threads, working);
+  }
+  catch (const NotOnLattice&)
+  {
+    throw std::logic_error("A triangle of a simplified surface is flat or inverted.");
+  }
+}
+
+} // namespace elevation

@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BorderOfParts.h"
+
+#include "Adapt/Adapt.h"
+#include "CommonPoints.h"
+
+#include "vtkDataSetAttributes.h"
+#include "vtkIdTypeArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+namespace elevation
+{
+
+std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen)
+{
+  vtkDataArray* const ids = byIds ? data->GetPointData()->GetGlobalIds() : nullptr;
+  auto* const plain = vtkIdTypeArray::FastDownCast(ids);
+  const std::size_t count =
+    chosen ? chosen->size() : static_cast<std::size_t>(data->GetNumberOfPoints());
+  std::vector<PointKey> keys(count, PointKey{ { 0, 0, 0 } });
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const vtkIdType at = chosen ? (*chosen)[i] : static_cast<vtkIdType>(i);
+    if (ids)
+    {
+      keys[i][0] = plain ? plain->GetValue(at) : ids->GetVariantValue(at).ToTypeInt64();
+      continue;
+    }
+    double xyz[3];
+    data->GetPoint(at, xyz);
+    for (double& value : xyz)
+    {
+      value += 0.0; // -0 is 0
+    }
+    std::memcpy(keys[i].data(), xyz, sizeof(xyz));
+  }
+  return keys;
+}
+
+namespace
+{
+/** The rank where all ranks' points or edges with some numbers meet. */
+int RankOf(std::uint64_t bits, const Ranks& ranks)
+{
+  bits = (bits ^ (bits >> 31)) * 0x9E3779B97F4A7C15ull;
+  return static_cast<int>((bits >> 33) % static_cast<std::uint64_t>(ranks.Count()));
+}
+
+std::uint64_t BitsOf(const PointKey& key)
+{
+  std::uint64_t bits = 0;
+  for (const std::int64_t part : key)
+  {
+    bits = (bits ^ (bits >> 29)) * 0xD6E8FEB86659FD93ull + static_cast<std::uint64_t>(part);
+  }
+  return bits;
+}
+
+/** A point, where all ranks' points with its key meet. */
+struct MetPoint
+{
+  PointKey Key;
+  vtkIdType IsMarked; // as another rank's
+  vtkIdType Rank, Place;
+};
+
+template <typename Value>
+std::vector<Value> Unpacked(const std::vector<Bytes>& packed)
+{
+  std::vector<Value> all;
+  for (const Bytes& bytes : packed)
+  {
+    const char* from = bytes.data();
+    std::vector<Value> some;
+    TakeFrom(from, bytes.size() / sizeof(Value), some);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+} // namespace
+
+Index SharedPoints::Find(const PointKey& key) const
+{
+  const auto found =
+    std::lower_bound(this->Sorted.begin(), this->Sorted.end(), std::make_pair(key, Index(0)));
+  return found != this->Sorted.end() && found->first == key ? found->second : None;
+}
+
+bool SharedPoints::Sort(const std::vector<char>& areUsed)
+{
+  this->Sorted.clear();
+  for (std::size_t i = 0; i < this->Places.size(); ++i)
+  {
+    this->Sorted.emplace_back(this->Keys[i], this->Places[i]);
+  }
+  // Points with a triangle come first.
+  std::sort(this->Sorted.begin(), this->Sorted.end(), [&](const auto& a, const auto& b) {
+    return std::make_tuple(a.first, !areUsed[a.second], a.second) <
+      std::make_tuple(b.first, !areUsed[b.second], b.second);
+  });
+  const auto isTwice = [&](const auto& a, const auto& b) {
+    return a.first == b.first && areUsed[a.second] && areUsed[b.second];
+  };
+  const bool isUnique =
+    std::adjacent_find(this->Sorted.begin(), this->Sorted.end(), isTwice) == this->Sorted.end();
+  const auto isSame = [](const auto& a, const auto& b) { return a.first == b.first; };
+  this->Sorted.erase(
+    std::unique(this->Sorted.begin(), this->Sorted.end(), isSame), this->Sorted.end());
+  return isUnique;
+}
+
+namespace
+{
+bool IsMarked(vtkUnsignedCharArray* marks, Index point)
+{
+  return marks && (marks->GetValue(point) & vtkDataSetAttributes::DUPLICATEPOINT);
+}
+} // namespace
+
+void SharedPoints::TakeMarks(vtkPolyData* data)
+{
+  vtkUnsignedCharArray* const marks = GhostsOf(data->GetPointData());
+  this->AreCopies.clear();
+  for (const Index place : this->Places)
+  {
+    this->AreCopies.push_back(IsMarked(marks, place) ? 1 : 0);
+  }
+}
+
+void FindCopies(const Ranks& ranks, vtkPolyData* own, bool byIds, SharedPoints& points)
+{
+  std::vector<Bytes> packed(ranks.Count());
+  ranks.Agree([&]() {
+    vtkUnsignedCharArray* const marks = GhostsOf(own->GetPointData());
+    for (std::size_t i = 0; i < points.Places.size(); ++i)
+    {
+      const MetPoint met{ points.Keys[i], IsMarked(marks, points.Places[i]) ? 1 : 0, ranks.Own(),
+        static_cast<vtkIdType>(i) };
+      AppendTo(packed[RankOf(BitsOf(met.Key), ranks)], &met, 1);
+    }
+  });
+  packed = ranks.Exchange(std::move(packed));
+  ranks.Agree([&]() {
+    std::vector<MetPoint> met = Unpacked<MetPoint>(packed);
+    packed = std::vector<Bytes>(ranks.Count());
+    const auto keyOf = [](const MetPoint& p) {
+      return std::make_tuple(p.Key, p.IsMarked, p.Rank, p.Place);
+    };
+    std::sort(met.begin(), met.end(),
+      [&](const MetPoint& a, const MetPoint& b) { return keyOf(a) < keyOf(b); });
+    std::vector<vtkIdType> found(ranks.Count(), 0); // of the key so far, on each rank
+    vtkIdType different = 0;
+    for (std::size_t i = 0; i < met.size(); ++i)
+    {
+      if (i == 0 || met[i].Key != met[i - 1].Key)
+      {
+        std::fill(found.begin(), found.end(), 0);
+        different = 0;
+      }
+      // Without ids, the first of one rank is the first of any other, and so on.
+      if (different == (byIds ? 0 : found[met[i].Rank]++))
+      {
+        ++different;
+        continue;
+      }
+      AppendTo(packed[met[i].Rank], &met[i].Place, 1);
+    }
+  });
+  packed = ranks.Exchange(std::move(packed));
+  points.AreCopies.assign(points.Places.size(), 0);
+  for (const vtkIdType place : Unpacked<vtkIdType>(packed))
+  {
+    points.AreCopies[place] = 1;
+  }
+}
+
+void AppendBorder(
+  const Mesh& mesh, const SharedPoints& points, int part, std::vector<EdgeOfPart>& edges)
+{
+  const auto numberOf = [&](Index point) {
+    const auto at = std::lower_bound(points.Places.begin(), points.Places.end(), point);
+    return static_cast<std::size_t>(at - points.Places.begin());
+  };
+  for (Index h = 0; h < static_cast<Index>(mesh.Twins.size()); ++h)
+  {
+    if (mesh.Twin(h) == Mesh::Border)
+    {
+      const Index a = mesh.Origin(h), b = mesh.Destination(h);
+      const Point2 p = mesh.PointOf(a), q = mesh.PointOf(b);
+      const std::size_t from = numberOf(a), to = numberOf(b);
+      edges.push_back({ { points.Keys[from], points.Keys[to] }, { p.X, p.Y, q.X, q.Y },
+        { points.OnBoundary[from], points.OnBoundary[to] }, part, h });
+    }
+  }
+}
+
+bool KeepSingleEdges(std::vector<EdgeOfPart>& edges)
+{
+  const auto keyOf = [](const EdgeOfPart& edge) {
+    return std::make_tuple(
+      std::min(edge.Ends[0], edge.Ends[1]), std::max(edge.Ends[0], edge.Ends[1]), edge.Ends[0]);
+  };
+  std::sort(edges.begin(), edges.end(),
+    [&](const EdgeOfPart& a, const EdgeOfPart& b) { return keyOf(a) < keyOf(b); });
+  std::vector<EdgeOfPart> single;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+  {
+    const bool isPair = i + 1 < edges.size() && edges[i].Ends[0] == edges[i + 1].Ends[1] &&
+      edges[i].Ends[1] == edges[i + 1].Ends[0];
+    const std::size_t next = i + (isPair ? 2 : 1);
+    if (next < edges.size() &&
+      std::minmax(edges[i].Ends[0], edges[i].Ends[1]) ==
+        std::minmax(edges[next].Ends[0], edges[next].Ends[1]))
+    {
+      return false;
+    }
+    if (!isPair)
+    {
+      single.push_back(edges[i]);
+    }
+    i = next - 1;
+  }
+  edges = std::move(single);
+  return true;
+}
+
+BorderOfAll::BorderOfAll(std::vector<EdgeOfPart>&& edges)
+{
+  std::sort(edges.begin(), edges.end(), [](const EdgeOfPart& a, const EdgeOfPart& b) {
+    return std::tie(a.Part, a.HalfEdge) < std::tie(b.Part, b.HalfEdge);
+  });
+  for (const EdgeOfPart& edge : edges)
+  {
+    this->Keys.insert(this->Keys.end(), { edge.Ends[0], edge.Ends[1] });
+  }
+  std::sort(this->Keys.begin(), this->Keys.end());
+  this->Keys.erase(std::unique(this->Keys.begin(), this->Keys.end()), this->Keys.end());
+  this->Coordinates.resize(3 * this->Keys.size(), 0.0);
+  this->OnBoundary.resize(this->Keys.size(), 0);
+  for (const EdgeOfPart& edge : edges)
+  {
+    const Index ends[2] = { this->Find(edge.Ends[0]), this->Find(edge.Ends[1]) };
+    this->Edges.push_back({ ends[0], ends[1] });
+    this->PartOfEdge.push_back(static_cast<int>(edge.Part));
+    for (std::size_t k = 0; k < 2; ++k)
+    {
+      std::copy_n(edge.Places + 2 * k, 2, this->Coordinates.begin() + 3 * ends[k]);
+      this->OnBoundary[ends[k]] = edge.OnBoundary[k] != 0;
+    }
+  }
+}
+
+Index BorderOfAll::Find(const PointKey& key) const
+{
+  const auto found = std::lower_bound(this->Keys.begin(), this->Keys.end(), key);
+  return found != this->Keys.end() && *found == key ? static_cast<Index>(found - this->Keys.begin())
+                                                    : None;
+}
+
+PointView BorderOfAll::View() const
+{
+  PointView view;
+  view.Double = this->Coordinates.data();
+  view.Count = static_cast<Index>(this->Keys.size());
+  return view;
+}
+
+bool CollectBorder(
+  const Ranks& ranks, const Mesh& mesh, const SharedPoints& points, BorderOfAll& border)
+{
+  std::vector<Bytes> packed(ranks.Count());
+  ranks.Agree([&]() {
+    std::vector<EdgeOfPart> edges;
+    AppendBorder(mesh, points, ranks.Own(), edges);
+    for (const EdgeOfPart& edge : edges)
+    {
+      AppendTo(packed[RankOf(BitsOf(edge.Ends[0]) + BitsOf(edge.Ends[1]), ranks)], &edge, 1);
+    }
+  });
+  packed = ranks.Exchange(std::move(packed));
+  if (!CanAll(ranks, [&]() {
+        std::vector<EdgeOfPart> edges = Unpacked<EdgeOfPart>(packed);
+        const bool isManifold = KeepSingleEdges(edges);
+        packed = std::vector<Bytes>(ranks.Count());
+        for (Bytes& bytes : packed) // to all
+        {
+          AppendTo(bytes, edges);
+        }
+        return isManifold;
+      }))
+  {
+    return false;
+  }
+  packed = ranks.Exchange(std::move(packed));
+  ranks.Agree([&]() { border = BorderOfAll(Unpacked<EdgeOfPart>(packed)); });
+  return true;
+}
+
+} // namespace elevation

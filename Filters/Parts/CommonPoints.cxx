@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CommonPoints.h"
+
+#include "Adapt/Adapt.h"
+
+#include "vtkIdTypeArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace elevation
+{
+
+CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& progress)
+  : Offsets(1, 0)
+{
+  for (const auto& part : parts)
+  {
+    this->Offsets.push_back(this->Offsets.back() + part->GetNumberOfPoints());
+  }
+  const std::size_t count = static_cast<std::size_t>(this->Offsets.back());
+  this->First.resize(count);
+  std::iota(this->First.begin(), this->First.end(), 0);
+  this->Places.resize(count);
+  this->ReadMarks(parts);
+  const bool haveIds = this->ReadIds(parts);
+  if (!haveIds && (kind == PartKind::Mesh || !this->IsMarked.empty()))
+  {
+    this->ReadCoordinates(parts);
+  }
+  std::vector<vtkIdType> order = this->Keys.empty() ? this->First : this->Sorted(progress);
+  for (std::size_t begin = 0, end = 0; begin < count && !this->Keys.empty(); begin = end)
+  {
+    while (end < count && this->Keys[order[begin]] == this->Keys[order[end]])
+    {
+      ++end;
+    }
+    this->Match(order.data() + begin, order.data() + end, kind, haveIds);
+  }
+  if (!haveIds)
+  {
+    std::sort(order.begin(), order.end());
+  }
+  for (const vtkIdType i : order)
+  {
+    if (this->First[i] == i)
+    {
+      this->Places[i] = this->NumberOfJoined++;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    this->Places[i] = this->Places[this->First[i]];
+  }
+}
+
+void CommonPoints::ReadMarks(const Parts& parts)
+{
+  for (std::size_t part = 0; part < parts.size(); ++part)
+  {
+    vtkUnsignedCharArray* const ghosts = GhostsOf(parts[part]->GetPointData());
+    for (vtkIdType i = 0; ghosts && i < ghosts->GetNumberOfTuples(); ++i)
+    {
+      if (ghosts->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT)
+      {
+        this->IsMarked.resize(this->First.size(), 0);
+        this->IsMarked[this->Offsets[part] + i] = 1;
+      }
+    }
+  }
+}
+
+bool CommonPoints::ReadIds(const Parts& parts)
+{
+  const auto lacksIds = [](const auto& part) { return !part->GetPointData()->GetGlobalIds(); };
+  if (std::any_of(parts.begin(), parts.end(), lacksIds))
+  {
+    return false;
+  }
+  for (const auto& part : parts)
+  {
+    vtkDataArray* const ids = part->GetPointData()->GetGlobalIds();
+    auto* const plain = vtkIdTypeArray::FastDownCast(ids);
+    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+    {
+      const std::int64_t id = plain ? plain->GetValue(i) : ids->GetVariantValue(i).ToTypeInt64();
+      this->Keys.push_back({ id, 0, 0 });
+    }
+  }
+  return true;
+}
+
+void CommonPoints::ReadCoordinates(const Parts& parts)
+{
+  this->Keys.reserve(this->First.size());
+  for (const auto& part : parts)
+  {
+    for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
+    {
+      double xyz[3];
+      part->GetPoint(i, xyz);
+      for (double& value : xyz)
+      {
+        value += 0.0; // -0 is 0
+      }
+      Key key;
+      std::memcpy(key.data(), xyz, sizeof(xyz)); // the bits of NaN are equal, too
+      this->Keys.push_back(key);
+    }
+  }
+}
+
+std::vector<vtkIdType> CommonPoints::Sorted(const Progress& progress) const
+{
+  const auto isMarked = [this](
+                          vtkIdType i) { return !this->IsMarked.empty() && this->IsMarked[i]; };
+  std::vector<vtkIdType> order = this->First;
+  elevation::Sort(
+    order.begin(), order.end(),
+    [&](vtkIdType a, vtkIdType b) {
+      return std::make_tuple(this->Keys[a], isMarked(a), a) <
+        std::make_tuple(this->Keys[b], isMarked(b), b);
+    },
+    progress);
+  return order;
+}
+
+void CommonPoints::Match(const vtkIdType* begin, const vtkIdType* end, PartKind kind, bool haveIds)
+{
+  if (haveIds || kind == PartKind::Points)
+  {
+    for (const vtkIdType* i = begin + 1; i < end; ++i)
+    {
+      if (haveIds || this->IsMarked[*i])
+      {
+        this->First[*i] = *begin;
+      }
+    }
+    return;
+  }
+  // The first of one part is the first of any other, the second the second, and so on.
+  std::vector<vtkIdType> different;
+  std::map<std::ptrdiff_t, std::size_t> found; // so far, in each part
+  for (const vtkIdType* i = begin; i < end && end - begin > 1; ++i)
+  {
+    const auto after = std::upper_bound(this->Offsets.begin(), this->Offsets.end(), *i);
+    const std::size_t which = found[after - this->Offsets.begin()]++;
+    if (which == different.size())
+    {
+      different.push_back(*i);
+    }
+    this->First[*i] = different[which];
+  }
+}
+
+std::vector<Rows> CommonPoints::Sources() const
+{
+  std::vector<Rows> sources(this->Offsets.size() - 1);
+  for (std::size_t part = 0; part < sources.size(); ++part)
+  {
+    for (vtkIdType i = this->Offsets[part]; i < this->Offsets[part + 1]; ++i)
+    {
+      if (this->First[i] == i)
+      {
+        sources[part].Add(i - this->Offsets[part], this->Places[i]);
+      }
+    }
+  }
+  return sources;
+}
+
+} // namespace elevation

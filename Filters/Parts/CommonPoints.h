@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Which points of several parts of a data set are the same. Private to the module.
+ */
+#ifndef CommonPoints_h
+#define CommonPoints_h
+
+#include "Kernel/Base/Base.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+using Parts = std::vector<vtkSmartPointer<vtkPolyData>>;
+
+/** What the parts of a data set are. */
+enum class PartKind
+{
+  Points, ///< only points count: points of different parts are different
+  Mesh    ///< cells too: parts have the points of common cell borders in common
+};
+
+/** Tuples of one part, and which of the joined tuples they are. */
+struct Rows
+{
+  std::vector<vtkIdType> From, To;
+
+  void Add(vtkIdType from, vtkIdType to)
+  {
+    this->From.push_back(from);
+    this->To.push_back(to);
+  }
+};
+
+/** The points of all parts, and those that they become when they are joined: see Join(). */
+class CommonPoints
+{
+public:
+  CommonPoints(const Parts& parts, PartKind kind, const Progress& progress);
+
+  vtkIdType Count() const { return this->NumberOfJoined; }
+  /** Of a point of a part: its joined point. */
+  vtkIdType Place(std::size_t part, vtkIdType point) const
+  {
+    return this->Places[this->Offsets[part] + point];
+  }
+  /** Of each part, the points whose values the joined ones have. */
+  std::vector<Rows> Sources() const;
+
+private:
+  using Key = std::array<std::int64_t, 3>;
+
+  void ReadMarks(const Parts& parts);
+  bool ReadIds(const Parts& parts);
+  void ReadCoordinates(const Parts& parts);
+  /** The points in the order of their keys; of equal ones, those of their own rank first. */
+  std::vector<vtkIdType> Sorted(const Progress& progress) const;
+  /** Finds which of the points with one key are the same. */
+  void Match(const vtkIdType* begin, const vtkIdType* end, PartKind kind, bool haveIds);
+
+  std::vector<vtkIdType> Offsets; // of the first point of each part, and the number of all
+  std::vector<char> IsMarked;     // as another rank's; empty if none is
+  std::vector<Key> Keys;
+  std::vector<vtkIdType> First; // of the points that are the same
+  std::vector<vtkIdType> Places;
+  vtkIdType NumberOfJoined = 0;
+};
+
+} // namespace elevation
+
+#endif

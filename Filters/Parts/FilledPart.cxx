@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FilledPart.h"
+
+#include "Adapt/Adapt.h"
+#include "NearParts.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace elevation
+{
+
+bool FilledPart::HasPoints() const
+{
+  return this->Input->GetNumberOfPoints() > 0;
+}
+
+void FilledPart::Read(const Progress& progress)
+{
+  CheckArrays(this->Input);
+  ToMesh(this->Input, this->Own, Part(progress, 0.0, 0.4));
+  this->Own.ConnectTwins(0, Part(progress, 0.4, 1.0));
+}
+
+bool FilledPart::ListShared(bool byIds)
+{
+  std::vector<char> mayBeShared(static_cast<std::size_t>(this->Input->GetNumberOfPoints()), 1);
+  this->AreUsed.assign(mayBeShared.size(), 0);
+  for (const Index corner : this->Own.Triangles)
+  {
+    mayBeShared[corner] = 0;
+    this->AreUsed[corner] = 1;
+  }
+  for (Index h = 0; h < static_cast<Index>(this->Own.Twins.size()); ++h)
+  {
+    if (this->Own.Twin(h) == Mesh::Border)
+    {
+      mayBeShared[this->Own.Origin(h)] = mayBeShared[this->Own.Destination(h)] = 1;
+    }
+  }
+  vtkUnsignedCharArray* const marks = BoundaryMarksOf(this->Input->GetPointData());
+  for (std::size_t i = 0; i < mayBeShared.size(); ++i)
+  {
+    if (mayBeShared[i])
+    {
+      this->Shared.Places.push_back(static_cast<Index>(i));
+      this->Shared.OnBoundary.push_back(marks && marks->GetValue(static_cast<vtkIdType>(i)) != 0);
+    }
+  }
+  this->Shared.Keys = KeysOf(this->Input, byIds, &this->Shared.Places);
+  return this->Shared.Sort(this->AreUsed);
+}
+
+/** One flag a point: 1 if it is another part's. */
+std::vector<char> FilledPart::AreOthers() const
+{
+  std::vector<char> areOthers(static_cast<std::size_t>(this->Input->GetNumberOfPoints()), 0);
+  if (vtkUnsignedCharArray* const marks = GhostsOf(this->Input->GetPointData()))
+  {
+    for (std::size_t i = 0; i < areOthers.size(); ++i)
+    {
+      const vtkIdType at = static_cast<vtkIdType>(i);
+      areOthers[i] = marks->GetValue(at) & vtkDataSetAttributes::DUPLICATEPOINT;
+    }
+  }
+  for (std::size_t i = 0; i < this->Shared.Places.size(); ++i)
+  {
+    areOthers[this->Shared.Places[i]] = this->Shared.AreCopies[i];
+  }
+  return areOthers;
+}
+
+vtkIdType FilledPart::CountOfOwn() const
+{
+  const std::vector<char> areOthers = this->AreOthers();
+  return std::count(areOthers.begin(), areOthers.end(), char(0));
+}
+
+PointView FilledPart::OwnPoints(Buffer<double>& kept) const
+{
+  const PointsOfDataSet points = ViewPoints(this->Input);
+  const std::vector<char> areOthers = this->AreOthers();
+  for (Index i = 0; i < points.View.Count; ++i)
+  {
+    const Point2 p = points.View.At(i);
+    for (const double value : { p.X, p.Y, points.View.Elevation(i) })
+    {
+      if (!areOthers[i])
+      {
+        kept.Append(value);
+      }
+    }
+  }
+  PointView some;
+  some.Double = kept.data();
+  some.Count = static_cast<Index>(kept.size() / 3);
+  return some;
+}
+
+void FilledPart::FindCorners()
+{
+  const Index first = static_cast<Index>(this->Filled.Keys.size());
+  const Index own = static_cast<Index>(this->Input->GetNumberOfPoints());
+  this->PlaceOf.assign(this->Filled.Keys.size(), None);
+  this->Added.clear();
+  std::map<PointKey, Index> added; // a point may be there several times
+  const auto place = [&](Index corner) {
+    if (corner < first && this->PlaceOf[corner] == None)
+    {
+      const PointKey& key = this->Filled.Keys[corner];
+      const Index here = this->Shared.Find(key);
+      const Index next = own + static_cast<Index>(this->Added.size());
+      const bool isNew = here == None && added.emplace(key, next).second;
+      this->PlaceOf[corner] = here != None ? here : added[key];
+      if (isNew)
+      {
+        this->Added.push_back(corner);
+      }
+    }
+  };
+  const FillResult& patches = this->Filled.Patches;
+  std::for_each(patches.Triangles.begin(), patches.Triangles.end(), place);
+  std::for_each(patches.NearestBoundaryPoints.begin(), patches.NearestBoundaryPoints.end(), place);
+}
+
+vtkIdType FilledPart::CountOfOthers() const
+{
+  const std::vector<char>& copies = this->Shared.AreCopies;
+  return static_cast<vtkIdType>(this->Added.size()) + std::count(copies.begin(), copies.end(), 1);
+}
+
+vtkIdType FilledPart::LargestId() const
+{
+  vtkIdType largest = -1;
+  vtkDataArray* const ids = this->Input->GetPointData()->GetGlobalIds();
+  for (vtkIdType i = 0; ids && i < ids->GetNumberOfTuples(); ++i)
+  {
+    largest = std::max<vtkIdType>(largest, ids->GetVariantValue(i).ToTypeInt64());
+  }
+  return largest;
+}
+
+/** The input and the corners of others; of points that parts have in common, one is no ghost. */
+vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progress& progress) const
+{
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  TrimmedPoints points;
+  points.New = this->Filled.Surrounding;
+  points.Added.assign(this->Added.begin(), this->Added.end());
+  points.AreMarked = areMarked;
+  points.Type = this->Input->GetPoints()->GetDataType();
+  const Index own = static_cast<Index>(this->Input->GetNumberOfPoints());
+  for (std::size_t i = 0; i < this->Shared.AreCopies.size(); ++i)
+  {
+    if (this->Shared.AreCopies[i])
+    {
+      points.OfOthers.push_back(this->Shared.Places[i]);
+    }
+  }
+  for (std::size_t i = 0; i < this->Added.size(); ++i)
+  {
+    points.OfOthers.push_back(own + static_cast<Index>(i));
+  }
+  PassTrimmedPoints(this->Input, points, progress, data);
+  data->SetPolys(this->Input->GetPolys());
+  data->GetCellData()->PassData(this->Input->GetCellData());
+  data->GetFieldData()->PassData(this->Input->GetFieldData());
+  return data;
+}
+
+/** The patches among those of all holes, by the places of the input's points. */
+FillResult FilledPart::PlacedPatches(const HolesOfParts& all, vtkPolyData* input) const
+{
+  const FillResult& from = this->Filled.Patches;
+  FillResult to;
+  to.Points = from.Points;
+  to.StandardErrors = from.StandardErrors;
+  const Index first = static_cast<Index>(this->PlaceOf.size());
+  const Index firstNew = static_cast<Index>(input->GetNumberOfPoints());
+  const auto placed = [&](Index id) {
+    return id < first ? this->PlaceOf[id] : firstNew + id - first;
+  };
+  std::transform(
+    from.Triangles.begin(), from.Triangles.end(), std::back_inserter(to.Triangles), placed);
+  std::transform(from.NearestBoundaryPoints.begin(), from.NearestBoundaryPoints.end(),
+    std::back_inserter(to.NearestBoundaryPoints), placed);
+  std::size_t next = 0;
+  for (Index hole = 0; hole < static_cast<Index>(all.OfAll.Reports.size()); ++hole)
+  {
+    const bool isMine = next < this->Filled.Numbers.size() && this->Filled.Numbers[next] == hole;
+    next += isMine ? 1 : 0;
+    to.PointOffsets.push_back(isMine ? from.PointOffsets[next] : to.PointOffsets.back());
+    to.TriangleOffsets.push_back(isMine ? from.TriangleOffsets[next] : to.TriangleOffsets.back());
+  }
+  to.Reports = all.OfAll.Reports;
+  this->PlaceAttributes(input, to);
+  return to;
+}
+
+/** Attributes in the order of the input's arrays. */
+void FilledPart::PlaceAttributes(vtkPolyData* input, FillResult& placed) const
+{
+  vtkPointData* const given =
+    this->Filled.Surrounding ? this->Filled.Surrounding->GetPointData() : nullptr;
+  const bool areInterpolated = !this->Filled.Patches.Attributes.empty();
+  std::map<std::string, std::size_t> firstOf;
+  std::size_t count = 0;
+  for (int i = 0; given && i < given->GetNumberOfArrays() && areInterpolated; ++i)
+  {
+    vtkAbstractArray* const array = given->GetAbstractArray(i);
+    firstOf[array->GetName()] = count;
+    count += IsInterpolated(given, array) ? array->GetNumberOfComponents() : 0;
+  }
+  vtkPointData* const data = input->GetPointData();
+  for (int i = 0; i < data->GetNumberOfArrays() && count > 0; ++i)
+  {
+    vtkAbstractArray* const array = data->GetAbstractArray(i);
+    for (int c = 0; IsInterpolated(data, array) && c < array->GetNumberOfComponents(); ++c)
+    {
+      placed.Attributes.push_back(
+        this->Filled.Patches.Attributes[firstOf.at(array->GetName()) + c]);
+    }
+  }
+}
+
+/** Global ids after the largest of all parts, in the order of the holes. */
+void FilledPart::NumberNewPoints(
+  const HolesOfParts& all, vtkIdType largest, vtkPolyData* output) const
+{
+  vtkDataArray* const ids = output->GetPointData()->GetGlobalIds();
+  vtkIdType next = output->GetNumberOfPoints() - this->Filled.Patches.NumberOfPoints();
+  for (const Index hole : this->Filled.Numbers)
+  {
+    for (vtkIdType i = all.FirstNewPoints[hole]; ids && i < all.FirstNewPoints[hole + 1]; ++i)
+    {
+      ids->SetComponent(next++, 0, static_cast<double>(largest + 1 + i));
+    }
+  }
+}
+
+void FilledPart::Write(const HolesOfParts& all, bool areMarked, vtkIdType largestId,
+  const Progress& progress, vtkPolyData* output) const
+{
+  const vtkSmartPointer<vtkPolyData> input = this->WithCorners(areMarked, Part(progress, 0.0, 0.2));
+  MakeSurface(input, this->Own, this->PlacedPatches(all, input), all.Interpolate,
+    Part(progress, 0.2, 1.0), output);
+  this->NumberNewPoints(all, largestId, output);
+}
+
+vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder(const BorderOfAll& border) const
+{
+  std::vector<Index> chosen;
+  for (std::size_t i = 0; i < this->Shared.Places.size(); ++i)
+  {
+    const bool isUsed = this->AreUsed[this->Shared.Places[i]];
+    if (isUsed && border.Find(this->Shared.Keys[i]) != None)
+    {
+      chosen.push_back(this->Shared.Places[i]);
+    }
+  }
+  return chosen.empty() ? nullptr : ChosenPoints(this->Input, chosen);
+}
+
+void WriteRims(
+  const HolesOfParts& all, const Parts& points, const Progress& progress, vtkPolyData* output)
+{
+  const vtkSmartPointer<vtkPolyData> joined = Append(points);
+  const std::vector<PointKey> keys = KeysOf(joined, all.ByIds, nullptr);
+  std::vector<Index> places(all.Border.Keys.size(), 0);
+  for (std::size_t i = keys.size(); i-- > 0;) // of several, the first
+  {
+    places[all.Border.Find(keys[i])] = static_cast<Index>(i);
+  }
+  const vtkSmartPointer<vtkPolyData> rims = ChosenPoints(joined, places);
+  // Each is there once.
+  rims->GetPointData()->RemoveArray(vtkDataSetAttributes::GhostArrayName());
+  MakeReport(rims, all.OfAll, progress, output);
+}
+
+} // namespace elevation

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * How a filter calls the kernel: for each block of the input; progress and abort go in, warnings
+ * and exceptions come out as one message of the filter. Private to the module.
+ */
+#ifndef FilterRun_h
+#define FilterRun_h
+
+#include "Kernel/Base/Base.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkFieldData;
+class vtkInformation;
+class vtkInformationVector;
+class vtkPointSet;
+class vtkPolyData;
+
+namespace elevation
+{
+class Ranks;
+enum class PartKind;
+struct Place;
+
+/** What is worked on at a time: the input, or one block of it. */
+struct Block
+{
+  vtkPointSet* Input;                ///< of the first type that port 0 requires
+  vtkPolyData* Second;               ///< input 1, joined; nullptr if there is none
+  std::vector<vtkPolyData*> Outputs; ///< of each port
+  elevation::Progress Progress;
+  std::vector<std::string> Warnings; ///< to be reported
+};
+
+/**
+ * Runs the body of a RequestData for each block of the input.
+ *
+ * Progress rises by the number of points of the blocks. When the body throws, the outputs of the
+ * block are emptied. What it throws, and the warnings, are reported as one error and one warning of
+ * the filter; these name the blocks of a composite. After an abort all outputs are empty, on all
+ * ranks, and one warning tells so.
+ *
+ * Where several ranks take part (Ranks), all of them meet here, whatever blocks each has: before
+ * the blocks, to hand the second input to all, and to bring blocks that are spread over ranks to
+ * one of them, the one with most of it (or the filter works on them in its own way: Spread); and
+ * after them, to add up the results. Rank 0 reports for all.
+ */
+class FilterRun
+{
+public:
+  FilterRun(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs,
+    vtkInformationVector* outputs);
+
+  std::string Second; ///< what messages call input 1
+  /** Whether to tell of a composite without any data set; the filter before has told the others. */
+  bool IsFirst = false;
+  /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
+  std::vector<vtkIdType*> Sums;
+  std::vector<double*> Maxima;
+  /**
+   * The filter's own way to work on a block that is spread over ranks, instead of gathering it and
+   * running the body there; may be empty. All ranks call it for the same blocks in the same order.
+   * Input is this rank's part, maybe without points; Outputs are none where the block has no place
+   * on this rank.
+   * It throws on all ranks or on none, with the same message (Ranks::Agree), and adds its results
+   * to Sums and Maxima last.
+   * @return on all ranks, false to have the block gathered
+   */
+  std::function<bool(Block&, const Ranks&)> Spread;
+
+  /**
+   * @param[in] body  adds its results to Sums and Maxima last, when it cannot fail any more
+   * @return what RequestData returns: always 1, because on 0 the executive adds an error of its own
+   *         that tells the user nothing.
+   */
+  int Run(const std::function<void(Block&)>& body);
+
+private:
+  void EmptyOutputs();
+  vtkSmartPointer<vtkPolyData> ShareSecond(const Ranks& ranks) const;
+  bool IsToBeToldOf(const Place& place, const Ranks& ranks) const;
+  /** Works on the blocks that are spread over ranks. @return the progress that has been made */
+  double BringTogether(
+    std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
+  bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
+    const Progress& progress);
+  void TellOf(const std::vector<Place*>& places, const std::vector<std::string>& messages,
+    std::vector<std::string>& all) const;
+  PartKind KindOfParts() const;
+  void RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
+    const std::function<void(Block&)>& body);
+  std::string RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
+  void ShareResults(const Ranks& ranks);
+  void TellOfAbort();
+  void Tell(const Ranks& ranks);
+
+  vtkAlgorithm* Filter;
+  vtkInformation* Request;
+  vtkInformationVector** Inputs;
+  vtkInformationVector* Outputs;
+  std::vector<std::string> Errors, Warnings;
+  bool IsAborted = false;
+  std::vector<vtkIdType> Occupied; ///< numbers of the blocks with points, on any rank
+};
+
+} // namespace elevation
+
+#endif

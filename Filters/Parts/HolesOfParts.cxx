@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HolesOfParts.h"
+
+#include "Adapt/Adapt.h"
+#include "Joining.h"
+#include "NearParts.h"
+#include "PackedData.h"
+
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <utility>
+
+namespace elevation
+{
+
+bool HolesOfParts::Find(const Progress& progress)
+{
+  const PointView points = this->Border.View();
+  this->OfAll = FillResult();
+  this->OfAll.Found = FindHolesOfBorder(this->Border.Edges, points, progress);
+  this->Extents = ExtentsOf(this->OfAll.Found, points);
+  this->TimesTooFew.assign(this->Extents.size(), 0);
+  Mesh places;
+  for (Index i = 0; i < points.Count; ++i)
+  {
+    places.Points.push_back(points.At(i));
+  }
+  FillOptions options = this->Options;
+  options.OnBoundary = this->Border.OnBoundary;
+  for (Index hole = 0; hole < this->OfAll.Found.Count(); ++hole)
+  {
+    this->OfAll.Reports.push_back(MeasureHole(places, this->OfAll.Found, hole, options));
+  }
+  return this->OfAll.Found.NumberOfContacts == 0;
+}
+
+/** As on one rank: only for holes to be filled, without a spacing. */
+bool HolesOfParts::NeedLattice() const
+{
+  bool areToBeFilled = false;
+  for (std::size_t hole = 0; hole < this->OfAll.Reports.size(); ++hole)
+  {
+    areToBeFilled = areToBeFilled || this->IsToBeFilled(hole);
+  }
+  return areToBeFilled && !(this->Options.Spacing > 0.0);
+}
+
+void HolesOfParts::FindLattice(
+  const Ranks& ranks, const PointSlices& points, const Progress& progress)
+{
+  LatticeSample sample;
+  this->Lattice.Found = FitLatticeOnRanks(ranks, points, LatticeTolerance,
+    ThreadsAtOnce(this->Options.NumberOfThreads), progress, sample, this->Lattice.Steps);
+}
+
+void HolesOfParts::NumberNewPoints()
+{
+  this->FirstNewPoints.assign(1, 0);
+  for (const HoleReport& report : this->OfAll.Reports)
+  {
+    this->FirstNewPoints.push_back(this->FirstNewPoints.back() + report.NumberOfInsertedPoints);
+  }
+}
+
+void SurroundedHoles::Surround(const Parts& parts, bool byIds, const Progress& progress)
+{
+  std::vector<std::string> warnings; // none: all have the same arrays
+  this->Near = Mesh();
+  this->Surrounding = elevation::Join(parts, PartKind::Mesh, Part(progress, 0.0, 0.4), warnings);
+  this->Keys = KeysOf(this->Surrounding, byIds, nullptr);
+  ToMesh(this->Surrounding, this->Near, Part(progress, 0.4, 0.7));
+  this->Near.ConnectTwins(0, Part(progress, 0.7, 1.0));
+}
+
+/** The holes by the points of the surrounding. */
+Holes SurroundedHoles::Listed(const HolesOfParts& all) const
+{
+  std::vector<Index> placeOf(all.Border.Keys.size(), None);
+  for (std::size_t i = 0; i < this->Keys.size(); ++i)
+  {
+    const Index at = all.Border.Find(this->Keys[i]);
+    if (at != None)
+    {
+      placeOf[at] = static_cast<Index>(i);
+    }
+  }
+  const Holes& found = all.OfAll.Found;
+  Holes holes;
+  for (const Index hole : this->Numbers)
+  {
+    for (Index i = found.Offsets[hole]; i < found.Offsets[hole + 1]; ++i)
+    {
+      const Index walk = found.Loops[i];
+      holes.Loops.push_back(static_cast<Index>(holes.Walks.Count()));
+      std::transform(found.Walks.Begin(walk), found.Walks.End(walk),
+        std::back_inserter(holes.Walks.Vertices), [&](Index v) { return placeOf[v]; });
+      holes.Walks.Offsets.push_back(static_cast<Index>(holes.Walks.Vertices.size()));
+    }
+    holes.Offsets.push_back(static_cast<Index>(holes.Loops.size()));
+    holes.Touched.push_back(0);
+  }
+  if (std::count(holes.Walks.Vertices.begin(), holes.Walks.Vertices.end(), None) > 0)
+  {
+    throw Error("A point of a hole has not come from another part of the surface.");
+  }
+  return holes;
+}
+
+FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all) const
+{
+  FillOptions options = all.Options;
+  options.SinglePrecision = HasFloatPoints(this->Surrounding);
+  options.KnownLattice = &all.Lattice;
+  if (all.Interpolate)
+  {
+    options.Attributes = AttributesOf(this->Surrounding->GetPointData());
+  }
+  for (const Index hole : this->Numbers)
+  {
+    options.Known.push_back(all.BoxOf(hole));
+    if (!all.Rooms.empty())
+    {
+      options.Rooms.push_back(all.Rooms[hole]);
+    }
+  }
+  return options;
+}
+
+std::vector<HoleNeed> SurroundedHoles::Needs(
+  const HolesOfParts& all, const Progress& progress) const
+{
+  FillOptions options = this->OptionsFor(all);
+  options.Monitor = progress;
+  return NeedsOfHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
+}
+
+std::vector<Index> SurroundedHoles::Fill(const HolesOfParts& all, const Progress& progress)
+{
+  FillOptions options = this->OptionsFor(all);
+  options.Monitor = progress;
+  this->Patches =
+    FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
+  std::vector<Index> beyond;
+  for (std::size_t i = 0; i < this->Numbers.size(); ++i)
+  {
+    if (this->Patches.Reports[i].IsBeyondKnown)
+    {
+      beyond.push_back(this->Numbers[i]);
+    }
+  }
+  return beyond;
+}
+
+void SurroundedHoles::KeepCorners()
+{
+  const Index count = static_cast<Index>(this->Keys.size());
+  IdSet used(count);
+  const auto eachId = [this](const auto& visit) {
+    for (std::vector<Index>* ids :
+      { &this->Patches.Triangles, &this->Patches.NearestBoundaryPoints })
+    {
+      std::for_each(ids->begin(), ids->end(), visit);
+    }
+  };
+  eachId([&](Index id) {
+    if (id < count)
+    {
+      used.Add(id);
+    }
+  });
+  const std::vector<Index> kept = used.ListAndRank();
+  const Index first = static_cast<Index>(kept.size());
+  eachId([&](Index& id) { id = id < count ? used.RankOf(id) : first + id - count; });
+  this->Surrounding = ChosenPoints(this->Surrounding, kept);
+  std::vector<PointKey> keys;
+  for (const Index id : kept)
+  {
+    keys.push_back(this->Keys[id]);
+  }
+  this->Keys = std::move(keys);
+  this->Near = Mesh();
+}
+
+namespace
+{
+/** Calls visit for each list of a result, without holes and reports. */
+template <typename Result, typename Visit>
+void ForEachList(Result& patches, const Visit& visit)
+{
+  visit(patches.Points);
+  visit(patches.Triangles);
+  visit(patches.PointOffsets);
+  visit(patches.TriangleOffsets);
+  visit(patches.NearestBoundaryPoints);
+  visit(patches.StandardErrors);
+  for (auto& values : patches.Attributes)
+  {
+    visit(values);
+  }
+}
+
+/** Appends all lists of a result, whose ids and offsets go on. */
+void AppendLists(const FillResult& from, FillResult& to)
+{
+  const auto append = [](const auto& values, auto& all) {
+    all.insert(all.end(), values.begin(), values.end());
+  };
+  append(from.Points, to.Points);
+  append(from.Triangles, to.Triangles);
+  append(from.PointOffsets, to.PointOffsets);
+  append(from.TriangleOffsets, to.TriangleOffsets);
+  append(from.NearestBoundaryPoints, to.NearestBoundaryPoints);
+  append(from.StandardErrors, to.StandardErrors);
+  for (std::size_t i = 0; i < from.Attributes.size(); ++i)
+  {
+    append(from.Attributes[i], to.Attributes[i]);
+  }
+}
+} // namespace
+
+Bytes SurroundedHoles::Pack() const
+{
+  Bytes bytes;
+  const Bytes data = PackData(this->Surrounding);
+  const std::size_t sizes[] = { data.size(), this->Patches.Attributes.size() };
+  AppendTo(bytes, sizes, 2);
+  AppendTo(bytes, data.data(), data.size());
+  AppendList(bytes, this->Numbers);
+  AppendList(bytes, this->Keys);
+  ForEachList(this->Patches, [&bytes](const auto& values) { AppendList(bytes, values); });
+  return bytes;
+}
+
+SurroundedHoles::SurroundedHoles(const Bytes& bytes)
+{
+  const char* from = bytes.data();
+  std::size_t sizes[2];
+  TakeFrom(from, sizes, 2);
+  this->Surrounding = UnpackData(from, sizes[0]);
+  from += sizes[0];
+  this->Patches.Attributes.resize(sizes[1]);
+  TakeList(from, this->Numbers);
+  TakeList(from, this->Keys);
+  ForEachList(this->Patches, [&from](auto& values) { TakeList(from, values); });
+}
+
+SurroundedHoles::SurroundedHoles(std::vector<SurroundedHoles>&& groups)
+{
+  std::sort(groups.begin(), groups.end(),
+    [](const SurroundedHoles& a, const SurroundedHoles& b) { return a.Numbers[0] < b.Numbers[0]; });
+  Parts surroundings;
+  for (const SurroundedHoles& group : groups)
+  {
+    this->Numbers.insert(this->Numbers.end(), group.Numbers.begin(), group.Numbers.end());
+    this->Keys.insert(this->Keys.end(), group.Keys.begin(), group.Keys.end());
+    surroundings.push_back(group.Surrounding);
+  }
+  this->Surrounding = groups.empty() ? nullptr : Append(surroundings);
+  Index first = 0, firstNew = static_cast<Index>(this->Keys.size());
+  for (SurroundedHoles& group : groups)
+  {
+    FillResult& patches = group.Patches;
+    const Index count = static_cast<Index>(group.Keys.size());
+    for (std::vector<Index>* ids : { &patches.Triangles, &patches.NearestBoundaryPoints })
+    {
+      std::for_each(ids->begin(), ids->end(),
+        [&](Index& id) { id = id < count ? first + id : firstNew + id - count; });
+    }
+    const Index points = this->Patches.NumberOfPoints();
+    const Index triangles = this->Patches.NumberOfTriangles();
+    first += count;
+    firstNew += patches.NumberOfPoints();
+    std::for_each(patches.PointOffsets.begin(), patches.PointOffsets.end(),
+      [points](Index& offset) { offset += points; });
+    std::for_each(patches.TriangleOffsets.begin(), patches.TriangleOffsets.end(),
+      [triangles](Index& offset) { offset += triangles; });
+    this->Patches.PointOffsets.pop_back();
+    this->Patches.TriangleOffsets.pop_back();
+    this->Patches.Attributes.resize(patches.Attributes.size());
+    AppendLists(patches, this->Patches);
+  }
+}
+
+} // namespace elevation

@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Joining.h"
+
+#include "Adapt/Adapt.h"
+#include "CommonPoints.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <set>
+
+namespace elevation
+{
+
+namespace
+{
+/** Copies some tuples; copy(to, from) does. */
+template <typename Copy>
+void CopyRows(const Rows& rows, const Progress& progress, const Copy& copy)
+{
+  constexpr std::size_t atOnce = 65536;
+  vtkNew<vtkIdList> from, to;
+  for (std::size_t begin = 0; begin < rows.From.size(); begin += atOnce)
+  {
+    Report(progress, static_cast<double>(begin) / static_cast<double>(rows.From.size()));
+    const std::size_t end = std::min(begin + atOnce, rows.From.size());
+    from->Reset();
+    to->Reset();
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      from->InsertNextId(rows.From[i]);
+      to->InsertNextId(rows.To[i]);
+    }
+    copy(to.Get(), from.Get());
+  }
+}
+
+vtkSmartPointer<vtkPoints> JoinPoints(
+  const Parts& parts, const std::vector<Rows>& rows, vtkIdType count, const Progress& progress)
+{
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  const auto isFloat = [](const auto& part) {
+    return part->GetPoints()->GetDataType() == VTK_FLOAT;
+  };
+  points->SetDataType(std::all_of(parts.begin(), parts.end(), isFloat) ? VTK_FLOAT : VTK_DOUBLE);
+  SetTuples(count, points->GetData());
+  for (std::size_t i = 0; i < parts.size(); ++i)
+  {
+    CopyRows(rows[i], progress, [&](vtkIdList* to, vtkIdList* from) {
+      points->InsertPoints(to, from, parts[i]->GetPoints());
+    });
+  }
+  return points;
+}
+
+/** The joined array that begins with one of the first part; nullptr if not all parts have it. */
+vtkSmartPointer<vtkAbstractArray> JoinArray(vtkAbstractArray* first,
+  const std::vector<vtkDataSetAttributes*>& data, const std::vector<Rows>& rows, vtkIdType count,
+  const Progress& progress)
+{
+  std::vector<vtkAbstractArray*> arrays = { first };
+  for (auto each = data.begin() + 1; each != data.end(); ++each)
+  {
+    arrays.push_back(first->GetName() ? (*each)->GetAbstractArray(first->GetName()) : nullptr);
+    if (!arrays.back() || arrays.back()->GetDataType() != first->GetDataType() ||
+      arrays.back()->GetNumberOfComponents() != first->GetNumberOfComponents())
+    {
+      return nullptr;
+    }
+  }
+  const vtkSmartPointer<vtkAbstractArray> joined = NewLike(first);
+  SetTuples(count, joined);
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    CopyRows(rows[i], progress,
+      [&](vtkIdList* to, vtkIdList* from) { joined->InsertTuples(to, from, arrays[i]); });
+  }
+  return joined;
+}
+
+/** Adds the ghost flags where some are left; what was a copy of another rank's is none any more. */
+void JoinGhosts(const std::vector<vtkDataSetAttributes*>& data, const std::vector<Rows>& rows,
+  vtkIdType count, vtkDataSetAttributes* output)
+{
+  vtkNew<vtkUnsignedCharArray> flags;
+  flags->SetName(vtkDataSetAttributes::GhostArrayName());
+  SetTuples(count, flags);
+  std::fill_n(flags->GetPointer(0), count, static_cast<unsigned char>(0));
+  bool isNeeded = false;
+  for (std::size_t part = 0; part < data.size(); ++part)
+  {
+    vtkUnsignedCharArray* const ghosts = GhostsOf(data[part]);
+    for (std::size_t i = 0; ghosts && i < rows[part].From.size(); ++i)
+    {
+      // The flag of a copy is the same for points and cells.
+      static_assert(
+        int(vtkDataSetAttributes::DUPLICATEPOINT) == vtkDataSetAttributes::DUPLICATECELL,
+        "one flag");
+      const unsigned char flag =
+        ghosts->GetValue(rows[part].From[i]) & ~vtkDataSetAttributes::DUPLICATEPOINT;
+      flags->SetValue(rows[part].To[i], flag);
+      isNeeded = isNeeded || flag != 0;
+    }
+  }
+  if (isNeeded)
+  {
+    output->AddArray(flags);
+  }
+}
+
+/**
+ * The arrays that all parts have.
+ * @return the names of the others
+ */
+std::set<std::string> JoinArrays(const std::vector<vtkDataSetAttributes*>& data,
+  const std::vector<Rows>& rows, vtkIdType count, const Progress& progress,
+  vtkDataSetAttributes* output)
+{
+  for (int i = 0; i < data.front()->GetNumberOfArrays(); ++i)
+  {
+    vtkAbstractArray* const first = data.front()->GetAbstractArray(i);
+    const vtkSmartPointer<vtkAbstractArray> joined =
+      IsGhostArray(first) ? nullptr : JoinArray(first, data, rows, count, progress);
+    if (!joined)
+    {
+      continue;
+    }
+    const int index = output->AddArray(joined);
+    for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
+    {
+      const auto isActive = [&](vtkDataSetAttributes* part) {
+        vtkAbstractArray* const active = part->GetAbstractAttribute(type);
+        return active && active->GetName() && !std::strcmp(active->GetName(), first->GetName());
+      };
+      if (std::all_of(data.begin(), data.end(), isActive))
+      {
+        output->SetActiveAttribute(index, type);
+      }
+    }
+  }
+  std::set<std::string> left;
+  for (vtkDataSetAttributes* part : data)
+  {
+    for (int i = 0; i < part->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* const array = part->GetAbstractArray(i);
+      const std::string name = array->GetName() ? array->GetName() : "";
+      if (!IsGhostArray(array) && !output->HasArray(name.c_str()))
+      {
+        left.insert(name);
+      }
+    }
+  }
+  JoinGhosts(data, rows, count, output);
+  return left;
+}
+
+/** The joined cells of one kind. @param[in,out] rows  of the cells, to which they are added */
+vtkSmartPointer<vtkCellArray> JoinCells(const Parts& parts, const std::vector<vtkCellArray*>& kind,
+  const CommonPoints& points, const std::vector<vtkIdType>& firstCells, const Progress& progress,
+  vtkIdType& count, std::vector<Rows>& rows)
+{
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  std::vector<vtkIdType> corners;
+  for (std::size_t part = 0; part < parts.size(); ++part)
+  {
+    vtkUnsignedCharArray* const ghosts = GhostsOf(parts[part]->GetCellData());
+    vtkIdType cell = firstCells[part];
+    auto each = vtk::TakeSmartPointer(kind[part]->NewIterator());
+    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
+    {
+      ReportStep(progress, static_cast<std::size_t>(cell),
+        static_cast<std::size_t>(parts[part]->GetNumberOfCells()));
+      if (ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL))
+      {
+        continue;
+      }
+      const vtkIdType* ids = nullptr;
+      vtkIdType size = 0;
+      each->GetCurrentCell(size, ids);
+      corners.clear();
+      for (vtkIdType i = 0; i < size; ++i)
+      {
+        corners.push_back(points.Place(part, ids[i]));
+      }
+      cells->InsertNextCell(size, corners.data());
+      rows[part].Add(cell, count++);
+    }
+  }
+  return cells;
+}
+
+/** Those of the first part that has them, and the unused points of all. */
+void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData* output)
+{
+  constexpr const char* namesOfUnused[] = { "UnusedPointIds", "UnusedPointReasons" };
+  std::map<vtkIdType, double> unused; // and the reasons
+  bool areKnown = false;
+  for (std::size_t part = 0; part < parts.size(); ++part)
+  {
+    vtkFieldData* const data = parts[part]->GetFieldData();
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* const array = data->GetAbstractArray(i);
+      if (!array->GetName() || !output->HasArray(array->GetName()))
+      {
+        output->AddArray(array);
+      }
+    }
+    vtkDataArray* const ids = data->GetArray(namesOfUnused[0]);
+    vtkDataArray* const reasons = data->GetArray(namesOfUnused[1]);
+    areKnown = areKnown || (ids && reasons);
+    for (vtkIdType i = 0;
+         ids && reasons && i < std::min(ids->GetNumberOfTuples(), reasons->GetNumberOfTuples());
+         ++i)
+    {
+      const double id = ids->GetComponent(i, 0);
+      if (id >= 0.0 && id < static_cast<double>(parts[part]->GetNumberOfPoints()))
+      {
+        unused.emplace(points.Place(part, static_cast<vtkIdType>(id)), reasons->GetComponent(i, 0));
+      }
+    }
+  }
+  if (!areKnown)
+  {
+    return;
+  }
+  vtkNew<vtkIdTypeArray> ids;
+  vtkNew<vtkUnsignedCharArray> reasons;
+  ids->SetName(namesOfUnused[0]);
+  reasons->SetName(namesOfUnused[1]);
+  for (const auto& each : unused)
+  {
+    ids->InsertNextValue(each.first);
+    reasons->InsertNextValue(static_cast<unsigned char>(each.second));
+  }
+  output->AddArray(ids);
+  output->AddArray(reasons);
+}
+} // namespace
+
+void WarnOfLeft(
+  const std::string& kind, const std::set<std::string>& left, std::vector<std::string>& warnings)
+{
+  std::string names;
+  for (const std::string& name : left)
+  {
+    names += (names.empty() ? "\"" : ", \"") + name + "\"";
+  }
+  if (!left.empty())
+  {
+    warnings.push_back("Not all ranks (processes) have the " + kind + " array" +
+      (left.size() > 1 ? "s " : " ") + names + " in the same type, so " +
+      (left.size() > 1 ? "they are" : "it is") + " left out.");
+  }
+}
+
+vtkSmartPointer<vtkPolyData> Join(
+  const Parts& parts, PartKind kind, const Progress& progress, std::vector<std::string>& warnings)
+{
+  auto joined = vtkSmartPointer<vtkPolyData>::New();
+  const CommonPoints points(parts, kind, Part(progress, 0.0, 1.0));
+  std::vector<Rows> rows = points.Sources();
+  const Progress copying = Part(progress, 1.0, 1.0);
+  joined->SetPoints(JoinPoints(parts, rows, points.Count(), copying));
+  std::vector<vtkDataSetAttributes*> data;
+  for (const auto& part : parts)
+  {
+    data.push_back(part->GetPointData());
+  }
+  WarnOfLeft(
+    "point", JoinArrays(data, rows, points.Count(), copying, joined->GetPointData()), warnings);
+  JoinFieldData(parts, points, joined->GetFieldData());
+  if (kind == PartKind::Points)
+  {
+    return joined;
+  }
+  rows.assign(parts.size(), Rows());
+  data.clear();
+  // The cells of a kind, and the first of them, of each part.
+  std::vector<vtkCellArray*> vertices, lines, polygons;
+  std::vector<vtkIdType> firstVertices(parts.size(), 0), firstLines, firstPolygons;
+  for (const auto& part : parts)
+  {
+    data.push_back(part->GetCellData());
+    vertices.push_back(part->GetVerts());
+    lines.push_back(part->GetLines());
+    polygons.push_back(part->GetPolys());
+    firstLines.push_back(part->GetNumberOfVerts());
+    firstPolygons.push_back(FirstPolygon(part));
+  }
+  vtkIdType count = 0;
+  joined->SetVerts(JoinCells(parts, vertices, points, firstVertices, copying, count, rows));
+  joined->SetLines(JoinCells(parts, lines, points, firstLines, copying, count, rows));
+  joined->SetPolys(JoinCells(parts, polygons, points, firstPolygons, copying, count, rows));
+  WarnOfLeft("cell", JoinArrays(data, rows, count, copying, joined->GetCellData()), warnings);
+  return joined;
+}
+
+} // namespace elevation

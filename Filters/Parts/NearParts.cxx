@@ -1,0 +1,368 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NearParts.h"
+
+#include "Adapt/Adapt.h"
+#include "Joining.h"
+#include "Kernel/Mesh/Mesh.h"
+#include "PackedData.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace elevation
+{
+
+Bytes TrimmedPart::Pack() const
+{
+  Bytes bytes;
+  for (const int side : { 0, 1 })
+  {
+    AppendList(bytes, this->Parents[side]);
+    AppendList(bytes, this->Corners[side]);
+  }
+  AppendList(bytes, this->IsInserted);
+  AppendList(bytes, this->IsOwned);
+  AppendList(bytes, this->OfOthers);
+  AppendList(bytes, this->OnBoundary);
+  if (!this->IsInserted.empty())
+  {
+    const Bytes points = PackData(this->NewPoints);
+    AppendTo(bytes, points.data(), points.size());
+  }
+  return bytes;
+}
+
+TrimmedPart::TrimmedPart(const Bytes& bytes)
+{
+  const char* from = bytes.data();
+  for (const int side : { 0, 1 })
+  {
+    TakeList(from, this->Parents[side]);
+    TakeList(from, this->Corners[side]);
+  }
+  TakeList(from, this->IsInserted);
+  TakeList(from, this->IsOwned);
+  TakeList(from, this->OfOthers);
+  TakeList(from, this->OnBoundary);
+  if (!this->IsInserted.empty())
+  {
+    this->NewPoints =
+      UnpackData(from, bytes.size() - static_cast<std::size_t>(from - bytes.data()));
+  }
+}
+
+void NearParts::JoinAll(const Progress& progress)
+{
+  std::vector<std::string> warnings; // none: all have the same arrays
+  this->Common =
+    std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, Part(progress, 0.0, 0.3));
+  this->Whole = Join(this->Given, PartKind::Mesh, Part(progress, 0.3, 1.0), warnings);
+  this->FirstTriangles = { 0 };
+  for (const auto& part : this->Given)
+  {
+    this->FirstTriangles.push_back(
+      this->FirstTriangles.back() + static_cast<Index>(part->GetNumberOfPolys()));
+  }
+  this->Triangles = ViewTriangles(this->Whole);
+}
+
+bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
+{
+  this->JoinAll(Part(options.Monitor, 0.0, 0.3));
+  const TriangleList& list = this->Triangles.View;
+  if (!this->IsProven(list, boundary, Part(options.Monitor, 0.3, 0.4)))
+  {
+    return false;
+  }
+  TrimOptions ofNear = options;
+  ofNear.Border = &this->Border;
+  ofNear.TellParents = true;
+  ofNear.Monitor = Part(options.Monitor, 0.4, 0.9);
+  this->Sides = elevation::Trim(list, &boundary, ofNear);
+  PassPoints(this->Whole, this->Sides, Part(options.Monitor, 0.9, 1.0), this->Points);
+  return true;
+}
+
+namespace
+{
+constexpr const char* NameOfStates = "States";
+constexpr const char* NameOfSpacings = "Spacings";
+} // namespace
+
+void NearParts::AddKnown(
+  const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part)
+{
+  vtkNew<vtkUnsignedCharArray> ofTriangles;
+  ofTriangles->SetName(NameOfStates);
+  SetTuples(static_cast<vtkIdType>(states.size()), ofTriangles);
+  std::transform(states.begin(), states.end(), ofTriangles->GetPointer(0),
+    [](Known state) { return static_cast<unsigned char>(state); });
+  part->GetFieldData()->AddArray(ofTriangles);
+  vtkNew<vtkDoubleArray> ofPoints;
+  ofPoints->SetName(NameOfSpacings);
+  SetTuples(static_cast<vtkIdType>(spacings.size()), ofPoints);
+  std::copy(spacings.begin(), spacings.end(), ofPoints->GetPointer(0));
+  part->GetFieldData()->AddArray(ofPoints);
+}
+
+bool NearParts::TrimOutline(
+  std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options)
+{
+  this->IsOutline = true;
+  this->JoinAll(Part(options.Monitor, 0.0, 0.3));
+  const TriangleList& list = this->Triangles.View;
+  std::vector<Known> states;
+  std::vector<double> spacings(list.Points.Count, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t part = 0; part < this->Given.size(); ++part)
+  {
+    vtkFieldData* const known = this->Given[part]->GetFieldData();
+    vtkDataArray* const ofTriangles = known->GetArray(NameOfStates);
+    for (vtkIdType i = 0; ofTriangles && i < ofTriangles->GetNumberOfTuples(); ++i)
+    {
+      states.push_back(static_cast<Known>(static_cast<int>(ofTriangles->GetComponent(i, 0))));
+    }
+    vtkDataArray* const ofPoints = known->GetArray(NameOfSpacings);
+    for (vtkIdType i = 0; ofPoints && i < ofPoints->GetNumberOfTuples(); ++i)
+    {
+      const double spacing = ofPoints->GetComponent(i, 0);
+      double& joined = spacings[this->Common->Place(part, i)];
+      joined = std::isnan(spacing) ? joined : spacing;
+    }
+  }
+  std::optional<std::vector<BorderEdge>> border =
+    this->ProvenBorder(list.Points, Part(options.Monitor, 0.3, 0.4));
+  if (!border || !this->AreSamePlaces())
+  {
+    return false;
+  }
+  IdSet atBorders(list.Points.Count);
+  for (const BorderEdge& edge : this->BordersOfParts())
+  {
+    atBorders.Add(edge.Origin);
+  }
+  TrimOptions ofParts = options;
+  ofParts.TellParents = true;
+  ofParts.Monitor = Part(options.Monitor, 0.4, 0.95);
+  std::optional<Trimmed> trimmed = TrimParts(list,
+    { states, spacings, std::move(*border), innerPoints + atBorders.Count(), triangles }, ofParts);
+  if (trimmed)
+  {
+    this->Sides = std::move(*trimmed);
+    PassPoints(this->Whole, this->Sides, Part(options.Monitor, 0.95, 1.0), this->Points);
+  }
+  return trimmed.has_value();
+}
+
+bool NearParts::IsProven(
+  const TriangleList& list, const BoundaryLines& boundary, const Progress& progress)
+{
+  // Joined points may have other places than the points had.
+  if (!this->AreSamePlaces() ||
+    !SweepAlongRings(
+      list, boundary.Points.Places, JoinLines(boundary), list.Count, 1, Part(progress, 0.0, 0.5)))
+  {
+    return false;
+  }
+  std::optional<std::vector<BorderEdge>> border =
+    this->ProvenBorder(list.Points, Part(progress, 0.5, 1.0));
+  this->Border = border ? std::move(*border) : std::vector<BorderEdge>();
+  return border.has_value();
+}
+
+bool NearParts::AreSamePlaces() const
+{
+  for (std::size_t part = 0; part < this->Given.size(); ++part)
+  {
+    for (vtkIdType i = 0; i < this->Given[part]->GetNumberOfPoints(); ++i)
+    {
+      double p[3], q[3];
+      this->Given[part]->GetPoint(i, p);
+      this->Whole->GetPoint(this->Common->Place(part, i), q);
+      const auto isSame = [](double a, double b) {
+        return a == b || (std::isnan(a) && std::isnan(b)); // of an unused point
+      };
+      if (!std::equal(p, p + 3, q, isSame))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+std::vector<BorderEdge> NearParts::BordersOfParts() const
+{
+  std::vector<BorderEdge> all;
+  auto each = vtk::TakeSmartPointer(this->Whole->GetLines()->NewIterator());
+  for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell())
+  {
+    const vtkIdType* ids = nullptr;
+    vtkIdType size = 0;
+    each->GetCurrentCell(size, ids);
+    all.push_back({ static_cast<Index>(ids[0]), static_cast<Index>(ids[1]) });
+  }
+  return all;
+}
+
+/**
+ * The borders of all parts are that of the mesh and those between parts, which cancel out.
+ * @return nothing if it does not prove that the mesh covers nothing twice
+ */
+std::optional<std::vector<BorderEdge>> NearParts::ProvenBorder(
+  const PointView& points, const Progress& progress) const
+{
+  std::vector<BorderEdge> all = this->BordersOfParts(), border;
+  Sort(all.begin(), all.end(), std::less<BorderEdge>(), Part(progress, 0.0, 0.4));
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    ReportStep(progress, i, 2 * all.size());
+    const BorderEdge twin{ all[i].Destination, all[i].Origin };
+    if (twin.Origin == twin.Destination || (i > 0 && !(all[i - 1] < all[i])))
+    {
+      return std::nullopt; // two triangles on one side of an edge
+    }
+    if (!std::binary_search(all.begin(), all.end(), twin))
+    {
+      border.push_back(all[i]);
+    }
+  }
+  return CoversOnce(border, points, Part(progress, 0.6, 1.0))
+    ? std::make_optional(std::move(border))
+    : std::nullopt;
+}
+
+std::vector<TrimmedPart> NearParts::Split(const Progress& progress) const
+{
+  std::vector<TrimmedPart> splits(this->Given.size());
+  std::vector<char> areOwned(this->Sides.Inserted.size(), 0);
+  for (const int side : { 0, 1 })
+  {
+    const TrimmedSide& all = side == 0 ? this->Sides.Kept : this->Sides.Outward;
+    const Index* const corners =
+      all.IsWholeList ? this->Triangles.View.Corners : all.Corners.data();
+    for (std::size_t i = 0; i < all.Parents.size(); ++i)
+    {
+      ReportStep(progress, i, all.Parents.size());
+      const Index parent = all.Parents[i];
+      const auto next =
+        std::upper_bound(this->FirstTriangles.begin(), this->FirstTriangles.end(), parent);
+      const std::size_t part = static_cast<std::size_t>(next - this->FirstTriangles.begin()) - 1;
+      splits[part].Parents[side].push_back(parent - this->FirstTriangles[part]);
+      if (!this->IsOutline)
+      {
+        std::vector<Index>& ofPart = splits[part].Corners[side];
+        ofPart.insert(ofPart.end(), corners + 3 * i, corners + 3 * i + 3);
+      }
+    }
+  }
+  this->FindOwners(splits);
+  std::vector<Index> places(static_cast<std::size_t>(this->Points->GetNumberOfPoints()), None);
+  for (std::size_t part = 0; part < splits.size(); ++part)
+  {
+    Report(progress, 1.0);
+    this->PlaceCorners(part, places, areOwned, splits[part]);
+  }
+  return splits;
+}
+
+/** Of points that several parts have, the first that does not call it another rank's is the owner. */
+void NearParts::FindOwners(std::vector<TrimmedPart>& splits) const
+{
+  constexpr std::size_t nobody = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> owners(static_cast<std::size_t>(this->Common->Count()), nobody);
+  for (const bool isLooking : { true, false })
+  {
+    for (std::size_t part = 0; part < splits.size(); ++part)
+    {
+      vtkUnsignedCharArray* const marks = GhostsOf(this->Given[part]->GetPointData());
+      for (vtkIdType i = 0; i < this->Given[part]->GetNumberOfPoints(); ++i)
+      {
+        std::size_t& owner = owners[this->Common->Place(part, i)];
+        const bool isMarked = marks && (marks->GetValue(i) & vtkDataSetAttributes::DUPLICATEPOINT);
+        if (isLooking)
+        {
+          owner = owner == nobody && !isMarked ? part : owner;
+        }
+        else if (owner != nobody && owner != part)
+        {
+          splits[part].OfOthers.push_back(static_cast<Index>(i));
+        }
+      }
+    }
+  }
+}
+
+/** @param[in,out] places  of the points in a part; None for all */
+void NearParts::PlaceCorners(std::size_t part, std::vector<Index>& places,
+  std::vector<char>& areOwned, TrimmedPart& split) const
+{
+  const vtkIdType count = this->Given[part]->GetNumberOfPoints();
+  for (vtkIdType i = count - 1; i >= 0; --i)
+  {
+    places[this->Common->Place(part, i)] = static_cast<Index>(i);
+  }
+  std::vector<Index> added;
+  const vtkIdType inserted = this->Whole->GetNumberOfPoints();
+  for (std::vector<Index>& corners : split.Corners)
+  {
+    for (Index& corner : corners)
+    {
+      Index& place = places[corner];
+      if (place == None)
+      {
+        place = static_cast<Index>(count) + static_cast<Index>(added.size());
+        added.push_back(corner);
+        const bool isInserted = corner >= inserted;
+        split.IsInserted.push_back(isInserted);
+        split.IsOwned.push_back(isInserted && !areOwned[corner - inserted]);
+        if (isInserted)
+        {
+          areOwned[corner - inserted] = 1;
+        }
+      }
+      corner = place;
+    }
+  }
+  const std::vector<Index>& onBoundary = this->Sides.OnBoundary;
+  const auto isOnBoundary = [&](Index point) {
+    return std::binary_search(onBoundary.begin(), onBoundary.end(), point);
+  };
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const Index point = static_cast<Index>(this->Common->Place(part, i));
+    places[point] = None;
+    if (isOnBoundary(point))
+    {
+      split.OnBoundary.push_back(static_cast<Index>(i));
+    }
+  }
+  for (std::size_t i = 0; i < added.size(); ++i)
+  {
+    if (isOnBoundary(added[i]))
+    {
+      split.OnBoundary.push_back(static_cast<Index>(count) + static_cast<Index>(i));
+    }
+  }
+  for (const Index point : added)
+  {
+    places[point] = None;
+  }
+  split.NewPoints = ChosenPoints(this->Points, added);
+}
+
+} // namespace elevation

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The triangles of several ranks near a boundary, trimmed on one of them. Private to the module.
+ */
+#ifndef NearParts_h
+#define NearParts_h
+
+#include "Adapt/Adapt.h"
+#include "Bytes.h"
+#include "CommonPoints.h"
+#include "Kernel/Trim/Trim.h"
+
+#include "vtkNew.h"
+#include "vtkSmartPointer.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** What of the near triangles goes back to the rank that had them. */
+struct TrimmedPart
+{
+  /** The sides, kept and outward: near triangles of the rank (by number) that they are parts of. */
+  std::vector<Index> Parents[2];
+  /**
+   * Three a triangle: points of the rank's near part, followed by the new points. None where a mesh
+   * is trimmed along its outline: triangles stay as they are.
+   */
+  std::vector<Index> Corners[2];
+  std::vector<char> IsInserted; ///< one a new point; else it is another rank's
+  std::vector<char> IsOwned;    ///< one a new point
+  std::vector<Index> OfOthers;  ///< points of the rank's near part that another rank owns
+  /** Points on a boundary that was given: of the near part, followed by the new points. */
+  std::vector<Index> OnBoundary;
+  vtkSmartPointer<vtkPolyData> NewPoints;
+
+  Bytes Pack() const;
+  explicit TrimmedPart(const Bytes& bytes);
+  TrimmedPart() = default;
+};
+
+/**
+ * The near parts of ranks, in their order. Each has points, near triangles as polygons, and the
+ * border of all triangles of the rank as lines.
+ */
+class NearParts
+{
+public:
+  explicit NearParts(Parts&& parts)
+    : Given(std::move(parts))
+  {
+  }
+
+  /**
+   * Joins and trims the parts.
+   * @return false if the parts are not proven to be those of one mesh that covers nothing twice
+   * @throws Error, Aborted
+   */
+  bool Trim(const BoundaryLines& boundary, const TrimOptions& options);
+
+  /**
+   * The same along the outline, for the triangles of FindPartOfOutline(). Their states and the
+   * spacings at the points are in the field data of each part: see AddKnown().
+   * @param[in] innerPoints  the sum of all parts
+   * @param[in] triangles    of the mesh
+   */
+  bool TrimOutline(std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options);
+  static void AddKnown(
+    const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part);
+
+  /** What goes back to each part. */
+  std::vector<TrimmedPart> Split(const Progress& progress) const;
+
+  const Trimmed& Result() const { return this->Sides; }
+  vtkPolyData* Joined() const { return this->Whole; }
+
+private:
+  bool IsProven(const TriangleList& list, const BoundaryLines& boundary, const Progress& progress);
+  void JoinAll(const Progress& progress);
+  bool AreSamePlaces() const;
+  std::optional<std::vector<BorderEdge>> ProvenBorder(
+    const PointView& points, const Progress& progress) const;
+  std::vector<BorderEdge> BordersOfParts() const;
+  void FindOwners(std::vector<TrimmedPart>& splits) const;
+  void PlaceCorners(std::size_t part, std::vector<Index>& places, std::vector<char>& areOwned,
+    TrimmedPart& split) const;
+
+  const Parts Given;
+  std::vector<Index> FirstTriangles; // of each part, and the number of all
+  std::unique_ptr<CommonPoints> Common;
+  vtkSmartPointer<vtkPolyData> Whole;
+  TrianglesOfDataSet Triangles; // of the whole
+  vtkNew<vtkPolyData> Points;   // of the whole, and those inserted
+  std::vector<BorderEdge> Border; // of the mesh, if a boundary is given
+  Trimmed Sides;
+  bool IsOutline = false;
+};
+
+} // namespace elevation
+
+#endif

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Surfaces in parts, on ranks or in files. Private to the module.
+ */
+#ifndef Parts_h
+#define Parts_h
+
+#include "CellByCell.h"
+#include "DistributedDelaunay.h"
+#include "DistributedFill.h"
+#include "DistributedTrim.h"
+#include "FilledPieces.h"
+#include "FilterRun.h"
+#include "Joining.h"
+#include "Ranks.h"
+#include "TrimmedPieces.h"
+
+#endif

@@ -1,0 +1,410 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PointRows.h"
+
+#include "Adapt/Adapt.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkBitArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+namespace elevation
+{
+
+namespace
+{
+/** Whether ranks can send the values of an array. */
+bool CanGo(vtkAbstractArray* array)
+{
+  return array->GetName() &&
+    (vtkArrayDownCast<vtkDataArray>(array) || vtkArrayDownCast<vtkStringArray>(array));
+}
+
+/** The bytes of a tuple of numbers; 0 for texts and bits, which take turns of their own. */
+std::size_t RowSize(const ArrayKind& kind)
+{
+  return kind.Type == VTK_STRING || kind.Type == VTK_BIT
+    ? 0
+    : static_cast<std::size_t>(vtkAbstractArray::GetDataTypeSize(kind.Type)) * kind.Components;
+}
+
+vtkSmartPointer<vtkAbstractArray> MakeArray(const ArrayKind& kind, vtkIdType count)
+{
+  auto array = vtk::TakeSmartPointer(vtkAbstractArray::CreateArray(kind.Type));
+  array->SetName(kind.Name.c_str());
+  array->SetNumberOfComponents(kind.Components);
+  for (std::size_t i = 0; i < kind.ComponentNames.size(); ++i)
+  {
+    array->SetComponentName(static_cast<vtkIdType>(i), kind.ComponentNames[i].c_str());
+  }
+  array->SetNumberOfTuples(count);
+  if (array->GetNumberOfTuples() != count)
+  {
+    throw std::bad_alloc();
+  }
+  return array;
+}
+
+/** The fields of an array's kind; names have no zeros in them. */
+void PutKind(vtkDataSetAttributes* data, int i, std::string& text)
+{
+  vtkAbstractArray* const array = data->GetAbstractArray(i);
+  const auto put = [&text](const std::string& field) {
+    text += field;
+    text.push_back('\0');
+  };
+  put(array->GetName() ? array->GetName() : "");
+  put(std::to_string(CanGo(array) ? array->GetDataType() : VTK_VOID));
+  put(std::to_string(array->GetNumberOfComponents()));
+  put(std::to_string(data->IsArrayAnAttribute(i)));
+  const int names = array->HasAComponentName() ? array->GetNumberOfComponents() : 0;
+  put(std::to_string(names));
+  for (int c = 0; c < names; ++c)
+  {
+    put(array->GetComponentName(c) ? array->GetComponentName(c) : "");
+  }
+}
+
+std::vector<ArrayKind> GetKinds(const std::string& text)
+{
+  std::vector<ArrayKind> kinds;
+  std::size_t at = 0;
+  const auto get = [&]() {
+    const std::string field = text.c_str() + at;
+    at += field.size() + 1;
+    return field;
+  };
+  while (at < text.size())
+  {
+    ArrayKind kind;
+    kind.Name = get();
+    kind.Type = std::stoi(get());
+    kind.Components = std::stoi(get());
+    kind.Attribute = std::stoi(get());
+    kind.ComponentNames.resize(std::stoi(get()));
+    std::generate(kind.ComponentNames.begin(), kind.ComponentNames.end(), get);
+    kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+bool IsSame(const ArrayKind& kind, const ArrayKind& other)
+{
+  return kind.Name == other.Name && kind.Type == other.Type &&
+    kind.Components == other.Components && kind.Type != VTK_VOID;
+}
+} // namespace
+
+std::vector<ArrayKind> CommonArrays(
+  const Ranks& ranks, vtkDataSetAttributes* own, std::set<std::string>& leftOut)
+{
+  std::vector<std::string> texts;
+  if (own)
+  {
+    texts.emplace_back();
+    for (int i = 0; i < own->GetNumberOfArrays(); ++i)
+    {
+      PutKind(own, i, texts.front());
+    }
+  }
+  std::vector<std::vector<ArrayKind>> ofRanks;
+  std::vector<ArrayKind> all; // each name once
+  for (const std::string& text : ranks.Collect(texts))
+  {
+    ofRanks.push_back(GetKinds(text));
+    for (const ArrayKind& kind : ofRanks.back())
+    {
+      const auto isSameName = [&](const ArrayKind& other) { return other.Name == kind.Name; };
+      if (std::none_of(all.begin(), all.end(), isSameName))
+      {
+        all.push_back(kind);
+      }
+    }
+  }
+  std::vector<ArrayKind> common;
+  for (ArrayKind& kind : all)
+  {
+    // A rank without flags of ghosts has none.
+    bool areSame = true, haveGhosts = kind.Name == vtkDataSetAttributes::GhostArrayName();
+    for (const std::vector<ArrayKind>& kinds : ofRanks)
+    {
+      const auto same = std::find_if(kinds.begin(), kinds.end(),
+        [&kind](const ArrayKind& other) { return IsSame(kind, other); });
+      areSame = areSame && same != kinds.end();
+      kind.Attribute = areSame && same->Attribute == kind.Attribute ? kind.Attribute : -1;
+    }
+    if (areSame || (haveGhosts && kind.Type == VTK_UNSIGNED_CHAR && kind.Components == 1))
+    {
+      common.push_back(kind);
+    }
+    else
+    {
+      leftOut.insert(kind.Name);
+    }
+  }
+  return common;
+}
+
+namespace
+{
+/** Whether arrays are scalars, global ids and so on where they are on other ranks. */
+bool HasSame(vtkDataSetAttributes* data, const std::vector<ArrayKind>& kinds)
+{
+  return std::all_of(kinds.begin(), kinds.end(), [data](const ArrayKind& kind) {
+    int index = -1;
+    return !data->GetAbstractArray(kind.Name.c_str(), index) ||
+      data->IsArrayAnAttribute(index) == kind.Attribute;
+  });
+}
+} // namespace
+
+bool HaveSameArrays(const Ranks& ranks, vtkPointSet* own)
+{
+  std::set<std::string> others;
+  const bool hasPoints = own->GetNumberOfPoints() > 0, hasCells = own->GetNumberOfCells() > 0;
+  vtkDataSetAttributes* const ofPoints = own->GetPointData();
+  vtkDataSetAttributes* const ofCells = own->GetCellData();
+  const std::vector<ArrayKind> kinds = CommonArrays(ranks, hasPoints ? ofPoints : nullptr, others);
+  const std::vector<ArrayKind> kindsOfCells =
+    CommonArrays(ranks, hasCells ? ofCells : nullptr, others);
+  return CanAll(ranks, [&]() {
+    return others.empty() && (!hasPoints || HasSame(ofPoints, kinds)) &&
+      (!hasCells || HasSame(ofCells, kindsOfCells));
+  });
+}
+
+PointRows::PointRows(const std::vector<ArrayKind>& kinds)
+  : Kinds(kinds)
+{
+  for (const ArrayKind& kind : kinds)
+  {
+    this->Arrays.push_back(MakeArray(kind, 0));
+  }
+}
+
+bool PointRows::IsFinite(std::size_t place) const
+{
+  const double* const p = this->At(place);
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+void PointRows::Read(vtkPointSet* points, vtkIdType first, const Progress& progress)
+{
+  const PointView view = ViewPoints(points).View;
+  const std::size_t count = static_cast<std::size_t>(view.Count);
+  this->Coordinates.Resize(3 * count);
+  this->Ids.Resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    ReportStep(progress, i, count, 1 << 16);
+    const Index at = static_cast<Index>(i);
+    const Point2 p = view.At(at);
+    double* const xyz = this->Coordinates.data() + 3 * i;
+    xyz[0] = p.X;
+    xyz[1] = p.Y;
+    xyz[2] = view.Elevation(at);
+    this->Ids[i] = first + at;
+  }
+  this->View(points->GetPointData());
+}
+
+void PointRows::View(vtkPointData* data)
+{
+  const vtkIdType count = static_cast<vtkIdType>(this->Count());
+  for (std::size_t i = 0; i < this->Kinds.size(); ++i)
+  {
+    vtkAbstractArray* const given = data->GetAbstractArray(this->Kinds[i].Name.c_str());
+    if (given && given->HasStandardMemoryLayout())
+    {
+      this->Arrays[i] = given;
+      continue;
+    }
+    this->Arrays[i] = MakeArray(this->Kinds[i], count);
+    if (given)
+    {
+      this->Arrays[i]->DeepCopy(given);
+    }
+    else if (auto* const flags = vtkArrayDownCast<vtkDataArray>(this->Arrays[i].Get()))
+    {
+      flags->Fill(0.0);
+    }
+  }
+}
+
+namespace
+{
+/** Appends the values of chosen tuples. */
+void PackArray(const ArrayKind& kind, vtkAbstractArray* array, const std::vector<vtkIdType>& places,
+  Bytes& bytes)
+{
+  if (const std::size_t row = RowSize(kind))
+  {
+    const std::size_t size = bytes.size();
+    bytes.Resize(size + row * places.size());
+    char* to = bytes.data() + size;
+    const char* const from = static_cast<const char*>(array->GetVoidPointer(0));
+    for (const vtkIdType place : places)
+    {
+      std::memcpy(to, from + row * place, row);
+      to += row;
+    }
+    return;
+  }
+  auto* const texts = vtkArrayDownCast<vtkStringArray>(array);
+  for (const vtkIdType place : places)
+  {
+    for (int c = 0; c < kind.Components; ++c)
+    {
+      if (!texts)
+      {
+        const char bit = vtkArrayDownCast<vtkBitArray>(array)->GetComponent(place, c) != 0.0;
+        AppendTo(bytes, &bit, 1);
+        continue;
+      }
+      const std::string& text = texts->GetValue(place * kind.Components + c);
+      const vtkIdType length = static_cast<vtkIdType>(text.size());
+      AppendTo(bytes, &length, 1);
+      AppendTo(bytes, text.data(), text.size());
+    }
+  }
+}
+
+/** Sets tuples from what PackArray() has appended. */
+void UnpackArray(const ArrayKind& kind, vtkIdType first, vtkIdType count, const char*& from,
+  vtkAbstractArray* array)
+{
+  if (const std::size_t row = RowSize(kind))
+  {
+    TakeFrom(from, static_cast<char*>(array->GetVoidPointer(0)) + row * first, row * count);
+    return;
+  }
+  auto* const texts = vtkArrayDownCast<vtkStringArray>(array);
+  for (vtkIdType i = first * kind.Components; i < (first + count) * kind.Components; ++i)
+  {
+    if (!texts)
+    {
+      char bit = 0;
+      TakeFrom(from, &bit, 1);
+      vtkArrayDownCast<vtkBitArray>(array)->SetValue(i, bit);
+      continue;
+    }
+    vtkIdType length = 0;
+    TakeFrom(from, &length, 1);
+    texts->SetValue(i, std::string(from, static_cast<std::size_t>(length)));
+    from += length;
+  }
+}
+} // namespace
+
+Bytes PointRows::Pack(const std::vector<vtkIdType>& places) const
+{
+  Bytes bytes;
+  std::size_t row = 32;
+  for (const ArrayKind& kind : this->Kinds)
+  {
+    row += RowSize(kind);
+  }
+  const vtkIdType count = static_cast<vtkIdType>(places.size());
+  bytes.Reserve(sizeof(count) + row * places.size());
+  AppendTo(bytes, &count, 1);
+  bytes.Resize(sizeof(count) + 32 * places.size());
+  char* to = bytes.data() + sizeof(count);
+  for (const vtkIdType place : places)
+  {
+    std::memcpy(to, this->At(place), 24);
+    to += 24;
+  }
+  for (const vtkIdType place : places)
+  {
+    std::memcpy(to, &this->Ids[place], 8);
+    to += 8;
+  }
+  for (std::size_t i = 0; i < this->Kinds.size(); ++i)
+  {
+    PackArray(this->Kinds[i], this->Arrays[i], places, bytes);
+  }
+  return bytes;
+}
+
+void PointRows::Unpack(const std::vector<Bytes>& packed)
+{
+  vtkIdType first = static_cast<vtkIdType>(this->Count()), all = first;
+  for (const Bytes& bytes : packed)
+  {
+    const char* from = bytes.data();
+    vtkIdType count = 0;
+    TakeFrom(from, &count, bytes.empty() ? 0 : 1);
+    all += count;
+  }
+  this->Coordinates.Resize(3 * static_cast<std::size_t>(all));
+  this->Ids.Resize(static_cast<std::size_t>(all));
+  for (const auto& array : this->Arrays)
+  {
+    array->Resize(all); // keeps the values, unlike the next
+    array->SetNumberOfTuples(all);
+    if (array->GetNumberOfTuples() != all)
+    {
+      throw std::bad_alloc();
+    }
+  }
+  for (const Bytes& bytes : packed)
+  {
+    if (bytes.empty())
+    {
+      continue;
+    }
+    const char* from = bytes.data();
+    vtkIdType count = 0;
+    TakeFrom(from, &count, 1);
+    TakeFrom(from, this->Coordinates.data() + 3 * first, 3 * static_cast<std::size_t>(count));
+    TakeFrom(from, this->Ids.data() + first, static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < this->Kinds.size(); ++i)
+    {
+      UnpackArray(this->Kinds[i], first, count, from, this->Arrays[i]);
+    }
+    first += count;
+  }
+}
+
+void PointRows::Choose(const std::vector<vtkIdType>& places)
+{
+  PointRows chosen(this->Kinds);
+  chosen.Coordinates.Resize(3 * places.size());
+  chosen.Ids.Resize(places.size());
+  vtkNew<vtkIdList> from;
+  from->SetNumberOfIds(static_cast<vtkIdType>(places.size()));
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    std::memcpy(chosen.Coordinates.data() + 3 * i, this->At(places[i]), 24);
+    chosen.Ids[i] = this->Ids[places[i]];
+    from->SetId(static_cast<vtkIdType>(i), places[i]);
+  }
+  for (std::size_t i = 0; i < this->Kinds.size(); ++i)
+  {
+    chosen.Arrays[i] = MakeArray(this->Kinds[i], static_cast<vtkIdType>(places.size()));
+    this->Arrays[i]->GetTuples(from, chosen.Arrays[i]);
+  }
+  *this = std::move(chosen);
+}
+
+PointView ViewOf(const PointRows& rows)
+{
+  PointView view;
+  view.Double = rows.Coordinates.data();
+  view.Count = static_cast<Index>(rows.Count());
+  return view;
+}
+
+} // namespace elevation

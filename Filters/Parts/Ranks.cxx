@@ -1,0 +1,354 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Ranks.h"
+
+#include "Adapt/Adapt.h"
+#include "PackedData.h"
+
+#include "vtkCellArray.h"
+#include "vtkCommunicator.h"
+#include "vtkExecutive.h"
+#include "vtkIdList.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace elevation
+{
+
+namespace
+{
+constexpr int TagOfBytes = 20200; // of no other message
+
+bool AreEqual(vtkPoints* one, vtkPoints* other)
+{
+  const vtkIdType count = one->GetNumberOfPoints();
+  bool isEqual = other->GetNumberOfPoints() == count;
+  for (vtkIdType i = 0; i < count && isEqual; ++i)
+  {
+    double p[3], q[3];
+    one->GetPoint(i, p);
+    other->GetPoint(i, q);
+    isEqual = std::equal(p, p + 3, q);
+  }
+  return isEqual;
+}
+
+bool AreEqual(vtkCellArray* one, vtkCellArray* other)
+{
+  const vtkIdType count = one->GetNumberOfCells();
+  bool isEqual = other->GetNumberOfCells() == count;
+  vtkNew<vtkIdList> ids, otherIds;
+  for (vtkIdType i = 0; i < count && isEqual; ++i)
+  {
+    one->GetCellAtId(i, ids);
+    other->GetCellAtId(i, otherIds);
+    isEqual = std::equal(ids->begin(), ids->end(), otherIds->begin(), otherIds->end());
+  }
+  return isEqual;
+}
+
+/** Whether both have the same points and cells; both have points. */
+bool AreEqual(vtkPolyData* one, vtkPolyData* other)
+{
+  return AreEqual(one->GetPoints(), other->GetPoints()) &&
+    AreEqual(one->GetVerts(), other->GetVerts()) && AreEqual(one->GetLines(), other->GetLines()) &&
+    AreEqual(one->GetPolys(), other->GetPolys()) && AreEqual(one->GetStrips(), other->GetStrips());
+}
+} // namespace
+
+Ranks::Ranks(vtkInformation* request, vtkInformationVector* outputs)
+{
+  vtkMultiProcessController* const global = vtkMultiProcessController::GetGlobalController();
+  const int port = request ? request->Get(vtkExecutive::FROM_OUTPUT_PORT()) : 0;
+  vtkInformation* const output = outputs->GetInformationObject(std::max(port, 0));
+  if (global && global->GetNumberOfProcesses() > 1 &&
+    output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  {
+    this->Controller = global;
+    this->Notes = std::make_unique<FailureNotes>(global);
+  }
+}
+
+int Ranks::Own() const
+{
+  return this->Controller ? this->Controller->GetLocalProcessId() : 0;
+}
+
+int Ranks::Count() const
+{
+  return this->Controller ? this->Controller->GetNumberOfProcesses() : 1;
+}
+
+void Ranks::Sum(std::vector<vtkIdType>& values) const
+{
+  if (this->Controller && !values.empty())
+  {
+    const std::vector<vtkIdType> own = values;
+    this->Controller->AllReduce(own.data(), values.data(), static_cast<vtkIdType>(own.size()),
+      vtkCommunicator::SUM_OP);
+  }
+}
+
+void Ranks::Maximum(std::vector<double>& values) const
+{
+  if (this->Controller && !values.empty())
+  {
+    const std::vector<double> own = values;
+    this->Controller->AllReduce(own.data(), values.data(), static_cast<vtkIdType>(own.size()),
+      vtkCommunicator::MAX_OP);
+  }
+}
+
+namespace
+{
+/** The values of all ranks, one after another. */
+template <typename Value>
+std::vector<Value> AllOf(vtkMultiProcessController* ranks, const Value* values, std::size_t count)
+{
+  std::vector<vtkIdType> lengths(ranks->GetNumberOfProcesses());
+  const vtkIdType length = static_cast<vtkIdType>(count);
+  ranks->AllGather(&length, lengths.data(), 1);
+  std::vector<vtkIdType> offsets(lengths.size(), 0);
+  std::partial_sum(lengths.begin(), lengths.end() - 1, offsets.begin() + 1);
+  std::vector<Value> all(offsets.back() + lengths.back());
+  if (!all.empty())
+  {
+    ranks->AllGatherV(values, all.data(), length, lengths.data(), offsets.data());
+  }
+  return all;
+}
+} // namespace
+
+std::vector<vtkIdType> Ranks::Collect(const std::vector<vtkIdType>& values) const
+{
+  this->CountCollected(values.size() * sizeof(vtkIdType));
+  return this->Controller ? AllOf(this->Controller, values.data(), values.size()) : values;
+}
+
+std::vector<double> Ranks::CollectReals(const std::vector<double>& values) const
+{
+  this->CountCollected(values.size() * sizeof(double));
+  return this->Controller ? AllOf(this->Controller, values.data(), values.size()) : values;
+}
+
+std::vector<std::string> Ranks::Collect(const std::vector<std::string>& texts) const
+{
+  if (!this->Controller)
+  {
+    return texts;
+  }
+  std::vector<vtkIdType> lengths;
+  std::string joined;
+  for (const std::string& text : texts)
+  {
+    lengths.push_back(static_cast<vtkIdType>(text.size()));
+    joined += text;
+  }
+  lengths = this->Collect(lengths);
+  this->CountCollected(joined.size());
+  const std::vector<char> letters = AllOf(this->Controller, joined.data(), joined.size());
+  std::vector<std::string> all;
+  auto next = letters.begin();
+  for (const vtkIdType length : lengths)
+  {
+    all.emplace_back(next, next + length);
+    next += length;
+  }
+  return all;
+}
+
+void Ranks::Agree(const std::function<void()>& step) const
+{
+  // A letter that tells of the kind, and the message.
+  std::vector<std::string> failures;
+  try
+  {
+    step();
+  }
+  catch (const Aborted&)
+  {
+    failures = { "A" };
+  }
+  catch (const std::exception& error)
+  {
+    failures = { std::string("E") + MessageOf(error) };
+  }
+  const bool isStopped = this->IsStopped; // and not by a failure of its own
+  this->IsStopped = false;
+  if (isStopped)
+  {
+    failures.clear();
+  }
+  if (this->Notes && !failures.empty())
+  {
+    this->Notes->Send();
+  }
+  const int own = static_cast<int>(failures.size());
+  failures = this->Collect(failures);
+  if (this->Notes)
+  {
+    this->Notes->Take(static_cast<int>(failures.size()) - own);
+  }
+  for (const char kind : { 'A', 'E' })
+  {
+    for (const std::string& failure : failures)
+    {
+      if (failure.front() == kind)
+      {
+        kind == 'A' ? throw Aborted() : throw Error(failure.substr(1));
+      }
+    }
+  }
+}
+
+Progress Ranks::Watched(const Progress& progress) const
+{
+  if (!this->Controller)
+  {
+    return progress;
+  }
+  return [this, progress](double fraction) {
+    this->IsStopped = this->IsStopped || this->Notes->HasCome();
+    return !this->IsStopped && (!progress || progress(fraction));
+  };
+}
+
+void Ranks::Meet(const std::function<void(int)>& withOther) const
+{
+  const int count = this->Count();
+  for (int bits = 1; bits < 2 * count; ++bits) // until beyond the highest bit of a rank
+  {
+    const int other = this->Own() ^ bits;
+    if (other < count)
+    {
+      withOther(other);
+    }
+  }
+}
+
+std::vector<Bytes> Ranks::Exchange(std::vector<Bytes>&& toEach) const
+{
+  std::vector<Bytes> fromEach(toEach.size());
+  std::swap(fromEach[this->Own()], toEach[this->Own()]);
+  std::vector<vtkIdType> sizes(toEach.size(), 0);
+  this->Meet([&](int other) {
+    const vtkIdType size = static_cast<vtkIdType>(toEach[other].size());
+    const auto send = [&]() { this->Send(&size, sizeof(size), other); };
+    const auto receive = [&]() { this->Receive(&sizes[other], sizeof(size), other); };
+    this->Own() < other ? (send(), receive()) : (receive(), send());
+    this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(size)) + size;
+  });
+  this->Agree([&]() {
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+    {
+      fromEach[i].Resize(std::max(fromEach[i].size(), static_cast<std::size_t>(sizes[i])));
+    }
+  });
+  this->Meet([&](int other) {
+    const auto send = [&]() {
+      if (!toEach[other].empty())
+      {
+        this->Send(toEach[other].data(), toEach[other].size(), other);
+      }
+    };
+    const auto receive = [&]() {
+      if (!fromEach[other].empty())
+      {
+        this->Receive(fromEach[other].data(), fromEach[other].size(), other);
+      }
+    };
+    this->Own() < other ? (send(), receive()) : (receive(), send());
+    toEach[other] = Bytes();
+  });
+  ++this->Sent.Rounds;
+  return fromEach;
+}
+
+void Ranks::CountCollected(std::size_t bytes) const
+{
+  this->Sent.BytesSent += static_cast<vtkIdType>(bytes) * (this->Count() - 1);
+}
+
+void Ranks::Send(const void* bytes, std::size_t size, int rank) const
+{
+  this->Controller->Send(
+    static_cast<const char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+}
+
+void Ranks::Receive(void* bytes, std::size_t size, int rank) const
+{
+  this->Controller->Receive(
+    static_cast<char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+}
+
+vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
+{
+  const bool hasPoints = local && local->GetNumberOfPoints() > 0;
+  std::vector<Bytes> packed(this->Count());
+  this->Agree([&]() {
+    if (hasPoints && this->Controller)
+    {
+      const Bytes bytes = PackData(local);
+      for (Bytes& copy : packed)
+      {
+        AppendTo(copy, bytes.data(), bytes.size());
+      }
+    }
+  });
+  packed = this->Exchange(std::move(packed));
+  std::vector<vtkSmartPointer<vtkPolyData>> parts;
+  this->Agree([&]() {
+    for (int rank = 0; rank < this->Count(); ++rank)
+    {
+      const Bytes& bytes = packed[rank];
+      const bool isOwn = rank == this->Own();
+      if (isOwn ? !hasPoints : bytes.empty())
+      {
+        continue;
+      }
+      const auto part =
+        isOwn ? vtkSmartPointer<vtkPolyData>(local) : UnpackData(bytes.data(), bytes.size());
+      const auto isPart = [&](vtkPolyData* other) { return AreEqual(part, other); };
+      if (std::none_of(parts.begin(), parts.end(), isPart))
+      {
+        parts.push_back(part);
+      }
+    }
+  });
+  return parts.empty() ? vtkSmartPointer<vtkPolyData>(local) : Append(parts);
+}
+
+bool CanAll(const Ranks& ranks, const std::function<bool()>& step)
+{
+  bool can = false;
+  ranks.Agree([&]() {
+    try
+    {
+      can = step();
+    }
+    catch (const Error&)
+    {
+      can = false;
+    }
+  });
+  std::vector<vtkIdType> cannot = { can ? 0 : 1 };
+  ranks.Sum(cannot);
+  return cannot[0] == 0;
+}
+
+Box BoxOfAll(const Ranks& ranks, const Box& own)
+{
+  std::vector<double> sides = { -own.Low.X, -own.Low.Y, own.High.X, own.High.Y };
+  ranks.Maximum(sides);
+  return { { -sides[0], -sides[1] }, { sides[2], sides[3] } };
+}
+
+} // namespace elevation

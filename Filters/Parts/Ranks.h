@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * The ranks (processes) on which a filter runs at the same time. Private to the module.
+ */
+#ifndef Ranks_h
+#define Ranks_h
+
+#include "Bytes.h"
+#include "FailureNotes.h"
+#include "Kernel/Base/Base.h"
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+class vtkInformation;
+class vtkInformationVector;
+class vtkMultiProcessController;
+class vtkPolyData;
+
+namespace elevation
+{
+
+/**
+ * The ranks that take part in one execution. They are several where the global controller has
+ * several processes and the data are asked for in several pieces. Else there is one, whatever the
+ * controller: a pipeline inside of one process never waits for another.
+ * All ranks have to call the same functions in the same order; with one rank these return at once.
+ */
+class Ranks
+{
+public:
+  /** One alone. */
+  Ranks() = default;
+  Ranks(vtkInformation* request, vtkInformationVector* outputs);
+
+  int Own() const;
+  int Count() const;
+
+  /** The sums (largest values) over all ranks; the lengths are the same on all of them. */
+  void Sum(std::vector<vtkIdType>& values) const;
+  void Maximum(std::vector<double>& values) const;
+
+  /** The values (texts) of all ranks, one after another. The lengths may differ. */
+  std::vector<vtkIdType> Collect(const std::vector<vtkIdType>& values) const;
+  std::vector<double> CollectReals(const std::vector<double>& values) const;
+  std::vector<std::string> Collect(const std::vector<std::string>& texts) const;
+
+  /**
+   * Does a step in which no rank waits for another. Then all of them know how it went; within a
+   * tenth of a second after a failure, where steps that take long report to Watched().
+   * @throws Error on all ranks where the step fails on any: the error of the first of these
+   * @throws Aborted on all ranks where the step is aborted on any
+   */
+  void Agree(const std::function<void()>& step) const;
+
+  /** For a step: a progress that also stops it when it has failed on another rank. */
+  Progress Watched(const Progress& progress) const;
+
+  /**
+   * Bytes from all ranks to all. In round k each rank meets the one whose number differs from its own
+   * in the bits of k: the lower of the two sends first, so that none waits for ever.
+   * @param[in] toEach  for each rank
+   * @return from each rank
+   * @throws std::bad_alloc as Error on all ranks
+   */
+  std::vector<Bytes> Exchange(std::vector<Bytes>&& toEach) const;
+
+  /** What this rank has sent since it was made, and how often all ranks have met for it. */
+  struct Traffic
+  {
+    vtkIdType BytesSent = 0;
+    vtkIdType Rounds = 0;
+  };
+  const Traffic& GetTraffic() const { return this->Sent; }
+
+  /** Bytes from one rank to another; both know their number, and that the other is there. */
+  void Send(const void* bytes, std::size_t size, int rank) const;
+  void Receive(void* bytes, std::size_t size, int rank) const;
+
+  /**
+   * The cells of all ranks, on all ranks. What several ranks have as a whole, the same points and
+   * cells, counts once.
+   * @param[in] local  may be nullptr
+   * @return @a local itself where no other rank has points
+   */
+  vtkSmartPointer<vtkPolyData> Gather(vtkPolyData* local) const;
+
+private:
+  void Meet(const std::function<void(int other)>& withOther) const;
+  void CountCollected(std::size_t bytes) const;
+
+  vtkMultiProcessController* Controller = nullptr; // nullptr: one rank
+  std::unique_ptr<FailureNotes> Notes;
+  mutable bool IsStopped = false; // this step, as another rank has failed
+  mutable Traffic Sent;
+};
+
+/**
+ * Does a step on all ranks, in which errors are as false.
+ * @return whether all ranks can
+ */
+bool CanAll(const Ranks& ranks, const std::function<bool()>& step);
+
+/** The box of the boxes of all ranks. */
+Box BoxOfAll(const Ranks& ranks, const Box& own);
+
+} // namespace elevation
+
+#endif

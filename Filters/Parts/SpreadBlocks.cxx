@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SpreadBlocks.h"
+
+#include "Adapt/Adapt.h"
+#include "Ranks.h"
+
+#include "vtkDataObject.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+
+namespace elevation
+{
+
+vtkIdType IdOf(const std::string& path)
+{
+  return static_cast<vtkIdType>(std::hash<std::string>()(path) >> 2);
+}
+
+bool HasPoints(const Place& place)
+{
+  auto* const points = vtkPointSet::SafeDownCast(place.Input);
+  return points && points->GetNumberOfPoints() > 0;
+}
+
+std::map<vtkIdType, int> FindSpread(
+  const std::vector<Place>& places, const Ranks& ranks, std::vector<vtkIdType>& occupied)
+{
+  std::map<vtkIdType, vtkIdType> own; // points and cells of each block
+  for (const Place& place : places)
+  {
+    if (HasPoints(place))
+    {
+      own[IdOf(place.Path)] += place.Input->GetNumberOfElements(vtkDataObject::POINT) +
+        place.Input->GetNumberOfElements(vtkDataObject::CELL);
+    }
+  }
+  std::vector<vtkIdType> rows; // block, rank, size
+  for (const auto& block : own)
+  {
+    rows.insert(rows.end(), { block.first, ranks.Own(), block.second });
+  }
+  rows = ranks.Collect(rows);
+  occupied.clear();
+  std::map<vtkIdType, int> spread;
+  std::map<vtkIdType, std::size_t> largest; // row of each block
+  for (std::size_t i = 0; i < rows.size(); i += 3)
+  {
+    const auto found = largest.emplace(rows[i], i);
+    if (found.second)
+    {
+      occupied.push_back(rows[i]);
+      continue;
+    }
+    std::size_t& row = found.first->second;
+    row = rows[i + 2] > rows[row + 2] ? i : row;
+    spread[rows[i]] = static_cast<int>(rows[row + 1]);
+  }
+  std::sort(occupied.begin(), occupied.end());
+  return spread;
+}
+
+std::vector<vtkPointSet*> PartsOf(const std::vector<Place*>& places)
+{
+  std::vector<vtkPointSet*> parts;
+  for (const Place* place : places)
+  {
+    if (HasPoints(*place))
+    {
+      parts.push_back(vtkPointSet::SafeDownCast(place->Input));
+    }
+  }
+  return parts;
+}
+
+Place* FirstWithPoints(const std::vector<Place*>& places)
+{
+  const auto first = std::find_if(
+    places.begin(), places.end(), [](const Place* place) { return HasPoints(*place); });
+  return first == places.end() ? nullptr : *first;
+}
+
+void Empty(const std::vector<Place*>& places)
+{
+  for (Place* place : places)
+  {
+    if (HasPoints(*place))
+    {
+      place->Own = EmptyCopy(vtkPointSet::SafeDownCast(place->Input));
+      place->Input = place->Own;
+    }
+  }
+}
+
+void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, const Ranks& ranks,
+  const Progress& progress, std::vector<std::string>& warnings)
+{
+  const vtkSmartPointer<vtkPolyData> whole =
+    Gather(PartsOf(places), kind, home, ranks, progress, warnings);
+  Place* const first = FirstWithPoints(places);
+  Empty(places);
+  if (whole)
+  {
+    first->Own = whole;
+    first->Input = whole;
+    first->Name = first->NameOfBlock;
+  }
+}
+
+} // namespace elevation

@@ -1,0 +1,312 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfacePart.h"
+
+#include "Adapt/Adapt.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkCellArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace elevation
+{
+
+int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases)
+{
+  const auto next = std::upper_bound(bases.begin() + 1, bases.end() - 1, number);
+  return static_cast<int>(next - bases.begin()) - 1;
+}
+
+std::size_t SurfacePart::PlaceOf(GlobalId number, GlobalId first) const
+{
+  const std::size_t ownCount = this->Own.Count();
+  const GlobalId place = number - first;
+  if (place >= 0 && place < static_cast<GlobalId>(ownCount))
+  {
+    return static_cast<std::size_t>(place);
+  }
+  const std::vector<GlobalId>& others = this->OtherNumbers;
+  return ownCount + (std::lower_bound(others.begin(), others.end(), number) - others.begin());
+}
+
+Point2 SurfacePart::PointAt(std::size_t place) const
+{
+  const std::size_t own = this->Own.Count();
+  const double* const p = place < own ? this->Own.At(place) : this->Others.At(place - own);
+  return { p[0], p[1] };
+}
+
+void ListOthers(const std::vector<GlobalTriangle>& triangles, GlobalId first, SurfacePart& part)
+{
+  const GlobalId last = first + static_cast<GlobalId>(part.Own.Count());
+  std::vector<GlobalId>& others = part.OtherNumbers;
+  others.clear();
+  for (const GlobalTriangle& triangle : triangles)
+  {
+    std::copy_if(triangle.begin(), triangle.end(), std::back_inserter(others),
+      [first, last](GlobalId id) { return id < first || id >= last; });
+  }
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+}
+
+void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
+  const Progress& progress, SurfacePart& part)
+{
+  Buffer<Index>& corners = part.Result.Triangles;
+  const std::size_t before = corners.size();
+  corners.Resize(before + 3 * triangles.size());
+  Index* corner = corners.data() + before;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+  {
+    ReportStep(progress, t, triangles.size(), 1 << 16);
+    for (const GlobalId id : triangles[t])
+    {
+      *corner++ = static_cast<Index>(part.PlaceOf(id, first));
+    }
+  }
+}
+
+namespace
+{
+/** A value of a point for the rank that owns it. */
+struct ValueForOwner
+{
+  vtkIdType Place;
+  double Value;
+};
+
+/** The least values at own points that any rank has there. */
+void MergeAtOwners(const Ranks& ranks, const SurfacePart& part, std::vector<double>& values)
+{
+  std::vector<Bytes> packed(ranks.Count());
+  const std::size_t ownCount = part.Own.Count();
+  ranks.Agree([&]() {
+    for (std::size_t i = 0; i < part.OtherNumbers.size(); ++i)
+    {
+      const int owner = part.OwnerOf(part.OtherNumbers[i]);
+      const ValueForOwner value{ part.OtherNumbers[i] - part.Bases[owner], values[ownCount + i] };
+      AppendTo(packed[owner], &value, 1);
+    }
+  });
+  for (const Bytes& bytes : ranks.Exchange(std::move(packed)))
+  {
+    const char* from = bytes.data();
+    while (from != bytes.data() + bytes.size())
+    {
+      ValueForOwner value;
+      TakeFrom(from, &value, 1);
+      values[value.Place] = std::min(values[value.Place], value.Value);
+    }
+  }
+  values.resize(ownCount);
+}
+
+/** A quantile of the values of all ranks, sorted on each, none negative. */
+double QuantileOfAll(const Ranks& ranks, const std::vector<double>& values, double part)
+{
+  std::vector<vtkIdType> count = { static_cast<vtkIdType>(values.size()) };
+  ranks.Sum(count);
+  const vtkIdType place = PlaceOfQuantile(part, count[0]);
+  // As bits, doubles that are not negative have the same order.
+  const double largest = std::numeric_limits<double>::max();
+  std::uint64_t low = 0, high = 0;
+  std::memcpy(&high, &largest, sizeof(high));
+  double middle = 0.0;
+  while (low < high)
+  {
+    const std::uint64_t bits = low + (high - low) / 2;
+    std::memcpy(&middle, &bits, sizeof(bits));
+    const auto greater = std::upper_bound(values.begin(), values.end(), middle);
+    count[0] = static_cast<vtkIdType>(greater - values.begin());
+    ranks.Sum(count);
+    (count[0] > place ? high : low) = count[0] > place ? bits : bits + 1;
+  }
+  std::memcpy(&middle, &low, sizeof(low));
+  return middle;
+}
+
+void MeasureAll(
+  const Ranks& ranks, const Progress& progress, const SurfacePart& part, EffectOfLimit& effect)
+{
+  LengthsOfEdges lengths;
+  ranks.Agree([&]() {
+    lengths = MeasureEdges(
+      part.Result.Triangles, part.Own.Count() + part.Others.Count(),
+      [&part](Index place) { return part.PointAt(place); }, ranks.Watched(progress));
+  });
+  MergeAtOwners(ranks, part, lengths.Limits);
+  ranks.Agree([&]() {
+    std::sort(lengths.Edges.begin(), lengths.Edges.end());
+    std::vector<double>& limits = lengths.Limits;
+    std::sort(limits.begin(), limits.end());
+    const double infinity = std::numeric_limits<double>::infinity();
+    limits.erase(std::lower_bound(limits.begin(), limits.end(), infinity), limits.end());
+  });
+  effect.HasLengths = true;
+  effect.Shortest = QuantileOfAll(ranks, lengths.Edges, 0.0);
+  effect.Median = QuantileOfAll(ranks, lengths.Edges, HalfOfAll);
+  effect.ForMost = QuantileOfAll(ranks, lengths.Limits, PartOfMost);
+}
+} // namespace
+
+EffectOfLimit LimitEdges(
+  const Ranks& ranks, double length, const Progress& progress, SurfacePart& part)
+{
+  const EdgeLimit limit(length);
+  const auto pointOf = [&part](Index place) { return part.PointAt(place); };
+  Buffer<Index>& corners = part.Result.Triangles;
+  Buffer<Index> kept;
+  std::vector<double> isMissing;
+  ranks.Agree([&]() {
+    const Progress watched = ranks.Watched(progress);
+    isMissing.assign(part.Own.Count() + part.Others.Count(), 1.0);
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+    {
+      ReportStep(watched, i / 3, corners.size() / 3, 1 << 16);
+      if (limit.Admits(pointOf, corners[i], corners[i + 1], corners[i + 2]))
+      {
+        for (std::size_t k = i; k < i + 3; ++k)
+        {
+          kept.Append(corners[k]);
+          isMissing[corners[k]] = 0.0;
+        }
+      }
+    }
+  });
+  MergeAtOwners(ranks, part, isMissing);
+  const vtkIdType unused = static_cast<vtkIdType>(part.Result.UnusedPoints.size());
+  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(part.Own.Count()) - unused,
+    static_cast<vtkIdType>(std::count(isMissing.begin(), isMissing.end(), 1.0)) - unused };
+  ranks.Sum(sums);
+  EffectOfLimit effect;
+  effect.Vertices = sums[0];
+  effect.Missing = sums[1];
+  if (effect.AreMostMissing())
+  {
+    MeasureAll(ranks, progress, part, effect);
+  }
+  corners = std::move(kept);
+  return effect;
+}
+
+void KeepCorners(SurfacePart& part)
+{
+  PointRows& others = part.Others;
+  const Index ownCount = static_cast<Index>(part.Own.Count());
+  Buffer<Index>& corners = part.Result.Triangles;
+  std::vector<Index> placeOf(others.Count(), None);
+  std::vector<vtkIdType> order;
+  std::vector<std::size_t> ofOthers; // places among the corners
+  for (std::size_t i = 0; i < corners.size(); ++i)
+  {
+    if (corners[i] < ownCount)
+    {
+      continue;
+    }
+    ofOthers.push_back(i);
+    Index& place = placeOf[corners[i] - ownCount];
+    if (place == None)
+    {
+      place = 0; // set below
+      order.push_back(corners[i] - ownCount);
+    }
+  }
+  std::sort(order.begin(), order.end(), [&others](vtkIdType a, vtkIdType b) {
+    return std::make_pair(others.Ids[a], a) < std::make_pair(others.Ids[b], b);
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+  {
+    placeOf[order[i]] = ownCount + static_cast<Index>(i);
+  }
+  for (const std::size_t i : ofOthers)
+  {
+    corners[i] = placeOf[corners[i] - ownCount];
+  }
+  others.Choose(order);
+  part.OtherNumbers.clear();
+}
+
+namespace
+{
+/** Hands over own values, and then those of others. */
+template <typename Value, typename Array>
+void TakeOver(Buffer<Value>& own, const Buffer<Value>& others, Array* array)
+{
+  const std::size_t ownSize = own.size();
+  own.Resize(ownSize + others.size());
+  own.Shrink();
+  std::copy(others.begin(), others.end(), own.begin() + ownSize);
+  const vtkIdType size = static_cast<vtkIdType>(own.size());
+  array->SetArray(own.Release(), size, 0, vtkAbstractArray::VTK_DATA_ARRAY_FREE);
+}
+} // namespace
+
+void PassPart(SurfacePart& part, int threads, vtkPolyData* output)
+{
+  const vtkIdType ownCount = static_cast<vtkIdType>(part.Own.Count());
+  const vtkIdType otherCount = static_cast<vtkIdType>(part.Others.Count());
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName(part.NameOfIds.c_str());
+  TakeOver(part.Own.Ids, part.Others.Ids, ids.Get());
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetName("Points"); // as vtkPoints does
+  coordinates->SetNumberOfComponents(3);
+  TakeOver(part.Own.Coordinates, part.Others.Coordinates, coordinates.Get());
+  vtkNew<vtkPoints> points;
+  points->SetDataType(part.TypeOfPoints);
+  if (part.TypeOfPoints == VTK_DOUBLE)
+  {
+    points->SetData(coordinates);
+  }
+  else
+  {
+    points->GetData()->DeepCopy(coordinates);
+  }
+  output->SetPoints(points);
+  vtkPointData* const data = output->GetPointData();
+  vtkUnsignedCharArray* ghosts = nullptr;
+  for (std::size_t i = 0; i < part.Kinds.size(); ++i)
+  {
+    vtkAbstractArray* const array = part.Own.Arrays[i];
+    array->InsertTuples(ownCount, otherCount, 0, part.Others.Arrays[i]);
+    const int index = data->AddArray(array);
+    if (part.Kinds[i].Attribute >= 0)
+    {
+      data->SetActiveAttribute(index, part.Kinds[i].Attribute);
+    }
+    ghosts = IsGhostArray(array) ? vtkUnsignedCharArray::SafeDownCast(array) : ghosts;
+  }
+  data->SetGlobalIds(ids);
+  if (!ghosts)
+  {
+    vtkNew<vtkUnsignedCharArray> made;
+    made->SetName(vtkDataSetAttributes::GhostArrayName());
+    made->SetNumberOfValues(ownCount + otherCount);
+    made->FillValue(0);
+    data->AddArray(made);
+    ghosts = made;
+  }
+  for (vtkIdType i = ownCount; i < ownCount + otherCount; ++i)
+  {
+    ghosts->SetValue(i, ghosts->GetValue(i) | vtkDataSetAttributes::DUPLICATEPOINT);
+  }
+  output->SetPolys(ToCellArray(std::move(part.Result.Triangles), threads));
+}
+
+} // namespace elevation

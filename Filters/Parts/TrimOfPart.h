@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Trims one part of a mesh along a boundary or its outline, whose near triangles are trimmed with
+ * those of all parts: on ranks (DistributedTrim.h), and piece by piece (TrimmedPieces.h). Private to
+ * the module.
+ */
+#ifndef TrimOfPart_h
+#define TrimOfPart_h
+
+#include "Adapt/Adapt.h"
+#include "Kernel/Trim/Trim.h"
+#include "NearParts.h"
+
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <vector>
+
+class vtkPolyData;
+
+namespace elevation
+{
+
+/** The functions are steps, in their order. */
+class TrimOfPart
+{
+public:
+  explicit TrimOfPart(vtkPolyData* part)
+    : Input(part)
+  {
+  }
+
+  /** Looks at the triangles but those that are marked as another part's. @throws Error */
+  void Read();
+  Index CountOfTriangles() const { return this->List.Count; }
+
+  /**
+   * Finds the near triangles, and the sides of the others.
+   * @param[in] numberOfAll  triangles of all parts
+   * @return false if the sweep cannot
+   */
+  bool Sweep(const BoundaryLines& lines, double numberOfAll, int threads, const Progress& progress);
+  /** The same without a boundary: the near triangles tell the outline. See FindPartOfOutline() */
+  bool SweepForOutline(int margin, const TrimOptions& options, const Progress& progress);
+  std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
+  std::size_t CountOfNear() const { return this->Swept.Near.size(); }
+
+  /** The near triangles and, as lines, the border of all: for NearParts. */
+  vtkSmartPointer<vtkPolyData> NearPart();
+
+  /** Takes what has become of the near triangles. */
+  void Take(TrimmedPart&& back, const Progress& progress);
+  vtkIdType CountOfSide(int side) const; ///< triangles: 0 kept, 1 outward; before, without the near
+  vtkIdType CountOfInserted() const;     ///< points, also those that another part owns
+  vtkIdType CountOfOwnInserted() const;
+  vtkIdType CountOfOthers() const; ///< points that another part owns
+
+  /**
+   * Writes the sides to outputs 0 and 1; nullptr: not wanted.
+   * @param[in] areInserted, areMarked  whether any part has inserted points, or another part's
+   * @param[in] boundary  nullptr: none was given
+   */
+  void Write(bool areInserted, bool areMarked, const BoundaryLines* boundary,
+    const TrimOptions& options, const Progress& progress, vtkPolyData* kept, vtkPolyData* outward);
+
+private:
+  void LeaveOutCopies();
+  void FindOwn(const Progress& progress);
+  TrimmedSide SideOf(int side, const Progress& progress) const;
+
+  vtkPolyData* const Input;
+  TrianglesOfDataSet Triangles;
+  std::vector<Index> Sources; // of the triangles, if some were left out
+  TriangleList List;
+  SweptAlongRings Swept;
+  PartOfOutline Outline;   // without a boundary; its triangles and border are those of Swept
+  std::vector<Index> Sent; // points of the near part
+  TrimmedPart Back;
+  std::vector<Index> Places; // of the new points, among those of the output
+  TrimmedPoints Points;
+};
+
+} // namespace elevation
+
+#endif
