@@ -18,7 +18,9 @@
 #endif
 #endif
 
-#if defined(__GLIBC__) && defined(__ELF__) && !defined(HAS_SANITIZER)
+// Without inlining, the library has copies of VTK's inline functions, which VTK itself then calls: what
+// they ask for looks as if the library did.
+#if defined(__GLIBC__) && defined(__ELF__) && !defined(HAS_SANITIZER) && !defined(__NO_INLINE__)
 #define REPLACES_MALLOC
 #include <dlfcn.h>
 #include <link.h>
