@@ -109,6 +109,7 @@ set(es_headers_Adapt
   Adapt VTKVersions)
 set(es_Parts
   BorderOfParts
+  BoundaryZone
   CellByCell
   CommonPoints
   ConstraintsOfRanks
@@ -120,18 +121,17 @@ set(es_Parts
   FilledPieces
   FilterRun
   Gathering
-  HolesOfParts
+  HoleNeighborhoods
   Joining
   LatticeOfRanks
-  NearParts
   PackedData
   PointOwners
   PointRows
   Ranks
+  SharedHoles
   SpoolFile
   SpreadBlocks
   SurfacePart
-  SurroundingBoxes
   TrimOfPart
   TrimmedPieces)
 set(es_headers_Parts

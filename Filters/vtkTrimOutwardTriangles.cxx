@@ -186,7 +186,7 @@ int vtkTrimOutwardTriangles::RequestData(
     }
     // Cell data take time to pass, all else is shared.
     const double trimmedAt = input->GetCellData()->GetNumberOfArrays() > 0 ? 0.85 : 0.95;
-    options.TellParents = input->GetCellData()->GetNumberOfArrays() > 0;
+    options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
     options.Monitor = Part(progress, 0.02, trimmedAt);
     Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
     if (triangles.View.Count == 0 && elevation::IsToBeTold(input))

@@ -69,7 +69,7 @@ vtkIdType SplitSurface(
   before->ShallowCopy(surface);
   const TrianglesOfDataSet triangles = ViewTriangles(before);
   TrimOptions options;
-  options.TellParents = false;
+  options.ReturnParents = false;
   options.NumberOfThreads = threads;
   options.Monitor = Part(progress, 0.05, 0.9);
   Trimmed split = SplitAlong(

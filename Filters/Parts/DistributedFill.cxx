@@ -4,10 +4,10 @@
 
 #include "Adapt/Adapt.h"
 #include "FilledPart.h"
-#include "HolesOfParts.h"
 #include "Joining.h"
 #include "PackedData.h"
 #include "PointRows.h"
+#include "SharedHoles.h"
 
 #include "vtkCellData.h"
 #include "vtkPointData.h"
@@ -57,12 +57,12 @@ private:
   bool HavePoints() const { return this->Part.HasPoints(); }
   bool Surround(const std::vector<char>& areWaiting);
   void TakeSurroundings(std::vector<Bytes>&& packed);
-  void ShareRooms();
+  void ShareQuotas();
 
   const Ranks& All;
   Block& Of;
   FilledPart Part;
-  HolesOfParts Whole;
+  SharedHoles Whole;
   std::vector<int> RankOfHole;
 };
 
@@ -198,7 +198,7 @@ void Work::TakeSurroundings(std::vector<Bytes>&& packed)
 }
 
 /** What each hole may take, and whether all take too much, is known where all needs are. */
-void Work::ShareRooms()
+void Work::ShareQuotas()
 {
   constexpr std::size_t width = 4;
   std::vector<double> rows; // hole, and its need
@@ -226,7 +226,7 @@ void Work::ShareRooms()
   this->All.Sum(points);
   this->All.Agree(
     [&]() { CheckEffort(needs, static_cast<double>(points[0]), this->Whole.Options); });
-  this->Whole.Rooms = RoomsOfNeeds(needs, this->Whole.Options.MaximumInsertedPoints);
+  this->Whole.Quotas = QuotasFor(needs, this->Whole.Options.MaximumInsertedPoints);
 }
 
 bool Work::FillAll()
@@ -245,9 +245,9 @@ bool Work::FillAll()
     {
       return false;
     }
-    if (this->Whole.Rooms.empty())
+    if (this->Whole.Quotas.empty())
     {
-      this->ShareRooms();
+      this->ShareQuotas();
     }
     std::vector<vtkIdType> beyond;
     this->All.Agree([&]() {
@@ -260,7 +260,7 @@ bool Work::FillAll()
     std::fill(areWaiting.begin(), areWaiting.end(), char(0));
     for (const vtkIdType hole : this->All.Collect(beyond))
     {
-      ++this->Whole.TimesTooFew[hole];
+      ++this->Whole.Retries[hole];
       areWaiting[this->RankOfHole[hole]] = 1;
     }
   }

@@ -10,7 +10,7 @@
  *   2. Each hole goes to one rank, the largest first, to the rank with least work so far. This rank
  *      gets the triangles in a box around the hole, with their points.
  *   3. What each hole may take of MaximumInsertedPoints is known to all; each rank fills its holes.
- *      Where a hole turns out to need triangles outside of its box (BeyondKnown), its rank asks for a
+ *      Where a hole turns out to need triangles outside of its box (BeyondSurroundings), its rank asks for a
  *      larger one, the third time for all.
  *   4. A rank keeps its triangles, and has the new ones of its holes. Their corners that are other
  *      ranks' points become its ghosts.

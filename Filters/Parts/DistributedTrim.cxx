@@ -3,7 +3,7 @@
 #include "DistributedTrim.h"
 
 #include "Adapt/Adapt.h"
-#include "NearParts.h"
+#include "BoundaryZone.h"
 #include "PackedData.h"
 #include "PointRows.h"
 #include "TrimOfPart.h"
@@ -60,7 +60,7 @@ private:
   BoundaryLines Lines;
   vtkIdType InnerPoints = 0; // of all ranks
   int Home = 0;
-  std::unique_ptr<NearParts> Gathered;         // on that rank
+  std::unique_ptr<BoundaryZone> Gathered;      // on that rank
   bool AreInserted = false, AreMarked = false; // points on any rank
 };
 
@@ -135,7 +135,7 @@ bool Work::TrimNear()
     }
     TrimOptions options = this->Options;
     options.Monitor = this->Watched(0.35, 0.8);
-    this->Gathered = std::make_unique<NearParts>(std::move(parts));
+    this->Gathered = std::make_unique<BoundaryZone>(std::move(parts));
     return this->Of.Second ? this->Gathered->Trim(this->Lines, options)
                            : this->Gathered->TrimOutline(this->InnerPoints,
                                static_cast<std::int64_t>(this->NumberOfAll), options);

@@ -3,7 +3,7 @@
 #include "FilledPart.h"
 
 #include "Adapt/Adapt.h"
-#include "NearParts.h"
+#include "BoundaryZone.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -183,7 +183,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::WithCorners(bool areMarked, const Progr
 }
 
 /** The patches among those of all holes, by the places of the input's points. */
-FillResult FilledPart::PlacedPatches(const HolesOfParts& all, vtkPolyData* input) const
+FillResult FilledPart::PlacedPatches(const SharedHoles& all, vtkPolyData* input) const
 {
   const FillResult& from = this->Filled.Patches;
   FillResult to;
@@ -239,7 +239,7 @@ void FilledPart::PlaceAttributes(vtkPolyData* input, FillResult& placed) const
 
 /** Global ids after the largest of all parts, in the order of the holes. */
 void FilledPart::NumberNewPoints(
-  const HolesOfParts& all, vtkIdType largest, vtkPolyData* output) const
+  const SharedHoles& all, vtkIdType largest, vtkPolyData* output) const
 {
   vtkDataArray* const ids = output->GetPointData()->GetGlobalIds();
   vtkIdType next = output->GetNumberOfPoints() - this->Filled.Patches.NumberOfPoints();
@@ -252,7 +252,7 @@ void FilledPart::NumberNewPoints(
   }
 }
 
-void FilledPart::Write(const HolesOfParts& all, bool areMarked, vtkIdType largestId,
+void FilledPart::Write(const SharedHoles& all, bool areMarked, vtkIdType largestId,
   const Progress& progress, vtkPolyData* output) const
 {
   const vtkSmartPointer<vtkPolyData> input = this->WithCorners(areMarked, Part(progress, 0.0, 0.2));
@@ -276,7 +276,7 @@ vtkSmartPointer<vtkPolyData> FilledPart::PointsOnBorder(const BorderOfAll& borde
 }
 
 void WriteRims(
-  const HolesOfParts& all, const Parts& points, const Progress& progress, vtkPolyData* output)
+  const SharedHoles& all, const Parts& points, const Progress& progress, vtkPolyData* output)
 {
   const vtkSmartPointer<vtkPolyData> joined = Append(points);
   const std::vector<PointKey> keys = KeysOf(joined, all.ByIds, nullptr);

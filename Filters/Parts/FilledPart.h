@@ -7,8 +7,8 @@
 #ifndef FilledPart_h
 #define FilledPart_h
 
-#include "HolesOfParts.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "SharedHoles.h"
 
 #include "vtkSmartPointer.h"
 
@@ -51,7 +51,7 @@ struct FilledPart
    * @param[in] areMarked  whether any part has others' points
    * @param[in] largestId  of all parts; ids of new points follow it
    */
-  void Write(const HolesOfParts& all, bool areMarked, vtkIdType largestId, const Progress& progress,
+  void Write(const SharedHoles& all, bool areMarked, vtkIdType largestId, const Progress& progress,
     vtkPolyData* output) const;
 
   /** The points that are on the border of all parts, with their data; nullptr: none. */
@@ -60,14 +60,14 @@ struct FilledPart
 private:
   std::vector<char> AreOthers() const;
   vtkSmartPointer<vtkPolyData> WithCorners(bool areMarked, const Progress& progress) const;
-  FillResult PlacedPatches(const HolesOfParts& all, vtkPolyData* input) const;
+  FillResult PlacedPatches(const SharedHoles& all, vtkPolyData* input) const;
   void PlaceAttributes(vtkPolyData* input, FillResult& placed) const;
-  void NumberNewPoints(const HolesOfParts& all, vtkIdType largest, vtkPolyData* output) const;
+  void NumberNewPoints(const SharedHoles& all, vtkIdType largest, vtkPolyData* output) const;
 };
 
 /** Output 1 of the filter. @param[in] points  PointsOnBorder() of all parts */
 void WriteRims(
-  const HolesOfParts& all, const Parts& points, const Progress& progress, vtkPolyData* output);
+  const SharedHoles& all, const Parts& points, const Progress& progress, vtkPolyData* output);
 
 } // namespace elevation
 

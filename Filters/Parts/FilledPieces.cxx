@@ -3,7 +3,7 @@
 #include "FilledPieces.h"
 
 #include "Adapt/Adapt.h"
-#include "NearParts.h"
+#include "BoundaryZone.h"
 #include "PackedData.h"
 
 #include "vtkPolyData.h"
@@ -242,7 +242,7 @@ SurroundedHoles FilledPieces::HolesOf(const Group& group, const Progress& progre
 }
 
 /** What each hole may take is known where all needs are. */
-void FilledPieces::FindRooms()
+void FilledPieces::FindQuotas()
 {
   std::vector<HoleNeed> needs(this->Whole.Extents.size());
   for (const Group& group : this->Groups)
@@ -256,7 +256,7 @@ void FilledPieces::FindRooms()
     }
   }
   CheckEffort(needs, static_cast<double>(this->NumberOfPoints), this->Whole.Options);
-  this->Whole.Rooms = RoomsOfNeeds(needs, this->Whole.Options.MaximumInsertedPoints);
+  this->Whole.Quotas = QuotasFor(needs, this->Whole.Options.MaximumInsertedPoints);
 }
 
 void FilledPieces::FillAll()
@@ -265,12 +265,12 @@ void FilledPieces::FillAll()
   while (std::count(areWaiting.begin(), areWaiting.end(), 1) > 0)
   {
     // Few holes need more than their first box.
-    const bool isFirst = this->Whole.Rooms.empty();
+    const bool isFirst = this->Whole.Quotas.empty();
     const double begin = isFirst ? 0.5 : 0.9, end = isFirst ? 0.6 : 0.9;
     this->Surround(areWaiting, begin, end);
     if (isFirst)
     {
-      this->FindRooms();
+      this->FindQuotas();
     }
     const double width = (isFirst ? 0.3 : 0.1) / static_cast<double>(this->Groups.size());
     for (std::size_t group = 0; group < this->Groups.size(); ++group)
@@ -291,7 +291,7 @@ bool FilledPieces::FillHolesOf(Group& group, const Progress& progress)
   const std::vector<Index> beyond = holes.Fill(this->Whole, Part(progress, 0.1, 1.0));
   for (const Index hole : beyond)
   {
-    ++this->Whole.TimesTooFew[hole];
+    ++this->Whole.Retries[hole];
   }
   if (!beyond.empty())
   {

@@ -21,7 +21,7 @@
 #define FilledPieces_h
 
 #include "FilledPart.h"
-#include "HolesOfParts.h"
+#include "SharedHoles.h"
 #include "SpoolFile.h"
 
 #include "vtkSmartPointer.h"
@@ -88,7 +88,7 @@ private:
   void AppendSurroundings(
     int piece, const std::vector<std::vector<Box>>& boxes, const Progress& progress);
   SurroundedHoles HolesOf(const Group& group, const Progress& progress) const;
-  void FindRooms();
+  void FindQuotas();
   void FillAll();
   bool FillHolesOf(Group& group, const Progress& progress);
 
@@ -97,7 +97,7 @@ private:
   const vtkIdType NumberOfPoints;
   std::vector<PieceOfAll> Pieces;
   std::vector<Group> Groups;
-  HolesOfParts Whole;
+  SharedHoles Whole;
   Parts Rims; // points on the border
   vtkIdType NewTriangles = 0;
 };

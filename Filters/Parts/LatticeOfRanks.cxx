@@ -189,8 +189,8 @@ bool TakeGivenLattice(const Ranks& ranks, const PointView& points, const Buffer<
     steps = StepsOfGiven(options.GivenLattice);
     own = FindExtent(points, ThreadsAtOnce(options.NumberOfThreads),
       ranks.Watched(Part(progress, 0.0, 0.3)), [](Index, const Point2&) {});
-    const Index first =
-      FirstBeside(points, own.NotFinite, steps, tolerance, ranks.Watched(Part(progress, 0.3, 0.7)));
+    const Index first = FirstOffLattice(
+      points, own.NotFinite, steps, tolerance, ranks.Watched(Part(progress, 0.3, 0.7)));
     if (first != None)
     {
       beside = { ids[first], first };

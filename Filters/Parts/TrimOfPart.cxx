@@ -152,7 +152,7 @@ vtkSmartPointer<vtkPolyData> TrimOfPart::NearPart()
     {
       spacings.push_back(this->Outline.Spacings[point]);
     }
-    NearParts::AddKnown(this->Outline.States, spacings, part);
+    BoundaryZone::AddKnown(this->Outline.States, spacings, part);
   }
   return part;
 }

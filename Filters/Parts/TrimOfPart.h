@@ -10,8 +10,8 @@
 #define TrimOfPart_h
 
 #include "Adapt/Adapt.h"
+#include "BoundaryZone.h"
 #include "Kernel/Trim/Trim.h"
-#include "NearParts.h"
 
 #include "vtkSmartPointer.h"
 
@@ -47,7 +47,7 @@ public:
   std::int64_t CountOfInnerPoints() const { return this->Outline.NumberOfInnerPoints; }
   std::size_t CountOfNear() const { return this->Swept.Near.size(); }
 
-  /** The near triangles and, as lines, the border of all: for NearParts. */
+  /** The near triangles and, as lines, the border of all: for BoundaryZone. */
   vtkSmartPointer<vtkPolyData> NearPart();
 
   /** Takes what has become of the near triangles. */

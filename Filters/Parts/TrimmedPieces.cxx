@@ -33,7 +33,7 @@ TrimmedPieces::TrimmedPieces(int count, vtkIdType numberOfTriangles, const MakeP
       ofNear.push_back(i);
     }
   }
-  NearParts gathered(std::move(near));
+  BoundaryZone gathered(std::move(near));
   TrimOptions together = options;
   together.Monitor = Part(options.Monitor, 0.8, 1.0);
   if (!gathered.Trim(this->Lines, together))

@@ -12,8 +12,8 @@
 #define TrimmedPieces_h
 
 #include "Adapt/Adapt.h"
+#include "BoundaryZone.h"
 #include "Kernel/Trim/Trim.h"
-#include "NearParts.h"
 #include "TrimOfPart.h"
 
 #include "vtkSmartPointer.h"

@@ -27,7 +27,7 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   // With d above it, the radius is above 1e-101, and what products lose below 1e-308 shifts the centre
   // by less than 1e-122: far less than the rounding that is allowed for.
   constexpr double smallest = 1e-200;
-  if (this->HoldsByFar(a, b, c))
+  if (this->ClearlyHolds(a, b, c))
   {
     return true;
   }
@@ -52,7 +52,7 @@ bool Cell::HoldsCircle(Point2 a, Point2 b, Point2 c) const
   return isInside(a.X, x, this->Low.X, this->High.X) && isInside(a.Y, y, this->Low.Y, this->High.Y);
 }
 
-bool Cell::HoldsByFar(Point2 a, Point2 b, Point2 c) const
+bool Cell::ClearlyHolds(Point2 a, Point2 b, Point2 c) const
 {
   const double bx = b.X - a.X, by = b.Y - a.Y, cx = c.X - a.X, cy = c.Y - a.Y;
   const double d = 2.0 * (bx * cy - by * cx);

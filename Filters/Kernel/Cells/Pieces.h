@@ -72,7 +72,7 @@ struct Cell
 
 private:
   /** Whether the corner a is so far from the border that a rough bound of the radius will do. */
-  bool HoldsByFar(Point2 a, Point2 b, Point2 c) const;
+  bool ClearlyHolds(Point2 a, Point2 b, Point2 c) const;
 };
 
 /** A number of a point in the whole cloud, which may have more points than an Index counts. */

@@ -192,11 +192,13 @@ void Append(const FilledHole& filled, Index firstNewId, FillResult& result)
 class HoleFilling
 {
 public:
-  HoleFilling(const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options)
+  HoleFilling(const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options,
+    const WholeSurface& whole)
     : Surface(mesh)
     , Points(points)
     , Given(std::move(holes))
     , Options(options)
+    , Whole(whole)
     , Threads(ResolveNumberOfThreads(options.NumberOfThreads))
     , Plans(Given.Count())
     , HasRoom(Given.Count(), 1)
@@ -228,13 +230,13 @@ public:
       this->FillBatch(begin, end, ofBatch);
       begin = end;
     }
-    this->KeepThoseWithRoom();
+    this->DropRegionsWithoutRoom();
     Report(monitor, 1.0);
     return std::move(this->Result);
   }
 
   /** See NeedsOfHoles(). */
-  std::vector<HoleNeed> PlanAndTellNeeds()
+  std::vector<HoleNeed> PlanAndReturnNeeds()
   {
     this->PlanAll();
     return this->Needs();
@@ -270,9 +272,9 @@ private:
     if (options.UseLattice == LatticeMode::Automatic && !(options.Spacing > 0.0) &&
       this->Given.Count() > 0)
     {
-      lattice = options.KnownLattice ? *options.KnownLattice
-                                     : FindLattice(this->Points, LatticeTolerance, this->Threads,
-                                         Part(options.Monitor, 0.0, 0.02));
+      lattice = this->Whole.FoundLattice ? *this->Whole.FoundLattice
+                                         : FindLattice(this->Points, LatticeTolerance,
+                                             this->Threads, Part(options.Monitor, 0.0, 0.02));
     }
     if (lattice.Found)
     {
@@ -308,15 +310,15 @@ private:
     const Index limit = this->Options.MaximumInsertedPoints;
     const Index ofIds = MaximumNumberOfPoints - this->Surface.NumberOfPoints();
     const std::vector<HoleNeed> needs = this->Needs();
-    std::vector<double> rooms = this->Options.Rooms;
-    if (rooms.empty())
+    std::vector<double> quotas = this->Whole.Quotas;
+    if (quotas.empty())
     {
       CheckEffort(needs, this->Surface.NumberOfPoints(), this->Options);
-      rooms = RoomsOfNeeds(needs, std::min(limit, ofIds));
+      quotas = QuotasFor(needs, std::min(limit, ofIds));
     }
     for (Index hole = 0; hole < this->Given.Count(); ++hole)
     {
-      const double points = needs[hole].Most, left = rooms[hole];
+      const double points = needs[hole].Most, left = quotas[hole];
       HoleReport& report = this->Result.Reports[hole];
       if (std::isnan(points))
       {
@@ -440,7 +442,10 @@ private:
     {
       filled.Triangles = CollectBoundary(this->Surface, this->Given, hole);
       Patch& patch = filled.Triangles;
-      patch.Known = this->Options.Known.empty() ? patch.Known : this->Options.Known[hole];
+      if (!this->Whole.Surroundings.empty())
+      {
+        patch.Surroundings = this->Whole.Surroundings[hole];
+      }
       MakePatch(this->Plans[hole], Part(progress, 0.0, 0.4), patch);
       if (this->Given.IsRegion(hole) && patch.NumberOfNewVertices() == 0)
       {
@@ -456,15 +461,15 @@ private:
     {
       Fail(report, error.what());
     }
-    catch (const BeyondKnown&)
+    catch (const BeyondSurroundings&)
     {
       Fail(report, "");
-      report.IsBeyondKnown = true;
+      report.NeedsMoreSurroundings = true;
     }
   }
 
   /** Of the holes given and their reports. The result has nothing else of regions without room. */
-  void KeepThoseWithRoom()
+  void DropRegionsWithoutRoom()
   {
     std::vector<HoleReport>& reports = this->Result.Reports;
     std::size_t count = 0;
@@ -487,6 +492,7 @@ private:
   const PointView& Points;
   Holes Given;
   const FillOptions& Options;
+  const WholeSurface& Whole;
   const int Threads;
   double Least = 0.0; ///< the fixed work for a patch
   double AllWork = 0.0;
@@ -541,10 +547,10 @@ HoleReport MeasureHole(const Mesh& mesh, const Holes& holes, Index hole, const F
   return report;
 }
 
-std::vector<HoleNeed> NeedsOfHoles(
-  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options)
+std::vector<HoleNeed> NeedsOfHoles(const Mesh& mesh, const PointView& points, const Holes& holes,
+  const FillOptions& options, const WholeSurface& whole)
 {
-  return HoleFilling(mesh, points, holes, options).PlanAndTellNeeds();
+  return HoleFilling(mesh, points, holes, options, whole).PlanAndReturnNeeds();
 }
 
 void CheckEffort(
@@ -584,7 +590,7 @@ void CheckEffort(
     " would do, or a larger MaximumNumberOfExpectedPoints.");
 }
 
-std::vector<double> RoomsOfNeeds(const std::vector<HoleNeed>& needs, Index limit)
+std::vector<double> QuotasFor(const std::vector<HoleNeed>& needs, Index limit)
 {
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t hole = 0; hole < needs.size(); ++hole)
@@ -595,20 +601,20 @@ std::vector<double> RoomsOfNeeds(const std::vector<HoleNeed>& needs, Index limit
     }
   }
   std::sort(order.begin(), order.end());
-  std::vector<double> rooms(needs.size(), 0.0);
+  std::vector<double> quotas(needs.size(), 0.0);
   double left = limit;
   for (const auto& [points, hole] : order)
   {
-    rooms[hole] = left;
+    quotas[hole] = left;
     left -= points <= left ? points : 0.0;
   }
-  return rooms;
+  return quotas;
 }
 
-FillResult FillHoles(
-  const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options)
+FillResult FillHoles(const Mesh& mesh, const PointView& points, Holes holes,
+  const FillOptions& options, const WholeSurface& whole)
 {
-  return HoleFilling(mesh, points, std::move(holes), options).Run();
+  return HoleFilling(mesh, points, std::move(holes), options, whole).Run();
 }
 
 } // namespace elevation

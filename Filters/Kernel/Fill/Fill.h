@@ -82,13 +82,15 @@ struct FillOptions
   /** Threads to use; 0: one per core. The result is the same, byte for byte. */
   int NumberOfThreads = 1;
   Progress Monitor;
+};
 
-  /** @name For a part of a surface; of the whole, if they are not set. @{ */
-  const LatticeSearch* KnownLattice = nullptr; ///< that of the whole, found or not
+/** What is known of a surface where only the triangles around some of its holes are there. */
+struct WholeSurface
+{
+  const LatticeSearch* FoundLattice = nullptr; ///< nullptr: it is looked for
   /** One a hole, in which all triangles that meet it are there. It contains the rim. */
-  std::vector<Box> Known;
-  std::vector<double> Rooms; ///< one a hole: RoomsOfNeeds() of all, after CheckEffort()
-  /** @} */
+  std::vector<Box> Surroundings;
+  std::vector<double> Quotas; ///< one a hole: QuotasFor() all holes, after CheckEffort()
 };
 
 struct HoleReport
@@ -102,8 +104,8 @@ struct HoleReport
   double Spacing = 0.0; ///< as given, or the mean length of the edges (Patch.h)
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
-  bool IsBeyondKnown = false; ///< not filled, as triangles were needed outside of Known
-  std::string Reason;         ///< if Failed: a sentence without the hole's name
+  bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
+  std::string Reason;                 ///< if Failed: a sentence without the hole's name
 };
 
 /**
@@ -138,8 +140,8 @@ struct FillResult
  * @throws Error of CheckEffort(), before any hole is filled; Aborted; std::bad_alloc: which holes
  *         fail does not depend on the free memory
  */
-FillResult FillHoles(
-  const Mesh& mesh, const PointView& points, Holes holes, const FillOptions& options);
+FillResult FillHoles(const Mesh& mesh, const PointView& points, Holes holes,
+  const FillOptions& options, const WholeSurface& whole = WholeSurface());
 
 /**
  * The report of a hole by its edges alone: filled, unless MaximumHoleSize or MaximumHoleEdges refuse
@@ -158,9 +160,9 @@ struct HoleNeed
   double Area = 0.0;
 };
 
-/** Of each hole of a part. Options as for FillHoles(), without Rooms. */
-std::vector<HoleNeed> NeedsOfHoles(
-  const Mesh& mesh, const PointView& points, const Holes& holes, const FillOptions& options);
+/** Of each hole of a part. As FillHoles(), without quotas. */
+std::vector<HoleNeed> NeedsOfHoles(const Mesh& mesh, const PointView& points, const Holes& holes,
+  const FillOptions& options, const WholeSurface& whole = WholeSurface());
 
 /**
  * Refuses what would take too much time and memory, before any hole is filled.
@@ -175,7 +177,7 @@ void CheckEffort(
   const std::vector<HoleNeed>& needs, double numberOfPoints, const FillOptions& options);
 
 /** How many points smaller holes leave for each hole. */
-std::vector<double> RoomsOfNeeds(const std::vector<HoleNeed>& needs, Index limit);
+std::vector<double> QuotasFor(const std::vector<HoleNeed>& needs, Index limit);
 
 } // namespace elevation
 

@@ -107,7 +107,7 @@ public:
    * @param[in] stars   of the surface; may be null for NeighborMean
    * @param[in] patch   with everything that Neighbours.h finds
    * @param[in] values  by which Adaptive chooses: the elevations
-   * @throws Aborted, std::bad_alloc, BeyondKnown
+   * @throws Aborted, std::bad_alloc, BeyondSurroundings
    */
   Heights(const Mesh& surface, const VertexStars* stars, const PatchMesh& patch,
     Interpolation wanted, const Values& values, const Progress& progress = Progress());
@@ -134,13 +134,13 @@ private:
     return { (p.X - this->Center.X) * this->Scale, (p.Y - this->Center.Y) * this->Scale };
   }
 
-  /** Visits a star, all of whose triangles are there. @throws BeyondKnown */
+  /** Visits a star, all of whose triangles are there. @throws BeyondSurroundings */
   template <typename Visitor>
   void VisitStar(const VertexStars& stars, Index vertex, Visitor&& visit) const
   {
-    if (!this->Patch.Known.Contains(this->Surface.PointOf(vertex)))
+    if (!this->Patch.Surroundings.Contains(this->Surface.PointOf(vertex)))
     {
-      throw BeyondKnown();
+      throw BeyondSurroundings();
     }
     stars.Visit(this->Surface, vertex, visit);
   }

@@ -137,7 +137,7 @@ struct PatchMesh
   Index NumberOfPointsInside = 0; ///< of them those inside a region
   double Spacing = 0.0;
   /** All triangles that meet it are there; others may be missing where the surface is a part. */
-  Box Known{ { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
+  Box Surroundings{ { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
 
   // Found by Neighbours.h, one for each new vertex.
   Adjacency Neighbors;

@@ -356,7 +356,7 @@ private:
     {
       return false; // the surface has no triangle there
     }
-    Walk walk(this->Of.Surface, Mesh::Triangle(start), this->Of.Patch.Known);
+    Walk walk(this->Of.Surface, Mesh::Triangle(start), this->Of.Patch.Surroundings);
     if (!walk.To({ origin.X + distance * direction.X, origin.Y + distance * direction.Y }))
     {
       return false;

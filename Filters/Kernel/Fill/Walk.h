@@ -20,7 +20,7 @@ namespace elevation
 {
 
 /** Thrown where triangles are asked for that a part of a surface may not have. */
-struct BeyondKnown
+struct BeyondSurroundings
 {
 };
 
@@ -43,7 +43,7 @@ public:
   {
   }
 
-  /** @return false if the walk comes to the border of the surface. @throws BeyondKnown */
+  /** @return false if the walk comes to the border of the surface. @throws BeyondSurroundings */
   bool To(const Point2& p)
   {
     constexpr int mostSteps = 1 << 16;
@@ -85,7 +85,7 @@ public:
         if (!this->IsKnown(this->Surface.Origin(edge)) &&
           !this->IsKnown(this->Surface.Destination(edge)))
         {
-          throw BeyondKnown();
+          throw BeyondSurroundings();
         }
         return false;
       }

@@ -128,7 +128,7 @@ public:
   {
     while (this->Next < this->End && !this->Budget.IsPaused())
     {
-      this->AskForRowsAbove();
+      this->PrefetchRowsAbove();
       if (this->GrowFan(this->Order[this->Next]))
       {
         ++this->Next;
@@ -142,7 +142,7 @@ private:
    * Prefetches points some rows above: slots are sorted by rows too, so fans reach these points
    * soon, in a different order.
    */
-  void AskForRowsAbove() const
+  void PrefetchRowsAbove() const
   {
     constexpr Index rows = 5, inLine = 8; // of the widest values
     if (this->Next % inLine == 0)

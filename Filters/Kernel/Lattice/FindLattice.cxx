@@ -870,7 +870,7 @@ Lattice StepsOfGiven(const Lattice& given)
   return Reduced(given);
 }
 
-Index FirstBeside(const PointView& points, const std::vector<Index>& notFinite,
+Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,
   const Lattice& steps, double tolerance, const Progress& progress)
 {
   const NodeOfPoint nodeOf(steps);
@@ -919,7 +919,7 @@ LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double
   static_cast<Extent&>(search) =
     FindExtent(points, threads, Part(progress, 0.0, 0.4), [](Index, const Point2&) {});
   const Index beside =
-    FirstBeside(points, search.NotFinite, search.Steps, tolerance, Part(progress, 0.4, 1.0));
+    FirstOffLattice(points, search.NotFinite, search.Steps, tolerance, Part(progress, 0.4, 1.0));
   if (beside != None)
   {
     throw BesideGivenLattice(beside, points.At(beside), search.Steps, tolerance);

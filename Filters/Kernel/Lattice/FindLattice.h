@@ -93,7 +93,7 @@ LatticeSearch GivenLattice(const PointView& points, const Lattice& given, double
 /** @throws Error if the steps are parallel or not finite */
 Lattice StepsOfGiven(const Lattice& given);
 /** The first point that is too far from its node, or None. */
-Index FirstBeside(const PointView& points, const std::vector<Index>& notFinite,
+Index FirstOffLattice(const PointView& points, const std::vector<Index>& notFinite,
   const Lattice& steps, double tolerance, const Progress& progress);
 Error BesideGivenLattice(std::int64_t id, const Point2& p, const Lattice& steps, double tolerance);
 Error GivenLatticeTooLarge();

@@ -257,19 +257,23 @@ Rings ThereAndBack(const BoundaryLines& lines)
   return rings;
 }
 
-/** @param[in] lines  a boundary, or with Following::Lines lines along which triangles are split */
-void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimOptions& options,
-  Following follow, const Progress& progress, Changes& changes, Trimmed& result)
+/**
+ * @param[in] lines     a boundary, or with Following::Lines lines along which triangles are split
+ * @param[in] ofWhole   the border of the mesh, where these are all triangles near the boundary
+ */
+void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
+  const std::vector<BorderEdge>* ofWhole, const TrimOptions& options, Following follow,
+  const Progress& progress, Changes& changes, Trimmed& result)
 {
   const int threads = options.NumberOfThreads;
   const bool areLines = follow == Following::Lines;
   result.Boundary = areLines ? ThereAndBack(lines) : JoinLines(lines);
   NearTriangles near;
   std::vector<BorderEdge> border;
-  if (options.Border)
+  if (ofWhole)
   {
     near = AllTriangles(list);
-    border = *options.Border;
+    border = *ofWhole;
   }
   else if (options.Test == OutwardTest::Exact)
   {
@@ -313,7 +317,7 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines, const TrimO
   PutBack(list, near, mesh, Part(progress, 0.97, 1.0), changes);
   PutBackFlags(near, std::move(outward.IsOutward), changes);
   PutBackInserted(near, mesh, rings, changes, result);
-  if (!options.Border)
+  if (!ofWhole)
   {
     CheckEnclosed(list, changes.IsOutward, lines.Points, result.Boundary);
   }
@@ -473,7 +477,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
     sides[side]->IsWholeList = changes.Corners.empty() && sizes[1 - side] == 0;
     const std::size_t size = sizes[side];
     sides[side]->Corners.Resize(sides[side]->IsWholeList ? 0 : 3 * size);
-    sides[side]->Parents.Resize(options.TellParents ? size : 0);
+    sides[side]->Parents.Resize(options.ReturnParents ? size : 0);
   }
   const auto write = [&](Index range, Index t, Index endOfRange) {
     std::size_t next[2] = { static_cast<std::size_t>(t - outwardBefore[range]),
@@ -493,7 +497,7 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
       {
         CopyCorners(list, changes, t, end, changed, side.Corners.data() + 3 * place);
       }
-      for (Index i = t; i < end && options.TellParents; ++i)
+      for (Index i = t; i < end && options.ReturnParents; ++i)
       {
         side.Parents[place + (i - t)] = i < list.Count ? i : changes.Parents[i - list.Count];
       }
@@ -504,47 +508,66 @@ void WriteSides(const TriangleList& list, const Changes& changes, const TrimOpti
   ForEachRange(all, threads, Part(progress, 0.1, 1.0), write, atOnce);
 }
 
-} // namespace
-
-Trimmed Trim(
-  const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options)
+/** @param[in] find  finds the changes, and the rest of the result */
+template <typename Find>
+Trimmed TrimBy(const TriangleList& triangles, const TrimOptions& options, const Find& find)
 {
   Trimmed result;
-  if (triangles.Count == 0 && !options.Border)
-  {
-    return result;
-  }
   Changes changes;
-  const Progress finding = Part(options.Monitor, 0.0, 0.95);
-  if (boundary)
-  {
-    const bool isToFollow = options.Test == OutwardTest::Exact && options.RecoverBoundary &&
-      options.Edges == BoundaryEdges::FollowSurface;
-    TrimAlong(triangles, *boundary, options, isToFollow ? Following::Rings : Following::None,
-      finding, changes, result);
-  }
-  else
-  {
-    TrimExtracted(triangles, options, finding, changes, result);
-  }
+  find(Part(options.Monitor, 0.0, 0.95), changes, result);
   WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
   Report(options.Monitor, 1.0);
   return result;
 }
 
+/** @param[in] border  of the mesh that the triangles are a part of; nullptr: they are the mesh */
+Trimmed TrimAlongRings(const TriangleList& triangles, const BoundaryLines& boundary,
+  const std::vector<BorderEdge>* border, const TrimOptions& options)
+{
+  const bool isToFollow = options.Test == OutwardTest::Exact && options.RecoverBoundary &&
+    options.Edges == BoundaryEdges::FollowSurface;
+  return TrimBy(
+    triangles, options, [&](const Progress& finding, Changes& changes, Trimmed& result) {
+      TrimAlong(triangles, boundary, border, options,
+        isToFollow ? Following::Rings : Following::None, finding, changes, result);
+    });
+}
+
+} // namespace
+
+Trimmed Trim(
+  const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options)
+{
+  if (triangles.Count == 0)
+  {
+    return Trimmed();
+  }
+  if (boundary)
+  {
+    return TrimAlongRings(triangles, *boundary, nullptr, options);
+  }
+  return TrimBy(
+    triangles, options, [&](const Progress& finding, Changes& changes, Trimmed& result) {
+      TrimExtracted(triangles, options, finding, changes, result);
+    });
+}
+
+Trimmed TrimNear(const TriangleList& triangles, const BoundaryLines& boundary,
+  const std::vector<BorderEdge>& border, const TrimOptions& options)
+{
+  return TrimAlongRings(triangles, boundary, &border, options);
+}
+
 Trimmed SplitAlong(
   const TriangleList& triangles, const BoundaryLines& lines, const TrimOptions& options)
 {
-  Trimmed result;
-  Changes changes;
-  if (triangles.Count > 0)
-  {
-    TrimAlong(triangles, lines, options, Following::Lines, Part(options.Monitor, 0.0, 0.95),
-      changes, result);
-  }
-  WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
-  Report(options.Monitor, 1.0);
-  return result;
+  return TrimBy(
+    triangles, options, [&](const Progress& finding, Changes& changes, Trimmed& result) {
+      if (triangles.Count > 0)
+      {
+        TrimAlong(triangles, lines, nullptr, options, Following::Lines, finding, changes, result);
+      }
+    });
 }
 
 std::optional<Trimmed> TrimParts(
@@ -556,13 +579,10 @@ std::optional<Trimmed> TrimParts(
   {
     return std::nullopt;
   }
-  Trimmed result;
-  TakeOutline(std::move(*found), result);
-  Changes changes;
-  changes.IsOutward = OutwardOf(std::move(found->IsSurface));
-  WriteSides(triangles, changes, options, Part(options.Monitor, 0.95, 1.0), result);
-  Report(options.Monitor, 1.0);
-  return result;
+  return TrimBy(triangles, options, [&](const Progress&, Changes& changes, Trimmed& result) {
+    TakeOutline(std::move(*found), result);
+    changes.IsOutward = OutwardOf(std::move(found->IsSurface));
+  });
 }
 
 } // namespace elevation

@@ -56,16 +56,11 @@ struct TrimOptions
   bool RecoverBoundary = true;
   /** With InwardNormal, which looks at triangles of three boundary points, they are Straight. */
   BoundaryEdges Edges = BoundaryEdges::FollowSurface;
-  /**
-   * The border of a mesh, if the triangles are those that SweepAlongRings() has found near the boundary,
-   * which is given, of all its parts; all are proven, and the boundary may enclose none of these.
-   */
-  const std::vector<BorderEdge>* Border = nullptr;
   /** For a boundary that is extracted; 0: from the data. See ExtractOptions. */
   double GapTolerance = 0.0;
   Lattice Grid; ///< the same
   /** Whether to return the parents of triangles. */
-  bool TellParents = true;
+  bool ReturnParents = true;
   /** Threads to use; 0: one per core. The result is the same. */
   int NumberOfThreads = 1;
   Progress Monitor;
@@ -110,6 +105,14 @@ struct Trimmed
  */
 Trimmed Trim(
   const TriangleList& triangles, const BoundaryLines* boundary, const TrimOptions& options);
+
+/**
+ * Trim() along a boundary, for the triangles that SweepAlongRings() has found near it in all parts of a
+ * mesh. They are proven, and the boundary may enclose none of them.
+ * @param[in] border  of the mesh
+ */
+Trimmed TrimNear(const TriangleList& triangles, const BoundaryLines& boundary,
+  const std::vector<BorderEdge>& border, const TrimOptions& options);
 
 /**
  * Splits triangles where lines cross their edges, so that the lines are edges and the surface is as

@@ -612,7 +612,7 @@ TEST(Fill, ReportsProgressFromZeroToOne)
 TEST(Fill, LeavesRoomFromTheSmallestHoleOn)
 {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(RoomsOfNeeds({ { 5.0 }, { none }, { 3.0 }, { 9.0 } }, 9),
+  EXPECT_EQ(QuotasFor({ { 5.0 }, { none }, { 3.0 }, { 9.0 } }, 9),
     (std::vector<double>{ 6.0, 0.0, 9.0, 1.0 }));
 }
 

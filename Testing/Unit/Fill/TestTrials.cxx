@@ -309,10 +309,10 @@ TEST(Trials, OfAPartOfTheSurfaceAreThoseOfTheWholeOrTellThatTheyNeedMore)
     }
     Mesh part = mesh;
     KeepTriangles(keep, part);
-    FillOptions options;
-    options.Known = { box };
-    const FillResult patches = FillHoles(part, points, FindHoles(mesh), options);
-    if (patches.Reports[0].IsBeyondKnown)
+    WholeSurface known;
+    known.Surroundings = { box };
+    const FillResult patches = FillHoles(part, points, FindHoles(mesh), FillOptions(), known);
+    if (patches.Reports[0].NeedsMoreSurroundings)
     {
       ++wentBeyond;
       EXPECT_EQ(patches.NumberOfPoints(), 0);

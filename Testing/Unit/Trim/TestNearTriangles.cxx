@@ -156,8 +156,7 @@ TEST(NearTriangles, AreTrimmedAloneAsInTheWholeMesh)
     TrimOptions options;
     const Trimmed all = Trim(list, &lines, options);
     const std::vector<BorderEdge> border; // its marks are not compared
-    options.Border = &border;
-    const Trimmed some = Trim(near.List(), &lines, options);
+    const Trimmed some = TrimNear(near.List(), lines, border, options);
     EXPECT_EQ(some.NumberOfRecoveredEdges, all.NumberOfRecoveredEdges);
     EXPECT_EQ(some.Inserted.size(), all.Inserted.size());
     EXPECT_GT(some.Inserted.size(), 0u);
@@ -197,8 +196,7 @@ TEST(NearTriangles, MayAllBeOutward)
   const BoundaryLines lines = LinesOf(drawn.Points, drawn.Lines);
   TrimOptions options;
   const std::vector<BorderEdge> border;
-  options.Border = &border;
-  const Trimmed trimmed = Trim(none.List(), &lines, options);
+  const Trimmed trimmed = TrimNear(none.List(), lines, border, options);
   EXPECT_EQ(trimmed.Boundary.Vertices, drawn.Lines.Vertices);
   EXPECT_EQ(trimmed.NumberOfOutwardTriangles, 0);
   Lines beside = drawn;
@@ -208,8 +206,8 @@ TEST(NearTriangles, MayAllBeOutward)
   }
   const Surface surface = RandomSurface(random, 20);
   const BoundaryLines far = LinesOf(beside.Points, beside.Lines);
-  EXPECT_EQ(Trim(surface.List(), &far, options).NumberOfOutwardTriangles, surface.List().Count);
-  options.Border = nullptr;
+  EXPECT_EQ(
+    TrimNear(surface.List(), far, border, options).NumberOfOutwardTriangles, surface.List().Count);
   EXPECT_HAS(testing_errors::MessageFrom([&] { Trim(surface.List(), &far, options); }),
     "encloses no triangle");
 }

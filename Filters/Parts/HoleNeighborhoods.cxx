@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SurroundingBoxes.h"
+#include "HoleNeighborhoods.h"
 
-#include "NearParts.h"
+#include "BoundaryZone.h"
 
 #include "vtkCellArray.h"
 #include "vtkNew.h"
@@ -59,16 +59,16 @@ std::vector<int> BalancedRanks(
   return rankOf;
 }
 
-Box BoxAround(const HoleExtent& hole, int timesTooFew)
+Box BoxAround(const HoleExtent& hole, int retries)
 {
   const Box& rim = hole.OfRim;
   constexpr int most = 24; // times: 3e14 as wide
-  if (timesTooFew > most)
+  if (retries > most)
   {
     return { { -DBL_MAX, -DBL_MAX }, { DBL_MAX, DBL_MAX } };
   }
   const double size = std::hypot(rim.Width(), rim.Height());
-  const double by = std::pow(4.0, timesTooFew) * (1.5 * size + 6.0 * hole.MeanEdge);
+  const double by = std::pow(4.0, retries) * (1.5 * size + 6.0 * hole.MeanEdge);
   return { { rim.Low.X - by, rim.Low.Y - by }, { rim.High.X + by, rim.High.Y + by } };
 }
 

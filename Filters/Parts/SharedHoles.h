@@ -9,9 +9,9 @@
 
 #include "BorderOfParts.h"
 #include "CommonPoints.h"
+#include "HoleNeighborhoods.h"
 #include "Kernel/Fill/Fill.h"
 #include "LatticeOfRanks.h"
-#include "SurroundingBoxes.h"
 
 #include "vtkSmartPointer.h"
 
@@ -23,7 +23,7 @@ namespace elevation
 {
 
 /** What is known of all holes, wherever they are filled. */
-struct HolesOfParts
+struct SharedHoles
 {
   FillOptions Options; ///< without what is of a part
   bool Interpolate = true;
@@ -31,9 +31,9 @@ struct HolesOfParts
   BorderOfAll Border;
   FillResult OfAll; ///< the holes, by points of the border, and reports; no patches
   std::vector<HoleExtent> Extents;
-  std::vector<int> TimesTooFew; ///< for each hole: how often it needed triangles beyond its box
+  std::vector<int> Retries; ///< for each hole: how often it needed triangles beyond its box
   LatticeSearch Lattice;
-  std::vector<double> Rooms;
+  std::vector<double> Quotas;
   std::vector<vtkIdType> FirstNewPoints; ///< of each hole, and the number of all
 
   /** Finds and measures the holes of the border. @return false if borders touch */
@@ -43,7 +43,7 @@ struct HolesOfParts
   {
     return this->OfAll.Reports[hole].Status == FillStatus::Filled;
   }
-  Box BoxOf(Index hole) const { return BoxAround(this->Extents[hole], this->TimesTooFew[hole]); }
+  Box BoxOf(Index hole) const { return BoxAround(this->Extents[hole], this->Retries[hole]); }
   bool NeedLattice() const;
   /** @param[in] points  of all parts, each once */
   void FindLattice(const Ranks& ranks, const PointSlices& points, const Progress& progress);
@@ -60,9 +60,9 @@ struct SurroundedHoles
 
   /** Joins what parts have around the holes. */
   void Surround(const Parts& parts, bool byIds, const Progress& progress);
-  std::vector<HoleNeed> Needs(const HolesOfParts& all, const Progress& progress) const;
+  std::vector<HoleNeed> Needs(const SharedHoles& all, const Progress& progress) const;
   /** @return the holes that need triangles beyond their boxes */
-  std::vector<Index> Fill(const HolesOfParts& all, const Progress& progress);
+  std::vector<Index> Fill(const SharedHoles& all, const Progress& progress);
   /** Keeps only those points of the surrounding that patches have. */
   void KeepCorners();
 
@@ -73,8 +73,9 @@ struct SurroundedHoles
   explicit SurroundedHoles(std::vector<SurroundedHoles>&& groups);
 
 private:
-  Holes Listed(const HolesOfParts& all) const;
-  FillOptions OptionsFor(const HolesOfParts& all) const;
+  Holes Listed(const SharedHoles& all) const;
+  FillOptions OptionsFor(const SharedHoles& all, const Progress& progress) const;
+  WholeSurface KnownOf(const SharedHoles& all) const;
 
   Mesh Near; // the triangles
 };

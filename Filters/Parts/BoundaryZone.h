@@ -53,10 +53,10 @@ struct TrimmedPart
  * The near parts of ranks, in their order. Each has points, near triangles as polygons, and the
  * border of all triangles of the rank as lines.
  */
-class NearParts
+class BoundaryZone
 {
 public:
-  explicit NearParts(Parts&& parts)
+  explicit BoundaryZone(Parts&& parts)
     : Given(std::move(parts))
   {
   }
@@ -99,8 +99,8 @@ private:
   std::vector<Index> FirstTriangles; // of each part, and the number of all
   std::unique_ptr<CommonPoints> Common;
   vtkSmartPointer<vtkPolyData> Whole;
-  TrianglesOfDataSet Triangles; // of the whole
-  vtkNew<vtkPolyData> Points;   // of the whole, and those inserted
+  TrianglesOfDataSet Triangles;   // of the whole
+  vtkNew<vtkPolyData> Points;     // of the whole, and those inserted
   std::vector<BorderEdge> Border; // of the mesh, if a boundary is given
   Trimmed Sides;
   bool IsOutline = false;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "HolesOfParts.h"
+#include "SharedHoles.h"
 
 #include "Adapt/Adapt.h"
+#include "BoundaryZone.h"
 #include "Joining.h"
-#include "NearParts.h"
 #include "PackedData.h"
 
 #include "vtkPolyData.h"
@@ -18,13 +18,13 @@
 namespace elevation
 {
 
-bool HolesOfParts::Find(const Progress& progress)
+bool SharedHoles::Find(const Progress& progress)
 {
   const PointView points = this->Border.View();
   this->OfAll = FillResult();
   this->OfAll.Found = FindHolesOfBorder(this->Border.Edges, points, progress);
   this->Extents = ExtentsOf(this->OfAll.Found, points);
-  this->TimesTooFew.assign(this->Extents.size(), 0);
+  this->Retries.assign(this->Extents.size(), 0);
   Mesh places;
   for (Index i = 0; i < points.Count; ++i)
   {
@@ -40,7 +40,7 @@ bool HolesOfParts::Find(const Progress& progress)
 }
 
 /** As on one rank: only for holes to be filled, without a spacing. */
-bool HolesOfParts::NeedLattice() const
+bool SharedHoles::NeedLattice() const
 {
   bool areToBeFilled = false;
   for (std::size_t hole = 0; hole < this->OfAll.Reports.size(); ++hole)
@@ -50,7 +50,7 @@ bool HolesOfParts::NeedLattice() const
   return areToBeFilled && !(this->Options.Spacing > 0.0);
 }
 
-void HolesOfParts::FindLattice(
+void SharedHoles::FindLattice(
   const Ranks& ranks, const PointSlices& points, const Progress& progress)
 {
   LatticeSample sample;
@@ -58,7 +58,7 @@ void HolesOfParts::FindLattice(
     ThreadsAtOnce(this->Options.NumberOfThreads), progress, sample, this->Lattice.Steps);
 }
 
-void HolesOfParts::NumberNewPoints()
+void SharedHoles::NumberNewPoints()
 {
   this->FirstNewPoints.assign(1, 0);
   for (const HoleReport& report : this->OfAll.Reports)
@@ -78,7 +78,7 @@ void SurroundedHoles::Surround(const Parts& parts, bool byIds, const Progress& p
 }
 
 /** The holes by the points of the surrounding. */
-Holes SurroundedHoles::Listed(const HolesOfParts& all) const
+Holes SurroundedHoles::Listed(const SharedHoles& all) const
 {
   std::vector<Index> placeOf(all.Border.Keys.size(), None);
   for (std::size_t i = 0; i < this->Keys.size(); ++i)
@@ -111,44 +111,47 @@ Holes SurroundedHoles::Listed(const HolesOfParts& all) const
   return holes;
 }
 
-FillOptions SurroundedHoles::OptionsFor(const HolesOfParts& all) const
+FillOptions SurroundedHoles::OptionsFor(const SharedHoles& all, const Progress& progress) const
 {
   FillOptions options = all.Options;
+  options.Monitor = progress;
   options.SinglePrecision = HasFloatPoints(this->Surrounding);
-  options.KnownLattice = &all.Lattice;
   if (all.Interpolate)
   {
     options.Attributes = AttributesOf(this->Surrounding->GetPointData());
   }
-  for (const Index hole : this->Numbers)
-  {
-    options.Known.push_back(all.BoxOf(hole));
-    if (!all.Rooms.empty())
-    {
-      options.Rooms.push_back(all.Rooms[hole]);
-    }
-  }
   return options;
 }
 
-std::vector<HoleNeed> SurroundedHoles::Needs(
-  const HolesOfParts& all, const Progress& progress) const
+WholeSurface SurroundedHoles::KnownOf(const SharedHoles& all) const
 {
-  FillOptions options = this->OptionsFor(all);
-  options.Monitor = progress;
-  return NeedsOfHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
+  WholeSurface whole;
+  whole.FoundLattice = &all.Lattice;
+  for (const Index hole : this->Numbers)
+  {
+    whole.Surroundings.push_back(all.BoxOf(hole));
+    if (!all.Quotas.empty())
+    {
+      whole.Quotas.push_back(all.Quotas[hole]);
+    }
+  }
+  return whole;
 }
 
-std::vector<Index> SurroundedHoles::Fill(const HolesOfParts& all, const Progress& progress)
+std::vector<HoleNeed> SurroundedHoles::Needs(const SharedHoles& all, const Progress& progress) const
 {
-  FillOptions options = this->OptionsFor(all);
-  options.Monitor = progress;
-  this->Patches =
-    FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all), options);
+  return NeedsOfHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all),
+    this->OptionsFor(all, progress), this->KnownOf(all));
+}
+
+std::vector<Index> SurroundedHoles::Fill(const SharedHoles& all, const Progress& progress)
+{
+  this->Patches = FillHoles(this->Near, ViewPoints(this->Surrounding).View, this->Listed(all),
+    this->OptionsFor(all, progress), this->KnownOf(all));
   std::vector<Index> beyond;
   for (std::size_t i = 0; i < this->Numbers.size(); ++i)
   {
-    if (this->Patches.Reports[i].IsBeyondKnown)
+    if (this->Patches.Reports[i].NeedsMoreSurroundings)
     {
       beyond.push_back(this->Numbers[i]);
     }

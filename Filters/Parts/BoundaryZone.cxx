@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "NearParts.h"
+#include "BoundaryZone.h"
 
 #include "Adapt/Adapt.h"
 #include "Joining.h"
@@ -66,7 +66,7 @@ TrimmedPart::TrimmedPart(const Bytes& bytes)
   }
 }
 
-void NearParts::JoinAll(const Progress& progress)
+void BoundaryZone::JoinAll(const Progress& progress)
 {
   std::vector<std::string> warnings; // none: all have the same arrays
   this->Common =
@@ -81,7 +81,7 @@ void NearParts::JoinAll(const Progress& progress)
   this->Triangles = ViewTriangles(this->Whole);
 }
 
-bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
+bool BoundaryZone::Trim(const BoundaryLines& boundary, const TrimOptions& options)
 {
   this->JoinAll(Part(options.Monitor, 0.0, 0.3));
   const TriangleList& list = this->Triangles.View;
@@ -90,10 +90,9 @@ bool NearParts::Trim(const BoundaryLines& boundary, const TrimOptions& options)
     return false;
   }
   TrimOptions ofNear = options;
-  ofNear.Border = &this->Border;
-  ofNear.TellParents = true;
+  ofNear.ReturnParents = true;
   ofNear.Monitor = Part(options.Monitor, 0.4, 0.9);
-  this->Sides = elevation::Trim(list, &boundary, ofNear);
+  this->Sides = TrimNear(list, boundary, this->Border, ofNear);
   PassPoints(this->Whole, this->Sides, Part(options.Monitor, 0.9, 1.0), this->Points);
   return true;
 }
@@ -104,7 +103,7 @@ constexpr const char* NameOfStates = "States";
 constexpr const char* NameOfSpacings = "Spacings";
 } // namespace
 
-void NearParts::AddKnown(
+void BoundaryZone::AddKnown(
   const std::vector<Known>& states, const std::vector<double>& spacings, vtkPolyData* part)
 {
   vtkNew<vtkUnsignedCharArray> ofTriangles;
@@ -120,7 +119,7 @@ void NearParts::AddKnown(
   part->GetFieldData()->AddArray(ofPoints);
 }
 
-bool NearParts::TrimOutline(
+bool BoundaryZone::TrimOutline(
   std::int64_t innerPoints, std::int64_t triangles, const TrimOptions& options)
 {
   this->IsOutline = true;
@@ -156,7 +155,7 @@ bool NearParts::TrimOutline(
     atBorders.Add(edge.Origin);
   }
   TrimOptions ofParts = options;
-  ofParts.TellParents = true;
+  ofParts.ReturnParents = true;
   ofParts.Monitor = Part(options.Monitor, 0.4, 0.95);
   std::optional<Trimmed> trimmed = TrimParts(list,
     { states, spacings, std::move(*border), innerPoints + atBorders.Count(), triangles }, ofParts);
@@ -168,7 +167,7 @@ bool NearParts::TrimOutline(
   return trimmed.has_value();
 }
 
-bool NearParts::IsProven(
+bool BoundaryZone::IsProven(
   const TriangleList& list, const BoundaryLines& boundary, const Progress& progress)
 {
   // Joined points may have other places than the points had.
@@ -184,7 +183,7 @@ bool NearParts::IsProven(
   return border.has_value();
 }
 
-bool NearParts::AreSamePlaces() const
+bool BoundaryZone::AreSamePlaces() const
 {
   for (std::size_t part = 0; part < this->Given.size(); ++part)
   {
@@ -205,7 +204,7 @@ bool NearParts::AreSamePlaces() const
   return true;
 }
 
-std::vector<BorderEdge> NearParts::BordersOfParts() const
+std::vector<BorderEdge> BoundaryZone::BordersOfParts() const
 {
   std::vector<BorderEdge> all;
   auto each = vtk::TakeSmartPointer(this->Whole->GetLines()->NewIterator());
@@ -223,7 +222,7 @@ std::vector<BorderEdge> NearParts::BordersOfParts() const
  * The borders of all parts are that of the mesh and those between parts, which cancel out.
  * @return nothing if it does not prove that the mesh covers nothing twice
  */
-std::optional<std::vector<BorderEdge>> NearParts::ProvenBorder(
+std::optional<std::vector<BorderEdge>> BoundaryZone::ProvenBorder(
   const PointView& points, const Progress& progress) const
 {
   std::vector<BorderEdge> all = this->BordersOfParts(), border;
@@ -246,7 +245,7 @@ std::optional<std::vector<BorderEdge>> NearParts::ProvenBorder(
     : std::nullopt;
 }
 
-std::vector<TrimmedPart> NearParts::Split(const Progress& progress) const
+std::vector<TrimmedPart> BoundaryZone::Split(const Progress& progress) const
 {
   std::vector<TrimmedPart> splits(this->Given.size());
   std::vector<char> areOwned(this->Sides.Inserted.size(), 0);
@@ -281,7 +280,7 @@ std::vector<TrimmedPart> NearParts::Split(const Progress& progress) const
 }
 
 /** Of points that several parts have, the first that does not call it another rank's is the owner. */
-void NearParts::FindOwners(std::vector<TrimmedPart>& splits) const
+void BoundaryZone::FindOwners(std::vector<TrimmedPart>& splits) const
 {
   constexpr std::size_t nobody = static_cast<std::size_t>(-1);
   std::vector<std::size_t> owners(static_cast<std::size_t>(this->Common->Count()), nobody);
@@ -308,7 +307,7 @@ void NearParts::FindOwners(std::vector<TrimmedPart>& splits) const
 }
 
 /** @param[in,out] places  of the points in a part; None for all */
-void NearParts::PlaceCorners(std::size_t part, std::vector<Index>& places,
+void BoundaryZone::PlaceCorners(std::size_t part, std::vector<Index>& places,
   std::vector<char>& areOwned, TrimmedPart& split) const
 {
   const vtkIdType count = this->Given[part]->GetNumberOfPoints();
