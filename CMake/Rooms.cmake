@@ -125,6 +125,7 @@ set(es_Parts
   Joining
   LatticeOfRanks
   PackedData
+  PointKeys
   PointOwners
   PointRows
   Ranks

@@ -3,7 +3,6 @@
 #include "BorderOfParts.h"
 
 #include "Adapt/Adapt.h"
-#include "CommonPoints.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkIdTypeArray.h"
@@ -19,32 +18,6 @@
 
 namespace elevation
 {
-
-std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen)
-{
-  vtkDataArray* const ids = byIds ? data->GetPointData()->GetGlobalIds() : nullptr;
-  auto* const plain = vtkIdTypeArray::FastDownCast(ids);
-  const std::size_t count =
-    chosen ? chosen->size() : static_cast<std::size_t>(data->GetNumberOfPoints());
-  std::vector<PointKey> keys(count, PointKey{ { 0, 0, 0 } });
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const vtkIdType at = chosen ? (*chosen)[i] : static_cast<vtkIdType>(i);
-    if (ids)
-    {
-      keys[i][0] = plain ? plain->GetValue(at) : ids->GetVariantValue(at).ToTypeInt64();
-      continue;
-    }
-    double xyz[3];
-    data->GetPoint(at, xyz);
-    for (double& value : xyz)
-    {
-      value += 0.0; // -0 is 0
-    }
-    std::memcpy(keys[i].data(), xyz, sizeof(xyz));
-  }
-  return keys;
-}
 
 namespace
 {

@@ -9,6 +9,7 @@
 #define BorderOfParts_h
 
 #include "Kernel/Mesh/Mesh.h"
+#include "PointKeys.h"
 #include "Ranks.h"
 
 #include <array>
@@ -20,12 +21,6 @@ class vtkPolyData;
 
 namespace elevation
 {
-
-/** What two points of different parts have in common if they are one: the global id, or x,y,z. */
-using PointKey = std::array<std::int64_t, 3>;
-
-/** The keys of chosen points, or of all (nullptr). */
-std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen);
 
 /** The points of a part that others may have, too. */
 struct SharedPoints

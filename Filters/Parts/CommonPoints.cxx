@@ -4,14 +4,12 @@
 
 #include "Adapt/Adapt.h"
 
-#include "vtkIdTypeArray.h"
+#include "vtkDataArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkVariant.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <tuple>
@@ -31,10 +29,11 @@ CommonPoints::CommonPoints(const Parts& parts, PartKind kind, const Progress& pr
   std::iota(this->First.begin(), this->First.end(), 0);
   this->Places.resize(count);
   this->ReadMarks(parts);
-  const bool haveIds = this->ReadIds(parts);
-  if (!haveIds && (kind == PartKind::Mesh || !this->IsMarked.empty()))
+  const bool haveIds = std::all_of(parts.begin(), parts.end(),
+    [](const auto& part) { return part->GetPointData()->GetGlobalIds() != nullptr; });
+  if (haveIds || kind == PartKind::Mesh || !this->IsMarked.empty())
   {
-    this->ReadCoordinates(parts);
+    this->ReadKeys(parts, haveIds);
   }
   std::vector<vtkIdType> order = this->Keys.empty() ? this->First : this->Sorted(progress);
   for (std::size_t begin = 0, end = 0; begin < count && !this->Keys.empty(); begin = end)
@@ -78,42 +77,15 @@ void CommonPoints::ReadMarks(const Parts& parts)
   }
 }
 
-bool CommonPoints::ReadIds(const Parts& parts)
-{
-  const auto lacksIds = [](const auto& part) { return !part->GetPointData()->GetGlobalIds(); };
-  if (std::any_of(parts.begin(), parts.end(), lacksIds))
-  {
-    return false;
-  }
-  for (const auto& part : parts)
-  {
-    vtkDataArray* const ids = part->GetPointData()->GetGlobalIds();
-    auto* const plain = vtkIdTypeArray::FastDownCast(ids);
-    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
-    {
-      const std::int64_t id = plain ? plain->GetValue(i) : ids->GetVariantValue(i).ToTypeInt64();
-      this->Keys.push_back({ id, 0, 0 });
-    }
-  }
-  return true;
-}
-
-void CommonPoints::ReadCoordinates(const Parts& parts)
+void CommonPoints::ReadKeys(const Parts& parts, bool byIds)
 {
   this->Keys.reserve(this->First.size());
   for (const auto& part : parts)
   {
+    const PointKeys keys(part, byIds);
     for (vtkIdType i = 0; i < part->GetNumberOfPoints(); ++i)
     {
-      double xyz[3];
-      part->GetPoint(i, xyz);
-      for (double& value : xyz)
-      {
-        value += 0.0; // -0 is 0
-      }
-      Key key;
-      std::memcpy(key.data(), xyz, sizeof(xyz)); // the bits of NaN are equal, too
-      this->Keys.push_back(key);
+      this->Keys.push_back(keys.Of(i));
     }
   }
 }

@@ -8,13 +8,12 @@
 #define CommonPoints_h
 
 #include "Kernel/Base/Base.h"
+#include "PointKeys.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 class vtkPolyData;
@@ -59,11 +58,8 @@ public:
   std::vector<Rows> Sources() const;
 
 private:
-  using Key = std::array<std::int64_t, 3>;
-
   void ReadMarks(const Parts& parts);
-  bool ReadIds(const Parts& parts);
-  void ReadCoordinates(const Parts& parts);
+  void ReadKeys(const Parts& parts, bool byIds);
   /** The points in the order of their keys; of equal ones, those of their own rank first. */
   std::vector<vtkIdType> Sorted(const Progress& progress) const;
   /** Finds which of the points with one key are the same. */
@@ -71,7 +67,7 @@ private:
 
   std::vector<vtkIdType> Offsets; // of the first point of each part, and the number of all
   std::vector<char> IsMarked;     // as another rank's; empty if none is
-  std::vector<Key> Keys;
+  std::vector<PointKey> Keys;
   std::vector<vtkIdType> First; // of the points that are the same
   std::vector<vtkIdType> Places;
   vtkIdType NumberOfJoined = 0;

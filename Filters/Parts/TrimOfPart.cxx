@@ -3,6 +3,7 @@
 #include "TrimOfPart.h"
 
 #include "Kernel/Mesh/Mesh.h"
+#include "PointKeys.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -16,10 +17,8 @@
 #include "vtkVariant.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 namespace elevation
@@ -197,35 +196,21 @@ void TrimOfPart::FindOwn(const Progress& progress)
   }
   this->Points.New = this->Back.NewPoints;
   this->Places.assign(count, None);
-  using Key = std::tuple<vtkTypeInt64, double, double, double>;
-  const auto keyOf = [](vtkPolyData* data, vtkIdType i) {
-    if (vtkDataArray* const ids = data->GetPointData()->GetGlobalIds())
-    {
-      return Key(ids->GetVariantValue(i).ToTypeInt64(), 0.0, 0.0, 0.0);
-    }
-    double p[3];
-    data->GetPoint(i, p);
-    return Key(0, p[0], p[1], p[2]);
-  };
-  std::map<Key, std::size_t> ofOthers;
+  const bool byIds = this->Input->GetPointData()->GetGlobalIds() != nullptr;
+  std::map<PointKey, std::size_t> ofOthers;
   for (std::size_t i = 0; i < count; ++i)
   {
     if (!this->Back.IsInserted[i])
     {
-      ofOthers.emplace(keyOf(this->Back.NewPoints, static_cast<vtkIdType>(i)), i);
+      ofOthers.emplace(PointKeys(this->Back.NewPoints, byIds).Of(static_cast<vtkIdType>(i)), i);
     }
   }
   const vtkIdType own = this->Input->GetNumberOfPoints();
+  const PointKeys ofOwn(this->Input, byIds);
   for (vtkIdType i = 0; i < own && !ofOthers.empty(); ++i)
   {
     ReportStep(progress, static_cast<std::size_t>(i), static_cast<std::size_t>(own));
-    double p[3];
-    this->Input->GetPoint(i, p);
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-    {
-      continue; // no corner; and as a key, NaN would be equal to all
-    }
-    const auto found = ofOthers.find(keyOf(this->Input, i));
+    const auto found = ofOthers.find(ofOwn.Of(i));
     if (found != ofOthers.end())
     {
       this->Places[found->second] = static_cast<Index>(i);

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * By what points of different parts of a data set are one: the global id, or x,y,z to the last bit.
+ * Private to the module.
+ */
+#ifndef PointKeys_h
+#define PointKeys_h
+
+#include "Kernel/Base/Base.h"
+
+#include "vtkType.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+class vtkDataArray;
+class vtkPolyData;
+
+namespace elevation
+{
+
+using PointKey = std::array<std::int64_t, 3>;
+
+/** Gives the keys of a data set's points. -0 is 0, and NaN is NaN. */
+class PointKeys
+{
+public:
+  /** @param[in] byIds  the data set has global ids, and they tell */
+  PointKeys(vtkPolyData* data, bool byIds);
+  PointKey Of(vtkIdType point) const;
+
+private:
+  vtkPolyData* Data;
+  vtkDataArray* Ids; // nullptr: by x,y,z
+};
+
+/** The keys of chosen points, or of all (nullptr). */
+std::vector<PointKey> KeysOf(vtkPolyData* data, bool byIds, const std::vector<Index>* chosen);
+
+} // namespace elevation
+
+#endif
