@@ -10,6 +10,7 @@
 
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -42,6 +43,7 @@ FillOptions OptionsOf(vtkFillElevationHoles* filter)
 } // namespace elevation
 
 vtkStandardNewMacro(vtkFillElevationHoles);
+vtkCxxSetObjectMacro(vtkFillElevationHoles, Controller, vtkMultiProcessController);
 
 static_assert(vtkFillElevationHoles::NEIGHBOR_MEAN == int(elevation::Interpolation::NeighborMean) &&
     vtkFillElevationHoles::MEMBRANE == int(elevation::Interpolation::Membrane) &&
@@ -67,9 +69,13 @@ using elevation::Report;
 vtkFillElevationHoles::vtkFillElevationHoles()
 {
   this->SetNumberOfOutputPorts(2);
+  this->SetController(vtkMultiProcessController::GetGlobalController());
 }
 
-vtkFillElevationHoles::~vtkFillElevationHoles() = default;
+vtkFillElevationHoles::~vtkFillElevationHoles()
+{
+  this->SetController(nullptr);
+}
 
 int vtkFillElevationHoles::FillInputPortInformation(int port, vtkInformation* info)
 {
@@ -94,7 +100,7 @@ vtkTypeBool vtkFillElevationHoles::ProcessRequest(
 int vtkFillElevationHoles::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::FilterRun call(this, request, inputVector, outputVector);
+  elevation::FilterRun call(this, this->Controller, request, inputVector, outputVector);
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
@@ -190,6 +196,7 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Interpolation: " << this->GetInterpolationAsString() << "\n";
   os << indent << "InterpolatePointData: " << (this->InterpolatePointData ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";
   os << indent << "NumberOfFilledHoles: " << this->NumberOfFilledHoles << "\n";
 }

@@ -144,6 +144,8 @@
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
 
+class vtkMultiProcessController;
+
 class VTKELEVATIONSURFACE_EXPORT vtkFillElevationHoles : public vtkPolyDataAlgorithm
 {
 public:
@@ -348,6 +350,17 @@ public:
   /** After Update(): holes filled. */
   vtkGetMacro(NumberOfFilledHoles, vtkIdType);
 
+  ///@{
+  /**
+   * The processes that make one surface together where each asks for its piece of as many pieces as
+   * there are processes. More pieces are an error. All of them have to update, so where the input or
+   * a property changes on one, call Modified() on all: else this one waits for ever.
+   * Default: the global controller when the filter is made. nullptr: this process alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
   /** Also makes the outputs composite where the input is. */
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -373,6 +386,7 @@ protected:
 
   vtkIdType NumberOfHoles = 0;
   vtkIdType NumberOfFilledHoles = 0;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkFillElevationHoles(const vtkFillElevationHoles&) = delete;

@@ -13,6 +13,7 @@
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -53,6 +54,7 @@ DelaunayOptions OptionsOf(vtkGridDelaunay2D* filter)
 } // namespace elevation
 
 vtkStandardNewMacro(vtkGridDelaunay2D);
+vtkCxxSetObjectMacro(vtkGridDelaunay2D, Controller, vtkMultiProcessController);
 
 namespace
 {
@@ -222,9 +224,13 @@ elevation::ConstrainedTriangulation TriangulateSpread(
 vtkGridDelaunay2D::vtkGridDelaunay2D()
 {
   this->SetNumberOfInputPorts(2);
+  this->SetController(vtkMultiProcessController::GetGlobalController());
 }
 
-vtkGridDelaunay2D::~vtkGridDelaunay2D() = default;
+vtkGridDelaunay2D::~vtkGridDelaunay2D()
+{
+  this->SetController(nullptr);
+}
 
 int vtkGridDelaunay2D::FillInputPortInformation(int port, vtkInformation* info)
 {
@@ -266,7 +272,7 @@ vtkPolyData* vtkGridDelaunay2D::GetSource()
 int vtkGridDelaunay2D::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::FilterRun call(this, request, inputVector, outputVector);
+  elevation::FilterRun call(this, this->Controller, request, inputVector, outputVector);
   call.Second = "constraints";
   call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
@@ -378,6 +384,7 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LatticeTolerance: " << this->LatticeTolerance << "\n";
   os << indent << "LatticeFound: " << this->GetLatticeFound() << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfDuplicatePoints: " << this->NumberOfDuplicatePoints << "\n";
   os << indent << "NumberOfNonFinitePoints: " << this->NumberOfNonFinitePoints << "\n";
   os << indent << "NumberOfRedundantPoints: " << this->NumberOfRedundantPoints << "\n";

@@ -159,6 +159,8 @@
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
 
+class vtkMultiProcessController;
+
 class VTKELEVATIONSURFACE_EXPORT vtkGridDelaunay2D : public vtkPolyDataAlgorithm
 {
 public:
@@ -360,6 +362,17 @@ public:
   /** After Update(): points that constraints have added behind those of the input. */
   vtkGetMacro(NumberOfAddedPoints, vtkIdType);
 
+  ///@{
+  /**
+   * The processes that make one surface together where each asks for its piece of as many pieces as
+   * there are processes. More pieces are an error. All of them have to update, so where the input or
+   * a property changes on one, call Modified() on all: else this one waits for ever.
+   * Default: the global controller when the filter is made. nullptr: this process alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
   /** Also makes the outputs composite where the input is. */
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -391,6 +404,7 @@ protected:
   double LargestElevationError = 0.0;
   vtkIdType NumberOfConstraintCrossings = 0;
   vtkIdType NumberOfAddedPoints = 0;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkGridDelaunay2D(const vtkGridDelaunay2D&) = delete;

@@ -14,6 +14,7 @@
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkNew.h"
+#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -45,6 +46,7 @@ TrimOptions OptionsOf(vtkTrimOutwardTriangles* filter)
 } // namespace elevation
 
 vtkStandardNewMacro(vtkTrimOutwardTriangles);
+vtkCxxSetObjectMacro(vtkTrimOutwardTriangles, Controller, vtkMultiProcessController);
 
 namespace
 {
@@ -98,9 +100,13 @@ vtkTrimOutwardTriangles::vtkTrimOutwardTriangles()
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(3);
+  this->SetController(vtkMultiProcessController::GetGlobalController());
 }
 
-vtkTrimOutwardTriangles::~vtkTrimOutwardTriangles() = default;
+vtkTrimOutwardTriangles::~vtkTrimOutwardTriangles()
+{
+  this->SetController(nullptr);
+}
 
 int vtkTrimOutwardTriangles::FillInputPortInformation(int port, vtkInformation* info)
 {
@@ -142,7 +148,7 @@ vtkPolyData* vtkTrimOutwardTriangles::GetBoundary()
 int vtkTrimOutwardTriangles::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::FilterRun call(this, request, inputVector, outputVector);
+  elevation::FilterRun call(this, this->Controller, request, inputVector, outputVector);
   call.Second = "boundary";
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
@@ -232,6 +238,7 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
      << this->GridSteps[2] << ", " << this->GridSteps[3] << "\n";
   os << indent << "RecoverBoundary: " << (this->RecoverBoundary ? "On" : "Off") << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "EffectiveGapTolerance: " << this->EffectiveGapTolerance << "\n";
   os << indent << "NumberOfOutwardTriangles: " << this->NumberOfOutwardTriangles << "\n";
   os << indent << "NumberOfRecoveredEdges: " << this->NumberOfRecoveredEdges << "\n";

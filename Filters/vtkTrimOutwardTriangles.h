@@ -162,6 +162,8 @@
 #include "vtkElevationSurfaceModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
 
+class vtkMultiProcessController;
+
 class VTKELEVATIONSURFACE_EXPORT vtkTrimOutwardTriangles : public vtkPolyDataAlgorithm
 {
 public:
@@ -330,6 +332,17 @@ public:
    */
   vtkGetMacro(NumberOfInsertedPoints, vtkIdType);
 
+  ///@{
+  /**
+   * The processes that make one surface together where each asks for its piece of as many pieces as
+   * there are processes. More pieces are an error. All of them have to update, so where the input or
+   * a property changes on one, call Modified() on all: else this one waits for ever.
+   * Default: the global controller when the filter is made. nullptr: this process alone.
+   */
+  void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
   /** Also makes the outputs composite where the input is. */
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -354,6 +367,7 @@ protected:
   vtkIdType NumberOfRecoveredEdges = 0;
   vtkIdType NumberOfPointsLeftOut = 0;
   vtkIdType NumberOfInsertedPoints = 0;
+  vtkMultiProcessController* Controller = nullptr;
 
 private:
   vtkTrimOutwardTriangles(const vtkTrimOutwardTriangles&) = delete;

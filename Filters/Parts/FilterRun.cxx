@@ -79,9 +79,10 @@ void EmptyOutputs(const Place& place)
 
 } // namespace
 
-FilterRun::FilterRun(vtkAlgorithm* filter, vtkInformation* request,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
+FilterRun::FilterRun(vtkAlgorithm* filter, vtkMultiProcessController* controller,
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
   : Filter(filter)
+  , Controller(controller)
   , Request(request)
   , Inputs(inputs)
   , Outputs(outputs)
@@ -90,7 +91,7 @@ FilterRun::FilterRun(vtkAlgorithm* filter, vtkInformation* request,
 
 int FilterRun::Run(const std::function<void(Block&)>& body)
 {
-  const Ranks ranks(this->Request, this->Outputs);
+  const Ranks ranks(this->Controller, this->Request, this->Outputs);
   for (vtkIdType* sum : this->Sums)
   {
     *sum = 0;

@@ -22,6 +22,7 @@ class vtkAlgorithm;
 class vtkFieldData;
 class vtkInformation;
 class vtkInformationVector;
+class vtkMultiProcessController;
 class vtkPointSet;
 class vtkPolyData;
 
@@ -57,8 +58,9 @@ struct Block
 class FilterRun
 {
 public:
-  FilterRun(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
+  /** @param[in] controller  of the processes that may take part; nullptr: this one alone */
+  FilterRun(vtkAlgorithm* filter, vtkMultiProcessController* controller, vtkInformation* request,
+    vtkInformationVector** inputs, vtkInformationVector* outputs);
 
   std::string Second; ///< what messages call input 1
   /** Whether to tell of a composite without any data set; the filter before has told the others. */
@@ -104,6 +106,7 @@ private:
   void Tell(const Ranks& ranks);
 
   vtkAlgorithm* Filter;
+  vtkMultiProcessController* Controller;
   vtkInformation* Request;
   vtkInformationVector** Inputs;
   vtkInformationVector* Outputs;

@@ -64,16 +64,24 @@ bool AreEqual(vtkPolyData* one, vtkPolyData* other)
 }
 } // namespace
 
-Ranks::Ranks(vtkInformation* request, vtkInformationVector* outputs)
+Ranks::Ranks(
+  vtkMultiProcessController* controller, vtkInformation* request, vtkInformationVector* outputs)
 {
-  vtkMultiProcessController* const global = vtkMultiProcessController::GetGlobalController();
   const int port = request ? request->Get(vtkExecutive::FROM_OUTPUT_PORT()) : 0;
   vtkInformation* const output = outputs->GetInformationObject(std::max(port, 0));
-  if (global && global->GetNumberOfProcesses() > 1 &&
-    output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) > 1)
+  const int pieces = output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES());
+  const int count = controller ? controller->GetNumberOfProcesses() : 1;
+  if (pieces > count)
   {
-    this->Controller = global;
-    this->Notes = std::make_unique<FailureNotes>(global);
+    throw Error("The output is asked for in " + std::to_string(pieces) + " pieces, but " +
+      (count > 1 ? std::to_string(count) + " processes work" : "one process works") +
+      " on it, each of which makes one. Ask for as many pieces as there are processes, which "
+      "SetController() names.");
+  }
+  if (pieces > 1)
+  {
+    this->Controller = controller;
+    this->Notes = std::make_unique<FailureNotes>(controller);
   }
 }
 

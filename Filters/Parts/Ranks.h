@@ -31,8 +31,8 @@ namespace elevation
 {
 
 /**
- * The ranks that take part in one execution. They are several where the global controller has
- * several processes and the data are asked for in several pieces. Else there is one, whatever the
+ * The ranks that take part in one execution. They are several where the controller has several
+ * processes and the data are asked for in several pieces. Else there is one, whatever the
  * controller: a pipeline inside of one process never waits for another.
  * All ranks have to call the same functions in the same order; with one rank these return at once.
  */
@@ -41,7 +41,12 @@ class Ranks
 public:
   /** One alone. */
   Ranks() = default;
-  Ranks(vtkInformation* request, vtkInformationVector* outputs);
+  /**
+   * @param[in] controller  may be nullptr
+   * @throws Error if more pieces are asked for than there are ranks
+   */
+  Ranks(vtkMultiProcessController* controller, vtkInformation* request,
+    vtkInformationVector* outputs);
 
   int Own() const;
   int Count() const;

@@ -123,19 +123,25 @@ def on_ranks(row):
     return found
 
 
-def check_more_pieces_than_ranks(row):
-    """A rank that asks for two pieces gets its part of the surface twice."""
+def check_controller(row):
+    """More pieces than ranks are refused, on all of them; without a controller a rank works alone."""
     from on_ranks import COUNT, RANK, gather
 
     case = modes.make_case(row, POINTS)
     last = list(modes.chain(row, case, modes.part_of(case, RANK, COUNT), 1).values())[-1]
-    both = []
-    for piece in (2 * RANK, 2 * RANK + 1):
-        last.UpdatePiece(piece, 2 * COUNT, 0)
-        both.append(outcomes.part_made(last.GetOutput())["triangles"].tolist())
-    check(both[0] == both[1] and len(both[0]) > FEW, "a rank has its part twice")
-    all_of = sum(len(part) for part in gather(both[0]))
-    check(all_of == modes.in_memory(row, case)["ports"][0][0]["count"], "once, the parts are the surface")
+    messages = modes.noted(last)
+    last.UpdatePiece(RANK, 2 * COUNT, 0)
+    check(len(messages) == 1 and "asked for in 4 pieces, but 2 processes" in messages[0][1],
+          "more pieces than ranks: %s" % messages)
+    check(last.GetOutput().GetNumberOfPoints() == 0, "the output is empty after the error")
+    last.SetController(None)
+    last.UpdatePiece(0, 1, 0)
+    own = last.GetOutput().GetNumberOfPolys()
+    check(own == modes.in_memory(row, case, 1, (RANK, COUNT))["ports"][0][0]["count"], "a rank alone")
+    last.UpdatePiece(RANK, COUNT, 0)
+    check(len(messages) == 2 and "asked for in 2 pieces, but one process" in messages[1][1],
+          "pieces without a controller: %s" % messages)
+    check(len(gather(own)) == COUNT, "all ranks have come here")
 
 
 def check_properties(rows):
@@ -143,7 +149,7 @@ def check_properties(rows):
     for name, make in modes.FILTERS.items():
         mine = [row for row in rows if row.filter == name]
         cases = [modes.make_case(row, POINTS) for row in mine]
-        named = {key for row in mine for key in row.properties if "." not in key} | {"NumberOfThreads"}
+        named = {key for row in mine for key in row.properties if "." not in key} | {"NumberOfThreads", "Controller"}
         named |= {"SourceData", "SourceConnection"} if any(case.lines for case in cases) else set()
         named |= {"BoundaryData", "BoundaryConnection"} if any(case.rings for case in cases) else set()
         has = outcomes.own_names(make(), "Set")
@@ -173,7 +179,7 @@ def main():
         from on_ranks import COUNT, RANK as rank
 
         if COUNT == 2:
-            check_more_pieces_than_ranks(rows[0])
+            check_controller(rows[0])
     elif not options.only:
         check_properties(rows)
         check_page()

@@ -65,7 +65,7 @@ class TestFillElevationHoles(unittest.TestCase):
         text = str(vtkFillElevationHoles())
         for name in ("MaximumHoleSize", "MaximumHoleEdges", "MaximumNumberOfInsertedPoints",
                      "MaximumNumberOfExpectedPoints", "Spacing", "Interpolation", "InterpolatePointData",
-                     "NumberOfThreads", "NumberOfHoles", "NumberOfFilledHoles", "MaximumEdgeLength"):
+                     "NumberOfThreads", "Controller", "NumberOfHoles", "NumberOfFilledHoles", "MaximumEdgeLength"):
             self.assertIn(name + ":", text)
 
     def test_the_number_of_threads_does_not_change_a_byte(self):

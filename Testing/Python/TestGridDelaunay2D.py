@@ -74,7 +74,7 @@ class TestGridDelaunay2D(unittest.TestCase):
     def test_every_property_is_printed(self):
         text = str(vtkGridDelaunay2D())
         for name in ("SearchStrategy", "MaximumEdgeLength", "DuplicatePolicy", "LatticeMode",
-                     "Lattice:", "LatticeTolerance", "LatticeFound", "NumberOfThreads",
+                     "Lattice:", "LatticeTolerance", "LatticeFound", "NumberOfThreads", "Controller",
                      "NumberOfDuplicatePoints", "NumberOfNonFinitePoints",
                      "NumberOfConstraintCrossings", "NumberOfAddedPoints"):
             self.assertIn(name, text)

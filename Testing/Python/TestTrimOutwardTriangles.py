@@ -104,7 +104,7 @@ class TestTrimOutwardTriangles(unittest.TestCase):
 
     def test_every_property_is_printed(self):
         text = str(vtkTrimOutwardTriangles())
-        for name in ("OutwardTest", "GapTolerance", "GridSteps", "RecoverBoundary", "NumberOfThreads",
+        for name in ("OutwardTest", "GapTolerance", "GridSteps", "RecoverBoundary", "NumberOfThreads", "Controller",
                      "EffectiveGapTolerance", "NumberOfOutwardTriangles", "NumberOfRecoveredEdges",
                      "NumberOfPointsLeftOut", "NumberOfInsertedPoints"):
             self.assertIn(name, text)
