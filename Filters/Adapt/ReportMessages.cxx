@@ -7,7 +7,9 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <type_traits>
 
 namespace elevation
 {
@@ -32,37 +34,42 @@ std::string Joined(const std::vector<Message>& messages)
                          : text;
 }
 
-void AddRow(const std::string& name, const std::string& value, vtkStringArray* rows)
-{
-  rows->InsertNextValue(name);
-  rows->InsertNextValue(value);
-}
-
-void AddRows(const char* kind, const std::vector<Message>& messages, vtkStringArray* rows)
+/** Adds rows, name and value in turn. */
+void AddRows(const char* kind, const std::vector<Message>& messages, std::vector<std::string>& rows)
 {
   for (const Message& message : messages)
   {
-    AddRow(kind, message.GetCode(), rows);
-    AddRow("text", message.GetText(), rows);
+    rows.insert(rows.end(), { kind, message.GetCode(), "text", message.GetText() });
     if (!message.GetBlock().empty())
     {
-      AddRow("block", message.GetBlock(), rows);
+      rows.insert(rows.end(), { "block", message.GetBlock() });
     }
     for (const Message::Value& value : message.GetValues())
     {
-      AddRow(value.first, value.second, rows);
+      rows.insert(rows.end(), { value.first, value.second });
     }
   }
+}
+
+/** Puts texts into an array, which stays as it is if there is no memory: VTK's own functions leave it
+    broken. */
+void SetTexts(const std::vector<std::string>& texts, vtkStringArray* array)
+{
+  using Text = std::decay_t<decltype(array->GetValue(0))>;
+  auto copies = std::make_unique<Text[]>(texts.size());
+  std::copy(texts.begin(), texts.end(), copies.get());
+  array->SetNumberOfComponents(2);
+  array->SetArray(copies.release(), static_cast<vtkIdType>(texts.size()), 0);
 }
 } // namespace
 
 void ReportMessages(vtkAlgorithm* filter, const std::vector<Message>& errors,
   const std::vector<Message>& warnings, vtkStringArray* rows)
 {
-  rows->Initialize();
-  rows->SetNumberOfComponents(2);
-  AddRows("error", errors, rows);
-  AddRows("warning", warnings, rows);
+  std::vector<std::string> texts;
+  AddRows("error", errors, texts);
+  AddRows("warning", warnings, texts);
+  SetTexts(texts, rows);
   if (!errors.empty())
   {
     vtkErrorWithObjectMacro(filter, << Joined(errors));

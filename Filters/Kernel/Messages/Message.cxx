@@ -114,10 +114,10 @@ std::string Message::Pack() const
 Message Message::Unpack(const std::string& bytes)
 {
   std::vector<std::string> texts;
-  std::istringstream stream(bytes);
-  for (std::string text; std::getline(stream, text, '\0');)
+  for (std::size_t begin = 0, end = 0; begin < bytes.size(); begin = end + 1)
   {
-    texts.push_back(text);
+    end = bytes.find('\0', begin);
+    texts.push_back(bytes.substr(begin, end - begin));
   }
   Message message;
   message.Code = texts[0];
