@@ -4,9 +4,11 @@
 # The rooms, in the order in which they may include each other, and the files of each:
 # <Room>/<Name>.{h,cxx} in Filters, or a header alone. A room's public face is <Room>/<Room>.h.
 # Filters/CMakeLists.txt compiles these lists, the kernel's once: a new file is one line here.
-set(es_kernel_rooms Base Mesh Lattice Bins Grow Simplify Triangulate Constrain Cells Trim Fill)
+set(es_kernel_rooms Base Messages Mesh Lattice Bins Grow Simplify Triangulate Constrain Cells Trim Fill)
 set(es_kernel_Base
   Predicates)
+set(es_kernel_Messages
+  Message)
 set(es_kernel_Mesh
   HalfEdgeMesh
   VertexStars
@@ -76,6 +78,8 @@ set(es_kernel_Fill
 set(es_kernel_headers_Base
   Base CellGrid Duplicates EdgeLimit Extent IdSet Memory Points Progress SnapRounding Threads
   UnionFind Work)
+set(es_kernel_headers_Messages
+  Messages Sentences)
 set(es_kernel_headers_Mesh
   Mesh TriangleSweep)
 set(es_kernel_headers_Lattice
@@ -103,6 +107,7 @@ set(es_Adapt
   LimitAdvice
   MeshConversion
   PatchedSurface
+  ReportMessages
   Requests
   TrimmedSurface)
 set(es_headers_Adapt

@@ -6,6 +6,7 @@
 #include "FilterOptions.h"
 #include "Kernel/Fill/Fill.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Messages/Messages.h"
 #include "Parts/Parts.h"
 
 #include "vtkDemandDrivenPipeline.h"
@@ -14,6 +15,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -90,7 +92,7 @@ int vtkFillElevationHoles::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkFillElevationHoles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, [&] {
+  return elevation::Guarded(this, outputVector, this->Messages, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);
@@ -100,7 +102,8 @@ vtkTypeBool vtkFillElevationHoles::ProcessRequest(
 int vtkFillElevationHoles::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::FilterRun call(this, this->Controller, request, inputVector, outputVector);
+  elevation::FilterRun call(
+    this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Sums = { &this->NumberOfHoles, &this->NumberOfFilledHoles };
   call.Spread = [this](elevation::Block& block, const elevation::Ranks& ranks) {
     FillResult patches;
@@ -111,11 +114,7 @@ int vtkFillElevationHoles::RequestData(
       return false;
     }
     AddHoleCounts(patches, block.Outputs);
-    const std::string complaint = Complaint(patches);
-    if (!complaint.empty())
-    {
-      block.Warnings.push_back(complaint);
-    }
+    block.Warnings = WarningsOf(patches);
     if (ranks.Own() == 0) // all ranks know them
     {
       this->NumberOfHoles += patches.Found.Count();
@@ -161,13 +160,10 @@ int vtkFillElevationHoles::RequestData(
       Part(progress, isToBeFilled ? 0.85 : 0.55, 0.97), block.Outputs[0]);
     MakeReport(input, patches, Part(progress, 0.97, 1.0), block.Outputs[1]);
     AddHoleCounts(patches, block.Outputs);
-    const std::string complaint = mesh.NumberOfTriangles() == 0 && elevation::IsToBeTold(input)
-      ? "The input has no triangles, so there is nothing to fill. Points alone are triangulated "
-        "first, by Grid Delaunay 2D."
-      : Complaint(patches);
-    if (!complaint.empty())
+    block.Warnings = WarningsOf(patches);
+    if (mesh.NumberOfTriangles() == 0 && elevation::NeedsWarning(input))
     {
-      block.Warnings.push_back(complaint);
+      block.Warnings = { elevation::MakeMessage<elevation::sentences::NothingToFill>() };
     }
     Report(progress, 1.0);
     // Added last, as an abort or an error leaves no counts.
@@ -199,4 +195,5 @@ void vtkFillElevationHoles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Controller: " << this->Controller << "\n";
   os << indent << "NumberOfHoles: " << this->NumberOfHoles << "\n";
   os << indent << "NumberOfFilledHoles: " << this->NumberOfFilledHoles << "\n";
+  os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }

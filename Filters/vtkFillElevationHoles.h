@@ -142,15 +142,17 @@
 #define vtkFillElevationHoles_h
 
 #include "vtkElevationSurfaceModule.h" // for export macro
+#include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
 class vtkMultiProcessController;
+class vtkStringArray;
 
 class VTKELEVATIONSURFACE_EXPORT vtkFillElevationHoles : public vtkPolyDataAlgorithm
 {
 public:
   ///@{
-  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
+  /** Standard VTK object functions. */
   static vtkFillElevationHoles* New();
   vtkTypeMacro(vtkFillElevationHoles, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
@@ -365,6 +367,21 @@ public:
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  /**
+   * The errors and warnings of the last execution as data, for programs: rows of two components, a
+   * name and a value. A message begins with the row ("error" or "warning", its code). Then come
+   * ("text", the sentence with its values in braces, {points}, and with properties as
+   * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
+   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
+   * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
+   * are "Words":
+   * NothingToFill, HoleNotFilled and RegionNotFilled (with a reason: BordersTouch, SizeOutOfRange,
+   * MoreThanInsertedPoints, MoreThanAllPoints, SpacingTooSmall, PointsCoincide), MoreHolesNotFilled,
+   * BordersMeet, TooManyPointsToFill, TooManyPointsByDefault, InvalidEdgeLength, ArraysLeftOut,
+   * NotEnoughMemory, Stopped.
+   */
+  virtual vtkStringArray* GetMessages() { return this->Messages; }
+
 protected:
   vtkFillElevationHoles();
   ~vtkFillElevationHoles() override;
@@ -391,6 +408,8 @@ protected:
 private:
   vtkFillElevationHoles(const vtkFillElevationHoles&) = delete;
   void operator=(const vtkFillElevationHoles&) = delete;
+
+  vtkNew<vtkStringArray> Messages;
 };
 
 #endif

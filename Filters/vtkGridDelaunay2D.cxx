@@ -6,6 +6,7 @@
 #include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Constrain/Constrain.h"
+#include "Kernel/Messages/Messages.h"
 #include "Parts/Parts.h"
 
 #include "vtkCellArray.h"
@@ -20,12 +21,12 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,7 +68,7 @@ using elevation::ReportStep;
 /** The lines of a source, checked to be where the points are; @a own must outlive them. */
 ConstraintLines LinesOf(vtkPolyData* source, const elevation::PointsOfDataSet& own,
   const elevation::PointView& points, int threads, const Progress& progress,
-  std::vector<std::string>& warnings)
+  std::vector<elevation::Message>& warnings)
 {
   const ConstraintLines lines = elevation::ToLines(source, own, Part(progress, 0.0, 0.5));
   const elevation::Box box =
@@ -80,7 +81,7 @@ ConstraintLines LinesOf(vtkPolyData* source, const elevation::PointsOfDataSet& o
 /** Triangulates points, with the lines of a source if there is one. */
 elevation::ConstrainedTriangulation TriangulateWith(vtkPolyData* source,
   const elevation::PointView& points, elevation::DelaunayOptions options, const Progress& progress,
-  std::vector<std::string>& warnings)
+  std::vector<elevation::Message>& warnings)
 {
   if (!source)
   {
@@ -122,7 +123,7 @@ double Quantile(std::vector<double>& values, double part)
 /** Tells why most points are without a triangle, and advises a limit. */
 void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   elevation::DelaunayOptions options, const elevation::ConstrainedTriangulation& constrained,
-  const Progress& progress, std::vector<std::string>& warnings)
+  const Progress& progress, std::vector<elevation::Message>& warnings)
 {
   const elevation::Triangulation& found = constrained.Result;
   if (!(options.MaximumEdgeLength > 0.0))
@@ -138,10 +139,10 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   {
     return;
   }
-  warnings.push_back(elevation::TextOfLimit(options.MaximumEdgeLength, effect));
+  warnings.push_back(elevation::AdviceOnLimit(options.MaximumEdgeLength, effect));
   const double limit = options.MaximumEdgeLength;
   options.MaximumEdgeLength = 0.0;
-  std::vector<std::string> again;
+  std::vector<elevation::Message> again;
   const elevation::ConstrainedTriangulation full =
     TriangulateWith(source, points, options, Part(progress, 0.05, 0.7), again);
   const auto placeOf = [&](Index id) {
@@ -156,17 +157,17 @@ void WarnOfLimit(vtkPolyData* source, const elevation::PointView& points,
   effect.Shortest = Quantile(lengths.Edges, 0.0);
   effect.Median = Quantile(lengths.Edges, elevation::HalfOfAll);
   effect.ForMost = Quantile(limits, elevation::PartOfMost);
-  warnings.back() = elevation::TextOfLimit(limit, effect);
+  warnings.back() = elevation::AdviceOnLimit(limit, effect);
 }
 
 /** Tells why there is no triangle, or why most points are without one. */
 void WarnOfMissing(vtkPolyData* source, const elevation::PointView& points,
   const elevation::DelaunayOptions& options, const elevation::ConstrainedTriangulation& constrained,
-  const Progress& progress, std::vector<std::string>& warnings)
+  const Progress& progress, std::vector<elevation::Message>& warnings)
 {
   if (constrained.Result.NumberOfHullPoints == 0)
   {
-    warnings.push_back(elevation::TextOfNoTriangle(points.Count));
+    warnings.push_back(elevation::MakeMessage<elevation::sentences::NoTriangle>(points.Count));
     return;
   }
   try
@@ -194,11 +195,12 @@ elevation::ConstrainedTriangulation TriangulateSpread(
   elevation::WarnOfLeft("point", surface.Part.LeftOut, block.Warnings);
   if (surface.NumberOfTriangles == 0)
   {
-    block.Warnings.push_back(elevation::TextOfNoTriangle(surface.NumberOfPoints));
+    block.Warnings.push_back(
+      elevation::MakeMessage<elevation::sentences::NoTriangle>(surface.NumberOfPoints));
   }
   else if (surface.Effect.AreMostMissing())
   {
-    block.Warnings.push_back(elevation::TextOfLimit(options.MaximumEdgeLength, surface.Effect));
+    block.Warnings.push_back(elevation::AdviceOnLimit(options.MaximumEdgeLength, surface.Effect));
   }
   elevation::ConstrainedTriangulation counts;
   counts.NumberOfCrossings = surface.NumberOfCrossings;
@@ -245,7 +247,7 @@ int vtkGridDelaunay2D::FillOutputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkGridDelaunay2D::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, [&] {
+  return elevation::Guarded(this, outputVector, this->Messages, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);
@@ -272,7 +274,8 @@ vtkPolyData* vtkGridDelaunay2D::GetSource()
 int vtkGridDelaunay2D::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::FilterRun call(this, this->Controller, request, inputVector, outputVector);
+  elevation::FilterRun call(
+    this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "constraints";
   call.IsFirst = true;
   call.Sums = { &this->NumberOfDuplicatePoints, &this->NumberOfNonFinitePoints,
@@ -319,13 +322,13 @@ int vtkGridDelaunay2D::RequestData(
     if (draped)
     {
       elevation::CheckPointArrays(draped, "The constraints'");
-      std::vector<std::string> ofOwnElevations;
+      std::vector<elevation::Message> ofOwnElevations;
       LinesOf(draped, elevation::ViewPoints(draped), points.View, this->NumberOfThreads,
         Part(progress, split, split), ofOwnElevations);
       if (!ofOwnElevations.empty())
       {
-        block.Warnings.push_back("Most of the constraints lie outside of the points. These parts "
-                                 "are left out, as there is no surface to drape them on.");
+        block.Warnings.push_back(
+          elevation::MakeMessage<elevation::sentences::LinesNotDraped>("constraints"));
       }
       constrained.Added.resize(static_cast<std::size_t>(elevation::SplitSurface(
         output, draped, this->NumberOfThreads, Part(progress, split, 1.0))));
@@ -391,4 +394,5 @@ void vtkGridDelaunay2D::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LargestElevationError: " << this->LargestElevationError << "\n";
   os << indent << "NumberOfConstraintCrossings: " << this->NumberOfConstraintCrossings << "\n";
   os << indent << "NumberOfAddedPoints: " << this->NumberOfAddedPoints << "\n";
+  os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }

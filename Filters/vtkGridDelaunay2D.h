@@ -157,15 +157,17 @@
 #define vtkGridDelaunay2D_h
 
 #include "vtkElevationSurfaceModule.h" // for export macro
+#include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
 class vtkMultiProcessController;
+class vtkStringArray;
 
 class VTKELEVATIONSURFACE_EXPORT vtkGridDelaunay2D : public vtkPolyDataAlgorithm
 {
 public:
   ///@{
-  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
+  /** Standard VTK object functions. */
   static vtkGridDelaunay2D* New();
   vtkTypeMacro(vtkGridDelaunay2D, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
@@ -377,6 +379,21 @@ public:
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  /**
+   * The errors and warnings of the last execution as data, for programs: rows of two components, a
+   * name and a value. A message begins with the row ("error" or "warning", its code). Then come
+   * ("text", the sentence with its values in braces, {points}, and with properties as
+   * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
+   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
+   * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
+   * are "Words":
+   * NoTriangle, FewTriangles, FewTrianglesAdvice, InvalidEdgeLength, InvalidElevationError,
+   * TwoLimits, NoLines, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine,
+   * NonFinitePointOfLine, LinesElsewhere, LinesFarOutside, LinesNotDraped, LinesNotSettled,
+   * ArraysLeftOut, EmptyBlocks, NotEnoughMemory, Stopped.
+   */
+  virtual vtkStringArray* GetMessages() { return this->Messages; }
+
 protected:
   vtkGridDelaunay2D();
   ~vtkGridDelaunay2D() override;
@@ -409,6 +426,8 @@ protected:
 private:
   vtkGridDelaunay2D(const vtkGridDelaunay2D&) = delete;
   void operator=(const vtkGridDelaunay2D&) = delete;
+
+  vtkNew<vtkStringArray> Messages;
 };
 
 #endif

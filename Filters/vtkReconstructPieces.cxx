@@ -5,6 +5,7 @@
 #include "Adapt/Adapt.h"
 #include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 #include "Parts/Parts.h"
 #include "vtkFillElevationHoles.h"
 #include "vtkGridDelaunay2D.h"
@@ -17,6 +18,7 @@
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <new>
@@ -37,7 +39,8 @@ void vtkReconstructPieces::SetFolder(const std::string& folder)
 {
   if (this->Work)
   {
-    vtkErrorMacro("Folder cannot be changed after the first points; that needs Reset().");
+    this->ReportError(
+      elevation::Error("Folder cannot be changed after the first points; that needs Reset()."));
   }
   else if (this->Folder != folder)
   {
@@ -85,12 +88,18 @@ void vtkReconstructPieces::SetMemoryOfHole(double bytes)
   }
 }
 
+void vtkReconstructPieces::ReportError(const std::exception& error)
+{
+  elevation::ReportMessages(this, { elevation::MessageOf(error) }, {}, this->Messages);
+}
+
 /** Reports what the work throws. */
 bool vtkReconstructPieces::Try(const std::function<void()>& work)
 {
   if (this->HasFailed)
   {
-    vtkErrorMacro("The points are not complete after the error before: begin again with Reset().");
+    this->ReportError(elevation::Error(
+      "The points are not complete after the error before: begin again with Reset()."));
     return false;
   }
   try
@@ -100,16 +109,18 @@ bool vtkReconstructPieces::Try(const std::function<void()>& work)
   }
   catch (const elevation::Aborted&)
   {
-    vtkWarningMacro("Aborted; the output is empty.");
+    elevation::ReportMessages(
+      this, {}, { elevation::MakeMessage<elevation::sentences::Aborted>() }, this->Messages);
   }
   catch (const std::bad_alloc&)
   {
-    vtkErrorMacro(<< elevation::NotEnoughMemory << " More pieces take less"
-                  << (this->FillHoles ? ", and so does a MaximumHoleSize." : "."));
+    this->ReportError(this->FillHoles
+        ? elevation::MakeError<elevation::sentences::TooFewPiecesToFill>()
+        : elevation::MakeError<elevation::sentences::TooFewPieces>());
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
+    this->ReportError(error);
   }
   this->HasFailed = true;
   return false;
@@ -120,12 +131,14 @@ bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
   // What can be put right loses no points that are there.
   if (!points || this->Folder.empty())
   {
-    vtkErrorMacro(<< (points ? "Folder is not set." : "There is no data set of points."));
+    this->ReportError(
+      elevation::Error(points ? "Folder is not set." : "There is no data set of points."));
     return false;
   }
   if (this->Work && this->Work->CountOfCells() > 0)
   {
-    vtkErrorMacro("Points cannot be added after the first piece; that needs Reset().");
+    this->ReportError(
+      elevation::Error("Points cannot be added after the first piece; that needs Reset()."));
     return false;
   }
   return this->Try([this, points]() {
@@ -214,37 +227,28 @@ bool vtkReconstructPieces::GetLatticeFound()
   return this->Work && this->Work->All().LatticeFound;
 }
 
-/** What is wrong with the properties; empty: nothing. They can still be put right. */
-std::string vtkReconstructPieces::WrongProperty()
+/** @throws elevation::Error where the properties are wrong. They can still be put right. */
+void vtkReconstructPieces::CheckProperties()
 {
-  try
-  {
-    elevation::CheckLimits(elevation::OptionsOf(this->Delaunay));
-  }
-  catch (const elevation::Error& error)
-  {
-    return error.what();
-  }
   const elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
+  elevation::CheckLimits(options);
   if (options.GivenLattice.IsSet() || options.MaximumElevationError > 0.0)
   {
-    return "MaximumElevationError and a given Lattice are for points in memory, not for pieces.";
+    throw elevation::MakeError<elevation::sentences::ErrorNotInPieces>();
   }
   if (this->Delaunay->GetNumberOfInputConnections(1) > 0)
   {
-    return "Constraints are for points in memory, not for pieces.";
+    throw elevation::MakeError<elevation::sentences::ConstraintsNotInPieces>();
   }
   const bool isTrimmed = this->Trim->GetNumberOfInputConnections(1) > 0;
   if (isTrimmed && elevation::OptionsOf(this->Trim).Test != elevation::OutwardTest::Exact)
   {
-    return "OutwardTest InwardNormal is for a surface in memory, not for pieces.";
+    throw elevation::MakeError<elevation::sentences::InwardNormalNotInPieces>();
   }
   if (this->FillHoles && this->Fill->GetMaximumEdgeLength() != 0.0)
   {
-    return "MaximumEdgeLength of the filter that fills holes is for a surface in memory, not for "
-           "pieces.";
+    throw elevation::MakeError<elevation::sentences::EdgeLengthNotInPieces>();
   }
-  return std::string();
 }
 
 vtkMTimeType vtkReconstructPieces::TimeOfProperties()
@@ -284,14 +288,16 @@ void vtkReconstructPieces::WarnOfMissing()
   elevation::EffectOfLimit effect;
   effect.Vertices = all.Points - all.Duplicates - all.NotFinite;
   effect.Missing = all.Missing;
+  std::vector<elevation::Message> warnings;
   if (all.Settled == 0)
   {
-    vtkWarningMacro(<< elevation::TextOfNoTriangle(all.Points));
+    warnings = { elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points) };
   }
   else if (effect.AreMostMissing())
   {
-    vtkWarningMacro(<< elevation::TextOfLimit(this->Delaunay->GetMaximumEdgeLength(), effect));
+    warnings = { elevation::AdviceOnLimit(this->Delaunay->GetMaximumEdgeLength(), effect) };
   }
+  elevation::ReportMessages(this, {}, warnings, this->Messages);
 }
 
 void vtkReconstructPieces::TrimAll(int count, const elevation::Progress& progress)
@@ -317,11 +323,8 @@ void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progres
   this->Filled = std::make_unique<elevation::FilledPieces>(count, this->Folder,
     this->Work->All().Points + this->GetNumberOfInsertedPoints(), make, options,
     this->Fill->GetInterpolatePointData() != 0);
-  const std::string complaint = elevation::Complaint(this->Filled->Result());
-  if (!complaint.empty())
-  {
-    vtkWarningMacro(<< complaint);
-  }
+  elevation::ReportMessages(
+    this, {}, elevation::WarningsOf(this->Filled->Result()), this->Messages);
 }
 
 /** A piece of the triangulation; nullptr: it has no points. */
@@ -384,22 +387,28 @@ int vtkReconstructPieces::RequestData(
   const int cells = this->Work ? this->Work->CountOfCells() : 0;
   if (cells > 0 && cells != count)
   {
-    vtkErrorMacro("There are " << cells << " pieces; another number of pieces needs Reset().");
+    this->ReportError(elevation::Error(
+      "There are " + std::to_string(cells) + " pieces; another number of pieces needs Reset()."));
     return 1;
   }
   if (piece < 0 || piece >= count)
   {
     return 1; // empty, as VTK's sources
   }
-  const std::string wrong = this->WrongProperty();
-  if (cells == 0 && !wrong.empty())
+  try
   {
-    vtkErrorMacro(<< wrong);
-    return 1;
+    if (cells == 0)
+    {
+      this->CheckProperties();
+    }
+    else if (this->TimeOfProperties() > this->TimeOfWork)
+    {
+      throw elevation::Error("Properties were changed after the first piece; that needs Reset().");
+    }
   }
-  if (cells > 0 && this->TimeOfProperties() > this->TimeOfWork)
+  catch (const elevation::Error& error)
   {
-    vtkErrorMacro("Properties were changed after the first piece; that needs Reset().");
+    this->ReportError(error);
     return 1;
   }
   const auto work = [this, piece, count, output, rims]() {

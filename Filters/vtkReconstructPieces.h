@@ -60,6 +60,7 @@
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSmartPointer.h"
 
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -74,13 +75,14 @@ using Progress = std::function<bool(double)>;
 class vtkFillElevationHoles;
 class vtkGridDelaunay2D;
 class vtkPointSet;
+class vtkStringArray;
 class vtkTrimOutwardTriangles;
 
 class VTKELEVATIONSURFACE_EXPORT vtkReconstructPieces : public vtkPolyDataAlgorithm
 {
 public:
   ///@{
-  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
+  /** Standard VTK object functions. */
   static vtkReconstructPieces* New();
   vtkTypeMacro(vtkReconstructPieces, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
@@ -157,6 +159,13 @@ public:
   vtkIdType GetNumberOfFilledTriangles(); ///< what there is with the patches
   ///@}
 
+  /**
+   * As of the three filters, but those of the last ErrorEvent or WarningEvent alone. Further codes are
+   * HoleTooLarge, Aborted, TooFewPieces, TooFewPiecesToFill, ErrorNotInPieces, ConstraintsNotInPieces,
+   * InwardNormalNotInPieces and EdgeLengthNotInPieces.
+   */
+  virtual vtkStringArray* GetMessages() { return this->Messages; }
+
 protected:
   vtkReconstructPieces();
   ~vtkReconstructPieces() override;
@@ -169,7 +178,8 @@ private:
   vtkReconstructPieces(const vtkReconstructPieces&) = delete;
   void operator=(const vtkReconstructPieces&) = delete;
   bool Try(const std::function<void()>& work);
-  std::string WrongProperty();
+  void ReportError(const std::exception& error);
+  void CheckProperties();
   vtkMTimeType TimeOfProperties();
   void WorkOnAll(int count, const elevation::Progress& progress);
   void WarnOfMissing();
@@ -189,6 +199,7 @@ private:
   std::unique_ptr<elevation::FilledPieces> Filled;
   vtkMTimeType TimeOfWork = 0;
   bool HasFailed = false;
+  vtkNew<vtkStringArray> Messages;
 };
 
 #endif

@@ -5,6 +5,7 @@
 #include "Adapt/Adapt.h"
 #include "FilterOptions.h"
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 #include "Kernel/Trim/Trim.h"
 #include "Parts/Parts.h"
 
@@ -20,6 +21,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <string>
@@ -121,7 +123,7 @@ int vtkTrimOutwardTriangles::FillOutputPortInformation(int, vtkInformation* info
 vtkTypeBool vtkTrimOutwardTriangles::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return elevation::Guarded(this, outputVector, [&] {
+  return elevation::Guarded(this, outputVector, this->Messages, [&] {
     return request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_OBJECT())
       ? elevation::MakeOutputs(inputVector, outputVector)
       : this->Superclass::ProcessRequest(request, inputVector, outputVector);
@@ -148,7 +150,8 @@ vtkPolyData* vtkTrimOutwardTriangles::GetBoundary()
 int vtkTrimOutwardTriangles::RequestData(
   vtkInformation* request, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  elevation::FilterRun call(this, this->Controller, request, inputVector, outputVector);
+  elevation::FilterRun call(
+    this, this->Controller, request, inputVector, outputVector, this->Messages);
   call.Second = "boundary";
   call.Sums = { &this->NumberOfOutwardTriangles, &this->NumberOfRecoveredEdges,
     &this->NumberOfPointsLeftOut, &this->NumberOfInsertedPoints };
@@ -174,10 +177,10 @@ int vtkTrimOutwardTriangles::RequestData(
     vtkPolyData* const given = block.Second;
     Report(progress, 0.0);
     elevation::CheckArrays(input);
-    const std::string wrong = elevation::WrongOption(options);
-    if (!wrong.empty())
+    const elevation::Message wrong = elevation::WrongOption(options);
+    if (!wrong.IsEmpty())
     {
-      throw elevation::Error(wrong);
+      throw elevation::CodedError(wrong);
     }
     if (given)
     {
@@ -195,12 +198,11 @@ int vtkTrimOutwardTriangles::RequestData(
     options.ReturnParents = input->GetCellData()->GetNumberOfArrays() > 0;
     options.Monitor = Part(progress, 0.02, trimmedAt);
     Trimmed trimmed = elevation::Trim(triangles.View, given ? &lines : nullptr, options);
-    if (triangles.View.Count == 0 && elevation::IsToBeTold(input))
+    if (triangles.View.Count == 0 && elevation::NeedsWarning(input))
     {
-      block.Warnings.push_back("The input has no triangles, so there is nothing to trim. Points "
-                               "alone are triangulated first, by Grid Delaunay 2D.");
+      block.Warnings.push_back(elevation::MakeMessage<elevation::sentences::NothingToTrim>());
     }
-    if (!trimmed.Loss.empty())
+    if (!trimmed.Loss.IsEmpty())
     {
       block.Warnings.push_back(trimmed.Loss);
     }
@@ -244,4 +246,5 @@ void vtkTrimOutwardTriangles::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NumberOfRecoveredEdges: " << this->NumberOfRecoveredEdges << "\n";
   os << indent << "NumberOfPointsLeftOut: " << this->NumberOfPointsLeftOut << "\n";
   os << indent << "NumberOfInsertedPoints: " << this->NumberOfInsertedPoints << "\n";
+  os << indent << "Messages: " << this->Messages->GetNumberOfTuples() << " rows\n";
 }

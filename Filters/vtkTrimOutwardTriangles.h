@@ -160,15 +160,17 @@
 #define vtkTrimOutwardTriangles_h
 
 #include "vtkElevationSurfaceModule.h" // for export macro
+#include "vtkNew.h"
 #include "vtkPolyDataAlgorithm.h"
 
 class vtkMultiProcessController;
+class vtkStringArray;
 
 class VTKELEVATIONSURFACE_EXPORT vtkTrimOutwardTriangles : public vtkPolyDataAlgorithm
 {
 public:
   ///@{
-  /** As of each VTK class: makes one, which Delete() ends; tells its type; prints its properties. */
+  /** Standard VTK object functions. */
   static vtkTrimOutwardTriangles* New();
   vtkTypeMacro(vtkTrimOutwardTriangles, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
@@ -347,6 +349,20 @@ public:
   vtkTypeBool ProcessRequest(
     vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
+  /**
+   * The errors and warnings of the last execution as data, for programs: rows of two components, a
+   * name and a value. A message begins with the row ("error" or "warning", its code). Then come
+   * ("text", the sentence with its values in braces, {points}, and with properties as
+   * {property:Spacing}); in a composite ("block", the name of the block); and a row for each value.
+   * Of several ranks, rank 0 has those of all. They are there when ErrorEvent and WarningEvent, whose
+   * text has the same for people, are invoked. Codes, besides those of data that are invalid, which
+   * are "Words":
+   * NothingToTrim, InvalidGapTolerance, InvalidGridSteps, BoundaryLeavesOut,
+   * BoundaryLeavesOutAll, StripsInLines, TooManyPointsInLines, NoSuchPointOfLine, ArraysLeftOut,
+   * NotEnoughMemory, Stopped.
+   */
+  virtual vtkStringArray* GetMessages() { return this->Messages; }
+
 protected:
   vtkTrimOutwardTriangles();
   ~vtkTrimOutwardTriangles() override;
@@ -372,6 +388,8 @@ protected:
 private:
   vtkTrimOutwardTriangles(const vtkTrimOutwardTriangles&) = delete;
   void operator=(const vtkTrimOutwardTriangles&) = delete;
+
+  vtkNew<vtkStringArray> Messages;
 };
 
 #endif

@@ -5,32 +5,33 @@ and the report that they make together."""
 
 from vtkmodules.vtkCommonCore import vtkStringArray
 
+from .algorithm_base import words_of
 from .messages import counted
 from .report import main_counts, report_lines
-from .telling import in_panel, words_of
 
-RECOGNISED = "Recognised"  # the field array in which ElevationPoints tells what a file is
+RECOGNISED = "Recognised"  # the field array in which ElevationPoints reports what a file is
+CONTENTS = "RecognisedAs"  # that with its contents, points say, and how many points there are
 MOST_ERRORS = 5  # of blocks, in one message
 
 
 def recognised(points):
     """What a reader has found out, for the report of these points: all of the file, or some."""
-    told, count = words_of(points, RECOGNISED), points.GetNumberOfPoints()
-    if told and not told[0].endswith(f": {counted(count, 'point')}"):
-        told[0] += f"; this surface is of {counted(count, 'point')}"
-    return told
+    lines, count = words_of(points, RECOGNISED), points.GetNumberOfPoints()
+    if lines and words_of(points, CONTENTS)[1:] != [str(count)]:
+        lines[0] += f"; this surface is of {counted(count, 'point')}"
+    return lines
 
 
 def account_of(part, result):
     """The account of a Part that became a Reconstruction."""
     # A panel always says which of several heights is taken, so that nobody has decided it.
-    notes = [in_panel(note) for note in result.decided + result.notes]
+    notes = result.decided + result.notes
     return {
         "place": part.place,
         "name": part.name,
         "notes": notes,
-        "shown": notes + [in_panel(line) for line in recognised(result.cloud.points)],
-        "rows": [(item, in_panel(value)) for item, value in report_lines(result.report)],
+        "shown": notes + recognised(result.cloud.points),
+        "rows": report_lines(result.report),
         "counts": main_counts(result),
         "sums": sums_of(result),
     }
@@ -38,7 +39,7 @@ def account_of(part, result):
 
 def account_of_error(part, error):
     """The account of a Part that became nothing."""
-    return {"place": part.place, "name": part.name, "error": in_panel(error)}
+    return {"place": part.place, "name": part.name, "error": error}
 
 
 def sums_of(result):

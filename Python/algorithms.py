@@ -6,7 +6,6 @@ ElevationPoints reads what read() reads; ReconstructElevationSurface makes of it
 reconstruct() makes of it. Both tell what they have done as text, and an error in one line.
 """
 
-import re
 import warnings
 
 import numpy
@@ -20,6 +19,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 
 from .accounts import (
+    CONTENTS,
     RECOGNISED,
     account_of,
     account_of_error,
@@ -33,33 +33,30 @@ from .accounts import (
     report_rows,
     report_text,
 )
-from .blocks import is_empty, number_of_points, parts_of, put_parts
-from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
-from .gathering import gathered
-from .inputs import cloud_of, joined, lines_of
-from .messages import ElevationSurfaceError, ElevationSurfaceWarning, counted, of_reason
-from .progress import share
-from .properties import PROPERTIES
-from .ranks import controller_of, is_to_speak, shared, together
-from .reading import read, read_boundary, read_faults
-from .reconstruction import reconstruct
-from .report import crs_name
-from .steps import STEPS
-from .telling import (
-    TellingAlgorithm,
+from .algorithm_base import (
+    ReportingAlgorithm,
     drop_elevation,
-    in_panel,
     set_elevation,
     set_words,
     words_of,
 )
-
+from .blocks import is_empty, number_of_points, parts_of, put_parts
+from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
+from .gathering import gathered
+from .inputs import cloud_of, joined, lines_of
+from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Reason, counted, of_reason
+from .names import argument, option
+from .progress import share
+from .properties import PROPERTIES, check_together
+from .ranks import controller_of, is_to_speak, shared, together
+from .reading import read, read_boundary, read_faults
+from .reconstruction import reconstruct
+from .report import crs_name
 
 NOTHING = "nothing was read"
-IS_BOUNDARY = re.compile(r": [\d,]+ lines? of boundary$")  # Recognised of one
 
 
-class ElevationPoints(TellingAlgorithm):
+class ElevationPoints(ReportingAlgorithm):
     """Reads the points of a file, whatever its kind; or the lines of a boundary or of faults.
 
     Options are those of read(), as text: empty is the default. The output is vtkPolyData with a
@@ -148,7 +145,7 @@ class ElevationPoints(TellingAlgorithm):
         options = {name: value for name, value in self.options().items() if value is not False}
         depth = options.pop("depth", False)
         if options:
-            names = " and ".join(f"--{name.replace('_', '-')}" for name in options)
+            names = " and ".join(option(name) for name in options)
             raise ValueError(f"{names}: of points only; lines are read as they are")
         if self.CONTENTS[self._contents] == "faults":
             return read_faults(self._file, depth, self.reading)
@@ -163,12 +160,12 @@ class ElevationPoints(TellingAlgorithm):
             return self.read_into(output, outputs)
         except BaseException:
             output.Initialize()
-            set_words(output, RECOGNISED, [NOTHING])
+            set_nothing(output)
             raise
 
     def stop(self, outputs):
         result = super().stop(outputs)
-        set_words(vtkPolyData.GetData(outputs), RECOGNISED, [NOTHING])
+        set_nothing(vtkPolyData.GetData(outputs))
         return result
 
     def read_into(self, output, outputs):
@@ -191,12 +188,20 @@ class ElevationPoints(TellingAlgorithm):
             told = [f"{self._file}: {counted(output.GetNumberOfPoints(), 'point')}"]
             lost = cloud.left_out.items()
             told += [f"{of_reason(count, reason)} left out" for reason, count in lost]
-            told += [in_panel(note) for note in cloud.notes]
+            told += cloud.notes
             if cloud.crs:
                 told.append(f"coordinate reference system: {crs_name(cloud.crs)}")
         set_words(output, RECOGNISED, told)
+        number = output.GetNumberOfPoints()
+        set_words(output, CONTENTS, [self.CONTENTS[self._contents], str(number)])
         self._text = "\n".join(told)
         return told
+
+
+def set_nothing(output):
+    """Marks what ElevationPoints could not read, and has said why."""
+    set_words(output, RECOGNISED, [NOTHING])
+    set_words(output, CONTENTS, [NOTHING])
 
 
 def no_data_of(words):
@@ -204,14 +209,14 @@ def no_data_of(words):
     try:
         return float(words)
     except ValueError:
-        raise ValueError(f"--no-data takes a number, not {words!r}") from None
+        raise ValueError(f"{option('no_data')} takes a number, not {words!r}") from None
 
 
 def finite_points(cloud):
     """Leaves out what cannot be shown, where anything is left."""
     finite = numpy.isfinite(vtk_to_numpy(cloud.points.GetPoints().GetData())).all(axis=1)
     if finite.any() and not finite.all():
-        cloud.left_out["points with NaN or infinity"] = int(numpy.count_nonzero(~finite))
+        cloud.left_out[Reason("point", "with NaN or infinity")] = int(numpy.count_nonzero(~finite))
         keep_points(cloud, numpy.flatnonzero(finite))
 
 
@@ -226,7 +231,7 @@ def fill_points(output, cloud):
         set_crs(output, cloud.crs)
 
 
-class ReconstructElevationSurface(TellingAlgorithm):
+class ReconstructElevationSurface(ReportingAlgorithm):
     """Makes an elevation surface of points: reconstruct() as an algorithm.
 
     Input 0: a point set, image, rectilinear grid or table, or a composite of these: each block then
@@ -342,19 +347,19 @@ class ReconstructElevationSurface(TellingAlgorithm):
                 results[part] = self.result_of(part.data, lines)
                 accounts.append(account_of(part, results[part]))
             except (ElevationSurfaceError, ValueError) as error:
-                words = of_panel(str(error), getattr(error, "about", "points"))
-                accounts.append(account_of_error(part, words))
+                accounts.append(account_of_error(part, getattr(error, "message", str(error))))
             except MemoryError:
                 accounts.append(account_of_error(part, "there is not enough memory"))
         return accounts
 
     def result_of(self, part, lines):
         """The Reconstruction of one data set, with notes on what looks wrong."""
-        if IS_BOUNDARY.search("".join(words_of(part, RECOGNISED)[:1])):
+        if words_of(part, CONTENTS)[:1] == ["boundary"]:
             raise ElevationSurfaceError(
                 "the input is a boundary, which has no elevations; choose it as Boundary, or set "
                 "Contents to Points where the file was opened"
             )
+        self.check_properties()
         options = ReadOptions(
             columns=self._columns or None,
             no_data=no_data_of(self._no_data) if self._no_data.strip() else None,
@@ -377,6 +382,16 @@ class ReconstructElevationSurface(TellingAlgorithm):
             )
         result.report  # pylint: disable=pointless-statement
         return result
+
+    def check_properties(self):
+        """Refuses what reconstruct() would, with the names that a panel has."""
+        for name, value in self._properties.items():
+            one = PROPERTIES[name]
+            try:
+                value is None or one.convert(value)
+            except (TypeError, ValueError, OverflowError):
+                raise ValueError(f"{argument(name)} takes {one.takes}, not {value!r}") from None
+        check_together(self._properties, argument)
 
     def step(self, words, fraction):
         first, last = self.STEPS[words]
@@ -414,14 +429,8 @@ class ReconstructElevationSurface(TellingAlgorithm):
 
 
 def has_failed_reader(data):
-    """Whether ElevationPoints has left this empty, and told why."""
-    return words_of(data, RECOGNISED)[:1] == [NOTHING]
-
-
-def of_panel(words, about):
-    """A message of a filter without its step. What the panel calls faults are constraints there."""
-    words = re.sub(rf"^({'|'.join(STEPS.values())}): ", "", words)
-    return re.sub(r"\bconstraint(s?)\b", r"fault\1", words) if about == "faults" else words
+    """Whether ElevationPoints has left this empty, and reported why."""
+    return words_of(data, CONTENTS) == [NOTHING]
 
 
 def add_setters():

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .messages import counted
+from .names import argument, option
 from .progress import no_progress
 from .selecting import Words, conditions_of, joined_words
 
@@ -101,7 +102,7 @@ def three_columns(columns):
     columns = columns.split(",") if isinstance(columns, str) else columns
     columns = [str(column).strip() for column in columns]
     if len(columns) != 3 or not all(columns):
-        raise ValueError("columns takes three names, or numbers from 1, of x, y and z")
+        raise ValueError(f"{argument('columns')} takes three names, or numbers from 1, of x, y and z")
     return columns
 
 
@@ -113,7 +114,7 @@ def class_numbers(classes):
     except ValueError:
         classes = [-1]
     if not all(0 <= number <= 255 for number in classes):
-        raise ValueError("classes takes numbers from 0 to 255, as 2,8")
+        raise ValueError(f"{argument('classes')} takes numbers from 0 to 255, as 2,8")
     return classes
 
 
@@ -138,7 +139,7 @@ class ReadOptions:
         if self.classes is not None:
             self.classes = class_numbers(self.classes)
         if self.band is not None and self.band < 1:
-            raise ValueError(f"band takes a number from 1, not {self.band}")
+            raise ValueError(f"{argument('band')} takes a number from 1, not {self.band}")
         if self.where is not None:
             self.where = conditions_of(self.where)
 
@@ -413,7 +414,7 @@ def turn_over(cloud):
     turned.ShallowCopy(cloud.points)
     turned.SetPoints(points)
     cloud.points = turned
-    cloud.notes.append("z is turned over, as --depth says")
+    cloud.notes.append(f"z is turned over, as {option('depth')} says")
 
 
 def slices(count, at_once=AT_ONCE):

@@ -24,14 +24,14 @@ from .options import (
     parse_arguments,
     read_options,
 )
+from .names import PROGRAM, written_for
 from .pieces import Pieces
 from .ranks import by_first, together, total
 from .reconstruction import check_spacing, least_reach, run_chain
 from .report import picture_subtitle, print_report
 from .results import Failure, NoPicture, Progress, Results, WrongOption, write_report
-from .selecting import NONE_CHOSEN, NothingChosen, columns_in, values_to_make
+from .selecting import NothingChosen, columns_in, none_chosen, values_to_make
 from .spreading import can_be_dealt
-from .steps import in_options
 from .supervisor import allow_stops
 from .writing.grids import write_prj
 from .writing.outputs import beside, write_output
@@ -110,7 +110,7 @@ class Run:
         if not made:
             raise unused[0][1]
         cloud = merged(names, made)
-        cloud.notes += [f"{path}: {NONE_CHOSEN}" for path, _ in unused]
+        cloud.notes += [f"{path}: {none_chosen()}" for path, _ in unused]
         if self.options.without_value:
             words = counted(self.options.without_value, "point has", "points have")
             cloud.notes.append(f"{words} no {self.options.each_value}: of no surface")
@@ -122,7 +122,7 @@ class Run:
         try:
             check_spacing(least_reach(cloud.points), options.given.get("spacing", 0.0))
         except ValueError as error:
-            raise WrongOption(f"{options.file}: --{error}") from None
+            raise WrongOption(f"{options.file}: {error}") from None
         self.set_crs(cloud)
         lines = {}
         if options.boundary:
@@ -187,8 +187,7 @@ class Run:
             )
         except ElevationSurfaceError as error:
             path = {"boundary": options.boundary, "faults": options.faults}.get(error.about)
-            raise Failure(f"{path or options.file}: {in_options(str(error))}") from None
-        result.notes = [in_options(note) for note in result.notes]
+            raise Failure(f"{path or options.file}: {error}") from None
         result.boundary_name, result.faults_name = options.boundary, options.faults
         self.times.update(result.times)
         result.times = self.times
@@ -340,7 +339,8 @@ def main(arguments=None, ranks=None):
             make_parser().error(f"--each would write {one.output} twice; {one.file} is one of the files")
     try:
         run = run_each_value if options.each_value else run_one
-        return max(run(one, ranks) for one in runs)
+        with written_for(PROGRAM):
+            return max(run(one, ranks) for one in runs)
     except BrokenPipeError:
         # Nobody reads the report any more. What was asked for is done; Python must not try again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -10,6 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .clouds import bare_lines, make_lines, mark_bare, parts_of_lines
 from .messages import ElevationSurfaceError, Messages, counted
+from .names import option
 from .outline import between, places_of
 from .properties import FAULTS_Z
 from .vtkElevationSurface import vtkGridDelaunay2D
@@ -30,18 +31,18 @@ def draped(cloud, faults, name, given, strict=False):
     words = f"{name}: {numpy.count_nonzero(bare):,} of {counted(len(parts), 'line')} without z"
     if wanted == "drape":
         bare[:] = True
-        words = f"{name}: z of its lines is left aside, as --faults-z says"
+        words = f"{name}: z of its lines is left aside, as {option('faults_z')} says"
     elif wanted == "automatic" and not bare.all() and is_zero_beside(parts, bare, cloud.points):
         bare[:] = True
         words = (
             f"{name}: z of its lines is 0 everywhere and that of the points never, so that they "
-            "count as lines without z; --faults-z given takes the 0"
+            f"count as lines without z; {option('faults_z')} given takes the 0"
         )
     if not bare.any():
         return faults, []
     words += f" (first: {names[int(numpy.argmax(bare))]})"
     if wanted == "given" or strict and wanted != "drape":
-        advice = "; --faults-z drape takes z of the surface of the points"
+        advice = f"; {option('faults_z')} drape takes z of the surface of the points"
         raise ElevationSurfaceError(words + advice, "faults")
     laid = [part for part, is_bare in zip(parts, bare) if is_bare]
     surface = Surface(cloud.points, laid, given.get("duplicates", 0), name)

@@ -8,6 +8,7 @@ import math
 import os
 
 from .messages import FileError
+from .names import option
 from .reading.columns import meaning
 
 # Drivers that are not asked: text tables have a reader of their own, and nothing is fetched.
@@ -98,7 +99,7 @@ def choose_layer(path, wanted, names, what):
         named = [name for name in names if meaning(name).axis == "z"]
         names = named if len(named) == 1 else names
     if len(names) != 1:
-        found = f"{what} {', '.join(names[:20])}: choose one by --layer" if names else f"no {what}"
+        found = f"{what} {', '.join(names[:20])}: choose one by {option('layer')}" if names else f"no {what}"
         raise FileError(f"{path}: holds {found}")
     return names[0]
 

@@ -10,6 +10,7 @@ from .draping import draped
 from .gdal_common import check_system, flat, is_near, name_of, quiet, reference_of, same_system
 from .mending import mended
 from .messages import FileError
+from .names import option
 
 
 def fitted(cloud, lines, names, given, strict=False):
@@ -87,7 +88,7 @@ def check_overlap(xy, cloud, words):
         raise FileError(
             f"{words}, it is at x {west:.10g} to {east:.10g}, y {south:.10g} to {north:.10g}, away "
             f"from the points at x {x0:.10g} to {x1:.10g}, y {y0:.10g} to {y1:.10g}; is one of the "
-            "systems wrong? --crs tells that of the points"
+            f"systems wrong? {option('crs')} tells that of the points"
         )
 
 

@@ -26,6 +26,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .messages import ElevationSurfaceError, counted
+from .names import option
 from .properties import DUPLICATES
 from .reading.nulls import body
 from .selecting import MOST_VALUES, Words, as_option, coded, columns_in, shown_values
@@ -220,7 +221,7 @@ def note_on(count, largest, policy):
     taken = DUPLICATES[policy or 0].split("-")[1]
     return (
         f"{counted(count, 'place has', 'places have')} several heights, up to {largest:.7g} apart: "
-        f"the {taken} is taken (see --duplicates)"
+        f"the {taken} is taken (see {option('duplicates')})"
     )
 
 
@@ -259,7 +260,8 @@ def in_numbers(count, places, largest):
     )
 
 
-POLICIES = "--duplicates keep-highest (or lowest, first, last) takes one height at each place"
+def policies():
+    return f"{option('duplicates')} keep-highest (or lowest, first, last) takes one height at each place"
 
 
 def way_out(told):
@@ -267,16 +269,16 @@ def way_out(told):
     if told is None:
         return (
             "no column tells them apart; give each surface a file, or a column with its name; "
-            f"{POLICIES}"
+            f"{policies()}"
         )
     name, column, _ = told
     if name is None:
-        return f"the files tell them apart: --each makes a surface of each; {POLICIES}"
+        return f"the files tell them apart: {option('each')} makes a surface of each; {policies()}"
     value = coded(column)[1][0]
     called = name if name.startswith("column ") else f"column {name}"
     return (
-        f"{called} tells them apart: {shown_values(column)}; --each-value {shlex.quote(name)} "
-        f"makes a surface of each value, {as_option(name, value)} one of this; {POLICIES}"
+        f"{called} tells them apart: {shown_values(column)}; {option('each_value')} {shlex.quote(name)} "
+        f"makes a surface of each value, {as_option(name, value)} one of this; {policies()}"
     )
 
 
@@ -313,7 +315,7 @@ class HeightsOfPieces:
             one = as_option("COLUMN", "VALUE")
             raise ElevationSurfaceError(
                 f"{in_numbers(self.count, places, self.largest)}; a run in pieces looks at no "
-                f"columns: if one tells the heights apart, {one} takes those of one value; {POLICIES}"
+                f"columns: if one tells the heights apart, {one} takes those of one value; {policies()}"
             )
         facts = {"places": self.count, "of": places, "largest": self.largest}
         return note_on(self.count, self.largest, policy), facts

@@ -6,6 +6,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from .messages import counted
+from .names import option
 from .properties import INTERPOLATIONS
 
 STATUS = {
@@ -138,10 +139,10 @@ def hole_lines(holes, line):
         line(
             "",
             f"an edge is a bridge above {holes['open_edge_length']:.4g} "
-            f"({holes['open_edge_length_is']}); see --open-edge-length",
+            f"({holes['open_edge_length_is']}); see {option('open_edge_length')}",
         )
     if holes["cut_out"]:
-        line("", f"{holes['cut_out']:,} cut out by the boundary stay open; see --fill-cut-outs")
+        line("", f"{holes['cut_out']:,} cut out by the boundary stay open; see {option('fill_cut_outs')}")
     for status in holes["by_status"]:
         for bridged, words in (
             (False, f"not filled, {status}: hole"),

@@ -19,7 +19,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .blocks import parts_of
 from .clouds import Cloud, ReadOptions, crs_of, keep_points, make_points, turn_over
-from .messages import ElevationSurfaceError
+from .messages import ElevationSurfaceError, Reason
 from .reading import leave_out
 from .reading.columns import choose_columns
 from .reading.layouts import MISSING
@@ -104,7 +104,7 @@ def cloud_of_points(data, array):
     cloud.z_name = array
     hidden = hidden_points(data)
     if hidden.any():
-        cloud.left_out["points marked as hidden"] = int(numpy.count_nonzero(hidden))
+        cloud.left_out[Reason("point", "marked as hidden")] = int(numpy.count_nonzero(hidden))
         keep_points(cloud, numpy.flatnonzero(~hidden))
     return cloud
 
@@ -157,7 +157,7 @@ def cloud_of_table(table, options):
         len(columns),
         options.columns,
         3,
-        "--columns chooses other columns",
+        None,
     )
     parts = list(columns.values())
     xyz = numpy.column_stack([numbers_of(parts[i], list(columns)[i]) for i in choice.indices])
@@ -167,7 +167,7 @@ def cloud_of_table(table, options):
     cloud.z_name, cloud.is_horizon = choice.z_name, choice.is_horizon
     finite = numpy.isfinite(xyz).all(axis=1)
     if finite.any() and not finite.all():
-        cloud.left_out["rows without numbers"] = int(numpy.count_nonzero(~finite))
+        cloud.left_out[Reason("row", "without numbers")] = int(numpy.count_nonzero(~finite))
         keep_points(cloud, numpy.flatnonzero(finite))
     return cloud
 

@@ -11,6 +11,7 @@ import numpy
 from .clouds import make_lines, parts_of_lines
 from .gdal_common import gdal_module, quiet
 from .messages import ElevationSurfaceError, counted
+from .names import option
 from .outline import places_of, trial
 
 GAP = 0.01  # of the length of a ring: ends of lines no farther apart are joined
@@ -42,7 +43,7 @@ def mended(boundary, name, strict=False):
 
 def refused(words, strict):
     """The error for what would be mended, or could not be."""
-    return ElevationSurfaceError(words + "; without --strict it is mended" * strict, "boundary")
+    return ElevationSurfaceError(words + f"; without {option('strict')} it is mended" * strict, "boundary")
 
 
 def at(place):

@@ -11,14 +11,16 @@ from vtkmodules.vtkCommonCore import VTK_STRING, vtkLogger, vtkOutputWindow
 class ElevationSurfaceError(RuntimeError):
     """Why there is no surface, in one line.
 
-    about tells what it is about: "points", "boundary" or "faults".
+    about    what it is about: "points", "boundary" or "faults"
+    step     the step of the chain that fails, with which the line begins; "": none
+    message  the line without the step
     """
 
     code = 1  # the program's exit code
 
-    def __init__(self, message, about="points"):
-        super().__init__(message)
-        self.about = about
+    def __init__(self, message, about="points", step=""):
+        super().__init__(f"{step}: {message}" if step else message)
+        self.message, self.about, self.step = message, about, step
 
 
 class Aborted(Exception):
@@ -53,16 +55,79 @@ def counted(count, singular, plural=None):
     return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
 
 
+class Reason(str):
+    """Why some of a file are no points: "rows without data" of Reason("row", "without data")."""
+
+    def __new__(cls, noun, rest=""):
+        self = super().__new__(cls, f"{noun}s {rest}".rstrip())
+        self.singular = f"{noun} {rest}".rstrip()
+        return self
+
+
 def of_reason(count, reason):
-    """"1 row without data" of a reason of Cloud.left_out, "rows without data"."""
-    return counted(count, re.sub(r"s\b", "", reason, count=1), reason)
+    """"1 row without data" of a Reason of Cloud.left_out."""
+    return counted(count, reason.singular, reason)
+
+
+class Message(str):
+    """An error or a warning: the line as VTK shows it, and what our filters make it of.
+
+    code    such as "NoTriangle"; "" where VTK reports it
+    text    the line with its values in braces, and {property:Spacing} for names of properties
+    values  {name: text}
+    step    of the chain, where that is known
+    """
+
+    step = ""
+
+    def __new__(cls, text, values, code="", block=""):
+        self = super().__new__(cls, "")  # for named()
+        self.text, self.values, self.code, self.block = text, values, code, block
+        line = super().__new__(cls, self.named(str))
+        line.__dict__.update(self.__dict__)
+        return line
+
+    def named(self, name_of, words=None):
+        """The line with other names of properties, name_of(name), and of values, {text: other}."""
+        values = {name: (words or {}).get(value, value) for name, value in self.values.items()}
+        line = self.text.format(property=_Names(name_of), **values)
+        return f"{self.block}: {line}" if self.block else line
+
+
+class _Names:
+    """Makes {property:Spacing} of a text what name_of("Spacing") returns."""
+
+    def __init__(self, name_of):
+        self.name_of = name_of
+
+    def __format__(self, name):
+        return self.name_of(name)
+
+
+def messages_of(algorithm, kind):
+    """The Messages of a filter's last run that are of a kind: "error" or "warning"."""
+    if not hasattr(algorithm, "GetMessages"):
+        return []
+    rows = algorithm.GetMessages()
+    found = []
+    for i in range(0, rows.GetNumberOfValues(), 2):
+        name, value = rows.GetValue(i), rows.GetValue(i + 1)
+        if name in ("error", "warning"):
+            found.append((name, {"code": value, "values": {}}))
+        else:
+            parts = found[-1][1]
+            (parts if name in ("text", "block") else parts["values"])[name] = value
+    return [Message(**parts) for each, parts in found if each == kind]
+
+
+KINDS = {"ErrorEvent": "error", "WarningEvent": "warning"}
 
 
 class Messages:
     """Collects what VTK reports instead of letting it print.
 
-    Use as a context manager. `errors` and `warnings` are lists of plain lines, without the
-    source file, the object's address and the follow-up complaints of VTK's executives.
+    Use as a context manager. `errors` and `warnings` are lists of Messages, without the source file,
+    the object's address and the follow-up complaints of VTK's executives.
 
     sources  objects whose messages are taken before they come to the output window: programs as
              ParaView have one of their own, which shows what comes to it
@@ -80,14 +145,15 @@ class Messages:
         window.SetDisplayModeToNever()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
 
-        def note(_caller, event, text):
-            self.take(event, text)
+        def note(caller, event, text):
+            for message in messages_of(caller, KINDS[event]) or [from_vtk(text)]:
+                self.take(event, message)
 
         note.CallDataType = VTK_STRING
         self._tags = [
             (source, source.AddObserver(event, note))
             for source in (window, *self.sources)
-            for event in ("ErrorEvent", "WarningEvent")
+            for event in KINDS
         ]
         return self
 
@@ -98,13 +164,17 @@ class Messages:
         window.SetDisplayMode(self._mode)
         vtkLogger.SetStderrVerbosity(self._verbosity)
 
-    def take(self, event, text):
-        line = plain_message(text)
-        if not line or "returned failure for request" in line:
+    def take(self, event, message):
+        if not message or "returned failure for request" in message:  # of VTK's executives
             return
         lines = self.errors if event == "ErrorEvent" else self.warnings
-        if line not in lines:
-            lines.append(line)
+        if message not in lines:
+            lines.append(message)
+
+
+def from_vtk(text):
+    """The Message that VTK's own text is."""
+    return Message("{words}", {"words": plain_message(text)})
 
 
 def plain_message(text):

@@ -20,7 +20,7 @@ from .given_lines import in_system
 from .heights import HeightsOfPieces
 from .holes import report_of_holes
 from .mending import mended
-from .messages import ElevationSurfaceError, FileError, Messages, plain_message
+from .messages import ElevationSurfaceError, FileError, Messages
 from .opening import lattice_of
 from .properties import LATTICE_MODES, PROPERTIES
 from .reading.formats import recognise
@@ -30,7 +30,7 @@ from .reconstruction import AS_GIVEN, check_spacing, least_reach
 from .report import MOST_LISTED, OUTSIDE, REASONS
 from .results import Failure, WrongOption, write_report
 from .spreading import IN_NO_TRIANGLE
-from .steps import STEPS, in_options, notes_of
+from .steps import STEPS, in_our_names
 from .supervisor import note_partial_file
 from .vtkElevationSurface import vtkReconstructPieces
 from .writing.xml_writer import write_vtp
@@ -148,15 +148,20 @@ class Points:
 
 
 def step_of(source):
-    return source.GetProgressText() or STEPS["delaunay"]
+    """The step that a vtkReconstructPieces is at: delaunay, trim or fill."""
+    return {words: step for step, words in STEPS.items()}.get(source.GetProgressText(), "delaunay")
 
 
 class MessagesOfSteps(Messages):
-    """Those of a vtkReconstructPieces, after the step that it is at."""
+    """Those of a vtkReconstructPieces, each with the step that it is at."""
 
-    def take(self, event, text):
-        words = plain_message(text)
-        super().take(event, words and f"{step_of(self.sources[0])}: {words}")
+    def take(self, event, message):
+        message.step = step_of(self.sources[0])
+        super().take(event, message)
+
+
+def with_step(message):
+    return f"{STEPS[message.step]}: {in_our_names(message, message.step)}"
 
 
 class Pieces:
@@ -186,7 +191,7 @@ class Pieces:
                 if PROPERTIES[name].step in (step, ""):
                     getattr(algorithm, PROPERTIES[name].setter)(value)
         source.AddObserver(
-            "ProgressEvent", lambda caller, _: run.progress(step_of(caller), caller.GetProgress())
+            "ProgressEvent", lambda caller, _: run.progress(STEPS[step_of(caller)], caller.GetProgress())
         )
         with temporary_folder(options.output) as folder:
             source.SetFolder(folder)
@@ -208,12 +213,12 @@ class Pieces:
         return report
 
     def check(self):
-        """Raises what the filter has told as error, or with --strict as warning."""
-        told = self.messages.errors + (self.messages.warnings if self.options.strict else [])
-        if told:
-            is_of_boundary = told[0].startswith(STEPS["trim"])
-            file = self.options.boundary if is_of_boundary else self.options.file
-            raise Failure(f"{file}: {in_options(told[0])}")
+        """Raises what the filter has reported as error, or with --strict as warning."""
+        problems = self.messages.errors or (self.messages.warnings if self.options.strict else [])
+        if problems:
+            file = self.options.boundary if problems[0].step == "trim" else self.options.file
+            more = (in_our_names(one, one.step) for one in problems[1:])
+            raise Failure(" ".join([f"{file}: {with_step(problems[0])}", *more]))
 
     def read(self):
         """Gives all points to the filter, slice by slice."""
@@ -232,7 +237,7 @@ class Pieces:
         try:
             check_spacing(reach, options.given.get("spacing", 0.0))
         except ValueError as error:
-            raise WrongOption(f"{options.file}: --{error}") from None
+            raise WrongOption(f"{options.file}: {error}") from None
         self.run.set_crs(self.cloud)
         if path:
             boundary, told = in_system(
@@ -246,8 +251,8 @@ class Pieces:
         self.source.UpdatePiece(piece, count, 0)
         self.check()
         if self.source.GetNumberOfTriangles() == 0:
-            why = in_options(self.messages.warnings[0]).split(": ", 1)[1]
-            raise Failure(f"{self.options.file}: no surface: {why}")
+            why = self.messages.warnings[0]
+            raise Failure(f"{self.options.file}: no surface: {in_our_names(why, why.step)}")
         return self.source.GetOutput()
 
     def write(self, folder, count):
@@ -312,8 +317,7 @@ class Pieces:
 
     def notes(self):
         """What the filter warns of."""
-        told = (warning.split(": ", 1) for warning in self.messages.warnings)
-        return [in_options(note) for step, words in told for note in notes_of(step, words)]
+        return [with_step(warning) for warning in self.messages.warnings]
 
     def why_in_no_triangle(self):
         """The reason of points that have been left out by trimming, or by the limit of edges."""

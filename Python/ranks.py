@@ -131,7 +131,7 @@ def agreed(controller, work):
             made.append(work())
             return []
         except ElevationSurfaceError as error:
-            return [[str(error), error.about, error.code]]
+            return [[error.message, error.about, error.step, error.code]]
         except MemoryError:
             return [[]]
 
@@ -141,8 +141,8 @@ def agreed(controller, work):
     if failures and not failures[0]:
         raise MemoryError
     if failures:
-        words, about, code = failures[0]
-        error = ElevationSurfaceError(words, about)
+        *words, code = failures[0]
+        error = ElevationSurfaceError(*words)
         error.code = code
         raise error
     return made[0]

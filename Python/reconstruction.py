@@ -23,6 +23,7 @@ from .clouds import Cloud, make_lines, make_points
 from .given_lines import fitted
 from .heights import check_heights
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
+from .names import argument
 from .opening import length_to_open
 from .paths import check_suffix
 from .properties import COLOURS, checked, number_above_zero, view_angles
@@ -133,13 +134,14 @@ class Reconstruction:
     lattice   that of the triangulation, see lattice_of(), or None
     times     {step: seconds}
     notes     what filters warned of, one line each
+    warnings  the same as Messages, as the filters make them
     decided   notes on what the user has decided
     """
 
     def __init__(self, cloud):
         self.cloud = cloud
         self.times = {}
-        self.notes, self.decided = [], []
+        self.notes, self.decided, self.warnings = [], [], []
         self.delaunay = self.trim = self.fill = self.outlined = None
         self.surface = self.boundary = self.holes = None
         self.triangles, self.reasons, self.lattice = {}, None, None
@@ -372,6 +374,6 @@ def check_spacing(reach, spacing):
         step = float(numpy.spacing(reach))
         if spacing < 4 * step:
             raise ValueError(
-                f"spacing: {spacing:g} is less than x and y of the points can tell apart, which are in "
+                f"{argument('spacing')}: {spacing:g} is less than x and y of the points can tell apart, which are in "
                 f"steps of {step:.3g}"
             )

@@ -12,6 +12,7 @@ from .clouds import corner_flags
 from .distance import distance_to
 from .holes import hole_counts, hole_lines, holes_of
 from .messages import counted, of_reason
+from .names import option
 from .properties import LATTICE_MODES
 from .spreading import IN_NO_TRIANGLE, OUT_OF_OUTLINE, WITHIN_ERROR
 
@@ -169,7 +170,7 @@ def report_lines(report):
     if "distance" in report:
         distance_lines(report, line)
     if "written" in report and report["unused_listed"] < report["points_unused"]:
-        line("", f"--report lists the first {MOST_LISTED:,} unused points for each reason")
+        line("", f"{option('report')} lists the first {MOST_LISTED:,} unused points for each reason")
     if "times" in report:
         times = report["times"].items()
         line("time", ", ".join(f"{name} {seconds:.2f} s" for name, seconds in times))

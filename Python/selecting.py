@@ -12,12 +12,17 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkBitArray, vtkDataArray, vtkStringArray
 
-from .messages import FileError, counted, did_you_mean
+from .messages import FileError, Reason, counted, did_you_mean
+from .names import argument, option
 
 MOST_VALUES = 1000  # a column with more of them names no surfaces
 SHOWN = 10  # values or columns in a message
-BY_WHERE = "points of other values"
-NONE_CHOSEN = "--where leaves no point"
+BY_WHERE = Reason("point", "of other values")
+
+
+def none_chosen():
+    """What is noted where no point is left."""
+    return f"{option('where')} leaves no point"
 
 
 @dataclasses.dataclass
@@ -101,7 +106,7 @@ def conditions_of(where):
     for one in [where] if isinstance(where, str) else where:
         column, sign, value = one.partition("=") if isinstance(one, str) else (one[0], "=", one[1])
         if not sign or not str(column).strip():
-            raise ValueError(f"where takes COLUMN=VALUE, as horizon=Top, not {one}")
+            raise ValueError(f"{argument('where')} takes COLUMN=VALUE, as horizon=Top, not {one}")
         found.append((str(column).strip(), str(value).strip()))
     return found
 
@@ -113,7 +118,7 @@ def condition(text):
 
 def as_option(column, value):
     """--where 'Horizon name=Top A'"""
-    return f"--where {shlex.quote(f'{column}={value}')}"
+    return f"{option('where')} {shlex.quote(f'{column}={value}')}"
 
 
 def written(number):
@@ -294,8 +299,8 @@ def values_to_make(path, name, columns):
         raise FileError(f"{path}: column {name} is empty")
     if len(values) > MOST_VALUES:
         raise FileError(
-            f"{path}: column {name} has {counted(len(values), 'value')}, and --each-value makes a "
+            f"{path}: column {name} has {counted(len(values), 'value')}, and {option('each_value')} makes a "
             f"surface of each, at most {MOST_VALUES:,}: choose a column that names surfaces, or "
-            "some values by --where"
+            f"some values by {option('where')}"
         )
     return name, int(numpy.count_nonzero(codes < 0)), values

@@ -1,8 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The steps of the chain: how its filters run, what they tell, triangulating and trimming."""
+"""The steps of the chain: how its filters run, what they report, triangulating and trimming."""
 
-import re
 import time
 
 import numpy
@@ -11,6 +10,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from .clouds import bare_lines
 from .inputs import joined
 from .messages import ElevationSurfaceError, Messages
+from .names import PANEL, PYTHON, are_for, argument, option
 from .opening import lattice_of
 from .outline import (
     ON_BORDER,
@@ -22,7 +22,7 @@ from .outline import (
     simplified,
     spacing_of,
 )
-from .properties import PROPERTIES, option_of
+from .properties import PROPERTIES
 from .ranks import agreed, together, total
 from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, dealt, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
@@ -74,36 +74,47 @@ class Step:
         algorithm.RemoveObserver(tag)
         if raised:
             raise raised[0]
-        agreed(self.ranks, lambda: self.tell(name, messages))
+        agreed(self.ranks, lambda: self.report(name, messages))
         return algorithm
 
-    def tell(self, name, messages):
-        problems = messages.errors + (messages.warnings if self.strict else [])
+    def report(self, name, messages):
+        """Raises the errors of a step, or makes notes of its warnings."""
+        problems = messages.errors or (messages.warnings if self.strict else [])
         if problems:
             about = "points"
             if name == "trim" and self.result.boundary_name:
                 about = "boundary"
-            elif name == "delaunay" and "constraints" in problems[0]:
+            elif name == "delaunay" and is_of_constraints(problems[0]):
                 about = "faults"
-            raise ElevationSurfaceError(f"{STEPS[name]}: {problems[0]}", about)
+            words = " ".join(in_our_names(one, name) for one in problems)
+            raise ElevationSurfaceError(words, about, STEPS[name])
         for warning in messages.warnings:
-            notes = notes_of(STEPS[name], warning)
-            self.result.notes += [note for note in notes if note not in self.result.notes]
+            note = f"{STEPS[name]}: {in_our_names(warning, name)}"
+            self.result.warnings.append(warning)
+            self.result.notes += [note] if note not in self.result.notes else []
 
 
-def in_options(words):
-    """A filter's message, with the names of options where it has names of properties."""
-    for name, one in PROPERTIES.items():
-        if one.setter and (not one.step or words.startswith(STEPS[one.step])):
-            words = re.sub(rf"\b{one.setter[3:]}\b", option_of(name), words)
-        if "_" in name:
-            words = words.replace(name, option_of(name))
-    return words
+def is_of_constraints(message):
+    """Whether a filter's message is about its constraints, which are our faults."""
+    return not CALLED_IN_PANEL.keys().isdisjoint(message.values.values())
 
 
-def notes_of(step, warning):
-    """A filter's warning as notes. It may tell of several holes."""
-    return [f"{step}: {one}" for one in re.sub(r"\. (?=Hole \d)", ".\n", warning).split("\n")]
+CALLED_IN_PANEL = {"constraints": "faults", "constraints'": "faults'"}
+
+
+def in_our_names(message, step):
+    """A filter's Message, with the names of options where it has names of properties.
+
+    step  delaunay, trim or fill
+    """
+
+    def name_of(setter):
+        for name, one in PROPERTIES.items():
+            if one.setter == f"Set{setter}" and one.step in (step, "") and not are_for(PYTHON):
+                return option(name)
+        return setter
+
+    return message.named(name_of, CALLED_IN_PANEL if are_for(PANEL) else None)
 
 
 def triangulate(run, lines, error):
@@ -126,7 +137,7 @@ def triangulate(run, lines, error):
     result.reasons = reasons_of(ranks, surface, points.GetNumberOfPoints())
     if result.triangles["delaunay"] == 0:
         limit = run.given.get("maximum_edge_length", 0.0)
-        agreed(ranks, lambda: refuse(points, limit, result.notes))
+        agreed(ranks, lambda: refuse(points, limit, result.warnings))
 
 
 def trim_along(run, boundary, edges=None):
@@ -188,14 +199,14 @@ def trim_few(run, boundary, faults):
     result.reasons[left[outside_of(outline, xyz[left], reach)]] = OUT_OF_OUTLINE
 
 
-def refuse(points, limit, notes):
+def refuse(points, limit, warnings):
     """Raises ElevationSurfaceError, where there are points, with the reason why no triangle is."""
     if points.GetNumberOfPoints():
-        raise ElevationSurfaceError(why_no_triangle(points, limit, notes))
+        raise ElevationSurfaceError(why_no_triangle(points, limit, warnings))
 
 
-def why_no_triangle(points, limit, notes):
-    """The reason in words when the triangulation is empty; notes: what the filter warned of."""
+def why_no_triangle(points, limit, warnings):
+    """The reason in words when the triangulation is empty; warnings: those of the filter."""
     xyz = vtk_to_numpy(points.GetPoints().GetData())
     count = len(xyz)
     finite = xyz[numpy.isfinite(xyz).all(axis=1)]
@@ -220,9 +231,13 @@ def why_no_triangle(points, limit, notes):
             f"no surface: all {len(finite):,} finite points lie on one line in x,y, from "
             f"({a[0]:.10g}, {a[1]:.10g}) to ({b[0]:.10g}, {b[1]:.10g})"
         )
-    advice = re.search(r"Between neighbours.*", " ".join(notes))
-    advice = advice.group().replace("MaximumEdgeLength", "maximum_edge_length") if advice else ""
-    return (
-        f"no surface: no triangle has edges of at most {limit:g}; "
-        f"use a larger maximum_edge_length. {advice}".rstrip()
-    )
+    name = argument("maximum_edge_length")
+    words = f"no surface: no triangle has edges of at most {limit:g}; use a larger {name}."
+    for one in warnings:
+        if one.code == "FewTrianglesAdvice":
+            words += (
+                f" Between neighbours, the shortest edge is {one.values['shortest']} long, the median "
+                f"{one.values['median']}. A {name} of {one.values['better']} keeps a triangle at 95 % of "
+                "the points."
+            )
+    return words

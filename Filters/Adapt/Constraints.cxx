@@ -29,11 +29,11 @@ ConstraintLines ToLines(
   return lines;
 }
 
-void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<std::string>& warnings)
+void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Message>& warnings)
 {
   if (lines.Vertices.empty())
   {
-    throw Error("The constraints have no line and no polygon.");
+    throw MakeError<sentences::NoLines>("constraints");
   }
   // Outlines may lie a little outside.
   const double dx = 0.1 * box.Width(), dy = 0.1 * box.Height();
@@ -52,15 +52,12 @@ void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<std::s
   }
   if (!ofLines.Intersects(box))
   {
-    throw Error("No constraint meets the points. The constraints are at " + NameOf(ofLines) +
-      ", the points at " + NameOf(box) + ": are both in the same coordinates?");
+    throw MakeError<sentences::LinesElsewhere>("constraints", NameOf(ofLines), NameOf(box));
   }
   if (2 * outside > lines.Vertices.size())
   {
-    warnings.push_back(std::to_string(outside) + " of the " +
-      std::to_string(lines.Vertices.size()) + " points along the constraints' lines lie far " +
-      "outside the points, and become vertices there. The constraints are at " + NameOf(ofLines) +
-      ", the points at " + NameOf(box) + ": are both in the same coordinates?");
+    warnings.push_back(MakeMessage<sentences::LinesFarOutside>(
+      outside, lines.Vertices.size(), "constraints'", "constraints", NameOf(ofLines), NameOf(box)));
   }
 }
 

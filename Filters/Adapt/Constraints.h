@@ -9,6 +9,7 @@
 #define Constraints_h
 
 #include "Kernel/Constrain/Constrain.h"
+#include "Kernel/Messages/Messages.h"
 #include "MeshConversion.h"
 
 #include <string>
@@ -30,7 +31,7 @@ ConstraintLines ToLines(
  * @param[out] warnings  one is added when most of the lines lie outside
  * @throws Error if there is no line, or all are elsewhere
  */
-void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<std::string>& warnings);
+void CheckLines(const ConstraintLines& lines, const Box& box, std::vector<Message>& warnings);
 
 /** The input's points and arrays, followed by the added points with their values. */
 void PassPoints(vtkPointSet* input, vtkPolyData* source, const std::vector<AddedPoint>& added,

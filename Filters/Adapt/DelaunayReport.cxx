@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DelaunayReport.h"
 
+#include "Kernel/Messages/Messages.h"
 #include "Requests.h"
 
 #include "vtkDoubleArray.h"
@@ -11,7 +12,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <cmath>
-#include <sstream>
 
 namespace elevation
 {
@@ -22,14 +22,11 @@ void CheckLimits(const DelaunayOptions& options)
   const double error = options.MaximumElevationError;
   if (!(error >= 0.0) || std::isinf(error))
   {
-    std::ostringstream text;
-    text << "MaximumElevationError is " << error << "; it must be 0 (off) or a distance in z.";
-    throw Error(text.str());
+    throw MakeError<sentences::InvalidElevationError>(error);
   }
   if (error > 0.0 && options.MaximumEdgeLength > 0.0)
   {
-    throw Error("MaximumEdgeLength and MaximumElevationError are both set, but fewer points make "
-                "longer edges: set one of them to 0, and trim the surface instead.");
+    throw MakeError<sentences::TwoLimits>();
   }
 }
 

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LimitAdvice.h"
 
-#include <iomanip>
-#include <sstream>
-
 namespace elevation
 {
 
@@ -18,26 +15,13 @@ double RoundedUp(double length)
 }
 } // namespace
 
-std::string TextOfNoTriangle(vtkIdType numberOfPoints)
+Message AdviceOnLimit(double limit, const EffectOfLimit& effect)
 {
-  return "No triangle was made: the " + std::to_string(numberOfPoints) +
-    " input points are fewer than three distinct finite points, or all on one line.";
-}
-
-std::string TextOfLimit(double limit, const EffectOfLimit& effect)
-{
-  std::ostringstream text;
-  text << "MaximumEdgeLength is " << limit << ", and " << effect.Missing << " of "
-       << effect.Vertices
-       << " points are left without a triangle, because the points are farther apart.";
-  if (effect.HasLengths)
-  {
-    text << std::setprecision(4) << " Between neighbours, the shortest edge is " << effect.Shortest
-         << " long, the median " << effect.Median << ". A MaximumEdgeLength of "
-         << std::setprecision(10) << RoundedUp(effect.ForMost)
-         << " keeps a triangle at 95 % of the points.";
-  }
-  return text.str();
+  const Message what = MakeMessage<sentences::FewTriangles>(limit, effect.Missing, effect.Vertices);
+  return effect.HasLengths
+    ? MakeMessage<sentences::FewTrianglesAdvice>(what, ToText(effect.Shortest, 4),
+        ToText(effect.Median, 4), ToText(RoundedUp(effect.ForMost), 10))
+    : what;
 }
 
 } // namespace elevation

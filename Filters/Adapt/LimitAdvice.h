@@ -9,13 +9,13 @@
 #define LimitAdvice_h
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 
 #include "vtkType.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <vector>
 
 namespace elevation
@@ -44,10 +44,8 @@ inline vtkIdType PlaceOfQuantile(double part, vtkIdType count)
   return static_cast<vtkIdType>(part * static_cast<double>(count - 1));
 }
 
-std::string TextOfNoTriangle(vtkIdType numberOfPoints);
-
 /** That most points are without a triangle, and which limit would keep them. */
-std::string TextOfLimit(double limit, const EffectOfLimit& effect);
+Message AdviceOnLimit(double limit, const EffectOfLimit& effect);
 
 /** Of triangles without a limit. */
 struct LengthsOfEdges

@@ -3,6 +3,7 @@
 #include "MeshConversion.h"
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 
 #include "vtkAOSDataArrayTemplate.h"
 #include "vtkAppendPolyData.h"
@@ -205,8 +206,8 @@ struct NoPoint
 
   [[noreturn]] void Throw(std::size_t corner, vtkTypeInt64 id) const
   {
-    throw Error(NoSuchPoint(
-      this->FirstCell + static_cast<vtkIdType>(corner / 3), id, this->NumberOfPoints));
+    throw Error(
+      NoSuchPoint(this->FirstCell + static_cast<vtkIdType>(corner / 3), id, this->NumberOfPoints));
   }
 };
 
@@ -297,8 +298,7 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
 {
   if (input->GetNumberOfStrips() > 0)
   {
-    throw Error(
-      "There are triangle strips in the " + name + ", which may be lines and polygons only.");
+    throw MakeError<sentences::StripsInLines>(name);
   }
   const std::string owner = name + (name.back() == 's' ? "'" : "'s");
   CheckCells(input, "The " + owner);
@@ -317,15 +317,13 @@ void ForEachLine(vtkPolyData* input, const std::string& name, const Progress& pr
       sum += line.Size;
       if (sum > MaximumNumberOfPoints)
       {
-        throw Error("The lines of the " + name + " have more than " +
-          std::to_string(MaximumNumberOfPoints) + " points.");
+        throw MakeError<sentences::TooManyPointsInLines>(name, MaximumNumberOfPoints);
       }
       for (vtkIdType i = 0; i < line.Size; ++i)
       {
         if (line.Ids[i] < 0 || line.Ids[i] >= numberOfPoints)
         {
-          throw Error("Point " + std::to_string(line.Ids[i]) + " of the " + owner + " cell " +
-            std::to_string(line.Cell) + " does not exist.");
+          throw MakeError<sentences::NoSuchPointOfLine>(line.Ids[i], owner, line.Cell);
         }
       }
       visit(line);

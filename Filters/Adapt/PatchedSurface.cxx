@@ -18,7 +18,6 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <sstream>
 
 namespace elevation
 {
@@ -226,39 +225,33 @@ void AddHoleCounts(const FillResult& patches, const std::vector<vtkPolyData*>& o
   }
 }
 
-std::string Complaint(const FillResult& patches)
+std::vector<Message> WarningsOf(const FillResult& patches)
 {
   const Holes& holes = patches.Found;
   constexpr int listed = 5;
-  std::ostringstream text;
+  std::vector<Message> warnings;
   int failed = 0;
   for (Index hole = 0; hole < holes.Count(); ++hole)
   {
     const HoleReport& report = patches.Reports[hole];
     if (report.Status == FillStatus::Failed && ++failed <= listed)
     {
-      text << "Hole " << hole << " (" << report.NumberOfEdges << " edges) was not filled. "
-           << report.Reason << (holes.IsRegion(hole) ? " It keeps its triangles." : "") << "\n";
+      const auto make = holes.IsRegion(hole)
+        ? MakeMessage<sentences::RegionNotFilled, Index, Index, Message>
+        : MakeMessage<sentences::HoleNotFilled, Index, Index, Message>;
+      warnings.push_back(make(hole, report.NumberOfEdges, report.Reason));
     }
   }
   if (failed > listed)
   {
-    text << "And " << failed - listed << " more holes were not filled; see Status in output 1.\n";
+    warnings.push_back(MakeMessage<sentences::MoreHolesNotFilled>(failed - listed));
   }
   if (holes.NumberOfContacts > 0)
   {
-    text << "At " << holes.NumberOfContacts
-         << " places a point lies inside a border edge or on another point, the first at point "
-         << holes.ContactVertices.front()
-         << "; there the surface is not connected, so that an enclosed region may not be a hole. "
-            "vtkCleanPolyData merges points.\n";
+    warnings.push_back(
+      MakeMessage<sentences::BordersMeet>(holes.NumberOfContacts, holes.ContactVertices.front()));
   }
-  std::string complaint = text.str();
-  if (!complaint.empty())
-  {
-    complaint.pop_back();
-  }
-  return complaint;
+  return warnings;
 }
 
 } // namespace elevation

@@ -40,8 +40,8 @@ void MakeSurface(vtkPolyData* input, const Mesh& mesh, const FillResult& patches
 void MakeReport(
   vtkPolyData* input, const FillResult& patches, const Progress& progress, vtkPolyData* output);
 
-/** A warning about holes that failed, and about contacts; empty if there are none. */
-std::string Complaint(const FillResult& patches);
+/** Warnings about holes that failed, and about contacts. */
+std::vector<Message> WarningsOf(const FillResult& patches);
 
 /** How many holes are filled. */
 vtkIdType CountOfFilled(const FillResult& patches);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Requests.h"
 
+#include "ReportMessages.h"
 #include "VTKVersions.h"
 
 #include "vtkAlgorithm.h"
@@ -11,10 +12,8 @@
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
-#include "vtkSetGet.h"
 
 #include <algorithm>
-#include <sstream>
 
 namespace elevation
 {
@@ -31,8 +30,8 @@ Progress ProgressOf(vtkAlgorithm* filter)
   };
 }
 
-void EndWithError(
-  vtkAlgorithm* filter, vtkInformationVector* outputs, const std::exception& failure)
+void EndWithError(vtkAlgorithm* filter, vtkInformationVector* outputs,
+  const std::exception& failure, vtkStringArray* messages)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
@@ -41,10 +40,10 @@ void EndWithError(
       output->Initialize();
     }
   }
-  vtkErrorWithObjectMacro(filter, << MessageOf(failure));
+  ReportMessages(filter, { MessageOf(failure) }, {}, messages);
 }
 
-bool IsToBeTold(vtkPolyData* meshWithoutTriangles)
+bool NeedsWarning(vtkPolyData* meshWithoutTriangles)
 {
   return meshWithoutTriangles->GetNumberOfPoints() > 0 &&
     !meshWithoutTriangles->GetFieldData()->HasArray("UnusedPointIds");
@@ -54,9 +53,7 @@ void CheckMaximumEdgeLength(double length)
 {
   if (!(length >= 0.0))
   {
-    std::ostringstream text;
-    text << "MaximumEdgeLength is " << length << "; it must be 0 (off) or a length in x,y.";
-    throw Error(text.str());
+    throw MakeError<sentences::InvalidEdgeLength>(length);
   }
 }
 

@@ -13,28 +13,19 @@
 #include "vtkType.h"
 
 #include <exception>
-#include <new>
 
 class vtkAlgorithm;
 class vtkFieldData;
 class vtkInformationVector;
 class vtkPolyData;
+class vtkStringArray;
 
 namespace elevation
 {
 
-/** What is told where memory has run out. */
-constexpr const char* NotEnoughMemory = "There is not enough memory for this input.";
-
-/** What is told of a failure. */
-inline const char* MessageOf(const std::exception& failure)
-{
-  return dynamic_cast<const std::bad_alloc*>(&failure) ? NotEnoughMemory : failure.what();
-}
-
-/** Reports a failure of a request as an error of the filter, and empties the outputs. */
-void EndWithError(
-  vtkAlgorithm* filter, vtkInformationVector* outputs, const std::exception& failure);
+/** Reports a failure of a request as ReportMessages() does, and empties the outputs. */
+void EndWithError(vtkAlgorithm* filter, vtkInformationVector* outputs,
+  const std::exception& failure, vtkStringArray* messages);
 
 /**
  * Answers a request of the pipeline. An exception that would leave the filter, as when there is no
@@ -43,7 +34,8 @@ void EndWithError(
  * @param[in] answer  returns what ProcessRequest returns; after an error that is 1, as Run() says
  */
 template <typename Answer>
-int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, Answer&& answer)
+int Guarded(
+  vtkAlgorithm* filter, vtkInformationVector* outputs, vtkStringArray* messages, Answer&& answer)
 {
   try
   {
@@ -51,7 +43,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, Answer&& answer
   }
   catch (const std::exception& error)
   {
-    EndWithError(filter, outputs, error);
+    EndWithError(filter, outputs, error, messages);
   }
   return 1;
 }
@@ -67,7 +59,7 @@ Progress ProgressOf(vtkAlgorithm* filter);
  * Whether a mesh without triangles needs a warning. It needs none where the filter before has told
  * why: a mesh without points comes of an error, and vtkGridDelaunay2D leaves its counts.
  */
-bool IsToBeTold(vtkPolyData* meshWithoutTriangles);
+bool NeedsWarning(vtkPolyData* meshWithoutTriangles);
 
 /** @throws Error if the limit is no length */
 void CheckMaximumEdgeLength(double length);

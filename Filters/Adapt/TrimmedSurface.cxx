@@ -24,18 +24,16 @@
 namespace elevation
 {
 
-std::string WrongOption(const TrimOptions& options)
+Message WrongOption(const TrimOptions& options)
 {
   if (!(options.GapTolerance >= 0.0))
   {
-    return "GapTolerance is " + std::to_string(options.GapTolerance) +
-      ". It must be a number of spacings above 0, or 0 to choose it from the data.";
+    return MakeMessage<sentences::InvalidGapTolerance>(std::to_string(options.GapTolerance));
   }
   const double cell = std::fabs(options.Grid.Area());
   return options.Grid.IsSet() && !(cell > 0.0 && cell < std::numeric_limits<double>::infinity())
-    ? "GridSteps span no cell: x and y of one step and of another are needed, or four zeros for no "
-      "grid."
-    : "";
+    ? MakeMessage<sentences::InvalidGridSteps>()
+    : Message();
 }
 
 BoundaryLines ToLines(vtkPolyData* boundary, const Progress& progress, const std::string& name)

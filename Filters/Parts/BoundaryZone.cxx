@@ -68,7 +68,7 @@ TrimmedPart::TrimmedPart(const Bytes& bytes)
 
 void BoundaryZone::JoinAll(const Progress& progress)
 {
-  std::vector<std::string> warnings; // none: all have the same arrays
+  std::vector<Message> warnings; // none: all have the same arrays
   this->Common =
     std::make_unique<CommonPoints>(this->Given, PartKind::Mesh, Part(progress, 0.0, 0.3));
   this->Whole = Join(this->Given, PartKind::Mesh, Part(progress, 0.3, 1.0), warnings);

@@ -58,7 +58,7 @@ public:
   {
   }
 
-  void Read(std::vector<std::string>& warnings);
+  void Read(std::vector<Message>& warnings);
   void GatherNear();
   void Cut();
   void AddPoints();
@@ -84,7 +84,7 @@ private:
   LinePieces Pieces;
 };
 
-void Lines::Read(std::vector<std::string>& warnings)
+void Lines::Read(std::vector<Message>& warnings)
 {
   const Box box = BoxOfPoints(this->All, this->Part.Own);
   this->All.Agree([&]() {
@@ -362,7 +362,7 @@ std::vector<Bytes> Recover(const std::vector<Bytes>& packed, const LinesOfRanks&
 
 LinesOfRanks AddLines(const Ranks& ranks, vtkPolyData* source, const PointOwners& owners,
   const DelaunayOptions& options, const Progress& progress, SurfacePart& part,
-  std::vector<std::string>& warnings)
+  std::vector<Message>& warnings)
 {
   Lines lines(ranks, source, owners, options, progress, part);
   lines.Read(warnings);

@@ -13,6 +13,7 @@
 #define ConstraintsOfRanks_h
 
 #include "Kernel/Cells/Cells.h"
+#include "Kernel/Messages/Messages.h"
 #include "PointOwners.h"
 #include "Ranks.h"
 #include "SurfacePart.h"
@@ -47,7 +48,7 @@ struct LinesOfRanks
  */
 LinesOfRanks AddLines(const Ranks& ranks, vtkPolyData* source, const PointOwners& owners,
   const DelaunayOptions& options, const Progress& progress, SurfacePart& part,
-  std::vector<std::string>& warnings);
+  std::vector<Message>& warnings);
 
 /** The triangles of a rank. */
 struct TrianglesOfRank

@@ -413,7 +413,7 @@ void Work::PlaceCorners()
 } // namespace
 
 DistributedSurface TriangulateOnRanks(const Ranks& ranks, const PointsOfRank& points,
-  vtkPolyData* constraints, DelaunayOptions options, std::vector<std::string>& warnings)
+  vtkPolyData* constraints, DelaunayOptions options, std::vector<Message>& warnings)
 {
   DistributedSurface surface;
   SurfacePart& part = surface.Part;

@@ -23,6 +23,7 @@
 #define DistributedDelaunay_h
 
 #include "Kernel/Cells/Cells.h"
+#include "Kernel/Messages/Messages.h"
 #include "PointOwners.h"
 #include "Ranks.h"
 #include "SurfacePart.h"
@@ -58,7 +59,7 @@ struct DistributedSurface
  * @throws Error, Aborted on all ranks when any of them fails
  */
 DistributedSurface TriangulateOnRanks(const Ranks& ranks, const PointsOfRank& points,
-  vtkPolyData* constraints, DelaunayOptions options, std::vector<std::string>& warnings);
+  vtkPolyData* constraints, DelaunayOptions options, std::vector<Message>& warnings);
 
 /** Adds what the work of this rank on points of all ranks took. */
 void AddWork(

@@ -271,7 +271,7 @@ void Work::ShareReports()
 {
   constexpr std::size_t width = 8;
   std::vector<double> rows;
-  std::vector<std::string> reasons; // of each hole that has failed: its number, a space, the text
+  std::vector<std::string> reasons; // of each hole that has failed: its number, a space, the reason
   for (std::size_t i = 0; i < this->Part.Filled.Numbers.size(); ++i)
   {
     const HoleReport& one = this->Part.Filled.Patches.Reports[i];
@@ -279,9 +279,9 @@ void Work::ShareReports()
       { static_cast<double>(this->Part.Filled.Numbers[i]), static_cast<double>(one.Status),
         static_cast<double>(one.NumberOfEdges), one.Perimeter, one.Area, one.Size,
         static_cast<double>(one.NumberOfInsertedPoints), static_cast<double>(one.Method) });
-    if (!one.Reason.empty())
+    if (!one.Reason.IsEmpty())
     {
-      reasons.push_back(std::to_string(this->Part.Filled.Numbers[i]) + " " + one.Reason);
+      reasons.push_back(std::to_string(this->Part.Filled.Numbers[i]) + " " + one.Reason.Pack());
     }
   }
   rows = this->All.CollectReals(rows);
@@ -301,7 +301,7 @@ void Work::ShareReports()
   }
   for (const std::string& reason : reasons)
   {
-    reports[std::stoul(reason)].Reason = reason.substr(reason.find(' ') + 1);
+    reports[std::stoul(reason)].Reason = Message::Unpack(reason.substr(reason.find(' ') + 1));
   }
   this->Whole.NumberNewPoints();
 }

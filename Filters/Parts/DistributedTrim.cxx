@@ -221,7 +221,7 @@ TrimCounts Work::Write()
       counts.RecoveredEdges = result.NumberOfRecoveredEdges;
       this->Of.Outputs[2]->GetPointData()->CopyAllOn();
       counts.PointsLeftOut = result.NumberOfPointsLeftOut;
-      if (!result.Loss.empty())
+      if (!result.Loss.IsEmpty())
       {
         this->Of.Warnings.push_back(result.Loss);
       }
@@ -238,7 +238,7 @@ TrimCounts Work::Write()
 
 bool TrimOnRanks(const Ranks& ranks, const TrimOptions& options, Block& block, TrimCounts& counts)
 {
-  if (options.Test != OutwardTest::Exact || !WrongOption(options).empty())
+  if (options.Test != OutwardTest::Exact || !WrongOption(options).IsEmpty())
   {
     return false; // on all ranks
   }

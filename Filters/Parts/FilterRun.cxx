@@ -16,7 +16,6 @@
 #include "vtkNew.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
-#include "vtkSetGet.h"
 
 #include <algorithm>
 #include <map>
@@ -39,28 +38,18 @@ const char* RequiredType(vtkAlgorithm* filter)
   return filter->GetInputPortInformation(0)->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
 }
 
-/** Messages as one, the first of them where they are many. */
-std::string Joined(const std::vector<std::string>& messages)
-{
-  constexpr std::size_t listed = 5;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(listed, messages.size()); ++i)
-  {
-    text += (i > 0 ? "\n" : "") + messages[i];
-  }
-  if (messages.size() > listed)
-  {
-    text += "\nAnd " + std::to_string(messages.size() - listed) + " more like these.";
-  }
-  return text;
-}
-
 /** The messages of all ranks, on the first, each once. */
-std::vector<std::string> OnFirst(const std::vector<std::string>& messages, const Ranks& ranks)
+std::vector<Message> OnFirst(const std::vector<Message>& messages, const Ranks& ranks)
 {
-  std::vector<std::string> all;
-  for (const std::string& message : ranks.Collect(messages))
+  std::vector<std::string> packed;
+  for (const Message& message : messages)
   {
+    packed.push_back(message.Pack());
+  }
+  std::vector<Message> all;
+  for (const std::string& one : ranks.Collect(packed))
+  {
+    const Message message = Message::Unpack(one);
     if (ranks.Own() == 0 && std::find(all.begin(), all.end(), message) == all.end())
     {
       all.push_back(message);
@@ -80,12 +69,14 @@ void EmptyOutputs(const Place& place)
 } // namespace
 
 FilterRun::FilterRun(vtkAlgorithm* filter, vtkMultiProcessController* controller,
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs,
+  vtkStringArray* messages)
   : Filter(filter)
   , Controller(controller)
   , Request(request)
   , Inputs(inputs)
   , Outputs(outputs)
+  , Messages(messages)
 {
 }
 
@@ -109,8 +100,7 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
     this->RunPlaces(places, ranks, second, body);
     if (this->IsFirst && places.empty() && this->Occupied.empty() && ranks.Own() == 0)
     {
-      this->Warnings.push_back("The input has no data set in any of its blocks, so the output has "
-                               "none.");
+      this->Warnings.push_back(MakeMessage<sentences::EmptyBlocks>());
     }
   }
   catch (const std::exception& error)
@@ -119,22 +109,14 @@ int FilterRun::Run(const std::function<void(Block&)>& body)
     this->Errors = { MessageOf(error) };
     this->Warnings.clear();
   }
-  this->Tell(ranks);
+  this->Report(ranks);
   return 1;
 }
 
-void FilterRun::Tell(const Ranks& ranks)
+void FilterRun::Report(const Ranks& ranks) const
 {
-  const std::vector<std::string> errors = OnFirst(this->Errors, ranks);
-  const std::vector<std::string> warnings = OnFirst(this->Warnings, ranks);
-  if (!errors.empty())
-  {
-    vtkErrorWithObjectMacro(this->Filter, << Joined(errors));
-  }
-  if (!warnings.empty())
-  {
-    vtkWarningWithObjectMacro(this->Filter, << Joined(warnings));
-  }
+  const std::vector<Message> errors = OnFirst(this->Errors, ranks);
+  ReportMessages(this->Filter, errors, OnFirst(this->Warnings, ranks), this->Messages);
 }
 
 void FilterRun::EmptyOutputs()
@@ -152,8 +134,7 @@ vtkSmartPointer<vtkPolyData> FilterRun::ShareSecond(const Ranks& ranks) const
     return nullptr;
   }
   vtkSmartPointer<vtkPolyData> own;
-  ranks.Agree(
-    [&] { own = JoinBlocks(vtkDataObject::GetData(this->Inputs[1]), this->Second); });
+  ranks.Agree([&] { own = JoinBlocks(vtkDataObject::GetData(this->Inputs[1]), this->Second); });
   std::vector<vtkIdType> found = { own ? 1 : 0 };
   ranks.Sum(found);
   if (found[0] > 0 && !own)
@@ -163,14 +144,14 @@ vtkSmartPointer<vtkPolyData> FilterRun::ShareSecond(const Ranks& ranks) const
   return own ? ranks.Gather(own) : nullptr;
 }
 
-bool FilterRun::IsToBeToldOf(const Place& place, const Ranks& ranks) const
+bool FilterRun::ShouldReport(const Place& place, const Ranks& ranks) const
 {
   return HasPoints(place) || IsOtherType(place) ||
     (ranks.Own() == 0 &&
       !std::binary_search(this->Occupied.begin(), this->Occupied.end(), IdOf(place.Path)));
 }
 
-double FilterRun::BringTogether(
+double FilterRun::GatherSpreadBlocks(
   std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress)
 {
   const std::map<vtkIdType, int> spread = FindSpread(places, ranks, this->Occupied);
@@ -193,9 +174,9 @@ double FilterRun::BringTogether(
     {
       if (!this->RunSpread(own, ranks, second, ofBlock))
       {
-        std::vector<std::string> warnings;
+        std::vector<Message> warnings;
         GatherBlock(own, block.second, this->KindOfParts(), ranks, ofBlock, warnings);
-        this->TellOf(own, warnings, this->Warnings);
+        this->AddMessages(own, warnings, this->Warnings);
       }
     }
     catch (const Aborted&) // on all ranks
@@ -205,7 +186,7 @@ double FilterRun::BringTogether(
     }
     catch (const std::exception& error) // on all ranks
     {
-      this->TellOf(own, { error.what() }, this->Errors);
+      this->AddMessages(own, { MessageOf(error) }, this->Errors);
       for (Place* place : own)
       {
         elevation::EmptyOutputs(*place);
@@ -216,13 +197,13 @@ double FilterRun::BringTogether(
   return done;
 }
 
-void FilterRun::TellOf(const std::vector<Place*>& places,
-  const std::vector<std::string>& messages, std::vector<std::string>& all) const
+void FilterRun::AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,
+  std::vector<Message>& all) const
 {
   for (std::size_t i = 0; i < messages.size() && !places.empty(); ++i)
   {
-    const std::string& name = places.front()->NameOfBlock;
-    all.push_back((name.empty() ? "" : name + ": ") + messages[i]);
+    all.push_back(messages[i]);
+    all.back().SetBlock(places.front()->NameOfBlock);
   }
 }
 
@@ -248,7 +229,7 @@ bool FilterRun::RunSpread(const std::vector<Place*>& places, const Ranks& ranks,
   {
     return false;
   }
-  this->TellOf(places, block.Warnings, this->Warnings);
+  this->AddMessages(places, block.Warnings, this->Warnings);
   Empty(places);
   if (home)
   {
@@ -267,7 +248,8 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
   const std::function<void(Block&)>& body)
 {
   const Progress ofAll = ProgressOf(this->Filter);
-  const Progress progress = Part(ofAll, this->BringTogether(places, ranks, second, ofAll), 1.0);
+  const Progress progress =
+    Part(ofAll, this->GatherSpreadBlocks(places, ranks, second, ofAll), 1.0);
   const auto workOf = [](const Place& place) {
     auto* const points = vtkPointSet::SafeDownCast(place.Input);
     return 1.0 + (points ? points->GetNumberOfPoints() : 0);
@@ -284,43 +266,43 @@ void FilterRun::RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPol
       break;
     }
     // A rank without points has the rest of the outputs, and leaves the messages to the others.
-    const bool isToBeTold = this->IsToBeToldOf(place, ranks);
+    const bool isReported = this->ShouldReport(place, ranks);
     const double next = done + workOf(place);
-    Block block{ nullptr, isToBeTold ? second : nullptr, place.Outputs,
+    Block block{ nullptr, isReported ? second : nullptr, place.Outputs,
       Part(progress, done / all, next / all), {} };
     done = next;
-    std::string error;
+    Message error;
     try
     {
-      error = place.IsDone ? "" : this->RunPlace(place, block, body);
+      error = place.IsDone ? Message() : this->RunPlace(place, block, body);
     }
     catch (const Aborted&)
     {
       this->IsAborted = true;
       break;
     }
-    const std::string name = place.Name.empty() ? "" : place.Name + ": ";
-    if (!isToBeTold)
+    if (!isReported)
     {
       continue;
     }
-    if (!error.empty())
+    if (!error.IsEmpty())
     {
-      this->Errors.push_back(name + error);
-      continue;
+      block.Warnings = { error };
     }
-    for (const std::string& warning : block.Warnings)
+    std::vector<Message>& all = error.IsEmpty() ? this->Warnings : this->Errors;
+    for (Message& message : block.Warnings)
     {
-      this->Warnings.push_back(name + warning);
+      message.SetBlock(place.Name);
+      all.push_back(message);
     }
   }
   this->ShareResults(ranks);
 }
 
-std::string FilterRun::RunPlace(
+Message FilterRun::RunPlace(
   const Place& place, Block& block, const std::function<void(Block&)>& body)
 {
-  std::string message;
+  Message message;
   try
   {
     const char* const required = RequiredType(this->Filter);
@@ -377,20 +359,19 @@ void FilterRun::ShareResults(const Ranks& ranks)
     this->Filter->SetAbortExecute(1);
     IsAbortRequested(this->Filter); // it makes the executive aware
   }
-  this->TellOfAbort();
+  this->ReportAbort();
 }
 
-void FilterRun::TellOfAbort()
+void FilterRun::ReportAbort()
 {
   // ParaView updates each output, and VTK runs the filter for each while its abort flag is set.
   constexpr const char* stopped = "Stopped";
   const char* const last = this->Filter->GetProgressText();
-  const bool isTold = last && std::string(last) == stopped;
+  const bool isReported = last && std::string(last) == stopped;
   this->Filter->SetProgressText(this->IsAborted ? stopped : nullptr);
-  if (this->IsAborted && !isTold && this->Filter->GetAbortExecute())
+  if (this->IsAborted && !isReported && this->Filter->GetAbortExecute())
   {
-    this->Warnings.push_back("Stopped, so the output is empty. To make it, change a property and "
-                             "press Apply; in scripts, SetAbortExecute(0) and Modified().");
+    this->Warnings.push_back(MakeMessage<sentences::Stopped>());
   }
 }
 

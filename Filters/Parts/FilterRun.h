@@ -9,6 +9,7 @@
 #define FilterRun_h
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -25,6 +26,7 @@ class vtkInformationVector;
 class vtkMultiProcessController;
 class vtkPointSet;
 class vtkPolyData;
+class vtkStringArray;
 
 namespace elevation
 {
@@ -39,7 +41,7 @@ struct Block
   vtkPolyData* Second;               ///< input 1, joined; nullptr if there is none
   std::vector<vtkPolyData*> Outputs; ///< of each port
   elevation::Progress Progress;
-  std::vector<std::string> Warnings; ///< to be reported
+  std::vector<Message> Warnings; ///< to be reported
 };
 
 /**
@@ -58,12 +60,15 @@ struct Block
 class FilterRun
 {
 public:
-  /** @param[in] controller  of the processes that may take part; nullptr: this one alone */
+  /**
+   * @param[in] controller  of the processes that may take part; nullptr: this one alone
+   * @param[out] messages   what GetMessages() of the filter returns
+   */
   FilterRun(vtkAlgorithm* filter, vtkMultiProcessController* controller, vtkInformation* request,
-    vtkInformationVector** inputs, vtkInformationVector* outputs);
+    vtkInformationVector** inputs, vtkInformationVector* outputs, vtkStringArray* messages);
 
   std::string Second; ///< what messages call input 1
-  /** Whether to tell of a composite without any data set; the filter before has told the others. */
+  /** Whether to report a composite without any data set; the filter before has reported others. */
   bool IsFirst = false;
   /** Results of the filter: set to 0, and added up (the largest taken) over blocks and ranks. */
   std::vector<vtkIdType*> Sums;
@@ -89,28 +94,29 @@ public:
 private:
   void EmptyOutputs();
   vtkSmartPointer<vtkPolyData> ShareSecond(const Ranks& ranks) const;
-  bool IsToBeToldOf(const Place& place, const Ranks& ranks) const;
+  bool ShouldReport(const Place& place, const Ranks& ranks) const;
   /** Works on the blocks that are spread over ranks. @return the progress that has been made */
-  double BringTogether(
+  double GatherSpreadBlocks(
     std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second, const Progress& progress);
   bool RunSpread(const std::vector<Place*>& places, const Ranks& ranks, vtkPolyData* second,
     const Progress& progress);
-  void TellOf(const std::vector<Place*>& places, const std::vector<std::string>& messages,
-    std::vector<std::string>& all) const;
+  void AddMessages(const std::vector<Place*>& places, const std::vector<Message>& messages,
+    std::vector<Message>& all) const;
   PartKind KindOfParts() const;
   void RunPlaces(std::vector<Place>& places, const Ranks& ranks, vtkPolyData* second,
     const std::function<void(Block&)>& body);
-  std::string RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
+  Message RunPlace(const Place& place, Block& block, const std::function<void(Block&)>& body);
   void ShareResults(const Ranks& ranks);
-  void TellOfAbort();
-  void Tell(const Ranks& ranks);
+  void ReportAbort();
+  void Report(const Ranks& ranks) const;
 
   vtkAlgorithm* Filter;
   vtkMultiProcessController* Controller;
   vtkInformation* Request;
   vtkInformationVector** Inputs;
   vtkInformationVector* Outputs;
-  std::vector<std::string> Errors, Warnings;
+  vtkStringArray* Messages;
+  std::vector<Message> Errors, Warnings;
   bool IsAborted = false;
   std::vector<vtkIdType> Occupied; ///< numbers of the blocks with points, on any rank
 };

@@ -317,7 +317,7 @@ std::vector<Announced> Exchange(std::vector<Parcel>& parcels, int home, const Ra
 } // namespace
 
 vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, PartKind kind, int home,
-  const Ranks& ranks, const Progress& progress, std::vector<std::string>& warnings)
+  const Ranks& ranks, const Progress& progress, std::vector<Message>& warnings)
 {
   const bool isHome = ranks.Own() == home;
   Parts own;
@@ -367,7 +367,7 @@ vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, Part
 }
 
 vtkSmartPointer<vtkPointSet> JoinHere(
-  const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<std::string>& warnings)
+  const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<Message>& warnings)
 {
   if (parts.size() < 2)
   {

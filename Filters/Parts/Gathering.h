@@ -8,6 +8,7 @@
 #define Gathering_h
 
 #include "Joining.h"
+#include "Kernel/Messages/Messages.h"
 
 class vtkPointSet;
 
@@ -30,11 +31,11 @@ class Ranks;
  * @throws Aborted on all ranks
  */
 vtkSmartPointer<vtkPolyData> Gather(const std::vector<vtkPointSet*>& parts, PartKind kind, int home,
-  const Ranks& ranks, const Progress& progress, std::vector<std::string>& warnings);
+  const Ranks& ranks, const Progress& progress, std::vector<Message>& warnings);
 
 /** Joins parts that are on this rank; one part is returned itself. @throws Error as Gather() */
 vtkSmartPointer<vtkPointSet> JoinHere(
-  const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<std::string>& warnings);
+  const std::vector<vtkPointSet*>& parts, PartKind kind, std::vector<Message>& warnings);
 
 /** The same data set without points and cells, its arrays without values. */
 vtkSmartPointer<vtkPolyData> EmptyCopy(vtkPointSet* input);

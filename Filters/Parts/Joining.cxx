@@ -253,7 +253,7 @@ void JoinFieldData(const Parts& parts, const CommonPoints& points, vtkFieldData*
 } // namespace
 
 void WarnOfLeft(
-  const std::string& kind, const std::set<std::string>& left, std::vector<std::string>& warnings)
+  const std::string& kind, const std::set<std::string>& left, std::vector<Message>& warnings)
 {
   std::string names;
   for (const std::string& name : left)
@@ -262,14 +262,14 @@ void WarnOfLeft(
   }
   if (!left.empty())
   {
-    warnings.push_back("Not all ranks (processes) have the " + kind + " array" +
-      (left.size() > 1 ? "s " : " ") + names + " in the same type, so " +
-      (left.size() > 1 ? "they are" : "it is") + " left out.");
+    const bool isOne = left.size() == 1;
+    warnings.push_back(MakeMessage<sentences::ArraysLeftOut>(
+      kind, isOne ? "array" : "arrays", names, isOne ? "it is" : "they are"));
   }
 }
 
 vtkSmartPointer<vtkPolyData> Join(
-  const Parts& parts, PartKind kind, const Progress& progress, std::vector<std::string>& warnings)
+  const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings)
 {
   auto joined = vtkSmartPointer<vtkPolyData>::New();
   const CommonPoints points(parts, kind, Part(progress, 0.0, 1.0));

@@ -9,6 +9,7 @@
 
 #include "CommonPoints.h"
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 
 #include "vtkSmartPointer.h"
 
@@ -36,11 +37,11 @@ namespace elevation
  * @param[out] warnings one is added where arrays are left out, because not all parts have them
  */
 vtkSmartPointer<vtkPolyData> Join(
-  const Parts& parts, PartKind kind, const Progress& progress, std::vector<std::string>& warnings);
+  const Parts& parts, PartKind kind, const Progress& progress, std::vector<Message>& warnings);
 
 /** Adds a warning of arrays that are left out, if any. @param[in] kind  "point", say */
 void WarnOfLeft(
-  const std::string& kind, const std::set<std::string>& left, std::vector<std::string>& warnings);
+  const std::string& kind, const std::set<std::string>& left, std::vector<Message>& warnings);
 
 } // namespace elevation
 

@@ -3,6 +3,7 @@
 #include "Ranks.h"
 
 #include "Adapt/Adapt.h"
+#include "Kernel/Messages/Messages.h"
 #include "PackedData.h"
 
 #include "vtkCellArray.h"
@@ -100,8 +101,8 @@ void Ranks::Sum(std::vector<vtkIdType>& values) const
   if (this->Controller && !values.empty())
   {
     const std::vector<vtkIdType> own = values;
-    this->Controller->AllReduce(own.data(), values.data(), static_cast<vtkIdType>(own.size()),
-      vtkCommunicator::SUM_OP);
+    this->Controller->AllReduce(
+      own.data(), values.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::SUM_OP);
   }
 }
 
@@ -110,8 +111,8 @@ void Ranks::Maximum(std::vector<double>& values) const
   if (this->Controller && !values.empty())
   {
     const std::vector<double> own = values;
-    this->Controller->AllReduce(own.data(), values.data(), static_cast<vtkIdType>(own.size()),
-      vtkCommunicator::MAX_OP);
+    this->Controller->AllReduce(
+      own.data(), values.data(), static_cast<vtkIdType>(own.size()), vtkCommunicator::MAX_OP);
   }
 }
 
@@ -187,7 +188,7 @@ void Ranks::Agree(const std::function<void()>& step) const
   }
   catch (const std::exception& error)
   {
-    failures = { std::string("E") + MessageOf(error) };
+    failures = { "E" + MessageOf(error).Pack() };
   }
   const bool isStopped = this->IsStopped; // and not by a failure of its own
   this->IsStopped = false;
@@ -211,7 +212,7 @@ void Ranks::Agree(const std::function<void()>& step) const
     {
       if (failure.front() == kind)
       {
-        kind == 'A' ? throw Aborted() : throw Error(failure.substr(1));
+        kind == 'A' ? throw Aborted() : throw CodedError(Message::Unpack(failure.substr(1)));
       }
     }
   }

@@ -69,7 +69,7 @@ void SharedHoles::NumberNewPoints()
 
 void SurroundedHoles::Surround(const Parts& parts, bool byIds, const Progress& progress)
 {
-  std::vector<std::string> warnings; // none: all have the same arrays
+  std::vector<Message> warnings; // none: all have the same arrays
   this->Near = Mesh();
   this->Surrounding = elevation::Join(parts, PartKind::Mesh, Part(progress, 0.0, 0.4), warnings);
   this->Keys = KeysOf(this->Surrounding, byIds, nullptr);

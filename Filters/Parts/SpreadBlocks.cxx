@@ -95,7 +95,7 @@ void Empty(const std::vector<Place*>& places)
 }
 
 void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, const Ranks& ranks,
-  const Progress& progress, std::vector<std::string>& warnings)
+  const Progress& progress, std::vector<Message>& warnings)
 {
   const vtkSmartPointer<vtkPolyData> whole =
     Gather(PartsOf(places), kind, home, ranks, progress, warnings);

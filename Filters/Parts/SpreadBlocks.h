@@ -8,6 +8,7 @@
 #define SpreadBlocks_h
 
 #include "Gathering.h"
+#include "Kernel/Messages/Messages.h"
 
 #include <map>
 #include <string>
@@ -44,7 +45,7 @@ void Empty(const std::vector<Place*>& places);
  * points. All ranks have to call it. @throws as Gather()
  */
 void GatherBlock(const std::vector<Place*>& places, int home, PartKind kind, const Ranks& ranks,
-  const Progress& progress, std::vector<std::string>& warnings);
+  const Progress& progress, std::vector<Message>& warnings);
 
 } // namespace elevation
 

@@ -14,7 +14,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
 from .formats import recognise
-from ..messages import FileError, did_you_mean
+from ..messages import FileError, Reason, did_you_mean
 from ..progress import no_progress, share
 from ..selecting import columns_in, condition_of_layer, select
 from .nulls import take_out
@@ -106,7 +106,7 @@ def read_any(path, options):
     cloud = kind.reader()(path, options)
     if options.layer and kind.module in NAMES_IN_COLUMNS:
         named = condition_of_layer(path, options.layer, columns_in(cloud))
-        select(path, cloud, [named], "points of other layers")
+        select(path, cloud, [named], Reason("point", "of other layers"))
     if options.no_data is not None and kind.module not in ("text.read_text", "rasters"):
         leave_out(path, cloud, options.no_data)
     if kind.name in MAY_HAVE_Y_UP:
@@ -133,7 +133,7 @@ def leave_out(path, cloud, no_data):
     if not keep.any():
         raise FileError(f"{path}: all points have the elevation that marks missing data")
     if not keep.all():
-        cloud.left_out["points without data"] = int(len(keep) - numpy.count_nonzero(keep))
+        cloud.left_out[Reason("point", "without data")] = int(len(keep) - numpy.count_nonzero(keep))
         keep_points(cloud, numpy.flatnonzero(keep))
 
 

@@ -14,6 +14,7 @@ import numpy
 
 from .column_names import COLOURS, Meaning, in_brackets, is_seismic, meaning, plain
 from ..messages import FileError
+from ..names import option
 
 
 @dataclasses.dataclass
@@ -35,6 +36,11 @@ class Choice:
     texts: dict = dataclasses.field(default_factory=dict)
 
 
+def advice_on_columns():
+    """What a user can do who may choose columns."""
+    return f"{option('columns')} chooses other columns"
+
+
 @numpy.errstate(all="ignore")
 def choose_columns(path, rows, consecutive, number, names, width, columns, needed, advice):
     """Finds the columns of x, y and z, or of x and y. Returns a Choice. Raises FileError.
@@ -44,7 +50,7 @@ def choose_columns(path, rows, consecutive, number, names, width, columns, neede
     names, width  of the columns; names may be None
     columns      None, or what the user said: names or numbers
     needed       3 or 2
-    advice       what a user can do where no choice is sure, where that is not --columns
+    advice       what a user can do where no choice is sure; None: choose columns
     """
     search = Search(path, rows, consecutive, number, names, width, needed, advice)
     if columns:
@@ -67,7 +73,9 @@ class Search:
 
     def __init__(self, path, rows, consecutive, number, names, width, needed, advice):
         self.path, self.names, self.width, self.needed = path, names, width, needed
-        self.axes, self.advice, self.has_line_and_trace = "xyz"[:needed], advice, False
+        self.axes, self.has_line_and_trace, self.has_swapped = "xyz"[:needed], False, False
+        self.ids = set()  # columns that are so by their values
+        self.can_be_chosen, self.advice = advice is None, advice or advice_on_columns()
         self.row = next((row for row in rows if len(row) >= width), rows[0])
         table = [[number(w) for w in row[:width]] + [math.nan] * (width - len(row)) for row in rows]
         text = numpy.array([[value is None for value in row] for row in table], dtype=bool)
@@ -116,7 +124,7 @@ class Search:
             if index in self.indices:
                 other = self.axes[self.indices.index(index)]
                 raise FileError(
-                    f"{self.path}: --columns takes both {other} and {axis} from column "
+                    f"{self.path}: {option('columns')} takes both {other} and {axis} from column "
                     f"{self.called(index)}; each needs a column of its own"
                 )
             self.indices.append(index)
@@ -144,7 +152,7 @@ class Search:
         if missing or self.indices != list(range(self.width)):
             text = ", ".join(f"{a} = {self.called(i)}" for a, i in zip(self.axes, self.indices))
             left = f"; {missing[0]} is the only column left" if missing else ""
-            self.notes.append(f"columns by their names: {text}{left} (see --columns)")
+            self.notes.append(f"columns by their names: {text}{left} (see {option('columns')})")
         self.look_at_names()
         return True
 
@@ -204,12 +212,12 @@ class Search:
             if others and z.axis:
                 self.notes.append(
                     f"z is {self.called(self.indices[2])}; {self.listed(others)} could be too "
-                    "(see --columns)"
+                    f"(see {option('columns')})"
                 )
         if self.indices[-1] > x > y and self.meanings[x].rank == self.meanings[y].rank == 0:
             self.notes.append(
                 "Y stands before X, as where X is north; x and y are taken as named "
-                f"(--columns {self.numbered([y, x] + self.indices[2:])} swaps them)"
+                f"({option('columns')} {self.numbered([y, x] + self.indices[2:])} swaps them)"
             )
 
     # -- values
@@ -221,7 +229,7 @@ class Search:
             if self.names:
                 axes = "x, y or z" if self.needed == 3 else "x or y"
                 taken = ", ".join(f"{a} = {self.called(i)}" for i, a in enumerate(self.axes))
-                self.notes.append(f"no column is named as {axes}: {taken} (see --columns)")
+                self.notes.append(f"no column is named as {axes}: {taken} (see {option('columns')})")
             self.look_at_order()
             return
         numbers = [
@@ -249,11 +257,11 @@ class Search:
         if chosen == list(range(self.needed)):
             self.notes.append(
                 f"the first {self.needed} of {self.width} columns are taken as "
-                f"{', '.join(self.axes)} (see --columns)"
+                f"{', '.join(self.axes)} (see {option('columns')})"
             )
         else:
             why = "; ".join(why) + "; " if why else ""
-            self.notes.append(f"columns by their values: {why}{taken} (see --columns)")
+            self.notes.append(f"columns by their values: {why}{taken} (see {option('columns')})")
 
     def without_others(self, columns):
         """(columns that may be coordinates, {column: what it is else}), by the values."""
@@ -266,6 +274,7 @@ class Search:
         while len(left) > self.needed:
             first, second = left[:2]
             if self.is_id(first):
+                self.ids.add(first)
                 take(first, "an id: it counts up by one")
             elif numpy.ptp(self.finite(first)) == 0:
                 take(first, "the same in all rows")
@@ -361,6 +370,7 @@ class Search:
         for i in columns[: columns.index(groups[best][0])]:
             values = self.finite(i)
             each = self.is_whole(i) and len(numpy.unique(values)) == len(values)
+            self.ids |= {i} if each else set()
             reasons[i] = (
                 "an id: whole numbers, each once" if each else "no coordinate beside the next"
             )
@@ -418,11 +428,12 @@ class Search:
         easting, elevation, code, and x,y,z as they stand is as likely.
         """
         named = [i for i in range(min(chosen)) if self.share_of_text[i] > 0.5]
-        if not named and not any(reason.startswith("an id") for reason in reasons.values()):
+        if not named and self.ids.isdisjoint(reasons):
             return chosen
         first, second, z = chosen
         swapped = [second, first, z]
         if self.is_utm(second, first):
+            self.has_swapped = True
             self.notes.append(
                 f"column {self.called(first)} is taken as northing and {self.called(second)} as "
                 "easting, by their sizes"
@@ -449,7 +460,7 @@ class Search:
             order = [1, 2, 0] if self.is_utm(1, 2) else [2, 1, 0]
             self.notes.append(
                 "the columns are taken as x, y, z in this order, but 2 and 3 are as large as "
-                f"coordinates of UTM; if 1 is z: --columns {self.numbered(order)}"
+                f"coordinates of UTM; if 1 is z: {option('columns')} {self.numbered(order)}"
             )
 
     # -- what the values tell of the choice
@@ -463,7 +474,7 @@ class Search:
             if self.meanings[i].rank == 3 and abs(values).max() > limit:
                 self.notes.append(
                     f"column {self.called(i)} is a {what} by its name, but holds "
-                    f"{values[abs(values).argmax()]:.9g}, which no {what} can be (see --columns)"
+                    f"{values[abs(values).argmax()]:.9g}, which no {what} can be (see {option('columns')})"
                 )
         by_name = 3 in (self.meanings[x].rank, self.meanings[y].rank)
         degrees = abs(xs).max() <= 360 and abs(ys).max() <= 90
@@ -474,16 +485,13 @@ class Search:
             if by_name or fine and len(z) and 0 < wide < 0.1 * numpy.ptp(z):
                 self.notes.append(
                     "x,y look like degrees: project them first to give triangles their true shape"
-                    + ("" if by_name else "; x is longitude, if it is not: --columns swaps them")
+                    + ("" if by_name else f"; x is longitude, if it is not: {option('columns')} swaps them")
                 )
-        if self.is_utm(y, x) and not self.notes_swap():
+        if self.is_utm(y, x) and not self.has_swapped:
             self.notes.append(
                 "x is as large as a northing and y as an easting of UTM; if so, "
-                f"--columns {self.numbered([y, x] + self.indices[2:])} gives the map its true side"
+                f"{option('columns')} {self.numbered([y, x] + self.indices[2:])} gives the map its true side"
             )
-
-    def notes_swap(self):
-        return any("northing" in note for note in self.notes)
 
     # -- words
 
@@ -501,13 +509,13 @@ class Search:
 
     def refuse_two(self, readings, why="the columns can be read in two ways"):
         """Raises the error that shows two readings and the options that decide."""
-        if not readings or "--columns" not in self.advice:
+        if not readings or not self.can_be_chosen:
             raise FileError(f"{self.path}: {why}; {self.advice}")
         words = []
         for reading in readings:
             pairs = [(a, i) for a, i in zip(self.axes, reading) if i < len(self.row)]
             values = [f"{a} = {self.row[i]}" for a, i in pairs]
-            words.append(f"--columns {self.numbered(reading)} (first row: {', '.join(values)})")
+            words.append(f"{option('columns')} {self.numbered(reading)} (first row: {', '.join(values)})")
         raise FileError(f"{self.path}: {why}; choose {' or '.join(words)}")
 
     # -- the other columns
@@ -531,6 +539,6 @@ class Search:
             known = name in (*result.values(), *self.texts.values())
             result[i] = f"{name} (column {i + 1})" if known else name
         if text:
-            chosen = "; --where chooses points by them" if self.texts else ""
+            chosen = f"; {option('where')} chooses points by them" if self.texts else ""
             self.notes.append(f"columns without numbers are left out: {', '.join(text)}{chosen}")
         return result

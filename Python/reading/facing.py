@@ -15,6 +15,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPolyData
 
 from ..clouds import cells_of, make_points
 from ..messages import ElevationSurfaceError, FileError, counted
+from ..names import option
 
 FEW = 0.01  # of the faces; more of them is no slip of the program that wrote the mesh
 FLAT_CELLS = range(10)  # VTK's numbers of cells without volume, up to VTK_QUAD
@@ -31,7 +32,7 @@ def check_faces(path, data, options):
     try:
         return notes_on_faces(faces)
     except ElevationSurfaceError as error:
-        raise FileError(f"{path}: {error}, or --points-only takes its points as they are") from None
+        raise FileError(f"{path}: {error}, or {option('points_only')} takes its points as they are") from None
 
 
 def notes_on_faces(faces):

@@ -10,7 +10,7 @@ import numpy
 
 from ..clouds import Cloud, add_array, make_lines, make_points, slices
 from .columns import meaning
-from ..messages import FileError, counted
+from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_lines
 from ..selecting import Selection
 from .rasters import points_of_raster
@@ -150,7 +150,7 @@ def read_table(path, names, first, progress, null=None):
     cloud = Cloud(make_points(rows[keep, :3]), [f"columns by the header: {', '.join(names)}"])
     cloud.z_name, cloud.is_horizon = names[places[2]], True
     if not keep.all():
-        cloud.left_out["rows without data"] = int(numpy.count_nonzero(~keep))
+        cloud.left_out[Reason("row", "without data")] = int(numpy.count_nonzero(~keep))
     for i, place in enumerate(others, 3):
         add_array(cloud.points, names[place], rows[keep, i])
     return cloud

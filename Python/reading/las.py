@@ -8,7 +8,8 @@ import struct
 import numpy
 
 from ..clouds import Cloud, add_array, make_points, slices
-from ..messages import FileError
+from ..messages import FileError, Reason
+from ..names import option
 from ..selecting import Selection
 
 # Bytes of a record, GPS time and colours in it, by point format.
@@ -187,13 +188,13 @@ class Chosen:
         cloud.crs = header.crs
         cloud.notes.append(
             f"LAS {header.version[0]}.{header.version[1]}, point format {header.kind}; classes "
-            + self.shown() + " (see --classes)" * bool(several)
+            + self.shown() + f" (see {option('classes')})" * bool(several)
         )
         if self.withheld:
-            cloud.left_out["points marked as withheld"] = self.withheld
+            cloud.left_out[Reason("point", "marked as withheld")] = self.withheld
         if header.count - self.withheld > self.count:
             others = header.count - self.withheld - self.count
-            cloud.left_out["points of other classes"] = others
+            cloud.left_out[Reason("point", "of other classes")] = others
 
 
 def las_slices(path, options, cloud):

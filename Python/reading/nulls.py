@@ -11,7 +11,8 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ..clouds import keep_points
-from ..messages import counted, of_reason
+from ..messages import Reason, counted, of_reason
+from ..names import option
 from ..progress import share, told_items
 
 FLOAT_MAX = float(numpy.finfo("f4").max)
@@ -48,11 +49,11 @@ def take_out(cloud, options):
         for value, found in usual_nulls(values, is_place=axis < 2):
             found &= ~null
             if found.any():
-                counts[f"null values ({name} = {value:.9g})"] = int(numpy.count_nonzero(found))
+                counts[Reason("null value", f"({name} = {value:.9g})")] = int(numpy.count_nonzero(found))
                 null |= found
     found = zero_rows(*axes) & ~null
     if found.any():
-        counts["rows 0 0 0"] = int(numpy.count_nonzero(found))
+        counts[Reason("row", "0 0 0")] = int(numpy.count_nonzero(found))
         null |= found
     progress(0.35)
     if counts and not null.all():
@@ -63,7 +64,7 @@ def take_out(cloud, options):
             keep_points(cloud, numpy.flatnonzero(~null))
             axes = [values[~null] for values in axes]
             cloud.left_out.update(counts)
-            cloud.notes.append("usual null values are left out; --keep-nulls keeps them")
+            cloud.notes.append(f"usual null values are left out; {option('keep_nulls')} keeps them")
     if not options.keep_nulls:
         cloud.notes += doubts(*axes, cloud.lines, share(progress, 0.4, 1.0))
     return cloud
@@ -75,7 +76,7 @@ def doubts(x, y, z, lines, progress):
     for value, count in repeated_extremes(z, share(progress, 0.0, 0.2)):
         notes.append(
             f"{count:,} points have z = {value:.9g}, far from all others; if that means no data: "
-            f"--no-data {value:.9g}"
+            f"{option('no_data')} {value:.9g}"
         )
         z[z == value] = numpy.nan
     where = "point" if lines is None else "line"

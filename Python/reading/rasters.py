@@ -10,7 +10,8 @@ from ..clouds import Cloud, make_points, pixel_grid
 from .column_names import direction_of
 from .formats import HEAD, is_saga_header, numbers_of
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
-from ..messages import FileError
+from ..messages import FileError, Reason
+from ..names import option
 from ..paths import suffix_of
 from ..progress import share, told_lines
 
@@ -61,7 +62,7 @@ def open_raster(path, options):
         variables = {name.rsplit(":", 1)[-1].strip('"/'): name for name, _ in data.GetSubDatasets()}
         if data.RasterCount and not (options.layer and variables):
             if options.layer:
-                raise FileError(f"{path}: has no layers, so --layer {options.layer} means nothing")
+                raise FileError(f"{path}: has no layers, so {option('layer')} {options.layer} means nothing")
             return data, []
         name = choose_layer(path, options.layer, list(variables), "variables")
         notes = [f"elevation: variable {name} (of {', '.join(variables)})"]
@@ -106,7 +107,7 @@ def choose_band(path, data, options, notes):
     if number > count:
         raise FileError(f"{path}: there is no band {number}; it has {count}")
     if count > 1 and not options.band:
-        notes.append(f"the file has {count} bands; the first is taken as elevation (see --band)")
+        notes.append(f"the file has {count} bands; the first is taken as elevation (see {option('band')})")
     return data.GetRasterBand(number)
 
 
@@ -186,7 +187,7 @@ def notes_of_raster(path, data, band, options):
     elif band.GetMaskFlags() & ~gdal.GMF_ALL_VALID:
         notes.append("pixels without data from the file's mask")
     elif options.no_data is None and not alpha_of(data, band):
-        notes.append("no no-data value in the file: all pixels are used (see --no-data)")
+        notes.append(f"no no-data value in the file: all pixels are used (see {option('no_data')})")
     colour = band.GetColorInterpretation()
     if colour not in (gdal.GCI_Undefined, gdal.GCI_GrayIndex):
         name = gdal.GetColorInterpretationName(colour).lower()
@@ -240,7 +241,7 @@ def read_points(path, options):
     cloud.z_name = name_of_z(band)
     cloud.is_horizon = data.GetDriver().ShortName == "ZMap"
     if count < len(points):
-        cloud.left_out["pixels without data"] = len(points) - count
+        cloud.left_out[Reason("pixel", "without data")] = len(points) - count
     cloud.crs = reference.ExportToWkt() if reference else None
     cloud.grid = grid
     return cloud
@@ -298,7 +299,7 @@ def points_of_raster(path, x, y, z):
         raise FileError(f"{path}: all {valid.size:,} pixels are without data")
     cloud = Cloud(make_points(numpy.column_stack((x[valid], y[valid], z[valid]))))
     if count < valid.size:
-        cloud.left_out["pixels without data"] = valid.size - count
+        cloud.left_out[Reason("pixel", "without data")] = valid.size - count
     row, column = (numpy.column_stack(ends) for ends in ((x[0], y[0]), (x[:, 0], y[:, 0])))
     cloud.grid = pixel_grid(valid, row, column)
     return cloud

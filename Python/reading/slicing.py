@@ -7,9 +7,9 @@ import os
 import numpy
 
 from ..clouds import Cloud, ReadOptions, system_of, with_data
-from ..messages import FileError, counted
+from ..messages import FileError, Reason, counted
 from ..progress import share
-from ..selecting import NONE_CHOSEN, NothingChosen, as_option
+from ..selecting import NothingChosen, as_option, none_chosen
 from . import NAMES_IN_COLUMNS, check_use
 from .formats import FORMATS, recognise
 from .nulls import usual_nulls, zero_rows
@@ -51,7 +51,7 @@ def read_slices(path, cloud, **options):
         count, seen, low, high = 0, numpy.empty((0, 3)), numpy.inf, -numpy.inf
         for points in kind.slice_reader()(local, options, cloud):
             if options.no_data is not None:
-                points = with_data(points, options.no_data, cloud, "points without data")
+                points = with_data(points, options.no_data, cloud, Reason("point", "without data"))
             if len(points) and not options.keep_nulls:
                 check_nulls(local, numpy.concatenate((seen, points)))
                 seen = numpy.concatenate((seen, points[:: max(1, len(points) // 100)]))
@@ -103,7 +103,7 @@ def read_files(paths, cloud, **options):
             yield from read_slices(path, own, **options)
         except NothingChosen as error:
             unused.append(error)
-            own.notes.append(NONE_CHOSEN)
+            own.notes.append(none_chosen())
             if len(unused) == len(paths):
                 raise unused[0] from None
         cloud.notes += [f"{path}: {note}" for note in own.notes] if len(paths) > 1 else own.notes

@@ -16,7 +16,7 @@ import re
 import numpy
 
 from ..clouds import Cloud, add_array, make_points, with_data
-from .columns import choose_columns
+from .columns import advice_on_columns, choose_columns
 from .layouts import (
     COMMENT_MARKS,
     SUMMARY,
@@ -29,7 +29,7 @@ from .layouts import (
     is_comment,
     is_data,
 )
-from ..messages import FileError, counted
+from ..messages import FileError, Reason, counted
 from ..progress import no_progress, told_items
 from ..selecting import MOST_VALUES, Selection, WordReader
 
@@ -37,7 +37,6 @@ END_MARKS = b"\0\x1a\r\n "  # what DOS and full disks write behind the last line
 BLOCK = 8 << 20  # bytes; larger blocks cost time, as their memory is fetched afresh each time
 TAIL = 50  # lines at the end of a block among which summaries are looked for
 CHUNK = 1000  # lines that are tried at once where a block is not all numbers
-ADVICE = "--columns chooses other columns"
 SAMPLE = 3000  # lines at the start, and as many from the rest of the first block
 
 
@@ -111,7 +110,7 @@ class Table:
     of_numbers       indices of the columns that hold more numbers than text
     first            index of the first line of data
     z_name, is_horizon  see Choice
-    advice           what a user can do where columns are wrong
+    advice           what a user can do where columns are wrong; None: choose others
     has_summaries    whether lines that begin with "Total" or such are no data
     sees_summaries   whether there are such at the start or at the end of the first block
     head_lines       lines before the data that are no comments, without blanks around
@@ -120,7 +119,7 @@ class Table:
     """
 
     def __init__(self, path, lines, columns, needed, advice):
-        self.path, self.needed, self.advice = path, needed, advice
+        self.path, self.needed, self.advice = path, needed, advice or advice_on_columns()
         self.layout = find_layout(path, lines[:5000], needed)
         head, preamble, self.comments = self.read_head(lines)
         self.head_lines = {lines[number - 1].strip() for number, _ in preamble}
@@ -135,7 +134,7 @@ class Table:
         self.name_columns(head, rows)
         if not columns:
             before = [lines[number - 1] for number, _ in preamble]
-            check_names(path, self.layout, before, rows[:400], self.names, self.width, advice)
+            check_names(path, self.layout, before, rows[:400], self.names, self.width, self.advice)
         chosen = choose_columns(
             path, rows, consecutive, self.layout.number, self.names, self.width, columns, needed,
             advice,
@@ -523,7 +522,7 @@ def read_text(path, options):
     """
     named = bool(options.where or options.layer)
     parser, rows, numbers, notes = parse(
-        path, options.columns, 3, ADVICE, options.progress, named
+        path, options.columns, 3, None, options.progress, named
     )
     table = parser.table
     cloud = Cloud(None, notes, lines=numbers)
@@ -533,7 +532,7 @@ def read_text(path, options):
         keep = rows[:, 2] != options.no_data
         cloud.lines = numbers[keep]
         cloud.words = {name: words.some(keep) for name, words in cloud.words.items()}
-        rows = with_data(rows, options.no_data, cloud, "rows without data")
+        rows = with_data(rows, options.no_data, cloud, Reason("row", "without data"))
         if not len(rows):
             raise FileError(f"{path}: all rows are without data")
     cloud.points = make_points(rows[:, :3])
@@ -545,7 +544,7 @@ def text_slices(path, options, cloud):
     """Yields x, y and z of the rows of a text file, block by block. The cloud gets what is told."""
     count, selection = 0, Selection(path, options.where or ())
     named = bool(options.where)
-    for parser in parsed(path, options.columns, 3, ADVICE, options.progress, named):
+    for parser in parsed(path, options.columns, 3, None, options.progress, named):
         if not parser.parts:
             continue
         rows, words = parser.take()[0], parser.take_words()
@@ -554,7 +553,7 @@ def text_slices(path, options, cloud):
             rows = rows[selection.keep({**words, **dict(numbers)})]
         rows = rows[:, :3]
         if options.no_data is not None:
-            rows = with_data(rows, options.no_data, cloud, "rows without data")
+            rows = with_data(rows, options.no_data, cloud, Reason("row", "without data"))
         count += len(rows)
         yield rows
     cloud.notes += selection.check(count)

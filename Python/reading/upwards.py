@@ -11,6 +11,7 @@ import os
 import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
+from ..names import option
 from .column_names import direction_of, is_of_horizon, says_up
 
 WHAT = {"depth": "depths", "time": "times"}
@@ -31,23 +32,23 @@ def notes_on_range(cloud, depth, low, high, path=""):
         if high > 0.0 or low == 0.0:
             return []
         return [
-            f"z was {values} before --depth turned it over: where it was an elevation below 0, as "
-            "of a lake's bed, hollows are hills now; leave --depth out then"
+            f"z was {values} before {option('depth')} turned it over: where it was an elevation below 0, as "
+            f"of a lake's bed, hollows are hills now; leave {option('depth')} out then"
         ]
     if direction and low >= 0.0 and high > 0.0:
         return [
             f"z are {WHAT[direction]} by their name and positive, so the surface is upside down; "
-            "--depth turns it over"
+            f"{option('depth')} turns it over"
         ]
     if direction and high > 0.0:
         return [
             f"z are {WHAT[direction]} by their name, but {values}: taken as they are, upwards; if "
-            "they count downwards, --depth turns it over"
+            f"they count downwards, {option('depth')} turns it over"
         ]
     if is_horizon and not direction and not says_up(cloud.z_name) and low > 0.0:
         return [
             f"z is {values}, and it is not certain that it counts upwards: taken as elevations; if "
-            "these are depths or times, as of horizons, the surface is upside down, and --depth "
+            f"these are depths or times, as of horizons, the surface is upside down, and {option('depth')} "
             "turns it over"
         ]
     return []

@@ -10,7 +10,8 @@ from ..clouds import Cloud, add_array, make_lines, make_points, set_crs
 from .columns import meaning
 from .formats import HEAD, is_table_with_geometry
 from ..gdal_common import choose_layer, gdal_module, kind_of, one_line, quiet
-from ..messages import FileError
+from ..messages import FileError, Reason
+from ..names import option
 from ..progress import share, told_items
 from ..selecting import words_of
 
@@ -179,7 +180,7 @@ class Layer:
         if len(named) > 1 and self.flat:
             raise FileError(
                 f"{self.path}: attributes {', '.join(named)} could be the elevation; choose one by "
-                f"--columns x,y,{named[0]}"
+                f"{option('columns')} x,y,{named[0]}"
             )
         return named[0] if len(named) == 1 else None
 
@@ -209,7 +210,7 @@ def read_layer(path, wanted, columns, progress):
             raise FileError(f"{path}: layer {found.GetName()} holds no geometry")
         if reference and reference.IsGeographic() and not are_angles(layer):
             # GDAL takes GeoJSON that names no system for degrees.
-            notes.append(f"x,y are no angles, so it is not in {reference.GetName()}; see --crs")
+            notes.append(f"x,y are no angles, so it is not in {reference.GetName()}; see {option('crs')}")
             reference = None
         if reference and reference.IsGeographic():
             notes.append("x,y are angles: project them first to give triangles their true shape")
@@ -236,7 +237,7 @@ def read_points(path, options):
         names = ", ".join(layer.fields) or "none"
         raise FileError(
             f"{path}: the points are flat, and no attribute is named as an elevation; choose "
-            f"one by --columns x,y,NAME; attributes: {names}"
+            f"one by {option('columns')} x,y,NAME; attributes: {names}"
         )
     kinds = {kind for kind, _ in layer.parts} - {"point"}
     if kinds:
@@ -252,7 +253,7 @@ def read_points(path, options):
                 add_array(cloud.points, name, numbers[repeat])
         elif any(isinstance(value, str) for value in values):
             cloud.words[name] = words_of(values).some(repeat)
-    for count, reason in ((layer.empty, "features without geometry"), (layer.labels, "texts")):
+    for count, reason in ((layer.empty, Reason("feature", "without geometry")), (layer.labels, Reason("text"))):
         if count:
             cloud.left_out[reason] = count
     return cloud

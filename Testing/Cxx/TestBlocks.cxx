@@ -23,6 +23,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTrimOutwardTriangles.h"
 
@@ -217,6 +218,19 @@ void TestMessages()
   const std::string warning = observer->GetWarningMessage();
   Check(warning.find("Block 1: The input has no triangles") != std::string::npos,
     "and so does the warning; it was: " + warning);
+  // For programs, a row of two components for the code, the block and each value.
+  vtkStringArray* const rows = fill->GetMessages();
+  std::vector<std::string> data;
+  for (vtkIdType i = 0; i < rows->GetNumberOfTuples(); ++i)
+  {
+    if (rows->GetValue(2 * i) != "text")
+    {
+      data.push_back(rows->GetValue(2 * i) + "=" + rows->GetValue(2 * i + 1));
+    }
+  }
+  Check(data.size() == 5 && data[0] == "error=Words" && data[1] == "block=Block 2 (\"north\")" &&
+      data[3] == "warning=NothingToFill" && data[4] == "block=Block 1",
+    "a message is data too");
   Check(BlockOf(fill, 0)->GetNumberOfPolys() > 0 && BlockOf(fill, 2)->GetNumberOfPoints() == 0,
     "a block with an error is empty, the others are filled");
 }
@@ -269,7 +283,7 @@ void TestChainTellsOnce()
   check(MessagesOfChain(vtkNew<vtkPolyData>()), "the 0 input points");
   check(MessagesOfChain(wrong), "TooShort");
   check(MessagesOfChain(MakeCloud(0.0, 0), 0.01), "MaximumEdgeLength");
-  check(MessagesOfChain(nothing), "no data set");
+  check(MessagesOfChain(nothing), "All blocks of the input are empty");
   Check(MessagesOfChain(MakeCloud(0.0, 0)).empty(), "a cloud passes in silence");
 }
 

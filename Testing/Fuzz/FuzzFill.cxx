@@ -25,8 +25,7 @@ bool IsClosed(const HoleReport& report)
 }
 
 /** The surface with its patches; or the patches alone. */
-Mesh Joined(
-  const Surface& surface, const Holes& holes, const FillResult& filled, bool patchesAlone)
+Mesh Joined(const Surface& surface, const Holes& holes, const FillResult& filled, bool patchesAlone)
 {
   Mesh mesh = surface.Triangles;
   mesh.Triangles.clear();
@@ -71,9 +70,9 @@ void RequireReport(
   Require((report.Status == FillStatus::TooLarge) == isTooLarge, "holes too large are told");
   Require((report.Status == FillStatus::TooManyEdges) == (hasTooMany && !isTooLarge),
     "holes with too many edges are told");
-  Require((report.Status == FillStatus::Failed) == !report.Reason.empty(), "failures have a reason");
-  Require(!IsClosed(report) || !holes.Touched[hole],
-    "a hole in which borders touch is not filled");
+  Require(
+    (report.Status == FillStatus::Failed) == !report.Reason.IsEmpty(), "failures have a reason");
+  Require(!IsClosed(report) || !holes.Touched[hole], "a hole in which borders touch is not filled");
   Require(!IsClosed(report) || (report.Status == FillStatus::Replaced) == holes.IsRegion(hole),
     "regions have a status of their own");
   Require(!IsClosed(report) || !holes.IsRegion(hole) || points > 0,
@@ -89,8 +88,8 @@ void RequireReport(
   holes.VisitInnerEdges(hole, [&](Index a, Index b) { inside.insert({ a, b }); });
   holes.VisitEdges(hole, [&](Index a, Index) { inside.erase(a); });
   const Index known = static_cast<Index>(inside.size());
-  Require(triangles == report.NumberOfEdges - 2 + 2 * (islands + points + known),
-    "a patch is complete");
+  Require(
+    triangles == report.NumberOfEdges - 2 + 2 * (islands + points + known), "a patch is complete");
   Require(points <= options.MaximumInsertedPoints, "no more points than allowed");
   Require(report.Method != Interpolation::Adaptive, "the method used is told");
 
@@ -118,8 +117,8 @@ void RequireReport(
 }
 
 /** New points: finite where the surface is, within bounds, nearest boundary points as said. */
-void RequirePoints(const Surface& surface, const Holes& holes, Index hole, const FillOptions& options,
-  const FillResult& filled)
+void RequirePoints(const Surface& surface, const Holes& holes, Index hole,
+  const FillOptions& options, const FillResult& filled)
 {
   const Index begin = filled.PointOffsets[hole], end = filled.PointOffsets[hole + 1];
   if (begin == end)
@@ -141,9 +140,8 @@ void RequirePoints(const Surface& surface, const Holes& holes, Index hole, const
     add(a, b);
     add(b, a);
   });
-  const bool allFinite = std::all_of(surface.Xyz.begin(), surface.Xyz.end(), [](double value) {
-    return std::isfinite(value) && std::fabs(value) < 1e100;
-  });
+  const bool allFinite = std::all_of(surface.Xyz.begin(), surface.Xyz.end(),
+    [](double value) { return std::isfinite(value) && std::fabs(value) < 1e100; });
   const Interpolation method = filled.Reports[hole].Method;
   // Adaptive mixes methods, and tells the one with the largest share: it may not be all Membrane.
   const bool isMean = method == Interpolation::NeighborMean ||
@@ -181,7 +179,8 @@ void RequireSame(const FillResult& a, const FillResult& b)
 {
   bool areSame = AreSame(a.Points, b.Points) && a.Triangles == b.Triangles &&
     a.PointOffsets == b.PointOffsets && a.TriangleOffsets == b.TriangleOffsets &&
-    a.NearestBoundaryPoints == b.NearestBoundaryPoints && a.Attributes.size() == b.Attributes.size();
+    a.NearestBoundaryPoints == b.NearestBoundaryPoints &&
+    a.Attributes.size() == b.Attributes.size();
   for (std::size_t i = 0; areSame && i < a.Attributes.size(); ++i)
   {
     areSame = AreSame(a.Attributes[i], b.Attributes[i]);

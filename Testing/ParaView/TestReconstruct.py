@@ -195,7 +195,7 @@ for change, expected in (
     ({"Boundary": line}, "not closed"),
     ({"Boundary": simple.Disk(OuterRadius=1e4, InnerRadius=9e3)}, "The boundary encloses no triangle"),
     ({"Boundary": None, "Faults": cloud}, "The faults have no line and no polygon"),
-    ({"Faults": simple.Line(Point1=[80, 80, 0], Point2=[90, 80, 0])}, "No fault meets the points"),
+    ({"Faults": simple.Line(Point1=[80, 80, 0], Point2=[90, 80, 0])}, "The faults do not overlap the points"),
     ({"Faults": None, "MaximumEdgeLength": 1e-9}, "A Maximum Edge Length of 0."),
     ({"MaximumEdgeLength": 0, "Spacing": -1}, "Spacing takes a number of 0 or more"),
     ({"Spacing": 0, "ElevationArray": "Depth"}, "no point array named Depth"),

@@ -10,9 +10,10 @@ import unittest
 
 import numpy
 from vtkelevationsurface import read, reconstruct, vtkGridDelaunay2D
+from vtkelevationsurface.accounts import CONTENTS, RECOGNISED
+from vtkelevationsurface.algorithm_base import set_words
 from vtkelevationsurface.algorithms import ElevationPoints, ReconstructElevationSurface
 from vtkelevationsurface.blocks import parts_of
-from vtkelevationsurface.telling import set_words
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
@@ -132,7 +133,8 @@ class Algorithms(unittest.TestCase):
         for count, words in ((30, "note       f.xyz: 30 points\n"),
                              (24, "note       f.xyz: 30 points; this surface is of 24 points\n")):
             chain, data = ReconstructElevationSurface(), cloud(count)
-            set_words(data, "Recognised", ["f.xyz: 30 points"])
+            set_words(data, RECOGNISED, ["f.xyz: 30 points"])
+            set_words(data, CONTENTS, ["points", "30"])
             chain.SetInputDataObject(0, data)
             self.assertEqual(errors_of(chain), [])
             self.assertIn(words, chain.GetReport())

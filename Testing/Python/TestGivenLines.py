@@ -392,7 +392,7 @@ class Draping(Program):
         self.assertEqual([part[:, 0].max() for part in parts], [4000.0, 4000.0])
         words = "left out of 1 line without z, a length of 2000 of line (cell 0), at (4500, 2000)"
         self.assertIn(words, told[1])
-        with self.assertRaisesRegex(ElevationSurfaceError, "No constraint meets the points"):
+        with self.assertRaisesRegex(ElevationSurfaceError, "The constraints do not overlap the points"):
             reconstruct(HILLS, faults=fault[1:3])
 
     def test_files_without_z_are_draped(self):

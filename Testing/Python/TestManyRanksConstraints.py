@@ -185,7 +185,7 @@ def check_errors(random):
     for holder in range(min(COUNT, 3)):
         is_mine = RANK == holder
         for claim, places, cells, arrays, text in (
-                ("far away", across + 50.0, cell, (), "No constraint meets the points"),
+                ("far away", across + 50.0, cell, (), "The constraints do not overlap the points"),
                 ("no line", across, [], (), "The constraints have no line"),
                 ("not finite", across + [numpy.nan, 0.0, 0.0], cell, (), "not finite"),
                 ("z not finite", across + [0.0, 0.0, numpy.inf], cell, (), "not finite"),

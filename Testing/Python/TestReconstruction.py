@@ -24,7 +24,6 @@ from vtkelevationsurface.gathering import BASE, ROW, make_grid
 from vtkelevationsurface.picture.signs import add_scalar_bar
 from vtkelevationsurface.properties import PROPERTIES
 from vtkelevationsurface.reconstruction import as_lines
-from vtkelevationsurface.steps import in_options
 from vtkelevationsurface.writing.xml_writer import named_arrays
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLookupTable, vtkPoints
@@ -38,11 +37,6 @@ RING = numpy.array([(0.5, 0.5), (9.5, 0.5), (9.5, 9.5), (0.5, 9.5)])
 
 class Parts(unittest.TestCase):
     """What larger tests see only in a picture, on several ranks, or in a message."""
-
-    def test_messages_name_options_in_place_of_properties(self):
-        words = "a larger maximum_edge_length; the spacing and the interpolation stay"
-        self.assertEqual(
-            in_options(words), words.replace("maximum_edge_length", "--maximum-edge-length"))
 
     def test_a_grid_of_ranks_has_the_extent_of_its_nodes(self):
         own, whole = vtkImageData(), vtkImageData()

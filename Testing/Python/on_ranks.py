@@ -120,6 +120,9 @@ def check_refused(algorithm, data, part, claim, **properties):
     refused, messages = updated(algorithm, data, False, **properties)
     check(len(messages) == (RANK == 0) and (RANK > 0 or part in messages[0][1]),
           "%s: one error with %r, not %s" % (claim, part, messages))
+    rows = refused.GetMessages()
+    check((rows.GetNumberOfTuples() > 0) == (RANK == 0) and (RANK > 0 or rows.GetValue(0) == "error"),
+          "%s: the error is data too, on the first rank" % claim)
     for port in range(refused.GetNumberOfOutputPorts()):
         check(refused.GetOutput(port).GetNumberOfPoints() == 0, "%s: no point" % claim)
 

@@ -3,6 +3,7 @@
 #include "Constrain.h"
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 #include "Kernel/Simplify/Simplify.h"
 #include "Kernel/Triangulate/Triangulate.h"
 
@@ -42,9 +43,9 @@ Index PointOfLine(const ConstraintLines& lines, Index line, Index k)
   if (!exists || !std::isfinite(points.At(id).X) || !std::isfinite(points.At(id).Y) ||
     !std::isfinite(points.Elevation(id)))
   {
-    throw Error("Point " + std::to_string(id) + " of the constraints' cell " +
-      std::to_string(lines.Cells[line]) +
-      (exists ? " has a coordinate that is not finite." : " does not exist."));
+    const Index cell = lines.Cells[line];
+    throw exists ? MakeError<sentences::NonFinitePointOfLine>(id, "constraints'", cell)
+                 : MakeError<sentences::NoSuchPointOfLine>(id, "constraints'", cell);
   }
   return id;
 }
@@ -267,9 +268,12 @@ private:
     this->Vertices.resize(count);
     if (!this->Settle(0.0, false, Part(progress, 0.9, 1.0)))
     {
-      throw Error(this->NameOf(this->Unsettled[0]) + " and t" +
-        this->NameOf(this->Unsettled[1]).substr(1) +
-        " cross again and again where rounding moves them.");
+      const Segment &one = this->Segments[this->Unsettled[0]],
+                    &other = this->Segments[this->Unsettled[1]];
+      const auto point = [this](Index vertex) { return this->Vertices[vertex].Source; };
+      const auto cell = [this](Index rank) { return this->Lines.Cells[this->SegmentLines[rank]]; };
+      throw MakeError<sentences::LinesNotSettled>(point(one.A), point(one.B), "constraints'",
+        cell(this->Unsettled[0]), point(other.A), point(other.B), cell(this->Unsettled[1]));
     }
   }
 
@@ -678,7 +682,8 @@ private:
     {
       return;
     }
-    const CellGrid grid(crossings.size(),
+    const CellGrid grid(
+      crossings.size(),
       [&](std::size_t i) { return std::array<Point2, 1>{ { this->At(crossings[i]) } }; },
       Part(progress, 0.0, 0.1));
     ForEachStretch(this->Points.Count, Part(progress, 0.1, 1.0), [&](Index begin, Index end) {
@@ -706,16 +711,6 @@ private:
     const double dx = scale * b.X - scale * a.X, dy = scale * b.Y - scale * a.Y;
     return std::fabs(dx) > std::fabs(dy) ? (scale * p.X - scale * a.X) / dx
                                          : (scale * p.Y - scale * a.Y) / dy;
-  }
-
-  std::string NameOf(Index rank) const
-  {
-    const Segment& segment = this->Segments[rank];
-    const auto name = [&](Index vertex) {
-      return "point " + std::to_string(this->Vertices[vertex].Source);
-    };
-    return "The segment from " + name(segment.A) + " to " + name(segment.B) +
-      " of the constraints' cell " + std::to_string(this->Lines.Cells[this->SegmentLines[rank]]);
   }
 
   const PointView& Points;

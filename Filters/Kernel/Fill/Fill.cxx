@@ -3,13 +3,13 @@
 #include "Fill.h"
 
 #include "Kernel/Base/Base.h"
+#include "Kernel/Messages/Messages.h"
 #include "Neighbours.h"
 #include "Patch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 namespace elevation
@@ -59,13 +59,6 @@ bool IsMeasurable(double length)
   return length >= LeastLength && length <= LargestLength;
 }
 
-std::string ToText(double value)
-{
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 std::string CountToText(double value)
 {
   return value < 1e15 ? std::to_string(std::llround(value)) : ToText(value);
@@ -84,10 +77,10 @@ double RoundedUp(double value)
   return std::ceil(value / step) * step;
 }
 
-void Fail(HoleReport& report, const std::string& reason)
+void Fail(HoleReport& report, Message reason)
 {
   report.Status = FillStatus::Failed;
-  report.Reason = reason;
+  report.Reason = std::move(reason);
 }
 
 /** Refuses holes that cannot be filled. */
@@ -95,14 +88,13 @@ void CheckNumbers(bool isTouched, HoleReport& report)
 {
   if (isTouched)
   {
-    Fail(report, BordersTouch().what());
+    Fail(report, BordersTouch().AsMessage());
   }
   else if (!IsMeasurable(report.Size) || report.Spacing < LeastLength)
   {
     Fail(report,
-      "Its size of " + ToText(report.Size) + " at a spacing of " + ToText(report.Spacing) +
-        " leaves the range of numbers to compute with, " + ToText(LeastLength) + " to " +
-        ToText(LargestLength) + "; scale x and y.");
+      MakeMessage<sentences::SizeOutOfRange>(
+        report.Size, report.Spacing, LeastLength, LargestLength));
   }
 }
 
@@ -330,13 +322,10 @@ private:
         continue;
       }
       Fail(report,
-        "It would take up to " + ToText(points) + " new points at a spacing of " +
-          ToText(report.Spacing) + ", but " +
-          (limit < ofIds
-              ? "MaximumNumberOfInsertedPoints, " + std::to_string(limit)
-              : "the largest number of points, " + std::to_string(MaximumNumberOfPoints)) +
-          ", leaves room for " + ToText(left) + "; a larger spacing helps" +
-          (limit < ofIds ? ", or a larger limit." : "."));
+        limit < ofIds
+          ? MakeMessage<sentences::MoreThanInsertedPoints>(points, report.Spacing, limit, left)
+          : MakeMessage<sentences::MoreThanAllPoints>(
+              points, report.Spacing, MaximumNumberOfPoints, left));
     }
   }
 
@@ -459,11 +448,11 @@ private:
     }
     catch (const Error& error)
     {
-      Fail(report, error.what());
+      Fail(report, MessageOf(error));
     }
     catch (const BeyondSurroundings&)
     {
-      Fail(report, "");
+      Fail(report, Message());
       report.NeedsMoreSurroundings = true;
     }
   }
@@ -570,10 +559,8 @@ void CheckEffort(
   const double room = options.MemoryOfHole / BytesPerPoint;
   if (options.MemoryOfHole > 0.0 && ofOne > room)
   {
-    throw Error("Filling one hole is expected to insert about " + CountToText(ofOne) +
-      " points, which take some " + ToGigabytes(ofOne) + ", more than the memory for it, " +
-      ToGigabytes(room) + ". A Spacing of " + ToText(RoundedUp(SpacingOfPoints(largest, room))) +
-      " would do, or a MaximumHoleSize that leaves it open, or more memory.");
+    throw MakeError<sentences::HoleTooLarge>(CountToText(ofOne), ToGigabytes(ofOne),
+      ToGigabytes(room), RoundedUp(SpacingOfPoints(largest, room)));
   }
   const double chosen = static_cast<double>(options.MaximumExpectedPoints);
   const double limit =
@@ -582,12 +569,14 @@ void CheckEffort(
   {
     return;
   }
-  throw Error("Filling is expected to insert about " + CountToText(expected) +
-    " points, which take some " + ToGigabytes(expected) +
-    ", more than MaximumNumberOfExpectedPoints, " + CountToText(limit) +
-    (chosen > 0.0 ? "" : " by default for the " + CountToText(numberOfPoints) + " of the input") +
-    ". A Spacing of " + ToText(RoundedUp(SpacingOfPoints(area, limit))) +
-    " would do, or a larger MaximumNumberOfExpectedPoints.");
+  const double better = RoundedUp(SpacingOfPoints(area, limit));
+  if (chosen > 0.0)
+  {
+    throw MakeError<sentences::TooManyPointsToFill>(
+      CountToText(expected), ToGigabytes(expected), CountToText(limit), better);
+  }
+  throw MakeError<sentences::TooManyPointsByDefault>(CountToText(expected), ToGigabytes(expected),
+    CountToText(limit), CountToText(numberOfPoints), better);
 }
 
 std::vector<double> QuotasFor(const std::vector<HoleNeed>& needs, Index limit)

@@ -30,6 +30,7 @@
 #include "Heights.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Messages/Messages.h"
 #include "Kernel/Triangulate/Triangulate.h"
 
 #include <limits>
@@ -105,7 +106,7 @@ struct HoleReport
   Index NumberOfInsertedPoints = 0;
   Interpolation Method = Interpolation::NeighborMean; ///< as used; never Adaptive
   bool NeedsMoreSurroundings = false; ///< not filled: its surroundings are too small
-  std::string Reason;                 ///< if Failed: a sentence without the hole's name
+  Message Reason;                     ///< if Failed: without the hole's name
 };
 
 /**

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <sstream>
 #include <unordered_map>
 #include <utility>
 
@@ -126,8 +125,8 @@ Blocked BlockRow(const Rows& rows, Index row, const Point2& a, const Point2& b)
 }
 
 /** All blocked stretches, row by row from the left. Inner edges cross no row. */
-std::vector<Blocked> BlockRows(const Rows& rows, const std::vector<Point2>& points,
-  const Patch& patch, const Progress& progress)
+std::vector<Blocked> BlockRows(
+  const Rows& rows, const std::vector<Point2>& points, const Patch& patch, const Progress& progress)
 {
   const Progress blocking = Part(progress, 0.0, 0.7);
   std::vector<Blocked> blocked;
@@ -214,14 +213,6 @@ void VisitRows(const Rows& rows, const std::vector<Point2>& points, const Patch&
   }
 }
 
-Error BelowPrecision(double spacing)
-{
-  std::ostringstream text;
-  text << "The spacing of " << spacing
-       << " is below what the coordinates can tell apart; a larger spacing helps.";
-  return Error(text.str());
-}
-
 /** Places the lattice's nodes inside. */
 void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
 {
@@ -241,7 +232,7 @@ void PlaceNodes(const PatchPlan& plan, const Progress& progress, Patch& patch)
       Point2 found;
       if (!FindNode(plan.Steps, p, found) || found != node)
       {
-        throw BelowPrecision(plan.Spacing);
+        throw MakeError<sentences::SpacingTooSmall>(plan.Spacing);
       }
       patch.Points.insert(patch.Points.end(), { p.X, p.Y, 0.0 });
     });
@@ -257,11 +248,11 @@ void PlaceEvenly(const PatchPlan& plan, const Progress& progress, Patch& patch)
     boundary[v] = { patch.At(v).X - center.X, patch.At(v).Y - center.Y };
   }
   const double d = plan.Spacing;
-  VisitRows({ d, RowHeight * d, 0.5, Clearance * d }, boundary, patch, progress,
-    [&](Index row, double x) {
+  VisitRows(
+    { d, RowHeight * d, 0.5, Clearance * d }, boundary, patch, progress, [&](Index row, double x) {
       if (d < LeastStepsPerSpacing * plan.Precision)
       {
-        throw BelowPrecision(d);
+        throw MakeError<sentences::SpacingTooSmall>(d);
       }
       const Point2 p = plan.Rounded({ center.X + x * d, center.Y + row * (RowHeight * d) });
       patch.Points.insert(patch.Points.end(), { p.X, p.Y, 0.0 });
@@ -355,7 +346,7 @@ Mesh Connect(const Patch& patch, int threads, const Progress& progress)
   {
     throw triangulation.UnusedPoints.front() < patch.NumberOfBoundaryVertices()
       ? BordersTouch()
-      : Error("New points fall together; a larger spacing helps.");
+      : MakeError<sentences::PointsCoincide>();
   }
   Mesh mesh;
   mesh.Points.resize(patch.NumberOfVertices());
@@ -473,8 +464,8 @@ private:
     Lengths lengths;
     for (Index h = 3 * t; h < 3 * t + 3; ++h)
     {
-      const double square = this->Square(
-        this->Patch.PointOf(this->Patch.Origin(h)), this->Patch.PointOf(this->Patch.Destination(h)));
+      const double square = this->Square(this->Patch.PointOf(this->Patch.Origin(h)),
+        this->Patch.PointOf(this->Patch.Destination(h)));
       if (square > lengths.Longest)
       {
         lengths.Longest = square;
@@ -1008,10 +999,9 @@ double SpacingOfPoints(double area, double points)
   return std::sqrt(area / RowHeight / points);
 }
 
-Error BordersTouch()
+CodedError BordersTouch()
 {
-  return Error("Borders touch in it without sharing a point: merge points with the same x,y, and "
-               "split edges that have a point inside.");
+  return MakeError<sentences::BordersTouch>();
 }
 
 Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
@@ -1047,8 +1037,7 @@ Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole)
   {
     isInside[edge.A] = 0;
   }
-  patch.NumberOfPointsInside =
-    static_cast<Index>(std::count(isInside.begin(), isInside.end(), 1));
+  patch.NumberOfPointsInside = static_cast<Index>(std::count(isInside.begin(), isInside.end(), 1));
   patch.Points.reserve(3 * ids.size());
   for (const Index id : ids)
   {

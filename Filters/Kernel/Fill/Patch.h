@@ -57,10 +57,11 @@
 #ifndef elevation_Fill_Patch_h
 #define elevation_Fill_Patch_h
 
-#include "Membrane.h"
 #include "Kernel/Base/Base.h"
 #include "Kernel/Lattice/Lattice.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Messages/Messages.h"
+#include "Membrane.h"
 
 #include <vector>
 
@@ -87,8 +88,8 @@ struct PatchPlan
   /** An upper bound of the number of new points; above 0, not a whole number. */
   double MostPoints = 0.0;
   double ExpectedPoints = 0.0; ///< about how many there will be
-  double MostRows = 0.0; ///< how many more rows than edges the edges can meet
-  Lattice Steps;         ///< for Nodes
+  double MostRows = 0.0;       ///< how many more rows than edges the edges can meet
+  Lattice Steps;               ///< for Nodes
   /** The distance between neighbouring numbers at the largest coordinate of the hole. */
   double Precision = 0.0;
   /** Round new x,y to float before they are triangulated. */
@@ -175,7 +176,7 @@ struct Patch : PatchMesh
 };
 
 /** The error of a hole in which borders touch without sharing a vertex. */
-Error BordersTouch();
+CodedError BordersTouch();
 
 /** Makes a patch with its known vertices, and the edges between them that stay. n log n. */
 Patch CollectBoundary(const Mesh& mesh, const Holes& holes, Index hole);

@@ -328,31 +328,23 @@ void TrimAlong(const TriangleList& list, const BoundaryLines& lines,
 }
 
 /** What an extracted boundary leaves out. @param[in] all  if it leaves out all */
-std::string LossOf(const ExtractedBoundary& found, bool all)
+Message LossOf(const ExtractedBoundary& found, bool all)
 {
-  std::ostringstream text;
-  const auto percent = [&](double part) {
-    text << std::fixed << std::setprecision(1) << 100.0 * part << " %";
+  const auto percent = [](double part) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1) << 100.0 * part;
+    return text.str();
   };
+  const std::string tolerance = ToText(found.GapTolerance, 4);
+  const std::string better = ToText(found.KeepingTolerance, 4);
+  const char* const kept = found.PointsLeftOut > 0.0 ? "all points" : "half of it";
   if (all)
   {
-    text << "The extracted boundary leaves out every point";
+    return MakeMessage<sentences::BoundaryLeavesOutAll>(tolerance, better, kept);
   }
-  else
-  {
-    text << "The extracted boundary leaves out " << found.NumberOfPointsLeftOut
-         << (found.NumberOfPointsLeftOut == 1 ? " point (" : " points (");
-    percent(found.PointsLeftOut);
-    text << ") and ";
-    percent(found.AreaLeftOut);
-    text << " of the area";
-  }
-  text << std::defaultfloat << std::setprecision(4) << ": at a gap tolerance of "
-       << found.GapTolerance << " spacings, that is no surface. A GapTolerance of "
-       << found.KeepingTolerance
-       << (found.PointsLeftOut > 0.0 ? " would keep all points" : " would keep half of it")
-       << ". Or give the boundary.";
-  return text.str();
+  const Index points = found.NumberOfPointsLeftOut;
+  return MakeMessage<sentences::BoundaryLeavesOut>(points, points == 1 ? "point" : "points",
+    percent(found.PointsLeftOut), percent(found.AreaLeftOut), tolerance, better, kept);
 }
 
 ExtractOptions ExtractionOf(const TrimOptions& options, const Progress& progress)
@@ -381,7 +373,7 @@ void TakeOutline(ExtractedBoundary&& found, Trimmed& result)
   result.Boundary = std::move(found.Vertices);
   result.GapTolerance = found.GapTolerance;
   result.NumberOfPointsLeftOut = found.NumberOfPointsLeftOut;
-  result.Loss = found.LeavesOutMuch() ? LossOf(found, false) : std::string();
+  result.Loss = found.LeavesOutMuch() ? LossOf(found, false) : Message();
 }
 
 /** Trims along the extracted outline. */
@@ -406,13 +398,13 @@ void TrimExtracted(const TriangleList& list, const TrimOptions& options, const P
   }
   if (found.Vertices.Count() == 0)
   {
-    throw Error(LossOf(found, true));
+    throw CodedError(LossOf(found, true));
   }
   TakeOutline(std::move(found), result);
   std::vector<char> isOutward = OutwardOf(std::move(found.IsSurface));
   if (!isExact)
   {
-    result.Loss.clear();
+    result.Loss = Message();
     OutwardTriangles outward =
       FindOutward(mesh, result.Boundary, options.RecoverBoundary, Part(progress, 0.9, 0.95));
     isOutward = std::move(outward.IsOutward);

@@ -24,6 +24,7 @@
 
 #include "Insertion.h"
 #include "Kernel/Mesh/Mesh.h"
+#include "Kernel/Messages/Messages.h"
 #include "NearTriangles.h"
 #include "Outline.h"
 #include "Rings.h"
@@ -91,8 +92,8 @@ struct Trimmed
   Index NumberOfOutwardTriangles = 0;
   Index NumberOfRecoveredEdges = 0; ///< edges of the boundary that were missing
   Index NumberOfPointsLeftOut = 0;  ///< as in ExtractedBoundary; 0 with InwardNormal
-  /** Of an extracted boundary that leaves out much: what, and what would keep it; else empty. */
-  std::string Loss;
+  /** Of an extracted boundary that leaves out much: what, and what would keep it; else none. */
+  Message Loss;
 };
 
 /**

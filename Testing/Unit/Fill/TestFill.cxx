@@ -83,7 +83,7 @@ TEST(Fill, CoversHolesOfEveryShape)
       ExpectPatchesFit(run, 1e-13);
       for (const HoleReport& report : run.Patches.Reports)
       {
-        EXPECT_EQ(report.Status, FillStatus::Filled) << report.Reason;
+        EXPECT_EQ(report.Status, FillStatus::Filled) << report.Reason.Words();
       }
     }
   }
@@ -346,7 +346,7 @@ TEST(Fill, FailsAHoleThatWouldTakeTooManyPointsAtOnce)
     for (const HoleReport& report : run.Patches.Reports)
     {
       EXPECT_EQ(report.Status, FillStatus::Failed);
-      EXPECT_FALSE(report.Reason.empty());
+      EXPECT_FALSE(report.Reason.IsEmpty());
     }
     EXPECT_EQ(run.Patches.NumberOfTriangles(), 0);
   }
@@ -378,9 +378,9 @@ TEST(Fill, SharesTheRoomForPointsAmongHoles)
   EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled);
   EXPECT_EQ(run.Patches.Reports[1].Status, FillStatus::Failed);
   EXPECT_LE(run.Patches.NumberOfPoints(), 70);
-  EXPECT_NE(run.Patches.Reports[1].Reason.find("MaximumNumberOfInsertedPoints, 70,"),
+  EXPECT_NE(run.Patches.Reports[1].Reason.Words().find("MaximumNumberOfInsertedPoints, 70,"),
     std::string::npos)
-    << run.Patches.Reports[1].Reason;
+    << run.Patches.Reports[1].Reason.Words();
 }
 
 TEST(Fill, LeavesTheLargestHolesOpenFirst)
@@ -412,13 +412,12 @@ TEST(Fill, GrantsNoPointsToHolesThatOtherLimitsLeaveOpen)
   for (const int threads : { 1, 3 })
   {
     options.NumberOfThreads = threads;
-    const Outcome run =
-      Fill(Draw({ "###########", "#     #   #", "#     #   #", "#     #   #", "###########" }), options);
+    const Outcome run = Fill(
+      Draw({ "###########", "#     #   #", "#     #   #", "#     #   #", "###########" }), options);
     ASSERT_EQ(run.Found.Count(), 2);
     for (const HoleReport& report : run.Patches.Reports)
     {
-      EXPECT_EQ(
-        report.Status, report.Size > 5.0 ? FillStatus::TooLarge : FillStatus::Filled);
+      EXPECT_EQ(report.Status, report.Size > 5.0 ? FillStatus::TooLarge : FillStatus::Filled);
     }
   }
 }
@@ -452,7 +451,7 @@ TEST(Fill, FailsASpacingBelowThePrecisionOfTheCoordinates)
   options.SinglePrecision = true; // float steps by 64 here
   Outcome run = Fill(mesh, options);
   EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Failed);
-  EXPECT_NE(run.Patches.Reports[0].Reason.find("spacing"), std::string::npos);
+  EXPECT_NE(run.Patches.Reports[0].Reason.Words().find("spacing"), std::string::npos);
   options.SinglePrecision = false;
   run = Fill(mesh, options);
   EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled);
@@ -481,7 +480,7 @@ TEST(Fill, FillsHolesOfOneStepOfTheCoordinates)
   for (const HoleReport& report : run.Patches.Reports)
   {
     EXPECT_EQ(report.Status, report.NumberOfEdges < 5 ? FillStatus::Filled : FillStatus::Failed)
-      << report.NumberOfEdges << " " << report.Reason;
+      << report.NumberOfEdges << " " << report.Reason.Words();
   }
   // All are numbers that there are, so as nodes of a lattice they can be filled in.
   run = Fill(mesh);
@@ -559,8 +558,8 @@ TEST(Fill, FailsWhereSquaresLeaveTheRangeOfNumbers)
     const Outcome run = Fill(mesh);
     ASSERT_EQ(run.Patches.Reports.size(), 1u);
     EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Failed);
-    EXPECT_NE(run.Patches.Reports[0].Reason.find("range of numbers"), std::string::npos);
-    EXPECT_EQ(run.Patches.Reports[0].Reason.find("nan"), std::string::npos);
+    EXPECT_NE(run.Patches.Reports[0].Reason.Words().find("range of numbers"), std::string::npos);
+    EXPECT_EQ(run.Patches.Reports[0].Reason.Words().find("nan"), std::string::npos);
     EXPECT_EQ(run.Patches.NumberOfTriangles(), 0);
   }
 }

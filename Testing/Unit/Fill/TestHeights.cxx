@@ -495,7 +495,7 @@ TEST(Heights, LeaveOutWhatIsNotFinite)
     const Outcome run = Fill(
       Sheet(30, Disc(15, 15, 6)), [=](const Point2& p) { return p.X == p.Y ? nothing : 7.0; },
       method);
-    EXPECT_GT(run.Patches.NumberOfPoints(), 80) << run.Patches.Reports[0].Reason;
+    EXPECT_GT(run.Patches.NumberOfPoints(), 80) << run.Patches.Reports[0].Reason.Words();
     EXPECT_EQ(run.Patches.Reports[0].Method, Interpolation::NeighborMean);
     Index numbers = 0;
     for (Index i = 0; i < run.Patches.NumberOfPoints(); ++i)

@@ -93,7 +93,7 @@ void ExpectRegionsFit(const Outcome& run)
   {
     const HoleReport& report = run.Patches.Reports[hole];
     EXPECT_TRUE(report.Status == FillStatus::Filled || report.Status == FillStatus::Replaced)
-      << report.Reason;
+      << report.Reason.Words();
   }
   const std::set<std::pair<Index, Index>> edges = EdgesOf(run.Patches.Triangles);
   std::size_t used = 0;
@@ -290,8 +290,8 @@ TEST(Regions, OnALatticeGetItsNodes)
       for (int x = 0; x <= 30; ++x)
       {
         const double away = std::hypot(x - 15.0, y - 12.0);
-        const bool isLost = (away < 4.5 && away > 0.5) || std::hypot(x - 20.0, y - 30.0) < 3.5 ||
-          (x == 4 && y == 4);
+        const bool isLost =
+          (away < 4.5 && away > 0.5) || std::hypot(x - 20.0, y - 30.0) < 3.5 || (x == 4 && y == 4);
         (isLost ? lost : points)
           .push_back({ std::cos(angle) * x - std::sin(angle) * y,
             std::sin(angle) * x + std::cos(angle) * y });
@@ -383,8 +383,8 @@ TEST(Regions, BeyondALimitKeepTheirTriangles)
   Index left = 0;
   for (const HoleReport& report : some.Patches.Reports)
   {
-    EXPECT_EQ(report.Status,
-      report.NumberOfEdges > 10 ? FillStatus::TooManyEdges : FillStatus::Replaced);
+    EXPECT_EQ(
+      report.Status, report.NumberOfEdges > 10 ? FillStatus::TooManyEdges : FillStatus::Replaced);
     left += report.Status != FillStatus::Replaced;
   }
   EXPECT_GE(none.Found.Count(), all.Found.Count());
@@ -407,8 +407,8 @@ TEST(Regions, BeyondALimitKeepTheirTriangles)
 TEST(Regions, WithoutRoomForAPointStayAndAreNoHoles)
 {
   // A long triangle between short ones, at the border and inside.
-  const Mesh mesh = Make({ { 0, 0 }, { 4, 0 }, { 2, 0.2 }, { 0, 1 }, { 4, 1 } },
-    { 0, 1, 2, 0, 2, 3, 2, 1, 4, 3, 2, 4 });
+  const Mesh mesh = Make(
+    { { 0, 0 }, { 4, 0 }, { 2, 0.2 }, { 0, 1 }, { 4, 1 } }, { 0, 1, 2, 0, 2, 3, 2, 1, 4, 3, 2, 4 });
   const Outcome run = Fill(mesh, FillOptions(), Slope, 3.0);
   EXPECT_EQ(run.Found.Count(), 0);
   EXPECT_TRUE(run.Patches.Reports.empty());
@@ -470,7 +470,8 @@ TEST(Regions, WithRoomKeepContiguousNumbersBehindTheHoles)
   {
     if (all.RegionOf[t] != None && run.Found.RegionOf[t] == None)
     {
-      EXPECT_EQ(left.count({ mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2) }), 1u);
+      EXPECT_EQ(
+        left.count({ mesh.Origin(3 * t), mesh.Origin(3 * t + 1), mesh.Origin(3 * t + 2) }), 1u);
       ++stay;
     }
   }
@@ -493,7 +494,8 @@ TEST(Regions, InWhichBordersTouchWithoutAPointKeepTheirTriangles)
     ASSERT_TRUE(run.Found.IsRegion(1));
     const HoleReport& report = run.Patches.Reports[1];
     EXPECT_EQ(report.Status, FillStatus::Failed);
-    EXPECT_NE(report.Reason.find("Borders touch"), std::string::npos) << report.Reason;
+    EXPECT_NE(report.Reason.Words().find("Borders touch"), std::string::npos)
+      << report.Reason.Words();
     EXPECT_EQ(run.Filled().Triangles, run.Surface.Triangles);
   }
 }

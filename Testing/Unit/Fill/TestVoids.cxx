@@ -3,11 +3,11 @@
 //
 // Voids of real surfaces, through the whole chain, and holes larger than real ones.
 #include "FilledSurface.h"
-#include "Kernel/Triangulate/Triangulate.h"
 #include "Kernel/Fill/Fill.h"
-#include "Kernel/Lattice/FindLattice.h"
-#include "Kernel/Trim/Outline.h"
 #include "Kernel/Fill/Patch.h"
+#include "Kernel/Lattice/FindLattice.h"
+#include "Kernel/Triangulate/Triangulate.h"
+#include "Kernel/Trim/Outline.h"
 #include "Kernel/Trim/OutwardTriangles.h"
 #include "PatchQuality.h"
 #include "PointSets.h"
@@ -133,7 +133,7 @@ Index ExpectFilled(const Cloud& cloud, double longestEdge)
   for (Index hole = 0; hole < run.Found.Count(); ++hole)
   {
     const HoleReport& report = run.Patches.Reports[hole];
-    EXPECT_EQ(report.Status, FillStatus::Filled) << report.Reason;
+    EXPECT_EQ(report.Status, FillStatus::Filled) << report.Reason.Words();
     const PatchPlan plan = PlanPatch(run.Surface, &stars, run.Found, hole, report.Area, 0.0,
       lattice.Found ? &lattice.Steps : nullptr);
     const Quality quality = plan.Kind == Arrangement::Graded
@@ -343,6 +343,7 @@ TEST(LargeHoles, OfManyPointsAreFilled)
   options.NumberOfThreads = 2;
   const Outcome run = Fill(mesh, coordinates, options);
   ASSERT_EQ(run.Found.Count(), 1);
-  EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled) << run.Patches.Reports[0].Reason;
+  EXPECT_EQ(run.Patches.Reports[0].Status, FillStatus::Filled)
+    << run.Patches.Reports[0].Reason.Words();
   EXPECT_GT(run.Patches.NumberOfPoints(), 396000);
 }

@@ -1,9 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the algorithms of this package have in common: how they tell what they have done, and how data
-sets carry words and elevations."""
-
-import re
+"""What the algorithms of this package have in common: how they report what they have done, and how
+data sets carry words and elevations."""
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -11,26 +9,14 @@ from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkDataArray, vtkOutputWindow, vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from .clouds import ReadOptions
 from .messages import Aborted, ElevationSurfaceError
-from .properties import PROPERTIES
+from .names import PANEL, written_for
 
 ELEVATION = "Elevation"
 STOPPED = (
     "stopped, so the output is empty. To make it, change a property and press Apply; in scripts, "
     "call Modified()."
 )
-
-
-def in_panel(words):
-    """A message with the names that a panel has: --no-data 0 -> No Data 0."""
-
-    def title(found):
-        return found.group(1).replace("-", " ").replace("_", " ").title()
-
-    properties = "|".join([*PROPERTIES, *ReadOptions.__dataclass_fields__])
-    words = re.sub(r"--([a-z][a-z-]*)", title, words)
-    return re.sub(rf"\b((?:{properties})(?= takes )|[a-z]+_edge_length|maximum_elevation_error)\b", title, words)
 
 
 def set_elevation(data):
@@ -82,14 +68,14 @@ def words_of(data, name):
     return [words.GetValue(i) for i in range(words.GetNumberOfValues())]
 
 
-class TellingAlgorithm(VTKPythonAlgorithmBase):
-    """An algorithm that tells its user what it has done and why it cannot, each once."""
+class ReportingAlgorithm(VTKPythonAlgorithmBase):
+    """An algorithm that reports to its user what it has done and why it cannot, each once."""
 
     def __init__(self, inputs, outputs):
         VTKPythonAlgorithmBase.__init__(
             self, nInputPorts=inputs, nOutputPorts=outputs, outputType="vtkPolyData"
         )
-        self._told = self._text = ""
+        self._shown = self._text = ""
 
     def change(self, name, value):
         """Sets an attribute, and marks the output as out of date where it differs."""
@@ -105,7 +91,8 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
         self._text = ""
         self.SetAbortExecute(0)
         try:
-            told = self.work(inInfo, outInfo)
+            with written_for(PANEL):
+                lines = self.work(inInfo, outInfo)
             self.UpdateProgress(1.0)
             self.check_abort()
         except Aborted:
@@ -113,24 +100,24 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
         except MemoryError:
             return self.fail("there is not enough memory")
         except (ElevationSurfaceError, ValueError, TypeError) as error:
-            return self.fail(in_panel(str(error)))
+            return self.fail(str(error))
         except Exception as error:  # pylint: disable=broad-except
             return self.fail(f"this should not happen, please report it: {error!r}")
-        told = "\n".join(told)
-        if told not in ("", self._told):
-            vtkOutputWindow.GetInstance().DisplayText(told + "\n")
-        self._told = told
+        text = "\n".join(lines)
+        if text not in ("", self._shown):
+            vtkOutputWindow.GetInstance().DisplayText(text + "\n")
+        self._shown = text
         return 1
 
     def stop(self, outputs):
-        """Empties the outputs, and tells it. Returns as fail() does.
+        """Empties the outputs, and says so. Returns as fail() does.
 
         They count as up to date: ParaView updates each of them in one Apply, which would begin anew.
         """
         for port in range(outputs.GetNumberOfInformationObjects()):
             vtkDataObject.GetData(outputs, port).Initialize()
         self._text = STOPPED
-        self._told = ""
+        self._shown = ""
         if self.GetAbortExecute():  # not on another rank
             vtkOutputWindow.GetInstance().DisplayText(f"{self.TITLE}: {STOPPED}\n")
         return 1
@@ -138,11 +125,11 @@ class TellingAlgorithm(VTKPythonAlgorithmBase):
     def fail(self, words):
         """Reports an error as vtkErrorMacro() does. Returns what RequestData() is to return.
 
-        That is success, with empty output. After a failure the executive would add lines that tell
+        That is success, with empty output. After a failure the executive would add lines that say
         nothing, and ParaView would never update a picture of this output again.
         """
         self.error(words)
-        self._told = ""
+        self._shown = ""
         return 1
 
     def error(self, words):

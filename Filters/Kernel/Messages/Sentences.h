@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * All warnings, and all errors that a program may want as data: what they say, and what they name.
+ *
+ * Names of values are lower-case words; {input} is "constraints" or "boundary". A property is named as
+ * the filters name it. The headers of the filters list the codes that each may give, so that a code
+ * stays once it is there; its text may change.
+ */
+#ifndef elevation_Messages_Sentences_h
+#define elevation_Messages_Sentences_h
+
+#include "Message.h"
+
+namespace elevation
+{
+
+/** The code is the name of the constant. */
+namespace sentences
+{
+// clang-format off
+#define ELEVATION_SENTENCE(code, text) inline constexpr Sentence code{ #code, text }
+// clang-format on
+
+/** @name Of any filter @{ */
+ELEVATION_SENTENCE(EmptyBlocks, "All blocks of the input are empty, so the output is empty.");
+ELEVATION_SENTENCE(NotEnoughMemory, "There is not enough memory for this input.");
+ELEVATION_SENTENCE(Stopped,
+  "Stopped, so the output is empty. To make it, change a property and press Apply; in scripts, "
+  "SetAbortExecute(0) and Modified().");
+ELEVATION_SENTENCE(ArraysLeftOut,
+  "Not all ranks (processes) have the {kind} {noun} {arrays} in the same type, so {they} left "
+  "out.");
+ELEVATION_SENTENCE(InvalidEdgeLength,
+  "{property:MaximumEdgeLength} is {value}; it must be 0 (off) or a length in x,y.");
+/** @} */
+
+/** @name Of lines that are given: constraints or a boundary @{ */
+ELEVATION_SENTENCE(NoLines, "The {input} have no line and no polygon.");
+ELEVATION_SENTENCE(
+  StripsInLines, "There are triangle strips in the {input}, which may be lines and polygons only.");
+ELEVATION_SENTENCE(TooManyPointsInLines, "The lines of the {input} have more than {most} points.");
+ELEVATION_SENTENCE(NoSuchPointOfLine, "Point {point} of the {owner} cell {cell} does not exist.");
+ELEVATION_SENTENCE(NonFinitePointOfLine,
+  "Point {point} of the {owner} cell {cell} has a coordinate that is not finite.");
+ELEVATION_SENTENCE(LinesElsewhere,
+  "The {input} do not overlap the points. The {input} are at {box}, the points at {extent}: are "
+  "both in the same coordinates?");
+ELEVATION_SENTENCE(LinesFarOutside,
+  "{outside} of the {vertices} points along the {owner} lines lie far outside the points, and "
+  "become vertices there. The {input} are at {box}, the points at {extent}: are both in the same "
+  "coordinates?");
+ELEVATION_SENTENCE(LinesNotDraped,
+  "Most of the {input} lie outside of the points. These parts are left out, as there is no "
+  "surface to drape them on.");
+ELEVATION_SENTENCE(LinesNotSettled,
+  "The segment from point {a} to point {b} of the {owner} cell {cell} and the segment from point "
+  "{c} to point {d} of the {owner} cell {other} cross again and again where rounding moves them.");
+/** @} */
+
+/** @name Of the triangulation @{ */
+ELEVATION_SENTENCE(NoTriangle,
+  "No triangle was made: the {points} input points are fewer than three distinct finite points, "
+  "or all on one line.");
+ELEVATION_SENTENCE(FewTriangles,
+  "{property:MaximumEdgeLength} is {limit}, and {missing} of {points} points are left without a "
+  "triangle, because the points are farther apart.");
+/** What is FewTriangles. */
+ELEVATION_SENTENCE(FewTrianglesAdvice,
+  "{what} Between neighbours, the shortest edge is {shortest} long, the median {median}. A "
+  "{property:MaximumEdgeLength} of {better} keeps a triangle at 95 % of the points.");
+ELEVATION_SENTENCE(InvalidElevationError,
+  "{property:MaximumElevationError} is {value}; it must be 0 (off) or a distance in z.");
+ELEVATION_SENTENCE(TwoLimits,
+  "{property:MaximumEdgeLength} and {property:MaximumElevationError} are both set, but fewer "
+  "points make longer edges: set one of them to 0, and trim the surface instead.");
+/** @} */
+
+/** @name Of trimming @{ */
+ELEVATION_SENTENCE(NothingToTrim,
+  "The input has no triangles, so there is nothing to trim. Points alone are triangulated first, "
+  "by Grid Delaunay 2D.");
+ELEVATION_SENTENCE(InvalidGapTolerance,
+  "{property:GapTolerance} is {value}. It must be a number of spacings above 0, or 0 to choose it "
+  "from the data.");
+ELEVATION_SENTENCE(InvalidGridSteps,
+  "{property:GridSteps} span no cell: x and y of one step and of another are needed, or four "
+  "zeros for no grid.");
+ELEVATION_SENTENCE(BoundaryLeavesOut,
+  "The extracted boundary leaves out {points} {noun} ({part} %) and {area} % of the area: at a "
+  "gap tolerance of {tolerance} spacings, that is no surface. A {property:GapTolerance} of "
+  "{better} would keep {kept}. Or give the boundary.");
+ELEVATION_SENTENCE(BoundaryLeavesOutAll,
+  "The extracted boundary leaves out every point: at a gap tolerance of {tolerance} spacings, "
+  "that is no surface. A {property:GapTolerance} of {better} would keep {kept}. Or give the "
+  "boundary.");
+/** @} */
+
+/** @name Of filling @{ */
+ELEVATION_SENTENCE(NothingToFill,
+  "The input has no triangles, so there is nothing to fill. Points alone are triangulated first, "
+  "by Grid Delaunay 2D.");
+ELEVATION_SENTENCE(HoleNotFilled, "Hole {hole} ({edges} edges) was not filled. {reason}");
+/** Of a region of long triangles. */
+ELEVATION_SENTENCE(
+  RegionNotFilled, "Hole {hole} ({edges} edges) was not filled. {reason} It keeps its triangles.");
+ELEVATION_SENTENCE(
+  MoreHolesNotFilled, "And {holes} more holes were not filled; see Status in output 1.");
+ELEVATION_SENTENCE(BordersMeet,
+  "At {places} places a point lies inside a border edge or on another point, the first at point "
+  "{point}; there the surface is not connected, so that an enclosed region may not be a hole. "
+  "vtkCleanPolyData merges points.");
+ELEVATION_SENTENCE(HoleTooLarge,
+  "Filling one hole is expected to insert about {points} points, which take some {memory}, more "
+  "than the memory for it, {limit}. A {property:Spacing} of {better} would do, or a "
+  "{property:MaximumHoleSize} that leaves it open, or more memory.");
+ELEVATION_SENTENCE(TooManyPointsToFill,
+  "Filling is expected to insert about {points} points, which take some {memory}, more than "
+  "{property:MaximumNumberOfExpectedPoints}, {limit}. A {property:Spacing} of {better} would do, "
+  "or a larger {property:MaximumNumberOfExpectedPoints}.");
+ELEVATION_SENTENCE(TooManyPointsByDefault,
+  "Filling is expected to insert about {points} points, which take some {memory}, more than "
+  "{property:MaximumNumberOfExpectedPoints}, {limit} by default for the {count} of the input. A "
+  "{property:Spacing} of {better} would do, or a larger {property:MaximumNumberOfExpectedPoints}.");
+/** @} */
+
+/** @name Why a hole was not filled: {reason} of HoleNotFilled @{ */
+ELEVATION_SENTENCE(BordersTouch,
+  "Borders touch in it without sharing a point: merge points with the same x,y, and split edges "
+  "that have a point inside.");
+ELEVATION_SENTENCE(SizeOutOfRange,
+  "Its size of {size} at a spacing of {spacing} leaves the range of numbers to compute with, "
+  "{least} to {most}; scale x and y.");
+ELEVATION_SENTENCE(MoreThanInsertedPoints,
+  "It would take up to {points} new points at a spacing of {spacing}, but "
+  "{property:MaximumNumberOfInsertedPoints}, {limit}, leaves room for {room}; a larger spacing "
+  "helps, or a larger limit.");
+ELEVATION_SENTENCE(MoreThanAllPoints,
+  "It would take up to {points} new points at a spacing of {spacing}, but the largest number of "
+  "points, {limit}, leaves room for {room}; a larger spacing helps.");
+ELEVATION_SENTENCE(SpacingTooSmall,
+  "The spacing of {spacing} is below what the coordinates can tell apart; a larger spacing helps.");
+ELEVATION_SENTENCE(PointsCoincide, "Inserted points coincide; use a larger spacing.");
+/** @} */
+
+/** @name Of a surface in pieces @{ */
+ELEVATION_SENTENCE(Aborted, "Aborted; the output is empty.");
+ELEVATION_SENTENCE(
+  TooFewPieces, "There is not enough memory for this input. More pieces take less.");
+ELEVATION_SENTENCE(TooFewPiecesToFill,
+  "There is not enough memory for this input. More pieces take less, and so does a "
+  "{property:MaximumHoleSize}.");
+ELEVATION_SENTENCE(ErrorNotInPieces,
+  "{property:MaximumElevationError} and a given {property:Lattice} are for points in memory, not "
+  "for pieces.");
+ELEVATION_SENTENCE(ConstraintsNotInPieces, "Constraints are for points in memory, not for pieces.");
+ELEVATION_SENTENCE(InwardNormalNotInPieces,
+  "{property:OutwardTest} InwardNormal is for a surface in memory, not for pieces.");
+ELEVATION_SENTENCE(EdgeLengthNotInPieces,
+  "{property:MaximumEdgeLength} of the filter that fills holes is for a surface in memory, not "
+  "for pieces.");
+/** @} */
+
+#undef ELEVATION_SENTENCE
+} // namespace sentences
+
+} // namespace elevation
+
+#endif
