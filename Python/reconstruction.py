@@ -20,12 +20,13 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from .clouds import Cloud, make_lines, make_points
+from .description import number_above_zero, view_angles
 from .given_lines import fitted
 from .heights import check_heights
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .opening import length_to_open
 from .paths import check_suffix
-from .properties import COLOURS, checked, number_above_zero, view_angles
+from .properties import COLOURS, PROPERTIES, checked
 from .ranks import agreed, total
 from .reading.facing import faces_of, notes_on_faces
 from .spreading import whole_lines, whole_surface
@@ -322,12 +323,9 @@ def reconstruct(
               raises stops the filter
     strict    True: what is mended of boundary and faults, and what the filters warn of, is an error
     properties  of the filters, named as the options of the command line, with underscores:
-              maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
-              lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
-              recover_boundary, boundary_edges, open_edge_length, maximum_hole_size,
-              maximum_hole_edges, maximum_expected_points, fill_cut_outs, spacing, interpolation,
-              interpolate_point_data, faults_z, threads. Lengths are in the units of x and y.
-              The program's --help tells what each does, and its default.
+              {properties}.
+              Lengths are in the units of x and y. The program's --help tells more of each, and its
+              default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made; where places have the heights of several surfaces, unless duplicates says which to
@@ -353,6 +351,11 @@ def reconstruct(
     for note in result.notes:
         warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
     return result
+
+
+reconstruct.__doc__ = reconstruct.__doc__.replace(
+    "{properties}", ";\n              ".join(f"{name}: {one.line}" for name, one in PROPERTIES.items())
+)
 
 
 def least_reach(points):

@@ -1,0 +1,237 @@
+# SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The description of all properties, properties.ini, as Python has it.
+
+It needs Python alone, neither VTK nor numpy: the build reads it too.
+"""
+
+from __future__ import annotations
+
+import configparser
+import dataclasses
+import math
+import os
+import re
+
+
+def number_at_least_zero(value):
+    value = float(value)
+    if not (value >= 0 and math.isfinite(value)):
+        raise ValueError
+    return value
+
+
+def number_above_zero(value):
+    value = float(value)
+    if not 0.0 < value < math.inf:
+        raise ValueError
+    return value
+
+
+def number_up_to_a_quarter(value):
+    value = float(value)
+    if not 0 <= value <= 0.25:
+        raise ValueError
+    return value
+
+
+def count_at_least_zero(value):
+    count = int(value)
+    if count < 0 or count != float(value):
+        raise ValueError
+    return count
+
+
+def ordinal(text):
+    if int(text) < 1:
+        raise ValueError
+    return int(text)
+
+
+def yes_or_no(value):
+    if value not in (True, False):
+        raise ValueError
+    return bool(value)
+
+
+def view_angles(view):
+    """(bearing, height) of "top", of "BEARING,HEIGHT", or of two numbers. Raises ValueError."""
+    if view == "top":
+        return (180.0, 90.0)
+    bearing, height = (float(a) for a in (view.split(",") if isinstance(view, str) else view))
+    if not 0 < height <= 90 or not math.isfinite(bearing):
+        raise ValueError("view takes (bearing, height) with a height above 0 and at most 90")
+    return (bearing % 360.0, height)
+
+
+@dataclasses.dataclass(frozen=True)
+class Kind:
+    """What a property takes.
+
+    metavar  of the option; "" where it takes no value
+    takes    in words, for errors
+    convert  makes the value of what is given; raises ValueError. None: text, or options.py knows
+    of       the values of a panel: double, int, bool, string
+    most     the largest value; the least is 0
+    scale    of the slider of a length, to the extent of the data
+    unit     for the table
+    """
+
+    metavar: str
+    takes: str
+    convert: object = None
+    of: str = "string"
+    most: object = None
+    scale: float = 0.0
+    unit: str = ""
+    choices: tuple = ()
+
+    def numbers(self, words):
+        """The numbers of a default: "0 0 0 0", "keep-first", "on"."""
+        if self.choices:
+            return [self.choices.index(words)]
+        if self.of == "bool":
+            return [int(words == "on")]
+        return [float(word) if self.of == "double" else int(word) for word in words.split()]
+
+
+NUMBER = "a number of 0 or more"
+COUNT = "a whole number of 0 or more"
+ABOVE = "a number above 0"
+FROM_1 = "a whole number from 1"
+VIEW = "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35"
+KINDS = {
+    "flag": Kind("", "True or False", yes_or_no, "bool"),  # off unless it is given
+    "switch": Kind("", "True or False", yes_or_no, "bool"),
+    "length": Kind("LENGTH", NUMBER, number_at_least_zero, "double", scale=0.1, unit="of x, y"),
+    "size of holes": Kind("LENGTH", NUMBER, number_at_least_zero, "double", scale=1,
+                          unit="of x, y"),
+    "height": Kind("HEIGHT", NUMBER, number_at_least_zero, "double", unit="of z"),
+    "spacings": Kind("SPACINGS", NUMBER, number_at_least_zero, "double", unit="point spacings"),
+    "factor": Kind("FACTOR", NUMBER, number_at_least_zero, "double"),
+    "steps": Kind("STEPS", "a number from 0 to 0.25", number_up_to_a_quarter, "double", 0.25,
+                  unit="steps of the grid"),
+    "numbers": Kind("NUMBERS", "numbers", None, "double"),
+    "count": Kind("COUNT", COUNT, count_at_least_zero, "int"),
+    "threads": Kind("NUMBER", COUNT, count_at_least_zero, "int", 1024),
+    "ordinal": Kind("NUMBER", FROM_1, ordinal, "int"),
+    "step": Kind("STEP", ABOVE, number_above_zero, "double", unit="of x, y, or of z"),
+    "elevation": Kind("VALUE", "an elevation", float, unit="of z"),
+    "text": Kind("TEXT", "text"),
+    "name": Kind("NAME", "a name"),
+    "column": Kind("COLUMN", "a column"),
+    "columns": Kind("X,Y,Z", "three columns by name or number from 1, as x,y,z or 1,2,3"),
+    "classes": Kind("N,N", "numbers from 0 to 255, as 2,8"),
+    "where": Kind("COLUMN=VALUE", "COLUMN=VALUE, as horizon=Top"),
+    "lines": Kind("FILE", "a file"),
+    "file": Kind("FILE", "a file"),
+    "file or nothing": Kind("[FILE]", "a file, or nothing"),
+    "size": Kind("SIZE", "a size, such as 2G"),
+    "reference system": Kind("CRS", "a coordinate reference system, as EPSG:25832"),
+    "view": Kind("top|BEARING,HEIGHT", VIEW, view_angles),
+}
+
+
+def one_of(choices):
+    """The kind of an enumeration. Its values are places in the list."""
+
+    def index(value):
+        return choices.index(str(value).lower().replace("_", "-").replace(" ", "-"))
+
+    words = ",".join(choices)
+    return Kind(f"{{{words}}}", "one of " + ", ".join(choices), index, "int", choices=choices)
+
+
+def titled(choice):
+    """own-elevations -> Own Elevations, as panels have it"""
+    return choice.replace("-", " ").title()
+
+
+class Property:
+    """A property as properties.ini describes it; its head explains what stands there."""
+
+    def __init__(self, name, words):
+        self.name, self.words = name, words
+        self.line = words["line"]
+        self.step = words["step"] if words["step"] != "all" else ""
+        self.places = words.get("in", "program filter chain").split()
+        choices = tuple(words["takes"].split(", "))
+        self.kind = KINDS.get(words["takes"]) or one_of(choices)
+        self.takes, self.choices = self.kind.takes, self.kind.choices
+        self.in_pieces = "pieces" not in words
+        self.contents = words.get("contents", "points").split()
+        self.setter = f"Set{self.name_in('filter')}" if "filter" in self.places else ""
+        self.convert = self.kind.convert
+
+    def name_in(self, place):
+        """MaximumEdgeLength; for the program --maximum-edge-length."""
+        if place == "program":
+            return self.options[-1]
+        return self.words.get(place, self.name.title().replace("_", ""))
+
+    @property
+    def options(self):
+        """Those of the program."""
+        return self.words.get("program", "--" + self.name.replace("_", "-")).split()
+
+    def label_in(self, place):
+        name = self.name_in(place)
+        return self.words.get("label") or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+
+    def default_in(self, place):
+        """In words, as properties.ini has it; "" where there is none."""
+        default = self.words.get("default", "off" if self.kind.of == "bool" else "")
+        return self.words.get("default." + place, default)
+
+    def help_in(self, place):
+        """The help where the program, a class or an entry in Python shows it."""
+        more = {"program": ("chain", "program"), "chain": ("panel", "chain")}.get(place, (place,))
+        parts = [self.words["help"], *(self.words.get(f"help.{part}", "") for part in more)]
+
+        def named(found):
+            other = DESCRIBED[found.group(1)]
+            return other.options[0] if place == "program" else other.label_in(place)
+
+        words = re.sub(r"{(\w+)}", named, " ".join(" ".join(parts).split()))
+        if place == "program":  # there choices are called as they are given
+            for choice in self.choices:
+                words = re.sub(rf"\b{titled(choice)}\b", choice, words)
+        return words
+
+    def rules(self):
+        """[(whether it needs the other, the other's name, the words of a refusal)]"""
+        found = []
+        for rule in ("needs", "excludes"):
+            if rule in self.words:
+                other, words = self.words[rule].split(": ", 1)
+                found.append((rule == "needs", other, words))
+        return found
+
+
+def described():
+    """{name: Property}, in the order of properties.ini."""
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "properties.ini")
+    parser = configparser.ConfigParser(interpolation=None)
+    with open(path, encoding="utf-8") as stream:
+        parser.read_file(stream)
+    return {name: Property(name, dict(parser[name])) for name in parser.sections()}
+
+
+DESCRIBED = described()
+
+
+def check_rules(given, name_of, among):
+    """Raises ValueError for properties that do not go with each other.
+
+    given    {name: value}; None and False are as if it were not given, and 0 excludes nothing
+    name_of  makes of a name what it is called where it was given
+    among    the names that can be given there
+    """
+    for name, value in given.items():
+        if value is None or value is False:
+            continue
+        for needs, other, words in DESCRIBED[name].rules():
+            if needs and other in among and not given.get(other):
+                raise ValueError(f"{name_of(name)} {words.format(name_of(other))}")
+            if not needs and value and given.get(other):
+                raise ValueError(f"{name_of(name)} and {name_of(other)} {words}")
