@@ -160,6 +160,7 @@ class Property:
         self.takes, self.choices = self.kind.takes, self.kind.choices
         self.in_pieces = "pieces" not in words
         self.contents = words.get("contents", "points").split()
+        self.readers = words.get("readers", "").split()
         self.setter = f"Set{self.name_in('filter')}" if "filter" in self.places else ""
         self.convert = self.kind.convert
 
@@ -218,6 +219,21 @@ def described():
 
 
 DESCRIBED = described()
+
+
+def listing(names):
+    """A decorator that puts a line for each property in place of {properties} in a docstring."""
+
+    def add(function):
+        lines = [f"{name}: {DESCRIBED[name].line}" for name in names if name in DESCRIBED]
+        function.__doc__ = function.__doc__ and re.sub(
+            r"( *){properties}",
+            lambda found: ";\n".join(found.group(1) + line for line in lines),
+            function.__doc__,
+        )
+        return function
+
+    return add
 
 
 def check_rules(given, name_of, among):

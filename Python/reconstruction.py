@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from .clouds import Cloud, make_lines, make_points
-from .description import number_above_zero, view_angles
+from .description import listing, number_above_zero, view_angles
 from .given_lines import fitted
 from .heights import check_heights
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
@@ -296,6 +296,7 @@ Points = Union[Cloud, vtkPointSet, numpy.ndarray, Sequence]
 Lines = Union[vtkPolyData, numpy.ndarray, Sequence, None]
 
 
+@listing(PROPERTIES)
 def reconstruct(
     points: Points,
     *,
@@ -351,11 +352,6 @@ def reconstruct(
     for note in result.notes:
         warnings.warn(note, ElevationSurfaceWarning, stacklevel=2)
     return result
-
-
-reconstruct.__doc__ = reconstruct.__doc__.replace(
-    "{properties}", ";\n              ".join(f"{name}: {one.line}" for name, one in PROPERTIES.items())
-)
 
 
 def least_reach(points):

@@ -11,6 +11,8 @@ import properties_table
 from documented import text_of
 from vtkelevationsurface import (
     algorithms,
+    read,
+    reconstruct,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
     vtkTrimOutwardTriangles,
@@ -113,6 +115,16 @@ class Texts(unittest.TestCase):
                     self.assertNotRegex(words, r"[{}]")
             self.assertNotRegex(one.line, r"\.$|[{}|]")
 
+    def test_docstrings_list_the_properties(self):
+        for function, place, steps in (
+            (reconstruct, "chain", {"faults", "delaunay", "trim", "fill", ""}),
+            (read, "reader", {"read"}),
+        ):
+            for one in DESCRIBED.values():
+                is_its = {"program", place} <= set(one.places) and one.step in steps
+                if is_its and one.words["takes"] != "lines" and "off" not in one.words:
+                    self.assertIn(f" {one.name}: {one.line}", function.__doc__)
+
     def test_words_of_the_program_name_options_and_those_of_panels_labels(self):
         one = DESCRIBED["maximum_elevation_error"]
         self.assertIn("with --maximum-edge-length", one.help_in("program"))
@@ -123,7 +135,7 @@ class Texts(unittest.TestCase):
 
     def test_descriptions_have_no_key_that_nothing_reads(self):
         known = "step in takes default filter chain program off label advanced needs excludes with"
-        known = set(f"{known} without pieces contents line help".split())
+        known = set(f"{known} without pieces readers contents line help".split())
         for one in DESCRIBED.values():
             rest = {key for key in one.words if key not in known}
             self.assertLessEqual({key.split(".")[0] for key in rest}, {"help", "default"}, one.name)
