@@ -40,10 +40,10 @@ def add_domain(parent, one, numbers, place):
             element(domain, "Entry", value=str(i), text=titled(choice))
     elif kind.of == "bool":
         element(parent, "BooleanDomain", name="bool")
-    elif kind.scale and place == "filter":
+    elif one.words["takes"] == "length" and place == "filter":
         # A slider that fits the data. The button that resets it gives 0, the default of the class.
         domain = element(parent, "BoundsDomain", name="range", mode="scaled_extent",
-                         scale_factor=f"{kind.scale:g}", default_mode="min")
+                         scale_factor=one.words.get("scale", "0.1"), default_mode="min")
         required = element(domain, "RequiredProperties")
         element(required, "Property", name="Input", function="Input")
     elif kind.of != "string" and len(numbers) == 1 and numbers[0] >= 0:

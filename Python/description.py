@@ -73,8 +73,7 @@ class Kind:
     convert  makes the value of what is given; raises ValueError. None: text, or options.py knows
     of       the values of a panel: double, int, bool, string
     most     the largest value; the least is 0
-    scale    of the slider of a length, to the extent of the data
-    unit     for the table
+    unit     in words
     """
 
     metavar: str
@@ -82,7 +81,6 @@ class Kind:
     convert: object = None
     of: str = "string"
     most: object = None
-    scale: float = 0.0
     unit: str = ""
     choices: tuple = ()
 
@@ -103,10 +101,8 @@ VIEW = "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, 
 KINDS = {
     "flag": Kind("", "True or False", yes_or_no, "bool"),  # off unless it is given
     "switch": Kind("", "True or False", yes_or_no, "bool"),
-    "length": Kind("LENGTH", NUMBER, number_at_least_zero, "double", scale=0.1, unit="of x, y"),
-    "size of holes": Kind("LENGTH", NUMBER, number_at_least_zero, "double", scale=1,
-                          unit="of x, y"),
-    "height": Kind("HEIGHT", NUMBER, number_at_least_zero, "double", unit="of z"),
+    "length": Kind("LENGTH", NUMBER, number_at_least_zero, "double", unit="units of x and y"),
+    "height": Kind("HEIGHT", NUMBER, number_at_least_zero, "double", unit="units of z"),
     "spacings": Kind("SPACINGS", NUMBER, number_at_least_zero, "double", unit="point spacings"),
     "factor": Kind("FACTOR", NUMBER, number_at_least_zero, "double"),
     "steps": Kind("STEPS", "a number from 0 to 0.25", number_up_to_a_quarter, "double", 0.25,
@@ -115,8 +111,8 @@ KINDS = {
     "count": Kind("COUNT", COUNT, count_at_least_zero, "int"),
     "threads": Kind("NUMBER", COUNT, count_at_least_zero, "int", 1024),
     "ordinal": Kind("NUMBER", FROM_1, ordinal, "int"),
-    "step": Kind("STEP", ABOVE, number_above_zero, "double", unit="of x, y, or of z"),
-    "elevation": Kind("VALUE", "an elevation", float, unit="of z"),
+    "step": Kind("STEP", ABOVE, number_above_zero, "double", unit="units of x and y, or of z"),
+    "elevation": Kind("VALUE", "an elevation", float, unit="units of z"),
     "text": Kind("TEXT", "text"),
     "name": Kind("NAME", "a name"),
     "column": Kind("COLUMN", "a column"),

@@ -135,7 +135,7 @@ class Texts(unittest.TestCase):
 
     def test_descriptions_have_no_key_that_nothing_reads(self):
         known = "step in takes default filter chain program off label advanced needs excludes with"
-        known = set(f"{known} without pieces readers contents line help".split())
+        known = set(f"{known} without pieces scale readers contents line help".split())
         for one in DESCRIBED.values():
             rest = {key for key in one.words if key not in known}
             self.assertLessEqual({key.split(".")[0] for key in rest}, {"help", "default"}, one.name)

@@ -30,7 +30,7 @@ def row_of(one):
     setter = SECOND_INPUTS.get(one.name, one.setter)
     panels = [one.label_in(place) for place in ("chain", "reader") if place in one.places]
     takes = "on or off" if one.kind.of == "bool" else one.takes.replace("|", "/")
-    takes += ", in units %s" % one.kind.unit if one.kind.unit.startswith("of ") else ""
+    takes += ", in %s" % one.kind.unit if one.kind.unit else ""
     remarks = [] if one.in_pieces else ["not in pieces"]
     for needs, other, _ in one.rules():
         remarks.append(("with" if needs else "without") + " `%s`" % DESCRIBED[other].options[0])
