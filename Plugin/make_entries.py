@@ -48,7 +48,7 @@ def add_domain(parent, one, numbers, place):
         element(required, "Property", name="Input", function="Input")
     elif kind.of != "string" and len(numbers) == 1 and numbers[0] >= 0:
         domain = element(parent, TAGS[kind.of] + "RangeDomain", name="range", min="0")
-        if kind.most is not None:
+        if kind.most < float("inf"):
             domain.set("max", f"{kind.most:g}")
 
 

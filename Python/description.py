@@ -14,46 +14,6 @@ import os
 import re
 
 
-def number_at_least_zero(value):
-    value = float(value)
-    if not (value >= 0 and math.isfinite(value)):
-        raise ValueError
-    return value
-
-
-def number_above_zero(value):
-    value = float(value)
-    if not 0.0 < value < math.inf:
-        raise ValueError
-    return value
-
-
-def number_up_to_a_quarter(value):
-    value = float(value)
-    if not 0 <= value <= 0.25:
-        raise ValueError
-    return value
-
-
-def count_at_least_zero(value):
-    count = int(value)
-    if count < 0 or count != float(value):
-        raise ValueError
-    return count
-
-
-def ordinal(text):
-    if int(text) < 1:
-        raise ValueError
-    return int(text)
-
-
-def yes_or_no(value):
-    if value not in (True, False):
-        raise ValueError
-    return bool(value)
-
-
 def view_angles(view):
     """(bearing, height) of "top", of "BEARING,HEIGHT", or of two numbers. Raises ValueError."""
     if view == "top":
@@ -69,20 +29,44 @@ class Kind:
     """What a property takes.
 
     metavar  of the option; "" where it takes no value
-    takes    in words, for errors
-    convert  makes the value of what is given; raises ValueError. None: text, or options.py knows
     of       the values of a panel: double, int, bool, string
-    most     the largest value; the least is 0
+    words    what it takes, where that is not its range
+    make     makes the value of what is given, where that is not its range; raises ValueError
+    least, most  its range; is_above: the least itself is none
     unit     in words
     """
 
     metavar: str
-    takes: str
-    convert: object = None
     of: str = "string"
-    most: object = None
+    words: str = ""
+    make: object = None
+    least: float = 0
+    most: float = math.inf
+    is_above: bool = False
     unit: str = ""
     choices: tuple = ()
+
+    @property
+    def takes(self):
+        """In words, for errors."""
+        words = "a whole number" if self.of == "int" else "a number"
+        if self.is_above:
+            words += f" above {self.least}"
+        elif self.most < math.inf:
+            words += f" from {self.least} to {self.most}"
+        else:
+            words += f" from {self.least}" if self.least else " of 0 or more"
+        return self.words or words
+
+    def convert(self, value):
+        """The value that the filters take of what is given. Raises ValueError, TypeError."""
+        if self.make or self.of == "string":
+            return self.make(value) if self.make else value
+        number = int(value) if self.of == "int" else float(value)
+        is_within = self.least <= number <= self.most and number < math.inf
+        if number != float(value) or not is_within or (self.is_above and number == self.least):
+            raise ValueError
+        return number
 
     def numbers(self, words):
         """The numbers of a default: "0 0 0 0", "keep-first", "on"."""
@@ -93,39 +77,10 @@ class Kind:
         return [float(word) if self.of == "double" else int(word) for word in words.split()]
 
 
-NUMBER = "a number of 0 or more"
-COUNT = "a whole number of 0 or more"
-ABOVE = "a number above 0"
-FROM_1 = "a whole number from 1"
-VIEW = "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35"
-KINDS = {
-    "flag": Kind("", "True or False", yes_or_no, "bool"),  # off unless it is given
-    "switch": Kind("", "True or False", yes_or_no, "bool"),
-    "length": Kind("LENGTH", NUMBER, number_at_least_zero, "double", unit="units of x and y"),
-    "height": Kind("HEIGHT", NUMBER, number_at_least_zero, "double", unit="units of z"),
-    "spacings": Kind("SPACINGS", NUMBER, number_at_least_zero, "double", unit="point spacings"),
-    "factor": Kind("FACTOR", NUMBER, number_at_least_zero, "double"),
-    "steps": Kind("STEPS", "a number from 0 to 0.25", number_up_to_a_quarter, "double", 0.25,
-                  unit="steps of the grid"),
-    "numbers": Kind("NUMBERS", "numbers", None, "double"),
-    "count": Kind("COUNT", COUNT, count_at_least_zero, "int"),
-    "threads": Kind("NUMBER", COUNT, count_at_least_zero, "int", 1024),
-    "ordinal": Kind("NUMBER", FROM_1, ordinal, "int"),
-    "step": Kind("STEP", ABOVE, number_above_zero, "double", unit="units of x and y, or of z"),
-    "elevation": Kind("VALUE", "an elevation", float, unit="units of z"),
-    "text": Kind("TEXT", "text"),
-    "name": Kind("NAME", "a name"),
-    "column": Kind("COLUMN", "a column"),
-    "columns": Kind("X,Y,Z", "three columns by name or number from 1, as x,y,z or 1,2,3"),
-    "classes": Kind("N,N", "numbers from 0 to 255, as 2,8"),
-    "where": Kind("COLUMN=VALUE", "COLUMN=VALUE, as horizon=Top"),
-    "lines": Kind("FILE", "a file"),
-    "file": Kind("FILE", "a file"),
-    "file or nothing": Kind("[FILE]", "a file, or nothing"),
-    "size": Kind("SIZE", "a size, such as 2G"),
-    "reference system": Kind("CRS", "a coordinate reference system, as EPSG:25832"),
-    "view": Kind("top|BEARING,HEIGHT", VIEW, view_angles),
-}
+def yes_or_no(value):
+    if value not in (True, False):
+        raise ValueError
+    return bool(value)
 
 
 def one_of(choices):
@@ -134,8 +89,38 @@ def one_of(choices):
     def index(value):
         return choices.index(str(value).lower().replace("_", "-").replace(" ", "-"))
 
-    words = ",".join(choices)
-    return Kind(f"{{{words}}}", "one of " + ", ".join(choices), index, "int", choices=choices)
+    metavar, words = f"{{{','.join(choices)}}}", "one of " + ", ".join(choices)
+    return Kind(metavar, "int", words, index, choices=choices)
+
+
+VIEW = "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35"
+KINDS = {
+    "flag": Kind("", "bool", "True or False", yes_or_no),  # off unless it is given
+    "switch": Kind("", "bool", "True or False", yes_or_no),
+    "length": Kind("LENGTH", "double", unit="units of x and y"),
+    "height": Kind("HEIGHT", "double", unit="units of z"),
+    "spacings": Kind("SPACINGS", "double", unit="point spacings"),
+    "factor": Kind("FACTOR", "double"),
+    "steps": Kind("STEPS", "double", most=0.25, unit="steps of the grid"),
+    "numbers": Kind("NUMBERS", "double", "numbers"),
+    "count": Kind("COUNT", "int"),
+    "threads": Kind("NUMBER", "int", most=1024),
+    "ordinal": Kind("NUMBER", "int", least=1),
+    "step": Kind("STEP", "double", is_above=True, unit="units of x and y, or of z"),
+    "elevation": Kind("VALUE", "string", "an elevation", float, unit="units of z"),
+    "text": Kind("TEXT", words="text"),
+    "name": Kind("NAME", words="a name"),
+    "column": Kind("COLUMN", words="a column"),
+    "columns": Kind("X,Y,Z", words="three columns by name or number from 1, as x,y,z or 1,2,3"),
+    "classes": Kind("N,N", words="numbers from 0 to 255, as 2,8"),
+    "where": Kind("COLUMN=VALUE", words="COLUMN=VALUE, as horizon=Top"),
+    "lines": Kind("FILE", words="a file"),
+    "file": Kind("FILE", words="a file"),
+    "file or nothing": Kind("[FILE]", words="a file, or nothing"),
+    "size": Kind("SIZE", words="a size, such as 2G"),
+    "reference system": Kind("CRS", words="a coordinate reference system, as EPSG:25832"),
+    "view": Kind("top|BEARING,HEIGHT", "string", VIEW, view_angles),
+}
 
 
 def titled(choice):
@@ -154,11 +139,11 @@ class Property:
         choices = tuple(words["takes"].split(", "))
         self.kind = KINDS.get(words["takes"]) or one_of(choices)
         self.takes, self.choices = self.kind.takes, self.kind.choices
+        self.convert = self.kind.convert
         self.in_pieces = "pieces" not in words
         self.contents = words.get("contents", "points").split()
         self.readers = words.get("readers", "").split()
         self.setter = f"Set{self.name_in('filter')}" if "filter" in self.places else ""
-        self.convert = self.kind.convert
 
     def name_in(self, place):
         """MaximumEdgeLength; for the program --maximum-edge-length."""

@@ -33,6 +33,7 @@ CONVERT = {
     "memory": memory_size,
     "colours": lambda text: COLOURS[DESCRIBED["colours"].convert(text)],
 }
+ACTIONS = {"flag": "store_true", "switch": argparse.BooleanOptionalAction, "where": "append"}
 OPTIONS = {name: one for name, one in DESCRIBED.items() if "program" in one.places}
 # What each option with a value takes, for errors.
 TAKES = {
@@ -82,21 +83,13 @@ def make_parser():
     add("--version", action="version", version=version())
     add("files", metavar="FILE", nargs="*")
     for name, one in OPTIONS.items():
-        how = {"dest": name}
-        if one.words["takes"] == "flag":
-            how["action"] = "store_true"
-        elif "off" in one.words:
+        how = {"dest": name, "action": ACTIONS.get(one.words["takes"], "store")}
+        if "off" in one.words:
             how["action"] = "store_false"
-        elif one.words["takes"] == "switch":
-            how["action"] = argparse.BooleanOptionalAction
-        else:
+        if one.kind.metavar:
             how["type"] = CONVERT.get(name, one.convert)
-            if name not in PROPERTIES and "default" in one.words:
-                how["default"] = one.convert(one.words["default"])
         if one.kind.metavar.startswith("["):
             how.update(nargs="?", const="")
-        elif one.words["takes"] == "where":
-            how["action"] = "append"
         add(*one.options, **how)
     return parser
 

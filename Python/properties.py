@@ -14,8 +14,8 @@ PROPERTIES = {
     name: one
     for name, one in DESCRIBED.items()
     if {"program", "chain"} <= set(one.places)
-    and one.convert
     and (one.setter or one.step == "faults")
+    and one.words["takes"] != "lines"
 }
 COLOURS, DUPLICATES, FAULTS_Z, INTERPOLATIONS, LATTICE_MODES = (
     DESCRIBED[name].choices

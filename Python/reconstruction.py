@@ -20,7 +20,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from .clouds import Cloud, make_lines, make_points
-from .description import listing, number_above_zero, view_angles
+from .description import KINDS, listing, view_angles
 from .given_lines import fitted
 from .heights import check_heights
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
@@ -206,7 +206,7 @@ class Reconstruction:
         from .writing.grids import grid_of
 
         try:
-            step = number_above_zero(step)
+            step = KINDS["step"].convert(step)
         except ValueError:
             raise ValueError(f"step takes a number above 0, not {step}") from None
         return grid_of(self.surface, step)

@@ -4,6 +4,7 @@
 
 import contextlib
 import io
+import math
 import re
 import unittest
 
@@ -91,10 +92,8 @@ class Classes(unittest.TestCase):
                         self.assertEqual(least, 0)
                         if one.choices:
                             self.assertEqual(most, len(one.choices) - 1)
-                        elif most < 1e9:  # else no limit
-                            self.assertEqual(most, one.kind.most)
                         else:
-                            self.assertIsNone(one.kind.most)
+                            self.assertEqual(most if most < 1e9 else math.inf, one.kind.most)
                     for number, choice in enumerate(one.choices):
                         algorithm = made()
                         getattr(algorithm, f"Set{name}To{titled(choice).replace(' ', '')}")()
