@@ -215,20 +215,3 @@ def listing(names):
         return function
 
     return add
-
-
-def check_rules(given, name_of, among):
-    """Raises ValueError for properties that do not go with each other.
-
-    given    {name: value}; None and False are as if it were not given, and 0 excludes nothing
-    name_of  makes of a name what it is called where it was given
-    among    the names that can be given there
-    """
-    for name, value in given.items():
-        if value is None or value is False:
-            continue
-        for needs, other, words in DESCRIBED[name].rules():
-            if needs and other in among and not given.get(other):
-                raise ValueError(f"{name_of(name)} {words.format(name_of(other))}")
-            if not needs and value and given.get(other):
-                raise ValueError(f"{name_of(name)} and {name_of(other)} {words}")

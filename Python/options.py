@@ -11,13 +11,13 @@ import sys
 
 from . import reading
 from .clouds import ReadOptions, class_numbers, three_columns
-from .description import DESCRIBED, check_rules
+from .description import DESCRIBED
 from .gdal_common import reference_of
 from .help import help_text
 from .messages import FileError, did_you_mean
 from .paths import check_suffix, check_writable
 from .pieces import MEMORY, SUFFIX as OF_PIECES, check_files, check_given, memory_size
-from .properties import COLOURS, PROPERTIES, option_of
+from .properties import COLOURS, PROPERTIES, check_together, option_of
 from .results import WrongOption
 from .selecting import condition
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name
@@ -109,7 +109,7 @@ def parse_arguments(arguments):
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
     try:
-        check_rules({name: getattr(options, name) for name in OPTIONS}, option_of, OPTIONS)
+        check_together({name: getattr(options, name) for name in OPTIONS}, option_of, OPTIONS)
     except ValueError as error:
         parser.error(str(error))
     options.in_pieces = options.pieces is not None or options.memory is not None

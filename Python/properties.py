@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .description import DESCRIBED, check_rules
+from .description import DESCRIBED
 from .messages import did_you_mean
 
 # Those of the filters, as the command line calls them. What is not given stays as the filters have it.
@@ -42,8 +42,25 @@ def checked(properties: dict[str, Any]) -> dict[str, Any]:
             result[name] = PROPERTIES[name].convert(value)
         except (TypeError, ValueError, OverflowError):
             raise ValueError(f"{name} takes {PROPERTIES[name].takes}, not {value!r}") from None
-    check_rules(result, str, PROPERTIES)
+    check_together(result)
     return result
+
+
+def check_together(given, name_of=str, among=PROPERTIES):
+    """Raises ValueError for properties that do not go with each other.
+
+    given    {name: value}; None and False are as if it were not given, and 0 excludes nothing
+    name_of  makes of a name what it is called where it was given
+    among    the names that can be given there
+    """
+    for name, value in given.items():
+        if value is None or value is False:
+            continue
+        for needs, other, words in DESCRIBED[name].rules():
+            if needs and other in among and not given.get(other):
+                raise ValueError(f"{name_of(name)} {words.format(name_of(other))}")
+            if not needs and value and given.get(other):
+                raise ValueError(f"{name_of(name)} and {name_of(other)} {words}")
 
 
 def set_properties(algorithm, step, given):
