@@ -63,10 +63,11 @@ def members(header):
     """Names of the parameters of a class, and of what it tells after Update(), from its header."""
     parameters = set(re.findall(r"vtkSet\w*Macro\((\w+)", header))
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
-    # The second inputs.
-    parameters -= {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData"}
+    # The second inputs, and the processes.
+    others = {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData", "Controller"}
+    parameters -= others
     results = set(re.findall(r"vtkGet\w*Macro\((\w+)|bool Get(\w+)\(\)", header))
-    results = {one or other for one, other in results} - parameters
+    results = {one or other for one, other in results} - parameters - others
     return parameters, results
 
 

@@ -38,8 +38,8 @@ VALUES = {
     "view": "top",
     "lattice_tolerance": "0.1",
 }
-# The second inputs, which are no numbers.
-INPUTS = {"SourceConnection", "SourceData", "BoundaryConnection", "BoundaryData"}
+# The second inputs and the processes, which are no numbers.
+OTHERS = {"SourceConnection", "SourceData", "BoundaryConnection", "BoundaryData", "Controller"}
 
 
 def properties_of(step):
@@ -72,7 +72,7 @@ class Classes(unittest.TestCase):
     def test_each_property_of_a_class_is_described_and_no_other(self):
         for step, made in CLASSES.items():
             own = set(dir(made)) - set(dir(vtkPolyDataAlgorithm))
-            has = {name[3:] for name in own if re.match(r"Set(?!\w+To[A-Z])", name)} - INPUTS
+            has = {name[3:] for name in own if re.match(r"Set(?!\w+To[A-Z])", name)} - OTHERS
             self.assertEqual(set(properties_of(step)), has, step)
 
     def test_defaults_are_those_of_the_classes(self):
