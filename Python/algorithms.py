@@ -345,12 +345,9 @@ def taken(one, value, place):
         return bool(value)
     if one.kind.of == "string":
         return None if value is None or not str(value).strip() else str(value)
-    if one.default_in(place) == CHOSEN:
-        return None if value is None or float(value) < 0 else value
+    if one.default_in(place) == "-1" and value is not None and float(value) < 0:
+        return None  # chosen; 0 is a value of its own
     return value
-
-
-CHOSEN = "-1"  # on a panel, below 0, what None is in Python; 0 is a value of its own
 
 
 def add_setters(algorithm, place):

@@ -34,6 +34,7 @@ class Kind:
     make     makes the value of what is given, where that is not its range; raises ValueError
     least, most  its range; is_above: the least itself is none
     unit     in words
+    choices  of an enumeration, whose values are places in this list
     """
 
     metavar: str
@@ -62,6 +63,10 @@ class Kind:
         """The value that the filters take of what is given. Raises ValueError, TypeError."""
         if self.make or self.of == "string":
             return self.make(value) if self.make else value
+        if self.choices:
+            return self.choices.index(str(value).lower().replace("_", "-").replace(" ", "-"))
+        if self.of == "bool":
+            return bool([False, True].index(value))
         number = int(value) if self.of == "int" else float(value)
         is_within = self.least <= number <= self.most and number < math.inf
         if number != float(value) or not is_within or (self.is_above and number == self.least):
@@ -77,26 +82,10 @@ class Kind:
         return [float(word) if self.of == "double" else int(word) for word in words.split()]
 
 
-def yes_or_no(value):
-    if value not in (True, False):
-        raise ValueError
-    return bool(value)
-
-
-def one_of(choices):
-    """The kind of an enumeration. Its values are places in the list."""
-
-    def index(value):
-        return choices.index(str(value).lower().replace("_", "-").replace(" ", "-"))
-
-    metavar, words = f"{{{','.join(choices)}}}", "one of " + ", ".join(choices)
-    return Kind(metavar, "int", words, index, choices=choices)
-
-
 VIEW = "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35"
 KINDS = {
-    "flag": Kind("", "bool", "True or False", yes_or_no),  # off unless it is given
-    "switch": Kind("", "bool", "True or False", yes_or_no),
+    "flag": Kind("", "bool", "True or False"),  # off unless it is given
+    "switch": Kind("", "bool", "True or False"),
     "length": Kind("LENGTH", "double", unit="units of x and y"),
     "height": Kind("HEIGHT", "double", unit="units of z"),
     "spacings": Kind("SPACINGS", "double", unit="point spacings"),
@@ -137,7 +126,9 @@ class Property:
         self.step = words["step"] if words["step"] != "all" else ""
         self.places = words.get("in", "program filter chain").split()
         choices = tuple(words["takes"].split(", "))
-        self.kind = KINDS.get(words["takes"]) or one_of(choices)
+        self.kind = KINDS.get(words["takes"]) or Kind(
+            f"{{{','.join(choices)}}}", "int", "one of " + ", ".join(choices), choices=choices
+        )
         self.takes, self.choices = self.kind.takes, self.kind.choices
         self.convert = self.kind.convert
         self.in_pieces = "pieces" not in words
