@@ -77,3 +77,57 @@ macro (es_build_plugin)
     TARGET_COMPONENT     "${es_library_component}"
     ADD_INSTALL_RPATHS   OFF)
 endmacro ()
+
+# es_paraview_environment(<variable>): what ParaView's programs need in their environment. A ParaView outside
+# the system's folders does not find its own libraries and Python modules.
+function (es_paraview_environment variable)
+  set(environment)
+  if (NOT ParaView_PREFIX_PATH STREQUAL "/usr")
+    get_target_property(library ParaView::RemotingCore LOCATION)
+    get_filename_component(library_folder "${library}" DIRECTORY)
+    set(environment "PYTHONPATH=${ParaView_PREFIX_PATH}/${PARAVIEW_PYTHONPATH}")
+    if (APPLE)
+      list(APPEND environment "DYLD_LIBRARY_PATH=${library_folder}")
+    elseif (NOT WIN32)
+      list(APPEND environment "LD_LIBRARY_PATH=${library_folder}")
+    endif ()
+  endif ()
+  set("${variable}" "${environment}" PARENT_SCOPE)
+endfunction ()
+
+# The state ElevationSurface.pvsm beside the plugin: ParaView itself writes it, with the plugin that was just
+# built. A machine that cannot do that has no state, and es_no_state says why; a failure of one that can is
+# an error.
+macro (es_make_state)
+  find_program(ES_PVPYTHON pvpython HINTS "${ParaView_PREFIX_PATH}/bin" DOC "ParaView's Python shell")
+  set(es_no_state)
+  if (NOT ES_STATE)
+    set(es_no_state "ES_STATE is off")
+  elseif (NOT ES_WRAP_PYTHON)
+    set(es_no_state "the plugin is built without Python")
+  elseif (CMAKE_CROSSCOMPILING)
+    set(es_no_state "what is built does not run here")
+  elseif (NOT ES_PVPYTHON)
+    set(es_no_state "pvpython was not found")
+  elseif (es_no_display)
+    set(es_no_state "${es_no_display}")
+  endif ()
+  if (es_no_state)
+    message(STATUS "ParaView plugin: the state ElevationSurface.pvsm is left out: ${es_no_state}")
+  else ()
+    set(es_state "${CMAKE_BINARY_DIR}/${es_library_destination}/ElevationSurface.pvsm")
+    es_paraview_environment(es_environment)
+    es_display_prefix(es_prefix)
+    add_custom_command(
+      OUTPUT  "${es_state}"
+      COMMAND "${CMAKE_COMMAND}" -E env ${es_environment} ${es_prefix} "${ES_PVPYTHON}"
+              "${CMAKE_CURRENT_SOURCE_DIR}/Plugin/make_state.py" "$<TARGET_FILE:ElevationSurfacePlugin>" "${es_state}"
+      DEPENDS ElevationSurfacePlugin vtkElevationSurfacePython "${CMAKE_CURRENT_SOURCE_DIR}/Plugin/make_state.py"
+      COMMENT "The state ElevationSurface.pvsm (-DES_STATE=OFF leaves it out)"
+      VERBATIM)
+    add_custom_target(ElevationSurfaceState ALL DEPENDS "${es_state}")
+    install(FILES "${es_state}"
+      DESTINATION "${es_library_destination}"
+      COMPONENT   "${es_library_component}")
+  endif ()
+endmacro ()

@@ -8,6 +8,7 @@
 option(BUILD_SHARED_LIBS "Build a shared library" ON)
 option(ES_PARAVIEW "Build the ParaView plugin, against ParaView's VTK" OFF)
 option(ES_WRAP_PYTHON "Build the Python package vtkelevationsurface, beside the plugin with ES_PARAVIEW" ON)
+option(ES_STATE "With ES_PARAVIEW: make the plugin's example of a state, where pvpython and a display are found" ON)
 option(ES_BENCHMARKS "Build the benchmarks; they compare with CGAL where it is found" OFF)
 option(ES_WARNINGS "Compile with -Wall -Wextra" OFF)
 option(ES_WERROR "Warnings are errors (with ES_WARNINGS)" OFF)
@@ -53,9 +54,7 @@ endif ()
 # ---- tests or not ------------------------------------------------------------------------------
 # Without a word from the user, tests are built where their tools are: a plain build must work on a
 # machine that has VTK alone.
-if (UNIX AND NOT APPLE)
-  find_program(ES_XVFB_RUN xvfb-run DOC "Runs a test on a virtual display (empty: on your own)")
-endif ()
+include("${CMAKE_CURRENT_LIST_DIR}/Display.cmake")
 if (NOT DEFINED BUILD_TESTING)
   find_package(GTest QUIET)
   if (NOT GTest_FOUND)
@@ -185,7 +184,8 @@ if (ES_WRAP_PYTHON)
   configure_file("${CMAKE_CURRENT_SOURCE_DIR}/Python/__init__.py.in"
     "${CMAKE_BINARY_DIR}/${es_python_package}/__init__.py" @ONLY)
   file(GLOB_RECURSE es_python_files CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}/Python"
-    "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.py" "${CMAKE_CURRENT_SOURCE_DIR}/Python/help.txt")
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/*.py" "${CMAKE_CURRENT_SOURCE_DIR}/Python/help.txt"
+    "${CMAKE_CURRENT_SOURCE_DIR}/Python/properties.ini")
   foreach (file IN LISTS es_python_files)
     configure_file("Python/${file}" "${CMAKE_BINARY_DIR}/${es_python_package}/${file}" COPYONLY)
     get_filename_component(folder "${file}" DIRECTORY)
@@ -201,6 +201,7 @@ endif ()
 # ---- the ParaView plugin -----------------------------------------------------------------------
 if (ES_PARAVIEW)
   es_build_plugin()
+  es_make_state()
 endif ()
 
 # ---- documentation -----------------------------------------------------------------------------

@@ -23,33 +23,6 @@ if (NOT GTest_FOUND)
     "package libgtest-dev), or leave the tests out with -DBUILD_TESTING=OFF.")
 endif ()
 
-# Tests that draw run on a virtual display where there is one: no window pops up, and every machine
-# draws with the same renderer. Without any display they are skipped, for this reason.
-set(es_no_display)
-if (UNIX AND NOT APPLE AND NOT ES_XVFB_RUN AND "$ENV{DISPLAY}" STREQUAL "")
-  set(es_no_display "there is no display, and xvfb-run was not found (Debian, Ubuntu: packages xvfb and xauth)")
-endif ()
-
-# es_display_prefix(<variable>): the words to put before the command of a test that draws. Each call
-# gives another display number, and each build folder begins with another: tests started at the same
-# moment would take the same display. (Without -noreset the server ends with its first client, which
-# now and then is too early.)
-function (es_display_prefix variable)
-  set(prefix)
-  if (ES_XVFB_RUN)
-    get_property(number GLOBAL PROPERTY es_display_number)
-    if (NOT number)
-      string(MD5 hash "${CMAKE_BINARY_DIR}")
-      string(SUBSTRING "${hash}" 0 6 hash)
-      math(EXPR number "100 + 0x${hash} % 997")
-    endif ()
-    set(prefix "${ES_XVFB_RUN}" -a -n "${number}" -s "-screen 0 1280x1024x24 -noreset")
-    math(EXPR number "${number} + 10")
-    set_property(GLOBAL PROPERTY es_display_number "${number}")
-  endif ()
-  set("${variable}" ${prefix} PARENT_SCOPE)
-endfunction ()
-
 # es_skip_test(<name> <label> <reason>...)
 # A test that this machine lacks something for: ctest lists it as skipped, and Utilities/test says why.
 function (es_skip_test name label)

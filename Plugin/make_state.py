@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes ElevationSurface.pvsm, the state of ParaView that shows a text file and its surface.
 
-    pvpython Plugin/make_state.py <the built plugin>
+    pvpython Plugin/make_state.py <the built plugin> <file to write>
 
-The state names its data file without a folder. When it is loaded, ParaView is told to search the
-folder Data of the repository: "Search files under specified directory" in the client,
-LoadState(file, data_directory=folder) in a script.
+The build of the plugin does so, and puts the state beside it. The state names its data file without a
+folder. When it is loaded, ParaView is told to search the folder Data of the repository: "Search files
+under specified directory" in the client, LoadState(file, data_directory=folder) in a script.
 """
 import os
 import re
@@ -18,15 +18,18 @@ here = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(here), "Examples", "ParaView"))
 from text_to_surface import show_relief  # noqa: E402
 
-if len(sys.argv) != 2:
+if len(sys.argv) != 3:
     sys.exit(__doc__)
 simple.LoadPlugin(sys.argv[1], remote=False)
 data = os.path.join(os.path.dirname(here), "Data", "olinda_land.xyz")
-state = os.path.join(here, "ElevationSurface.pvsm")
 
 view = simple.CreateRenderView(ViewSize=[1000, 800], OrientationAxesVisibility=0)
 points = simple.ElevationPoints(registrationName="olinda_land.xyz", FileName=data)
 surface = simple.ReconstructElevationSurface(registrationName="Surface of Olinda", Input=points)
+
+surface.UpdatePipeline()
+if surface.GetDataInformation().GetNumberOfCells() == 0:
+    sys.exit("the surface of the state was not made")
 
 # The relief from the south.
 show_relief(surface, view)
@@ -46,11 +49,13 @@ simple.ResetCamera(view)
 camera.Zoom(1.3)
 simple.Render(view)
 simple.SetActiveSource(surface)
-simple.SaveState(state)
-
-with open(state) as file:
+path = sys.argv[2]
+simple.SaveState(path + ".new.pvsm")
+with open(path + ".new.pvsm") as file:
     text = file.read().replace(data, os.path.basename(data))
-with open(state, "w") as file:
+os.remove(path + ".new.pvsm")
+named = re.findall(r'value="(/[^"]+)"', text)
+if named:
+    sys.exit("the state names files of this machine: " + ", ".join(named))
+with open(path, "w") as file:
     file.write(text)
-for path in re.findall(r'value="(/[^"]+)"', text):
-    print("the state names a file of this machine:", path)

@@ -6,6 +6,7 @@ ElevationPoints reads what read() reads; ReconstructElevationSurface makes of it
 reconstruct() makes of it. Both tell what they have done as text, and an error in one line.
 """
 
+import dataclasses
 import warnings
 
 import numpy
@@ -42,6 +43,7 @@ from .algorithm_base import (
 )
 from .blocks import is_empty, number_of_points, parts_of, put_parts
 from .clouds import ReadOptions, cells_of, keep_points, notes_on, set_crs
+from .description import DESCRIBED
 from .gathering import gathered
 from .inputs import cloud_of, joined, lines_of
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning, Reason, counted, of_reason
@@ -65,14 +67,10 @@ class ElevationPoints(ReportingAlgorithm):
     """
 
     TITLE = "Elevation Points"
-    CONTENTS = ("points", "boundary", "faults")
 
     def __init__(self):
         super().__init__(0, 1)
-        self._file = self._columns = self._no_data = self._layer = self._classes = ""
-        self._where = ""
-        self._keep_nulls = self._depth = self._points_only = False
-        self._band = self._contents = 0
+        self._file, self._given = "", {}
 
     def SetFileName(self, name):
         self.change("_file", name or "")
@@ -80,75 +78,19 @@ class ElevationPoints(ReportingAlgorithm):
     def GetFileName(self):
         return self._file
 
-    def SetContents(self, contents):
-        """0, 1, 2: points, a boundary, faults."""
-        self.change("_contents", int(contents))
-
-    def SetColumns(self, columns):
-        """Names, or numbers from 1, of x, y and z with commas between; empty: recognised."""
-        self.change("_columns", columns or "")
-
-    def SetNoData(self, value):
-        """The elevation that marks missing data, as text; empty: as the file says."""
-        self.change("_no_data", "" if value is None else str(value))
-
-    def SetKeepNulls(self, keep):
-        self.change("_keep_nulls", bool(keep))
-
-    def SetDepth(self, depth):
-        self.change("_depth", bool(depth))
-
-    def SetBand(self, number):
-        """The number from 1 of a raster's band of elevations; 0: the first."""
-        self.change("_band", int(number))
-
-    def SetLayer(self, name):
-        self.change("_layer", name or "")
-
-    def SetClasses(self, numbers):
-        """The classes of a LAS file to read, as "2,8"; empty: all."""
-        self.change("_classes", numbers or "")
-
-    def SetWhere(self, condition):
-        """Which points to read, as COLUMN=VALUE; empty: all."""
-        self.change("_where", condition or "")
-
-    def SetPointsOnly(self, points_only):
-        """Whether the points of a mesh that is no elevation surface are read."""
-        self.change("_points_only", bool(points_only))
-
     def GetRecognised(self):
         """What was found out about the file, one line each."""
         return self._text
 
-    def options(self):
-        """The options of read(). Raises ValueError."""
-        options = {"keep_nulls": self._keep_nulls, "depth": self._depth}
-        if self._columns.strip():
-            options["columns"] = self._columns
-        if self._no_data.strip():
-            options["no_data"] = no_data_of(self._no_data)
-        if self._band:
-            options["band"] = self._band
-        if self._layer.strip():
-            options["layer"] = self._layer.strip()
-        if self._classes.strip():
-            options["classes"] = self._classes
-        if self._where.strip():
-            options["where"] = self._where
-        if self._points_only:
-            options["points_only"] = True
-        return options
-
-    def lines(self):
+    def lines(self, contents):
         """The boundary or the faults of the file. Raises ValueError for options of points."""
-        options = {name: value for name, value in self.options().items() if value is not False}
-        depth = options.pop("depth", False)
-        if options:
-            names = " and ".join(option(name) for name in options)
+        options = read_options(self._given)
+        of_points = [name for name in options if contents not in DESCRIBED[name].contents]
+        if of_points:
+            names = " and ".join(option(name) for name in of_points)
             raise ValueError(f"{names}: of points only; lines are read as they are")
-        if self.CONTENTS[self._contents] == "faults":
-            return read_faults(self._file, depth, self.reading)
+        if contents == "faults":
+            return read_faults(self._file, options.get("depth", False), self.reading)
         return read_boundary(self._file, self.reading)
 
     def reading(self, fraction):
@@ -175,12 +117,13 @@ class ElevationPoints(ReportingAlgorithm):
             return []  # one rank has it all
         if not self._file:
             raise ValueError("no file is chosen")
-        if self._contents:
-            output.ShallowCopy(self.lines())
+        contents = self._given.get("contents") or "points"
+        if contents != "points":
+            output.ShallowCopy(self.lines(contents))
             count = output.GetNumberOfLines() + output.GetNumberOfPolys()
-            told = [f"{self._file}: {counted(count, 'line')} of {self.CONTENTS[self._contents]}"]
+            told = [f"{self._file}: {counted(count, 'line')} of {contents}"]
         else:
-            options = self.options()
+            options = read_options(self._given)
             cloud = read(self._file, progress=share(self.reading, 0.0, 0.9), **options)
             finite_points(cloud)
             self.reading(0.95)
@@ -193,7 +136,7 @@ class ElevationPoints(ReportingAlgorithm):
                 told.append(f"coordinate reference system: {crs_name(cloud.crs)}")
         set_words(output, RECOGNISED, told)
         number = output.GetNumberOfPoints()
-        set_words(output, CONTENTS, [self.CONTENTS[self._contents], str(number)])
+        set_words(output, CONTENTS, [contents, str(number)])
         self._text = "\n".join(told)
         return told
 
@@ -204,12 +147,16 @@ def set_nothing(output):
     set_words(output, CONTENTS, [NOTHING])
 
 
-def no_data_of(words):
-    """The number that a panel's field says. Raises ValueError."""
-    try:
-        return float(words)
-    except ValueError:
-        raise ValueError(f"{option('no_data')} takes a number, not {words!r}") from None
+def read_options(given):
+    """The options of read() among the properties that are given. Raises ValueError."""
+    names = [field.name for field in dataclasses.fields(ReadOptions) if given.get(field.name)]
+    options = {name: given[name] for name in names}
+    if "no_data" in options:
+        try:
+            options["no_data"] = float(options["no_data"])
+        except ValueError:
+            raise ValueError(f"{option('no_data')} takes a number, not {options['no_data']!r}") from None
+    return options
 
 
 def finite_points(cloud):
@@ -239,8 +186,8 @@ class ReconstructElevationSurface(ReportingAlgorithm):
     Outputs: the surface with the point array Elevation; the outlines of holes; the boundary; the
     report as vtkTable. GetReport() gives the report as text.
 
-    Properties of the filters are set by Set<Name>(), the name being that of reconstruct() without
-    underscores: SetMaximumEdgeLength(25.0), SetInterpolation("membrane") or (1).
+    Properties are set by Set<Name>(), the name being that of reconstruct() without underscores:
+    SetMaximumEdgeLength(25.0), SetInterpolation("membrane") or (1).
     """
 
     TITLE = "Reconstruct Elevation Surface"
@@ -253,35 +200,7 @@ class ReconstructElevationSurface(ReportingAlgorithm):
 
     def __init__(self):
         super().__init__(3, 4)
-        self._properties = {}
-        self._elevation_array = self._columns = self._no_data = ""
-        self._keep_nulls = self._depth = False
-        self._trim = self._fill = True
-
-    def SetElevationArray(self, name):
-        """The point array that holds elevations; empty: z, of a grid its only or active array."""
-        self.change("_elevation_array", name or "")
-
-    def SetColumns(self, columns):
-        """Of a table: names, or numbers from 1, of x, y and z with commas between."""
-        self.change("_columns", columns or "")
-
-    def SetNoData(self, value):
-        """The elevation that marks missing data, as text; empty: none."""
-        self.change("_no_data", "" if value is None else str(value))
-
-    def SetKeepNulls(self, keep):
-        self.change("_keep_nulls", bool(keep))
-
-    def SetDepth(self, depth):
-        """Whether z of the points counts downwards; faults stay as they are."""
-        self.change("_depth", bool(depth))
-
-    def SetTrim(self, trim):
-        self.change("_trim", bool(trim))
-
-    def SetFillHoles(self, fill):
-        self.change("_fill", bool(fill))
+        self._given = {}
 
     def GetReport(self):
         """What became of every point and hole, one line each."""
@@ -360,13 +279,9 @@ class ReconstructElevationSurface(ReportingAlgorithm):
                 "Contents to Points where the file was opened"
             )
         self.check_properties()
-        options = ReadOptions(
-            columns=self._columns or None,
-            no_data=no_data_of(self._no_data) if self._no_data.strip() else None,
-            keep_nulls=self._keep_nulls,
-            depth=self._depth,
-        )
-        cloud = cloud_of(part, self._elevation_array, options)
+        given = dict(self._given)
+        options = ReadOptions(**read_options(given))
+        cloud = cloud_of(part, given.get("elevation_array") or "", options)
         drop_elevation(cloud.points)
         cloud.notes += recognised(cloud.points)
         cloud.notes += notes_on(cloud, lines)
@@ -374,24 +289,23 @@ class ReconstructElevationSurface(ReportingAlgorithm):
             warnings.simplefilter("ignore", ElevationSurfaceWarning)  # told by warn()
             result = reconstruct(
                 cloud,
-                trim=self._trim,
-                fill=self._fill,
                 progress=self.step,
                 **lines,
-                **self._properties,
+                **{n: value for n, value in given.items() if DESCRIBED[n].step != "read"},
             )
         result.report  # pylint: disable=pointless-statement
         return result
 
     def check_properties(self):
         """Refuses what reconstruct() would, with the names that a panel has."""
-        for name, value in self._properties.items():
-            one = PROPERTIES[name]
+        given = {name: value for name, value in self._given.items() if name in PROPERTIES}
+        for name, value in given.items():
             try:
-                value is None or one.convert(value)
+                value is None or PROPERTIES[name].convert(value)
             except (TypeError, ValueError, OverflowError):
-                raise ValueError(f"{argument(name)} takes {one.takes}, not {value!r}") from None
-        check_together(self._properties, argument)
+                takes = PROPERTIES[name].takes
+                raise ValueError(f"{argument(name)} takes {takes}, not {value!r}") from None
+        check_together(given, argument)
 
     def step(self, words, fraction):
         first, last = self.STEPS[words]
@@ -433,28 +347,36 @@ def has_failed_reader(data):
     return words_of(data, CONTENTS) == [NOTHING]
 
 
-def add_setters():
-    """Gives ReconstructElevationSurface a Set<Name>() for each property of the filters."""
+def taken(one, value, place):
+    """What a property takes in Python of what a panel gives: None for what is as if not given."""
+    if one.choices and isinstance(value, int):
+        return one.choices[value]
+    if one.kind.of == "bool" and value in (0, 1):
+        return bool(value)
+    if one.kind.of == "string":
+        return None if value is None or not str(value).strip() else str(value)
+    if one.default_in(place) == "-1" and value is not None and float(value) < 0:
+        return None  # chosen; 0 is a value of its own
+    return value
 
-    def setter(name, taken):
+
+def add_setters(algorithm, place):
+    """Gives an algorithm a Set<Name>() for each property that is described for it."""
+
+    def setter(one):
         def set_property(self, value):
-            if name in CHOSEN_BELOW_ZERO and float(value) < 0:
-                value = None
-            elif isinstance(value, int) and taken.startswith("one of "):
-                value = taken[len("one of "):].split(", ")[value]
-            if self._properties.get(name) != value:
-                self._properties[name] = value
+            value = taken(one, value, place)
+            if self._given.get(one.name) != value:
+                self._given[one.name] = value
                 self.Modified()
 
-        set_property.__doc__ = f"{name}: {taken}"
+        set_property.__doc__ = f"{one.name}: {one.takes}. {one.line.capitalize()}."
         return set_property
 
-    for name, one in PROPERTIES.items():
-        words = {"threads": "number_of_threads"}.get(name, name)
-        method = "Set" + words.title().replace("_", "")
-        setattr(ReconstructElevationSurface, method, setter(name, one.takes))
+    for one in DESCRIBED.values():
+        if place in one.places and one.words["takes"] != "lines":
+            setattr(algorithm, "Set" + one.name_in(place), setter(one))
 
 
-# Below 0 a panel says what None says in Python; 0 is a value of its own.
-CHOSEN_BELOW_ZERO = ("open_edge_length",)
-add_setters()
+add_setters(ElevationPoints, "reader")
+add_setters(ReconstructElevationSurface, "chain")

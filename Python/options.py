@@ -11,68 +11,35 @@ import sys
 
 from . import reading
 from .clouds import ReadOptions, class_numbers, three_columns
+from .description import DESCRIBED
 from .gdal_common import reference_of
+from .help import help_text
 from .messages import FileError, did_you_mean
 from .paths import check_suffix, check_writable
 from .pieces import MEMORY, SUFFIX as OF_PIECES, check_files, check_given, memory_size
-from .properties import (
-    COLOURS,
-    PROPERTIES,
-    check_together,
-    number_above_zero,
-    number_at_least_zero,
-    option_of,
-    view_angles,
-)
+from .properties import COLOURS, PROPERTIES, check_together, option_of
 from .results import WrongOption
-from .selecting import as_option, condition
+from .selecting import condition
 from .writing.outputs import OUTPUTS, beside, check_gdal, default_name
 
-HELP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "help.txt")
 READ_OPTIONS = [field.name for field in dataclasses.fields(ReadOptions)]
 
 
-def whole_number(text):
-    if int(text) < 1:
-        raise ValueError
-    return int(text)
-
-
-# What each option with a value takes, for errors. help.txt explains all options.
-TAKES = {
-    "--columns": "three columns by name or number from 1, as x,y,z or 1,2,3",
-    "--no-data": "an elevation",
-    "--band": "a whole number from 1",
-    "--layer": "a name",
-    "--classes": "numbers from 0 to 255, as 2,8",
-    "--where": "COLUMN=VALUE, as horizon=Top",
-    "--each-value": "a column",
-    "--faults": "a file",
-    "--boundary": "a file",
-    "--crs": "a coordinate reference system, as EPSG:25832",
-    "--output": "a file",
-    "--grid": "a number above 0",
-    "--grid-output": "a file",
-    "--contours": "a number above 0",
-    "--contours-output": "a file",
-    "--outlines": "a file, or nothing",
-    "--picture": "a file, or nothing",
-    "--view": "top, or BEARING,HEIGHT in degrees with a height above 0 and at most 90, as 225,35",
-    "--exaggeration": PROPERTIES["gap_tolerance"].takes,
-    "--colours": "one of " + ", ".join(COLOURS),
-    "--report": "a file, or nothing",
-    "--pieces": "a whole number from 1",
-    "--memory": MEMORY,
+# What text becomes that properties.ini does not know how to convert.
+CONVERT = {
+    "columns": three_columns,
+    "classes": class_numbers,
+    "where": condition,
+    "memory": memory_size,
+    "colours": lambda text: COLOURS[DESCRIBED["colours"].convert(text)],
 }
-
-
-def is_switch(name):
-    """Whether a property is on or off."""
-    return PROPERTIES[name].takes == "True or False"
-
-
-TAKES["--breaklines"] = TAKES["--faults"]
-TAKES.update({option_of(name): PROPERTIES[name].takes for name in PROPERTIES if not is_switch(name)})
+ACTIONS = {"flag": "store_true", "switch": argparse.BooleanOptionalAction, "where": "append"}
+OPTIONS = {name: one for name, one in DESCRIBED.items() if "program" in one.places}
+# What each option with a value takes, for errors.
+TAKES = {
+    option: one.takes for one in OPTIONS.values() if one.kind.metavar for option in one.options
+}
+TAKES["--memory"] = MEMORY
 
 
 class Parser(argparse.ArgumentParser):
@@ -98,8 +65,7 @@ class Parser(argparse.ArgumentParser):
 
 class ShowHelp(argparse.Action):
     def __call__(self, parser, *_):
-        with open(HELP, encoding="utf-8") as stream:
-            sys.stdout.write(stream.read())
+        sys.stdout.write(help_text())
         parser.exit()
 
 
@@ -116,42 +82,15 @@ def make_parser():
     add("-h", "--help", action=ShowHelp, nargs=0)
     add("--version", action="version", version=version())
     add("files", metavar="FILE", nargs="*")
-    add("--each", action="store_true")
-    add("--columns", type=three_columns)
-    add("--no-data", type=float)
-    add("--keep-nulls", action="store_true")
-    add("--depth", action="store_true")
-    add("--band", type=whole_number)
-    add("--layer")
-    add("--classes", type=class_numbers)
-    add("--where", type=condition, action="append")
-    add("--each-value")
-    add("--points-only", action="store_true")
-    add("--faults", "--breaklines", dest="faults")
-    add("--boundary")
-    for name, one in PROPERTIES.items():
-        if is_switch(name):
-            add(option_of(name), action=argparse.BooleanOptionalAction)
-        else:
-            add(option_of(name), type=one.convert)
-    add("--pieces", type=whole_number)
-    add("--memory", type=memory_size)
-    add("--no-trim", dest="trim", action="store_false")
-    add("--no-fill", dest="fill", action="store_false")
-    add("--crs")
-    add("-o", "--output")
-    for one in ("grid", "contours"):
-        add(f"--{one}", type=number_above_zero)
-        add(f"--{one}-output")
-    add("--outlines", nargs="?", const="")
-    add("--picture", nargs="?", const="")
-    add("--no-picture", action="store_true")
-    add("--view", type=view_angles)
-    add("--exaggeration", type=number_at_least_zero, default=0.0)
-    add("--colours", choices=COLOURS)
-    add("--report", nargs="?", const="")
-    add("--strict", action="store_true")
-    add("--quiet", action="store_true")
+    for name, one in OPTIONS.items():
+        how = {"dest": name, "action": ACTIONS.get(one.words["takes"], "store")}
+        if "off" in one.words:
+            how["action"] = "store_false"
+        if one.kind.metavar:
+            how["type"] = CONVERT.get(name, one.convert)
+        if one.kind.metavar.startswith("["):
+            how.update(nargs="?", const="")
+        add(*one.options, **how)
     return parser
 
 
@@ -170,30 +109,20 @@ def parse_arguments(arguments):
         name: getattr(options, name) for name in PROPERTIES if getattr(options, name) is not None
     }
     try:
-        check_together(options.given, option_of)
+        check_together({name: getattr(options, name) for name in OPTIONS}, option_of, OPTIONS)
     except ValueError as error:
         parser.error(str(error))
     options.in_pieces = options.pieces is not None or options.memory is not None
     if options.in_pieces:
         check_given(options, parser.error)
-    of_trim, of_fill = (
-        [name for name in options.given if PROPERTIES[name].step == step] for step in ("trim", "fill")
-    )
-    if "faults_z" in options.given and not options.faults:
-        parser.error("--faults-z is for the lines of --faults, which is missing")
-    if not options.trim and (options.boundary or of_trim):
-        parser.error("--no-trim leaves nothing for the trimming options to do")
-    if not options.fill and of_fill:
-        parser.error("--no-fill leaves nothing for the filling options to do")
+    for step, words in (("trim", "trimming"), ("fill", "filling"), ("picture", "picture")):
+        off = f"--no-{step}"
+        of_step = [n for n, one in OPTIONS.items() if one.step == step and off not in one.options]
+        is_off = options.no_picture if step == "picture" else not getattr(options, step)
+        if is_off and any(getattr(options, one) != parser.get_default(one) for one in of_step):
+            parser.error(f"{off} leaves nothing for the {words} options to do")
     if not options.fill and options.colours == "error":
         parser.error("--no-fill leaves no errors to draw: --colours error is for filled holes")
-    if options.no_picture and (
-        options.picture is not None or options.view or options.exaggeration or options.colours
-    ):
-        parser.error("--no-picture leaves nothing for the picture options to do")
-    for one in OUTPUTS:
-        if one.step and getattr(options, one.name) and not getattr(options, one.step):
-            parser.error(f"{option_of(one.name)} is for the result of --{one.step}, which is missing")
     if options.outlines is not None and not (options.trim or options.fill):
         parser.error("--no-trim and --no-fill leave no outlines")
     names = [getattr(options, one.name) for one in OUTPUTS]
@@ -203,9 +132,6 @@ def parse_arguments(arguments):
                 f"{option_of(each)} names the results of each {of} itself: "
                 "leave out the names of results"
             )
-    if options.each_value and options.in_pieces:
-        one = as_option("COLUMN", "VALUE")
-        parser.error(f"--each-value needs all points in memory: in pieces, {one} takes one value")
     return options
 
 

@@ -16,13 +16,14 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import reading
 from .clouds import Cloud, corner_flags, make_points, set_crs, slices
+from .description import DESCRIBED
 from .given_lines import in_system
 from .heights import HeightsOfPieces
 from .holes import report_of_holes
 from .mending import mended
 from .messages import ElevationSurfaceError, FileError, Messages
 from .opening import lattice_of
-from .properties import LATTICE_MODES, PROPERTIES
+from .properties import LATTICE_MODES, option_of, set_properties
 from .reading.formats import recognise
 from .reading.slicing import check_sliced, read_files
 from .reading.unpacking import is_plain
@@ -41,9 +42,6 @@ BYTES_A_POINT = 250  # of memory, where a piece is triangulated
 BYTES_TO_FILL = 350  # where its holes are filled
 BYTES_BESIDES = 300_000_000  # of memory: programs, and a slice of the file
 UNITS = {"": 1, "K": 1e3, "M": 1e6, "G": 1e9, "T": 1e12}
-# Options of what is made of the whole surface in memory.
-OF_THE_WHOLE = ("faults", "faults_z", "open_edge_length", "grid", "contours", "outlines", "picture")
-OF_THE_WHOLE += ("view", "exaggeration", "colours", "outward_test", "maximum_elevation_error")
 
 
 def memory_size(text):
@@ -66,13 +64,13 @@ def pieces_within(memory, points, fill=False):
 
 def check_given(options, error):
     """Calls error(words) where options of the command line do not go with pieces."""
-    if options.pieces is not None and options.memory is not None:
-        error("--pieces and --memory both tell the number of pieces: leave one out")
     name = "--pieces" if options.pieces is not None else "--memory"
-    for other in OF_THE_WHOLE:
-        if getattr(options, other) not in (None, False, 0.0):
-            other = "--" + other.replace("_", "-")
-            error(f"{other} needs the whole surface in memory; it cannot be used with {name}")
+    for other, one in DESCRIBED.items():
+        if not one.in_pieces and getattr(options, other) not in (None, False, 0.0):
+            words = one.words["pieces"]
+            if words == "no":
+                words = f"needs the whole surface in memory; it cannot be used with {name}"
+            error(f"{option_of(other)} {words}")
     if options.trim and not options.boundary:
         error(f"{name} can only trim along a boundary that is given: add --boundary or --no-trim")
     if options.fill and not options.boundary and options.open_edge_length is None:
@@ -187,9 +185,7 @@ class Pieces:
             ("trim", source.GetTrim()),
             ("fill", source.GetFill()),
         ):
-            for name, value in options.given.items():
-                if PROPERTIES[name].step in (step, ""):
-                    getattr(algorithm, PROPERTIES[name].setter)(value)
+            set_properties(algorithm, step, options.given)
         source.AddObserver(
             "ProgressEvent", lambda caller, _: run.progress(STEPS[step_of(caller)], caller.GetProgress())
         )

@@ -20,13 +20,14 @@ from vtkmodules.vtkCommonDataModel import (
 )
 
 from .clouds import Cloud, make_lines, make_points
+from .description import KINDS, listing, view_angles
 from .given_lines import fitted
 from .heights import check_heights
 from .messages import ElevationSurfaceError, ElevationSurfaceWarning
 from .names import argument
 from .opening import length_to_open
 from .paths import check_suffix
-from .properties import COLOURS, checked, number_above_zero, view_angles
+from .properties import COLOURS, PROPERTIES, checked
 from .ranks import agreed, total
 from .reading.facing import faces_of, notes_on_faces
 from .spreading import whole_lines, whole_surface
@@ -207,7 +208,7 @@ class Reconstruction:
         from .writing.grids import grid_of
 
         try:
-            step = number_above_zero(step)
+            step = KINDS["step"].convert(step)
         except ValueError:
             raise ValueError(f"step takes a number above 0, not {step}") from None
         return grid_of(self.surface, step)
@@ -297,6 +298,7 @@ Points = Union[Cloud, vtkPointSet, numpy.ndarray, Sequence]
 Lines = Union[vtkPolyData, numpy.ndarray, Sequence, None]
 
 
+@listing(PROPERTIES)
 def reconstruct(
     points: Points,
     *,
@@ -324,12 +326,9 @@ def reconstruct(
               raises stops the filter
     strict    True: what is mended of boundary and faults, and what the filters warn of, is an error
     properties  of the filters, named as the options of the command line, with underscores:
-              maximum_edge_length, maximum_elevation_error, data_dependent_edges, duplicates,
-              lattice_mode, lattice_tolerance, search_strategy, outward_test, gap_tolerance,
-              recover_boundary, boundary_edges, open_edge_length, maximum_hole_size,
-              maximum_hole_edges, maximum_expected_points, fill_cut_outs, spacing, interpolation,
-              interpolate_point_data, faults_z, threads. Lengths are in the units of x and y.
-              The program's --help tells what each does, and its default.
+              {properties}.
+              Lengths are in the units of x and y. The program's --help tells more of each, and its
+              default.
 
     Returns a Reconstruction. Raises ElevationSurfaceError with the filter's message where no surface
     can be made; where places have the heights of several surfaces, unless duplicates says which to

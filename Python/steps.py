@@ -22,7 +22,7 @@ from .outline import (
     simplified,
     spacing_of,
 )
-from .properties import PROPERTIES
+from .properties import PROPERTIES, option_of, set_properties
 from .ranks import agreed, together, total
 from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, dealt, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
@@ -46,10 +46,7 @@ class Step:
 
     def made(self, step, algorithm):
         """The filter of a step with the properties that are given."""
-        for name, value in self.given.items():
-            if PROPERTIES[name].step in (step, ""):
-                getattr(algorithm, PROPERTIES[name].setter)(value)
-        return algorithm
+        return set_properties(algorithm, step, self.given)
 
     def __call__(self, name, algorithm):
         raised = []

@@ -13,6 +13,7 @@ import numpy
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
+from ..description import DESCRIBED, listing
 from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
 from ..progress import no_progress, share
@@ -22,13 +23,8 @@ from .text import read_line_table, read_table
 from .unpacking import STANDARD_INPUT, is_plain, unpacked
 from .upwards import notes_on_up
 
-# Options that mean something for some readers only.
-MEANS_SOMETHING = {
-    "columns": ("text", "vectors"),
-    "band": ("rasters",),
-    "layer": ("rasters", "vectors", "text", "gocad"),
-    "classes": ("las",),
-}
+# Options that mean something for some readers only: {name: their modules}
+MEANS_SOMETHING = {name: one.readers for name, one in DESCRIBED.items() if one.readers}
 MAY_HAVE_Y_UP = ("a PLY file", "an STL file", "an OBJ file")
 NAMES = {
     "text": "text files", "vectors": "vector files", "las": "LAS files", "gocad": "GOCAD files",
@@ -49,19 +45,16 @@ def check_use(path, kind, options):
             raise FileError(f"{path}: --{name} is for {fits}; this is {kind.name}")
 
 
+@listing(ReadOptions.__dataclass_fields__)
 def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
     """Reads the points of a file, whatever its kind. The kind is told by the content, not the name.
 
     path     "-" is standard input; a file packed by gzip, bzip2 or xz is unpacked
-    columns  of text: names, or numbers from 1, of x, y and z, as ("X", "Y", "Top") or (3, 4, 5)
-    no_data  the elevation that marks missing values
-    keep_nulls, depth   True as --keep-nulls and --depth of the program
     progress  a function that is called with the fraction read; what it raises ends the reading
-    band, layer, classes   which of a raster's bands, a file's layers, a LAS file's classes
-    where    which points, by columns: {"horizon": "Top", "line": [3, 4]}, or as --where of the
-             program
-    points_only  True takes the points of a mesh that is no elevation surface
-    A misspelt option is a TypeError.
+    options  those of the program, whose --help tells more of each:
+             {properties}.
+             columns may be a list, and where {"horizon": "Top", "line": [3, 4]}.
+             A misspelt one is a TypeError.
 
     Returns a Cloud. Raises FileError. Takes about a second for a million rows of text, less for
     other kinds.

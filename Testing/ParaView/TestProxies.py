@@ -63,10 +63,11 @@ def members(header):
     """Names of the parameters of a class, and of what it tells after Update(), from its header."""
     parameters = set(re.findall(r"vtkSet\w*Macro\((\w+)", header))
     parameters |= set(re.findall(r"void Set(\w+)\([^)]+\)", header))
-    # The second inputs.
-    parameters -= {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData"}
+    # The second inputs, and the processes.
+    others = {"BoundaryConnection", "BoundaryData", "SourceConnection", "SourceData", "Controller"}
+    parameters -= others
     results = set(re.findall(r"vtkGet\w*Macro\((\w+)|bool Get(\w+)\(\)", header))
-    results = {one or other for one, other in results} - parameters
+    results = {one or other for one, other in results} - parameters - others
     return parameters, results
 
 
@@ -111,33 +112,45 @@ for name, values in OTHER_VALUES.items():
         check_equal([proxy.SMProxy.GetOutputPortName(i) for i in range(count)], names,
                     name + ": outputs")
 
-# The entries made of Python classes: documentation, names of choices, and defaults, which are those
-# of the filters.
-from vtkelevationsurface.properties import PROPERTIES  # noqa: E402  (the plugin brings it)
+# The entries made of Python classes, and all properties as they are described.
+from vtkelevationsurface.description import DESCRIBED, titled  # noqa: E402  (the plugin brings it)
 
-FILTERS = {"delaunay": "GridDelaunay2D", "trim": "TrimOutwardTriangles", "fill": "FillElevationHoles"}
 chain = simple.ReconstructElevationSurface(Input=plane)
-for proxy in (chain, simple.ElevationPoints()):
+reader = simple.ElevationPoints()
+for proxy in (chain, reader):
     name = type(proxy).__name__
     for each in proxy.ListProperties():
         documentation = proxy.SMProxy.GetProperty(each).GetDocumentation()
         text = (documentation.GetDescription() or "").strip() if documentation else ""
         check(len(text) > 10, "%s: %s is not documented" % (name, each))
-for name, one in PROPERTIES.items():
-    own = {"threads": "NumberOfThreads"}.get(name, name.title().replace("_", ""))
-    entry = chain.SMProxy.GetProperty(own)
-    check(entry is not None, "the chain has no property for " + name)
-    if one.takes.startswith("one of "):
-        domain = entry.GetDomain("enum")
-        given = [domain.GetEntryText(i).lower().replace(" ", "-")
-                 for i in range(domain.GetNumberOfEntries())]
-        check_equal(given, one.takes[len("one of "):].split(", "), "choices of " + own)
-        check_equal([domain.GetEntryValue(i) for i in range(len(given))], list(range(len(given))),
-                    "numbers of the choices of " + own)
-    if own != "OpenEdgeLength" and one.setter:  # below 0: chosen, which the filter alone cannot
-        filter_proxy = getattr(simple, FILTERS.get(one.step, "GridDelaunay2D"))(Input=plane)
-        other = filter_proxy.SMProxy.GetProperty(one.setter[len("Set"):])
-        check_equal(entry.GetElement(0), other.GetElement(0), "default of " + own)
+FILTERS = {name: getattr(simple, name)(Input=plane) for name in OTHER_VALUES}
+STEPS = dict(zip(("delaunay", "trim", "fill"), FILTERS.values()))
+PROXIES = {"chain": lambda one: [chain], "reader": lambda one: [reader],
+           "filter": lambda one: [STEPS[one.step]] if one.step in STEPS else list(STEPS.values())}
+for one in DESCRIBED.values():
+    for place in set(one.places) & set(PROXIES):
+        if one.words["takes"] == "lines":
+            continue
+        for proxy in PROXIES[place](one):
+            own = one.name_in(place)
+            told = "%s of %s" % (own, type(proxy).__name__)
+            entry = proxy.SMProxy.GetProperty(own)
+            check(entry is not None, "there is no " + told)
+            check_equal(entry.GetXMLLabel(), one.label_in(place), "label of " + told)
+            text = " ".join(entry.GetDocumentation().GetDescription().split())
+            check_equal(text, one.help_in(place), "words of " + told)
+            visibility = "advanced" if place in one.words.get("advanced", "") else "default"
+            check_equal(entry.GetPanelVisibility(), visibility, "visibility of " + told)
+            if one.kind.of != "string":
+                default = one.kind.numbers(one.default_in(place) or "0")
+                has = [entry.GetElement(i) for i in range(entry.GetNumberOfElements())]
+                check_equal(has, default, "default of " + told)
+            domain = entry.GetDomain("enum")
+            count = domain.GetNumberOfEntries() if domain else 0
+            check_equal([domain.GetEntryText(i) for i in range(count)],
+                        [titled(choice) for choice in one.choices], "choices of " + told)
+            check_equal([domain.GetEntryValue(i) for i in range(count)], list(range(count)),
+                        "numbers of the choices of " + told)
 
 # The menu has all of them, in the order of the work.
 menu = xml.etree.ElementTree.parse(os.path.join(os.path.dirname(data_folder), "Plugin", "Menu.xml"))

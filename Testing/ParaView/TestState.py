@@ -1,14 +1,32 @@
 # SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The state file of the plugin loads, finds its data, and shows a surface coloured by elevation."""
+"""The state file that the build has made loads, finds its data, has all properties of the panels, and
+shows a surface coloured by elevation."""
 import os
+import sys
+import xml.etree.ElementTree
 
 from paraview import simple
 
-from plugin_testing import check, fetch, finish, information, screenshot, start
+from plugin_testing import check, check_equal, fetch, finish, information, screenshot, start
 
 data_folder, temporary_folder = start()
-state = os.path.join(os.path.dirname(data_folder), "Plugin", "ElevationSurface.pvsm")
+plugin = sys.argv[sys.argv.index("--plugin") + 1]
+state = os.path.join(os.path.dirname(plugin), "ElevationSurface.pvsm")
+
+from vtkelevationsurface.description import DESCRIBED  # noqa: E402  (the plugin brings it)
+
+saved = xml.etree.ElementTree.parse(state)
+ENTRIES = {"chain": "ReconstructElevationSurface", "reader": "AnElevationPointsReader"}
+for place, name in ENTRIES.items():
+    proxies = [proxy for proxy in saved.iter("Proxy") if proxy.get("type") == name]
+    check_equal(len(proxies), 1, "proxies of " + name)
+    has = {one.get("name") for proxy in proxies for one in proxy.iter("Property")}
+    for one in DESCRIBED.values():
+        if place in one.places:
+            own = one.name_in(place)
+            check(own in has, "the state has no %s of %s" % (own, name))
+
 simple.LoadState(state, data_directory=data_folder)
 
 surface = simple.FindSource("Surface of Olinda")

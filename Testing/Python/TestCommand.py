@@ -67,7 +67,7 @@ class Options(InFolder):
     def test_properties_that_are_on_or_off_have_two_options(self):
         from vtkelevationsurface import options
 
-        switches = [name for name in options.PROPERTIES if options.is_switch(name)]
+        switches = [n for n, one in options.PROPERTIES.items() if one.words["takes"] == "switch"]
         self.assertIn("recover_boundary", switches)
         for name in switches:
             on = options.option_of(name)

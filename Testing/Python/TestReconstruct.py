@@ -472,12 +472,17 @@ class Results(Program):
 class Script(Program):
     SCRIPT = os.path.join(ROOT, "Utilities", "reconstruct")
 
-    def test_help_needs_neither_python_nor_a_build(self):
+    def test_help_needs_no_build_and_without_python_it_says_so(self):
         nowhere = {"ELEVATION_SURFACE_PYTHON": "/no", "ELEVATION_SURFACE_BUILD": "/no"}
-        environment = {**os.environ, **nowhere}
-        done = self.execute(self.SCRIPT, "a.csv", "--help", env=environment)
+        done = self.execute(self.SCRIPT, "a.csv", "--help", env={**os.environ, **nowhere})
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(done.stdout, self.call("--help").stdout)
+        for tool in ("bash", "dirname", "sed"):
+            os.symlink(shutil.which(tool), self.path(tool))
+        done = self.execute(self.SCRIPT, "--help", env={**os.environ, **nowhere, "PATH": self.folder})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("(python3, which Utilities/setup installs, lists the other options", done.stdout)
+        self.assertIn("examples:", done.stdout)
 
     def test_the_project_is_found_through_links(self):
         os.symlink(self.SCRIPT, self.path("direct"))
