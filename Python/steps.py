@@ -22,7 +22,7 @@ from .outline import (
     simplified,
     spacing_of,
 )
-from .properties import PROPERTIES, option_of, set_properties
+from .properties import PROPERTIES, set_properties
 from .ranks import agreed, together, total
 from .spreading import OUT_OF_OUTLINE, WITHIN_ERROR, dealt, reasons_of, update
 from .vtkElevationSurface import vtkGridDelaunay2D, vtkTrimOutwardTriangles
