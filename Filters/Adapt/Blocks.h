@@ -7,12 +7,12 @@
 #ifndef Blocks_h
 #define Blocks_h
 
+#include "vtkDataObject.h"
 #include "vtkSmartPointer.h"
 
 #include <string>
 #include <vector>
 
-class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
 class vtkPolyData;

@@ -15,6 +15,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
 from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
+from ..names import option
 from ..progress import no_progress, share
 from ..selecting import columns_in, condition_of_layer, select
 from .nulls import take_out
@@ -46,7 +47,7 @@ def check_use(path, kind, options):
     for name, modules in MEANS_SOMETHING.items():
         if getattr(options, name) is not None and kind.module.split(".")[0] not in modules:
             fits = " and ".join(NAMES.get(module, module) for module in modules)
-            raise FileError(f"{path}: --{name} is for {fits}; this is {kind.name}")
+            raise FileError(f"{path}: {option(name)} is for {fits}; this is {kind.name}")
 
 
 def read(path: Union[str, os.PathLike], **options: Any) -> Cloud:
