@@ -16,6 +16,7 @@ from ..clouds import Cloud, ReadOptions, keep_points, make_lines, turn_over
 from ..description import DESCRIBED, listing
 from .formats import recognise
 from ..messages import FileError, Reason, did_you_mean
+from ..names import option
 from ..progress import no_progress, share
 from ..selecting import columns_in, condition_of_layer, select
 from .nulls import take_out
@@ -42,7 +43,7 @@ def check_use(path, kind, options):
     for name, modules in MEANS_SOMETHING.items():
         if getattr(options, name) is not None and kind.module.split(".")[0] not in modules:
             fits = " and ".join(NAMES.get(module, module) for module in modules)
-            raise FileError(f"{path}: --{name} is for {fits}; this is {kind.name}")
+            raise FileError(f"{path}: {option(name)} is for {fits}; this is {kind.name}")
 
 
 @listing(ReadOptions.__dataclass_fields__)

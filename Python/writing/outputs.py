@@ -7,6 +7,7 @@ import os
 import re
 
 from ..messages import ElevationSurfaceError, FileError
+from ..names import option
 from ..paths import suffix_of
 from ..writing import WRITE_SUFFIXES, write_surface
 
@@ -90,4 +91,4 @@ def write_output(output, result, path, step, progress):
     except FileError:
         raise
     except ElevationSurfaceError as error:
-        raise ElevationSurfaceError(f"--{output.step}: {error}") from None
+        raise ElevationSurfaceError(f"{option(output.step)}: {error}") from None

@@ -7,6 +7,7 @@ import ast
 import os
 import re
 import string
+import tempfile
 import unittest
 
 import numpy
@@ -16,12 +17,14 @@ from vtkelevationsurface import (
     reconstruct,
     vtkFillElevationHoles,
     vtkGridDelaunay2D,
+    vtkReconstructPieces,
     vtkTrimOutwardTriangles,
 )
 from vtkelevationsurface.algorithms import ReconstructElevationSurface
 from vtkelevationsurface.clouds import make_lines, make_points
 from vtkelevationsurface.messages import Messages, Reason, messages_of, of_reason
 from vtkelevationsurface.names import PANEL, PROGRAM, PYTHON, argument, option, written_for
+from vtkelevationsurface.pieces import MessagesOfSteps
 from vtkelevationsurface.steps import in_our_names
 from vtkmodules.vtkCommonCore import VTK_STRING, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkPolyData
@@ -129,6 +132,23 @@ class Data(unittest.TestCase):
         self.assertEqual([one.code for one in warnings], ["NoTriangle", "NoTriangle"])
         self.assertEqual([one.block for one in warnings], ["Block 1", "Block 2"])
         self.assertEqual([one.values["points"] for one in warnings], ["0", "1"])
+
+    def test_pieces_have_data_of_each_step(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source = vtkReconstructPieces()
+            source.SetFolder(folder)
+            with MessagesOfSteps(source, source.GetExecutive()) as messages:
+                source.AddPoints(None)
+                source.AddPoints(make_points(numpy.array([[0.0, 0, 0], [1, 0, 0]])))
+                source.GetDelaunay().SetMaximumElevationError(1.0)
+                source.UpdatePiece(0, 1, 0)
+                source.GetDelaunay().SetMaximumElevationError(0.0)
+                source.UpdatePiece(0, 1, 0)
+            self.assertEqual([one.code for one in messages.errors], ["Words", "ErrorNotInPieces"])
+            (warning,) = messages.warnings
+            self.check(warning, "NoTriangle", points="2")
+            self.assertEqual(warning.step, "delaunay")
+            source.Reset()  # which removes its files
 
     def test_the_sentence_is_what_people_see(self):
         texts = []
@@ -246,7 +266,7 @@ class Sources(unittest.TestCase):
 
     def test_nothing_is_written_as_an_option_of_the_program_alone(self):
         # Those of the program's own run may: no panel sees them.
-        own = ("command.py", "options.py", "pieces.py", "slicing.py")
+        own = ("command.py", "options.py", "pieces.py", "slicing.py", "names.py", "properties.py")
         for folder, _, names in os.walk(PACKAGE):
             for name in names:
                 if not name.endswith(".py") or name in own:
@@ -258,7 +278,7 @@ class Sources(unittest.TestCase):
                     if isinstance(node, ast.Constant) and isinstance(node.value, str):
                         with self.subTest(name, line=node.lineno):
                             self.assertTrue(
-                                node.value in docs or not re.search(r"--[a-z]", node.value), node.value)
+                                node.value in docs or not re.search(r"--([a-z]|$)", node.value), node.value)
 
 
 if __name__ == "__main__":
