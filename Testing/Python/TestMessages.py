@@ -266,7 +266,8 @@ class Sources(unittest.TestCase):
 
     def test_nothing_is_written_as_an_option_of_the_program_alone(self):
         # Those of the program's own run may: no panel sees them.
-        own = ("command.py", "options.py", "pieces.py", "slicing.py", "names.py", "properties.py")
+        own = ("command.py", "description.py", "help.py", "options.py", "pieces.py", "slicing.py", "names.py",
+               "properties.py")
         for folder, _, names in os.walk(PACKAGE):
             for name in names:
                 if not name.endswith(".py") or name in own:
