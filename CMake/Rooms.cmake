@@ -109,12 +109,11 @@ set(es_headers_Adapt
   Adapt VTKVersions)
 set(es_Parts
   BorderOfParts
-  CellByCell
   CommonPoints
   ConstraintsOfRanks
-  DistributedDelaunay
   DistributedFill
   DistributedTrim
+  Engine
   FailureNotes
   FilledPart
   FilledPieces
@@ -125,13 +124,14 @@ set(es_Parts
   LatticeOfRanks
   NearParts
   PackedData
-  PointOwners
   PointRows
+  PointSource
   Ranks
   SpoolFile
   SpreadBlocks
   SurfacePart
   SurroundingBoxes
+  TriangulateParts
   TrimOfPart
   TrimmedPieces)
 set(es_headers_Parts

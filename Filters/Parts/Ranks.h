@@ -74,6 +74,8 @@ public:
    * @throws std::bad_alloc as Error on all ranks
    */
   std::vector<Bytes> Exchange(std::vector<Bytes>&& toEach) const;
+  /** The same for lists of bytes, whose lengths need not be known before. */
+  std::vector<std::vector<Bytes>> ExchangeLists(std::vector<std::vector<Bytes>>&& toEach) const;
 
   /** What this rank has sent since it was made, and how often all ranks have met for it. */
   struct Traffic
@@ -110,6 +112,8 @@ private:
  * @return whether all ranks can
  */
 bool CanAll(const Ranks& ranks, const std::function<bool()>& step);
+
+bool IsOnAny(const Ranks& ranks, bool isOnThis);
 
 /** The box of the boxes of all ranks. */
 Box BoxOfAll(const Ranks& ranks, const Box& own);
