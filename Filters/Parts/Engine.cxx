@@ -14,6 +14,7 @@ Inbox::Inbox(const std::string& path)
 {
 }
 
+// A file holds stretches with their sizes, and an empty one would look like its end.
 void Inbox::Append(Bytes&& stretch)
 {
   if (stretch.empty())
@@ -56,12 +57,15 @@ bool Inbox::IsEmpty() const
   return this->File ? this->File->IsEmpty() : this->InMemory.empty();
 }
 
-std::vector<Bytes> Inbox::Copy() const
+std::vector<Bytes> Inbox::Copy(const Progress& progress) const
 {
   std::vector<Bytes> copies;
   if (this->File)
   {
-    this->File->ForEach([&copies](Bytes&& stretch) { copies.push_back(std::move(stretch)); });
+    this->File->ForEach([&](Bytes&& stretch) {
+      Report(progress, 0.0);
+      copies.push_back(std::move(stretch));
+    });
     return copies;
   }
   for (const Bytes& stretch : this->InMemory)
@@ -72,6 +76,7 @@ std::vector<Bytes> Inbox::Copy() const
   return copies;
 }
 
+// A file is removed when it has been read.
 std::vector<Bytes> Inbox::Take()
 {
   std::vector<Bytes> taken = this->File ? this->Copy() : std::move(this->InMemory);
@@ -88,6 +93,10 @@ void Inbox::Clear()
   }
 }
 
+/*
+ * Each part of this rank gets its boxes, one after another; files are named after box and part, so that
+ * ranks may share a folder. No file is made before something is written.
+ */
 Engine::Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>& boxes,
   const std::string& folder)
   : Crew(ranks)
@@ -112,13 +121,20 @@ Engine::Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>&
   }
 }
 
+/*
+ * Firsts has the first part of each rank and does not fall; a rank without parts has that of the next
+ * one. So of those that begin with the part, the last one has it.
+ */
 int Engine::RankOf(int part) const
 {
-  // The last rank that begins there: those before it have none.
   const auto next = std::upper_bound(this->Firsts.begin(), this->Firsts.end(), part);
   return static_cast<int>(next - this->Firsts.begin()) - 1;
 }
 
+/*
+ * Parts share the progress evenly: cuts give all of them about as many points. An error ends the loop,
+ * on other ranks where a step next reports progress.
+ */
 void Engine::ForEach(
   const Progress& progress, const std::function<void(int, const Progress&)>& step) const
 {
@@ -133,6 +149,7 @@ void Engine::ForEach(
   });
 }
 
+// Nothing is sent before Deliver(): a step that fails has sent nothing.
 void Engine::Send(int part, int box, Bytes&& stretch)
 {
   if (stretch.empty())
@@ -145,9 +162,12 @@ void Engine::Send(int part, int box, Bytes&& stretch)
   this->Outbox[rank].push_back(std::move(stretch));
 }
 
-void Engine::Deliver()
+/*
+ * What goes to a rank is a list: first the labels, part, box and size of each message, then the
+ * messages. Own ones go the same way, so that ranks come in their order; ExchangeLists() moves them.
+ */
+void Engine::Deliver(const Progress& progress)
 {
-  // The first of the bytes for a rank says what the others are.
   std::vector<std::vector<Bytes>> toEach(this->Outbox.size());
   this->Crew.Agree([&]() {
     for (std::size_t rank = 0; rank < toEach.size(); ++rank)
@@ -165,7 +185,9 @@ void Engine::Deliver()
     }
   });
   std::vector<std::vector<Bytes>> fromEach = this->Crew.ExchangeLists(std::move(toEach));
+  // Writing to files takes long enough to hear of a failure elsewhere.
   this->Crew.Agree([&]() {
+    const Progress watched = this->Crew.Watched(progress);
     for (std::vector<Bytes>& list : fromEach)
     {
       std::vector<Message> labels;
@@ -173,6 +195,7 @@ void Engine::Deliver()
       TakeFrom(from, list.empty() ? 0 : list.front().size() / sizeof(Message), labels);
       for (std::size_t i = 0; i < labels.size(); ++i)
       {
+        Report(watched, 1.0);
         this->At(static_cast<int>(labels[i].Part), static_cast<int>(labels[i].Box))
           .Append(std::move(list[i + 1]));
       }

@@ -61,7 +61,7 @@ public:
   void ForEach(const std::function<void(const Bytes&)>& visit) const;
 
   /** All stretches; with Take() they leave the box. */
-  std::vector<Bytes> Copy() const;
+  std::vector<Bytes> Copy(const Progress& progress = Progress()) const;
   std::vector<Bytes> Take();
 
   void Clear();
@@ -103,7 +103,7 @@ public:
 
   /** Sends to any part. It is there after Deliver(), which all ranks call. */
   void Send(int part, int box, Bytes&& stretch);
-  void Deliver();
+  void Deliver(const Progress& progress = Progress());
 
   /** A box of a part of this rank. */
   Inbox& At(int part, int box);

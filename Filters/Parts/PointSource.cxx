@@ -1,5 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Points come in two ways, which differ until they are sent. At once: the arrays stay VTK's until rows
+ * of them are packed, global ids may be given, and ranks may have different arrays, of which those are
+ * kept that all have. In slices: rows are packed into a file; as no rank can look at its points again,
+ * all slices need the same arrays, and global ids are places.
+ *
+ * The samples differ too. At once, the number of points is known, and one point of each stretch of
+ * some is taken, so that each part gets about 1,000, all of which all ranks get. In slices, a hash of
+ * the place decides, and the sample is thinned whenever it is too large; it is the same however the
+ * slices are cut.
+ */
 #include "PointSource.h"
 
 #include "Adapt/Adapt.h"
@@ -43,6 +54,7 @@ vtkIdType PlaceInStretch(vtkIdType stretch, vtkIdType size)
   return static_cast<vtkIdType>((HashOf(stretch) >> 16) % static_cast<std::uint64_t>(size));
 }
 
+/** Whether slices have the same arrays; names of components and attributes are those of the last. */
 bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& others)
 {
   return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),
@@ -52,6 +64,7 @@ bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& 
     });
 }
 
+/** For slices of one rank, and for those of all of them. */
 Error DifferentArrays()
 {
   return Error("Points that are added need the same point arrays as those before.");
@@ -105,7 +118,10 @@ PointSource::PointSource(const Ranks& ranks, const std::string& folder)
 
 PointSource::~PointSource() = default;
 
-/** Of a slice; the others need the same. */
+/**
+ * The arrays of a slice; the others need the same. This rank alone decides, as others may have added
+ * none yet.
+ */
 void PointSource::TakeKinds(vtkPointSet* points)
 {
   CheckPointArrays(points);
@@ -136,6 +152,7 @@ void PointSource::TakeKinds(vtkPointSet* points)
   }
 }
 
+// A slice is written in stretches, which are read one at a time in the last pass.
 void PointSource::Add(vtkPointSet* points, const Progress& progress)
 {
   if (!points || points->GetNumberOfPoints() == 0)
@@ -191,6 +208,10 @@ void PointSource::KeepSample()
   this->Sample.erase(out, this->Sample.end());
 }
 
+/**
+ * All ranks agree on the arrays, whether coordinates are float, and the number of each rank's first
+ * point. Errors in the arrays name the rank.
+ */
 void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
 {
   this->All.Agree([&]() {
@@ -229,7 +250,7 @@ void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
   });
 }
 
-/** Points that come at once. */
+/** Rows of points that come at once: with the ids given, if any, and without those of other ranks. */
 void PointSource::ReadInput(
   bool areIdsGiven, vtkIdType first, const Progress& progress, SurfacePart& common)
 {
@@ -277,6 +298,7 @@ std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
   return coordinates;
 }
 
+/** Cuts the plane by the samples of all ranks, on each of them alike. */
 Cuts PointSource::CutPlane(int parts)
 {
   std::vector<double> coordinates;
@@ -310,7 +332,10 @@ Cuts PointSource::CutPlane(int parts)
   return std::move(*plane);
 }
 
-/** Sends the points that are kept; then there are none. */
+/**
+ * Sends the points that are kept, in their order; then there are none. Memory is given back as rows are
+ * packed, part by part.
+ */
 void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
   std::vector<vtkIdType>& counts)
 {
@@ -350,6 +375,10 @@ void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Pr
   this->Rows = PointRows();
 }
 
+/*
+ * Slice by slice, all ranks send and deliver together until none has a slice left. So no more than a
+ * slice of each rank is in memory. Points that come at once are one slice.
+ */
 Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
   std::vector<vtkIdType>& counts)
 {

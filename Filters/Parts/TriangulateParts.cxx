@@ -1,5 +1,22 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * How the passes of TriangulateParts.h use the boxes of a part (Engine.h):
+ *
+ *   box        what is in it                          written by           read by
+ *   OwnPoints  rows of points                         pass 1               2, 5, 6 and Take()
+ *   Settled    unused points; then corners, as        pass 2, in files     6 and Take()
+ *              places among the own points
+ *   FromSeams  in pass 3, the seam of the other half  the other half       3
+ *              of a cell; then triangles, by numbers  pass 4               5, 6 and Take()
+ *   Requests   the part that asks, and places         pass 5               5, 6
+ *   Corners    rows of points of other parts          pass 5               Take()
+ *   Covered    places with a triangle elsewhere       pass 6               6
+ *
+ * In memory a rank has one part, and its state is not packed: OwnPoints and Corners are unpacked when
+ * they come, what is settled stays where it has been made, and triangles from seams are listed once.
+ * In files nothing of a part is in memory between the steps.
+ */
 #include "TriangulateParts.h"
 
 #include "ConstraintsOfRanks.h"
@@ -20,18 +37,19 @@ namespace elevation
 
 namespace
 {
-/** The boxes of a part, and the names of their files. */
+/** The boxes of a part, and the names of their files; what is not named is small. */
 enum BoxOfPart
 {
-  OwnPoints, // packed rows
-  Settled,   // in files: unused points, then corners of the triangles that its cell settles
-  FromSeams, // triangles that seams settle, by numbers
-  Corners,   // packed rows of the points of other parts that these need
-  Requests,  // the part that asks for them, and places
-  Covered    // places at which another part has a triangle; values there
+  OwnPoints,
+  Settled,
+  FromSeams,
+  Corners,
+  Requests,
+  Covered
 };
 const std::vector<std::string> NamesOfBoxes = { "points", "triangles", "seams", "corners", "", "" };
 
+/** A seam on its way to the part that joins it with its own. */
 Bytes PackPiece(const Piece& piece)
 {
   Bytes bytes;
@@ -65,7 +83,7 @@ std::vector<Value> ValuesIn(const Inbox& box)
   return values;
 }
 
-/** What goes to each part. */
+/** What goes to each part; parts in their order. */
 template <typename Value>
 using ValuesForParts = std::map<int, std::vector<Value>>;
 
@@ -80,7 +98,7 @@ void SendAll(Engine& engine, int box, const ValuesForParts<Value>& values)
   }
 }
 
-/** The corners of the triangles without a longer edge. */
+/** The corners of the triangles without an edge longer than a limit, in their order. */
 Buffer<Index> WithinLimit(double length, const SurfacePart& part, const Progress& progress)
 {
   const EdgeLimit limit(length);
@@ -100,7 +118,10 @@ Buffer<Index> WithinLimit(double length, const SurfacePart& part, const Progress
 }
 } // namespace
 
-/** Cells [Begin, End) of the cuts. */
+/**
+ * A node of the tree of cells (Cuts.h): cells [Begin, End), which have the numbers of their parts. What
+ * is done for a node is done by its first part, which has the seam of its lower half already.
+ */
 struct TriangulateParts::Node
 {
   int Begin, End;
@@ -120,6 +141,7 @@ struct TriangulateParts::Node
     return node;
   }
 
+  /** How often the plane is cut, at most, until there are so many cells. */
   static int Levels(int count)
   {
     int levels = 0;
@@ -130,6 +152,7 @@ struct TriangulateParts::Node
     return levels;
   }
 
+  /** Whether its seams are joined without a message. */
   bool IsWithinRank(const Engine& engine) const
   {
     return engine.RankOf(this->Begin) == engine.RankOf(this->End - 1);
@@ -192,7 +215,10 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
 
 // Parts in memory and in files
 
-/** Sets the numbers of the points of all parts. */
+/**
+ * Sets the numbers of the points of all parts: part after part, and within a part in the order of ids.
+ * @param[in] counts  of the points that this rank has sent to each part
+ */
 void TriangulateParts::NumberParts(std::vector<vtkIdType>&& counts, const Progress& progress)
 {
   this->Part.Own = PointRows(this->Part.Kinds);
@@ -233,8 +259,11 @@ void TriangulateParts::CheckCount(std::size_t count) const
   }
 }
 
-/** The points that a part owns, from its files. */
-SurfacePart TriangulateParts::ReadOwn(int part) const
+/**
+ * The points that a part owns, from its files. With several ranks these are in the order in which
+ * slices came; numbers are places in the order of ids, so that is made again.
+ */
+SurfacePart TriangulateParts::ReadOwn(int part, const Progress& progress) const
 {
   SurfacePart read;
   read.Kinds = this->Part.Kinds;
@@ -243,25 +272,25 @@ SurfacePart TriangulateParts::ReadOwn(int part) const
   read.Bases = this->Part.Bases;
   read.Own = PointRows(read.Kinds);
   read.Others = PointRows(read.Kinds);
-  read.Own.Unpack(this->Crew->At(part, OwnPoints).Copy());
+  read.Own.Unpack(this->Crew->At(part, OwnPoints).Copy(progress));
   SortOwn(read);
   return read;
 }
 
-/** Does a step with the points that a part owns. */
+/** Does a step with the points that a part owns. What the step changes stays only in memory. */
 template <typename Step>
-void TriangulateParts::WithOwn(int part, const Step& step)
+void TriangulateParts::WithOwn(int part, const Progress& progress, const Step& step)
 {
   if (!this->Crew->IsInFiles())
   {
     step(this->Part);
     return;
   }
-  SurfacePart read = this->ReadOwn(part);
+  SurfacePart read = this->ReadOwn(part, progress);
   step(read);
 }
 
-/** Writes what the cell of a part settles, in files. */
+/** Writes what the cell of a part settles, in files; corners as they are, without a copy. */
 void TriangulateParts::KeepSettled(int part, const Triangulation& settled)
 {
   if (this->Crew->IsInFiles())
@@ -277,10 +306,13 @@ void TriangulateParts::KeepSettled(int part, const Triangulation& settled)
   }
 }
 
-/** A whole part, from its files, without a limit of edges. */
+/**
+ * A whole part, from its files: own points, triangles of its cell and of seams, and the corners that
+ * these have in other parts; without a limit of edges.
+ */
 SurfacePart TriangulateParts::ReadWhole(int part, const Progress& progress) const
 {
-  SurfacePart read = this->ReadOwn(part);
+  SurfacePart read = this->ReadOwn(part, elevation::Part(progress, 0.0, 0.3));
   Report(progress, 0.3);
   bool isFirst = true;
   this->Crew->At(part, Settled).ForEach([&](const Bytes& bytes) {
@@ -315,10 +347,11 @@ SurfacePart TriangulateParts::Take(int part, const Progress& progress)
   }
   else
   {
-    taken = this->ReadWhole(part, progress);
+    taken = this->ReadWhole(part, elevation::Part(progress, 0.0, 0.7));
     if (this->Options.MaximumEdgeLength > 0.0)
     {
-      taken.Result.Triangles = WithinLimit(this->Options.MaximumEdgeLength, taken, progress);
+      taken.Result.Triangles =
+        WithinLimit(this->Options.MaximumEdgeLength, taken, elevation::Part(progress, 0.7, 1.0));
     }
     KeepCorners(taken);
   }
@@ -327,7 +360,7 @@ SurfacePart TriangulateParts::Take(int part, const Progress& progress)
   return taken;
 }
 
-/** The points of this rank, part after part. */
+/** The points of this rank, part after part, without holding more than a stretch from files. */
 PointSlices TriangulateParts::Slices() const
 {
   const int first = this->Crew->FirstOwn(), end = this->Crew->EndOwn();
@@ -358,7 +391,11 @@ DelaunayOptions TriangulateParts::OptionsWith(const Progress& progress) const
 
 // Passes 2 and 3
 
-/** All triangles, on the lattice of all points if there is one. */
+/**
+ * All triangles, on the lattice of all points if there is one. A lattice that is found may turn out
+ * not to be one, when a point lies beside it or few points fit by chance: then all is done again
+ * without it.
+ */
 void TriangulateParts::SettleOnAnyLattice()
 {
   SharedLattice lattice;
@@ -416,7 +453,11 @@ bool TriangulateParts::IsByChance(const SharedLattice& lattice) const
   return sums[1] == 0 || IsLatticeByChance(static_cast<double>(sums[0]), lattice.Tolerance());
 }
 
-/** @return false if not all points are on the lattice */
+/**
+ * Settles each cell, and joins the seams up to the whole plane. What an attempt before has left is
+ * forgotten.
+ * @return false if not all points are on the lattice; the same on all ranks
+ */
 bool TriangulateParts::SettleOn(const SharedLattice* lattice)
 {
   this->Seams.clear();
@@ -437,7 +478,7 @@ bool TriangulateParts::IsOffAnywhere(const SharedLattice* lattice) const
   return lattice && IsOnAny(this->Everybody, this->IsOffLattice);
 }
 
-/** Does a step, unless points are not on the lattice. */
+/** Does a step, unless a point of this rank is known not to be on the lattice. */
 template <typename Step>
 void TriangulateParts::WatchLattice(const Step& step)
 {
@@ -454,10 +495,15 @@ void TriangulateParts::WatchLattice(const Step& step)
   }
 }
 
-/** Settles what the cell of a part can, and then the larger cells that it completes on this rank. */
+/**
+ * Settles what the cell of a part can, and then the larger cells that it completes on this rank: those
+ * that end with this part, from the smallest. So parts in their order go through the tree depth first,
+ * and this rank has no more seams at a time than the tree has levels.
+ */
 void TriangulateParts::SettlePart(int part, const SharedLattice* lattice, const Progress& progress)
 {
-  this->WithOwn(part, [&](SurfacePart& own) {
+  const Progress reading = elevation::Part(progress, 0.0, 0.0);
+  this->WithOwn(part, reading, [&](SurfacePart& own) {
     SettledCell settled = SettleCell(ViewOf(own.Own), this->Part.Bases[part],
       this->Plane->CellOf(part, part + 1), this->OptionsWith(progress), lattice);
     own.Result = std::move(settled.Result);
@@ -492,7 +538,10 @@ void TriangulateParts::SettleNode(
     this->OfSeams, lattice);
 }
 
-/** The same for all cells that several ranks hold. */
+/**
+ * The same for all cells that several ranks hold, level by level. At each level the seam of the upper
+ * half goes to the part that has that of the lower one.
+ */
 bool TriangulateParts::JoinSeams(const SharedLattice* lattice)
 {
   const int count = this->Crew->CountOfParts(), levels = Node::Levels(count);
@@ -534,6 +583,7 @@ bool TriangulateParts::JoinSeams(const SharedLattice* lattice)
 
 // Passes 4 and 5
 
+/** A triangle that seams have settled belongs to the part of its lowest corner. */
 void TriangulateParts::SendTriangles()
 {
   this->Everybody.Agree([&]() {
@@ -557,7 +607,11 @@ void TriangulateParts::SendTriangles()
   }
 }
 
-/** Corners that are points of other parts come with their values. */
+/**
+ * Corners that are points of other parts come with their values: each part asks those that own them
+ * by places, and gets rows in the order of numbers, as parts answer in their order. A part in files is
+ * read for this once, if any other asks it.
+ */
 void TriangulateParts::FetchOthers()
 {
   this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
@@ -581,13 +635,12 @@ void TriangulateParts::FetchOthers()
   });
   this->Crew->Deliver();
   this->Crew->ForEach(this->Fraction(0.9, 0.9), [this](int part, const Progress& progress) {
-    Report(progress, 0.0);
     const Inbox& requests = this->Crew->At(part, Requests);
     if (requests.IsEmpty())
     {
       return;
     }
-    this->WithOwn(part, [&](const SurfacePart& own) {
+    this->WithOwn(part, progress, [&](const SurfacePart& own) {
       requests.ForEach([&](const Bytes& bytes) {
         const char* from = bytes.data();
         vtkIdType asking = 0;
@@ -623,7 +676,10 @@ GlobalTriangle TriangulateParts::CornersOf(std::size_t triangle) const
   return { first + c[0], first + c[1], first + c[2] };
 }
 
-/** Makes the pieces of lines edges, in memory. */
+/**
+ * Makes the pieces of lines edges, in memory. The triangles that change may get corners that this part
+ * has not had, so all others are fetched again.
+ */
 void TriangulateParts::Recover(const LinesOfRanks& lines)
 {
   const int first = this->Crew->FirstOwn(), end = this->Crew->EndOwn();
@@ -653,7 +709,7 @@ void TriangulateParts::Recover(const LinesOfRanks& lines)
   this->FetchOthers();
 }
 
-/** The corners of the triangles of the part in memory as places of its points. */
+/** The corners of all triangles of the part in memory as places of its points, own ones first. */
 void TriangulateParts::PlaceCorners()
 {
   this->Everybody.Agree([&]() {
@@ -682,7 +738,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   std::vector<vtkIdType> sums(2, 0);          // triangles, and vertices without one
   this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
     const auto measure = [&](const SurfacePart& whole) {
-      kept = WithinLimit(this->Options.MaximumEdgeLength, whole, ofPart);
+      kept = WithinLimit(this->Options.MaximumEdgeLength, whole, elevation::Part(ofPart, 0.5, 1.0));
       const std::size_t ownCount = whole.Own.Count();
       std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
       for (const Index corner : kept)
@@ -718,7 +774,8 @@ void TriangulateParts::LimitEdges(const Progress& progress)
       sums[0] += static_cast<vtkIdType>(kept.size() / 3);
       sums[1] += std::count(areMissing.begin(), areMissing.begin() + ownCount, char(1));
     };
-    this->Crew->IsInFiles() ? measure(this->ReadWhole(part, ofPart)) : measure(this->Part);
+    this->Crew->IsInFiles() ? measure(this->ReadWhole(part, elevation::Part(ofPart, 0.0, 0.5)))
+                            : measure(this->Part);
   });
   this->Crew->Deliver();
   this->Crew->ForEach(Progress(), [&](int part, const Progress&) {

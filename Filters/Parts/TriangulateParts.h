@@ -119,10 +119,10 @@ private:
   void NumberParts(std::vector<vtkIdType>&& counts, const Progress& progress);
   void CheckCounts() const;
   void CheckCount(std::size_t count) const;
-  SurfacePart ReadOwn(int part) const;
+  SurfacePart ReadOwn(int part, const Progress& progress) const;
   SurfacePart ReadWhole(int part, const Progress& progress) const;
   template <typename Step>
-  void WithOwn(int part, const Step& step);
+  void WithOwn(int part, const Progress& progress, const Step& step);
   void KeepSettled(int part, const Triangulation& settled);
   PointSlices Slices() const;
 
