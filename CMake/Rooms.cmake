@@ -124,9 +124,11 @@ set(es_Parts
   LatticeOfRanks
   NearParts
   PackedData
+  PartStore
   PointRows
   PointSource
   Ranks
+  SettleParts
   SpoolFile
   SpreadBlocks
   SurfacePart

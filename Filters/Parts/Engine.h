@@ -38,8 +38,10 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace elevation
@@ -122,6 +124,35 @@ private:
   std::vector<std::vector<Bytes>> Outbox; // of each rank
   std::vector<std::vector<Message>> Labels;
 };
+
+/** All values in a box, to which they have been sent as lists of them. */
+template <typename Value>
+std::vector<Value> ValuesIn(const Inbox& box)
+{
+  std::vector<Value> values;
+  box.ForEach([&values](const Bytes& bytes) {
+    const char* from = bytes.data();
+    const std::size_t before = values.size(), count = bytes.size() / sizeof(Value);
+    values.resize(before + count);
+    TakeFrom(from, values.data() + before, count);
+  });
+  return values;
+}
+
+/** Values for parts, in the order of their numbers. */
+template <typename Value>
+using ValuesForParts = std::map<int, std::vector<Value>>;
+
+template <typename Value>
+void SendTo(Engine& engine, int box, const ValuesForParts<Value>& values)
+{
+  for (const auto& ofPart : values)
+  {
+    Bytes bytes;
+    AppendTo(bytes, ofPart.second);
+    engine.Send(ofPart.first, box, std::move(bytes));
+  }
+}
 
 } // namespace elevation
 

@@ -33,12 +33,12 @@
 
 #include "Engine.h"
 #include "Kernel/Cells/Cells.h"
+#include "PartStore.h"
 #include "PointSource.h"
 #include "SurfacePart.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -52,7 +52,6 @@ namespace elevation
 {
 struct ChangedTriangle;
 struct LinesOfRanks;
-struct PointSlices;
 
 class TriangulateParts
 {
@@ -102,43 +101,21 @@ public:
   };
   const Effort& Own() const { return this->Work; }
 
-  const std::set<std::string>& LeftOut() const { return this->Part.LeftOut; } ///< as of SurfacePart
+  const std::set<std::string>& LeftOut() const
+  {
+    return this->Store->Part.LeftOut;
+  } ///< as of SurfacePart
 
   /** A part of this rank, with its unused points. From memory it can be taken once. */
   SurfacePart Take(int part, const Progress& progress);
 
 private:
-  struct Node;
-
   Progress Fraction(double begin, double end) const
   {
-    return elevation::Part(this->Options.Monitor, begin, end);
+    return Part(this->Options.Monitor, begin, end);
   }
-  DelaunayOptions OptionsWith(const Progress& progress) const;
-  vtkIdType CountOf(int part) const { return this->Part.Bases[part + 1] - this->Part.Bases[part]; }
-  void NumberParts(std::vector<vtkIdType>&& counts, const Progress& progress);
-  void CheckCounts() const;
-  void CheckCount(std::size_t count) const;
-  SurfacePart ReadOwn(int part, const Progress& progress) const;
-  SurfacePart ReadWhole(int part, const Progress& progress) const;
-  template <typename Step>
-  void WithOwn(int part, const Progress& progress, const Step& step);
-  void KeepSettled(int part, const Triangulation& settled);
-  PointSlices Slices() const;
-
-  void SettleOnAnyLattice();
-  void SettleOnGiven(const Progress& progress);
-  bool SettleOn(const SharedLattice* lattice);
-  bool IsByChance(const SharedLattice& lattice) const;
-  bool IsOffAnywhere(const SharedLattice* lattice) const;
-  template <typename Step>
-  void WatchLattice(const Step& step);
-  void SettlePart(int part, const SharedLattice* lattice, const Progress& progress);
-  void SettleNode(
-    const Node& node, const Piece& other, const SharedLattice* lattice, const Progress& progress);
-  bool JoinSeams(const SharedLattice* lattice);
-
-  void SendTriangles();
+  std::vector<GlobalTriangle> Settle();
+  void SendTriangles(std::vector<GlobalTriangle>&& ofSeams);
   void FetchOthers();
   GlobalTriangle CornersOf(std::size_t triangle) const;
   void Recover(const LinesOfRanks& lines);
@@ -150,13 +127,11 @@ private:
   PointSource Source;
   DelaunayOptions Options;
   std::unique_ptr<Engine> Crew;
+  std::unique_ptr<PartStore> Store;
   std::unique_ptr<Cuts> Plane;
-  SurfacePart Part;           // of this rank, in memory; else what all parts have in common
-  std::map<int, Piece> Seams; // of nodes, by their first parts
-  std::vector<GlobalTriangle> OfSeams;   // that this rank has settled for all
-  std::vector<ChangedTriangle> Changed;  // of the part in memory, by constraints
-  std::vector<GlobalTriangle> Triangles; // of the part in memory, from seams
-  bool IsOffLattice = false;             // a point of this rank is
+  // Of the part in memory:
+  std::vector<GlobalTriangle> Triangles; // from seams
+  std::vector<ChangedTriangle> Changed;  // of its cell, by constraints
   Totals Total;
   Effort Work;
 };
