@@ -12,8 +12,8 @@ namespace elevation
 
 const std::vector<std::string>& NamesOfBoxes()
 {
-  static const std::vector<std::string> names = { "points", "triangles", "seams", "corners", "",
-    "" };
+  static const std::vector<std::string> names = { "points", "triangles", "seam-points", "seams",
+    "corners", "", "" };
   return names;
 }
 
@@ -75,21 +75,61 @@ SurfacePart PartStore::ReadOwn(int part, const Progress& progress) const
 }
 
 // Corners are written as they are, without a copy.
-void PartStore::KeepSettled(int part, Triangulation&& settled)
+void PartStore::KeepSettled(int part, const SurfacePart& own, SettledCell& settled)
 {
+  Triangulation& result = settled.Result;
   if (!this->Crew.IsInFiles())
   {
-    this->Part.Result = std::move(settled);
+    this->Part.Result = std::move(result);
     return;
   }
   Bytes unused;
-  const Index counts[] = { settled.NumberOfDuplicates, settled.NumberOfNotFinite };
+  const Index counts[] = { result.NumberOfDuplicates, result.NumberOfNotFinite };
   AppendTo(unused, counts, 2);
-  AppendList(unused, settled.UnusedPoints);
-  AppendList(unused, settled.UnusedReasons);
+  AppendList(unused, result.UnusedPoints);
+  AppendList(unused, result.UnusedReasons);
   Inbox& box = this->Crew.At(part, Settled);
+  box.Clear(); // of an attempt before
   box.Append(std::move(unused));
-  box.Append(settled.Triangles.data(), settled.Triangles.size() * sizeof(Index));
+  box.Append(result.Triangles.data(), result.Triangles.size() * sizeof(Index));
+  // A corner of another part's triangle is on the seam of its own (Pieces.h).
+  std::vector<vtkIdType> places(settled.Seam.Ids.begin(), settled.Seam.Ids.end());
+  std::sort(places.begin(), places.end());
+  const GlobalId first = this->FirstOf(part);
+  std::for_each(places.begin(), places.end(), [first](vtkIdType& number) { number -= first; });
+  Inbox& onSeam = this->Crew.At(part, OnSeam);
+  onSeam.Clear();
+  Bytes list;
+  AppendList(list, places);
+  onSeam.Append(std::move(list));
+  onSeam.Append(own.Own.Pack(places));
+}
+
+PartStore::RowsForOthers PartStore::ReadForOthers(int part) const
+{
+  RowsForOthers read;
+  if (this->Crew.IsInFiles())
+  {
+    const std::vector<Bytes> stretches = this->Crew.At(part, OnSeam).Copy();
+    const char* from = stretches.at(0).data();
+    TakeList(from, read.Places);
+    read.OnSeam = PointRows(this->Part.Kinds);
+    read.OnSeam.Unpack(stretches.data() + 1, stretches.size() - 1);
+  }
+  return read;
+}
+
+Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& places) const
+{
+  if (!this->Crew.IsInFiles())
+  {
+    return this->Part.Own.Pack(places);
+  }
+  for (vtkIdType& place : places)
+  {
+    place = std::lower_bound(rows.Places.begin(), rows.Places.end(), place) - rows.Places.begin();
+  }
+  return rows.OnSeam.Pack(places);
 }
 
 SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const

@@ -13,9 +13,11 @@
  * whenever it is asked for. The boxes:
  *
  *   box        what is in it                          written by           read by
- *   OwnPoints  rows of points                         pass 1               2, 5, 6, for output
+ *   OwnPoints  rows of points                         pass 1               2, 6, for output
  *   Settled    unused points; then corners, as        pass 2, in files     6, for output
  *              places among the own points
+ *   OnSeam     places of the seam's points, and       pass 2, in files     5
+ *              their rows: others may ask for these
  *   FromSeams  in pass 3, the seam of the other half  the other half       3
  *              of a cell; then triangles, by numbers  pass 4               5, 6, for output
  *   Requests   the part that asks, and places         pass 5               5, 6
@@ -43,6 +45,7 @@ enum BoxOfPart
 {
   OwnPoints,
   Settled,
+  OnSeam,
   FromSeams,
   Corners,
   Requests,
@@ -96,8 +99,18 @@ public:
     step(read);
   }
 
-  /** Keeps what the cell of a part settles. */
-  void KeepSettled(int part, Triangulation&& settled);
+  /** Keeps what the cell of a part settles, and the own points on its seam. */
+  void KeepSettled(int part, const SurfacePart& own, SettledCell& settled);
+
+  /** What other parts may ask for; in memory, nothing is read. */
+  struct RowsForOthers
+  {
+    PointRows OnSeam;              ///< from files
+    std::vector<vtkIdType> Places; ///< of these, increasing
+  };
+  RowsForOthers ReadForOthers(int part) const;
+  /** Packs own points that another part asks for: in files, points on the seam. */
+  Bytes PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& places) const;
 
   /**
    * A whole part, from files: own points, triangles of its cell and of seams, and the corners that

@@ -192,7 +192,6 @@ bool Settling::SettleOn(const SharedLattice* lattice)
   this->Found = SettledParts();
   this->IsOffLattice = false;
   this->Crew.ForEach(this->Fraction(0.2, 0.78), [&](int part, const Progress& progress) {
-    this->Crew.At(part, Settled).Clear();
     this->WatchLattice([&]() { this->SettlePart(part, lattice, progress); });
   });
   return !this->IsOffAnywhere(lattice) && this->JoinSeams(lattice);
@@ -234,8 +233,8 @@ void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress
     this->Found.Duplicates += settled.Result.NumberOfDuplicates;
     this->Found.NotFinite += settled.Result.NumberOfNotFinite;
     this->Found.SeamPoints += settled.Seam.Count();
+    this->Store.KeepSettled(part, own, settled);
     this->Seams[part] = std::move(settled.Seam);
-    this->Store.KeepSettled(part, std::move(settled.Result));
   });
   const int count = this->Crew.CountOfParts();
   const Progress last = Part(progress, 1.0, 1.0);

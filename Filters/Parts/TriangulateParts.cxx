@@ -135,8 +135,7 @@ void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
 
 /**
  * Corners that are points of other parts come with their values: each part asks those that own them
- * by places, and gets rows in the order of numbers, as parts answer in their order. A part in files is
- * read for this once, if any other asks it.
+ * by places, and gets rows in the order of numbers, as parts answer in their order.
  */
 void TriangulateParts::FetchOthers()
 {
@@ -161,20 +160,21 @@ void TriangulateParts::FetchOthers()
   });
   this->Crew->Deliver();
   this->Crew->ForEach(this->Fraction(0.9, 0.9), [this](int part, const Progress& progress) {
+    Report(progress, 0.0);
     const Inbox& requests = this->Crew->At(part, Requests);
     if (requests.IsEmpty())
     {
       return;
     }
-    this->Store->WithOwn(part, progress, [&](const SurfacePart& own) {
-      requests.ForEach([&](const Bytes& bytes) {
-        const char* from = bytes.data();
-        vtkIdType asking = 0;
-        std::vector<vtkIdType> places;
-        TakeFrom(from, &asking, 1);
-        TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
-        this->Crew->Send(static_cast<int>(asking), Corners, own.Own.Pack(places));
-      });
+    const PartStore::RowsForOthers rows = this->Store->ReadForOthers(part);
+    requests.ForEach([&](const Bytes& bytes) {
+      const char* from = bytes.data();
+      vtkIdType asking = 0;
+      std::vector<vtkIdType> places;
+      TakeFrom(from, &asking, 1);
+      TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
+      this->Crew->Send(
+        static_cast<int>(asking), Corners, this->Store->PackForOthers(rows, std::move(places)));
     });
   });
   this->Crew->Deliver();
