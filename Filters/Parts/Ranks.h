@@ -58,6 +58,7 @@ public:
   /**
    * Does a step in which no rank waits for another. Then all of them know how it went; within a
    * tenth of a second after a failure, where steps that take long report to Watched().
+   * With one rank, what the step throws goes on as it is.
    * @throws Error on all ranks where the step fails on any: the error of the first of these
    * @throws Aborted on all ranks where the step is aborted on any
    */

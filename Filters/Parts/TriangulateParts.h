@@ -25,8 +25,8 @@
  * of some multiple of sqrt(m) of the m points of a part: those of seams, and those at which its
  * triangles meet those of other parts. There are log2(ranks) rounds of seams. Memory for files: what
  * the fullest part takes, and the seams. Files: 32 bytes a point and the values of its arrays, twice
- * in pass 1, and 24 for its triangles; they are read twice, once more with a limit of edges,
- * and again whenever a part is asked for.
+ * in pass 1, and 24 for its triangles. They are read up to four times while a lattice is looked for,
+ * once in pass 2, once more with a limit of edges, and again whenever a part is asked for.
  */
 #ifndef TriangulateParts_h
 #define TriangulateParts_h
