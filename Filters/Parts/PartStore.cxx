@@ -17,13 +17,14 @@ const std::vector<std::string>& NamesOfBoxes()
   return names;
 }
 
+// In memory, points that came twice go; so counts are known only when all are there. In files none can
+// come twice, as ids are places.
 void PartStore::Number(std::vector<vtkIdType>&& counts, const Progress& progress)
 {
   this->Part.Own = PointRows(this->Part.Kinds);
   this->Part.Others = PointRows(this->Part.Kinds);
   if (!this->Crew.IsInFiles())
   {
-    // Points that came twice count once.
     std::fill(counts.begin(), counts.end(), 0);
     this->Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
       Report(ofPart, 0.0);
@@ -105,6 +106,7 @@ void PartStore::KeepSettled(int part, const SurfacePart& own, SettledCell& settl
   onSeam.Append(own.Own.Pack(places));
 }
 
+// The box has two stretches, as written above.
 PartStore::RowsForOthers PartStore::ReadForOthers(int part) const
 {
   RowsForOthers read;

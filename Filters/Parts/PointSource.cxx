@@ -144,6 +144,7 @@ void PointSource::TakeKinds(vtkPointSet* points)
     throw DifferentArrays();
   }
   this->Kinds = std::move(kinds);
+  // Without values, for CommonArrays() on all ranks
   this->Arrays->CopyAllOn();
   this->Arrays->CopyAllocate(points->GetPointData(), 1);
   if (points->GetPoints()->GetDataType() != VTK_FLOAT)
@@ -276,7 +277,10 @@ void PointSource::ReadInput(
   }
 }
 
-/** A sample of points that come at once: one of each stretch of some. */
+/**
+ * A sample of points that come at once: one of each stretch of some, at a place that follows no rule, as
+ * rows of a grid may be as long as a stretch.
+ */
 std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
 {
   std::vector<vtkIdType> all = { static_cast<vtkIdType>(this->Kept.size()) };
@@ -304,7 +308,8 @@ Cuts PointSource::CutPlane(int parts)
   std::vector<double> coordinates;
   if (this->IsInFile())
   {
-    // All ranks choose by the same mask.
+    // All ranks choose by the same mask, that of the one with most points: each point of all ranks is
+    // in the sample as likely as any other.
     std::vector<double> mask = { static_cast<double>(this->SampleMask) };
     this->All.Maximum(mask);
     this->SampleMask = static_cast<std::uint64_t>(mask[0]);
@@ -339,6 +344,7 @@ Cuts PointSource::CutPlane(int parts)
 void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
   std::vector<vtkIdType>& counts)
 {
+  // First the parts alone, so that the places of each take no more memory than they need.
   const int firstOwn = engine.FirstOwn(), ownCount = engine.EndOwn() - firstOwn;
   std::vector<int> partOf(this->Kept.size());
   std::vector<std::size_t> sizes(counts.size(), 0);
@@ -397,6 +403,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
     this->All.Agree([&]() {
       Progress ofSlice = this->All.Watched(sending);
       double begin = 0.0, end = 1.0;
+      // A rank whose slices are all sent sends nothing, but delivers.
       if (reader && !reader->IsAtEnd())
       {
         const Bytes stretch = reader->Next();
@@ -407,6 +414,7 @@ Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, 
         end = begin + static_cast<double>(this->Rows.Count()) / all;
         this->Kept.resize(this->Rows.Count());
         std::iota(this->Kept.begin(), this->Kept.end(), vtkIdType(0));
+        // In the file, ids are places among the points of this rank.
         for (vtkIdType& id : this->Rows.Ids)
         {
           id += this->First;

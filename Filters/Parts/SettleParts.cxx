@@ -197,6 +197,7 @@ bool Settling::SettleOn(const SharedLattice* lattice)
   return !this->IsOffAnywhere(lattice) && this->JoinSeams(lattice);
 }
 
+/** Whether all ranks have to begin again; without a lattice, none asks the others. */
 bool Settling::IsOffAnywhere(const SharedLattice* lattice) const
 {
   return lattice && IsOnAny(this->All, this->IsOffLattice);
@@ -284,6 +285,7 @@ bool Settling::JoinSeams(const SharedLattice* lattice)
     {
       this->Crew.Deliver();
     }
+    // Of a level, this rank works on one cell at most: the one that goes on beyond its last part.
     const double step = 0.12 / levels, begin = 0.78 + step * (levels - 1 - level);
     this->Crew.ForEach(
       this->Fraction(begin, begin + step), [&](int part, const Progress& progress) {

@@ -1,5 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
 // SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other lies in
+ * the boxes of parts (PartStore.h). A part in memory is not packed in between: its triangles from seams
+ * are listed once, and its corners are placed as soon as all points are there, so that lines can be
+ * recovered and long edges measured without reading anything.
+ */
 #include "TriangulateParts.h"
 
 #include "ConstraintsOfRanks.h"
@@ -47,6 +53,7 @@ TriangulateParts::TriangulateParts(const Ranks& ranks, const std::string& folder
 
 TriangulateParts::~TriangulateParts() = default;
 
+// Points stay with their source until the plane is cut.
 void TriangulateParts::Add(vtkPointSet* points, const Progress& progress)
 {
   this->Source.Add(points, progress);
@@ -56,12 +63,14 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
   const DelaunayOptions& options, std::vector<std::string>& warnings)
 {
   this->Options = options;
+  // Pass 1
   this->Crew = std::make_unique<Engine>(this->Everybody, ownParts, NamesOfBoxes(), this->Folder);
   this->Store = std::make_unique<PartStore>(*this->Crew);
   std::vector<vtkIdType> counts;
   this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
     *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
   this->Store->Number(std::move(counts), this->Fraction(0.1, 0.15));
+  // Lines add points, which belong to the parts of their cells, and keep to no lattice.
   LinesOfRanks lines;
   if (constraints)
   {
@@ -72,8 +81,10 @@ void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
     this->Work.AddedPoints = lines.NumberOfOwnPoints;
   }
   this->Store->CheckCounts();
+  // Passes 2 to 5
   this->SendTriangles(this->Settle());
   this->FetchOthers();
+  // Pass 6
   if (constraints)
   {
     this->Recover(lines);
@@ -127,8 +138,8 @@ void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
     this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
       this->Triangles = ValuesIn<GlobalTriangle>(this->Crew->At(part, FromSeams));
       this->Crew->At(part, FromSeams).Clear();
-      this->Store->Part.OtherNumbers = ListOthers(
-        this->Triangles, this->Store->Part.Bases[part], this->Store->Part.Bases[part + 1]);
+      this->Store->Part.OtherNumbers =
+        ListOthers(this->Triangles, this->Store->FirstOf(part), this->Store->EndOf(part));
     });
   }
 }
@@ -139,12 +150,13 @@ void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
  */
 void TriangulateParts::FetchOthers()
 {
+  // Each part asks.
   this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
     this->Crew->At(part, Requests).Clear();
     const std::vector<GlobalId> numbers = !this->Crew->IsInFiles()
       ? this->Store->Part.OtherNumbers
       : ListOthers(ValuesIn<GlobalTriangle>(this->Crew->At(part, FromSeams)),
-          this->Store->Part.Bases[part], this->Store->Part.Bases[part + 1]);
+          this->Store->FirstOf(part), this->Store->EndOf(part));
     ValuesForParts<vtkIdType> places;
     for (const GlobalId number : numbers)
     {
@@ -159,6 +171,7 @@ void TriangulateParts::FetchOthers()
     SendTo(*this->Crew, Requests, places);
   });
   this->Crew->Deliver();
+  // Each is answered by rows. What has been asked stays known, for the limit of edges.
   this->Crew->ForEach(this->Fraction(0.9, 0.9), [this](int part, const Progress& progress) {
     Report(progress, 0.0);
     const Inbox& requests = this->Crew->At(part, Requests);
@@ -187,8 +200,6 @@ void TriangulateParts::FetchOthers()
   }
 }
 
-// Pass 6
-
 /** The numbers of the corners of a triangle of the part in memory: those of its cell come first. */
 GlobalTriangle TriangulateParts::CornersOf(std::size_t triangle) const
 {
@@ -197,7 +208,7 @@ GlobalTriangle TriangulateParts::CornersOf(std::size_t triangle) const
   {
     return this->Triangles[triangle - ofCell];
   }
-  const GlobalId first = this->Store->Part.Bases[this->Crew->FirstOwn()];
+  const GlobalId first = this->Store->FirstOf(this->Crew->FirstOwn());
   const Index* const c = this->Store->Part.Result.Triangles.data() + 3 * triangle;
   return { first + c[0], first + c[1], first + c[2] };
 }
@@ -241,7 +252,7 @@ void TriangulateParts::Recover(const LinesOfRanks& lines)
 void TriangulateParts::PlaceCorners()
 {
   this->Everybody.Agree([&]() {
-    const GlobalId first = this->Store->Part.Bases[this->Crew->FirstOwn()];
+    const GlobalId first = this->Store->FirstOf(this->Crew->FirstOwn());
     for (const ChangedTriangle& changed : this->Changed)
     {
       std::transform(changed.Corners.begin(), changed.Corners.end(),
@@ -278,6 +289,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
       {
         areMissing[unused] = 0;
       }
+      // Other parts' points with a triangle here
       ValuesForParts<vtkIdType> covered;
       for (std::size_t i = 0; i < whole.OtherNumbers.size(); ++i)
       {
@@ -288,6 +300,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
         }
       }
       SendTo(*this->Crew, Covered, covered);
+      // Own points that may still have one elsewhere
       this->Crew->At(part, Requests).ForEach([&](const Bytes& bytes) {
         const char* from = bytes.data() + sizeof(vtkIdType); // beyond the part that asks
         std::vector<vtkIdType> places;
@@ -330,6 +343,7 @@ void TriangulateParts::LimitEdges(const Progress& progress)
   }
 }
 
+// In files the limit of edges is applied again, which is faster than writing what it leaves.
 SurfacePart TriangulateParts::Take(int part, const Progress& progress)
 {
   SurfacePart taken;
