@@ -115,12 +115,11 @@ set(es_headers_Adapt
 set(es_Parts
   BorderOfParts
   BoundaryZone
-  CellByCell
   CommonPoints
   ConstraintsOfRanks
-  DistributedDelaunay
   DistributedFill
   DistributedTrim
+  Engine
   FailureNotes
   FilledPart
   FilledPieces
@@ -130,14 +129,17 @@ set(es_Parts
   Joining
   LatticeOfRanks
   PackedData
+  PartStore
   PointKeys
-  PointOwners
   PointRows
+  PointSource
   Ranks
+  SettleParts
   SharedHoles
   SpoolFile
   SpreadBlocks
   SurfacePart
+  TriangulateParts
   TrimOfPart
   TrimmedPieces)
 set(es_headers_Parts

@@ -189,36 +189,37 @@ elevation::ConstrainedTriangulation TriangulateSpread(
 {
   elevation::CheckLimits(options);
   options.Monitor = block.Progress;
-  const elevation::PointsOfRank points{ block.Input, !block.Outputs.empty() };
-  elevation::DistributedSurface surface =
-    elevation::TriangulateOnRanks(ranks, points, block.Second, options, block.Warnings);
-  elevation::WarnOfLeft("point", surface.Part.LeftOut, block.Warnings);
-  if (surface.NumberOfTriangles == 0)
+  elevation::TriangulateParts parts(ranks);
+  parts.Add(block.Input, options.Monitor);
+  parts.Triangulate(block.Outputs.empty() ? 0 : 1, block.Second, options, block.Warnings);
+  const elevation::TriangulateParts::Totals& all = parts.All();
+  elevation::WarnOfLeft("point", parts.LeftOut(), block.Warnings);
+  if (all.Settled == 0)
   {
     block.Warnings.push_back(
-      elevation::MakeMessage<elevation::sentences::NoTriangle>(surface.NumberOfPoints));
+      elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points));
   }
-  else if (surface.Effect.AreMostMissing())
+  else if (all.Effect.AreMostMissing())
   {
-    block.Warnings.push_back(elevation::AdviceOnLimit(options.MaximumEdgeLength, surface.Effect));
+    block.Warnings.push_back(elevation::AdviceOnLimit(options.MaximumEdgeLength, all.Effect));
   }
   elevation::ConstrainedTriangulation counts;
-  counts.NumberOfCrossings = surface.NumberOfCrossings;
-  counts.Added.resize(surface.NumberOfAddedPoints);
+  counts.NumberOfCrossings = all.Crossings;
+  counts.Added.resize(parts.Own().AddedPoints);
   if (!block.Outputs.empty())
   {
     vtkPolyData* const output = block.Outputs.front();
-    elevation::PassPart(
-      surface.Part, elevation::ResolveNumberOfThreads(options.NumberOfThreads), output);
+    elevation::SurfacePart part = parts.Take(parts.FirstOwn(), options.Monitor);
+    elevation::PassPart(part, elevation::ResolveNumberOfThreads(options.NumberOfThreads), output);
     if (block.Input)
     {
       output->GetFieldData()->PassData(block.Input->GetFieldData());
     }
-    counts.Result = std::move(surface.Part.Result);
+    counts.Result = std::move(part.Result);
     elevation::AddReport(counts, Part(options.Monitor, 1.0, 1.0), output->GetFieldData());
-    elevation::AddWork(ranks.GetTraffic(), surface, output->GetFieldData());
+    elevation::AddWork(ranks.GetTraffic(), parts.Own(), output->GetFieldData());
   }
-  counts.NumberOfCrossings = ranks.Own() == 0 ? surface.NumberOfCrossings : 0; // once
+  counts.NumberOfCrossings = ranks.Own() == 0 ? all.Crossings : 0; // once
   return counts;
 }
 } // namespace

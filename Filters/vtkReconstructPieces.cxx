@@ -135,7 +135,7 @@ bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
       elevation::Error(points ? "Folder is not set." : "There is no data set of points."));
     return false;
   }
-  if (this->Work && this->Work->CountOfCells() > 0)
+  if (this->Work && this->Work->CountOfParts() > 0)
   {
     this->ReportError(
       elevation::Error("Points cannot be added after the first piece; that needs Reset()."));
@@ -144,7 +144,8 @@ bool vtkReconstructPieces::AddPoints(vtkPointSet* points)
   return this->Try([this, points]() {
     if (!this->Work)
     {
-      this->Work = std::make_unique<elevation::CellByCell>(this->Folder);
+      this->Alone = std::make_unique<elevation::Ranks>();
+      this->Work = std::make_unique<elevation::TriangulateParts>(*this->Alone, this->Folder);
     }
     this->Work->Add(points, elevation::ProgressOf(this));
     this->Modified();
@@ -156,13 +157,14 @@ void vtkReconstructPieces::Reset()
   this->Filled.reset();
   this->Trimmed.reset();
   this->Work.reset();
+  this->Alone.reset();
   this->HasFailed = false;
   this->Modified();
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfPoints()
 {
-  return this->Work ? this->Work->All().Points : 0;
+  return this->Work ? this->Work->CountOfPoints() : 0;
 }
 
 vtkIdType vtkReconstructPieces::GetNumberOfTriangles()
@@ -265,7 +267,8 @@ void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progr
   elevation::DelaunayOptions options = elevation::OptionsOf(this->Delaunay);
   options.Monitor = elevation::Part(progress, 0.0, trimming);
   this->SetProgressText("triangulating");
-  this->Work->Triangulate(count, options);
+  std::vector<elevation::Message> warnings; // there are no constraints
+  this->Work->Triangulate(count, nullptr, options, warnings);
   this->WarnOfMissing();
   if (this->Work->All().Triangles == 0)
   {
@@ -284,18 +287,15 @@ void vtkReconstructPieces::WorkOnAll(int count, const elevation::Progress& progr
 /** Tells why there is no triangle, or why most points are without one. */
 void vtkReconstructPieces::WarnOfMissing()
 {
-  const elevation::CellByCell::Totals& all = this->Work->All();
-  elevation::EffectOfLimit effect;
-  effect.Vertices = all.Points - all.Duplicates - all.NotFinite;
-  effect.Missing = all.Missing;
+  const elevation::TriangulateParts::Totals& all = this->Work->All();
   std::vector<elevation::Message> warnings;
   if (all.Settled == 0)
   {
     warnings = { elevation::MakeMessage<elevation::sentences::NoTriangle>(all.Points) };
   }
-  else if (effect.AreMostMissing())
+  else if (all.Effect.AreMostMissing())
   {
-    warnings = { elevation::AdviceOnLimit(this->Delaunay->GetMaximumEdgeLength(), effect) };
+    warnings = { elevation::AdviceOnLimit(this->Delaunay->GetMaximumEdgeLength(), all.Effect) };
   }
   elevation::ReportMessages(this, {}, warnings, this->Messages);
 }
@@ -331,7 +331,7 @@ void vtkReconstructPieces::FillAll(int count, const elevation::Progress& progres
 vtkSmartPointer<vtkPolyData> vtkReconstructPieces::MakePiece(
   int piece, const elevation::Progress& progress)
 {
-  elevation::SurfacePart part = this->Work->PieceAt(piece, progress);
+  elevation::SurfacePart part = this->Work->Take(piece, progress);
   if (part.Own.Count() == 0)
   {
     return nullptr;
@@ -384,7 +384,7 @@ int vtkReconstructPieces::RequestData(
   {
     return 1; // no points
   }
-  const int cells = this->Work ? this->Work->CountOfCells() : 0;
+  const int cells = this->Work ? this->Work->CountOfParts() : 0;
   if (cells > 0 && cells != count)
   {
     this->ReportError(elevation::Error(
@@ -413,7 +413,7 @@ int vtkReconstructPieces::RequestData(
   }
   const auto work = [this, piece, count, output, rims]() {
     const elevation::Progress progress = elevation::ProgressOf(this);
-    if (this->Work->CountOfCells() != count)
+    if (this->Work->CountOfParts() != count)
     {
       this->TimeOfWork = this->TimeOfProperties();
       this->WorkOnAll(count, elevation::Part(progress, 0.0, 0.9));

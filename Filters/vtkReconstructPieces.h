@@ -67,8 +67,9 @@
 
 namespace elevation
 {
-class CellByCell;
 class FilledPieces;
+class Ranks;
+class TriangulateParts;
 class TrimmedPieces;
 using Progress = std::function<bool(double)>;
 } // namespace elevation
@@ -194,7 +195,8 @@ private:
   vtkNew<vtkFillElevationHoles> Fill;
   bool FillHoles = false;
   double MemoryOfHole = 0.0;
-  std::unique_ptr<elevation::CellByCell> Work;
+  std::unique_ptr<elevation::Ranks> Alone;
+  std::unique_ptr<elevation::TriangulateParts> Work;
   std::unique_ptr<elevation::TrimmedPieces> Trimmed;
   std::unique_ptr<elevation::FilledPieces> Filled;
   vtkMTimeType TimeOfWork = 0;

@@ -4,8 +4,8 @@
  * @file
  * The triangles of several ranks near a boundary, trimmed on one of them. Private to the module.
  */
-#ifndef NearParts_h
-#define NearParts_h
+#ifndef BoundaryZone_h
+#define BoundaryZone_h
 
 #include "Adapt/Adapt.h"
 #include "Bytes.h"

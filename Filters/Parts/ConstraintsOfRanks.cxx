@@ -35,10 +35,10 @@ Box BoxOfPoints(const Ranks& ranks, const PointRows& own)
   return BoxOfAll(ranks, box);
 }
 
-/** A point of some rank. */
-struct PlaceOnRank
+/** A point of some part. */
+struct PlaceInPart
 {
-  int Rank;
+  int Part;
   vtkIdType Place; // in Own
 };
 
@@ -46,11 +46,12 @@ struct PlaceOnRank
 class Lines
 {
 public:
-  Lines(const Ranks& ranks, vtkPolyData* source, const PointOwners& owners,
+  Lines(const Engine& engine, vtkPolyData* source, const Cuts& plane,
     const DelaunayOptions& options, const Progress& progress, SurfacePart& part)
-    : All(ranks)
+    : Crew(engine)
+    , All(engine.All())
     , Source(source)
-    , Owners(owners)
+    , Plane(plane)
     , Options(options)
     , Monitor(progress)
     , Part(part)
@@ -71,16 +72,17 @@ private:
   }
   void PassNear(vtkPolyData* points) const;
 
+  const Engine& Crew;
   const Ranks& All;
   vtkPolyData* const Source;
-  const PointOwners& Owners;
+  const Cuts& Plane;
   const DelaunayOptions& Options;
   const Progress& Monitor;
   SurfacePart& Part;
   PointsOfDataSet SourcePoints;
   ConstraintLines Given;
   PointRows Near; // of all ranks, by their ids
-  std::vector<PlaceOnRank> PlacesOfNear, PlacesOfAdded;
+  std::vector<PlaceInPart> PlacesOfNear, PlacesOfAdded;
   LinePieces Pieces;
 };
 
@@ -104,7 +106,7 @@ void Lines::GatherNear()
       ListNearLines(ViewOf(this->Part.Own), this->Given, this->Watched(0.0, 0.5));
     for (const Index place : near)
     {
-      places.insert(places.end(), { this->All.Own(), place });
+      places.insert(places.end(), { this->Crew.FirstOwn(), place });
     }
     for (Bytes& bytes : packed)
     {
@@ -168,16 +170,16 @@ void Lines::AddPoints()
     PassPoints(near, this->Source, this->Pieces.Added, this->Watched(0.9, 1.0), extended);
     this->Part.TypeOfPoints = extended->GetPoints()->GetDataType();
     std::vector<vtkIdType> counts;
-    for (int rank = 0; rank < this->All.Count(); ++rank)
+    for (int part = 0; part < this->Crew.CountOfParts(); ++part)
     {
-      counts.push_back(this->Part.Bases[rank + 1] - this->Part.Bases[rank]);
+      counts.push_back(this->Part.Bases[part + 1] - this->Part.Bases[part]);
     }
     for (std::size_t i = 0; i < this->Pieces.Added.size(); ++i)
     {
       const AddedPoint& point = this->Pieces.Added[i];
-      const int owner = this->Owners.RankOfCell[this->Owners.Plane.OwnerOf(point.Position)];
+      const int owner = this->Plane.OwnerOf(point.Position);
       this->PlacesOfAdded.push_back({ owner, counts[owner]++ });
-      if (owner != this->All.Own())
+      if (!this->Crew.IsOwn(owner))
       {
         continue;
       }
@@ -202,8 +204,8 @@ LinesOfRanks Lines::Result() const
   LinesOfRanks lines;
   const Index near = static_cast<Index>(this->Near.Count());
   const auto numberOf = [&](Index id) {
-    const PlaceOnRank& at = id < near ? this->PlacesOfNear[id] : this->PlacesOfAdded[id - near];
-    return this->Part.Bases[at.Rank] + at.Place;
+    const PlaceInPart& at = id < near ? this->PlacesOfNear[id] : this->PlacesOfAdded[id - near];
+    return this->Part.Bases[at.Part] + at.Place;
   };
   const auto placeOf = [&](Index id) {
     return id < near ? ViewOf(this->Near).At(id) : this->Pieces.Added[id - near].Position;
@@ -218,7 +220,7 @@ LinesOfRanks Lines::Result() const
   lines.NumberOfCrossings = this->Pieces.NumberOfCrossings;
   lines.NumberOfOwnPoints =
     static_cast<Index>(std::count_if(this->PlacesOfAdded.begin(), this->PlacesOfAdded.end(),
-      [this](const PlaceOnRank& at) { return at.Rank == this->All.Own(); }));
+      [this](const PlaceInPart& at) { return this->Crew.IsOwn(at.Part); }));
   return lines;
 }
 
@@ -360,11 +362,11 @@ std::vector<Bytes> Recover(const std::vector<Bytes>& packed, const LinesOfRanks&
 }
 } // namespace
 
-LinesOfRanks AddLines(const Ranks& ranks, vtkPolyData* source, const PointOwners& owners,
+LinesOfRanks AddLines(const Engine& engine, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, SurfacePart& part,
   std::vector<Message>& warnings)
 {
-  Lines lines(ranks, source, owners, options, progress, part);
+  Lines lines(engine, source, plane, options, progress, part);
   lines.Read(warnings);
   lines.GatherNear();
   lines.Cut();

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * Constraints of points that are spread over ranks. Private to the module.
+ * Constraints of points that are spread over ranks, one part in memory for each. Private to the module.
  *
  * All ranks have all lines. Each tells the others its points that are on lines, or nearly so; with
  * these all ranks cut the lines alike, and know the points that the lines add, of which each takes
@@ -12,9 +12,9 @@
 #ifndef ConstraintsOfRanks_h
 #define ConstraintsOfRanks_h
 
+#include "Engine.h"
 #include "Kernel/Cells/Cells.h"
 #include "Kernel/Messages/Messages.h"
-#include "PointOwners.h"
 #include "Ranks.h"
 #include "SurfacePart.h"
 
@@ -42,11 +42,11 @@ struct LinesOfRanks
 /**
  * Cuts the lines, and adds their points to those of the ranks.
  * @param[in] source  the same on all ranks
- * @param[in,out] part  Own gets more points, and all ranks more numbers
+ * @param[in,out] part  of this rank: Own gets more points, and all parts more numbers
  * @param[out] warnings  as of CheckLines()
  * @throws Error on all ranks, as on one
  */
-LinesOfRanks AddLines(const Ranks& ranks, vtkPolyData* source, const PointOwners& owners,
+LinesOfRanks AddLines(const Engine& engine, vtkPolyData* source, const Cuts& plane,
   const DelaunayOptions& options, const Progress& progress, SurfacePart& part,
   std::vector<Message>& warnings);
 

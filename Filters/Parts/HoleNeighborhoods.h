@@ -4,8 +4,8 @@
  * @file
  * Which triangles of a surface a hole needs to be filled, and on which rank. Private to the module.
  */
-#ifndef SurroundingBoxes_h
-#define SurroundingBoxes_h
+#ifndef HoleNeighborhoods_h
+#define HoleNeighborhoods_h
 
 #include "Kernel/Mesh/Mesh.h"
 

@@ -7,14 +7,13 @@
 #ifndef Parts_h
 #define Parts_h
 
-#include "CellByCell.h"
-#include "DistributedDelaunay.h"
 #include "DistributedFill.h"
 #include "DistributedTrim.h"
 #include "FilledPieces.h"
 #include "FilterRun.h"
 #include "Joining.h"
 #include "Ranks.h"
+#include "TriangulateParts.h"
 #include "TrimmedPieces.h"
 
 #endif

@@ -340,13 +340,18 @@ Bytes PointRows::Pack(const std::vector<vtkIdType>& places) const
 
 void PointRows::Unpack(const std::vector<Bytes>& packed)
 {
+  this->Unpack(packed.data(), packed.size());
+}
+
+void PointRows::Unpack(const Bytes* packed, std::size_t count)
+{
   vtkIdType first = static_cast<vtkIdType>(this->Count()), all = first;
-  for (const Bytes& bytes : packed)
+  for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
   {
-    const char* from = bytes.data();
-    vtkIdType count = 0;
-    TakeFrom(from, &count, bytes.empty() ? 0 : 1);
-    all += count;
+    const char* from = bytes->data();
+    vtkIdType ofBytes = 0;
+    TakeFrom(from, &ofBytes, bytes->empty() ? 0 : 1);
+    all += ofBytes;
   }
   this->Coordinates.Resize(3 * static_cast<std::size_t>(all));
   this->Ids.Resize(static_cast<std::size_t>(all));
@@ -359,22 +364,22 @@ void PointRows::Unpack(const std::vector<Bytes>& packed)
       throw std::bad_alloc();
     }
   }
-  for (const Bytes& bytes : packed)
+  for (const Bytes* bytes = packed; bytes != packed + count; ++bytes)
   {
-    if (bytes.empty())
+    if (bytes->empty())
     {
       continue;
     }
-    const char* from = bytes.data();
-    vtkIdType count = 0;
-    TakeFrom(from, &count, 1);
-    TakeFrom(from, this->Coordinates.data() + 3 * first, 3 * static_cast<std::size_t>(count));
-    TakeFrom(from, this->Ids.data() + first, static_cast<std::size_t>(count));
+    const char* from = bytes->data();
+    vtkIdType ofBytes = 0;
+    TakeFrom(from, &ofBytes, 1);
+    TakeFrom(from, this->Coordinates.data() + 3 * first, 3 * static_cast<std::size_t>(ofBytes));
+    TakeFrom(from, this->Ids.data() + first, static_cast<std::size_t>(ofBytes));
     for (std::size_t i = 0; i < this->Kinds.size(); ++i)
     {
-      UnpackArray(this->Kinds[i], first, count, from, this->Arrays[i]);
+      UnpackArray(this->Kinds[i], first, ofBytes, from, this->Arrays[i]);
     }
-    first += count;
+    first += ofBytes;
   }
 }
 

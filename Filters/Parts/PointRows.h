@@ -66,8 +66,9 @@ public:
   /** The chosen points as bytes: 32 a point, and the values of the arrays. */
   Bytes Pack(const std::vector<vtkIdType>& places) const;
 
-  /** Appends what Pack() has packed on other ranks. */
+  /** Appends what Pack() has packed. */
   void Unpack(const std::vector<Bytes>& packed);
+  void Unpack(const Bytes* packed, std::size_t count);
 
   /** Keeps the chosen points, in the order given. */
   void Choose(const std::vector<vtkIdType>& places);

@@ -176,6 +176,11 @@ std::vector<std::string> Ranks::Collect(const std::vector<std::string>& texts) c
 
 void Ranks::Agree(const std::function<void()>& step) const
 {
+  if (!this->Controller)
+  {
+    step();
+    return;
+  }
   // A letter that tells of the kind, and the message.
   std::vector<std::string> failures;
   try
@@ -245,37 +250,73 @@ void Ranks::Meet(const std::function<void(int)>& withOther) const
 
 std::vector<Bytes> Ranks::Exchange(std::vector<Bytes>&& toEach) const
 {
-  std::vector<Bytes> fromEach(toEach.size());
+  std::vector<std::vector<Bytes>> lists(toEach.size());
+  for (std::size_t i = 0; i < lists.size(); ++i)
+  {
+    if (!toEach[i].empty())
+    {
+      lists[i].push_back(std::move(toEach[i]));
+    }
+  }
+  lists = this->ExchangeLists(std::move(lists));
+  for (std::size_t i = 0; i < lists.size(); ++i)
+  {
+    toEach[i] = lists[i].empty() ? Bytes() : std::move(lists[i].front());
+  }
+  return std::move(toEach);
+}
+
+std::vector<std::vector<Bytes>> Ranks::ExchangeLists(std::vector<std::vector<Bytes>>&& toEach) const
+{
+  std::vector<std::vector<Bytes>> fromEach(toEach.size());
   std::swap(fromEach[this->Own()], toEach[this->Own()]);
-  std::vector<vtkIdType> sizes(toEach.size(), 0);
+  std::vector<std::vector<std::size_t>> sizes(toEach.size());
   this->Meet([&](int other) {
-    const vtkIdType size = static_cast<vtkIdType>(toEach[other].size());
-    const auto send = [&]() { this->Send(&size, sizeof(size), other); };
-    const auto receive = [&]() { this->Receive(&sizes[other], sizeof(size), other); };
+    std::vector<std::size_t> own;
+    for (const Bytes& bytes : toEach[other])
+    {
+      own.push_back(bytes.size());
+      this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(std::size_t) + bytes.size());
+    }
+    const std::size_t length = own.size();
+    const auto send = [&]() {
+      this->Send(&length, sizeof(length), other);
+      this->Send(own.data(), length * sizeof(std::size_t), other);
+    };
+    const auto receive = [&]() {
+      std::size_t count = 0;
+      this->Receive(&count, sizeof(count), other);
+      sizes[other].resize(count);
+      this->Receive(sizes[other].data(), count * sizeof(std::size_t), other);
+    };
     this->Own() < other ? (send(), receive()) : (receive(), send());
-    this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(size)) + size;
+    this->Sent.BytesSent += static_cast<vtkIdType>(sizeof(length));
   });
   this->Agree([&]() {
     for (std::size_t i = 0; i < sizes.size(); ++i)
     {
-      fromEach[i].Resize(std::max(fromEach[i].size(), static_cast<std::size_t>(sizes[i])));
+      fromEach[i].resize(std::max(fromEach[i].size(), sizes[i].size()));
+      for (std::size_t k = 0; k < sizes[i].size(); ++k)
+      {
+        fromEach[i][k].Resize(sizes[i][k]);
+      }
     }
   });
   this->Meet([&](int other) {
     const auto send = [&]() {
-      if (!toEach[other].empty())
+      for (Bytes& bytes : toEach[other])
       {
-        this->Send(toEach[other].data(), toEach[other].size(), other);
+        this->Send(bytes.data(), bytes.size(), other);
+        bytes = Bytes();
       }
     };
     const auto receive = [&]() {
-      if (!fromEach[other].empty())
+      for (Bytes& bytes : fromEach[other])
       {
-        this->Receive(fromEach[other].data(), fromEach[other].size(), other);
+        this->Receive(bytes.data(), bytes.size(), other);
       }
     };
     this->Own() < other ? (send(), receive()) : (receive(), send());
-    toEach[other] = Bytes();
   });
   ++this->Sent.Rounds;
   return fromEach;
@@ -288,14 +329,20 @@ void Ranks::CountCollected(std::size_t bytes) const
 
 void Ranks::Send(const void* bytes, std::size_t size, int rank) const
 {
-  this->Controller->Send(
-    static_cast<const char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+  if (size > 0)
+  {
+    this->Controller->Send(
+      static_cast<const char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+  }
 }
 
 void Ranks::Receive(void* bytes, std::size_t size, int rank) const
 {
-  this->Controller->Receive(
-    static_cast<char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+  if (size > 0)
+  {
+    this->Controller->Receive(
+      static_cast<char*>(bytes), static_cast<vtkIdType>(size), rank, TagOfBytes);
+  }
 }
 
 vtkSmartPointer<vtkPolyData> Ranks::Gather(vtkPolyData* local) const
@@ -348,9 +395,14 @@ bool CanAll(const Ranks& ranks, const std::function<bool()>& step)
       can = false;
     }
   });
-  std::vector<vtkIdType> cannot = { can ? 0 : 1 };
-  ranks.Sum(cannot);
-  return cannot[0] == 0;
+  return !IsOnAny(ranks, !can);
+}
+
+bool IsOnAny(const Ranks& ranks, bool isOnThis)
+{
+  std::vector<vtkIdType> count = { isOnThis ? 1 : 0 };
+  ranks.Sum(count);
+  return count[0] > 0;
 }
 
 Box BoxOfAll(const Ranks& ranks, const Box& own)

@@ -63,6 +63,7 @@ public:
   /**
    * Does a step in which no rank waits for another. Then all of them know how it went; within a
    * tenth of a second after a failure, where steps that take long report to Watched().
+   * With one rank, what the step throws goes on as it is.
    * @throws Error on all ranks where the step fails on any: the error of the first of these
    * @throws Aborted on all ranks where the step is aborted on any
    */
@@ -79,6 +80,8 @@ public:
    * @throws std::bad_alloc as Error on all ranks
    */
   std::vector<Bytes> Exchange(std::vector<Bytes>&& toEach) const;
+  /** The same for lists of bytes, whose lengths need not be known before. */
+  std::vector<std::vector<Bytes>> ExchangeLists(std::vector<std::vector<Bytes>>&& toEach) const;
 
   /** What this rank has sent since it was made, and how often all ranks have met for it. */
   struct Traffic
@@ -115,6 +118,8 @@ private:
  * @return whether all ranks can
  */
 bool CanAll(const Ranks& ranks, const std::function<bool()>& step);
+
+bool IsOnAny(const Ranks& ranks, bool isOnThis);
 
 /** The box of the boxes of all ranks. */
 Box BoxOfAll(const Ranks& ranks, const Box& own);

@@ -4,8 +4,8 @@
  * @file
  * The holes of a surface in parts, on ranks or in pieces. Private to the module.
  */
-#ifndef HolesOfParts_h
-#define HolesOfParts_h
+#ifndef SharedHoles_h
+#define SharedHoles_h
 
 #include "BorderOfParts.h"
 #include "CommonPoints.h"

@@ -9,7 +9,9 @@
 
 #include "Bytes.h"
 
+#include <cstdio>
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace elevation
@@ -27,7 +29,27 @@ public:
   /** @throws Error, as where the disk is full */
   void Append(const void* stretch, std::size_t size);
 
-  /** @throws Error if the file is not as it was written */
+  bool IsEmpty() const { return this->Count == 0; }
+
+  /** Hands over the stretches in their order. */
+  class Reader
+  {
+  public:
+    explicit Reader(const SpoolFile& file);
+    bool IsAtEnd() const { return this->Left == 0; }
+    /** @throws Error if the file is not as it was written */
+    Bytes Next();
+
+  private:
+    struct Closer
+    {
+      void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    std::string Path;
+    std::size_t Left;
+    std::unique_ptr<std::FILE, Closer> File;
+  };
+
   void ForEach(const std::function<void(Bytes&&)>& visit) const;
 
   /** From here on there are no stretches. */

@@ -21,6 +21,7 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace elevation
@@ -51,18 +52,50 @@ Point2 SurfacePart::PointAt(std::size_t place) const
   return { p[0], p[1] };
 }
 
-void ListOthers(const std::vector<GlobalTriangle>& triangles, GlobalId first, SurfacePart& part)
+void SortOwn(SurfacePart& part)
 {
-  const GlobalId last = first + static_cast<GlobalId>(part.Own.Count());
-  std::vector<GlobalId>& others = part.OtherNumbers;
-  others.clear();
+  PointRows& own = part.Own;
+  const auto isIncreasing = [&own](std::size_t i) { return own.Ids[i] < own.Ids[i + 1]; };
+  std::size_t i = 0;
+  while (i + 1 < own.Count() && isIncreasing(i))
+  {
+    ++i;
+  }
+  if (i + 1 >= own.Count())
+  {
+    return;
+  }
+  std::vector<vtkIdType> places(own.Count());
+  std::iota(places.begin(), places.end(), vtkIdType(0));
+  std::stable_sort(places.begin(), places.end(),
+    [&own](vtkIdType a, vtkIdType b) { return own.Ids[a] < own.Ids[b]; });
+  const auto isSame = [&part, &own](vtkIdType a, vtkIdType b) {
+    const double *const p = own.At(a), *const q = own.At(b);
+    if (own.Ids[a] == own.Ids[b] && own.IsFinite(a) && own.IsFinite(b) &&
+      (p[0] != q[0] || p[1] != q[1]))
+    {
+      throw Error("Two points in different places have the same global id, " +
+        std::to_string(own.Ids[a]) + ". Take the array \"" + part.NameOfIds +
+        "\" away, or make global ids anew.");
+    }
+    return own.Ids[a] == own.Ids[b];
+  };
+  places.erase(std::unique(places.begin(), places.end(), isSame), places.end());
+  own.Choose(places);
+}
+
+std::vector<GlobalId> ListOthers(
+  const std::vector<GlobalTriangle>& triangles, GlobalId first, GlobalId end)
+{
+  std::vector<GlobalId> others;
   for (const GlobalTriangle& triangle : triangles)
   {
     std::copy_if(triangle.begin(), triangle.end(), std::back_inserter(others),
-      [first, last](GlobalId id) { return id < first || id >= last; });
+      [first, end](GlobalId id) { return id < first || id >= end; });
   }
   std::sort(others.begin(), others.end());
   others.erase(std::unique(others.begin(), others.end()), others.end());
+  return others;
 }
 
 void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
@@ -84,36 +117,43 @@ void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId firs
 
 namespace
 {
-/** A value of a point for the rank that owns it. */
+/** A value of a point for the part that owns it. */
 struct ValueForOwner
 {
   vtkIdType Place;
   double Value;
 };
 
-/** The least values at own points that any rank has there. */
-void MergeAtOwners(const Ranks& ranks, const SurfacePart& part, std::vector<double>& values)
+/** The least values at own points that any part has there. */
+void MergeAtOwners(Engine& engine, int box, const SurfacePart& part, std::vector<double>& values)
 {
-  std::vector<Bytes> packed(ranks.Count());
   const std::size_t ownCount = part.Own.Count();
-  ranks.Agree([&]() {
+  engine.ForEach(Progress(), [&](int, const Progress&) {
+    std::vector<Bytes> packed(engine.CountOfParts());
     for (std::size_t i = 0; i < part.OtherNumbers.size(); ++i)
     {
       const int owner = part.OwnerOf(part.OtherNumbers[i]);
       const ValueForOwner value{ part.OtherNumbers[i] - part.Bases[owner], values[ownCount + i] };
       AppendTo(packed[owner], &value, 1);
     }
-  });
-  for (const Bytes& bytes : ranks.Exchange(std::move(packed)))
-  {
-    const char* from = bytes.data();
-    while (from != bytes.data() + bytes.size())
+    for (std::size_t owner = 0; owner < packed.size(); ++owner)
     {
-      ValueForOwner value;
-      TakeFrom(from, &value, 1);
-      values[value.Place] = std::min(values[value.Place], value.Value);
+      engine.Send(static_cast<int>(owner), box, std::move(packed[owner]));
     }
-  }
+  });
+  engine.Deliver();
+  engine.ForEach(Progress(), [&](int own, const Progress&) {
+    for (const Bytes& bytes : engine.At(own, box).Take())
+    {
+      const char* from = bytes.data();
+      while (from != bytes.data() + bytes.size())
+      {
+        ValueForOwner value;
+        TakeFrom(from, &value, 1);
+        values[value.Place] = std::min(values[value.Place], value.Value);
+      }
+    }
+  });
   values.resize(ownCount);
 }
 
@@ -141,16 +181,19 @@ double QuantileOfAll(const Ranks& ranks, const std::vector<double>& values, doub
   return middle;
 }
 
+} // namespace
+
 void MeasureAll(
-  const Ranks& ranks, const Progress& progress, const SurfacePart& part, EffectOfLimit& effect)
+  Engine& engine, int box, const Progress& progress, const SurfacePart& part, EffectOfLimit& effect)
 {
+  const Ranks& ranks = engine.All();
   LengthsOfEdges lengths;
   ranks.Agree([&]() {
     lengths = MeasureEdges(
       part.Result.Triangles, part.Own.Count() + part.Others.Count(),
       [&part](Index place) { return part.PointAt(place); }, ranks.Watched(progress));
   });
-  MergeAtOwners(ranks, part, lengths.Limits);
+  MergeAtOwners(engine, box, part, lengths.Limits);
   ranks.Agree([&]() {
     std::sort(lengths.Edges.begin(), lengths.Edges.end());
     std::vector<double>& limits = lengths.Limits;
@@ -163,48 +206,6 @@ void MeasureAll(
   effect.Median = QuantileOfAll(ranks, lengths.Edges, HalfOfAll);
   effect.ForMost = QuantileOfAll(ranks, lengths.Limits, PartOfMost);
 }
-} // namespace
-
-EffectOfLimit LimitEdges(
-  const Ranks& ranks, double length, const Progress& progress, SurfacePart& part)
-{
-  const EdgeLimit limit(length);
-  const auto pointOf = [&part](Index place) { return part.PointAt(place); };
-  Buffer<Index>& corners = part.Result.Triangles;
-  Buffer<Index> kept;
-  std::vector<double> isMissing;
-  ranks.Agree([&]() {
-    const Progress watched = ranks.Watched(progress);
-    isMissing.assign(part.Own.Count() + part.Others.Count(), 1.0);
-    for (std::size_t i = 0; i < corners.size(); i += 3)
-    {
-      ReportStep(watched, i / 3, corners.size() / 3, 1 << 16);
-      if (limit.Admits(pointOf, corners[i], corners[i + 1], corners[i + 2]))
-      {
-        for (std::size_t k = i; k < i + 3; ++k)
-        {
-          kept.Append(corners[k]);
-          isMissing[corners[k]] = 0.0;
-        }
-      }
-    }
-  });
-  MergeAtOwners(ranks, part, isMissing);
-  const vtkIdType unused = static_cast<vtkIdType>(part.Result.UnusedPoints.size());
-  std::vector<vtkIdType> sums = { static_cast<vtkIdType>(part.Own.Count()) - unused,
-    static_cast<vtkIdType>(std::count(isMissing.begin(), isMissing.end(), 1.0)) - unused };
-  ranks.Sum(sums);
-  EffectOfLimit effect;
-  effect.Vertices = sums[0];
-  effect.Missing = sums[1];
-  if (effect.AreMostMissing())
-  {
-    MeasureAll(ranks, progress, part, effect);
-  }
-  corners = std::move(kept);
-  return effect;
-}
-
 void KeepCorners(SurfacePart& part)
 {
   PointRows& others = part.Others;

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file
- * The part that a rank has of a surface that is spread over ranks. Private to the module.
+ * A part of a surface that is cut into parts (Engine.h). Private to the module.
  */
 #ifndef SurfacePart_h
 #define SurfacePart_h
 
 #include "Adapt/Adapt.h"
+#include "Engine.h"
 #include "Kernel/Cells/Cells.h"
 #include "PointRows.h"
-#include "Ranks.h"
 
 #include <set>
 #include <string>
@@ -21,21 +21,21 @@ class vtkPolyData;
 namespace elevation
 {
 
-/** Whose number it is, where owner r has [bases[r], bases[r + 1]). */
+/** Whose number it is, where part p has [bases[p], bases[p + 1]). */
 int OwnerOf(GlobalId number, const std::vector<vtkIdType>& bases);
 
 struct SurfacePart
 {
-  PointRows Own;                 ///< points that this rank owns, in the order of their ids
-  PointRows Others;              ///< of other ranks, corners of its triangles
+  PointRows Own;                 ///< points that this part owns, in the order of their ids
+  PointRows Others;              ///< of other parts, corners of its triangles
   std::vector<ArrayKind> Kinds;  ///< of the arrays of both
   std::string NameOfIds;         ///< of the array of global ids
   int TypeOfPoints = 0;          ///< VTK_FLOAT where all ranks have float, else VTK_DOUBLE
   std::set<std::string> LeftOut; ///< arrays that not all ranks have
 
   /**
-   * Points are numbered anew, those of each rank one after another in the order of Own, so that no
-   * number is there twice: rank r has [Bases[r], Bases[r + 1]).
+   * Points are numbered anew, those of each part one after another in the order of Own, so that no
+   * number is there twice: part p has [Bases[p], Bases[p + 1]).
    */
   std::vector<vtkIdType> Bases;
   std::vector<GlobalId> OtherNumbers; ///< of Others, increasing
@@ -49,21 +49,29 @@ struct SurfacePart
   Point2 PointAt(std::size_t place) const;
 };
 
-/** Sets the numbers of corners that are not own points, which are numbered from @a first. */
-void ListOthers(const std::vector<GlobalTriangle>& triangles, GlobalId first, SurfacePart& part);
+/**
+ * Brings the own points into the order of their ids, which decides among duplicates. Points of the same
+ * id are the same, and count once.
+ * @throws Error if they are in different places
+ */
+void SortOwn(SurfacePart& part);
+
+/** The numbers of corners that are not in [first, end), increasing. */
+std::vector<GlobalId> ListOthers(
+  const std::vector<GlobalTriangle>& triangles, GlobalId first, GlobalId end);
 
 /** Appends triangles to the result, with the places of their corners. */
 void AppendTriangles(const std::vector<GlobalTriangle>& triangles, GlobalId first,
   const Progress& progress, SurfacePart& part);
 
 /**
- * Leaves out triangles with a longer edge. With such a limit, each rank calls it.
- * @return of all ranks
+ * Sets the lengths of edges of all parts, which are in memory. All ranks call it.
+ * @param[in] box  of each part, in which nothing is
  */
-EffectOfLimit LimitEdges(
-  const Ranks& ranks, double length, const Progress& progress, SurfacePart& part);
+void MeasureAll(Engine& engine, int box, const Progress& progress, const SurfacePart& part,
+  EffectOfLimit& effect);
 
-/** Brings the points of other ranks into the order of their ids, only those that are corners. */
+/** Brings the points of other parts into the order of their ids, only those that are corners. */
 void KeepCorners(SurfacePart& part);
 
 /** Hands over points, arrays, marks of ghosts, global ids and triangles; they leave the part. */

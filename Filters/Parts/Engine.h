@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Work on a surface that is cut into parts, and what the parts send each other. Private to the
+ * module.
+ *
+ * A program for parts is a list of steps. In a step each part is worked on by itself, with what
+ * others have sent it, and says what to send to which part; all that is sent in a step is there when
+ * the next one begins. Parts have numbers, and the program knows nothing else of where they are:
+ *   - one for each rank, in memory;
+ *   - many for one process, in files, one of them in memory at a time;
+ *   - many for each of several ranks, in files.
+ * A rank holds parts with successive numbers, maybe none.
+ *
+ * What is sent to a part lies in one of its boxes until it is taken. Boxes are numbered, as the
+ * program wants; those that have a name are files where parts are in files, the others are small and
+ * always in memory. In a box, what ranks have sent is in their order, and what one rank has sent is
+ * in the order of sending. So the same is found there whoever holds the parts: a result depends on
+ * the parts alone.
+ *
+ * An error or an abort in a step on any rank ends it on all of them, as Ranks::Agree() says. Files go
+ * with their box.
+ *
+ * Cost: what parts of the same rank send each other is moved, not copied, or appended to a file. For
+ * other ranks there is one message for each thing that is sent, and a list of them.
+ *
+ * It is the model of DIY [Morozov & Peterka 2016]; Design.md says why it is not DIY.
+ *
+ * [Morozov & Peterka 2016] Block-parallel data analysis with DIY2.
+ */
+#ifndef Engine_h
+#define Engine_h
+
+#include "Bytes.h"
+#include "Ranks.h"
+#include "SpoolFile.h"
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace elevation
+{
+
+/** What has been sent to a part, stretch by stretch, in memory or in a file. */
+class Inbox
+{
+public:
+  Inbox() = default; ///< in memory
+  explicit Inbox(const std::string& path);
+
+  /** An empty stretch is nothing. @throws Error, as where the disk is full */
+  void Append(Bytes&& stretch);
+  /** The same for values whose memory stays the caller's; for files there is no copy. */
+  void Append(const void* stretch, std::size_t size);
+
+  bool IsEmpty() const;
+  void ForEach(const std::function<void(const Bytes&)>& visit) const;
+
+  /** All stretches; with Take() they leave the box. */
+  std::vector<Bytes> Copy(const Progress& progress = Progress()) const;
+  std::vector<Bytes> Take();
+
+  void Clear();
+
+private:
+  std::vector<Bytes> InMemory;
+  std::unique_ptr<SpoolFile> File; // nullptr: in memory
+};
+
+class Engine
+{
+public:
+  /**
+   * All ranks make one together.
+   * @param[in] ownParts  how many this rank holds
+   * @param[in] boxes  the names of the boxes of a part; empty: always in memory
+   * @param[in] folder  of the files; empty: all is in memory
+   */
+  Engine(const Ranks& ranks, int ownParts, const std::vector<std::string>& boxes,
+    const std::string& folder);
+
+  const Ranks& All() const { return this->Crew; }
+  bool IsInFiles() const { return this->AreInFiles; }
+
+  int CountOfParts() const { return this->Firsts.back(); }
+  /** The rank that holds a part. */
+  int RankOf(int part) const;
+  /** Those of this rank are [FirstOwn(), EndOwn()). */
+  int FirstOwn() const { return this->Firsts[this->Crew.Own()]; }
+  int EndOwn() const { return this->Firsts[this->Crew.Own() + 1]; }
+  bool IsOwn(int part) const { return part >= this->FirstOwn() && part < this->EndOwn(); }
+
+  /**
+   * A step on all ranks: for each part of this rank, one after another.
+   * @throws Error, Aborted on all ranks when any of them fails; std::bad_alloc: on one rank alone
+   */
+  void ForEach(const Progress& progress,
+    const std::function<void(int part, const Progress& ofPart)>& step) const;
+
+  /** Sends to any part. It is there after Deliver(), which all ranks call. */
+  void Send(int part, int box, Bytes&& stretch);
+  void Deliver(const Progress& progress = Progress());
+
+  /** A box of a part of this rank. */
+  Inbox& At(int part, int box);
+
+private:
+  struct Message
+  {
+    std::size_t Part, Box, Size;
+  };
+
+  const Ranks& Crew;
+  const bool AreInFiles;
+  const std::size_t BoxesOfPart;
+  std::vector<int> Firsts;                // part of each rank, and the end
+  std::vector<Inbox> Boxes;               // of the parts of this rank
+  std::vector<std::vector<Bytes>> Outbox; // of each rank
+  std::vector<std::vector<Message>> Labels;
+};
+
+/** All values in a box, to which they have been sent as lists of them. */
+template <typename Value>
+std::vector<Value> ValuesIn(const Inbox& box)
+{
+  std::vector<Value> values;
+  box.ForEach([&values](const Bytes& bytes) {
+    const char* from = bytes.data();
+    const std::size_t before = values.size(), count = bytes.size() / sizeof(Value);
+    values.resize(before + count);
+    TakeFrom(from, values.data() + before, count);
+  });
+  return values;
+}
+
+/** Values for parts, in the order of their numbers. */
+template <typename Value>
+using ValuesForParts = std::map<int, std::vector<Value>>;
+
+template <typename Value>
+void SendTo(Engine& engine, int box, const ValuesForParts<Value>& values)
+{
+  for (const auto& ofPart : values)
+  {
+    Bytes bytes;
+    AppendTo(bytes, ofPart.second);
+    engine.Send(ofPart.first, box, std::move(bytes));
+  }
+}
+
+} // namespace elevation
+
+#endif

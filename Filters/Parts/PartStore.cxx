@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PartStore.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+namespace elevation
+{
+
+const std::vector<std::string>& NamesOfBoxes()
+{
+  static const std::vector<std::string> names = { "points", "triangles", "seam-points", "seams",
+    "corners", "", "" };
+  return names;
+}
+
+// In memory, points that came twice go; so counts are known only when all are there. In files none can
+// come twice, as ids are places.
+void PartStore::Number(std::vector<vtkIdType>&& counts, const Progress& progress)
+{
+  this->Part.Own = PointRows(this->Part.Kinds);
+  this->Part.Others = PointRows(this->Part.Kinds);
+  if (!this->Crew.IsInFiles())
+  {
+    std::fill(counts.begin(), counts.end(), 0);
+    this->Crew.ForEach(progress, [&](int part, const Progress& ofPart) {
+      Report(ofPart, 0.0);
+      this->Part.Own.Unpack(this->Crew.At(part, OwnPoints).Take());
+      Report(ofPart, 0.5);
+      SortOwn(this->Part);
+      counts[part] = static_cast<vtkIdType>(this->Part.Own.Count());
+    });
+  }
+  this->Crew.All().Sum(counts);
+  this->Part.Bases.assign(1, 0);
+  std::partial_sum(counts.begin(), counts.end(), std::back_inserter(this->Part.Bases));
+}
+
+void PartStore::CheckCounts() const
+{
+  this->Crew.ForEach(Progress(), [this](int part, const Progress&) {
+    this->CheckCount(static_cast<std::size_t>(this->EndOf(part) - this->FirstOf(part)));
+  });
+}
+
+void PartStore::CheckCount(std::size_t count) const
+{
+  if (count > static_cast<std::size_t>(MaximumNumberOfPoints))
+  {
+    const bool isPiece = this->Crew.IsInFiles();
+    throw Error(std::string(isPiece ? "A piece" : "A rank") + " would have " +
+      std::to_string(count) + " points; at most " + std::to_string(MaximumNumberOfPoints) +
+      " can be handled at once. Use more " + (isPiece ? "pieces." : "ranks."));
+  }
+}
+
+/**
+ * The points that a part owns, from its files. With several ranks these are in the order in which
+ * slices came; numbers are places in the order of ids, so that is made again.
+ */
+SurfacePart PartStore::ReadOwn(int part, const Progress& progress) const
+{
+  SurfacePart read;
+  read.Kinds = this->Part.Kinds;
+  read.NameOfIds = this->Part.NameOfIds;
+  read.TypeOfPoints = this->Part.TypeOfPoints;
+  read.Bases = this->Part.Bases;
+  read.Own = PointRows(read.Kinds);
+  read.Others = PointRows(read.Kinds);
+  read.Own.Unpack(this->Crew.At(part, OwnPoints).Copy(progress));
+  SortOwn(read);
+  return read;
+}
+
+// Corners are written as they are, without a copy.
+void PartStore::KeepSettled(int part, const SurfacePart& own, SettledCell& settled)
+{
+  Triangulation& result = settled.Result;
+  if (!this->Crew.IsInFiles())
+  {
+    this->Part.Result = std::move(result);
+    return;
+  }
+  Bytes unused;
+  const Index counts[] = { result.NumberOfDuplicates, result.NumberOfNotFinite };
+  AppendTo(unused, counts, 2);
+  AppendList(unused, result.UnusedPoints);
+  AppendList(unused, result.UnusedReasons);
+  Inbox& box = this->Crew.At(part, Settled);
+  box.Clear(); // of an attempt before
+  box.Append(std::move(unused));
+  box.Append(result.Triangles.data(), result.Triangles.size() * sizeof(Index));
+  // A corner of another part's triangle is on the seam of its own (Pieces.h).
+  std::vector<vtkIdType> places(settled.Seam.Ids.begin(), settled.Seam.Ids.end());
+  std::sort(places.begin(), places.end());
+  const GlobalId first = this->FirstOf(part);
+  std::for_each(places.begin(), places.end(), [first](vtkIdType& number) { number -= first; });
+  Inbox& onSeam = this->Crew.At(part, OnSeam);
+  onSeam.Clear();
+  Bytes list;
+  AppendList(list, places);
+  onSeam.Append(std::move(list));
+  onSeam.Append(own.Own.Pack(places));
+}
+
+// The box has two stretches, as written above.
+PartStore::RowsForOthers PartStore::ReadForOthers(int part) const
+{
+  RowsForOthers read;
+  if (this->Crew.IsInFiles())
+  {
+    const std::vector<Bytes> stretches = this->Crew.At(part, OnSeam).Copy();
+    const char* from = stretches.at(0).data();
+    TakeList(from, read.Places);
+    read.OnSeam = PointRows(this->Part.Kinds);
+    read.OnSeam.Unpack(stretches.data() + 1, stretches.size() - 1);
+  }
+  return read;
+}
+
+Bytes PartStore::PackForOthers(const RowsForOthers& rows, std::vector<vtkIdType>&& places) const
+{
+  if (!this->Crew.IsInFiles())
+  {
+    return this->Part.Own.Pack(places);
+  }
+  for (vtkIdType& place : places)
+  {
+    place = std::lower_bound(rows.Places.begin(), rows.Places.end(), place) - rows.Places.begin();
+  }
+  return rows.OnSeam.Pack(places);
+}
+
+SurfacePart PartStore::ReadWhole(int part, const Progress& progress) const
+{
+  SurfacePart read = this->ReadOwn(part, elevation::Part(progress, 0.0, 0.3));
+  Report(progress, 0.3);
+  bool isFirst = true;
+  this->Crew.At(part, Settled).ForEach([&](const Bytes& bytes) {
+    const char* from = bytes.data();
+    Triangulation& result = read.Result;
+    if (!std::exchange(isFirst, false))
+    {
+      result.Triangles.Resize(bytes.size() / sizeof(Index));
+      TakeFrom(from, result.Triangles.data(), result.Triangles.size());
+      return;
+    }
+    TakeFrom(from, &result.NumberOfDuplicates, 1);
+    TakeFrom(from, &result.NumberOfNotFinite, 1);
+    TakeList(from, result.UnusedPoints);
+    TakeList(from, result.UnusedReasons);
+  });
+  const auto fromSeams = ValuesIn<GlobalTriangle>(this->Crew.At(part, FromSeams));
+  const GlobalId first = read.Bases[part];
+  read.OtherNumbers = ListOthers(fromSeams, first, read.Bases[part + 1]);
+  read.Others.Unpack(this->Crew.At(part, Corners).Copy());
+  this->CheckCount(read.Own.Count() + read.Others.Count());
+  AppendTriangles(fromSeams, first, elevation::Part(progress, 0.6, 1.0), read);
+  return read;
+}
+
+PointSlices PartStore::Slices() const
+{
+  const int first = this->Crew.FirstOwn(), end = this->Crew.EndOwn();
+  const double count = static_cast<double>(this->CountOfOwn());
+  return { count, [this, first, end](const auto& visit) {
+            for (int part = first; part < end; ++part)
+            {
+              if (!this->Crew.IsInFiles())
+              {
+                visit(ViewOf(this->Part.Own));
+                continue;
+              }
+              this->Crew.At(part, OwnPoints).ForEach([&](const Bytes& bytes) {
+                PointRows rows(this->Part.Kinds);
+                rows.Unpack(&bytes, 1);
+                visit(ViewOf(rows));
+              });
+            }
+          } };
+}
+
+} // namespace elevation

@@ -1,0 +1,432 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Points come in two ways, which differ until they are sent. At once: the arrays stay VTK's until rows
+ * of them are packed, global ids may be given, and ranks may have different arrays, of which those are
+ * kept that all have. In slices: rows are packed into a file; as no rank can look at its points again,
+ * all slices need the same arrays, and global ids are places.
+ *
+ * The samples differ too. At once, the number of points is known, and one point of each stretch of
+ * some is taken, so that each part gets about 1,000, all of which all ranks get. In slices, a hash of
+ * the place decides, and the sample is thinned whenever it is too large; it is the same however the
+ * slices are cut.
+ */
+#include "PointSource.h"
+
+#include "Adapt/Adapt.h"
+
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkIdTypeArray.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+#include <set>
+#include <system_error>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+constexpr const char* NameOfIds = "GlobalPointIds";
+constexpr vtkIdType PointsInStretch = 1 << 20; // of the file of slices
+constexpr std::size_t MostSampled = 1 << 19;   // of slices
+constexpr vtkIdType SamplePerPart = 1000;      // of points that come at once
+
+/** Two rounds of mixing: bits with no rule that rows of a grid could keep step with. */
+std::uint64_t HashOf(vtkIdType number)
+{
+  const std::uint64_t bits = 0x9E3779B97F4A7C15ull * static_cast<std::uint64_t>(number + 1);
+  return (bits ^ (bits >> 31)) * 0xD6E8FEB86659FD93ull;
+}
+
+/** A place of the stretch [0, size) by such a rule. */
+vtkIdType PlaceInStretch(vtkIdType stretch, vtkIdType size)
+{
+  return static_cast<vtkIdType>((HashOf(stretch) >> 16) % static_cast<std::uint64_t>(size));
+}
+
+/** Whether slices have the same arrays; names of components and attributes are those of the last. */
+bool AreSame(const std::vector<ArrayKind>& kinds, const std::vector<ArrayKind>& others)
+{
+  return std::equal(kinds.begin(), kinds.end(), others.begin(), others.end(),
+    [](const ArrayKind& kind, const ArrayKind& other) {
+      return kind.Name == other.Name && kind.Type == other.Type &&
+        kind.Components == other.Components;
+    });
+}
+
+/** For slices of one rank, and for those of all of them. */
+Error DifferentArrays()
+{
+  return Error("Points that are added need the same point arrays as those before.");
+}
+
+/** Takes global ids out of the kinds of arrays, or finds a name for them. @return whether given */
+bool TakeKindOfIds(SurfacePart& common)
+{
+  std::vector<ArrayKind>& kinds = common.Kinds;
+  const auto ids = std::find_if(kinds.begin(), kinds.end(), [](const ArrayKind& kind) {
+    return kind.Attribute == vtkDataSetAttributes::GLOBALIDS && kind.Components == 1 &&
+      kind.Type != VTK_FLOAT && kind.Type != VTK_DOUBLE && kind.Type != VTK_STRING &&
+      kind.Type != VTK_BIT;
+  });
+  if (ids != kinds.end())
+  {
+    common.NameOfIds = ids->Name;
+    kinds.erase(ids);
+    return true;
+  }
+  std::string& name = common.NameOfIds;
+  name = NameOfIds;
+  const auto isTaken = [&name](const ArrayKind& kind) { return kind.Name == name; };
+  while (std::any_of(kinds.begin(), kinds.end(), isTaken))
+  {
+    name += "_";
+  }
+  return false;
+}
+} // namespace
+
+PointSource::PointSource(const Ranks& ranks, const std::string& folder)
+  : All(ranks)
+{
+  if (folder.empty())
+  {
+    return;
+  }
+  std::error_code problem;
+  const bool isEmpty = std::filesystem::is_empty(folder, problem);
+  if (problem)
+  {
+    throw Error("Folder '" + folder + "': " + problem.message() + ".");
+  }
+  if (!isEmpty || !std::filesystem::is_directory(folder))
+  {
+    throw Error("Folder '" + folder + "' is not an empty folder, which temporary files need.");
+  }
+  this->File = std::make_unique<SpoolFile>(folder + "/points");
+}
+
+PointSource::~PointSource() = default;
+
+/**
+ * The arrays of a slice; the others need the same. This rank alone decides, as others may have added
+ * none yet.
+ */
+void PointSource::TakeKinds(vtkPointSet* points)
+{
+  CheckPointArrays(points);
+  std::set<std::string> leftOut;
+  std::vector<ArrayKind> kinds = CommonArrays(Ranks(), points->GetPointData(), leftOut);
+  const auto isOfIds = [](const ArrayKind& kind) {
+    return kind.Attribute == vtkDataSetAttributes::GLOBALIDS || kind.Name == NameOfIds;
+  };
+  if (std::any_of(kinds.begin(), kinds.end(), isOfIds))
+  {
+    throw Error(std::string("The points have global ids, but are numbered in the order in which "
+                            "they come: take the array away."));
+  }
+  if (!leftOut.empty())
+  {
+    throw Error("Point array \"" + *leftOut.begin() + "\" cannot be written to a file.");
+  }
+  if (this->CountOfOwn > 0 && !AreSame(kinds, this->Kinds))
+  {
+    throw DifferentArrays();
+  }
+  this->Kinds = std::move(kinds);
+  // Without values, for CommonArrays() on all ranks
+  this->Arrays->CopyAllOn();
+  this->Arrays->CopyAllocate(points->GetPointData(), 1);
+  if (points->GetPoints()->GetDataType() != VTK_FLOAT)
+  {
+    this->TypeOfPoints = VTK_DOUBLE;
+  }
+}
+
+// A slice is written in stretches, which are read one at a time in the last pass.
+void PointSource::Add(vtkPointSet* points, const Progress& progress)
+{
+  if (!points || points->GetNumberOfPoints() == 0)
+  {
+    return;
+  }
+  if (!this->IsInFile())
+  {
+    this->Input = points;
+    this->CountOfOwn = points->GetNumberOfPoints();
+    return;
+  }
+  this->TakeKinds(points);
+  PointRows rows(this->Kinds);
+  rows.Read(points, this->CountOfOwn, Part(progress, 0.0, 0.5));
+  const vtkIdType count = static_cast<vtkIdType>(rows.Count());
+  for (vtkIdType first = 0; first < count; first += PointsInStretch)
+  {
+    Report(progress, 0.5 + 0.5 * static_cast<double>(first) / static_cast<double>(count));
+    std::vector<vtkIdType> places(std::min(PointsInStretch, count - first));
+    std::iota(places.begin(), places.end(), first);
+    const Bytes packed = rows.Pack(places);
+    this->File->Append(packed.data(), packed.size());
+    this->SampleStretch(rows, first, first + static_cast<vtkIdType>(places.size()));
+  }
+  this->CountOfOwn += count;
+}
+
+/** A hash of its place tells whether a point is in the sample; of one too large each other goes. */
+void PointSource::SampleStretch(const PointRows& rows, vtkIdType first, vtkIdType last)
+{
+  for (vtkIdType i = first; i < last; ++i)
+  {
+    if (((HashOf(rows.Ids[i]) >> 20) & this->SampleMask) == 0 && rows.IsFinite(i))
+    {
+      this->Sample.push_back({ rows.Ids[i], { rows.At(i)[0], rows.At(i)[1] } });
+    }
+  }
+  while (this->Sample.size() > MostSampled)
+  {
+    this->SampleMask = 2 * this->SampleMask + 1;
+    this->KeepSample();
+  }
+}
+
+/** What the mask admits. */
+void PointSource::KeepSample()
+{
+  const auto out =
+    std::remove_if(this->Sample.begin(), this->Sample.end(), [this](const SampledPoint& point) {
+      return ((HashOf(point.Place) >> 20) & this->SampleMask) != 0;
+    });
+  this->Sample.erase(out, this->Sample.end());
+}
+
+/**
+ * All ranks agree on the arrays, whether coordinates are float, and the number of each rank's first
+ * point. Errors in the arrays name the rank.
+ */
+void PointSource::NumberPoints(const Progress& progress, SurfacePart& common)
+{
+  this->All.Agree([&]() {
+    try
+    {
+      if (this->Input)
+      {
+        CheckPointArrays(this->Input);
+        const bool areDouble = ViewPoints(this->Input).View.Double != nullptr;
+        this->TypeOfPoints = areDouble ? VTK_DOUBLE : VTK_FLOAT;
+      }
+    }
+    catch (const Error& error)
+    {
+      throw Error("On rank " + std::to_string(this->All.Own()) + ": " + error.what());
+    }
+  });
+  vtkPointData* const arrays = this->Input ? this->Input->GetPointData() : this->Arrays.Get();
+  common.Kinds = CommonArrays(this->All, this->CountOfOwn > 0 ? arrays : nullptr, common.LeftOut);
+  if (this->IsInFile() && !common.LeftOut.empty())
+  {
+    throw DifferentArrays(); // on all ranks
+  }
+  const bool areIdsGiven = TakeKindOfIds(common);
+  const std::vector<vtkIdType> counts =
+    this->All.Collect(std::vector<vtkIdType>{ this->CountOfOwn });
+  common.TypeOfPoints =
+    IsOnAny(this->All, this->TypeOfPoints == VTK_DOUBLE) ? VTK_DOUBLE : VTK_FLOAT;
+  this->First = std::accumulate(counts.begin(), counts.begin() + this->All.Own(), vtkIdType(0));
+  this->Rows = PointRows(common.Kinds);
+  this->All.Agree([&]() {
+    if (this->Input)
+    {
+      this->ReadInput(areIdsGiven, this->First, this->All.Watched(progress), common);
+    }
+  });
+}
+
+/** Rows of points that come at once: with the ids given, if any, and without those of other ranks. */
+void PointSource::ReadInput(
+  bool areIdsGiven, vtkIdType first, const Progress& progress, SurfacePart& common)
+{
+  this->Rows.Read(this->Input, first, progress);
+  vtkPointData* const data = this->Input->GetPointData();
+  vtkDataArray* const ids = areIdsGiven ? data->GetArray(common.NameOfIds.c_str()) : nullptr;
+  auto* const plainIds = vtkIdTypeArray::FastDownCast(ids);
+  auto* const ghosts =
+    vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  this->Kept.reserve(this->Rows.Count());
+  for (vtkIdType at = 0; at < static_cast<vtkIdType>(this->Rows.Count()); ++at)
+  {
+    if (ids)
+    {
+      this->Rows.Ids[at] = plainIds
+        ? plainIds->GetValue(at)
+        : static_cast<vtkIdType>(ids->GetVariantValue(at).ToTypeInt64());
+    }
+    if (!ghosts || !(ghosts->GetValue(at) & vtkDataSetAttributes::DUPLICATEPOINT))
+    {
+      this->Kept.push_back(at);
+    }
+  }
+}
+
+/**
+ * A sample of points that come at once: one of each stretch of some, at a place that follows no rule, as
+ * rows of a grid may be as long as a stretch.
+ */
+std::vector<double> PointSource::SampleAtOnce(vtkIdType parts) const
+{
+  std::vector<vtkIdType> all = { static_cast<vtkIdType>(this->Kept.size()) };
+  this->All.Sum(all);
+  const vtkIdType stretch = std::max<vtkIdType>(1, all[0] / (SamplePerPart * parts));
+  std::vector<double> coordinates;
+  this->All.Agree([&]() {
+    const vtkIdType count = static_cast<vtkIdType>(this->Kept.size());
+    for (vtkIdType i = 0; i * stretch < count; ++i)
+    {
+      const vtkIdType at = i * stretch + PlaceInStretch(i, std::min(stretch, count - i * stretch));
+      const double* const p = this->Rows.At(this->Kept[at]);
+      if (this->Rows.IsFinite(this->Kept[at]))
+      {
+        coordinates.insert(coordinates.end(), p, p + 2);
+      }
+    }
+  });
+  return coordinates;
+}
+
+/** Cuts the plane by the samples of all ranks, on each of them alike. */
+Cuts PointSource::CutPlane(int parts)
+{
+  std::vector<double> coordinates;
+  if (this->IsInFile())
+  {
+    // All ranks choose by the same mask, that of the one with most points: each point of all ranks is
+    // in the sample as likely as any other.
+    std::vector<double> mask = { static_cast<double>(this->SampleMask) };
+    this->All.Maximum(mask);
+    this->SampleMask = static_cast<std::uint64_t>(mask[0]);
+    this->KeepSample();
+    for (const SampledPoint& point : this->Sample)
+    {
+      coordinates.insert(coordinates.end(), { point.At.X, point.At.Y });
+    }
+    this->Sample = std::vector<SampledPoint>();
+  }
+  else
+  {
+    coordinates = this->SampleAtOnce(parts);
+  }
+  coordinates = this->All.CollectReals(coordinates);
+  std::unique_ptr<Cuts> plane;
+  this->All.Agree([&]() {
+    std::vector<Point2> sample(coordinates.size() / 2);
+    for (std::size_t i = 0; i < sample.size(); ++i)
+    {
+      sample[i] = { coordinates[2 * i], coordinates[2 * i + 1] };
+    }
+    plane = std::make_unique<Cuts>(std::move(sample), parts);
+  });
+  return std::move(*plane);
+}
+
+/**
+ * Sends the points that are kept, in their order; then there are none. Memory is given back as rows are
+ * packed, part by part.
+ */
+void PointSource::SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
+  std::vector<vtkIdType>& counts)
+{
+  // First the parts alone, so that the places of each take no more memory than they need.
+  const int firstOwn = engine.FirstOwn(), ownCount = engine.EndOwn() - firstOwn;
+  std::vector<int> partOf(this->Kept.size());
+  std::vector<std::size_t> sizes(counts.size(), 0);
+  for (std::size_t i = 0; i < this->Kept.size(); ++i)
+  {
+    ReportStep(progress, i, this->Kept.size(), 1 << 16);
+    const vtkIdType at = this->Kept[i];
+    const double* const p = this->Rows.At(at);
+    partOf[i] = this->Rows.IsFinite(at)
+      ? plane.OwnerOf({ p[0], p[1] })
+      : firstOwn + static_cast<int>(this->Rows.Ids[at] % ownCount);
+    ++sizes[partOf[i]];
+  }
+  std::vector<std::vector<vtkIdType>> places(counts.size());
+  for (std::size_t part = 0; part < places.size(); ++part)
+  {
+    places[part].reserve(sizes[part]);
+    counts[part] += static_cast<vtkIdType>(sizes[part]);
+  }
+  for (std::size_t i = 0; i < this->Kept.size(); ++i)
+  {
+    places[partOf[i]].push_back(this->Kept[i]);
+  }
+  this->Kept = std::vector<vtkIdType>();
+  for (std::size_t part = 0; part < places.size(); ++part)
+  {
+    Report(progress, 1.0);
+    if (!places[part].empty())
+    {
+      engine.Send(static_cast<int>(part), box, this->Rows.Pack(places[part]));
+      places[part] = std::vector<vtkIdType>();
+    }
+  }
+  this->Rows = PointRows();
+}
+
+/*
+ * Slice by slice, all ranks send and deliver together until none has a slice left. So no more than a
+ * slice of each rank is in memory. Points that come at once are one slice.
+ */
+Cuts PointSource::Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
+  std::vector<vtkIdType>& counts)
+{
+  this->NumberPoints(Part(progress, 0.0, 0.4), common);
+  Cuts plane = this->CutPlane(engine.CountOfParts());
+  counts.assign(engine.CountOfParts(), 0);
+  std::unique_ptr<SpoolFile::Reader> reader;
+  if (this->IsInFile())
+  {
+    reader = std::make_unique<SpoolFile::Reader>(*this->File);
+  }
+  const Progress sending = Part(progress, 0.4, 1.0);
+  bool isMore = true;
+  while (isMore)
+  {
+    this->All.Agree([&]() {
+      Progress ofSlice = this->All.Watched(sending);
+      double begin = 0.0, end = 1.0;
+      // A rank whose slices are all sent sends nothing, but delivers.
+      if (reader && !reader->IsAtEnd())
+      {
+        const Bytes stretch = reader->Next();
+        this->Rows = PointRows(common.Kinds);
+        this->Rows.Unpack(&stretch, 1);
+        const double all = static_cast<double>(this->CountOfOwn);
+        begin = static_cast<double>(this->Rows.Ids[0]) / all;
+        end = begin + static_cast<double>(this->Rows.Count()) / all;
+        this->Kept.resize(this->Rows.Count());
+        std::iota(this->Kept.begin(), this->Kept.end(), vtkIdType(0));
+        // In the file, ids are places among the points of this rank.
+        for (vtkIdType& id : this->Rows.Ids)
+        {
+          id += this->First;
+        }
+      }
+      this->SendSlice(plane, engine, box, Part(ofSlice, begin, end), counts);
+    });
+    engine.Deliver();
+    isMore = IsOnAny(this->All, reader && !reader->IsAtEnd());
+  }
+  this->File.reset();
+  return plane;
+}
+
+} // namespace elevation

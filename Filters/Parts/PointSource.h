@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file
+ * Brings points, as they come, to the parts of the plane in which they lie. Private to the module.
+ *
+ * In: points of this rank with their arrays, all at once, or slice by slice where they do not fit into
+ * memory. Out: cuts of the plane (Cuts.h), with a cell for each part, and the points of each cell with
+ * its part.
+ *
+ * The passes:
+ *   1. Slices are written to a file as they come; points that come at once stay where they are. A
+ *      sample is kept.
+ *   2. All ranks agree on the arrays and the numbers of their points.
+ *   3. The samples of all ranks tell where to cut the plane.
+ *   4. Slice by slice, each point goes to the part of its cell. What is not finite has no place in the
+ *      plane and stays on its rank, spread evenly over the parts there. Points that are marked as
+ *      another rank's (vtkDataSetAttributes::DUPLICATEPOINT) go nowhere.
+ *
+ * Cost: linear. 32 bytes a point, and the values of its arrays, are sent once, and written twice where
+ * points come in slices.
+ */
+#ifndef PointSource_h
+#define PointSource_h
+
+#include "Engine.h"
+#include "Kernel/Cells/Cells.h"
+#include "PointRows.h"
+#include "SurfacePart.h"
+
+#include "vtkNew.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+class vtkPointData;
+class vtkPointSet;
+
+namespace elevation
+{
+
+class PointSource
+{
+public:
+  /** @param[in] folder  an empty one, for files; or no name: Add() is called at most once, with points
+      that stay until Distribute() */
+  PointSource(const Ranks& ranks, const std::string& folder);
+  ~PointSource();
+
+  /**
+   * Adds points of this rank, numbered on.
+   * @throws Error if their arrays are not as those before; Aborted
+   */
+  void Add(vtkPointSet* points, const Progress& progress);
+
+  vtkIdType Count() const { return this->CountOfOwn; } ///< of this rank, marked ones included
+
+  /**
+   * Passes 2 to 4, on all ranks. The points are no longer here.
+   * @param[in] box  of each part, for its points
+   * @param[out] common  gets what parts have in common: kinds of arrays and so on
+   * @param[out] counts  of the points that this rank has sent to each part
+   * @throws Error, Aborted on all ranks when any of them fails
+   */
+  Cuts Distribute(Engine& engine, int box, const Progress& progress, SurfacePart& common,
+    std::vector<vtkIdType>& counts);
+
+private:
+  struct SampledPoint
+  {
+    vtkIdType Place; // among those of this rank
+    Point2 At;
+  };
+
+  bool IsInFile() const { return this->File != nullptr; }
+  void TakeKinds(vtkPointSet* points);
+  void SampleStretch(const PointRows& rows, vtkIdType first, vtkIdType last);
+  void KeepSample();
+  void NumberPoints(const Progress& progress, SurfacePart& common);
+  void ReadInput(bool areIdsGiven, vtkIdType first, const Progress& progress, SurfacePart& common);
+  std::vector<double> SampleAtOnce(vtkIdType parts) const;
+  Cuts CutPlane(int parts);
+  void SendSlice(const Cuts& plane, Engine& engine, int box, const Progress& progress,
+    std::vector<vtkIdType>& counts);
+
+  const Ranks& All;
+  vtkIdType CountOfOwn = 0, First = 0; // the number of the first
+  int TypeOfPoints = VTK_FLOAT;        // where all are float
+  // Points that come at once:
+  vtkPointSet* Input = nullptr; // nullptr: no points
+  // Those that come in slices:
+  std::unique_ptr<SpoolFile> File;
+  vtkNew<vtkPointData> Arrays; // those of the slices, without values
+  std::vector<ArrayKind> Kinds;
+  std::vector<SampledPoint> Sample;
+  std::uint64_t SampleMask = 0;
+  // What is sent next:
+  PointRows Rows;
+  std::vector<vtkIdType> Kept; // places of those that count
+};
+
+} // namespace elevation
+
+#endif

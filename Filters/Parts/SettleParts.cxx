@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SettleParts.h"
+
+#include "Kernel/Base/Base.h"
+#include "LatticeOfRanks.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** A seam on its way to the part that joins it with its own. */
+Bytes PackPiece(const Piece& piece)
+{
+  Bytes bytes;
+  AppendList(bytes, piece.Coordinates);
+  AppendList(bytes, piece.Ids);
+  AppendList(bytes, piece.Edges);
+  return bytes;
+}
+
+Piece UnpackPiece(const Bytes& bytes)
+{
+  const char* from = bytes.data();
+  Piece piece;
+  TakeList(from, piece.Coordinates);
+  TakeList(from, piece.Ids);
+  TakeList(from, piece.Edges);
+  return piece;
+}
+
+/**
+ * A node of the tree of cells (Cuts.h): cells [Begin, End), which have the numbers of their parts. What
+ * is done for a node is done by its first part, which has the seam of its lower half already.
+ */
+struct Node
+{
+  int Begin, End;
+
+  int Size() const { return this->End - this->Begin; }
+  int Middle() const { return Cuts::MiddleOf(this->Begin, this->End); }
+
+  /** That of a cell some levels below the whole plane, or the cell itself. */
+  static Node Of(int cell, int level, int count)
+  {
+    Node node{ 0, count };
+    for (; level > 0 && node.Size() > 1; --level)
+    {
+      const int middle = node.Middle();
+      (cell < middle ? node.End : node.Begin) = middle;
+    }
+    return node;
+  }
+
+  /** How often the plane is cut, at most, until there are so many cells. */
+  static int Levels(int count)
+  {
+    int levels = 0;
+    while ((1 << levels) < count)
+    {
+      ++levels;
+    }
+    return levels;
+  }
+
+  /** Whether its seams are joined without a message. */
+  bool IsWithinRank(const Engine& engine) const
+  {
+    return engine.RankOf(this->Begin) == engine.RankOf(this->End - 1);
+  }
+};
+
+/** The work of one rank; the functions are its steps, in their order. */
+class Settling
+{
+public:
+  Settling(PartStore& store, const Cuts& plane, const DelaunayOptions& options)
+    : Store(store)
+    , Crew(store.Crew)
+    , All(store.Crew.All())
+    , Plane(plane)
+    , Options(options)
+  {
+  }
+
+  SettledParts SettleAll();
+
+private:
+  Progress Fraction(double begin, double end) const
+  {
+    return Part(this->Options.Monitor, begin, end);
+  }
+  DelaunayOptions OptionsWith(const Progress& progress) const
+  {
+    DelaunayOptions options = this->Options;
+    options.Monitor = progress;
+    return options;
+  }
+  void SettleOnGiven(const Progress& progress);
+  bool SettleOn(const SharedLattice* lattice);
+  bool IsByChance(const SharedLattice& lattice) const;
+  bool IsOffAnywhere(const SharedLattice* lattice) const;
+  template <typename Step>
+  void WatchLattice(const Step& step);
+  void SettlePart(int part, const SharedLattice* lattice, const Progress& progress);
+  void SettleNode(
+    const Node& node, const Piece& other, const SharedLattice* lattice, const Progress& progress);
+  bool JoinSeams(const SharedLattice* lattice);
+
+  PartStore& Store;
+  Engine& Crew;
+  const Ranks& All;
+  const Cuts& Plane;
+  const DelaunayOptions& Options;
+  std::map<int, Piece> Seams; // of nodes, by their first parts
+  bool IsOffLattice = false;  // a point of this rank is
+  SettledParts Found;         // sums of this rank until the end
+};
+
+/**
+ * All triangles, on the lattice of all points if there is one. A lattice that is found may turn out
+ * not to be one, when a point lies beside it or few points fit by chance: then all is done again
+ * without it.
+ */
+SettledParts Settling::SettleAll()
+{
+  SharedLattice lattice;
+  const Progress searching = this->Fraction(0.15, 0.2);
+  const bool isAsked = this->Options.UseLattice == LatticeMode::Automatic;
+  if (isAsked && this->Options.GivenLattice.IsSet())
+  {
+    this->SettleOnGiven(searching);
+  }
+  else if (isAsked &&
+    FindLatticeOnRanks(this->All, this->Store.Slices(), this->Options, searching, lattice) &&
+    this->SettleOn(&lattice) && !this->IsByChance(lattice))
+  {
+    this->Found.LatticeFound = true;
+    this->Found.Steps = FromLowestNode(this->All, this->Store.Slices(), lattice);
+  }
+  else
+  {
+    this->SettleOn(nullptr);
+  }
+  std::vector<vtkIdType> sums = { this->Found.Duplicates, this->Found.NotFinite,
+    this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
+  this->All.Sum(sums);
+  this->Found.Duplicates = sums[0];
+  this->Found.NotFinite = sums[1];
+  this->Found.Triangles = sums[2];
+  return std::move(this->Found);
+}
+
+/** The same on the lattice that is given, for parts in memory. */
+void Settling::SettleOnGiven(const Progress& progress)
+{
+  SharedLattice lattice;
+  const bool hasPoints = TakeGivenLattice(this->All, ViewOf(this->Store.Part.Own),
+    this->Store.Part.Own.Ids, this->Options, progress, lattice);
+  if (!this->SettleOn(hasPoints ? &lattice : nullptr))
+  {
+    throw GivenLatticeUnfit();
+  }
+  this->Found.LatticeFound = true;
+  this->Found.Steps =
+    hasPoints ? FromLowestNode(this->All, this->Store.Slices(), lattice) : lattice.Steps();
+}
+
+/** Whether so few points may fit a lattice by chance, or are all on one line of it. */
+bool Settling::IsByChance(const SharedLattice& lattice) const
+{
+  std::vector<vtkIdType> sums = { this->Store.CountOfOwn() - this->Found.Duplicates -
+      this->Found.NotFinite,
+    this->Found.Triangles + static_cast<vtkIdType>(this->Found.OfSeams.size()) };
+  this->All.Sum(sums);
+  return sums[1] == 0 || IsLatticeByChance(static_cast<double>(sums[0]), lattice.Tolerance());
+}
+
+/**
+ * Settles each cell, and joins the seams up to the whole plane. What an attempt before has left is
+ * forgotten.
+ * @return false if not all points are on the lattice; the same on all ranks
+ */
+bool Settling::SettleOn(const SharedLattice* lattice)
+{
+  this->Seams.clear();
+  this->Found = SettledParts();
+  this->IsOffLattice = false;
+  this->Crew.ForEach(this->Fraction(0.2, 0.78), [&](int part, const Progress& progress) {
+    this->WatchLattice([&]() { this->SettlePart(part, lattice, progress); });
+  });
+  return !this->IsOffAnywhere(lattice) && this->JoinSeams(lattice);
+}
+
+/** Whether all ranks have to begin again; without a lattice, none asks the others. */
+bool Settling::IsOffAnywhere(const SharedLattice* lattice) const
+{
+  return lattice && IsOnAny(this->All, this->IsOffLattice);
+}
+
+/** Does a step, unless a point of this rank is known not to be on the lattice. */
+template <typename Step>
+void Settling::WatchLattice(const Step& step)
+{
+  try
+  {
+    if (!this->IsOffLattice)
+    {
+      step();
+    }
+  }
+  catch (const NotOnLattice&)
+  {
+    this->IsOffLattice = true;
+  }
+}
+
+/**
+ * Settles what the cell of a part can, and then the larger cells that it completes on this rank: those
+ * that end with this part, from the smallest.
+ */
+void Settling::SettlePart(int part, const SharedLattice* lattice, const Progress& progress)
+{
+  const Progress reading = Part(progress, 0.0, 0.0);
+  this->Store.WithOwn(part, reading, [&](const SurfacePart& own) {
+    SettledCell settled = SettleCell(ViewOf(own.Own), this->Store.FirstOf(part),
+      this->Plane.CellOf(part, part + 1), this->OptionsWith(progress), lattice);
+    this->Found.Triangles += static_cast<vtkIdType>(settled.Result.Triangles.size() / 3);
+    this->Found.Duplicates += settled.Result.NumberOfDuplicates;
+    this->Found.NotFinite += settled.Result.NumberOfNotFinite;
+    this->Found.SeamPoints += settled.Seam.Count();
+    this->Store.KeepSettled(part, own, settled);
+    this->Seams[part] = std::move(settled.Seam);
+  });
+  const int count = this->Crew.CountOfParts();
+  const Progress last = Part(progress, 1.0, 1.0);
+  for (int level = Node::Levels(count) - 1; level >= 0; --level)
+  {
+    const Node node = Node::Of(part, level, count);
+    if (node.Size() > 1 && node.End == part + 1 && node.IsWithinRank(this->Crew))
+    {
+      const Piece other = std::move(this->Seams[node.Middle()]);
+      this->Seams.erase(node.Middle());
+      this->SettleNode(node, other, lattice, last);
+    }
+  }
+}
+
+/** Settles what a larger cell can, of whose halves the seams are known. */
+void Settling::SettleNode(
+  const Node& node, const Piece& other, const SharedLattice* lattice, const Progress& progress)
+{
+  Piece& seam = this->Seams[node.Begin];
+  const Piece joined = Join(std::move(seam), other);
+  seam = SettleSeams(joined, this->Plane.CellOf(node.Begin, node.End), this->OptionsWith(progress),
+    this->Found.OfSeams, lattice);
+}
+
+/**
+ * The same for all cells that several ranks hold, level by level. At each level the seam of the upper
+ * half goes to the part that has that of the lower one.
+ */
+bool Settling::JoinSeams(const SharedLattice* lattice)
+{
+  const int count = this->Crew.CountOfParts(), levels = Node::Levels(count);
+  for (int level = levels - 1; level >= 0; --level)
+  {
+    const auto isJoined = [&](const Node& node) {
+      return node.Size() > 1 && !node.IsWithinRank(this->Crew);
+    };
+    this->Crew.ForEach(Progress(), [&](int part, const Progress&) {
+      const Node node = Node::Of(part, level, count);
+      if (isJoined(node) && part == node.Middle())
+      {
+        this->Crew.Send(node.Begin, FromSeams, PackPiece(this->Seams[part]));
+        this->Seams.erase(part);
+      }
+    });
+    if (this->All.Count() > 1)
+    {
+      this->Crew.Deliver();
+    }
+    // Of a level, this rank works on one cell at most: the one that goes on beyond its last part.
+    const double step = 0.12 / levels, begin = 0.78 + step * (levels - 1 - level);
+    this->Crew.ForEach(
+      this->Fraction(begin, begin + step), [&](int part, const Progress& progress) {
+        const Node node = Node::Of(part, level, count);
+        if (isJoined(node) && part == node.Begin)
+        {
+          const Piece other = UnpackPiece(this->Crew.At(part, FromSeams).Take().at(0));
+          this->WatchLattice([&]() { this->SettleNode(node, other, lattice, progress); });
+        }
+      });
+    if (this->IsOffAnywhere(lattice))
+    {
+      return false;
+    }
+  }
+  this->Seams.clear();
+  return true;
+}
+} // namespace
+
+SettledParts SettleParts(PartStore& store, const Cuts& plane, const DelaunayOptions& options)
+{
+  return Settling(store, plane, options).SettleAll();
+}
+
+} // namespace elevation

@@ -1,0 +1,386 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/*
+ * The passes in their order; 2 and 3 are those of SettleParts.h. What they leave for each other lies in
+ * the boxes of parts (PartStore.h). A part in memory is not packed in between: its triangles from seams
+ * are listed once, and its corners are placed as soon as all points are there, so that lines can be
+ * recovered and long edges measured without reading anything.
+ */
+#include "TriangulateParts.h"
+
+#include "ConstraintsOfRanks.h"
+#include "SettleParts.h"
+
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace elevation
+{
+
+namespace
+{
+/** The corners of the triangles without an edge longer than a limit, in their order. */
+Buffer<Index> WithinLimit(double length, const SurfacePart& part, const Progress& progress)
+{
+  const EdgeLimit limit(length);
+  const auto pointOf = [&part](Index place) { return part.PointAt(place); };
+  const Buffer<Index>& corners = part.Result.Triangles;
+  Buffer<Index> kept;
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+  {
+    ReportStep(progress, i / 3, corners.size() / 3, 1 << 16);
+    if (limit.Admits(pointOf, corners[i], corners[i + 1], corners[i + 2]))
+    {
+      std::for_each(
+        corners.data() + i, corners.data() + i + 3, [&kept](Index corner) { kept.Append(corner); });
+    }
+  }
+  return kept;
+}
+} // namespace
+
+TriangulateParts::TriangulateParts(const Ranks& ranks, const std::string& folder)
+  : Everybody(ranks)
+  , Folder(folder)
+  , Source(ranks, folder)
+{
+}
+
+TriangulateParts::~TriangulateParts() = default;
+
+// Points stay with their source until the plane is cut.
+void TriangulateParts::Add(vtkPointSet* points, const Progress& progress)
+{
+  this->Source.Add(points, progress);
+}
+
+void TriangulateParts::Triangulate(int ownParts, vtkPolyData* constraints,
+  const DelaunayOptions& options, std::vector<Message>& warnings)
+{
+  this->Options = options;
+  // Pass 1
+  this->Crew = std::make_unique<Engine>(this->Everybody, ownParts, NamesOfBoxes(), this->Folder);
+  this->Store = std::make_unique<PartStore>(*this->Crew);
+  std::vector<vtkIdType> counts;
+  this->Plane = std::make_unique<Cuts>(this->Source.Distribute(
+    *this->Crew, OwnPoints, this->Fraction(0.0, 0.1), this->Store->Part, counts));
+  this->Store->Number(std::move(counts), this->Fraction(0.1, 0.15));
+  // Lines add points, which belong to the parts of their cells, and keep to no lattice.
+  LinesOfRanks lines;
+  if (constraints)
+  {
+    lines = AddLines(*this->Crew, constraints, *this->Plane, this->Options,
+      this->Fraction(0.14, 0.15), this->Store->Part, warnings);
+    this->Options.UseLattice = LatticeMode::Off;
+    this->Total.Crossings = lines.NumberOfCrossings;
+    this->Work.AddedPoints = lines.NumberOfOwnPoints;
+  }
+  this->Store->CheckCounts();
+  // Passes 2 to 5
+  this->SendTriangles(this->Settle());
+  this->FetchOthers();
+  // Pass 6
+  if (constraints)
+  {
+    this->Recover(lines);
+  }
+  if (!this->Crew->IsInFiles())
+  {
+    this->PlaceCorners();
+  }
+  if (this->Options.MaximumEdgeLength > 0.0)
+  {
+    this->LimitEdges(this->Fraction(0.95, 1.0));
+  }
+  this->Everybody.Agree([&]() {
+    KeepCorners(this->Store->Part);
+    Report(this->Everybody.Watched(this->Options.Monitor), 1.0);
+  });
+}
+
+/** Passes 2 and 3. @return the triangles that this rank has settled for several parts */
+std::vector<GlobalTriangle> TriangulateParts::Settle()
+{
+  SettledParts settled = SettleParts(*this->Store, *this->Plane, this->Options);
+  std::vector<vtkIdType> added = { this->Work.AddedPoints };
+  this->Everybody.Sum(added);
+  this->Total.Points = this->Store->Part.Bases.back() - added[0];
+  this->Total.Duplicates = settled.Duplicates;
+  this->Total.NotFinite = settled.NotFinite;
+  this->Total.Settled = this->Total.Triangles = settled.Triangles;
+  this->Total.LatticeFound = settled.LatticeFound;
+  this->Total.Steps = settled.Steps;
+  this->Work.Points = static_cast<Index>(this->Store->CountOfOwn());
+  this->Work.SeamPoints = settled.SeamPoints;
+  return std::move(settled.OfSeams);
+}
+
+/** A triangle that seams have settled belongs to the part of its lowest corner. */
+void TriangulateParts::SendTriangles(std::vector<GlobalTriangle>&& ofSeams)
+{
+  this->Everybody.Agree([&]() {
+    ValuesForParts<GlobalTriangle> triangles;
+    for (const GlobalTriangle& triangle : ofSeams)
+    {
+      triangles[this->Store->Part.OwnerOf(triangle[0])].push_back(triangle);
+    }
+    ofSeams = std::vector<GlobalTriangle>();
+    SendTo(*this->Crew, FromSeams, triangles);
+  });
+  this->Crew->Deliver();
+  if (!this->Crew->IsInFiles())
+  {
+    this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
+      this->Triangles = ValuesIn<GlobalTriangle>(this->Crew->At(part, FromSeams));
+      this->Crew->At(part, FromSeams).Clear();
+      this->Store->Part.OtherNumbers =
+        ListOthers(this->Triangles, this->Store->FirstOf(part), this->Store->EndOf(part));
+    });
+  }
+}
+
+/**
+ * Corners that are points of other parts come with their values: each part asks those that own them
+ * by places, and gets rows in the order of numbers, as parts answer in their order.
+ */
+void TriangulateParts::FetchOthers()
+{
+  // Each part asks.
+  this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
+    this->Crew->At(part, Requests).Clear();
+    const std::vector<GlobalId> numbers = !this->Crew->IsInFiles()
+      ? this->Store->Part.OtherNumbers
+      : ListOthers(ValuesIn<GlobalTriangle>(this->Crew->At(part, FromSeams)),
+          this->Store->FirstOf(part), this->Store->EndOf(part));
+    ValuesForParts<vtkIdType> places;
+    for (const GlobalId number : numbers)
+    {
+      const int owner = this->Store->Part.OwnerOf(number);
+      std::vector<vtkIdType>& ofOwner = places[owner];
+      if (ofOwner.empty())
+      {
+        ofOwner.push_back(part);
+      }
+      ofOwner.push_back(number - this->Store->Part.Bases[owner]);
+    }
+    SendTo(*this->Crew, Requests, places);
+  });
+  this->Crew->Deliver();
+  // Each is answered by rows. What has been asked stays known, for the limit of edges.
+  this->Crew->ForEach(this->Fraction(0.9, 0.9), [this](int part, const Progress& progress) {
+    Report(progress, 0.0);
+    const Inbox& requests = this->Crew->At(part, Requests);
+    if (requests.IsEmpty())
+    {
+      return;
+    }
+    const PartStore::RowsForOthers rows = this->Store->ReadForOthers(part);
+    requests.ForEach([&](const Bytes& bytes) {
+      const char* from = bytes.data();
+      vtkIdType asking = 0;
+      std::vector<vtkIdType> places;
+      TakeFrom(from, &asking, 1);
+      TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
+      this->Crew->Send(
+        static_cast<int>(asking), Corners, this->Store->PackForOthers(rows, std::move(places)));
+    });
+  });
+  this->Crew->Deliver();
+  if (!this->Crew->IsInFiles())
+  {
+    this->Crew->ForEach(Progress(), [this](int part, const Progress&) {
+      this->Store->Part.Others.Unpack(this->Crew->At(part, Corners).Take());
+      this->Store->CheckCount(this->Store->Part.Own.Count() + this->Store->Part.Others.Count());
+    });
+  }
+}
+
+/** The numbers of the corners of a triangle of the part in memory: those of its cell come first. */
+GlobalTriangle TriangulateParts::CornersOf(std::size_t triangle) const
+{
+  const std::size_t ofCell = this->Store->Part.Result.Triangles.size() / 3;
+  if (triangle >= ofCell)
+  {
+    return this->Triangles[triangle - ofCell];
+  }
+  const GlobalId first = this->Store->FirstOf(this->Crew->FirstOwn());
+  const Index* const c = this->Store->Part.Result.Triangles.data() + 3 * triangle;
+  return { first + c[0], first + c[1], first + c[2] };
+}
+
+/**
+ * Makes the pieces of lines edges, in memory. The triangles that change may get corners that this part
+ * has not had, so all others are fetched again.
+ */
+void TriangulateParts::Recover(const LinesOfRanks& lines)
+{
+  const int first = this->Crew->FirstOwn(), end = this->Crew->EndOwn();
+  const std::vector<vtkIdType>& bases = this->Store->Part.Bases;
+  const std::size_t ofCell = this->Store->Part.Result.Triangles.size() / 3;
+  const TrianglesOfRank own = { ofCell + this->Triangles.size(),
+    [this](std::size_t triangle) { return this->CornersOf(triangle); },
+    [&](GlobalId number) {
+      return this->Store->Part.PointAt(this->Store->Part.PlaceOf(number, bases[first]));
+    } };
+  const std::vector<ChangedTriangle> changed =
+    RecoverLines(this->Everybody, lines, this->Crew->RankOf(0), own, this->Fraction(0.9, 0.92));
+  this->Everybody.Agree([&]() {
+    std::vector<GlobalTriangle> mayHaveOthers;
+    for (const ChangedTriangle& triangle : changed)
+    {
+      if (triangle.Place < ofCell)
+      {
+        this->Changed.push_back(triangle);
+        mayHaveOthers.push_back(triangle.Corners);
+        continue;
+      }
+      this->Triangles[triangle.Place - ofCell] = triangle.Corners;
+    }
+    mayHaveOthers.insert(mayHaveOthers.end(), this->Triangles.begin(), this->Triangles.end());
+    this->Store->Part.OtherNumbers = ListOthers(mayHaveOthers, bases[first], bases[end]);
+    this->Store->Part.Others = PointRows(this->Store->Part.Kinds);
+  });
+  this->FetchOthers();
+}
+
+/** The corners of all triangles of the part in memory as places of its points, own ones first. */
+void TriangulateParts::PlaceCorners()
+{
+  this->Everybody.Agree([&]() {
+    const GlobalId first = this->Store->FirstOf(this->Crew->FirstOwn());
+    for (const ChangedTriangle& changed : this->Changed)
+    {
+      std::transform(changed.Corners.begin(), changed.Corners.end(),
+        this->Store->Part.Result.Triangles.data() + 3 * changed.Place, [&](GlobalId number) {
+          return static_cast<Index>(this->Store->Part.PlaceOf(number, first));
+        });
+    }
+    AppendTriangles(this->Triangles, first, this->Everybody.Watched(this->Fraction(0.92, 0.95)),
+      this->Store->Part);
+    this->Triangles = std::vector<GlobalTriangle>();
+  });
+}
+
+/**
+ * Leaves out triangles with a longer edge, and counts the vertices without one. Whether a point that
+ * another part has asked for is such a vertex is known when all parts have said where they have
+ * triangles.
+ */
+void TriangulateParts::LimitEdges(const Progress& progress)
+{
+  Buffer<Index> kept;                         // of the part in memory
+  std::map<int, std::vector<vtkIdType>> open; // places without a triangle yet, of each part
+  std::vector<vtkIdType> sums(2, 0);          // triangles, and vertices without one
+  this->Crew->ForEach(progress, [&](int part, const Progress& ofPart) {
+    const auto measure = [&](const SurfacePart& whole) {
+      kept = WithinLimit(this->Options.MaximumEdgeLength, whole, elevation::Part(ofPart, 0.5, 1.0));
+      const std::size_t ownCount = whole.Own.Count();
+      std::vector<char> areMissing(ownCount + whole.Others.Count(), 1);
+      for (const Index corner : kept)
+      {
+        areMissing[corner] = 0;
+      }
+      for (const Index unused : whole.Result.UnusedPoints)
+      {
+        areMissing[unused] = 0;
+      }
+      // Other parts' points with a triangle here
+      ValuesForParts<vtkIdType> covered;
+      for (std::size_t i = 0; i < whole.OtherNumbers.size(); ++i)
+      {
+        if (!areMissing[ownCount + i])
+        {
+          const int owner = whole.OwnerOf(whole.OtherNumbers[i]);
+          covered[owner].push_back(whole.OtherNumbers[i] - whole.Bases[owner]);
+        }
+      }
+      SendTo(*this->Crew, Covered, covered);
+      // Own points that may still have one elsewhere
+      this->Crew->At(part, Requests).ForEach([&](const Bytes& bytes) {
+        const char* from = bytes.data() + sizeof(vtkIdType); // beyond the part that asks
+        std::vector<vtkIdType> places;
+        TakeFrom(from, bytes.size() / sizeof(vtkIdType) - 1, places);
+        for (const vtkIdType place : places)
+        {
+          if (std::exchange(areMissing[place], 0))
+          {
+            open[part].push_back(place);
+          }
+        }
+      });
+      sums[0] += static_cast<vtkIdType>(kept.size() / 3);
+      sums[1] += std::count(areMissing.begin(), areMissing.begin() + ownCount, char(1));
+    };
+    this->Crew->IsInFiles()
+      ? measure(this->Store->ReadWhole(part, elevation::Part(ofPart, 0.0, 0.5)))
+      : measure(this->Store->Part);
+  });
+  this->Crew->Deliver();
+  this->Crew->ForEach(Progress(), [&](int part, const Progress&) {
+    std::vector<vtkIdType> covered = ValuesIn<vtkIdType>(this->Crew->At(part, Covered));
+    this->Crew->At(part, Covered).Clear();
+    std::sort(covered.begin(), covered.end());
+    sums[1] += std::count_if(open[part].begin(), open[part].end(),
+      [&](vtkIdType place) { return !std::binary_search(covered.begin(), covered.end(), place); });
+  });
+  this->Everybody.Sum(sums);
+  EffectOfLimit& effect = this->Total.Effect;
+  this->Total.Triangles = sums[0];
+  effect.Vertices = this->Store->Part.Bases.back() - this->Total.Duplicates - this->Total.NotFinite;
+  effect.Missing = sums[1];
+  if (!this->Crew->IsInFiles())
+  {
+    if (effect.AreMostMissing())
+    {
+      MeasureAll(*this->Crew, Covered, progress, this->Store->Part, effect);
+    }
+    this->Store->Part.Result.Triangles = std::move(kept);
+  }
+}
+
+// In files the limit of edges is applied again, which is faster than writing what it leaves.
+SurfacePart TriangulateParts::Take(int part, const Progress& progress)
+{
+  SurfacePart taken;
+  if (!this->Crew->IsInFiles())
+  {
+    taken = std::move(this->Store->Part);
+  }
+  else
+  {
+    taken = this->Store->ReadWhole(part, elevation::Part(progress, 0.0, 0.7));
+    if (this->Options.MaximumEdgeLength > 0.0)
+    {
+      taken.Result.Triangles =
+        WithinLimit(this->Options.MaximumEdgeLength, taken, elevation::Part(progress, 0.7, 1.0));
+    }
+    KeepCorners(taken);
+  }
+  taken.Result.LatticeFound = this->Total.LatticeFound;
+  taken.Result.Steps = this->Total.Steps;
+  return taken;
+}
+
+void AddWork(
+  const Ranks::Traffic& traffic, const TriangulateParts::Effort& effort, vtkFieldData* fieldData)
+{
+  vtkNew<vtkIdTypeArray> work;
+  work->SetName("WorkOfRank");
+  work->SetNumberOfComponents(4);
+  const char* const names[] = { "OwnPoints", "SeamPoints", "BytesSent", "Exchanges" };
+  const vtkIdType values[] = { effort.Points, effort.SeamPoints, traffic.BytesSent,
+    traffic.Rounds };
+  for (int i = 0; i < 4; ++i)
+  {
+    work->SetComponentName(i, names[i]);
+    work->InsertNextValue(values[i]);
+  }
+  fieldData->AddArray(work);
+}
+
+} // namespace elevation

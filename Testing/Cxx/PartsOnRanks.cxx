@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: Copyright (c) the ElevationSurface authors
+// SPDX-License-Identifier: BSD-3-Clause
+/*
+ * Parts of a surface on ranks, in memory and in files: whoever holds them, their triangles are those of
+ * all points at once, and a failure on one rank is that of all. All ranks run this program.
+ */
+#include "Check.h"
+
+#include "Kernel/Triangulate/Triangulate.h"
+#include "Parts/Parts.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+#include "vtkMPIController.h"
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace
+{
+using namespace elevation;
+
+using Place = std::array<double, 3>;
+/** The places of the corners of a triangle, the lowest first. */
+using Corners = std::array<double, 6>;
+
+/** A cloud with duplicates and a point that is not finite; on a lattice, or not. */
+std::vector<Place> Cloud(bool isLattice)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(0.0, 100.0);
+  std::vector<Place> cloud;
+  for (int i = 0; i < 4000; ++i)
+  {
+    const double row = i / 80, column = i % 80;
+    cloud.push_back(isLattice
+        ? Place{ 3.0 * column + 0.5 * row, 2.0 * row - 0.25 * column, 1.0 * i }
+        : Place{ place(random), place(random), 1.0 * i });
+  }
+  std::shuffle(cloud.begin(), cloud.end(), random);
+  std::copy_n(cloud.begin(), 20, cloud.end() - 20);
+  cloud[7][0] = std::numeric_limits<double>::quiet_NaN();
+  return cloud;
+}
+
+/** Triangles by places, sorted. */
+template <typename PlaceOf>
+std::vector<Corners> ByPlaces(const Buffer<Index>& triangles, const PlaceOf& placeOf)
+{
+  std::vector<Corners> found;
+  for (std::size_t i = 0; i < triangles.size(); i += 3)
+  {
+    std::array<std::pair<double, double>, 3> corners;
+    for (int k = 0; k < 3; ++k)
+    {
+      const Point2 p = placeOf(triangles[i + k]);
+      corners[k] = { p.X, p.Y };
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    found.push_back({ corners[0].first, corners[0].second, corners[1].first, corners[1].second,
+      corners[2].first, corners[2].second });
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<Corners> AllAtOnce(const std::vector<Place>& cloud, const DelaunayOptions& options)
+{
+  PointView points;
+  points.Double = cloud.front().data();
+  points.Count = static_cast<Index>(cloud.size());
+  const Triangulation all = Triangulate(points, options);
+  return ByPlaces(all.Triangles, [&](Index i) { return points.At(i); });
+}
+
+/** An empty folder of this rank, or no name, for parts in memory. */
+std::string FolderOf(const Ranks& ranks, int partsOfRank)
+{
+  if (partsOfRank == 0)
+  {
+    return std::string();
+  }
+  const std::string folder = "parts-on-rank-" + std::to_string(ranks.Own());
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directory(folder);
+  return folder;
+}
+
+/** Adds those points of a cloud that are this rank's, in slices for files. */
+void AddShare(TriangulateParts& parts, const Ranks& ranks, const std::vector<Place>& cloud,
+  bool isInSlices, std::vector<vtkSmartPointer<vtkPolyData>>& kept)
+{
+  const std::size_t slices = isInSlices ? 5 * ranks.Count() : ranks.Count();
+  for (std::size_t slice = ranks.Own(); slice < slices; slice += ranks.Count())
+  {
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (std::size_t i = slice * cloud.size() / slices; i < (slice + 1) * cloud.size() / slices;
+         ++i)
+    {
+      points->InsertNextPoint(cloud[i].data());
+    }
+    kept.push_back(vtkSmartPointer<vtkPolyData>::New());
+    kept.back()->SetPoints(points);
+    parts.Add(kept.back(), Progress());
+  }
+}
+
+/** The triangles of all ranks, on each; 0 parts of a rank: one, in memory. */
+std::vector<Corners> InParts(const Ranks& ranks, int partsOfRank, const std::vector<Place>& cloud,
+  const DelaunayOptions& options)
+{
+  std::vector<vtkSmartPointer<vtkPolyData>> kept;
+  TriangulateParts parts(ranks, FolderOf(ranks, partsOfRank));
+  AddShare(parts, ranks, cloud, partsOfRank > 0, kept);
+  std::vector<std::string> warnings;
+  parts.Triangulate(std::max(1, partsOfRank), nullptr, options, warnings);
+  std::vector<double> own;
+  for (int i = 0; i < std::max(1, partsOfRank); ++i)
+  {
+    const SurfacePart part = parts.Take(parts.FirstOwn() + i, Progress());
+    for (const Corners& corners :
+      ByPlaces(part.Result.Triangles, [&](Index at) { return part.PointAt(at); }))
+    {
+      own.insert(own.end(), corners.begin(), corners.end());
+    }
+  }
+  const std::vector<double> all = ranks.CollectReals(own);
+  std::vector<Corners> triangles(all.size() / 6);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+  {
+    std::copy_n(all.begin() + 6 * i, 6, triangles[i].begin());
+  }
+  std::sort(triangles.begin(), triangles.end());
+  Check(parts.All().Triangles == static_cast<vtkIdType>(triangles.size()), "triangles are counted");
+  Check(parts.All().NotFinite == 1 && parts.All().Duplicates > 0, "unused points are counted");
+  return triangles;
+}
+
+void CheckTriangles(const Ranks& ranks)
+{
+  for (const bool isLattice : { false, true })
+  {
+    const std::vector<Place> cloud = Cloud(isLattice);
+    for (const double limit : { 0.0, isLattice ? 2.5 : 2.0 })
+    {
+      DelaunayOptions options;
+      options.MaximumEdgeLength = limit;
+      const std::vector<Corners> expected = AllAtOnce(cloud, options);
+      for (const int partsOfRank : { 0, 1, 3 })
+      {
+        Check(InParts(ranks, partsOfRank, cloud, options) == expected,
+          std::string(isLattice ? "lattice, " : "random, ") + std::to_string(partsOfRank) +
+            " parts of a rank, limit " + std::to_string(limit) + ": the triangles of all at once");
+      }
+    }
+  }
+}
+
+/** What the triangulation throws on this rank, when it fails at a report of the last one. */
+std::string FailureAt(const Ranks& ranks, int partsOfRank, int report, bool isAbort)
+{
+  std::vector<vtkSmartPointer<vtkPolyData>> kept;
+  const std::vector<Place> cloud = Cloud(false);
+  const std::string folder = FolderOf(ranks, partsOfRank);
+  std::string thrown = "nothing";
+  {
+    TriangulateParts parts(ranks, folder);
+    AddShare(parts, ranks, cloud, partsOfRank > 0, kept);
+    int reports = 0;
+    DelaunayOptions options;
+    options.Monitor = [&](double) {
+      if (ranks.Own() + 1 < ranks.Count() || reports++ < report)
+      {
+        return true;
+      }
+      return isAbort ? false : throw Error("a fault");
+    };
+    std::vector<std::string> warnings;
+    try
+    {
+      parts.Triangulate(std::max(1, partsOfRank), nullptr, options, warnings);
+    }
+    catch (const Aborted&)
+    {
+      thrown = "aborted";
+    }
+    catch (const Error& error)
+    {
+      thrown = error.what();
+    }
+  }
+  Check(folder.empty() || std::filesystem::is_empty(folder), "no file is left");
+  return thrown;
+}
+
+void CheckFailures(const Ranks& ranks)
+{
+  std::mt19937 random(3);
+  for (const int partsOfRank : { 0, 1, 3 })
+  {
+    for (int i = 0; i < 10; ++i)
+    {
+      const int report = static_cast<int>(random() % 30);
+      const bool isAbort = i % 2 == 0;
+      const std::vector<std::string> all =
+        ranks.Collect(std::vector<std::string>{ FailureAt(ranks, partsOfRank, report, isAbort) });
+      Check(std::count(all.begin(), all.end(), all.front()) == ranks.Count(),
+        "a failure at report " + std::to_string(report) + " is that of all ranks");
+      Check(all.front() == (isAbort ? "aborted" : "a fault"), "it is " + all.front());
+    }
+  }
+}
+
+/** What is sent lies in the order of ranks, and then of sending; also what a rank sends itself. */
+void CheckOrder(const Ranks& ranks)
+{
+  for (const std::string& folder : { std::string(), FolderOf(ranks, 2) })
+  {
+    Engine engine(ranks, ranks.Own() % 2 == 0 ? 2 : 0, { "some" }, folder);
+    engine.ForEach(Progress(), [&](int part, const Progress&) {
+      for (int to = 0; to < engine.CountOfParts(); ++to)
+      {
+        SendTo(engine, 0, std::map<int, std::vector<int>>{ { to, { part, to } } });
+      }
+    });
+    engine.Deliver();
+    std::vector<int> expected;
+    for (int part = 0; part < engine.CountOfParts(); ++part)
+    {
+      expected.insert(expected.end(), { part, -1 });
+    }
+    engine.ForEach(Progress(), [&](int part, const Progress&) {
+      for (std::size_t i = 1; i < expected.size(); i += 2)
+      {
+        expected[i] = part;
+      }
+      Check(ValuesIn<int>(engine.At(part, 0)) == expected, "messages are in order");
+      Check(engine.RankOf(part) == ranks.Own(), "ranks know their parts");
+    });
+  }
+}
+} // namespace
+
+int main(int argc, char** argv)
+{
+  int count = 1;
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+  vtkNew<vtkMPIController> controller;
+  if (argc > 1 && std::string(argv[1]) == "--ranks")
+  {
+    controller->Initialize(&argc, &argv);
+    count = controller->GetNumberOfProcesses();
+    vtkMultiProcessController::SetGlobalController(controller);
+  }
+#else
+  static_cast<void>(argc);
+  static_cast<void>(argv);
+#endif
+  {
+    vtkNew<vtkInformationVector> outputs;
+    vtkNew<vtkInformation> output;
+    output->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), count);
+    outputs->Append(output);
+    const Ranks ranks(nullptr, outputs);
+    CheckOrder(ranks);
+    CheckTriangles(ranks);
+    CheckFailures(ranks);
+  }
+  vtkMultiProcessController::SetGlobalController(nullptr);
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+  if (count > 1)
+  {
+    controller->Finalize();
+  }
+#endif
+  return failures == 0 ? 0 : 1;
+}
