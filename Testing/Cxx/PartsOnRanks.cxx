@@ -127,7 +127,7 @@ std::vector<Corners> InParts(const Ranks& ranks, int partsOfRank, const std::vec
   std::vector<vtkSmartPointer<vtkPolyData>> kept;
   TriangulateParts parts(ranks, FolderOf(ranks, partsOfRank));
   AddShare(parts, ranks, cloud, partsOfRank > 0, kept);
-  std::vector<std::string> warnings;
+  std::vector<Message> warnings;
   parts.Triangulate(std::max(1, partsOfRank), nullptr, options, warnings);
   std::vector<double> own;
   for (int i = 0; i < std::max(1, partsOfRank); ++i)
@@ -190,7 +190,7 @@ std::string FailureAt(const Ranks& ranks, int partsOfRank, int report, bool isAb
       }
       return isAbort ? false : throw Error("a fault");
     };
-    std::vector<std::string> warnings;
+    std::vector<Message> warnings;
     try
     {
       parts.Triangulate(std::max(1, partsOfRank), nullptr, options, warnings);
@@ -276,7 +276,7 @@ int main(int argc, char** argv)
     vtkNew<vtkInformation> output;
     output->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(), count);
     outputs->Append(output);
-    const Ranks ranks(nullptr, outputs);
+    const Ranks ranks(vtkMultiProcessController::GetGlobalController(), nullptr, outputs);
     CheckOrder(ranks);
     CheckTriangles(ranks);
     CheckFailures(ranks);
