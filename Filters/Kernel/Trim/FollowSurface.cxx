@@ -124,7 +124,7 @@ private:
   }
 
   /** The original triangle that a triangle is part of; a number of its own for a loose one. */
-  Index OriginalOf(Index t) const { return this->Loose.count(t) > 0 ? ~t : this->Cutter.Parent(t); }
+  Index OriginalOf(Index t) const { return this->IsLoose(t) ? ~t : this->Cutter.Parent(t); }
 
   /**
    * Goes from a vertex across edges to the first that has to be cut, which gets a vertex, or to an end
@@ -166,7 +166,7 @@ private:
         {
           return vertex;
         }
-        if (isWithin && this->IsLoose(crossed))
+        if (isWithin && this->IsLoose(Mesh::Triangle(crossed)))
         {
           crossed = first; // the edge before is to be cut after all
           isWithin = false;
@@ -213,7 +213,7 @@ private:
   Index CutNear(Index h, Point2 place, const std::function<bool(const Point2&)>& isUsable)
   {
     const Index twin = this->Surface.Twin(h);
-    if (!this->Fixed[h] && this->IsLoose(h) && this->IsLoose(twin))
+    if (!this->Fixed[h] && this->IsLoose(Mesh::Triangle(h)) && this->IsLoose(Mesh::Triangle(twin)))
     {
       return None;
     }
@@ -237,7 +237,7 @@ private:
         this->Loose.insert(Mesh::Triangle(side));
       }
     }
-    if (this->IsLoose(thicker))
+    if (this->IsLoose(Mesh::Triangle(thicker)))
     {
       return None;
     }
@@ -267,8 +267,7 @@ private:
     return None;
   }
 
-  /** Whether the triangle of a half-edge is loose. */
-  bool IsLoose(Index h) const { return this->Loose.count(Mesh::Triangle(h)) > 0; }
+  bool IsLoose(Index t) const { return !this->Loose.empty() && this->Loose.count(t) > 0; }
 
   Index AddVertex(Index crossed, const Point2& place)
   {
@@ -321,7 +320,7 @@ private:
   void KeepUp(Index h, Index after)
   {
     const Index before = Mesh::Next(h);
-    if (this->IsLoose(h))
+    if (this->IsLoose(Mesh::Triangle(h)))
     {
       this->Loose.insert(Mesh::Triangle(after));
     }

@@ -310,7 +310,10 @@ private:
     return on == None ? inReach : on;
   }
 
-  /** Whether a triangle is so thin that across an edge in reach it is no plane to interpolate in. */
+  /**
+   * Whether a triangle is so thin that within reach of an edge its elevations differ from those of the
+   * edge by more than rounding. A point that the edge is moved to then takes those of the edge.
+   */
   bool IsThin(Index t, Index on) const
   {
     constexpr double reach = 0x1p20 * SnappingReach;

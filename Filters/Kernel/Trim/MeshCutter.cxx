@@ -64,8 +64,10 @@ bool MeshCutter::CanCut(Index h, const Point2& place) const
 bool MeshCutter::MoveToCut(
   Index h, Point2& place, const std::function<bool(const Point2&)>& isUsable) const
 {
-  return this->MoveNear(h, place, true,
-    [&](const Point2& p) { return (!isUsable || isUsable(p)) && this->CanCut(h, p); });
+  const auto isPlace = [&](const Point2& p) {
+    return (!isUsable || isUsable(p)) && this->CanCut(h, p);
+  };
+  return isPlace(place) || this->MoveNear(h, place, true, std::ref(isPlace));
 }
 
 bool MeshCutter::MoveInside(
@@ -82,10 +84,6 @@ bool MeshCutter::MoveInside(
 bool MeshCutter::MoveNear(
   Index h, Point2& place, bool outwards, const std::function<bool(const Point2&)>& isPlace) const
 {
-  if (isPlace(place))
-  {
-    return true;
-  }
   const Point2& from = this->Surface.PointOf(this->Surface.Origin(h));
   const Point2 way = Around(
     from, std::array<Point2, 1>{ { this->Surface.PointOf(this->Surface.Destination(h)) } })[0];
